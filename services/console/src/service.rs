@@ -140,14 +140,16 @@ fn page_settings(settings: &Settings, study: bool) -> PageSettings {
 }
 
 impl Cycle for Console {
+    fn listener(&self) -> &WakeListener {
+        &self.wake_listener
+    }
+
     fn wake(&self, now: Time) -> (Sources<'_>, Time) {
         let (watched, alone) = LOOK_EVERY;
         let is_watched = self.app.hub.viewers() > 0 || self.bridge.is_busy();
         let longest = if is_watched { watched } else { alone };
         let Inbox { motions, commands } = &self.inbox;
-        let sources = [self.wake_listener.fd(), motions.fd(), commands.fd()].map(Some);
-        let [woken, motions, commands] = sources;
-        ([woken, motions, commands, None], now + longest)
+        ([Some(motions.fd()), Some(commands.fd()), None], now + longest)
     }
 
     fn shut_down(&mut self) {
@@ -160,8 +162,7 @@ impl Cycle for Console {
             return Ok(ControlFlow::Break(()));
         }
         let began = Instant::now();
-        let [is_woken, ..] = ready;
-        if is_woken {
+        if ready.by_wake {
             // It writes nothing that those who join could have missed.
             self.wake_listener.take();
         }

@@ -17,6 +17,8 @@ mod renewed;
 mod segment;
 mod segment_error;
 mod sender;
+mod sleeper;
+mod trigger;
 mod variant;
 mod wake;
 
@@ -25,6 +27,7 @@ pub use gate::rejected;
 pub use open::Topics;
 pub use ports::{Reader, Writer};
 pub use segment_error::SegmentError;
+pub use sleeper::Woken;
 pub(crate) use variant::Ipc;
 pub use wake::{Joined, WakeListener, WakeNotifier};
 

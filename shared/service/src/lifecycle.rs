@@ -4,7 +4,7 @@
 //! only the supervisor could write to: its end of file means that the supervisor has died. The
 //! service then shuts down, and if it cannot, a guard thread kills its whole process group.
 
-use crate::bus;
+use crate::bus::{self, WakeListener, Woken};
 use crate::exit::{Exit, Failure};
 use crate::group::{self, GroupName, GroupPaths};
 use crate::notify::Notifier;
@@ -134,31 +134,15 @@ impl Lifecycle {
         })
     }
 
-    /// Sleeps until one of `sources` is readable, a signal arrives, the supervisor ends, or `longest`
-    /// has passed. Returns which sources are readable.
-    fn wait(&mut self, sources: &Sources<'_>, longest: Span) -> Ready {
-        let timeout = rustix::time::Timespec {
-            tv_sec: (longest.0 / 1_000_000_000) as i64,
-            tv_nsec: (longest.0 % 1_000_000_000) as i64,
-        };
-        let own = [Some(self.signals.as_fd()), self.lifeline.as_ref().map(AsFd::as_fd)];
-        let mut polled = [const { None }; SOURCES_MAX + 2];
-        for (entry, fd) in polled.iter_mut().zip(sources.iter().chain(&own)) {
-            *entry = *fd;
-        }
-        // An absent descriptor is one of which nothing is asked.
-        let mut polled = polled.map(|fd| match fd {
-            Some(fd) => PollFd::from_borrowed_fd(fd, PollFlags::IN),
-            None => PollFd::from_borrowed_fd(self.signals.as_fd(), PollFlags::empty()),
-        });
-        // After an interruption everything is looked at.
-        let is_interrupted = poll(&mut polled, Some(&timeout)).is_err();
-        let is_ready = polled.map(|fd| is_interrupted || !fd.revents().is_empty());
-        let mut ready = Ready::default();
-        let (others, own) = is_ready.split_at(SOURCES_MAX);
-        ready.copy_from_slice(others);
-        self.is_called = own.contains(&true);
-        ready
+    /// Sleeps until there is a wake-up, one of `sources` is readable, a signal arrives, the supervisor
+    /// ends, or `longest` has passed.
+    fn wait(&mut self, listener: &WakeListener, sources: Sources<'_>, longest: Span) -> Ready {
+        let [a, b, c] = sources;
+        let lifeline = self.lifeline.as_ref().map(AsFd::as_fd);
+        let Woken { by_wake, sources: [a, b, c, signal, orphaned] } =
+            listener.sleep(&[a, b, c, Some(self.signals.as_fd()), lifeline], longest);
+        self.is_called = signal || orphaned;
+        Ready { by_wake, sources: [a, b, c] }
     }
 
     /// Returns true if the service has been asked to shut down.
@@ -204,15 +188,18 @@ impl Lifecycle {
     }
 }
 
-/// Most descriptors that end the sleep of a service.
-pub const SOURCES_MAX: usize = 4;
-/// Descriptors that end the sleep of a service; those that it lacks are `None`.
+/// Most descriptors that end the sleep of a service beside its wake-ups.
+pub const SOURCES_MAX: usize = 3;
+/// Descriptors that end the sleep of a service, the same for life; those that it lacks are `None`.
 pub type Sources<'a> = [Option<BorrowedFd<'a>>; SOURCES_MAX];
-/// Which of the [`Sources`] are readable, in their order.
-pub type Ready = [bool; SOURCES_MAX];
+/// Whether there is a wake-up, and which of the [`Sources`] are readable, in their order.
+pub type Ready = Woken<SOURCES_MAX>;
 
 /// A service as the main loop drives it: one pass after another until it has shut down.
 pub trait Cycle {
+    /// Returns the listener of the service's wake-ups, on which it sleeps.
+    fn listener(&self) -> &WakeListener;
+
     /// Returns the descriptors that end the sleep, and when it ends at the latest.
     fn wake(&self, now: Time) -> (Sources<'_>, Time);
 
@@ -267,7 +254,7 @@ pub fn drive(mut lifecycle: Lifecycle, cycle: &mut impl Cycle) -> Result<(), Fai
         let (sources, until) = cycle.wake(now);
         let until = if is_ready { until } else { until.min(overdue) };
         let longest = until.min(lifecycle.next_beat(now)).since(now);
-        let ready = lifecycle.wait(&sources, longest);
+        let ready = lifecycle.wait(cycle.listener(), sources, longest);
         if !is_ending && lifecycle.shutdown_requested() {
             is_ending = true;
             lifecycle.stopping();

@@ -262,14 +262,16 @@ struct Loop<P: Program> {
 }
 
 impl<P: Program> Cycle for Loop<P> {
+    fn listener(&self) -> &WakeListener {
+        &self.wake_listener
+    }
+
     fn wake(&self, now: Time) -> (Sources<'_>, Time) {
         let latest = now + LOOK_EVERY;
         let deadline = self.node.deadline().filter(|_| self.takes_ticks());
         let until = deadline.map_or(latest, |deadline| deadline.min(latest));
-        let Self { shell, wake_listener, commit, inbox, .. } = self;
-        let others = [wake_listener.fd(), commit.fd(), inbox.fd()].map(Some);
-        let [wake_listener, commit, inbox] = others;
-        ([shell.urgent_fd(), wake_listener, commit, inbox], until)
+        let Self { shell, commit, inbox, .. } = self;
+        ([shell.urgent_fd(), Some(commit.fd()), Some(inbox.fd())], until)
     }
 
     fn shut_down(&mut self) {
@@ -277,8 +279,10 @@ impl<P: Program> Cycle for Loop<P> {
     }
 
     fn pass(&mut self, ready: Ready) -> Result<ControlFlow<()>, Failure> {
-        let [is_urgent, is_woken, _, _] = ready;
-        if is_woken && let Some(joined) = self.wake_listener.take() {
+        let [is_urgent, _, _] = ready.sources;
+        if ready.by_wake
+            && let Some(joined) = self.wake_listener.take()
+        {
             self.bus.connect(joined);
         }
         self.port_error = self.take_in(is_urgent).err();

@@ -6,7 +6,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use messages::schema::{Field, Schema};
 use messages::topics::{self, Topic};
 use messages::{AppliedMark, Epoch, Incarnation, PolicyView, Presented, Service};
-use rustix::event::{PollFd, PollFlags, poll};
+use service::Span;
 use service::bus::{Bus, BusError, Identity, Joined, WakeListener};
 use service::group::{GroupName, GroupPaths};
 use service::shm_cleanup;
@@ -124,11 +124,58 @@ fn payloads_grow_as_they_need() {
     }
 }
 
+/// Returns whether a mapping of `/dev/shm` holds the address.
+fn is_shared(address: usize) -> bool {
+    let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
+    maps.lines().filter(|line| line.contains("/dev/shm/")).any(|line| {
+        let (from, to) = line.split_whitespace().next().unwrap().split_once('-').unwrap();
+        let number = |text| usize::from_str_radix(text, 16).unwrap();
+        (number(from)..number(to)).contains(&address)
+    })
+}
+
+#[test]
+fn messages_are_filled_and_read_in_shared_memory() {
+    let shm = Shm::new();
+    let bus = shm.join(1, 1);
+    let writer = bus.writer::<AppliedMark>(&topics::MARK).unwrap();
+    let reader = bus.reader::<AppliedMark>(&topics::MARK).unwrap();
+    let fill = |mark: &mut AppliedMark| {
+        assert!(is_shared(std::ptr::from_mut(mark) as usize));
+        assert_eq!(*mark, AppliedMark::default(), "nothing of an earlier message");
+        mark.seq = 5;
+    };
+    writer.send(&AppliedMark { seq: 4 }).unwrap();
+    for _ in 0..4 {
+        writer.send_with(fill).unwrap();
+        let read = |mark: &AppliedMark| (mark.seq, is_shared(std::ptr::from_ref(mark) as usize));
+        assert_eq!(reader.take(read).unwrap(), Some((5, true)));
+    }
+}
+
+#[test]
+fn encoded_bytes_are_read_where_they_lie_and_invalid_ones_are_skipped() {
+    let shm = Shm::new();
+    let bus = shm.join(1, 1);
+    let topic = Topic { buffer: 2, ..topics::VIEW };
+    let writer = bus.encoded_writer::<PolicyView>(&topic).unwrap();
+    let reader = bus.encoded_reader::<PolicyView>(&topic).unwrap();
+    for text in ["first", "second"] {
+        let view = PolicyView { text: text.to_owned(), ..PolicyView::default() };
+        writer.send(&view).unwrap();
+    }
+    let decode = |bytes: &[u8]| {
+        assert!(is_shared(bytes.as_ptr() as usize));
+        let view: PolicyView = postcard::from_bytes(bytes)?;
+        if view.text == "first" { Err(postcard::Error::DeserializeBadBool) } else { Ok(view.text) }
+    };
+    assert_eq!(reader.take_with(decode).unwrap().as_deref(), Some("second"));
+    assert_eq!(reader.take_with(decode).unwrap(), None);
+}
+
 /// Returns whether a wake-up waits.
 fn is_woken(listener: &WakeListener) -> bool {
-    let now = rustix::time::Timespec { tv_sec: 0, tv_nsec: 0 };
-    let fd = listener.fd();
-    poll(&mut [PollFd::from_borrowed_fd(fd, PollFlags::IN)], Some(&now)).unwrap() > 0
+    listener.sleep(&[], Span(0)).by_wake
 }
 
 #[test]
@@ -178,6 +225,45 @@ fn repeated_state_wakes_its_readers_only_when_it_has_changed() {
         writer.send(&AppliedMark { seq }).unwrap();
         assert_eq!(is_woken(&listener), wakes, "mark {seq}");
         if wakes {
+            assert_eq!(listener.take(), None);
+        }
+    }
+}
+
+#[test]
+fn every_message_wakes_its_reader_whoever_sends_and_however_often() {
+    let shm = Shm::new();
+    let bus = shm.join(1, 1);
+    let listener = bus.wake_listener(Service::Speech).unwrap();
+    let reader = bus.reader::<AppliedMark>(&topics::MARK).unwrap();
+    let mut seq = 0;
+    // Each writer is another process, which ends; some messages come while earlier ones are unread.
+    for round in 0..8 {
+        let writing = shm.join(1, round + 2);
+        let writer = writing.writer::<AppliedMark>(&topics::MARK).unwrap();
+        for burst in (1..=40).cycle().take(400) {
+            for _ in 0..burst {
+                seq += 1;
+                writer.send(&AppliedMark { seq }).unwrap();
+            }
+            assert!(is_woken(&listener), "message {seq}");
+            assert_eq!(listener.take(), None);
+            assert_eq!(reader.latest().unwrap(), Some(AppliedMark { seq }));
+        }
+    }
+}
+
+#[test]
+fn reader_that_starts_again_is_woken_by_a_writer_that_went_on() {
+    let shm = Shm::new();
+    let policy = shm.join(1, 1);
+    let writer = policy.writer::<AppliedMark>(&topics::MARK).unwrap();
+    for seq in 1..=6 {
+        let speech = shm.join(1, 2);
+        let listener = speech.wake_listener(Service::Speech).unwrap();
+        for seq in [10 * seq, 10 * seq + 1] {
+            writer.send(&AppliedMark { seq }).unwrap();
+            assert!(is_woken(&listener), "message {seq}");
             assert_eq!(listener.take(), None);
         }
     }

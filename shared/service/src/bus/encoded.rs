@@ -12,9 +12,11 @@ use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};
 use messages::Stamp;
 use messages::schema::Schema;
 use messages::topics::Topic;
+use postcard::ser_flavors::{Flavor, Size};
 use serde::{Serialize, de::DeserializeOwned};
 use std::cell::Cell;
 use std::marker::PhantomData;
+use std::mem::MaybeUninit;
 use std::rc::Rc;
 
 /// First guess at the size of a payload, bytes; it grows as needed.
@@ -82,7 +84,7 @@ pub struct EncodedWriter<T: Schema> {
 }
 
 impl<T: Schema> EncodedWriter<T> {
-    /// Encodes and sends the payload. Where it needs more memory than was reserved and there is
+    /// Encodes the payload into shared memory and sends it. Where it needs more memory than was reserved and there is
     /// none, a service goes on without showing it.
     ///
     /// # Errors
@@ -92,20 +94,26 @@ impl<T: Schema> EncodedWriter<T> {
         T: Serialize,
     {
         let failed = |cause| PortError::new(self.topic, cause);
-        let bytes = postcard::to_stdvec(payload).map_err(|e| failed(e.to_string()))?;
-        if bytes.len() > BYTES_MAX {
-            return Err(failed(format!("{} bytes, {BYTES_MAX} at most", bytes.len())));
+        let length = postcard::serialize_with_flavor(payload, Size::default());
+        let length = length.map_err(|e| failed(e.to_string()))?;
+        if length > BYTES_MAX {
+            return Err(failed(format!("{length} bytes, {BYTES_MAX} at most")));
         }
         let is_sent = self.sender.with(|publisher| {
             segment_error::take();
-            let mut sample = match publisher.loan_slice_uninit(bytes.len()) {
+            let mut sample = match publisher.loan_slice_uninit(length) {
                 Ok(sample) => sample,
                 Err(error) => return self.unsent(format!("{error:?}")).map(|()| false),
             };
             self.is_short.set(false);
             *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
-            let sent = sample.write_from_slice(&bytes).send();
-            sent.map(|_| true).map_err(|e| failed(format!("{e:?}")))
+            let unwritten = Unwritten(sample.payload_mut());
+            let encoded = postcard::serialize_with_flavor(payload, unwritten);
+            encoded.map_err(|e| failed(e.to_string()))?;
+            // SAFETY: encoded without an error, every byte has been written.
+            #[allow(unsafe_code)]
+            let sample = unsafe { sample.assume_init() };
+            sample.send().map(|_| true).map_err(|e| failed(format!("{e:?}")))
         })?;
         if !is_sent {
             return Ok(());
@@ -130,6 +138,32 @@ impl<T: Schema> EncodedWriter<T> {
     }
 }
 
+/// Bytes of a loan that are still to be written by the encoder.
+struct Unwritten<'a>(&'a mut [MaybeUninit<u8>]);
+
+impl Flavor for Unwritten<'_> {
+    type Output = ();
+
+    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
+        self.try_extend(&[byte])
+    }
+
+    fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
+        let slots = self.0.split_off_mut(..bytes.len());
+        let slots = slots.ok_or(postcard::Error::SerializeBufferFull)?;
+        for (slot, byte) in slots.iter_mut().zip(bytes) {
+            slot.write(*byte);
+        }
+        Ok(())
+    }
+
+    /// # Errors
+    /// Fewer bytes than the loan has.
+    fn finalize(self) -> postcard::Result<()> {
+        if self.0.is_empty() { Ok(()) } else { Err(postcard::Error::SerdeSerCustom) }
+    }
+}
+
 /// Reads a topic of postcard payloads.
 #[derive(Debug)]
 pub struct EncodedReader<T: Schema> {
@@ -139,13 +173,17 @@ pub struct EncodedReader<T: Schema> {
     _payload: PhantomData<T>,
 }
 
-impl<T: Schema + DeserializeOwned> EncodedReader<T> {
-    /// Returns the next payload; an invalid one is logged and skipped, because a client's invalid
-    /// bytes must not stop a service.
+impl<T: Schema> EncodedReader<T> {
+    /// Decodes the next payload where it lies in shared memory, so that it may borrow bytes and text
+    /// from there; an invalid one is logged and skipped, because a client's invalid bytes must not
+    /// stop a service.
     ///
     /// # Errors
     /// iceoryx2 lost its connection to a writer.
-    pub fn take(&self) -> Result<Option<T>, PortError> {
+    pub fn take_with<R>(
+        &self,
+        mut decode: impl FnMut(&[u8]) -> postcard::Result<R>,
+    ) -> Result<Option<R>, PortError> {
         self.subscriber.with(|subscriber| {
             loop {
                 let received = subscriber.receive();
@@ -155,12 +193,22 @@ impl<T: Schema + DeserializeOwned> EncodedReader<T> {
                 if !self.gate.admits(sample.user_header()) {
                     continue;
                 }
-                match postcard::from_bytes(sample.payload()) {
+                match decode(sample.payload()) {
                     Ok(payload) => return Ok(Some(payload)),
                     Err(error) => reject(self.topic, &error),
                 }
             }
         })
+    }
+}
+
+impl<T: Schema + DeserializeOwned> EncodedReader<T> {
+    /// As [`EncodedReader::take_with`], with a payload that is kept.
+    ///
+    /// # Errors
+    /// As [`EncodedReader::take_with`].
+    pub fn take(&self) -> Result<Option<T>, PortError> {
+        self.take_with(|bytes| postcard::from_bytes(bytes))
     }
 
     /// Returns the newest pending payload.

@@ -10,11 +10,14 @@ use super::sender::Sender;
 use super::{Bus, BusError, Connect, Ipc, PortError, WireMessage, create};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::{BackpressureStrategy, IceoryxSend};
+use iceoryx2::sample_mut::SampleMut;
+use iceoryx2::sample_mut_uninit::SampleMutUninit;
 use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
 use messages::Stamp;
 use messages::topics::Topic;
 use std::cell::Cell;
 use std::fmt::Debug;
+use std::mem::MaybeUninit;
 use std::rc::Rc;
 
 impl Bus {
@@ -70,6 +73,9 @@ pub(super) fn subscribe<P: IceoryxSend + Debug + ?Sized + 'static>(
     })
 }
 
+/// Shared memory for a message.
+type Slot<T> = SampleMutUninit<Ipc, MaybeUninit<T>, Stamp>;
+
 /// Writes a fixed-layout topic.
 #[derive(Debug)]
 pub struct Writer<T: WireMessage> {
@@ -81,28 +87,54 @@ pub struct Writer<T: WireMessage> {
 }
 
 impl<T: WireMessage> Writer<T> {
-    /// Sends the message and wakes the topic's readers, unless it repeats a state: they take that with
-    /// their next pass. That it was sent does not mean that it was received.
+    /// Sends a copy of the message, as [`Writer::send_with`] sends one that it fills in place.
     ///
     /// # Errors
     /// iceoryx2 is out of memory.
     pub fn send(&self, message: &T) -> Result<(), PortError> {
-        self.sender.with(|publisher| {
+        self.send_filled(|slot| slot.write_payload(*message))
+    }
+
+    /// Fills a message in shared memory, from its default, sends it and wakes the topic's readers,
+    /// unless it repeats a state: they take that with their next pass. That it was sent does not mean
+    /// that it was received.
+    ///
+    /// # Errors
+    /// iceoryx2 is out of memory.
+    pub fn send_with(&self, fill: impl FnOnce(&mut T)) -> Result<(), PortError>
+    where
+        T: Default,
+    {
+        self.send_filled(|slot| {
+            let mut sample = slot.write_payload(T::default());
+            fill(sample.payload_mut());
+            sample
+        })
+    }
+
+    fn send_filled(
+        &self,
+        fill: impl FnOnce(Slot<T>) -> SampleMut<Ipc, T, Stamp>,
+    ) -> Result<(), PortError> {
+        let state = self.sender.with(|publisher| {
             let loan = publisher.loan_uninit();
-            let mut sample = loan.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
-            *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
-            let sent = sample.write_payload(*message).send();
-            sent.map(drop).map_err(|e| PortError::new(self.topic, format!("{e:?}")))
+            let mut slot = loan.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
+            *slot.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
+            let sample = fill(slot);
+            let state = self.latest.as_ref().map(|_| *sample.payload());
+            let sent = sample.send();
+            sent.map(|_| state).map_err(|e| PortError::new(self.topic, format!("{e:?}")))
         })?;
-        if self.is_news(message) {
+        if self.is_news(state) {
             self.sender.wake_readers();
         }
         Ok(())
     }
 
-    fn is_news(&self, message: &T) -> bool {
+    /// Returns whether what was sent differs from the last message, where the topic is a `state`.
+    fn is_news(&self, state: Option<T>) -> bool {
         let Some(latest) = &self.latest else { return true };
-        latest.replace(Some(*message)).is_none_or(|latest| latest != *message)
+        state != latest.replace(state)
     }
 }
 

@@ -1,7 +1,10 @@
 //! Wake-ups. An event says only "look": it may come once for many messages, or never where its
 //! listener was dead, so the woken side always drains everything and also polls from time to time.
 
+use super::sleeper::{Sleeper, Woken};
+use super::trigger::borrow;
 use super::{Bus, BusError, Ipc, create};
+use crate::Span;
 use iceoryx2::port::{listener::Listener, notifier::Notifier};
 use iceoryx2::prelude::*;
 use iceoryx2::service::port_factory::event::PortFactory;
@@ -12,6 +15,7 @@ use std::os::fd::BorrowedFd;
 /// Listens for wake-ups of one service.
 #[derive(Debug)]
 pub struct WakeListener {
+    sleeper: Sleeper,
     listener: Listener<Ipc>,
     _topic: PortFactory<Ipc>,
 }
@@ -71,24 +75,27 @@ impl Bus {
     pub fn wake_listener(&self, service: Service) -> Result<WakeListener, BusError> {
         let topic = open(self, service)?;
         let listener = create(service.name(), || topic.listener_builder().create())?;
-        Ok(WakeListener { listener, _topic: topic })
+        let sleeper = create(service.name(), || Sleeper::new(borrow(listener.file_descriptor())))?;
+        Ok(WakeListener { sleeper, listener, _topic: topic })
     }
 }
 
 impl WakeListener {
-    /// Readable while a wake-up waits.
-    pub fn fd(&self) -> BorrowedFd<'_> {
-        // SAFETY: the descriptor belongs to `listener`, which lives as long as the borrow of
-        // `self`, and is only polled.
-        #[allow(unsafe_code)]
-        unsafe {
-            BorrowedFd::borrow_raw(self.listener.file_descriptor().native_handle())
-        }
+    /// Sleeps until there is a wake-up, one of `sources` is readable, or `longest` has passed. After an
+    /// interruption everything counts as ready. A source is open from the first sleep on it to the last
+    /// one of all.
+    pub fn sleep<const N: usize>(
+        &self,
+        sources: &[Option<BorrowedFd<'_>>; N],
+        longest: Span,
+    ) -> Woken<N> {
+        self.sleeper.sleep(sources, longest)
     }
 
-    /// Takes all pending wake-ups. Returns who has joined, if anybody: its readers wait for
-    /// [`Bus::connect`].
+    /// Takes all pending wake-ups, to be called before topics are read. Returns who has joined, if
+    /// anybody: its readers wait for [`Bus::connect`].
     pub fn take(&self) -> Option<Joined> {
+        self.sleeper.empty(borrow(self.listener.file_descriptor()));
         let mut joined = None;
         let taken = self.listener.try_wait(|event| joined = joined.max(Joined::of_event(event.id)));
         if let Err(error) = taken {
