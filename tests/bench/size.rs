@@ -56,7 +56,7 @@ fn group(report: &mut Report, objects: usize, attributes: usize, seed: u64) {
     for dialogue in 0..DIALOGUES {
         let is_placed = dialogue % 2 == 0;
         let object = if is_placed { dialogue } else { objects - 1 - dialogue };
-        let outcome = if is_placed { "delivered" } else { "unreachable" };
+        let outcome = if is_placed { "delivered" } else { "failed" };
         questions += converse(&mut page, &scene, &format!("p{object}"), outcome, &mut replies_ms);
     }
     let sent = page.bytes as f64 / 1e3 / replies_ms.len() as f64;
