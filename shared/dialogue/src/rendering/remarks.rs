@@ -8,6 +8,8 @@ use crate::manager::{AboutObjects, Reason, Remark};
 /// Length of a list from which it is cut short, bytes: what is said has room for 244, and a question
 /// may follow.
 const LIST_MAX: usize = 120;
+/// Most objects that are enumerated; different ones would not fit into that length.
+const LISTED_MAX: usize = 30;
 
 /// Returns the text of a remark within an act of that kind.
 pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
@@ -72,6 +74,8 @@ fn about_objects(scene: &Scene, asked: AboutObjects, words: &[String], names: &[
     let listed = || {
         let list = match objects[..] {
             [one] => format!("the {}", scene.describe(one)),
+            // Telling each from all others takes the square of their number.
+            [..] if objects.len() > LISTED_MAX => return None,
             _ => scene.list(&objects, "and"),
         };
         if list.len() > LIST_MAX { None } else { Some(list) }
