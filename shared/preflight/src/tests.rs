@@ -159,7 +159,7 @@ fn preflight_rejects_a_scene_without_poses() {
     assert_eq!(
         complaints,
         [
-            "scenes/bowls.toml: objects: no object has a place, so none can be fetched; help: add `xyz`, `size` and `grasp_width` to those within reach"
+            "scenes/bowls.toml:6: objects: no object has a place, so none can be fetched; help: add `xyz`, `size` and `grasp_width` to those within reach"
         ]
     );
 }
