@@ -188,3 +188,26 @@ fn capitalised(text: &str) -> String {
     let first = chars.next().into_iter().flat_map(char::to_uppercase);
     first.chain(chars).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of so many mugs that nothing tells apart.
+    fn counted(count: usize) -> String {
+        let mug =
+            |n| format!("[[objects]]\nname = \"m{n}\"\nattributes = {{ colour = \"red\" }}\n");
+        let mugs: String = (0..count).map(mug).collect();
+        let head = "name = \"s\"\nnoun = \"mug\"\n[[attributes]]\nname = \"colour\"\n";
+        let scene = Scene::from_toml("s", &format!("{head}values = [\"red\"]\n{mugs}")).unwrap();
+        let names: Vec<String> = (0..count).map(|n| format!("m{n}")).collect();
+        about_objects(&scene, AboutObjects::Count, &["red".to_owned()], &names)
+    }
+
+    #[test]
+    fn many_objects_are_counted_and_not_enumerated() {
+        assert_eq!(counted(2), "There are two red mugs: the mug.");
+        let many = counted(LISTED_MAX + 1);
+        assert!(many.ends_with("red mugs."), "{many}");
+    }
+}
