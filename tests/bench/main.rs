@@ -3,7 +3,8 @@
 //! other solvers; how fast the group starts and recovers, how long an utterance
 //! takes to become a decision and where the time goes, what it costs when nothing happens, how
 //! steadily joint states come, how soon the arm accepts an order, how much of spoken sentences is understood, how turns are taken in
-//! simulated time, what many open pages cost the console, how dialogues by voice end, and how soon
+//! simulated time, what many open pages cost the console, what thousands of objects
+//! cost the group, how dialogues by voice end, and how soon
 //! the arm stops while something is short.
 //!
 //! Machines are noisy: each figure stands beside a peer that was measured in the same run, and no
@@ -21,6 +22,7 @@ mod options;
 mod orders;
 mod peers;
 mod report;
+mod size;
 mod speech;
 mod spoken;
 mod start;
@@ -90,6 +92,9 @@ fn measure(options: &Options, report: &mut Report) {
     }
     if all || options.console {
         console::measure(report, options);
+    }
+    if all || options.size {
+        size::measure(report, options);
     }
     if all || options.spoken {
         spoken::measure(report, options);

@@ -45,6 +45,9 @@ pub(crate) struct Options {
     /// Only the console: many pages while dialogues run
     #[arg(long)]
     pub(crate) console: bool,
+    /// Only groups with thousands of objects; --quick: with one thousand
+    #[arg(long)]
+    pub(crate) size: bool,
     /// Only dialogues by voice with the real group, in real time
     #[arg(long)]
     pub(crate) spoken: bool,
@@ -54,7 +57,7 @@ pub(crate) struct Options {
     /// Utterances of --long [20000; 1000 among all parts]
     #[arg(long, value_name = "N")]
     pub(crate) utterances: Option<u64>,
-    /// Seed of these dialogues
+    /// Seed of these dialogues, and of the scenes of --size
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub(crate) seed: u64,
     /// Only this noise of --spoken: quiet, steady or babble
@@ -75,9 +78,9 @@ impl Options {
     /// Returns whether all parts are selected.
     pub(crate) fn wants_all(&self) -> bool {
         let Self { core, kinematics, processes, long, joints, orders, stops, .. } = *self;
-        let Self { speech, endings, turns, console, spoken, .. } = *self;
+        let Self { speech, endings, turns, console, size, spoken, .. } = *self;
         let measured = core || kinematics || processes || long || joints || orders || stops;
-        !(measured || speech || endings || turns || console || spoken)
+        !(measured || speech || endings || turns || console || size || spoken)
     }
 }
 

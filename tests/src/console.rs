@@ -33,6 +33,8 @@ pub struct Page {
     pub messages: Vec<Json>,
     /// Number of received frames.
     pub frames: u64,
+    /// Bytes of their texts.
+    pub bytes: usize,
     /// Code and reason, once the console has closed the socket.
     pub closed: Option<(u16, String)>,
     next: u64,
@@ -184,6 +186,7 @@ impl Page {
             lines: Vec::new(),
             messages: Vec::new(),
             frames: 0,
+            bytes: 0,
             closed: None,
             next: 0,
         })
@@ -206,6 +209,7 @@ impl Page {
         match self.socket.read() {
             Ok(Message::Text(text)) => {
                 self.frames += 1;
+                self.bytes += text.len();
                 self.hear(serde_json::from_str(&text).expect("frames are JSON"));
             }
             Ok(Message::Close(frame)) => {

@@ -22,6 +22,9 @@ pub fn text(scene: &Scene, act: &Act) -> String {
             if *is_last { format!("{question} {LAST}") } else { question }
         }
         Content::Wanted(time) => wanted(scene, *time),
+        Content::Fetching(object) if is_out_of_reach(scene, act) => {
+            format!("You mean the {object}.")
+        }
         Content::Fetching(object) => fetching(object, &act.line.preface),
         Content::HeldBack(object) => {
             format!("I have stopped. Shall I get the {object} once you resume?")
@@ -58,6 +61,15 @@ fn wanted(scene: &Scene, time: u32) -> String {
         2 => scene.phrase(Question::None),
         _ => remarks::example(scene),
     }
+}
+
+/// Returns whether the object of a pick is one that can only be talked about. A scene without any
+/// place is about words alone: nothing is known to be out of reach.
+fn is_out_of_reach(scene: &Scene, act: &Act) -> bool {
+    let Some((_, picked)) = act.pick else { return false };
+    let has_place = |object: &scene::Object| object.placement.is_some();
+    scene.objects().get(picked.index()).is_some_and(|object| !has_place(object))
+        && scene.objects().iter().any(has_place)
 }
 
 fn fetching(object: &str, preface: &Preface) -> String {

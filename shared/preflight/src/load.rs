@@ -9,12 +9,12 @@ use scene::Scene;
 
 use crate::{ArmSetup, Extent, MotionError, Motions, Pace, Voice, measure, reach};
 
-/// Loads a configuration folder ([`Settings::load`]), checks that the arm can fetch every object,
-/// and measures the durations if they are the costs of questions.
+/// Loads a configuration folder ([`Settings::load`]), checks that the arm can fetch every object that
+/// has a place, and measures the durations if they are the costs of questions.
 ///
 /// # Errors
 /// Every problem of the files at once; if there is none, every fault of the robot's description; if
-/// there is none either, every object that the arm cannot fetch.
+/// there is none either, every object with a place that the arm cannot fetch.
 pub fn load(
     dir: &Path,
     profile: Option<&str>,

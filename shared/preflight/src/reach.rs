@@ -1,6 +1,6 @@
 //! Reachability of the objects of a scene.
 
-use config::Settings;
+use config::{CostsFrom, Settings};
 use diagnostics::{Diagnostic, Report};
 use manipulation::{ObjectPose, PlanError, PlanSettings, check_reachable, gripper};
 use scene::Placement;
@@ -8,16 +8,18 @@ use scene::Placement;
 use crate::ArmSetup;
 
 /// Most objects with a place. The plans that are tried grow with the square of their number: this
-/// many take seconds.
+/// many take seconds. Objects without a place are not planned, so that their number is not limited.
 const PLACED_MAX: usize = 256;
 
-/// Reports every object without a place, and every one that the arm cannot bring.
+/// Reports every object with a place that the arm cannot bring, and settings that need the places of
+/// all objects where some have none.
 pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) {
-    let placed = placed(settings, report);
+    let placed = placed(settings);
+    check_unplaced(settings, placed.len(), report);
     if placed.len() > PLACED_MAX {
         let what =
             format!("expected at most {PLACED_MAX} objects with a place, found {}", placed.len());
-        let help = "divide them between scenes; `whichone reload` changes the scene";
+        let help = "leave out the places of objects that need not be fetched, or divide them between scenes";
         return report.add(settings.scene_diagnostic("objects", what, help));
     }
     if !check_apart(&placed, settings, report) {
@@ -38,7 +40,7 @@ pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) 
             continue;
         }
         let key = if matches!(error, PlanError::Grasp(_)) { "grasp_width" } else { "xyz" };
-        let help = "move it, or change limb, hover_m or table_z_m of the arm";
+        let help = "move it, leave out its place, or change limb, hover_m or table_z_m of the arm";
         report.add(of_object(settings, *n, key, &reason(&error, setup), help));
     }
     if let Some(error) = hand_over {
@@ -98,19 +100,32 @@ fn check_widths(
 }
 
 /// The objects that have a place, with their positions in the scene.
-fn placed(settings: &Settings, report: &mut Report) -> Vec<(usize, ObjectPose)> {
-    let mut placed = Vec::new();
-    for (n, object) in settings.scene.objects().iter().enumerate() {
-        match object.placement {
-            Some(placement) => placed.push((n, pose(&placement))),
-            None => {
-                let what = "has no place, so it cannot be fetched";
-                let help = "add `xyz`, `size` and `grasp_width`";
-                report.add(of_object(settings, n, "xyz", what, help));
-            }
-        }
+fn placed(settings: &Settings) -> Vec<(usize, ObjectPose)> {
+    let objects = settings.scene.objects().iter().enumerate();
+    objects.filter_map(|(n, object)| Some((n, pose(&object.placement?)))).collect()
+}
+
+/// Reports what is impossible with objects that have no place: fetching nothing at all, pointing at
+/// them, and the seconds of fetching them as costs.
+fn check_unplaced(settings: &Settings, placed: usize, report: &mut Report) {
+    let objects = settings.scene.objects();
+    let Some(first) = objects.iter().position(|object| object.placement.is_none()) else { return };
+    if placed == 0 {
+        let what = "no object has a place, so none can be fetched";
+        let help = "add `xyz`, `size` and `grasp_width` to those within reach";
+        return report.add(settings.scene_diagnostic("objects", what, help));
     }
-    placed
+    let name = &objects[first].name;
+    if settings.dialogue.actions.point() {
+        let what = format!("the robot cannot point at `{name}`, which has no place");
+        let help = "use \"remote\", or give every object a place";
+        report.add(settings.diagnostic(&["dialogue", "mode"], what, help));
+    }
+    if settings.dialogue.costs_from == CostsFrom::Robot {
+        let what = format!("fetching `{name}` takes no known time: it has no place");
+        let help = "use \"config\", or give every object a place";
+        report.add(settings.diagnostic(&["dialogue", "costs", "from"], what, help));
+    }
 }
 
 fn reason(error: &PlanError, setup: &ArmSetup) -> String {

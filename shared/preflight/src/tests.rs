@@ -133,7 +133,7 @@ fn preflight_refuses_objects_at_one_place_and_too_many_before_it_plans() {
     let two = complaints(&[("scenes/bowls.toml", &crowd(1))], &[]);
     assert!(two[0].contains("`red_0` stands where `red_one` does; help: move one"), "{two:?}");
     let many = complaints(&[("scenes/bowls.toml", &crowd(599))], &[]);
-    let expected = "expected at most 256 objects with a place, found 600; help: divide";
+    let expected = "expected at most 256 objects with a place, found 600; help: leave out";
     assert!(many[0].contains(expected), "{many:?}");
     let full = complaints(&[("scenes/bowls.toml", &crowd(255))], &[]);
     assert_eq!(full.iter().filter(|line| line.contains("stands where")).count(), 255);
@@ -159,9 +159,28 @@ fn preflight_rejects_a_scene_without_poses() {
     assert_eq!(
         complaints,
         [
-            "scenes/bowls.toml:6: objects[0].xyz: `one` has no place, so it cannot be fetched; help: add `xyz`, `size` and `grasp_width`"
+            "scenes/bowls.toml:6: objects: no object has a place, so none can be fetched; help: add `xyz`, `size` and `grasp_width` to those within reach"
         ]
     );
+}
+
+#[test]
+fn preflight_accepts_thousands_of_objects_without_a_place_but_neither_pointing_nor_measured_costs()
+{
+    let far = |n: usize| {
+        format!("\n[[objects]]\nname = \"far_{n}\"\nattributes = {{ color = \"red\" }}\n")
+    };
+    let text: String = std::iter::once(ONE_BOWL.to_owned()).chain((0..3_000).map(far)).collect();
+    let folder = folder(&[("scenes/bowls.toml", &text)]);
+    let settings = load(folder.path(), None, &[]).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(settings.scene.objects().len(), 3_001);
+    let over = [("dialogue.mode", "present"), ("dialogue.costs.from", "robot")];
+    let complaints = complaints(&[("scenes/bowls.toml", &text)], &over);
+    let expected = [
+        "--set: dialogue.mode: the robot cannot point at `far_0`, which has no place; help: use \"remote\", or give every object a place",
+        "--set: dialogue.costs.from: fetching `far_0` takes no known time: it has no place; help: use \"config\", or give every object a place",
+    ];
+    assert_eq!(complaints, expected);
 }
 
 /// Baxter with another velocity limit of its first joints.

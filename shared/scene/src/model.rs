@@ -20,14 +20,14 @@ pub struct Scene {
     vocabularies: Vocabularies,
 }
 
-/// One object that can be fetched.
+/// One object that can be asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
     /// Unique name; not something that people say.
     pub name: String,
     /// Value per attribute, in the scene's attribute order; an object may lack one.
     pub values: Vec<Option<ValueId>>,
-    /// Place and size, if the scene has geometry.
+    /// Place and size; an object without them can be talked about and not fetched.
     pub placement: Option<Placement>,
 }
 

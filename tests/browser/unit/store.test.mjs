@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { describe, it } from "node:test";
 import { LINES_MAX, mergeLines } from "../../../services/console/page/js/model/lines.js";
-import { Store } from "../../../services/console/page/js/store.js";
+import { keep, Store } from "../../../services/console/page/js/store.js";
 
 const lines = (...ids) => ids.map((id) => ({ id, text: `line ${id}` }));
 const ids = (list) => list.map((line) => line.id);
@@ -83,5 +83,26 @@ describe("the store", () => {
     store.addLines(lines(4));
     store.resume(90);
     assert.equal(store.lastLine, 0, "lines between were missed: all of them come again");
+  });
+});
+
+describe("a large scene", () => {
+  it("is put together from the objects with a place and those of the moment", () => {
+    const store = new Store();
+    const listeners = new Map();
+    keep(store, { status: {}, on: (what, f) => listeners.set(what, f) });
+    const receive = (parts) => listeners.get("state")(parts);
+    const names = () => store.get("scene").objects.map(({ name }) => name);
+    receive({ scene: { key: "a", objects: [{ name: "near" }] }, further: [{ name: "far" }] });
+    assert.deepEqual(names(), ["near", "far"]);
+    receive({ further: [{ name: "other" }] });
+    assert.deepEqual(names(), ["near", "other"]);
+    receive({ scene: { key: "b", objects: [{ name: "new" }] }, further: [] });
+    assert.deepEqual(names(), ["new"]);
+    receive({ turn: 1 });
+    assert.deepEqual(
+      store.get("scene").standing.map(({ name }) => name),
+      ["new"],
+    );
   });
 });

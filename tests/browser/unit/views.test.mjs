@@ -10,6 +10,7 @@ import {
   rank,
   readable,
   strip,
+  unlistedOf,
 } from "../../../services/console/page/js/model/ranking.js";
 import {
   actionWords,
@@ -101,6 +102,23 @@ describe("a probability", () => {
     assert.deepEqual(readable(1), { sign: "", share: 1 });
     assert.deepEqual(readable(0), { sign: "", share: 0 });
     assert.deepEqual(readable(0.456), { sign: "", share: 0.46 });
+  });
+});
+
+describe("objects that are not listed", () => {
+  const scene = { count: 1000, objects: [{ name: "a" }, { name: "b" }] };
+
+  it("have what is missing to the whole", () => {
+    const { count, share } = unlistedOf(scene, { belief: { a: 0.5, b: 0.2 }, absent: 0.1 });
+    assert.equal(count, 998);
+    assert.ok(Math.abs(share - 0.2) < 1e-9);
+  });
+
+  it("are none in a small scene", () => {
+    assert.deepEqual(unlistedOf({ objects: scene.objects }, { belief: { a: 0.1 } }), {
+      count: 0,
+      share: 0,
+    });
   });
 });
 

@@ -93,12 +93,27 @@ export class Store {
 }
 
 /**
+ * Puts together what is known of the scene: the section `scene` has the objects with a place, as
+ * `standing`; those of the section `further` follow them in `objects`.
+ * @param {Store} store
+ * @param {Record<string, any>} parts of a `state` frame
+ */
+function whole(store, parts) {
+  if (!parts.scene && !parts.further) return parts;
+  const scene = parts.scene ?? store.get("scene");
+  if (!scene) return parts;
+  const standing = parts.scene?.objects ?? scene.standing;
+  const further = parts.further ?? store.get("further") ?? [];
+  return { ...parts, scene: { ...scene, standing, objects: [...standing, ...further] } };
+}
+
+/**
  * Has a link's messages kept by a store.
  * @param {Store} store
  * @param {{on: (what: string, f: (message: any) => void) => void, status: object}} link
  */
 export function keep(store, link) {
-  link.on("state", (parts) => store.apply(parts));
+  link.on("state", (parts) => store.apply(whole(store, parts)));
   link.on("lines", (lines) => store.addLines(lines));
   link.on("partial", (partial) => store.set("partial", partial));
   link.on("welcome", (welcome) => {

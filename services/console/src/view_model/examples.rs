@@ -1,22 +1,37 @@
 //! Example requests from the scene's own objects.
 
+use std::collections::HashMap;
+
 use scene::{ObjectId, Role, Scene};
+
+use super::listed::standing;
+
+/// Most objects of which the one with the shortest description is chosen.
+const DESCRIBED_MAX: usize = 32;
 
 /// Returns up to three requests: by kind, by a description of one object, by place.
 pub(super) fn examples(scene: &Scene) -> Vec<String> {
     let objects = || (0..scene.objects().len()).map(ObjectId::from);
-    let alike =
-        |object: ObjectId| objects().filter(move |o| scene.noun_of(*o) == scene.noun_of(object));
-    let common = objects().rev().max_by_key(|object| alike(*object).count());
+    let mut alike: HashMap<&str, usize> = HashMap::new();
+    for object in objects() {
+        *alike.entry(scene.noun_of(object)).or_default() += 1;
+    }
+    let common = objects().rev().max_by_key(|object| alike[scene.noun_of(*object)]);
     let by_kind = common.map(|object| format!("get me the {}", scene.noun_of(object)));
     let has_place = |object: ObjectId| {
         let place = place(scene, object);
         place.is_some_and(|place| scene.describe(object).ends_with(place))
     };
-    let described = || objects().map(|object| (object, scene.describe(object)));
-    let unique = |words: &str| described().filter(|(_, other)| other == words).count() == 1;
-    let by_description = described()
-        .filter(|(object, words)| unique(words) && words != scene.noun_of(*object))
+    let unique = |object: &ObjectId| {
+        let values = &scene.object(*object).values;
+        scene.objects().iter().filter(|other| other.values == *values).count() == 1
+    };
+    // The first ones are examples enough; rather those that can be fetched.
+    let candidates = standing(scene).into_iter().chain(objects());
+    let described = candidates.filter(unique).take(DESCRIBED_MAX);
+    let by_description = described
+        .map(|object| (object, scene.describe(object)))
+        .filter(|(object, words)| words != scene.noun_of(*object))
         .min_by_key(|(object, words)| (has_place(*object), words.len()));
     let chosen = by_description.as_ref().map(|(object, _)| *object);
     let by_place = objects().filter(|object| Some(*object) != chosen).find_map(|object| {

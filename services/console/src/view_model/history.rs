@@ -4,14 +4,18 @@
 use std::collections::VecDeque;
 
 use messages::{ActKind, Outcome, PolicyView, Receipt, ReceiptStatus};
+use scene::ObjectId;
 use serde::{Deserialize, Serialize};
 
 use super::Now;
+use super::listed::{WHOLE_MAX, likeliest};
 
 /// Most interactions.
 pub(crate) const PAST_MAX: usize = 30;
 /// Most steps of one; later ones replace the last.
 const STEPS_MAX: usize = 40;
+/// Objects of a large scene that a step adds.
+const LIKELY_MAX: usize = 8;
 /// Most utterances whose texts are remembered before the policy has applied them.
 const HEARD_MAX: usize = 32;
 
@@ -21,8 +25,12 @@ pub struct Past {
     pub interaction: u64,
     /// When its first step was seen, milliseconds since 1970.
     pub unix_ms: u64,
-    /// Short descriptions of the scene's objects then.
+    /// Short descriptions of the objects: all of a small scene, of a large one those that were likely
+    /// in some step.
     pub objects: Vec<String>,
+    /// Their numbers in the scene.
+    #[serde(default)]
+    pub ids: Vec<u16>,
     pub steps: Vec<Step>,
     pub end: Option<End>,
 }
@@ -34,6 +42,7 @@ pub struct Step {
     pub after_ms: u64,
     /// The utterances since the previous step.
     pub heard: Vec<Heard>,
+    /// By object; those that became likely later are missing at the end.
     pub belief: Vec<f64>,
     pub absent: f64,
     pub decision: ActKind,
@@ -111,15 +120,20 @@ impl History {
     }
 
     /// Takes in a view of the scene whose objects have these labels.
-    pub(super) fn on_view(&mut self, view: &PolicyView, labels: &[String], now: Now) {
+    pub(super) fn on_view(
+        &mut self,
+        view: &PolicyView,
+        label: impl Fn(ObjectId) -> String,
+        now: Now,
+    ) {
         if view.interaction != 0 {
-            self.on_step(view, labels, now);
+            self.on_step(view, &label, now);
         }
         self.applied = self.applied.max(view.applied);
-        self.on_end(view, labels);
+        self.on_end(view, &label);
     }
 
-    fn on_step(&mut self, view: &PolicyView, labels: &[String], now: Now) {
+    fn on_step(&mut self, view: &PolicyView, label: &impl Fn(ObjectId) -> String, now: Now) {
         if self.past.back().is_none_or(|newest| newest.interaction < view.interaction) {
             if self.past.len() == PAST_MAX {
                 self.past.pop_front();
@@ -127,7 +141,8 @@ impl History {
             self.past.push_back(Past {
                 interaction: view.interaction,
                 unix_ms: now.unix_ms,
-                objects: labels.to_vec(),
+                objects: Vec::new(),
+                ids: Vec::new(),
                 steps: Vec::new(),
                 end: None,
             });
@@ -138,7 +153,8 @@ impl History {
             return;
         };
         let after_ms = now.unix_ms.saturating_sub(past.unix_ms);
-        let mut step = Step::of(view, heard, after_ms);
+        past.list(view, label);
+        let mut step = Step::of(view, &past.ids, heard, after_ms);
         let is_full = past.steps.len() == STEPS_MAX;
         match past.steps.last_mut() {
             Some(last) if last.is_repeated_by(&step) => return,
@@ -163,13 +179,13 @@ impl History {
         (first..=view.applied).map(heard).collect()
     }
 
-    fn on_end(&mut self, view: &PolicyView, labels: &[String]) {
+    fn on_end(&mut self, view: &PolicyView, label: &impl Fn(ObjectId) -> String) {
         let Some(last) = &view.last else { return };
         let Some(past) = self.past.iter_mut().find(|past| past.interaction == last.interaction.0)
         else {
             return;
         };
-        let label = last.object.and_then(|object| labels.get(object.index())).cloned();
+        let label = last.object.map(label).filter(|label| !label.is_empty());
         let object = last.name.as_ref().map(|name| label.unwrap_or_else(|| name.clone()));
         let end =
             End { outcome: last.outcome, object, questions: last.questions, seconds: last.seconds };
@@ -180,13 +196,38 @@ impl History {
     }
 }
 
+impl Past {
+    /// Adds the objects that the view is about.
+    fn list(&mut self, view: &PolicyView, label: impl Fn(ObjectId) -> String) {
+        if self.ids.is_empty() && !self.objects.is_empty() {
+            // Of a console that listed them all.
+            self.ids = (0..self.objects.len()).map(|i| ObjectId::from(i).0).collect();
+        }
+        let is_whole = view.belief.len() <= WHOLE_MAX;
+        let most = if is_whole { WHOLE_MAX } else { LIKELY_MAX };
+        let mut likely: Vec<ObjectId> = likeliest(&view.belief, most).collect();
+        if is_whole {
+            likely.sort_unstable();
+        }
+        for object in likely {
+            if !self.ids.contains(&object.0) {
+                self.ids.push(object.0);
+                self.objects.push(label(object));
+            }
+        }
+    }
+}
+
 impl Step {
-    fn of(view: &PolicyView, heard: Vec<Heard>, after_ms: u64) -> Self {
+    fn of(view: &PolicyView, ids: &[u16], heard: Vec<Heard>, after_ms: u64) -> Self {
         let digits = |share: f64| (share * 1e4).round() / 1e4;
         Self {
             after_ms,
             heard,
-            belief: view.belief.iter().copied().map(digits).collect(),
+            belief: ids
+                .iter()
+                .map(|i| digits(view.belief.get(usize::from(*i)).copied().unwrap_or(0.0)))
+                .collect(),
             absent: digits(view.absent),
             decision: view.decision,
             prompt: view.prompt,
@@ -240,8 +281,8 @@ mod tests {
         PolicyView { last: Some(last), ..view(0, 2, &[0.5, 0.5]) }
     }
 
-    fn labels() -> Vec<String> {
-        vec!["big cup".to_owned(), "small cup".to_owned()]
+    fn label(object: ObjectId) -> String {
+        ["big cup", "small cup"][object.index()].to_owned()
     }
 
     #[test]
@@ -249,12 +290,12 @@ mod tests {
         let mut history = History::default();
         for n in 0..3 {
             history.on_receipt(&receipt(1, "the cup"));
-            history.on_view(&view(4, 1, &[0.5, 0.5]), &labels(), now(n));
+            history.on_view(&view(4, 1, &[0.5, 0.5]), label, now(n));
         }
         // The receipt of the second utterance is late.
-        history.on_view(&view(4, 2, &[0.1, 0.9]), &labels(), now(700));
+        history.on_view(&view(4, 2, &[0.1, 0.9]), label, now(700));
         history.on_receipt(&receipt(2, "no"));
-        history.on_view(&ended(4, Outcome::Delivered), &labels(), now(900));
+        history.on_view(&ended(4, Outcome::Delivered), label, now(900));
         let past: Vec<&Past> = history.past().collect();
         let [past] = past[..] else { panic!("{past:?}") };
         let heard = |step: &Step| step.heard.iter().map(|h| h.text.clone()).collect::<Vec<_>>();
@@ -266,7 +307,7 @@ mod tests {
         assert_eq!(history.take_changed().len(), 1);
         assert!(history.take_changed().is_empty());
         // The object is refused after all.
-        history.on_view(&ended(4, Outcome::Refused), &labels(), now(999));
+        history.on_view(&ended(4, Outcome::Refused), label, now(999));
         assert_eq!(history.take_changed()[0].end.as_ref().unwrap().outcome, Outcome::Refused);
     }
 
@@ -276,7 +317,7 @@ mod tests {
         for interaction in 1..=100 {
             for step in 0..100 {
                 let seen = view(interaction, 100 * interaction + step, &[0.5, 0.5]);
-                history.on_view(&seen, &labels(), now(step));
+                history.on_view(&seen, label, now(step));
             }
         }
         assert_eq!(history.past().count(), PAST_MAX);
@@ -290,14 +331,14 @@ mod tests {
     #[test]
     fn history_continues_its_predecessor() {
         let mut history = History::default();
-        history.on_view(&view(4, 1, &[0.5, 0.5]), &labels(), now(0));
+        history.on_view(&view(4, 1, &[0.5, 0.5]), label, now(0));
         let kept: Vec<Past> = history.past().cloned().collect();
         let text = serde_json::to_string(&kept).unwrap();
         let mut next = History::after(serde_json::from_str(&text).unwrap());
         assert_eq!(next.take_changed(), kept);
-        next.on_view(&view(4, 1, &[0.5, 0.5]), &labels(), now(50));
+        next.on_view(&view(4, 1, &[0.5, 0.5]), label, now(50));
         assert!(next.take_changed().is_empty(), "what is known is not repeated");
-        next.on_view(&view(4, 2, &[0.0, 1.0]), &labels(), now(60));
+        next.on_view(&view(4, 2, &[0.0, 1.0]), label, now(60));
         assert_eq!(next.past().next().unwrap().steps.len(), 2);
     }
 }

@@ -7,6 +7,7 @@ mod examples;
 pub mod history;
 mod latency;
 mod line;
+mod listed;
 mod prompts;
 mod sections;
 mod services;
@@ -23,7 +24,7 @@ use messages::{
     Activity, ArmStatus, Hearing, Observation, PolicyView, Presented, Receipt, RobotAct, Service,
     TrajectoryView, WorldView,
 };
-use scene::Scene;
+use scene::{ObjectId, Scene};
 use serde::Serialize;
 use service::status::{GroupStatus, ServiceStatus};
 use service::view::{ArmView, DialogueView, HearingView, Latest};
@@ -34,9 +35,8 @@ pub use latency::Latency;
 pub use transcript::Transcript;
 use turn::Turn;
 
-use sections::{
-    SceneSection, SpeakingSection, TrajectorySection, TurnSection, WorldSection, labels,
-};
+use listed::Labels;
+use sections::{SceneSection, SpeakingSection, TrajectorySection, TurnSection, WorldSection};
 pub(crate) use services::missing;
 
 /// Utterances whose readings are remembered.
@@ -69,8 +69,9 @@ const ARM_SILENCE: Span = Span::from_ms(2_000);
 #[derive(Debug)]
 pub struct ViewModel {
     scene: Scene,
-    /// Short descriptions of the scene's objects.
-    labels: Vec<String>,
+    labels: Labels,
+    /// The objects that have a place.
+    standing: Vec<ObjectId>,
     latest: Latest,
     /// When the arm's status arrived last, and whether its stop was latched.
     arm_seen: Time,
@@ -97,7 +98,8 @@ impl ViewModel {
     /// Makes the view model of a dialogue about `scene`, continuing a transcript and a history.
     pub fn new(scene: Scene, transcript: Transcript, history: History) -> Self {
         Self {
-            labels: labels(&scene),
+            labels: Labels::new(&scene),
+            standing: listed::standing(&scene),
             scene,
             latest: Latest::default(),
             arm_seen: Time(0),
@@ -156,7 +158,8 @@ impl ViewModel {
     }
 
     pub fn set_scene(&mut self, scene: Scene) {
-        self.labels = labels(&scene);
+        self.labels = Labels::new(&scene);
+        self.standing = listed::standing(&scene);
         self.scene = scene;
         (self.is_changed, self.is_scene_changed) = (true, true);
     }
@@ -167,7 +170,7 @@ impl ViewModel {
             self.transcript.on_end(&self.scene, &self.labels, ended, now);
         }
         if view.scene_key == self.scene.key() {
-            self.history.on_view(&view, &self.labels, now);
+            self.history.on_view(&view, |i| self.labels.unique(&self.scene, i, "").to_owned(), now);
         }
         self.latest.view = Some(view);
         self.attribute();
@@ -288,17 +291,31 @@ impl ViewModel {
         }
         let mut sections = Sections(Vec::new());
         if std::mem::take(&mut self.is_scene_changed) {
-            sections.put("scene", Some(SceneSection::new(&self.scene, &self.labels)));
+            sections
+                .put("scene", Some(SceneSection::new(&self.scene, &self.labels, &self.standing)));
         }
         let Latest { view, presented, hearing, arm, .. } = &self.latest;
         let view = view.as_ref().filter(|view| view.scene_key == self.scene.key());
-        sections.put("dialogue", view.map(|view| DialogueView::new(&self.scene, view)));
+        let further = listed::further(&self.scene, &self.standing, view, arm.as_ref());
+        let listed = || self.standing.iter().copied().chain(further.iter().copied());
+        let dialogue = |view| {
+            let dialogue = DialogueView::new(&self.scene, view);
+            let belief = listed().filter_map(|i| dialogue.belief.get(i.index()).copied()).collect();
+            DialogueView { belief, ..dialogue }
+        };
+        // Before the belief, which names them.
+        let objects = sections::objects(&self.scene, &self.labels, further.iter().copied());
+        sections.put("further", Some(objects));
+        sections.put("dialogue", view.map(dialogue));
         let speaking = self.prompts.of(presented);
         let speaking = speaking.map(|p| SpeakingSection::new(p, presented, self.has_sound));
         sections.put("speaking", Some(speaking));
         sections.put("hearing", hearing.as_ref().map(HearingView::new));
         sections.put("arm", Some(arm.as_ref().map(|arm| ArmView::new(&self.scene, arm))));
-        sections.put("world", self.world.as_ref().map(WorldSection::new));
+        sections.put(
+            "world",
+            self.world.as_ref().map(|world| WorldSection::new(world, &self.standing)),
+        );
         sections.put("trajectory", Some(TrajectorySection::new(&self.trajectory)));
         sections.put("group", self.group.as_ref());
         sections.put("latency", Some(self.latency.section()));

@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use service::Time;
 
 use super::examples::examples;
+use super::listed::{Label, Labels};
 use super::prompts::Prompt;
 use super::turn::{Actor, Turn, TurnState};
 use crate::hub::ms;
@@ -17,7 +18,10 @@ pub(super) struct SceneSection<'a> {
     name: &'a str,
     noun: &'a str,
     attributes: Vec<Attribute<'a>>,
-    objects: Vec<Object<'a>>,
+    /// Number of objects in the scene.
+    count: usize,
+    /// Those that have a place; the section `further` has others.
+    objects: Vec<ObjectSection<'a>>,
     /// Requests that the robot understands, for who does not know what to say.
     examples: Vec<String>,
 }
@@ -35,12 +39,12 @@ struct Value<'a> {
 }
 
 #[derive(Debug, Serialize)]
-struct Object<'a> {
+pub(super) struct ObjectSection<'a> {
     name: &'a str,
     /// Unique: objects with the same description are numbered.
     label: &'a str,
     /// The robot's own words for it, which it also understands.
-    description: String,
+    description: &'a str,
     #[serde(serialize_with = "map")]
     attributes: Vec<(&'a str, &'a str)>,
     xyz: Option<[f64; 3]>,
@@ -49,38 +53,52 @@ struct Object<'a> {
 }
 
 impl<'a> SceneSection<'a> {
-    pub(super) fn new(scene: &'a Scene, labels: &'a [String]) -> Self {
+    pub(super) fn new(scene: &'a Scene, labels: &'a Labels, listed: &[ObjectId]) -> Self {
         let attributes = scene.attributes().iter().map(|attribute| Attribute {
             name: &attribute.name,
             values: (attribute.values.iter())
                 .map(|value| Value { name: &value.name, spoken: &value.spoken })
                 .collect(),
         });
-        let objects = scene.objects().iter().zip(labels).enumerate().map(|(i, (object, label))| {
-            let values = scene.attributes().iter().zip(&object.values);
-            Object {
-                name: &object.name,
-                label,
-                description: scene.describe(ObjectId::from(i)),
-                attributes: values
-                    .filter_map(|(attribute, value)| {
-                        let value = &attribute.values[(*value)?.index()];
-                        Some((attribute.name.as_str(), value.name.as_str()))
-                    })
-                    .collect(),
-                xyz: object.placement.map(|placed| placed.xyz),
-                size: object.placement.map(|placed| placed.size),
-                yaw: object.placement.map(|placed| placed.yaw),
-            }
-        });
         Self {
             key: format!("{:016x}", scene.key()),
             name: scene.name(),
             noun: scene.noun(),
             attributes: attributes.collect(),
-            objects: objects.collect(),
+            count: scene.objects().len(),
+            objects: objects(scene, labels, listed.iter().copied()),
             examples: examples(scene),
         }
+    }
+}
+
+/// Describes objects of the scene.
+pub(super) fn objects<'a>(
+    scene: &'a Scene,
+    labels: &'a Labels,
+    listed: impl Iterator<Item = ObjectId>,
+) -> Vec<ObjectSection<'a>> {
+    listed.filter_map(|i| ObjectSection::new(scene, i, labels.of(scene, i)?)).collect()
+}
+
+impl<'a> ObjectSection<'a> {
+    fn new(scene: &'a Scene, object: ObjectId, label: &'a Label) -> Option<Self> {
+        let object = scene.objects().get(object.index())?;
+        let values = scene.attributes().iter().zip(&object.values);
+        Some(Self {
+            name: &object.name,
+            label: &label.unique,
+            description: &label.description,
+            attributes: values
+                .filter_map(|(attribute, value)| {
+                    let value = &attribute.values[(*value)?.index()];
+                    Some((attribute.name.as_str(), value.name.as_str()))
+                })
+                .collect(),
+            xyz: object.placement.map(|placed| placed.xyz),
+            size: object.placement.map(|placed| placed.size),
+            yaw: object.placement.map(|placed| placed.yaw),
+        })
     }
 }
 
@@ -88,33 +106,21 @@ fn map<S: Serializer>(pairs: &[(&str, &str)], to: S) -> Result<S::Ok, S::Error> 
     to.collect_map(pairs.iter().copied())
 }
 
-/// Returns a description of each object; those with the same description are numbered.
-pub(super) fn labels(scene: &Scene) -> Vec<String> {
-    let described: Vec<String> =
-        (0..scene.objects().len()).map(|i| scene.describe(ObjectId::from(i))).collect();
-    let same = |among: &[String], i: usize| among.iter().filter(|s| **s == described[i]).count();
-    (0..described.len())
-        .map(|i| match same(&described, i) {
-            1 => described[i].clone(),
-            _ => format!("{} {}", described[i], same(&described[..i], i) + 1),
-        })
-        .collect()
-}
-
-/// The section `world`; poses to a tenth of a millimetre.
+/// The section `world`: the objects of the section `scene`, in its order; poses to a tenth of a
+/// millimetre.
 #[derive(Debug, Serialize)]
 pub(super) struct WorldSection {
     objects: Vec<Option<[f64; 7]>>,
-    held: Option<u16>,
+    held: Option<usize>,
     grippers: [[f64; 7]; 2],
 }
 
 impl WorldSection {
-    pub(super) fn new(world: &WorldView) -> Self {
+    pub(super) fn new(world: &WorldView, listed: &[ObjectId]) -> Self {
         let pose = |pose: [f64; 7]| pose.map(|number| (number * 1e4).round() / 1e4);
         Self {
-            objects: world.objects.iter().map(|object| object.map(pose)).collect(),
-            held: world.held,
+            objects: listed.iter().map(|i| world.objects.get(i.index())?.map(pose)).collect(),
+            held: world.held.and_then(|held| listed.binary_search(&ObjectId(held)).ok()),
             grippers: world.grippers.map(pose),
         }
     }

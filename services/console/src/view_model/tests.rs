@@ -222,10 +222,16 @@ fn view_model_makes_sections_after_a_change() {
     let names = |model: &mut ViewModel| -> Vec<&'static str> {
         model.sections(now(1)).into_iter().map(|(name, _)| name).collect()
     };
-    assert_eq!(names(&mut model), ["scene", "speaking", "arm", "trajectory", "latency", "turn"]);
+    assert_eq!(
+        names(&mut model),
+        ["scene", "further", "speaking", "arm", "trajectory", "latency", "turn"]
+    );
     assert!(names(&mut model).is_empty());
     model.on_view(view(0, None), now(1));
-    assert_eq!(names(&mut model), ["dialogue", "speaking", "arm", "trajectory", "latency", "turn"]);
+    assert_eq!(
+        names(&mut model),
+        ["further", "dialogue", "speaking", "arm", "trajectory", "latency", "turn"]
+    );
     let other = PolicyView { scene_key: 7, ..view(0, None) };
     model.on_view(other, now(1));
     assert!(model.is_of_another_scene());

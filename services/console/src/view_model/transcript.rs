@@ -3,13 +3,14 @@
 use std::collections::{BTreeSet, VecDeque};
 
 use messages::{Ended, Outcome, Presented, Receipt, ReceiptStatus, SecondState, Source};
-use scene::{ObjectId, Scene};
+use scene::Scene;
 use service::Time;
 use service::status::ServiceStatus;
 use service::view::Speaker;
 
 use super::Now;
 use super::line::{Line, Note, Recognisers};
+use super::listed::Labels;
 use super::prompts::Prompt;
 use super::understood::Understood;
 use crate::hub::board::LINES_MAX;
@@ -126,7 +127,7 @@ impl Transcript {
         true
     }
 
-    pub(super) fn on_end(&mut self, scene: &Scene, labels: &[String], ended: &Ended, now: Now) {
+    pub(super) fn on_end(&mut self, scene: &Scene, labels: &Labels, ended: &Ended, now: Now) {
         let is_first = self.ended == 0;
         if ended.interaction.0 <= self.ended {
             return;
@@ -137,8 +138,7 @@ impl Transcript {
             return;
         }
         let object = ended.name.as_deref().map(|name| {
-            let object = scene.object_named(name).map(ObjectId::index);
-            object.and_then(|at| labels.get(at)).map_or(name, String::as_str)
+            scene.object_named(name).map_or(name, |object| labels.unique(scene, object, name))
         });
         let note = Note::Ended {
             object: object.map(str::to_owned),

@@ -5,7 +5,7 @@ use dialogue::manager::NAMES_MAX;
 use scene::{Role, UnknownWord};
 
 /// The shipped bowls without those in `gone`, and with these TOML lines behind them.
-fn bowls(gone: &[&str], more: &str) -> Settings {
+pub(super) fn bowls(gone: &[&str], more: &str) -> Settings {
     bowls_with(gone, more, &[])
 }
 

@@ -1,6 +1,8 @@
 //! Words that are certain.
 
+use super::reconfigure::bowls;
 use super::{first, manager, settings, settings_with, text, words};
+use dialogue::rendering;
 use messages::ActKind;
 use scene::{Doubt, Reading};
 
@@ -14,6 +16,24 @@ fn a_unique_description_is_fetched_without_a_question() {
         (ActKind::Pick, "I will get the clear bowl.")
     );
     assert_eq!(state.open.expect("an open interaction").questions, 0);
+}
+
+/// A bowl without a place.
+const STORED: &str = r#"
+[[objects]]
+name = "stored"
+attributes = { color = "clear", material = "metal", size = "big", shape = "round", location = "cabinet" }
+"#;
+
+#[test]
+fn an_object_without_a_place_is_named_and_not_promised() {
+    let settings = bowls(&[], STORED);
+    let mut manager = settings.manager().unwrap();
+    let state = first(&mut manager, words(&["clear", "metal", "big", "cabinet"].repeat(4)));
+    let (_, object) = state.act.pick.expect("a pick");
+    assert_eq!(settings.scene.object(object).name, "stored");
+    let text = rendering::text(&settings.scene, &state.act);
+    assert!(text.starts_with("You mean the ") && text.contains("clear"), "{text}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use config::Settings;
 use diagnostics::Diagnostics;
+use scene::Scene;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
@@ -69,6 +70,7 @@ fn summary(settings: &Settings) -> Vec<String> {
     };
     let mut lines = vec![
         format!("  scene     {} ({objects}; {})", scene.name(), attributes.join(", ")),
+        format!("  fetching  {}", fetched(scene)),
         format!(
             "  dialogue  planner {}, {:?} language, {asks} questions; p_l {}, epsilon {}, alpha {}",
             dialogue.planner, dialogue.language, params.p_l, params.epsilon, params.alpha
@@ -87,6 +89,21 @@ fn summary(settings: &Settings) -> Vec<String> {
     let heads = ["NAME", "RUNS", "AFTER", "WATCHDOG", "RESTART"];
     lines.extend(table(&heads, &rows).into_iter().map(|line| format!("    {line}")));
     lines
+}
+
+/// The objects that the arm was planned for, and those that were not.
+fn fetched(scene: &Scene) -> String {
+    let placed = placed(scene);
+    match scene.objects().len() - placed {
+        0 => "every object is within reach".to_owned(),
+        others => {
+            format!("{placed} within reach; {others} without a place can only be talked about")
+        }
+    }
+}
+
+fn placed(scene: &Scene) -> usize {
+    scene.objects().iter().filter(|object| object.placement.is_some()).count()
 }
 
 fn service(service: &config::ServiceConfig) -> Vec<String> {
@@ -117,7 +134,8 @@ fn as_json(settings: &Settings, values: bool) -> Json {
         .collect();
     let mut json = json!({
         "ok": true,
-        "scene": { "name": settings.scene.name(), "objects": settings.scene.objects().len() },
+        "scene": { "name": settings.scene.name(), "objects": settings.scene.objects().len(),
+                   "placed": placed(&settings.scene) },
         "warnings": settings.scene.ambiguities(),
         "planner": settings.dialogue.planner,
         "params": settings.dialogue.params,

@@ -8,6 +8,8 @@ use crate::manager::{AboutObjects, Reason, Remark};
 /// Length of a list from which it is cut short, bytes: what is said has room for 244, and a question
 /// may follow.
 const LIST_MAX: usize = 120;
+/// Most objects that are enumerated; different ones would not fit into that length.
+const LISTED_MAX: usize = 30;
 
 /// Returns the text of a remark within an act of that kind.
 pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
@@ -72,6 +74,8 @@ fn about_objects(scene: &Scene, asked: AboutObjects, words: &[String], names: &[
     let listed = || {
         let list = match objects[..] {
             [one] => format!("the {}", scene.describe(one)),
+            // Telling each from all others takes the square of their number.
+            [..] if objects.len() > LISTED_MAX => return None,
             _ => scene.list(&objects, "and"),
         };
         if list.len() > LIST_MAX { None } else { Some(list) }
@@ -183,4 +187,27 @@ fn capitalised(text: &str) -> String {
     let mut chars = text.chars();
     let first = chars.next().into_iter().flat_map(char::to_uppercase);
     first.chain(chars).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of so many mugs that nothing tells apart.
+    fn counted(count: usize) -> String {
+        let mug =
+            |n| format!("[[objects]]\nname = \"m{n}\"\nattributes = {{ colour = \"red\" }}\n");
+        let mugs: String = (0..count).map(mug).collect();
+        let head = "name = \"s\"\nnoun = \"mug\"\n[[attributes]]\nname = \"colour\"\n";
+        let scene = Scene::from_toml("s", &format!("{head}values = [\"red\"]\n{mugs}")).unwrap();
+        let names: Vec<String> = (0..count).map(|n| format!("m{n}")).collect();
+        about_objects(&scene, AboutObjects::Count, &["red".to_owned()], &names)
+    }
+
+    #[test]
+    fn many_objects_are_counted_and_not_enumerated() {
+        assert_eq!(counted(2), "There are two red mugs: the mug.");
+        let many = counted(LISTED_MAX + 1);
+        assert!(many.ends_with("red mugs."), "{many}");
+    }
 }

@@ -74,19 +74,24 @@ function hearing(element, { notice }, overlay, t) {
   };
 }
 
+/** The scene with the objects alone that the world shows, in its order. */
+function standingOf(scene) {
+  return scene && { ...scene, objects: scene.standing ?? scene.objects };
+}
+
 /** Has the picture follow the server. */
 function follow(picture, overlay, store, link) {
   let key = null;
   const think = () => {
-    const thoughts = thoughtsOf(store.get("dialogue"), store.get("scene"));
+    const thoughts = thoughtsOf(store.get("dialogue"), standingOf(store.get("scene")));
     overlay.setThoughts(thoughts);
     picture.call("setThoughts", thoughts);
   };
   store.subscribe("scene", (scene) => {
     if (scene && scene.key !== key) {
       key = scene.key;
-      overlay.setScene(scene);
-      picture.call("setScene", scene);
+      overlay.setScene(standingOf(scene));
+      picture.call("setScene", standingOf(scene));
     }
     think();
   });

@@ -1,4 +1,6 @@
 // @ts-check
+import { countOf } from "../model/ranking.js";
+
 /** Ends of a pick that the picture says in words. */
 const OUTCOMES = [
   "delivered",
@@ -74,7 +76,7 @@ export function thoughtsOf(dialogue, scene) {
   const belief = dialogue?.belief ?? {};
   const probabilities = Object.values(belief);
   const most = Math.max(...probabilities, 0);
-  const even = probabilities.length ? 1.02 / probabilities.length : 1;
+  const even = probabilities.length ? 1.02 / countOf(scene) : 1;
   const question = dialogue?.question;
   return (scene?.objects ?? []).map((object) => ({
     belief: belief[object.name] ?? null,

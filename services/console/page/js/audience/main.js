@@ -3,7 +3,7 @@ import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { keptLanguage, tabStorage } from "../kept.js";
 import { sessionId } from "../link/session.js";
 import { connect } from "../link.js";
-import { rank, readable } from "../model/ranking.js";
+import { countOf, rank, readable } from "../model/ranking.js";
 import { keep, Store } from "../store.js";
 import { chooseLanguage, loadStrings, t, translate } from "../strings.js";
 import { mountPart } from "../views/part.js";
@@ -45,15 +45,19 @@ const drawWords = eachFrame(() => {
 });
 store.subscribe(["link", "turn", "arm", "dialogue", "scene", "lines"], drawWords);
 
-/** @type {number[]} */
+/** Names in the order that is shown. @type {string[]} */
 let order = [];
 const drawBars = eachFrame(() => {
   const scene = store.get("scene");
   const dialogue = store.get("dialogue");
   if (!scene) return;
   const belief = scene.objects.map(({ name }) => dialogue?.belief?.[name] ?? 0);
-  order = rank(order, belief);
-  const items = order.slice(0, BARS_MAX).map((n) => ({ id: `${scene.key}.${n}`, n, p: belief[n] }));
+  const places = new Map(scene.objects.map(({ name }, n) => [name, n]));
+  const before = order.map((name) => places.get(name) ?? -1).filter((n) => n >= 0);
+  const ranked = rank(before, belief);
+  order = ranked.map((n) => scene.objects[n].name);
+  const item = (n) => ({ id: `${scene.key}.${scene.objects[n].name}`, n, p: belief[n] });
+  const items = ranked.slice(0, BARS_MAX).map(item);
   const best = Math.max(...belief, 0);
   const make = () =>
     h(
@@ -74,7 +78,7 @@ const drawBars = eachFrame(() => {
       setText(name, scene.objects[n].label ?? scene.objects[n].name);
       setText(share, sign + t.percent(part));
       bar.firstElementChild.style.setProperty("inline-size", `${100 * p}%`);
-      setAttribute(node, "data-best", p === best && p > 1.5 / belief.length);
+      setAttribute(node, "data-best", p === best && p > 1.5 / countOf(scene));
     },
   );
 });

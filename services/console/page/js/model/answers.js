@@ -1,4 +1,6 @@
 // @ts-check
+import { unlistedOf } from "./ranking.js";
+
 /**
  * Words that can be said with one press.
  * @typedef {object} Offer
@@ -57,7 +59,10 @@ function valuesOf({ attribute }, dialogue, scene) {
   const likely = (scene?.objects ?? []).filter(
     ({ name }) => (dialogue.belief?.[name] ?? 1) >= UNLIKELY,
   );
-  const has = (value) => likely.some(({ attributes }) => attributes?.[attribute] === value);
+  // Objects that are not listed may have any of them.
+  const isAny = unlistedOf(scene ?? { objects: [] }, dialogue).share >= UNLIKELY;
+  const has = (value) =>
+    isAny || likely.some(({ attributes }) => attributes?.[attribute] === value);
   return (known?.values ?? []).filter(({ name }) => has(name)).slice(0, VALUES_MAX);
 }
 

@@ -42,6 +42,26 @@ export function likely(order, belief, most, pinned) {
 }
 
 /**
+ * Number of objects in the scene, listed or not.
+ * @param {any} scene
+ * @returns {number}
+ */
+export const countOf = (scene) => scene?.count ?? scene?.objects.length ?? 0;
+
+/**
+ * The objects of a large scene that the server does not list: they are unlikely.
+ * @param {any} scene
+ * @param {any} dialogue
+ * @returns {{count: number, share: number}} `share`: their probability together
+ */
+export function unlistedOf(scene, dialogue) {
+  const count = Math.max(0, countOf(scene) - scene.objects.length);
+  if (count === 0 || !dialogue?.belief) return { count, share: 0 };
+  const listed = Object.values(dialogue.belief).reduce((sum, p) => sum + p, 0);
+  return { count, share: Math.max(0, 1 - listed - (dialogue.absent ?? 0)) };
+}
+
+/**
  * The most probable objects in the scene's order, so that each keeps its place.
  * @param {number[]} belief
  * @param {number} most

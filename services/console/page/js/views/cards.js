@@ -1,6 +1,6 @@
 // @ts-check
 import { calm, eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
-import { density, likely, marks, rank, readable } from "../model/ranking.js";
+import { countOf, density, likely, marks, rank, readable, unlistedOf } from "../model/ranking.js";
 import { whoControls } from "../model/turn.js";
 import { makeCard, updateCard } from "./card.js";
 
@@ -28,6 +28,7 @@ export function mountCards(element, context) {
   element.tabIndex = 0;
   element.setAttribute("role", "group");
   element.setAttribute("aria-labelledby", "objects-heading");
+  /** Names in the order that is shown. @type {string[]} */
   let order = [];
   let stands = "";
   let sceneKey = null;
@@ -62,9 +63,13 @@ export function mountCards(element, context) {
     const belief = scene.objects.map(({ name }) => believed?.[name] ?? 0);
     const now = { dialogue, arm: store.get("arm"), world: store.get("world") };
     const marked = marks(scene, now);
-    order = rank(order, belief);
+    const places = new Map(scene.objects.map(({ name }, i) => [name, i]));
+    const before = order.map((name) => places.get(name) ?? -1).filter((i) => i >= 0);
+    const ranked = rank(before, belief);
+    order = ranked.map((i) => scene.objects[i].name);
     const pinned = new Set([...marked].filter(([, mark]) => mark !== "delivered").map(([i]) => i));
-    const { shown, others, rest } = likely(order, belief, all ? ALL_MOST : MOST, pinned);
+    const { shown, others, rest } = likely(ranked, belief, all ? ALL_MOST : MOST, pinned);
+    const unlisted = unlistedOf(scene, dialogue);
     const best = belief.reduce((top, p) => Math.max(top, p), 0);
     const who = whoControls(store.get("control"), store.get("welcome"));
     const mine = !context.readOnly && who === "mine";
@@ -74,19 +79,22 @@ export function mountCards(element, context) {
       p: belief[i],
       mark: marked.get(i) ?? null,
       sayable: mine && marked.get(i) !== "delivered",
-      leads: best > 1.5 / belief.length && belief[i] >= best - 1e-9,
+      leads: best > 1.5 / countOf(scene) && belief[i] >= best - 1e-9,
     }));
     setAttribute(list, "data-density", density(items.length, height));
     const asked = askedValue(dialogue);
     const make = (item) => makeCard(item, scene, context);
     const update = (node, item) => updateCard(node, item, asked, t);
-    const change = () => keyed(list, items, (item) => item.index, make, update);
-    const standing = shown.join();
+    const change = () => keyed(list, items, (item) => item.object.name, make, update);
+    const standing = items.map(({ object }) => object.name).join();
     if (standing === stands || calm()) change();
     else glide(list, change);
     stands = standing;
-    more.hidden = others === 0 && !all;
-    const args = { n: others, share: t.percent(rest, 1) };
+    const left = others + unlisted.count;
+    more.hidden = left === 0 && !all;
+    // What the server does not list cannot be shown.
+    more.disabled = others === 0 && !all;
+    const args = { n: left, share: t.percent(rest + unlisted.share, 1) };
     setText(more, all && others === 0 ? t("objects.fewer") : t("objects.more", args));
     absent.hidden = !(dialogue?.absent > 0);
     const { sign, share } = readable(dialogue?.absent ?? 0);

@@ -1,7 +1,7 @@
 // @ts-check
 import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { drawingOf } from "../model/drawing.js";
-import { readable, strip } from "../model/ranking.js";
+import { countOf, readable, strip } from "../model/ranking.js";
 import { drawObject } from "./drawing.js";
 
 /** Most objects in a line. */
@@ -31,10 +31,10 @@ export function mountStrip(element, { store, t }) {
     const update = (node, i) => {
       const { sign, share } = readable(belief[i]);
       setText(node.lastElementChild, sign + t.percent(share));
-      setAttribute(node, "data-leads", best > 1.5 / belief.length && belief[i] >= best - 1e-9);
+      setAttribute(node, "data-leads", best > 1.5 / countOf(scene) && belief[i] >= best - 1e-9);
       setAttribute(node, "data-unlikely", belief[i] < 0.02);
     };
-    keyed(list, strip(belief, MOST), (i) => `${scene.key} ${i}`, make, update);
+    keyed(list, strip(belief, MOST), (i) => `${scene.key} ${scene.objects[i].name}`, make, update);
   });
   store.subscribe(["scene", "belief"], draw);
   draw();
