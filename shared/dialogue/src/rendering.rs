@@ -67,9 +67,8 @@ fn wanted(scene: &Scene, time: u32) -> String {
 /// place is about words alone: nothing is known to be out of reach.
 fn is_out_of_reach(scene: &Scene, act: &Act) -> bool {
     let Some((_, picked)) = act.pick else { return false };
-    let has_place = |object: &scene::Object| object.placement.is_some();
-    scene.objects().get(picked.index()).is_some_and(|object| !has_place(object))
-        && scene.objects().iter().any(has_place)
+    let picked = scene.objects().get(picked.index());
+    picked.is_some_and(|object| object.placement.is_none()) && scene.placed().next().is_some()
 }
 
 fn fetching(object: &str, preface: &Preface) -> String {

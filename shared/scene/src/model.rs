@@ -245,6 +245,12 @@ impl Scene {
         self.names.words.get(word).copied()
     }
 
+    /// The objects that have a place, in order.
+    pub fn placed(&self) -> impl Iterator<Item = ObjectId> + '_ {
+        let objects = self.objects.iter().enumerate();
+        objects.filter(|(_, object)| object.placement.is_some()).map(|(i, _)| i.into())
+    }
+
     /// The object `i`.
     pub fn object(&self, i: ObjectId) -> &Object {
         &self.objects[i.index()]

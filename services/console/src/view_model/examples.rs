@@ -2,9 +2,7 @@
 
 use std::collections::HashMap;
 
-use scene::{ObjectId, Role, Scene};
-
-use super::listed::standing;
+use scene::{ObjectId, Role, Scene, ValueId};
 
 /// Most objects of which the one with the shortest description is chosen.
 const DESCRIBED_MAX: usize = 32;
@@ -22,12 +20,13 @@ pub(super) fn examples(scene: &Scene) -> Vec<String> {
         let place = place(scene, object);
         place.is_some_and(|place| scene.describe(object).ends_with(place))
     };
-    let unique = |object: &ObjectId| {
-        let values = &scene.object(*object).values;
-        scene.objects().iter().filter(|other| other.values == *values).count() == 1
-    };
+    let mut same: HashMap<&[Option<ValueId>], usize> = HashMap::new();
+    for object in scene.objects() {
+        *same.entry(&object.values).or_default() += 1;
+    }
+    let unique = |object: &ObjectId| same[scene.object(*object).values.as_slice()] == 1;
     // The first ones are examples enough; rather those that can be fetched.
-    let candidates = standing(scene).into_iter().chain(objects());
+    let candidates = scene.placed().chain(objects());
     let described = candidates.filter(unique).take(DESCRIBED_MAX);
     let by_description = described
         .map(|object| (object, scene.describe(object)))

@@ -99,7 +99,7 @@ impl ViewModel {
     pub fn new(scene: Scene, transcript: Transcript, history: History) -> Self {
         Self {
             labels: Labels::new(&scene),
-            standing: listed::standing(&scene),
+            standing: scene.placed().collect(),
             scene,
             latest: Latest::default(),
             arm_seen: Time(0),
@@ -159,7 +159,7 @@ impl ViewModel {
 
     pub fn set_scene(&mut self, scene: Scene) {
         self.labels = Labels::new(&scene);
-        self.standing = listed::standing(&scene);
+        self.standing = scene.placed().collect();
         self.scene = scene;
         (self.is_changed, self.is_scene_changed) = (true, true);
     }

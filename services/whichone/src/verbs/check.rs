@@ -93,17 +93,13 @@ fn summary(settings: &Settings) -> Vec<String> {
 
 /// The objects that the arm was planned for, and those that were not.
 fn fetched(scene: &Scene) -> String {
-    let placed = placed(scene);
+    let placed = scene.placed().count();
     match scene.objects().len() - placed {
         0 => "every object is within reach".to_owned(),
         others => {
             format!("{placed} within reach; {others} without a place can only be talked about")
         }
     }
-}
-
-fn placed(scene: &Scene) -> usize {
-    scene.objects().iter().filter(|object| object.placement.is_some()).count()
 }
 
 fn service(service: &config::ServiceConfig) -> Vec<String> {
@@ -135,7 +131,7 @@ fn as_json(settings: &Settings, values: bool) -> Json {
     let mut json = json!({
         "ok": true,
         "scene": { "name": settings.scene.name(), "objects": settings.scene.objects().len(),
-                   "placed": placed(&settings.scene) },
+                   "placed": settings.scene.placed().count() },
         "warnings": settings.scene.ambiguities(),
         "planner": settings.dialogue.planner,
         "params": settings.dialogue.params,

@@ -27,11 +27,12 @@ pub fn foreseen(scene: &Scene) -> Vec<String> {
         }
     }
     let ask = |n| questions.iter().map(move |question| scene.phrase_variant(*question, n, 1, &[]));
-    let has_place = |i: &ObjectId| scene.object(*i).placement.is_some();
-    let objects = || (0..scene.objects().len()).map(ObjectId::from);
-    let is_placed = objects().any(|i| has_place(&i));
-    let objects = objects().filter(|i| has_place(i) || !is_placed).take(PICKS_MAX);
-    let picks = objects.map(|i| fetching(&scene.describe(i), &Preface::None));
+    let mut objects: Vec<ObjectId> = scene.placed().collect();
+    if objects.is_empty() {
+        objects = (0..scene.objects().len()).map(ObjectId::from).collect();
+    }
+    let picks =
+        objects.into_iter().take(PICKS_MAX).map(|i| fetching(&scene.describe(i), &Preface::None));
     let further = (1..VARIANTS).flat_map(ask);
     let lines = ask(0).chain(picks).chain([wanted(scene, 1)]).chain(further);
     let mut said = HashSet::new();

@@ -84,8 +84,8 @@ pub struct EncodedWriter<T: Schema> {
 }
 
 impl<T: Schema> EncodedWriter<T> {
-    /// Encodes the payload into shared memory and sends it. Where it needs more memory than was reserved and there is
-    /// none, a service goes on without showing it.
+    /// Encodes the payload into shared memory and sends it. Where it needs more memory than was
+    /// reserved and there is none, a service goes on without showing it.
     ///
     /// # Errors
     /// The payload cannot be encoded or is too large, or iceoryx2 is out of memory.

@@ -24,6 +24,21 @@ export function rank(before, belief) {
 }
 
 /**
+ * The order of a scene's objects, of which the server may list others at each time.
+ * @param {string[]} before names in the order that is shown now
+ * @param {{name: string}[]} objects those that are listed
+ * @param {number[]} belief probability of each
+ * @returns {number[]} objects in the order to show
+ */
+export function rankListed(before, objects, belief) {
+  const places = new Map(objects.map(({ name }, place) => [name, place]));
+  return rank(
+    before.map((name) => places.get(name) ?? -1).filter((place) => place >= 0),
+    belief,
+  );
+}
+
+/**
  * Which cards are shown, where there are too many: the first ones and those that matter in any case.
  * @param {number[]} order
  * @param {number[]} belief

@@ -1,6 +1,6 @@
 // @ts-check
 import { calm, eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
-import { countOf, density, likely, marks, rank, readable, unlistedOf } from "../model/ranking.js";
+import { countOf, density, likely, marks, rankListed, readable, unlistedOf } from "../model/ranking.js";
 import { whoControls } from "../model/turn.js";
 import { makeCard, updateCard } from "./card.js";
 
@@ -63,9 +63,7 @@ export function mountCards(element, context) {
     const belief = scene.objects.map(({ name }) => believed?.[name] ?? 0);
     const now = { dialogue, arm: store.get("arm"), world: store.get("world") };
     const marked = marks(scene, now);
-    const places = new Map(scene.objects.map(({ name }, i) => [name, i]));
-    const before = order.map((name) => places.get(name) ?? -1).filter((i) => i >= 0);
-    const ranked = rank(before, belief);
+    const ranked = rankListed(order, scene.objects, belief);
     order = ranked.map((i) => scene.objects[i].name);
     const pinned = new Set([...marked].filter(([, mark]) => mark !== "delivered").map(([i]) => i));
     const { shown, others, rest } = likely(ranked, belief, all ? ALL_MOST : MOST, pinned);
