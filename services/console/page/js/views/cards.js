@@ -1,6 +1,14 @@
 // @ts-check
 import { calm, eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
-import { countOf, density, likely, marks, rankListed, readable, unlistedOf } from "../model/ranking.js";
+import {
+  countOf,
+  density,
+  likely,
+  marks,
+  rankListed,
+  readable,
+  unlistedOf,
+} from "../model/ranking.js";
 import { whoControls } from "../model/turn.js";
 import { makeCard, updateCard } from "./card.js";
 
