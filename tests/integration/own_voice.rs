@@ -7,7 +7,6 @@ use std::time::Duration;
 
 use language::{Language, Reader as Reading};
 use messages::{ArmStatus, PresentationState, Presented, Receipt, ReceiptStatus, Source, topics};
-use scene::{Intent, Question};
 use serde_json::json;
 use service::bus::Reader;
 use service::client::Client;
@@ -285,8 +284,7 @@ fn recognised_stops(robot_db: Option<f64>) -> (usize, usize) {
             };
             let pcm: Vec<i16> = (0..LEAD + said.len() + 3_200).zip(noise).map(sample).collect();
             let heard = recogniser.recognise(&pcm, LEAD..LEAD + said.len()).unwrap();
-            let is_stop = |text: &str| reader.read(text, Question::None).intent == Intent::Stop;
-            found += usize::from(heard.first().is_some_and(|best| is_stop(&best.text)));
+            found += usize::from(heard.first().is_some_and(|best| reader.is_stop(&best.text)));
             all += 1;
         }
     }

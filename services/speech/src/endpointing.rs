@@ -28,8 +28,11 @@ const SNR_MIN_DB: f32 = 15.0;
 
 impl Endpointing {
     /// Returns how complete an utterance is that follows `question`: that of its least complete
-    /// hypothesis, and not complete before all recognisers have been heard.
+    /// hypothesis, and not complete before all recognisers have been heard. A stop waits for nothing.
     pub fn judge(&self, result: &RecognisedSegment, question: Question) -> Completeness {
+        if result.text().is_some_and(|text| self.judge.is_stop(text)) {
+            return Completeness::Complete;
+        }
         let judged = self.judge_words(result, question);
         if result.awaits_second { judged.max(Completeness::Unclear) } else { judged }
     }

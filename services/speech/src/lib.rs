@@ -23,7 +23,6 @@ mod tests;
 use messages::UtteranceSeq;
 use prompt_player::PromptPlayer;
 use record::Record;
-use scene::{Intent, Question};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use stream_events::StreamEvent;
 use utterance_intake::UtteranceIntake;
@@ -58,13 +57,6 @@ pub struct Config {
     pub utterance_bytes_max: usize,
     /// `true` if pointing gestures are accepted.
     pub gestures: bool,
-}
-
-impl Config {
-    /// Returns whether the words tell the robot to stop.
-    fn is_stop(&self, text: &str) -> bool {
-        self.reader.read(text, Question::None).intent == Intent::Stop
-    }
 }
 
 impl Node for SpeechNode {

@@ -188,10 +188,7 @@ impl UtteranceIntake {
         if let Some(text) = result.text() {
             self.publish_partial(&pending, text, false, fx);
         }
-        let judged = match result.text() {
-            Some(text) if self.config.is_stop(text) => Completeness::Complete,
-            _ => self.config.endpointing.judge(result, question),
-        };
+        let judged = self.config.endpointing.judge(result, question);
         let pause_s = self.config.endpointing.pause(judged, pending.interrupts).as_secs_f64();
         // What ends an utterance is what was said; no disk need be waited for.
         fx.publish_urgent(Out::Close(sound, Closing { pause_s, ..at }));
@@ -286,7 +283,7 @@ impl UtteranceIntake {
             Err(rejected) => &rejected.text,
         };
         match hypotheses {
-            _ if self.config.is_stop(best) => {
+            _ if self.config.reader.is_stop(best) => {
                 hypotheses.or_else(|rejected| Ok(vec![Hypothesis::certain(rejected.text)]))
             }
             Ok(_) if is_cut => {

@@ -70,6 +70,11 @@ impl Reader {
         }
     }
 
+    /// Returns whether the words tell the robot to stop.
+    pub fn is_stop(&self, text: &str) -> bool {
+        self.read(text, Question::None).intent == Intent::Stop
+    }
+
     /// Returns the attribute and object words in an utterance that the scene lacks, for the robot's
     /// reply; none in the paper's language.
     pub fn unknown_words(&self, text: &str) -> Vec<UnknownWord> {

@@ -9,7 +9,7 @@ use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::status::{GroupStatus, ServiceState};
 
-/// Timeout of the status. A supervisor that hangs keeps no client from the services.
+/// Timeout of the status.
 const STATUS_PATIENCE: Duration = Duration::from_millis(500);
 /// Delay of a waiting verb's first look: what has ended already is reported before.
 const FIRST_LOOK: Duration = Duration::from_millis(300);
@@ -19,35 +19,40 @@ const LOOK_EVERY: Duration = Duration::from_secs(1);
 /// Services that an accepted utterance still needs.
 pub(super) const AFTER_SPEECH: &[Service] = &[Service::Grounding, Service::Policy, Service::Arm];
 
-/// Fails where the service does nothing for now.
-pub(super) fn require(paths: &GroupPaths, service: Service) -> Result<(), Failure> {
-    match unavailable(paths, &[service], |_| true) {
-        Some(why) => Err(Failure::new(Exit::NotReached, why)),
-        None => Ok(()),
+/// What the supervisor says of its services; nothing where it does not answer, which keeps no client from
+/// the services.
+pub(super) struct Availability(Option<Box<GroupStatus>>);
+
+impl Availability {
+    /// Asks the supervisor.
+    pub(super) fn now(paths: &GroupPaths) -> Self {
+        match call(&paths.control_socket(), &Request::Status, STATUS_PATIENCE) {
+            Ok(Reply::Status(status)) => Self(Some(status)),
+            _ => Self(None),
+        }
     }
-}
 
-/// Returns why the first of the services that is in such a state does nothing for now.
-pub(super) fn unavailable(
-    paths: &GroupPaths,
-    services: &[Service],
-    counts: impl Fn(ServiceState) -> bool,
-) -> Option<String> {
-    let status = match call(&paths.control_socket(), &Request::Status, STATUS_PATIENCE) {
-        Ok(Reply::Status(status)) => status,
-        _ => return None,
-    };
-    first(&status, services, counts)
-}
+    /// Fails where the service does nothing for now.
+    pub(super) fn require(&self, service: Service) -> Result<(), Failure> {
+        match self.first_missing(&[service], |_| true) {
+            Some(why) => Err(Failure::new(Exit::NotReached, why)),
+            None => Ok(()),
+        }
+    }
 
-fn first(
-    status: &GroupStatus,
-    services: &[Service],
-    counts: impl Fn(ServiceState) -> bool,
-) -> Option<String> {
-    let named = |name: &str| services.iter().any(|service| service.name() == name);
-    let mut needed = status.services.iter().filter(|service| named(&service.name));
-    needed.find_map(|service| service.unavailable().filter(|_| counts(service.state)))
+    /// Returns why the first of the services that is in such a state does nothing for now.
+    pub(super) fn first_missing(
+        &self,
+        services: &[Service],
+        counts: impl Fn(ServiceState) -> bool,
+    ) -> Option<String> {
+        let named = |name: &str| services.iter().any(|service| service.name() == name);
+        let mut needed = self.0.iter().flat_map(|status| &status.services);
+        needed.find_map(|service| {
+            let why = service.unavailable().filter(|_| counts(service.state));
+            why.filter(|_| named(&service.name))
+        })
+    }
 }
 
 /// Looks now and then whether a dialogue can go on without a person's help.
@@ -78,7 +83,7 @@ impl Lookout {
         }
         self.due = Instant::now() + LOOK_EVERY;
         let counts = |state| self.shortages || state != ServiceState::Short;
-        let why = unavailable(paths, &Service::DIALOGUE, counts);
+        let why = Availability::now(paths).first_missing(&Service::DIALOGUE, counts);
         let is_news = why != self.reported;
         self.reported.clone_from(&why);
         why.filter(|_| is_news)
@@ -103,7 +108,8 @@ mod tests {
                 "epoch": 1, "uptime_s": 1.0, "scene": "bowls", "config": "/c", "strays_killed": 0,
                 "services": [service("console", "failed", ""), service("arm", state, "so")],
             });
-            first(&serde_json::from_value(status).unwrap(), &Service::DIALOGUE, |_| true)
+            let status = serde_json::from_value(status).unwrap();
+            Availability(Some(status)).first_missing(&Service::DIALOGUE, |_| true)
         };
         for state in ["ready", "starting", "waiting", "restarting", "stopping"] {
             assert_eq!(found(state), None, "{state}");

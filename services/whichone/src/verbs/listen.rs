@@ -14,7 +14,8 @@ use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
-use super::{availability, speak};
+use super::availability::Availability;
+use super::speak;
 use crate::Outcome;
 use crate::cli::ListenArgs;
 use crate::output::Output;
@@ -52,7 +53,7 @@ type Blocks = Receiver<Result<Vec<i16>, String>>;
 
 /// Streams blocks in real time and prints receipts as they arrive.
 fn stream(paths: &GroupPaths, args: &ListenArgs, blocks: Blocks, out: &mut Output<'_>) -> Outcome {
-    availability::require(paths, Service::Speech)?;
+    Availability::now(paths).require(Service::Speech)?;
     let client = Client::join(paths)?;
     let flags = if args.echo_free { AudioChunk::ECHO_FREE } else { 0 };
     let mut stream = AudioStream::open(&client, flags)?;

@@ -9,7 +9,7 @@ use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::stop_socket::{self, StopError, StopState};
 
-use super::availability;
+use super::availability::Availability;
 use crate::Outcome;
 use crate::output::{Output, note};
 
@@ -56,7 +56,7 @@ pub(super) fn motion(
 /// Adds why the arm's service does not run, where the supervisor says so at once.
 fn with_reason(error: StopError, paths: &GroupPaths) -> Failure {
     let reason = match error {
-        StopError::Absent => availability::unavailable(paths, &[Service::Arm], |_| true),
+        StopError::Absent => Availability::now(paths).first_missing(&[Service::Arm], |_| true),
         _ => None,
     };
     let reason = reason.map_or(String::new(), |reason| format!(" ({reason})"));

@@ -13,7 +13,7 @@ use service::group::GroupPaths;
 use service::printable::one_line;
 use service::{Span, Time};
 
-use super::availability::{self, Lookout};
+use super::availability::{AFTER_SPEECH, Availability, Lookout};
 use super::hearing;
 use crate::Outcome;
 use crate::cli::{PointArgs, SayArgs, TalkArgs};
@@ -91,15 +91,16 @@ fn give_said(
     timeout: Duration,
     out: &mut Output<'_>,
 ) -> Outcome {
-    availability::require(paths, Service::Speech)?;
+    let services = Availability::now(paths);
+    services.require(Service::Speech)?;
     let client = Client::join(paths)?;
     let mut lookout = Lookout::with_shortages();
     let standstill = || lookout.news(paths);
     let receipts = client.inject(sound, said, Span::from_s(timeout.as_secs_f64()), standstill)?;
-    print_all(paths, &receipts, out)
+    print_all(&services, &receipts, out)
 }
 
-fn print_all(paths: &GroupPaths, receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
+fn print_all(services: &Availability, receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
     for receipt in receipts {
         print(receipt, out)?;
     }
@@ -107,7 +108,7 @@ fn print_all(paths: &GroupPaths, receipts: &[Receipt], out: &mut Output<'_>) -> 
     if !receipts.iter().any(accepted) {
         return Ok(Exit::NotReached);
     }
-    if let Some(why) = availability::unavailable(paths, availability::AFTER_SPEECH, |_| true) {
+    if let Some(why) = services.first_missing(AFTER_SPEECH, |_| true) {
         note(format_args!("it is kept, but nothing follows yet: {why}"));
     }
     Ok(Exit::Ok)

@@ -94,7 +94,7 @@ impl Gate {
 
     /// Returns whether the words tell the robot to stop.
     pub fn is_stop(&self, hypothesis: &Hypothesis) -> bool {
-        self.reader.read(&hypothesis.text, Question::None).intent == Intent::Stop
+        self.reader.is_stop(&hypothesis.text)
     }
 
     /// Returns the share of the scene's words among all words.
