@@ -12,7 +12,9 @@ use scene::{ObjectId, Question, Scene};
 const CLIP_S: f64 = 4.0;
 /// Level of voices in the other clips.
 const VOICE_RMS: f64 = 3_000.0;
-const CLIPS_EACH: u64 = 6;
+const CLIPS_EACH: u64 = 30;
+/// Levels of clips of a kind, from that of voices down in steps of 4 dB.
+const LEVELS: u64 = 6;
 
 /// Adds how often the robot acts on sounds of each kind, in the middle of a question.
 pub(super) fn measure(report: &mut Report, scene: &Scene, listener: &mut Listener) {
@@ -20,10 +22,10 @@ pub(super) fn measure(report: &mut Report, scene: &Scene, listener: &mut Listene
     let question = Question::Point(ObjectId(0));
     let said = Sentence { scene: 0, for_the_robot: false, text: String::new(), question };
     let len = samples(CLIP_S);
-    let silence = |seed: u64| pink(len, seed).iter().map(|s| s * 0.002 * seed as f64).collect();
+    let silence =
+        |seed: u64| pink(len, seed).iter().map(|s| s * 0.002 * (seed % LEVELS) as f64).collect();
     let quieter = |sound: Vec<f64>, seed: u64| -> Vec<f64> {
-        // From the voice's level down in steps of 4 dB.
-        let gain = 10_f64.powf(-4.0 * (seed % CLIPS_EACH) as f64 / 20.0);
+        let gain = 10_f64.powf(-4.0 * (seed % LEVELS) as f64 / 20.0);
         sound.into_iter().map(|s| s * gain).collect()
     };
     let mut row = |name: &str, clip: &dyn Fn(u64) -> Vec<f64>| {

@@ -7,7 +7,7 @@ mod snr;
 use std::path::Path;
 
 pub use audio::{RATE_HZ, read_wav, seconds};
-pub use denoise::{denoised, voice_probability};
+pub use denoise::{VoiceEvidence, denoised};
 pub use noise_floor::with_noise_floor;
 pub use snr::snr_db;
 

@@ -12,13 +12,15 @@ use super::{
     SecondOpinion,
 };
 use crate::Hypothesis;
-use crate::devices::audio::{RATE_HZ, voice_probability};
+use crate::devices::audio::{RATE_HZ, VoiceEvidence};
 
 /// Sound around the voice that the second recogniser hears.
 const AROUND: usize = RATE_HZ as usize / 5;
-/// Probability of a voice from which on doubtful words are words: that of most knocks is lower, and that
-/// of hardly any voice (docs/speech.md).
-const VOICE_MIN: f32 = 0.98;
+/// Probability from which on a voice speaks: that of most knocks is lower, and that of hardly any voice
+/// (docs/speech.md).
+const VOICE_MIN: f32 = 0.994;
+/// Longest voiced sound of a word or two, and of each of their letters, seconds: music is sustained.
+const VOICED_S: (f32, f32) = (0.5, 0.12);
 /// Time limit of the second recogniser for recordings.
 const UNHURRIED: Duration = Duration::from_secs(20);
 
@@ -139,10 +141,13 @@ impl Ensemble {
         Err(Rejected { text, reason: GateVerdict::NoSpeech, score: self.gate.score(&hypotheses) })
     }
 
-    /// Returns whether there is a voice. Clear words need no further evidence; knocks sound like doubtful
-    /// ones.
+    /// Returns whether a voice says these words.
     pub fn is_voice(&self, hypotheses: &[Hypothesis], pcm: &[i16], speech: &Range<usize>) -> bool {
-        self.gate.is_clear(hypotheses) || voice_probability(pcm, speech) >= VOICE_MIN
+        let best = hypotheses.first().map_or("", |best| best.text.as_str());
+        let letters = best.chars().filter(|letter| letter.is_alphabetic()).count();
+        let longest_s = VOICED_S.0 + VOICED_S.1 * letters as f32;
+        let voice = VoiceEvidence::in_speech(pcm, speech);
+        voice.probability >= VOICE_MIN && voice.voiced_s <= longest_s
     }
 
     /// See [`Recogniser::is_quick`].
