@@ -164,12 +164,15 @@ fn ros1_recording_of_a_pick_is_played_to_the_arm() {
     assert_delivered(&group, &group.fetch("the clear bowl", "clear"), "clear");
     end(&mut recorder);
     // What the bridge publishes can be read by its definitions.
-    let count = "import rosbag; bag = rosbag.Bag('pick.bag'); limb = '/robot/limb/left/'; \
-                 count = lambda topic: sum(1 for m in bag.read_messages(topic)); \
-                 print(sum(1 for m in bag.read_messages(limb + 'joint_command') \
+    let count = "import rosbag; bag = rosbag.Bag('pick.bag'); \
+                 count = lambda *topics: sum(1 for m in bag.read_messages(topics)); \
+                 both = lambda form: [form % limb for limb in ('left', 'right')]; \
+                 commands = bag.read_messages(both('/robot/limb/%s/joint_command')); \
+                 print(sum(1 for m in commands \
                  if m.message.mode == 1 and len(m.message.command) == 7 == len(m.message.names)), \
-                 count(limb + 'inverse_dynamics_command'), count(limb + 'set_speed_ratio'), \
-                 count('/robot/end_effector/left_gripper/command'), count('/robot/joint_states'))";
+                 count(*both('/robot/limb/%s/inverse_dynamics_command')), \
+                 count(*both('/robot/limb/%s/set_speed_ratio')), \
+                 count(*both('/robot/end_effector/%s_gripper/command')), count('/robot/joint_states'))";
     let mut command = ros.command("/usr/bin/python3");
     let counted = whichone_tests::run(command.args(["-c", count]), "", 60.0);
     let counts: Vec<u64> = counted.stdout.split_whitespace().map(|n| n.parse().unwrap()).collect();

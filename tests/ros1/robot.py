@@ -105,6 +105,9 @@ class Robot:
         # What the tests judge.
         self.seen = {"commands": 0, "points": 0, "ratios": 0, "largest_error_rad": 0.0, "silence_s": 0.0}
         self.last_command = None
+        # When joint states were published that no command has answered yet, and how long the answers took.
+        self.unanswered = None
+        self.latencies_ms = []
         for limb in LIMBS:
             mirrored = 1.0 if limb == "left" else -1.0
             for i, (joint, angle) in enumerate(zip(JOINTS, NEUTRAL)):
@@ -132,8 +135,11 @@ class Robot:
             subscriber(f"{hand}/command", EndEffectorCommand, self.on_gripper, limb)
 
     def on_command(self, message, limb):
+        now = time.monotonic()
         with self.lock:
-            now = time.monotonic()
+            if self.unanswered is not None:
+                self.latencies_ms.append(1000.0 * (now - self.unanswered))
+                self.unanswered = None
             if message.mode != JointCommand.POSITION_MODE:
                 raise ValueError(message.mode)
             target = dict(zip(message.names, message.command))
@@ -177,6 +183,7 @@ class Robot:
         state.velocity = [self.velocity.get(name, 0.0) for name in names]
         state.effort = [0.0] * len(names)
         state.header.stamp = stamp()
+        self.unanswered = time.monotonic()
         self.to_joints.publish(state)
         for limb in LIMBS:
             finger = JointState(name=[f"{limb[0]}_gripper_l_finger_joint"], position=[0.01])
@@ -210,6 +217,9 @@ class Robot:
                 self.last_command = None
             elif word in ("stop", "go"):
                 self.stopped = word == "stop"
+            elif word == "latencies":
+                taken, self.latencies_ms = self.latencies_ms, []
+                return {"ms": taken}
             fastest = max((abs(v) for v in self.velocity.values()), default=0.0)
             return dict(self.seen, fastest_rad_s=fastest, joints=self.joints)
 

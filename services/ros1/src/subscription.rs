@@ -79,6 +79,10 @@ impl Subscription {
             match ended {
                 Ok(never) => match never {},
                 Err(error) if was_connected => tracing::info!(topic, uri, %error, "publisher gone"),
+                Err(error) if pause == PAUSE_MIN => {
+                    let help = "its host must be known to this machine by the name that it gives";
+                    tracing::warn!(topic, uri, %error, "publisher not reached; help: {help}");
+                }
                 Err(error) => tracing::debug!(topic, uri, %error, "publisher not reached"),
             }
             if was_connected {
