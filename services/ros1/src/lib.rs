@@ -12,6 +12,8 @@ pub mod convert;
 pub mod node;
 pub mod publication;
 pub mod subscription;
+#[cfg(test)]
+mod tests;
 pub mod types;
 pub mod wire;
 pub mod xmlrpc;
