@@ -3,7 +3,7 @@
 use crate::subscription::with_port;
 use crate::xmlrpc::authority;
 use std::io;
-use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, TcpListener, ToSocketAddrs, UdpSocket};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener, ToSocketAddrs, UdpSocket};
 
 /// Port of a master that is named without one.
 const MASTER_PORT: u16 = 11311;
@@ -48,10 +48,10 @@ impl Address {
             let ip = self.towards_master()?;
             return Ok((ip.to_string(), ip));
         };
-        let found: Vec<IpAddr> = with_port(host, 0).to_socket_addrs()?.map(|at| at.ip()).collect();
-        let ours = found.iter().find(|ip| TcpListener::bind((**ip, 0)).is_ok());
-        if let Some(ip) = ours {
-            return Ok((host.clone(), *ip));
+        let found = resolve(&with_port(host, 0))?;
+        let ours = found.iter().find(|at| TcpListener::bind(at).is_ok());
+        if let Some(at) = ours {
+            return Ok((host.clone(), at.ip()));
         }
         tracing::warn!(host, "not an address of this machine; listening on all of them");
         Ok((host.clone(), Ipv4Addr::UNSPECIFIED.into()))
@@ -60,10 +60,10 @@ impl Address {
     /// Our address on the way to the master. Nothing is sent for it.
     fn towards_master(&self) -> io::Result<IpAddr> {
         let mut last = io::Error::new(io::ErrorKind::NotFound, "the master has no address");
-        for master in authority(&self.master).to_socket_addrs()? {
+        for master in resolve(authority(&self.master))? {
             let any: IpAddr = match master {
-                std::net::SocketAddr::V4(_) => Ipv4Addr::UNSPECIFIED.into(),
-                std::net::SocketAddr::V6(_) => Ipv6Addr::UNSPECIFIED.into(),
+                SocketAddr::V4(_) => Ipv4Addr::UNSPECIFIED.into(),
+                SocketAddr::V6(_) => Ipv6Addr::UNSPECIFIED.into(),
             };
             let tried = UdpSocket::bind((any, 0)).and_then(|socket| {
                 socket.connect(master)?;
@@ -76,6 +76,13 @@ impl Address {
         }
         Err(last)
     }
+}
+
+/// Addresses of `host:port`, those of IPv4 first: most programs of ROS know no others.
+fn resolve(authority: &str) -> io::Result<Vec<SocketAddr>> {
+    let mut found: Vec<SocketAddr> = authority.to_socket_addrs()?.collect();
+    found.sort_by_key(SocketAddr::is_ipv6);
+    Ok(found)
 }
 
 /// The URI of a master that is written as a URI, as `host:port` or as a host alone.

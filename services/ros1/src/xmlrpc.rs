@@ -217,7 +217,8 @@ fn content_length(head: &[u8]) -> Option<usize> {
     value.trim().parse().ok()
 }
 
-fn answer(body: &str) -> Option<Vec<Value>> {
+/// Returns the parts of an answer `[code, text, value]`, if it is one.
+pub fn answer(body: &str) -> Option<Vec<Value>> {
     let document = Document::parse(body).ok()?;
     let params = document.root_element().first_element_child()?;
     let value = params.first_element_child()?.first_element_child()?;
@@ -251,7 +252,8 @@ pub fn serve(
     stream.write_all((head + &body).as_bytes())
 }
 
-fn method_call(body: &str) -> Option<(String, Vec<Value>)> {
+/// Returns method and parameters of a call, if it is one.
+pub fn method_call(body: &str) -> Option<(String, Vec<Value>)> {
     let document = Document::parse(body).ok()?;
     let call = document.root_element();
     let child = |name| call.children().find(|node: &Node<'_, '_>| node.has_tag_name(name));
