@@ -67,6 +67,7 @@ targets! {
     configuration_files "config"
     scene_files "scene"
     robot_descriptions "robot"
+    messages_and_calls_of_ros_1 "ros1"
     sound_files "wav"
     messages_of_browsers "console"
     control_requests "control"

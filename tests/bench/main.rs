@@ -2,7 +2,8 @@
 //! belief update cost and how good decisions are; how often and how fast poses are reached, beside
 //! other solvers; how fast the group starts and recovers, how long an utterance
 //! takes to become a decision and where the time goes, what it costs when nothing happens, how
-//! steadily joint states come, how soon the arm accepts an order, how much of spoken sentences is understood, how turns are taken in
+//! steadily joint states come, how soon the arm accepts an order, how soon joint
+//! states of a robot behind ROS 1 are answered by commands, how much of spoken sentences is understood, how turns are taken in
 //! simulated time, what many open pages cost the console, what thousands of objects
 //! cost the group, how dialogues by voice end, and how soon
 //! the arm stops while something is short.
@@ -22,6 +23,7 @@ mod options;
 mod orders;
 mod peers;
 mod report;
+mod ros1;
 mod size;
 mod speech;
 mod spoken;
@@ -80,6 +82,9 @@ fn measure(options: &Options, report: &mut Report) {
     }
     if all || options.stops {
         stops::measure(report, options.quick);
+    }
+    if all || options.ros1 {
+        ros1::measure(report, options.quick);
     }
     if all || options.speech {
         speech::measure(report, options.quick, options.kept_apart);

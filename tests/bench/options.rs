@@ -27,6 +27,9 @@ pub(crate) struct Options {
     /// Only orders to the arm: how soon they are accepted, how steadily joint states come meanwhile
     #[arg(long)]
     pub(crate) orders: bool,
+    /// Only the ROS 1 bridge: from joint states to commands; needs rosmaster and rospy
+    #[arg(long)]
+    pub(crate) ros1: bool,
     /// Only spoken input: what is understood of spoken sentences, how late
     #[arg(long)]
     pub(crate) speech: bool,
@@ -77,9 +80,9 @@ pub(crate) struct Options {
 impl Options {
     /// Returns whether all parts are selected.
     pub(crate) fn wants_all(&self) -> bool {
-        let Self { core, kinematics, processes, long, joints, orders, stops, .. } = *self;
+        let Self { core, kinematics, processes, long, joints, orders, stops, ros1, .. } = *self;
         let Self { speech, endings, turns, console, size, spoken, .. } = *self;
-        let measured = core || kinematics || processes || long || joints || orders || stops;
+        let measured = core || kinematics || processes || long || joints || orders || stops || ros1;
         !(measured || speech || endings || turns || console || size || spoken)
     }
 }

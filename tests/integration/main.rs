@@ -26,6 +26,7 @@ mod python;
 mod recovery;
 mod reload;
 mod robot;
+mod ros1;
 mod second_user;
 mod shortage;
 mod speech;

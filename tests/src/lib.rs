@@ -6,6 +6,7 @@ pub mod console;
 pub mod fuzz;
 mod group;
 pub mod isolated;
+pub mod ros1;
 pub mod second_user;
 pub mod shortage;
 pub mod simulated_group;

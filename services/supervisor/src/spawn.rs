@@ -81,8 +81,8 @@ pub(crate) fn spawn(
     Ok(child)
 }
 
-/// The path of a command's program: searched for in `PATH` where it has no slash, else taken as
-/// seen from `directory`.
+/// The path of a command's program: searched for beside this program and in `PATH` where it has no
+/// slash, else taken as seen from `directory`.
 pub(crate) fn find_program(command: &[String], directory: &Path) -> Result<PathBuf, SpawnError> {
     let program = command.first().filter(|name| !name.is_empty()).ok_or(SpawnError::Empty)?;
     if program.contains('/') {
@@ -93,8 +93,13 @@ pub(crate) fn find_program(command: &[String], directory: &Path) -> Result<PathB
             Err(_) => Err(SpawnError::Missing(path.display().to_string())),
         };
     }
+    let beside = std::env::current_exe().ok();
+    let beside = beside.and_then(|own| Some(own.parent()?.as_os_str().to_owned()));
     let path = std::env::var_os("PATH").unwrap_or_default();
-    search(program, &path).ok_or_else(|| SpawnError::Missing(program.clone()))
+    let mut folders = beside.iter().chain([&path]);
+    folders
+        .find_map(|folders| search(program, folders))
+        .ok_or_else(|| SpawnError::Missing(program.clone()))
 }
 
 fn search(program: &str, path: &OsStr) -> Option<PathBuf> {
@@ -122,6 +127,13 @@ mod tests {
     fn find(command: &[&str], directory: &Path) -> Result<PathBuf, SpawnError> {
         let command: Vec<String> = command.iter().map(|&part| part.into()).collect();
         find_program(&command, directory)
+    }
+
+    #[test]
+    fn programs_beside_our_own_need_no_path() {
+        let own = std::env::current_exe().unwrap();
+        let name = own.file_name().unwrap().to_str().unwrap();
+        assert_eq!(find(&[name], Path::new("/")).unwrap(), own);
     }
 
     #[test]

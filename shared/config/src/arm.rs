@@ -23,6 +23,8 @@ pub struct Arm {
     pub baxter: Baxter,
     /// The simulated Baxter.
     pub simulated: Simulated,
+    /// The bridge to a Baxter's ROS 1 topics.
+    pub ros1: Ros1,
 }
 
 /// The limb that fetches.
@@ -64,6 +66,15 @@ pub struct Grasps {
     pub attempts: u32,
     /// Standard deviation of the objects' positions across the fingers, metres; simulated worlds only.
     pub error_m: f64,
+}
+
+/// Addresses of the bridge to a Baxter's ROS 1 topics; those that are absent come from the environment.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ros1 {
+    /// The robot's ROS master: `HOST`, `HOST:PORT` or a URI.
+    pub master: Option<String>,
+    /// Name or address under which the robot reaches this machine.
+    pub host: Option<String>,
 }
 
 /// Tolerances of a Baxter. The defaults are those of the robot's own trajectory server, except for the
@@ -127,6 +138,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Arm {
         },
         baxter: f.table("baxter", baxter),
         simulated: f.table("simulated", simulated),
+        ros1: f.table("ros1", ros1),
     };
     if arm.driver == Driver::Baxter && arm.time_scale != 1.0 && !f.is_wrong("time_scale") {
         let what = format!("is {}, but a robot moves in real time", arm.time_scale);
@@ -155,6 +167,10 @@ fn simulated(f: &mut Fields<'_>) -> Simulated {
         seed: f.whole("seed", 0..=u64::from(u32::MAX)),
         enabled: f.flag("enabled"),
     }
+}
+
+fn ros1(f: &mut Fields<'_>) -> Ros1 {
+    Ros1 { master: f.optional_text("master"), host: f.optional_text("host") }
 }
 
 fn motion(f: &mut Fields<'_>) -> Motion {

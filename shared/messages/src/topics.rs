@@ -158,6 +158,11 @@ pub mod robot {
         topic::<T>(name, Some(Service::Robot))
     }
 
+    /// The robot is woken: the arm sends other commands before these, and gripper commands again.
+    const fn woken(topic: Topic) -> Topic {
+        Topic { readers: &[Service::Robot], ..topic }
+    }
+
     /// Robot to arm, 100 Hz; each finger's joint in a message of its own.
     pub const JOINT_STATES: Topic = Topic {
         readers: &[Service::Arm],
@@ -168,8 +173,8 @@ pub mod robot {
     pub const STATE: Topic = measured::<AssemblyState>("robot/state");
     /// Arm to robot, 100 Hz, left and right.
     pub const JOINT_COMMAND: [Topic; 2] = [
-        command::<JointCommand>("robot/limb/left/joint_command"),
-        command::<JointCommand>("robot/limb/right/joint_command"),
+        woken(command::<JointCommand>("robot/limb/left/joint_command")),
+        woken(command::<JointCommand>("robot/limb/right/joint_command")),
     ];
     /// Arm to robot while a limb moves, left and right.
     pub const INVERSE_DYNAMICS_COMMAND: [Topic; 2] = [

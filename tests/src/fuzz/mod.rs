@@ -15,6 +15,7 @@ mod mutate;
 mod payload;
 mod peers;
 mod robot;
+mod ros1;
 mod scene;
 mod wav;
 mod wire;
@@ -37,7 +38,7 @@ pub struct Target {
 }
 
 /// Every target.
-pub const TARGETS: [Target; 12] = [
+pub const TARGETS: [Target; 13] = [
     Target { name: "journal", run: journal::run, seeds: journal::seeds, mutations: 1_000 },
     Target {
         name: "records",
@@ -51,6 +52,7 @@ pub const TARGETS: [Target; 12] = [
     Target { name: "config", run: config::run, seeds: config::seeds, mutations: 300 },
     Target { name: "scene", run: scene::run, seeds: scene::seeds, mutations: 1_000 },
     Target { name: "robot", run: robot::run, seeds: robot::seeds, mutations: 500 },
+    Target { name: "ros1", run: ros1::run, seeds: ros1::seeds, mutations: 1_000 },
     Target { name: "wav", run: wav::run, seeds: wav::seeds, mutations: 2_000 },
     Target { name: "console", run: console::run, seeds: console::seeds, mutations: 4_000 },
     Target { name: "control", run: control::run, seeds: control::seeds, mutations: 4_000 },

@@ -1,0 +1,366 @@
+//! The bridge as a service of the group.
+
+use crate::address::Address;
+use crate::clock::StampClock;
+use crate::node::{Node, Topics};
+use crate::publication::Publication;
+use crate::subscription::{Sink, Subscription};
+use crate::wire::{Message, RosTime, Unreadable};
+use crate::{convert, guarded, types as ros};
+use config::Settings;
+use messages::robot::{
+    AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, EndpointState,
+    JointCommand, JointState, JointTrajectoryPoint, SpeedRatio,
+};
+use messages::topics::robot;
+use messages::{Service, Stamp, Topic};
+use service::bus::{Bus, BusError, PortError, Reader, WireMessage, Writer};
+use service::exit::{Exit, Failure};
+use service::lifecycle::Environment;
+use service::service_loop::{Context, Program, Shell};
+use service::worker_channel::DeviceSender;
+use service::{Effects, Event, Never, NodeError, Time};
+use std::sync::{Arc, Mutex};
+
+/// Reports that wait for the main loop: one of each kind and, of joint states, of each set of joints.
+const WAITING_MAX: usize = 32;
+
+/// What the robot reports; limbs are 0, left, and 1, right.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Report {
+    /// `joint_states`.
+    Joints(Box<JointState>),
+    /// `state`.
+    Assembly(AssemblyState),
+    /// `endpoint_state`.
+    Endpoint(usize, Box<EndpointState>),
+    /// `end_effector/<limb>_gripper/state`.
+    Gripper(usize, Box<EndEffectorState>),
+    /// `end_effector/<limb>_gripper/properties`.
+    Properties(usize, Box<EndEffectorProperties>),
+}
+
+impl Report {
+    /// Returns whether a reader of the newest reports has no use for `other` beside this one.
+    fn replaces(&self, other: &Self) -> bool {
+        match (self, other) {
+            // Limbs and fingers come in messages of their own.
+            (Self::Joints(new), Self::Joints(old)) => (new.len, new.name) == (old.len, old.name),
+            (Self::Assembly(_), Self::Assembly(_)) => true,
+            (Self::Endpoint(new, _), Self::Endpoint(old, _))
+            | (Self::Gripper(new, _), Self::Gripper(old, _))
+            | (Self::Properties(new, _), Self::Properties(old, _)) => new == old,
+            _ => false,
+        }
+    }
+}
+
+/// Commands to the robot; limbs as in [`Report`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Order {
+    /// `joint_command`.
+    Joints(usize, Box<JointCommand>),
+    /// `inverse_dynamics_command`.
+    FeedForward(usize, Box<JointTrajectoryPoint>),
+    /// `set_speed_ratio`.
+    SpeedRatio(usize, SpeedRatio),
+    /// `end_effector/<limb>_gripper/command`.
+    Gripper(usize, Box<EndEffectorCommand>),
+}
+
+/// Inputs of the bridge.
+#[derive(Clone, Debug, PartialEq)]
+pub enum In {
+    /// Something that is to be passed on.
+    Pass(Out),
+    /// A report waits.
+    Arrived,
+    /// Another node has taken our place at the master.
+    Replaced,
+}
+
+/// Outputs of the bridge.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Out {
+    /// To the group.
+    Report(Report),
+    /// To the robot, with the time when the arm sent it.
+    Order(Order, Time),
+}
+
+/// The bridge as a reducer: everything is passed on, nothing is decided.
+#[derive(Debug)]
+pub struct Bridge;
+
+impl service::Node for Bridge {
+    type Config = ();
+    type In = In;
+    type Out = Out;
+    type Record = Never;
+
+    fn recover((): (), _: Vec<Never>) -> Result<Self, NodeError> {
+        Ok(Self)
+    }
+
+    fn on(&mut self, event: Event<In>, _: Time, fx: &mut Effects<Out, Never>) {
+        match event {
+            Event::Message(In::Pass(out)) => fx.publish(out),
+            Event::Message(In::Replaced) | Event::Shutdown => fx.exit(),
+            Event::Message(In::Arrived) | Event::Started | Event::Tick | Event::SetAside(_) => {}
+        }
+    }
+
+    fn deadline(&self) -> Option<Time> {
+        None
+    }
+}
+
+/// The bridge as a program.
+#[derive(Debug)]
+pub struct Ros1Program;
+
+impl Program for Ros1Program {
+    const SERVICE: Service = Service::Robot;
+    const RECORD: Option<&'static str> = None;
+    const ABOUT: &'static str =
+        "whichone-ros1, the bridge to a Baxter's ROS 1 topics (docs/baxter.md)";
+    type Node = Bridge;
+    type Shell = BridgeShell;
+
+    fn config(_: &Environment, _: &Settings) -> Result<(), Failure> {
+        Ok(())
+    }
+}
+
+/// Reports on their way from the connections to the main loop.
+#[derive(Debug)]
+struct Waiting {
+    reports: Mutex<Vec<Report>>,
+    wake: DeviceSender<In>,
+}
+
+impl Waiting {
+    /// Hands over a report in place of the one before.
+    fn put(&self, report: Report) -> Result<(), Unreadable> {
+        let mut reports = guarded(&self.reports);
+        if let Some(old) = reports.iter_mut().find(|old| report.replaces(old)) {
+            *old = report;
+            return Ok(());
+        }
+        if reports.len() == WAITING_MAX {
+            return Err(Unreadable("too many different reports wait".to_owned()));
+        }
+        reports.push(report);
+        // Where the channel is full the loop has yet to look.
+        let _ = self.wake.offer(In::Arrived);
+        Ok(())
+    }
+}
+
+/// The bridge's topics on both sides; pairs are left and right.
+#[derive(Debug)]
+pub struct BridgeShell {
+    commands: [Reader<JointCommand>; 2],
+    feed_forward: [Reader<JointTrajectoryPoint>; 2],
+    ratios: [Reader<SpeedRatio>; 2],
+    fingers: [Reader<EndEffectorCommand>; 2],
+    joints: Writer<JointState>,
+    assembly: Writer<AssemblyState>,
+    endpoints: [Writer<EndpointState>; 2],
+    grippers: [Writer<EndEffectorState>; 2],
+    properties: [Writer<EndEffectorProperties>; 2],
+    waiting: Arc<Waiting>,
+    robot: ToRobot,
+    _node: Node,
+}
+
+/// The topics of the robot that the bridge publishes.
+#[derive(Debug)]
+struct ToRobot {
+    joints: [Arc<Publication>; 2],
+    feed_forward: [Arc<Publication>; 2],
+    ratios: [Arc<Publication>; 2],
+    fingers: [Arc<Publication>; 2],
+}
+
+impl ToRobot {
+    fn new() -> Self {
+        Self {
+            joints: publications::<ros::JointCommand>(&robot::JOINT_COMMAND),
+            feed_forward: publications::<ros::JointTrajectoryPoint>(
+                &robot::INVERSE_DYNAMICS_COMMAND,
+            ),
+            ratios: publications::<ros::Float64>(&robot::SET_SPEED_RATIO),
+            fingers: publications::<ros::EndEffectorCommand>(&robot::GRIPPER_COMMAND),
+        }
+    }
+
+    fn all(&self) -> Vec<Arc<Publication>> {
+        let Self { joints, feed_forward, ratios, fingers } = self;
+        [joints, feed_forward, ratios, fingers].into_iter().flatten().cloned().collect()
+    }
+
+    fn send(&self, order: &Order, made: Time) -> Result<(), Unreadable> {
+        match order {
+            Order::Joints(limb, command) => {
+                self.joints[*limb].publish(&convert::joint_command(command)?, made);
+            }
+            Order::FeedForward(limb, point) => {
+                self.feed_forward[*limb].publish(&convert::trajectory_point(point), made);
+            }
+            Order::SpeedRatio(limb, ratio) => {
+                self.ratios[*limb].publish(&convert::speed_ratio(ratio), made);
+            }
+            Order::Gripper(limb, command) => {
+                self.fingers[*limb].publish(&convert::gripper_command(command)?, made);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The robot's name of a topic of the group.
+fn ros_name(topic: &Topic) -> String {
+    format!("/{}", topic.name)
+}
+
+fn publications<M: Message>([left, right]: &[Topic; 2]) -> [Arc<Publication>; 2] {
+    [left, right].map(|topic| Arc::new(Publication::new::<M>(&ros_name(topic))))
+}
+
+/// A subscription that hands over what `convert` makes of each message and the time when it was made.
+fn subscription<M: Message + 'static>(
+    topic: &Topic,
+    waiting: &Arc<Waiting>,
+    stamp: fn(&M) -> Option<RosTime>,
+    convert: impl Fn(&M, Time) -> Result<Report, Unreadable> + Clone + Send + Sync + 'static,
+) -> Arc<Subscription> {
+    let waiting = Arc::clone(waiting);
+    let sink = move || -> Sink {
+        let (mut clock, waiting, convert) =
+            (StampClock::default(), Arc::clone(&waiting), convert.clone());
+        Box::new(move |bytes, arrival| {
+            let message = M::from_bytes(bytes)?;
+            let made = clock.map(stamp(&message).and_then(RosTime::ns), arrival);
+            waiting.put(convert(&message, made)?)
+        })
+    };
+    Arc::new(Subscription::new::<M>(&ros_name(topic), sink))
+}
+
+fn subscriptions(waiting: &Arc<Waiting>) -> Vec<Arc<Subscription>> {
+    let mut all = vec![
+        subscription::<ros::JointState>(
+            &robot::JOINT_STATES,
+            waiting,
+            |state| Some(state.header.stamp),
+            |state, made| Ok(Report::Joints(Box::new(convert::joint_state(state, made)?))),
+        ),
+        subscription::<ros::AssemblyState>(
+            &robot::STATE,
+            waiting,
+            |_| None,
+            |state, _| Ok(Report::Assembly(convert::assembly_state(state))),
+        ),
+    ];
+    for limb in [0, 1] {
+        all.push(subscription::<ros::EndpointState>(
+            &robot::ENDPOINT_STATE[limb],
+            waiting,
+            |state| Some(state.header.stamp),
+            move |s, made| Ok(Report::Endpoint(limb, Box::new(convert::endpoint_state(s, made)))),
+        ));
+        all.push(subscription::<ros::EndEffectorState>(
+            &robot::GRIPPER_STATE[limb],
+            waiting,
+            |state| Some(state.timestamp),
+            move |s, made| Ok(Report::Gripper(limb, Box::new(convert::gripper_state(s, made)))),
+        ));
+        all.push(subscription::<ros::EndEffectorProperties>(
+            &robot::GRIPPER_PROPERTIES[limb],
+            waiting,
+            |_| None,
+            move |own, _| Ok(Report::Properties(limb, Box::new(convert::gripper_properties(own)))),
+        ));
+    }
+    all
+}
+
+impl Shell<Bridge> for BridgeShell {
+    fn open(context: &Context<'_, In>) -> Result<Self, Failure> {
+        let bus = context.bus;
+        let address = Address::new(&context.settings.arm.ros1, |name| std::env::var(name).ok());
+        let address = address.map_err(|error| Failure::new(Exit::Config, error))?;
+        let wake = context.devices.clone();
+        let waiting = Arc::new(Waiting { reports: Mutex::default(), wake: wake.clone() });
+        let to_robot = ToRobot::new();
+        let topics = Topics { published: to_robot.all(), subscribed: subscriptions(&waiting) };
+        Ok(Self {
+            commands: readers(bus, &robot::JOINT_COMMAND)?,
+            feed_forward: readers(bus, &robot::INVERSE_DYNAMICS_COMMAND)?,
+            ratios: readers(bus, &robot::SET_SPEED_RATIO)?,
+            fingers: readers(bus, &robot::GRIPPER_COMMAND)?,
+            joints: bus.writer(&robot::JOINT_STATES)?,
+            assembly: bus.writer(&robot::STATE)?,
+            endpoints: writers(bus, &robot::ENDPOINT_STATE)?,
+            grippers: writers(bus, &robot::GRIPPER_STATE)?,
+            properties: writers(bus, &robot::GRIPPER_PROPERTIES)?,
+            waiting,
+            robot: to_robot,
+            _node: Node::start(address, topics, move |reason| {
+                crate::replaced(reason);
+                wake.send(In::Replaced);
+            }),
+        })
+    }
+
+    fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
+        let reports = std::mem::take(&mut *guarded(&self.waiting.reports));
+        reports.into_iter().for_each(|report| take(In::Pass(Out::Report(report))));
+        for limb in [0, 1] {
+            newest(&self.ratios[limb], take, |ratio| Order::SpeedRatio(limb, *ratio))?;
+            newest(&self.feed_forward[limb], take, |p| Order::FeedForward(limb, Box::new(*p)))?;
+            newest(&self.commands[limb], take, |c| Order::Joints(limb, Box::new(*c)))?;
+            newest(&self.fingers[limb], take, |c| Order::Gripper(limb, Box::new(*c)))?;
+        }
+        Ok(())
+    }
+
+    fn publish(&mut self, output: Out) -> Result<(), PortError> {
+        match output {
+            Out::Report(Report::Joints(state)) => self.joints.send(&state),
+            Out::Report(Report::Assembly(state)) => self.assembly.send(&state),
+            Out::Report(Report::Endpoint(limb, state)) => self.endpoints[limb].send(&state),
+            Out::Report(Report::Gripper(limb, state)) => self.grippers[limb].send(&state),
+            Out::Report(Report::Properties(limb, own)) => self.properties[limb].send(&own),
+            Out::Order(order, made) => {
+                if let Err(error) = self.robot.send(&order, made) {
+                    tracing::error!(%error, "a command is not sent to the robot");
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Hands over the newest waiting message, with the time when it was sent.
+fn newest<T: WireMessage>(
+    reader: &Reader<T>,
+    take: &mut dyn FnMut(In),
+    order: impl Fn(&T) -> Order,
+) -> Result<(), PortError> {
+    let mut newest = None;
+    reader.drain_stamped(|message, Stamp { sent_ns, .. }| newest = Some((*message, *sent_ns)))?;
+    if let Some((message, sent_ns)) = newest {
+        take(In::Pass(Out::Order(order(&message), Time(sent_ns))));
+    }
+    Ok(())
+}
+
+fn readers<T: WireMessage>(bus: &Bus, [l, r]: &[Topic; 2]) -> Result<[Reader<T>; 2], BusError> {
+    Ok([bus.reader(l)?, bus.reader(r)?])
+}
+
+fn writers<T: WireMessage>(bus: &Bus, [l, r]: &[Topic; 2]) -> Result<[Writer<T>; 2], BusError> {
+    Ok([bus.writer(l)?, bus.writer(r)?])
+}

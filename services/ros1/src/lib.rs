@@ -1,0 +1,42 @@
+//! The bridge between a Baxter's ROS 1 topics and the group's: a ROS 1 client of its own, with threads
+//! and without asynchronous code, which goes on through restarts of robot, master and network.
+//!
+//! [`node`] registers at the master, [`subscription`] and [`publication`] hold the connections,
+//! [`convert`] copies fields, and [`bridge`] is the service.
+
+pub mod address;
+pub mod bridge;
+pub mod clock;
+pub mod connection;
+pub mod convert;
+pub mod node;
+pub mod publication;
+pub mod subscription;
+#[cfg(test)]
+mod tests;
+pub mod types;
+pub mod wire;
+pub mod xmlrpc;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+static REPLACED: AtomicBool = AtomicBool::new(false);
+
+/// Notes that the master has asked this node to end.
+fn replaced(reason: &str) {
+    let help = "stop the other one, then `whichone start baxter`";
+    tracing::error!(reason, "the ROS master has asked {} to end; help: {help}", node::NAME);
+    REPLACED.store(true, Ordering::Release);
+}
+
+/// Returns whether the bridge ends because another node has taken its place. Restarted, it would take
+/// the place back, and so on.
+pub fn was_replaced() -> bool {
+    REPLACED.load(Ordering::Acquire)
+}
+
+/// Locks; what a panicking thread left behind is a whole value.
+fn guarded<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
