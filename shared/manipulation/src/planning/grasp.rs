@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 use crate::collision::Cuboid;
-use crate::gripper::STROKE_M;
+use crate::gripper::Gripper;
 use crate::kinematics::chain::positive;
 
 #[cfg(test)]
@@ -41,11 +41,25 @@ pub enum GraspError {
     #[error(
         "the gripper would close on {:.0} mm but opens {:.0} mm at most",
         width_m * 1e3,
-        STROKE_M * 1e3
+        open_m * 1e3
     )]
     TooWide {
         /// The object's grasp width, metres.
         width_m: f64,
+        /// Opening of the gripper, metres.
+        open_m: f64,
+    },
+    /// The fingers do not close that far, or cannot tell the object from nothing.
+    #[error(
+        "the gripper would close on {:.1} mm but holds {:.1} mm at least",
+        width_m * 1e3,
+        least_m * 1e3
+    )]
+    TooThin {
+        /// The object's grasp width, metres.
+        width_m: f64,
+        /// Least width that the gripper holds and detects, metres.
+        least_m: f64,
     },
     /// A number that no object has.
     #[error("{what} must be a finite number{}", if *positive { " above zero" } else { "" })]
@@ -61,7 +75,7 @@ pub enum GraspError {
 const DEPTH_M: f64 = 0.02;
 
 /// Fingertips stay this far above what the object stands on, metres.
-const TIP_CLEAR_M: f64 = 0.003;
+const TIP_CLEAR_M: f64 = 0.001;
 
 /// Directions in which a round rim is gripped: every 30°.
 const RIM_DIRECTIONS: usize = 12;
@@ -97,14 +111,18 @@ impl ObjectPose {
     /// object is wider than the gripper, on its rim.
     ///
     /// # Errors
-    /// [`GraspError`] for a width beyond the gripper's, or numbers that make no object.
-    pub fn grasps(&self) -> Result<Vec<Grasp>, GraspError> {
+    /// [`GraspError`] for a width that the gripper does not hold, or numbers that make no object.
+    pub fn grasps(&self, gripper: &Gripper) -> Result<Vec<Grasp>, GraspError> {
         self.refuse_malformed()?;
-        if self.grasp_width_m > STROKE_M {
-            return Err(GraspError::TooWide { width_m: self.grasp_width_m });
+        let width_m = self.grasp_width_m;
+        if width_m > gripper.open_m {
+            return Err(GraspError::TooWide { width_m, open_m: gripper.open_m });
         }
-        let across = self.across();
-        Ok(if across.is_empty() { self.on_rim() } else { across })
+        if !gripper.holds(width_m) {
+            return Err(GraspError::TooThin { width_m, least_m: gripper.least_m() });
+        }
+        let across = self.across(gripper);
+        Ok(if across.is_empty() { self.on_rim(gripper) } else { across })
     }
 
     fn refuse_malformed(&self) -> Result<(), GraspError> {
@@ -124,11 +142,11 @@ impl ObjectPose {
     }
 
     /// Over the centre, fingers closing along the narrow extents.
-    fn across(&self) -> Vec<Grasp> {
-        let z = self.tip_z(self.xyz_m[2]);
+    fn across(&self, gripper: &Gripper) -> Vec<Grasp> {
+        let z = self.tip_z(self.xyz_m[2], gripper);
         [1, 0]
             .into_iter()
-            .filter(|&axis| self.size_m[axis] <= STROKE_M)
+            .filter(|&axis| self.size_m[axis] <= gripper.open_m)
             .flat_map(|axis| {
                 let along = self.yaw_rad + if axis == 1 { FRAC_PI_2 } else { 0.0 };
                 self.both_ways(self.xyz_m[0], self.xyz_m[1], z, along)
@@ -137,11 +155,11 @@ impl ObjectPose {
     }
 
     /// On the wall of a bowl or box, one finger inside and one outside.
-    fn on_rim(&self) -> Vec<Grasp> {
+    fn on_rim(&self, gripper: &Gripper) -> Vec<Grasp> {
         let [x, y, _] = self.size_m;
         let round = (x - y).abs() <= ROUND * x.max(y);
         let count = if round { RIM_DIRECTIONS } else { 4 };
-        let z = self.tip_z(self.xyz_m[2]);
+        let z = self.tip_z(self.xyz_m[2], gripper);
         (0..count)
             .flat_map(|k| {
                 let turned = 2.0 * PI * k as f64 / count as f64;
@@ -158,8 +176,9 @@ impl ObjectPose {
 
     /// Height of the fingertips: a little below the top, not below `lowest` and never on what the
     /// object stands on.
-    fn tip_z(&self, lowest: f64) -> f64 {
-        (self.top_z_m() - DEPTH_M).max(lowest).max(self.bottom_z_m() + TIP_CLEAR_M)
+    fn tip_z(&self, lowest: f64, gripper: &Gripper) -> f64 {
+        let clear_m = gripper.beyond_m + TIP_CLEAR_M;
+        (self.top_z_m() - DEPTH_M).max(lowest).max(self.bottom_z_m() + clear_m)
     }
 
     /// Returns the gripper at a point with its fingers moving along `along`; either finger may

@@ -22,8 +22,9 @@ const DEAD_ZONE_PERCENT: f64 = 100.0 * gripper::DEAD_ZONE;
 const SENDER: &str = "whichone";
 
 /// One gripper.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Gripper {
+    geometry: gripper::Gripper,
     state: Option<(EndEffectorState, Time)>,
     properties: Option<EndEffectorProperties>,
     /// Latest command, and the time when it was first sent.
@@ -48,6 +49,19 @@ pub(super) enum Condition {
 }
 
 impl Gripper {
+    /// Returns a gripper before its first report.
+    pub(super) fn new(geometry: &gripper::Gripper) -> Self {
+        Self {
+            geometry: *geometry,
+            state: None,
+            properties: None,
+            command: None,
+            handled: None,
+            sent: None,
+            sequence: 0,
+        }
+    }
+
     pub(super) fn on_state(&mut self, state: &EndEffectorState, now: Time) {
         self.state = Some((*state, now));
         let confirmed = self.command.is_some_and(|(_, message, _)| state.has_handled(&message));
@@ -76,7 +90,7 @@ impl Gripper {
 
     /// Width between the fingers, metres.
     pub(super) fn width_m(&self) -> Option<f64> {
-        self.state.map(|(state, _)| gripper::width_m(f64::from(state.position)))
+        self.state.map(|(state, _)| self.geometry.width_m(f64::from(state.position)))
     }
 
     /// Returns whether something is between the fingers. Fingers that stopped at nothing wider than the
@@ -126,7 +140,7 @@ impl Gripper {
             Fingers::Stay if self.is_moving() => self.send(Command::Stop, now),
             Fingers::Stay => {}
             Fingers::Open(width_m) if controls_position => {
-                self.send(Command::Go(gripper::percent(width_m)), now);
+                self.send(Command::Go(self.geometry.percent(width_m)), now);
             }
             Fingers::Open(_) => self.send(Command::Release, now),
             Fingers::Grip(_) if controls_grip => self.send(Command::Grip, now),

@@ -1,5 +1,11 @@
 use super::*;
+use crate::kinematics::limb::Limb;
+use crate::robot::Robot;
 use crate::samples::Random;
+
+fn paddles() -> Gripper {
+    Robot::baxter().arm(Limb::Left).gripper
+}
 
 const BOWL: ObjectPose = ObjectPose {
     xyz_m: [0.7, 0.2, -0.12],
@@ -21,7 +27,7 @@ fn axes(grasp: &Grasp) -> (Vector3<f64>, Vector3<f64>) {
 
 #[test]
 fn a_bowl_is_held_at_its_rim() {
-    let grasps = BOWL.grasps().unwrap();
+    let grasps = BOWL.grasps(&paddles()).unwrap();
     assert_eq!(grasps.len(), 24);
     for grasp in &grasps {
         let (fingers, down) = axes(grasp);
@@ -36,7 +42,7 @@ fn a_bowl_is_held_at_its_rim() {
 
 #[test]
 fn a_marker_is_held_across_its_middle() {
-    let grasps = MARKER.grasps().unwrap();
+    let grasps = MARKER.grasps(&paddles()).unwrap();
     assert_eq!(grasps.len(), 2);
     for grasp in &grasps {
         let (fingers, _) = axes(grasp);
@@ -55,11 +61,14 @@ fn fingertips_stay_above_what_the_object_stands_on() {
             xyz_m: std::array::from_fn(|_| random.between(-0.5, 0.9)),
             yaw_rad: random.between(-3.0, 3.0),
             size_m: std::array::from_fn(|_| random.between(0.002, 0.3)),
-            grasp_width_m: random.between(0.001, STROKE_M),
+            grasp_width_m: random.between(0.002, 0.0375),
         };
-        for grasp in object.grasps().unwrap() {
+        for grasp in object.grasps(&paddles()).unwrap() {
             let z = grasp.gripper.translation.z;
-            assert!(z >= object.bottom_z_m() + TIP_CLEAR_M - 1e-12, "{object:?}");
+            assert!(
+                z >= object.bottom_z_m() + paddles().beyond_m + TIP_CLEAR_M - 1e-12,
+                "{object:?}"
+            );
             let raised = grasp.raised(0.2).translation.vector;
             assert!((raised.z - z - 0.2).abs() < 1e-12);
         }
@@ -69,7 +78,7 @@ fn fingertips_stay_above_what_the_object_stands_on() {
 #[test]
 fn a_long_box_is_held_at_the_middles_of_its_sides() {
     let object = ObjectPose { size_m: [0.3, 0.1, 0.05], yaw_rad: 1.0, ..BOWL };
-    let grasps = object.grasps().unwrap();
+    let grasps = object.grasps(&paddles()).unwrap();
     assert_eq!(grasps.len(), 8);
     let mut radii: Vec<f64> = grasps
         .iter()
@@ -82,15 +91,19 @@ fn a_long_box_is_held_at_the_middles_of_its_sides() {
 #[test]
 fn grasp_rejects_what_cannot_be_held() {
     let wide = ObjectPose { grasp_width_m: 0.05, ..BOWL };
-    let error = wide.grasps().unwrap_err();
-    assert_eq!(error, GraspError::TooWide { width_m: 0.05 });
-    assert!(error.to_string().contains("50 mm") && error.to_string().contains("42 mm"));
+    let error = wide.grasps(&paddles()).unwrap_err();
+    assert_eq!(error, GraspError::TooWide { width_m: 0.05, open_m: paddles().open_m });
+    assert!(error.to_string().contains("50 mm") && error.to_string().contains("38 mm"));
+    let slot_2 = Gripper { stop_m: 0.0153, open_m: 0.057, ..paddles() };
+    let error = BOWL.grasps(&slot_2).unwrap_err();
+    assert!(matches!(error, GraspError::TooThin { width_m: 0.006, .. }));
+    assert!(error.to_string().contains("6.0 mm but holds 17.4 mm"), "{error}");
     for (object, what) in [
         (ObjectPose { xyz_m: [f64::NAN, 0.0, 0.0], ..BOWL }, "xyz"),
         (ObjectPose { yaw_rad: f64::INFINITY, ..BOWL }, "yaw"),
         (ObjectPose { size_m: [0.1, 0.0, 0.1], ..BOWL }, "size"),
         (ObjectPose { grasp_width_m: -0.001, ..BOWL }, "grasp_width"),
     ] {
-        assert!(object.grasps().unwrap_err().to_string().contains(what));
+        assert!(object.grasps(&paddles()).unwrap_err().to_string().contains(what));
     }
 }
