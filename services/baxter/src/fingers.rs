@@ -70,6 +70,8 @@ impl Fingers {
                 self.goals.clear();
                 None
             }
+            // Simulated fingers do not slip.
+            Command::Configure(_) => None,
         }
     }
 

@@ -40,6 +40,10 @@ pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) 
             continue;
         }
         let (key, help) = match &error {
+            PlanError::Grasp(GraspError::TooHeavy { .. }) => (
+                "mass_kg",
+                "use a lighter or smaller object, stronger fingers, or leave out its place",
+            ),
             PlanError::Grasp(error) => ("grasp_width", grasp_help(error)),
             _ => (
                 "xyz",
@@ -60,7 +64,7 @@ fn grasp_help(error: &GraspError) -> &'static str {
         GraspError::TooThin { .. } => {
             "choose a thicker part to grip, or mount the fingers further in (docs/baxter.md)"
         }
-        GraspError::Malformed { .. } => "correct the number",
+        GraspError::TooHeavy { .. } | GraspError::Malformed { .. } => "correct the number",
     }
 }
 
@@ -180,5 +184,7 @@ pub fn pose(placement: &Placement) -> ObjectPose {
         yaw_rad: placement.yaw,
         size_m: placement.size,
         grasp_width_m: placement.grasp_width,
+        mass_kg: placement.mass_kg,
+        wall_rad: placement.wall_deg.to_radians(),
     }
 }

@@ -158,6 +158,8 @@ mod tests {
             yaw_rad: 0.3,
             size_m: [0.14, 0.014, 0.014],
             grasp_width_m: 0.014,
+            mass_kg: None,
+            wall_rad: 0.0,
         };
         let settings = PlanSettings::default();
         let far = Isometry3::translation(0.2, 0.6, 0.3);

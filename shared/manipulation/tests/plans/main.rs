@@ -25,6 +25,8 @@ fn marker() -> ObjectPose {
         yaw_rad: 0.3,
         size_m: [0.14, 0.014, 0.014],
         grasp_width_m: 0.014,
+        mass_kg: None,
+        wall_rad: 0.0,
     }
 }
 

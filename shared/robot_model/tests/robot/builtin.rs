@@ -27,7 +27,7 @@ fn built_in_frames_match_the_reference_description() {
                 [("_gripper_l_finger", -0.0095), ("_gripper_r_finger", 0.0095)]
             {
                 if link.name.contains(finger) {
-                    same = same * Translation3::new(0.0, further_in, 0.0);
+                    same *= Translation3::new(0.0, further_in, 0.0);
                 }
             }
             let worst = difference(&pose, &same);

@@ -12,6 +12,8 @@ const BOWL: ObjectPose = ObjectPose {
     yaw_rad: 0.0,
     size_m: [0.18, 0.18, 0.07],
     grasp_width_m: 0.006,
+    mass_kg: None,
+    wall_rad: 0.0,
 };
 
 const MARKER: ObjectPose = ObjectPose {
@@ -19,6 +21,8 @@ const MARKER: ObjectPose = ObjectPose {
     yaw_rad: 0.3,
     size_m: [0.14, 0.014, 0.014],
     grasp_width_m: 0.014,
+    mass_kg: None,
+    wall_rad: 0.0,
 };
 
 fn axes(grasp: &Grasp) -> (Vector3<f64>, Vector3<f64>) {
@@ -62,6 +66,8 @@ fn fingertips_stay_above_what_the_object_stands_on() {
             yaw_rad: random.between(-3.0, 3.0),
             size_m: std::array::from_fn(|_| random.between(0.002, 0.3)),
             grasp_width_m: random.between(0.002, 0.0375),
+            mass_kg: None,
+            wall_rad: 0.0,
         };
         for grasp in object.grasps(&paddles()).unwrap() {
             let z = grasp.gripper.translation.z;
@@ -106,4 +112,35 @@ fn grasp_rejects_what_cannot_be_held() {
     ] {
         assert!(object.grasps(&paddles()).unwrap_err().to_string().contains(what));
     }
+}
+
+#[test]
+fn a_sloped_wall_is_gripped_along_its_slope() {
+    let sloped = ObjectPose { wall_rad: 0.3, ..BOWL };
+    for grasp in &sloped.grasps(&paddles()).unwrap() {
+        let (fingers, down) = axes(grasp);
+        let at = grasp.gripper.translation.vector;
+        let out = (at - Vector3::from(BOWL.xyz_m)).xy().normalize();
+        // The wall's middle at any height, by its slope from the rim.
+        let wall = |z: f64| {
+            let below = BOWL.top_z_m() - z;
+            let radius = 0.09 - 0.003 / 0.3f64.cos() - below * 0.3f64.tan();
+            Vector3::new(BOWL.xyz_m[0] + out.x * radius, BOWL.xyz_m[1] + out.y * radius, z)
+        };
+        assert!((wall(at.z) - at).norm() < 1e-9);
+        let along = (wall(at.z - 0.01) - at).normalize();
+        assert!((along - down).norm() < 1e-9 && fingers.dot(&along).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn an_object_is_refused_if_the_fingers_cannot_carry_its_weight() {
+    let weighing = |mass_kg| ObjectPose { mass_kg: Some(mass_kg), ..BOWL };
+    // Measured in a physics engine at 20 N: 0.5 kg is held, 0.7 kg falls.
+    assert!(weighing(0.5).grasps(&paddles()).is_ok());
+    let error = weighing(0.7).grasps(&paddles()).unwrap_err().to_string();
+    assert!(error.contains("weighs 0.70 kg") && error.contains("20 N hold 0.55 kg"), "{error}");
+    let weak = Gripper { force_n: 10.5, ..paddles() };
+    assert!(weighing(0.3).grasps(&weak).is_err(), "the SDK's holding force");
+    assert!(ObjectPose { mass_kg: Some(0.3), ..MARKER }.grasps(&weak).is_ok());
 }

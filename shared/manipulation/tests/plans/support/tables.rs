@@ -51,6 +51,8 @@ fn random_object(random: &mut Random) -> ObjectPose {
         yaw_rad: random.between(-3.1, 3.1),
         size_m: size,
         grasp_width_m,
+        mass_kg: None,
+        wall_rad: 0.0,
     }
 }
 
