@@ -11,6 +11,7 @@ import os
 import random
 import subprocess
 import sys
+import tempfile
 import tomllib
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -27,9 +28,12 @@ SCENES = ("bowls", "markers", "tools")
 HZ, STEPS = 100, 10
 # Limits of the acceptance.
 ERROR_RAD, TORQUE_SHARE = 0.01, 0.8
-PLACE_M = {"straight": 0.002, "round": 0.02}
+PLACE_M = 0.002
 # A trial with misplaced objects may end this far from the plan; it is held and handed over then.
 TRIAL_M = 0.02
+# Slope that a scene states for each form of bowls: a round wall's chord over the depth of the fingers.
+WALL_DEG = {"straight": 0.0, "round": 7.0, "cone": 25.0}
+# Distance of the closed fingers by their shapes in the description; negative: they meet before.
 STOP_M = {"left": 0.0153 - 0.019, "right": 0.0111 - 0.019}
 FRICTION = 0.7
 
@@ -45,6 +49,14 @@ def scene(name):
         item["hollow"] = min(item["size"][:2]) > 0.042
         item["form"] = "straight"
     return objects
+
+
+def with_walls(name, wall_deg, folder):
+    """A copy of the scene whose bowls have walls of this slope."""
+    text = (ROOT / f"config/scenes/{name}.toml").read_text(encoding="utf-8")
+    path = Path(folder) / f"{name}_{wall_deg:g}.toml"
+    path.write_text(text.replace("\nmass_kg", f"\nwall_deg = {wall_deg}\nmass_kg"), encoding="utf-8")
+    return str(path)
 
 
 def plan(whichone, name, target):
@@ -198,8 +210,10 @@ def accept(arguments):
     for name in SCENES:
         objects = scene(name)
         for item in objects:
+            if arguments.object not in (None, item["name"]):
+                continue
             result = Run(plan(arguments.whichone, name, item["name"]), objects).run()
-            found = problems(result, PLACE_M["straight"])
+            found = problems(result, PLACE_M)
             print(line(result, found), flush=True)
             good, total = good + (not found), total + 1
     print(f"{good} of {total} picks as planned")
@@ -207,9 +221,11 @@ def accept(arguments):
 
 
 def trial(job):
+    """One pick under random conditions."""
     plan, objects, form, seed = job
     draw = random.Random(seed)
-    objects = [dict(item, form=form if item["hollow"] else item["form"]) for item in objects]
+    slope = WALL_DEG[form]
+    objects = [dict(item, form=form, wall_deg=slope) if item["hollow"] else item for item in objects]
     item = next(item for item in objects if item["name"] == plan["object"])
     distance, angle = draw.uniform(0.0, 0.01), draw.uniform(-math.pi, math.pi)
     offset = (distance * math.cos(angle), distance * math.sin(angle))
@@ -225,15 +241,15 @@ def trial(job):
 def trials(arguments):
     """Random placement errors, friction and mass."""
     print(f"seed {arguments.seed}")
-    plans = []
-    for name in SCENES:
-        objects = scene(name)
-        plans += [(plan(arguments.whichone, name, item["name"]), objects) for item in objects]
-    jobs = []
-    for n in range(arguments.count):
-        chosen, objects = plans[n % len(plans)]
-        form = ("straight", "round")[n // len(plans) % 2]
-        jobs.append((chosen, objects, form, arguments.seed * 1_000_003 + n))
+    kinds = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in SCENES:
+            objects = scene(name)
+            for item in objects:
+                for form in arguments.walls if item["hollow"] else ["straight"]:
+                    file = with_walls(name, WALL_DEG[form], folder) if item["hollow"] else name
+                    kinds.append((plan(arguments.whichone, file, item["name"]), objects, form))
+    jobs = [(*kinds[n % len(kinds)], arguments.seed * 1_000_003 + n) for n in range(arguments.count)]
     tally = {}
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         for kind, held, result, stray in pool.map(trial, jobs):
@@ -255,10 +271,12 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--whichone", default=str(ROOT / "target/release/whichone"))
     verbs = parser.add_subparsers(dest="verb", required=True)
-    verbs.add_parser("accept", help=accept.__doc__)
+    shipped = verbs.add_parser("accept", help=accept.__doc__)
+    shipped.add_argument("--object", metavar="NAME", help="this one alone")
     random_trials = verbs.add_parser("trials", help=trials.__doc__)
     random_trials.add_argument("--count", type=int, default=480)
     random_trials.add_argument("--seed", type=int, default=1)
+    random_trials.add_argument("--walls", nargs="+", choices=WALL_DEG, default=["straight", "round"])
     arguments = parser.parse_args()
     passed = {"accept": accept, "trials": trials}[arguments.verb](arguments)
     sys.exit(0 if passed else 1)

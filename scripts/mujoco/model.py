@@ -16,7 +16,7 @@ SERVO_STRONG_NM = 20.0
 # Sectors of a bowl's wall, and segments from its rim to its foot if it is round.
 SECTORS, SEGMENTS = 36, 4
 # Share of the height of a round bowl at which its ellipse would close: below is a flat foot.
-FOOT = 0.9
+FOOT = 0.7
 
 
 def numbers(text, count=3):
@@ -150,7 +150,9 @@ class Model:
 
     def solid(self, body, owner, kind, half, at, quat, mass):
         ET.SubElement(body, "geom", name=self.name(owner), type=kind, size=words(half), pos=words(at),
-                      quat=words(quat), contype="2", conaffinity="3", mass=f"{mass:.9g}", condim="4",
+                      quat=words(quat), contype="2", conaffinity="3", mass=f"{mass:.9g}",
+                      # Friction against rolling, as by the clip of a pen.
+                      condim="6" if kind == "cylinder" else "4",
                       friction=f"{self.friction} 0.005 0.0005", solref="0.004 1")
 
     def tool(self, item):

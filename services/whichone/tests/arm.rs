@@ -106,3 +106,22 @@ fn arm_plot_rejects_invalid_input_with_help() {
     }
     assert!(!Path::new(ROOT).join("pick.png").exists());
 }
+
+mod physics {
+    use super::*;
+
+    #[test]
+    #[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+    fn every_shipped_pick_succeeds_in_a_physics_engine() {
+        let python = std::env::var("WHICHONE_PHYSICS").expect("WHICHONE_PHYSICS names a Python");
+        let ended = Command::new(python)
+            .arg(Path::new(ROOT).join("scripts/mujoco/acceptance.py"))
+            .args(["--whichone", env!("CARGO_BIN_EXE_whichone"), "accept"])
+            .output()
+            .unwrap();
+        let output = String::from_utf8_lossy(&ended.stdout);
+        let errors = String::from_utf8_lossy(&ended.stderr);
+        assert!(ended.status.success(), "{output}{errors}");
+        assert!(output.ends_with("18 of 18 picks as planned\n"), "{output}");
+    }
+}
