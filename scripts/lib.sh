@@ -32,3 +32,17 @@ need_cargo() {
         exit 1
     }
 }
+
+# physics_python: installs MuJoCo into target/physics unless it is there, and prints the path of a
+# Python that has it. Fails without network.
+physics_python() {
+    local venv="$root/target/physics" packages="mujoco==4.0.0 numpy==2.4.6"
+    if [[ "$(cat "$venv/packages" 2>/dev/null)" != "$packages" ]]; then
+        say "installing into target/physics: $packages"
+        # shellcheck disable=SC2086
+        python3 -m venv "$venv" >&2 &&
+            "$venv/bin/pip" install --quiet --disable-pip-version-check $packages >&2 || return 1
+        printf '%s\n' "$packages" >"$venv/packages"
+    fi
+    printf '%s\n' "$venv/bin/python"
+}

@@ -142,7 +142,9 @@ impl Node for ArmNode {
     fn recover(config: Config, records: Vec<Record>) -> Result<Self, NodeError> {
         let state = recover::state(&config, records)?;
         let driver = match config.arm.driver {
-            config::Driver::Kinematic => Box::new(KinematicArm::at(&state)) as Box<dyn ArmDriver>,
+            config::Driver::Kinematic => {
+                Box::new(KinematicArm::at(&state, &config.setup.robot)) as Box<dyn ArmDriver>
+            }
             config::Driver::Baxter => Box::new(BaxterDriver::new(&config, &state)),
         };
         Ok(Self::with_driver(config, state, driver))
@@ -208,7 +210,7 @@ impl ArmNode {
         let scene_changed = settled.is_some();
         Self {
             world: Arc::new(World::new(&config.setup.robot, &config.scene)),
-            publisher: Publisher::new(&config.arm),
+            publisher: Publisher::new(&config.arm, &config.setup.robot),
             motion_view: MotionView::default(),
             state: settled.unwrap_or(state),
             driver,

@@ -258,9 +258,14 @@ impl Planner<'_> {
         })
     }
 
+    /// Width to which the gripper opens, metres.
+    fn open_m(&self, limb: Limb) -> f64 {
+        self.robot.arm(limb).gripper.width_m(self.settings.open_percent)
+    }
+
     fn opening_s(&self, limb: Limb) -> f64 {
         let width_m = self.measured.posture.width_m[limb];
-        gripper::seconds_between(width_m, self.settings.open_width_m)
+        gripper::seconds_between(width_m, self.open_m(limb))
     }
 
     /// Stands until the fingers are open.
@@ -269,7 +274,7 @@ impl Planner<'_> {
         let seconds = if travel_s > 0.0 { travel_s + SETTLE_S } else { 0.0 };
         let q = &self.measured.posture.joints[limb];
         let motion = Trajectory::hold(q, seconds, &self.limits(limb));
-        let fingers = Fingers::Open(self.settings.open_width_m);
+        let fingers = Fingers::Open(self.open_m(limb));
         Step { kind: MotionPhase::Clear, phase: None, motion, fingers }
     }
 

@@ -5,7 +5,8 @@ use crate::executor::{Executor, Purpose};
 use crate::state::ArmState;
 use crate::world::World;
 use crate::{Fx, Out};
-use manipulation::{JOINTS, Limb, gripper};
+use manipulation::gripper::Gripper;
+use manipulation::{JOINTS, Limb, Robot};
 use messages::WireCode;
 use messages::{ActId, ArmStatus, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates, MotionInhibit};
 use service::{Span, Time};
@@ -19,6 +20,7 @@ const WORLD_EVERY: (Span, Span) = (Span::from_ms(100), Span::from_ms(1_000));
 pub(crate) struct Publisher {
     /// Limb and joint of each entry of a joint state; none for the head and the torso, which stay.
     sources: [Option<(Limb, usize)>; JOINT_STATE_LEN],
+    grippers: [Gripper; 2],
     /// Simulated seconds per second.
     time_scale: f64,
     /// Period of a model's joint states, and when they are due; sensors have their own.
@@ -42,9 +44,10 @@ pub(crate) struct Facts<'a> {
 }
 
 impl Publisher {
-    pub(crate) fn new(arm: &config::Arm) -> Self {
+    pub(crate) fn new(arm: &config::Arm, robot: &Robot) -> Self {
         Self {
             sources: JOINT_STATE_NAMES.map(source),
+            grippers: Limb::BOTH.map(|limb| robot.arm(limb).gripper),
             time_scale: arm.time_scale,
             joints_every: Span::from_s(1.0 / arm.joint_rate_hz),
             joints_due: Time(0),
@@ -151,7 +154,8 @@ impl Publisher {
             states.velocity[entry] = measured.velocity[limb][joint] * self.time_scale;
             states.effort[entry] = measured.effort[limb][joint];
         }
-        states.gripper_percent = measured.posture.width_m.map(gripper::percent);
+        states.gripper_percent =
+            Limb::BOTH.map(|limb| self.grippers[limb].percent(measured.posture.width_m[limb]));
         states
     }
 }

@@ -43,7 +43,7 @@ pub fn next(phase: PickPhase, holding: Option<bool>, at_goal: bool) -> Next {
 /// The journal's joint positions are outside the joint limits.
 pub fn state(config: &Config, mut records: Vec<Record>) -> Result<ArmState, NodeError> {
     let first =
-        || ArmState::first(&config.setup.robot, config.scene.key(), config.setup.plan.open_width_m);
+        || ArmState::first(&config.setup.robot, config.scene.key(), config.setup.plan.open_percent);
     let state = records.pop().map_or_else(first, |record| record.state);
     let outside = Limb::BOTH.into_iter().find_map(|limb| {
         let q = state.posture.joints[limb];

@@ -111,13 +111,14 @@ pub struct Record {
 }
 
 impl ArmState {
-    /// Returns the state before anything was ordered: both limbs at rest, fingers `open_width_m`
-    /// apart.
-    pub fn first(robot: &Robot, scene_key: u64, open_width_m: f64) -> Self {
+    /// Returns the state before anything was ordered: both limbs at rest, fingers open to
+    /// `open_percent` of their range.
+    pub fn first(robot: &Robot, scene_key: u64, open_percent: f64) -> Self {
         let joints = Limb::BOTH.map(|limb| robot.arm(limb).neutral);
+        let width_m = Limb::BOTH.map(|limb| robot.arm(limb).gripper.width_m(open_percent));
         Self {
             scene_key,
-            posture: Posture { joints, width_m: [open_width_m; 2] },
+            posture: Posture { joints, width_m },
             pick: None,
             limb: None,
             misses: 0,

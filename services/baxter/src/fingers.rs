@@ -1,6 +1,6 @@
 //! One electric gripper.
 
-use manipulation::gripper::{self, DEAD_ZONE, STROKE_M, STROKE_S};
+use manipulation::gripper::{DEAD_ZONE, Gripper, SPEED_M_S};
 use messages::robot::{Command, EndEffectorCommand, EndEffectorState, Tristate};
 use serde::{Deserialize, Serialize};
 
@@ -38,7 +38,7 @@ pub enum Event {
 impl Fingers {
     /// Handles a command. A repeated one, or one that needs calibration that is missing,
     /// changes nothing.
-    pub fn command(&mut self, message: &EndEffectorCommand) -> Option<Event> {
+    pub fn command(&mut self, message: &EndEffectorCommand, gripper: &Gripper) -> Option<Event> {
         let command = match message.read() {
             Ok(command) => command,
             Err(error) => {
@@ -61,15 +61,17 @@ impl Fingers {
             Command::Calibrate => {
                 self.calibrated = false;
                 self.calibrating = true;
-                self.go(vec![STROKE_M, 0.0, STROKE_M])
+                self.go(vec![gripper.open_m, gripper.closed_m(), gripper.open_m], gripper)
             }
-            Command::Go(percent) => self.go(vec![gripper::width_m(percent)]),
-            Command::Grip => self.go(vec![0.0]),
-            Command::Release => self.go(vec![STROKE_M]),
+            Command::Go(percent) => self.go(vec![gripper.width_m(percent)], gripper),
+            Command::Grip => self.go(vec![gripper.closed_m()], gripper),
+            Command::Release => self.go(vec![gripper.open_m], gripper),
             Command::Stop => {
                 self.goals.clear();
                 None
             }
+            // Simulated fingers do not slip.
+            Command::Configure(_) => None,
         }
     }
 
@@ -79,9 +81,9 @@ impl Fingers {
     }
 
     /// Advances the time.
-    pub fn advance(&mut self, seconds: f64) -> Option<Event> {
+    pub fn advance(&mut self, seconds: f64, gripper: &Gripper) -> Option<Event> {
         let goal_m = *self.goals.first()?;
-        let travel_m = STROKE_M / STROKE_S * seconds;
+        let travel_m = SPEED_M_S * seconds;
         let stop_m = self.object_m.filter(|object_m| goal_m < *object_m);
         let end_m = stop_m.unwrap_or(goal_m);
         self.width_m += (end_m - self.width_m).clamp(-travel_m, travel_m);
@@ -96,13 +98,13 @@ impl Fingers {
             self.calibrated = true;
             return None;
         }
-        self.gripping = stop_m.is_some() && gripper::holds(self.width_m);
+        self.gripping = stop_m.is_some() && gripper.holds(self.width_m);
         self.missed = !self.gripping;
         self.gripping.then_some(Event::Holds)
     }
 
     /// Returns the gripper's reported state.
-    pub fn state(&self, timestamp_ns: u64, enabled: bool) -> EndEffectorState {
+    pub fn state(&self, timestamp_ns: u64, enabled: bool, gripper: &Gripper) -> EndEffectorState {
         let is = |fact: bool| if fact { Tristate::True } else { Tristate::False }.code();
         let moving = !self.goals.is_empty();
         let (command, sender, sequence) = &self.handled;
@@ -117,7 +119,7 @@ impl Fingers {
             missed: is(self.missed),
             error: is(false),
             reverse: is(false),
-            position: gripper::percent(self.width_m) as f32,
+            position: gripper.percent(self.width_m) as f32,
             force: if self.gripping { HOLDING_FORCE } else { 0.0 },
             command_sequence: *sequence,
             command: messages::FixedText::truncated(command),
@@ -125,7 +127,7 @@ impl Fingers {
         }
     }
 
-    fn go(&mut self, goals: Vec<f64>) -> Option<Event> {
+    fn go(&mut self, goals: Vec<f64>, gripper: &Gripper) -> Option<Event> {
         let goal_m = goals[0];
         self.goals = goals;
         let held = self.gripping;
@@ -133,7 +135,7 @@ impl Fingers {
             return None;
         }
         (self.gripping, self.missed) = (false, false);
-        if goal_m < self.width_m - DEAD_ZONE * STROKE_M {
+        if goal_m < self.width_m - DEAD_ZONE * (gripper.open_m - gripper.closed_m()) {
             return Some(Event::Closes);
         }
         self.object_m = None;
@@ -141,11 +143,11 @@ impl Fingers {
     }
 }
 
-impl Default for Fingers {
-    /// Open fingers without calibration.
-    fn default() -> Self {
+impl Fingers {
+    /// Returns open fingers without calibration.
+    pub fn open(gripper: &Gripper) -> Self {
         Self {
-            width_m: STROKE_M,
+            width_m: gripper.open_m,
             goals: Vec::new(),
             calibrated: false,
             calibrating: false,
@@ -161,21 +163,24 @@ impl Default for Fingers {
 mod tests {
     use super::*;
 
+    const GRIPPER: Gripper =
+        Gripper { stop_m: -0.003, open_m: 0.038, beyond_m: 0.0035, force_n: 20.0 };
+
     fn say(fingers: &mut Fingers, command: Command, sequence: u32) -> Option<Event> {
-        fingers.command(&EndEffectorCommand::new(0, command, "test", sequence))
+        fingers.command(&EndEffectorCommand::new(0, command, "test", sequence), &GRIPPER)
     }
 
     fn calibrated() -> Fingers {
-        let mut fingers = Fingers::default();
+        let mut fingers = Fingers::open(&GRIPPER);
         assert_eq!(say(&mut fingers, Command::Go(50.0), 1), None);
         assert_eq!(
-            fingers.state(0, true).moving,
+            fingers.state(0, true, &GRIPPER).moving,
             Tristate::False,
             "nothing before it is calibrated"
         );
         say(&mut fingers, Command::Calibrate, 2);
-        (0..300).for_each(|_| assert_eq!(fingers.advance(0.01), None));
-        let state = fingers.state(0, true);
+        (0..300).for_each(|_| assert_eq!(fingers.advance(0.01, &GRIPPER), None));
+        let state = fingers.state(0, true, &GRIPPER);
         assert_eq!([state.calibrated, state.ready], [Tristate::True; 2]);
         assert_eq!(state.command_sequence, 2);
         fingers
@@ -186,11 +191,11 @@ mod tests {
         let mut fingers = calibrated();
         assert_eq!(say(&mut fingers, Command::Grip, 3), Some(Event::Closes));
         fingers.meet(Some(0.01));
-        let events: Vec<Event> = (0..100).filter_map(|_| fingers.advance(0.01)).collect();
-        let state = fingers.state(0, true);
+        let events: Vec<Event> = (0..100).filter_map(|_| fingers.advance(0.01, &GRIPPER)).collect();
+        let state = fingers.state(0, true, &GRIPPER);
         assert_eq!(events, [Event::Holds]);
         assert_eq!([state.gripping, state.missed], [Tristate::True, Tristate::False]);
-        assert!((state.position - 24.0).abs() < 0.1);
+        assert!((state.position - 100.0 / 3.8).abs() < 0.1);
         assert_eq!(say(&mut fingers, Command::Grip, 4), None, "it grips already");
         assert_eq!(say(&mut fingers, Command::Go(100.0), 5), Some(Event::LetsGo));
         assert_eq!(say(&mut fingers, Command::Go(100.0), 5), None, "it came twice");
@@ -202,8 +207,8 @@ mod tests {
             let mut fingers = calibrated();
             say(&mut fingers, Command::Go(0.0), 3);
             fingers.meet(object_m);
-            (0..110).for_each(|_| assert_eq!(fingers.advance(0.01), None));
-            let state = fingers.state(0, true);
+            (0..110).for_each(|_| assert_eq!(fingers.advance(0.01, &GRIPPER), None));
+            let state = fingers.state(0, true, &GRIPPER);
             assert_eq!(state.missed, Tristate::True);
             assert_eq!([state.gripping, state.moving], [Tristate::False; 2]);
         }
@@ -213,11 +218,11 @@ mod tests {
     fn stopped_fingers_stay_where_they_are() {
         let mut fingers = calibrated();
         say(&mut fingers, Command::Grip, 3);
-        fingers.advance(0.3);
+        fingers.advance(0.3, &GRIPPER);
         say(&mut fingers, Command::Stop, 4);
         let width_m = fingers.width_m;
-        fingers.advance(0.3);
+        fingers.advance(0.3, &GRIPPER);
         assert_eq!(fingers.width_m, width_m);
-        assert!((width_m - 0.7 * STROKE_M).abs() < 1e-9);
+        assert!((width_m - (GRIPPER.open_m - 0.3 * SPEED_M_S)).abs() < 1e-9);
     }
 }

@@ -1,6 +1,6 @@
 //! The objects around the robot: their locations, and grasps.
 
-use manipulation::gripper;
+use manipulation::gripper::{self, Gripper};
 use manipulation::{Limb, ObjectPose};
 use nalgebra::Isometry3;
 use scene::Scene;
@@ -50,11 +50,12 @@ impl ObjectWorld {
         Self { now: places.iter().map(stands).collect(), handed_over, places }
     }
 
-    /// Returns the object between fingers that are `opening_m` apart at `tip`, with its width: one
+    /// Returns the object between the `fingers` of a gripper that are `opening_m` apart at `tip`, with its width: one
     /// that stands `offset_m` beside its place across the fingers, or one that a person gives back.
     pub fn between(
         &self,
         tip: &Isometry3<f64>,
+        fingers: &Gripper,
         opening_m: f64,
         offset_m: f64,
     ) -> Option<(usize, f64)> {
@@ -62,7 +63,7 @@ impl ObjectWorld {
         let stands = standing.into_iter().find_map(|(i, (place, now))| {
             let Whereabouts::Stands(xyz_m) = *now else { return None };
             let object = ObjectPose { xyz_m, ..(*place)? };
-            let at = object.grasps().ok()?.into_iter().any(|grasp| {
+            let at = object.grasps(fingers).ok()?.into_iter().any(|grasp| {
                 let beside = (grasp.gripper.inverse() * tip).translation.vector;
                 let along = beside.x.abs() < BESIDE_M[0] && beside.z.abs() < BESIDE_M[1];
                 along && gripper::catches(opening_m, object.grasp_width_m, beside.y + offset_m)

@@ -28,7 +28,7 @@ pub(crate) fn all(robot: &mut Robot, beat: u64, now: Time) -> Vec<Out> {
         reports.push(Out::Endpoint(limb, Box::new(endpoint(robot, limb, now))));
         if beat.is_multiple_of(GRIPPER_BEATS) {
             let enabled = robot.assembly.is_enabled();
-            let state = robot.fingers[limb].state(now.ns(), enabled);
+            let state = robot.fingers[limb].state(now.ns(), enabled, &robot.gripper(limb));
             reports.push(Out::Gripper(limb, Box::new(state)));
         }
         if beat.is_multiple_of(PROPERTIES_BEATS) {
@@ -57,9 +57,9 @@ fn joint_states(robot: &mut Robot, now: Time) -> Vec<Result<JointState, WireErro
         (name, found.map_or([0.0; 3], |(_, measured)| *measured))
     };
     let body = JointState::new(now.ns(), &JOINT_STATE_NAMES.map(of));
-    let fingers = [("l", 0), ("r", 1)].map(|(letter, i)| {
+    let fingers = [("l", Limb::Left), ("r", Limb::Right)].map(|(letter, limb)| {
         let name = format!("{letter}_gripper_l_finger_joint");
-        let travel_m = 0.5 * robot.fingers[i].width_m;
+        let travel_m = robot.gripper(limb).travel_m(robot.fingers[limb].width_m);
         JointState::new(now.ns(), &[(&name, [travel_m, 0.0, 0.0])])
     });
     std::iter::once(body).chain(fingers).collect()

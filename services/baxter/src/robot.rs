@@ -6,7 +6,8 @@ use crate::object_world::{ObjectWorld, Whereabouts};
 use crate::servo::{Servo, Target};
 use crate::{Config, In, Out, publish};
 use dialogue::Rng;
-use manipulation::{Joints, Limb, gripper};
+use manipulation::gripper::Gripper;
+use manipulation::{Joints, Limb};
 use messages::robot::{Drill, DrillKind, JointCommand, JointMode, JointTrajectoryPoint};
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};
@@ -64,7 +65,7 @@ impl Robot {
         let body = body.unwrap_or_else(|| Body {
             scene_key,
             joints: Limb::BOTH.map(|limb| config.robot.arm(limb).neutral),
-            fingers: Default::default(),
+            fingers: Limb::BOTH.map(|limb| Fingers::open(&config.robot.arm(limb).gripper)),
             assembly: Assembly::new(config.simulated.enabled),
             objects: ObjectWorld::new(&config.scene).now,
             handed_over: ObjectWorld::new(&config.scene).handed_over,
@@ -122,7 +123,8 @@ impl Robot {
             In::FeedForward(limb, point) => self.feed_forward(*limb, point),
             In::SpeedRatio(limb, ratio) => self.servos[*limb].set_speed_ratio(ratio.data),
             In::Gripper(limb, command) => {
-                let event = self.fingers[*limb].command(command);
+                let gripper = self.gripper(*limb);
+                let event = self.fingers[*limb].command(command, &gripper);
                 event.into_iter().for_each(|event| self.react(*limb, event));
             }
         }
@@ -143,7 +145,8 @@ impl Robot {
             } else {
                 servo.brake();
             }
-            if moves && let Some(event) = self.fingers[limb].advance(seconds) {
+            let gripper = self.gripper(limb);
+            if moves && let Some(event) = self.fingers[limb].advance(seconds, &gripper) {
                 self.react(limb, event);
             }
         }
@@ -189,6 +192,7 @@ impl Robot {
 
     fn react(&mut self, limb: Limb, event: Event) {
         let tip = self.config.robot.arm(limb).chain.forward(&self.servos[limb].q);
+        let gripper = self.gripper(limb);
         match event {
             Event::Closes => {
                 self.closings += 1;
@@ -196,12 +200,13 @@ impl Robot {
                 self.misses = self.misses.saturating_sub(1);
                 let offset_m = self.placement_error_m();
                 let opening_m = self.fingers[limb].width_m;
-                let found = self.objects.between(&tip, opening_m, offset_m).filter(|_| !missed);
+                let found =
+                    self.objects.between(&tip, &gripper, opening_m, offset_m).filter(|_| !missed);
                 self.fingers[limb].meet(found.map(|(_, width_m)| width_m));
             }
             Event::Holds => {
-                let wide_m = gripper::STROKE_M;
-                if let Some((object, _)) = self.objects.between(&tip, wide_m, 0.0) {
+                if let Some((object, _)) = self.objects.between(&tip, &gripper, gripper.open_m, 0.0)
+                {
                     self.objects.take(object, limb);
                 }
             }
@@ -232,6 +237,10 @@ impl Robot {
             DrillKind::Miss => self.misses = drill.amount.max(0.0) as u64,
             _ => self.assembly.drill(kind),
         }
+    }
+
+    pub(crate) fn gripper(&self, limb: Limb) -> Gripper {
+        self.config.robot.arm(limb).gripper
     }
 
     fn rests(&self, limb: Limb) -> bool {

@@ -61,8 +61,36 @@ fn arm_plot_prints_the_stages_as_json() {
 }
 
 #[test]
+fn arm_plot_prints_samples_from_which_the_plan_can_be_carried_out() {
+    let ended = plot(&["--json", "--samples-hz", "50", "--object", "metal2"]);
+    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+    let output: Value = serde_json::from_slice(&ended.stdout).unwrap();
+    let samples = output["samples"].as_array().unwrap();
+    let seconds = output["seconds"].as_f64().unwrap();
+    assert_eq!(samples.len(), (50.0 * seconds).ceil() as usize + 1);
+    assert_eq!(samples[samples.len() - 1]["t_s"].as_f64(), Some(seconds));
+    assert_eq!(output["joints"][6], "right_w2");
+    assert_eq!(output["object_in_gripper"].as_array().unwrap().len(), 7);
+    let number = |sample: &Value, key: &str, joint: usize| sample[key][joint].as_f64().unwrap();
+    for pair in samples.windows(2) {
+        let dt = pair[1]["t_s"].as_f64().unwrap() - pair[0]["t_s"].as_f64().unwrap();
+        for joint in 0..7 {
+            let moved = number(&pair[1], "q", joint) - number(&pair[0], "q", joint);
+            let mean = 0.5 * (number(&pair[1], "qd", joint) + number(&pair[0], "qd", joint));
+            assert!((moved - mean * dt).abs() < 1e-4, "{joint}: {pair:?}");
+        }
+    }
+    let held = samples.iter().filter(|sample| sample["held"] == "metal2");
+    let widths: Vec<f64> = held.map(|sample| sample["width_m"].as_f64().unwrap()).collect();
+    assert!(!widths.is_empty() && widths.iter().all(|width| (width - 0.004).abs() < 1e-9));
+    assert!(samples[0]["held"].is_null() && samples[samples.len() - 1]["held"].is_null());
+}
+
+#[test]
 fn arm_plot_rejects_invalid_input_with_help() {
-    let cases: [(&[&str], i32, &str); 6] = [
+    let cases: [(&[&str], i32, &str); 8] = [
+        (&["--samples-hz", "100"], 64, "add --json"),
+        (&["--samples-hz", "0"], 64, "from 1 to 1000"),
         (&["--object", "cup"], 78, "white, white2, white3, metal, metal2, clear"),
         (&["--object", "white", "--limb", "left"], 78, "--limb auto"),
         (&["--out", "pick.gif"], 64, ".png or .svg"),
@@ -77,4 +105,23 @@ fn arm_plot_rejects_invalid_input_with_help() {
         assert!(output.contains(part), "{words:?}: {output}");
     }
     assert!(!Path::new(ROOT).join("pick.png").exists());
+}
+
+mod physics {
+    use super::*;
+
+    #[test]
+    #[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+    fn every_shipped_pick_succeeds_in_a_physics_engine() {
+        let python = std::env::var("WHICHONE_PHYSICS").expect("WHICHONE_PHYSICS names a Python");
+        let ended = Command::new(python)
+            .arg(Path::new(ROOT).join("scripts/mujoco/acceptance.py"))
+            .args(["--whichone", env!("CARGO_BIN_EXE_whichone"), "accept"])
+            .output()
+            .unwrap();
+        let output = String::from_utf8_lossy(&ended.stdout);
+        let errors = String::from_utf8_lossy(&ended.stderr);
+        assert!(ended.status.success(), "{output}{errors}");
+        assert!(output.ends_with("18 of 18 picks as planned\n"), "{output}");
+    }
 }

@@ -49,7 +49,7 @@ pub struct Motion {
     pub hand_over_xyz_m: [f64; 3],
     /// Height of the table, metres.
     pub table_z_m: f64,
-    /// Opening of the gripper before a grasp, per cent of its stroke.
+    /// Opening of the gripper before a grasp, per cent of its range.
     pub grip_open_percent: f64,
     /// Distance from the gripper to an object that it points at, metres.
     pub standoff_m: f64,

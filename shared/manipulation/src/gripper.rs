@@ -14,39 +14,86 @@ use std::f64::consts::{PI, SQRT_2};
 /// Travel of one finger, metres.
 const FINGER_TRAVEL_M: f64 = 0.020833;
 
-/// Distance between the fingers when they are fully open, metres: both fingers' travel.
-pub const STROKE_M: f64 = 2.0 * FINGER_TRAVEL_M;
+/// Travel of both fingers, metres: what the distance between them changes by.
+const STROKE_M: f64 = 2.0 * FINGER_TRAVEL_M;
 
-/// Seconds from fully open to closed at the SDK's default velocity.
-pub const STROKE_S: f64 = 1.0;
+/// Seconds for the whole travel at the SDK's default velocity.
+const STROKE_S: f64 = 1.0;
 
-/// Share of the stroke below which closed fingers hold nothing: the SDK's dead zone.
+/// Change of the distance between the fingers per second, m/s.
+pub const SPEED_M_S: f64 = STROKE_M / STROKE_S;
+
+/// Share of the range below which closed fingers hold nothing: the SDK's dead zone.
 pub const DEAD_ZONE: f64 = 0.05;
 
-/// Width between the fingers at a position in percent (0 closed, 100 open), metres.
-pub fn width_m(percent: f64) -> f64 {
-    STROKE_M * percent.clamp(0.0, 100.0) / 100.0
+/// Distances between the fingertips of one gripper, and how hard they press: from the shapes of its
+/// fingers, see [`Robot::from_description`](crate::Robot::from_description).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gripper {
+    /// Distance at the closed end of the travel, metres. Negative: the tips meet before it, as after
+    /// a calibration they do at position 0.
+    pub stop_m: f64,
+    /// Distance of fully open fingers, metres: position 100.
+    pub open_m: f64,
+    /// Reach of the fingertips beyond the frame `<limb>_gripper`, metres.
+    pub beyond_m: f64,
+    /// Force of each finger, newtons.
+    pub force_n: f64,
 }
 
-/// Position in percent at a width in metres.
-pub fn percent(width_m: f64) -> f64 {
-    100.0 * (width_m / STROKE_M).clamp(0.0, 1.0)
+impl Default for Gripper {
+    /// Fingers that close entirely and open by their whole travel: for descriptions without fingers.
+    fn default() -> Self {
+        Self { stop_m: 0.0, open_m: STROKE_M, beyond_m: 0.0, force_n: 20.0 }
+    }
+}
+
+impl Gripper {
+    /// Distance of fully closed fingers, metres: position 0.
+    pub fn closed_m(&self) -> f64 {
+        self.stop_m.max(0.0)
+    }
+
+    fn range_m(&self) -> f64 {
+        self.open_m - self.closed_m()
+    }
+
+    /// Width between the fingers at a position in percent (0 closed, 100 open), metres.
+    pub fn width_m(&self, percent: f64) -> f64 {
+        self.closed_m() + self.range_m() * percent.clamp(0.0, 100.0) / 100.0
+    }
+
+    /// Position in percent at a width in metres.
+    pub fn percent(&self, width_m: f64) -> f64 {
+        100.0 * ((width_m - self.closed_m()) / self.range_m()).clamp(0.0, 1.0)
+    }
+
+    /// Position of a finger's joint at a width, metres: 0 at the closed end of its travel.
+    pub fn travel_m(&self, width_m: f64) -> f64 {
+        0.5 * (width_m - self.stop_m)
+    }
+
+    /// Width at which the fingers stop when they close on an object that is `object_m` wide, metres.
+    pub fn closed_on(&self, object_m: f64) -> f64 {
+        object_m.clamp(self.closed_m(), self.open_m)
+    }
+
+    /// Returns whether fingers that stopped closing at `width_m` have something between
+    /// them. Width alone cannot distinguish an object thinner than the dead zone from none.
+    pub fn holds(&self, width_m: f64) -> bool {
+        width_m > self.least_m()
+    }
+
+    /// Least width of an object that the gripper detects, metres: what is thinner it does not hold,
+    /// or takes for closed fingers.
+    pub fn least_m(&self) -> f64 {
+        self.closed_m() + DEAD_ZONE * self.range_m()
+    }
 }
 
 /// Seconds that the fingers take from one width to another, both in metres.
 pub fn seconds_between(from_m: f64, to_m: f64) -> f64 {
-    STROKE_S * (to_m - from_m).abs() / STROKE_M
-}
-
-/// Width at which the fingers stop when they close on an object that is `object_m` wide, metres.
-pub fn closed_on(object_m: f64) -> f64 {
-    object_m.clamp(0.0, STROKE_M)
-}
-
-/// Returns whether fingers that stopped closing at `width_m` have something between
-/// them. Width alone cannot distinguish an object thinner than the dead zone from none.
-pub fn holds(width_m: f64) -> bool {
-    width_m > DEAD_ZONE * STROKE_M
+    (to_m - from_m).abs() / SPEED_M_S
 }
 
 /// Returns the largest offset from the middle of fingers `opening_m` apart for an object of width `object_m`,
@@ -59,11 +106,6 @@ fn tolerance_m(opening_m: f64, object_m: f64) -> Option<f64> {
 /// wide and stands `offset_m` beside their middle.
 pub fn catches(opening_m: f64, object_m: f64, offset_m: f64) -> bool {
     tolerance_m(opening_m, object_m).is_some_and(|tolerance_m| offset_m.abs() <= tolerance_m)
-}
-
-/// Returns whether the gripper's own sensors detect an object of this width.
-pub fn is_felt(object_m: f64) -> bool {
-    object_m > DEAD_ZONE * STROKE_M
 }
 
 /// Probability that a grasp takes hold of an object: fingers `opening_m` apart, an object of width
@@ -98,15 +140,25 @@ mod tests {
     use super::*;
     use crate::samples::fixture;
 
+    /// Fingers that stay 16 mm apart when closed, and such that meet 4 mm before the end.
+    const APART: Gripper = Gripper { stop_m: 0.016, open_m: 0.0577, beyond_m: 0.0, force_n: 20.0 };
+    const MEETING: Gripper =
+        Gripper { stop_m: -0.004, open_m: 0.0377, beyond_m: 0.0035, force_n: 20.0 };
+
     #[test]
     fn gripper_percent_and_width_are_inverse() {
-        for percent_open in [0.0, 12.5, 50.0, 100.0] {
-            assert!((percent(width_m(percent_open)) - percent_open).abs() < 1e-12);
+        for gripper in [APART, MEETING, Gripper::default()] {
+            for percent in [0.0, 12.5, 50.0, 100.0] {
+                assert!((gripper.percent(gripper.width_m(percent)) - percent).abs() < 1e-12);
+            }
+            assert_eq!(gripper.width_m(250.0), gripper.open_m);
+            assert_eq!(gripper.width_m(-1.0), gripper.closed_m());
         }
-        assert_eq!((width_m(250.0), width_m(-1.0)), (STROKE_M, 0.0));
         let facts: toml::Table = fixture("baxter_facts.toml").parse().unwrap();
         let travel_m = facts["electric_gripper"]["travel_per_finger"].as_float().unwrap();
-        assert_eq!(STROKE_M, 2.0 * travel_m);
+        assert_eq!(FINGER_TRAVEL_M, travel_m);
+        assert_eq!((APART.closed_m(), MEETING.closed_m()), (0.016, 0.0));
+        assert!((MEETING.travel_m(MEETING.open_m) - travel_m).abs() < 1e-4);
     }
 
     #[test]
@@ -118,8 +170,10 @@ mod tests {
 
     #[test]
     fn gripper_position_distinguishes_a_held_object_from_none() {
-        assert!(holds(closed_on(0.004)) && holds(closed_on(0.1)));
-        assert!(!holds(closed_on(0.0)) && !holds(closed_on(0.001)));
+        let detects = |gripper: Gripper, object_m| gripper.holds(gripper.closed_on(object_m));
+        assert!(detects(MEETING, 0.004) && detects(MEETING, 0.1));
+        assert!(!detects(MEETING, 0.0) && !detects(MEETING, 0.001));
+        assert!(detects(APART, 0.0181) && !detects(APART, 0.018) && !detects(APART, 0.006));
     }
 
     #[test]
@@ -143,7 +197,6 @@ mod tests {
         assert!(catches(0.04, 0.02, 0.0) && catches(0.04, 0.02, -0.01));
         assert!(!catches(0.04, 0.02, 0.0101) && !catches(0.04, 0.041, 0.0));
         assert!(catches(0.04, 0.04, 0.0), "it just fits");
-        assert!(is_felt(0.004) && !is_felt(0.002));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use config::{CostsFrom, Settings};
 use diagnostics::{Diagnostic, Report};
-use manipulation::{ObjectPose, PlanError, PlanSettings, check_reachable, gripper};
+use manipulation::{GraspError, Limb, ObjectPose, PlanError, PlanSettings, check_reachable};
 use scene::Placement;
 
 use crate::ArmSetup;
@@ -39,12 +39,32 @@ pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) 
             hand_over.get_or_insert(error);
             continue;
         }
-        let key = if matches!(error, PlanError::Grasp(_)) { "grasp_width" } else { "xyz" };
-        let help = "move it, leave out its place, or change limb, hover_m or table_z_m of the arm";
+        let (key, help) = match &error {
+            PlanError::Grasp(GraspError::TooHeavy { .. }) => (
+                "mass_kg",
+                "use a lighter or smaller object, stronger fingers, or leave out its place",
+            ),
+            PlanError::Grasp(error) => ("grasp_width", grasp_help(error)),
+            _ => (
+                "xyz",
+                "move it, leave out its place, or change limb, hover_m or table_z_m of the arm",
+            ),
+        };
         report.add(of_object(settings, *n, key, &reason(&error, setup), help));
     }
     if let Some(error) = hand_over {
         report.add(hand_over_problem(settings, &error));
+    }
+}
+
+/// Returns how an object can be held after all.
+fn grasp_help(error: &GraspError) -> &'static str {
+    match error {
+        GraspError::TooWide { .. } => "choose a thinner part to grip, or leave out its place",
+        GraspError::TooThin { .. } => {
+            "choose a thicker part to grip, or mount the fingers further in (docs/baxter.md)"
+        }
+        GraspError::TooHeavy { .. } | GraspError::Malformed { .. } => "correct the number",
     }
 }
 
@@ -74,28 +94,26 @@ fn check_apart(placed: &[(usize, ObjectPose)], settings: &Settings, report: &mut
     all_apart
 }
 
-/// Reports every object that the gripper could hold but not with these settings: the fingers do not
-/// open that wide, or cannot detect it.
+/// Reports every object that a limb's gripper could hold if `grip_open_percent` were 100: one that is
+/// wider than the fingers open. What no gripper holds is found by planning.
 fn check_widths(
     placed: &[(usize, ObjectPose)],
     settings: &Settings,
     setup: &ArmSetup,
     report: &mut Report,
 ) {
-    let open_m = setup.plan.open_width_m;
+    let widest = |percent: f64| {
+        let limbs = Limb::BOTH.into_iter().filter(|limb| setup.limb.is_none_or(|own| own == *limb));
+        let widths = limbs.map(|limb| setup.robot.arm(limb).gripper.width_m(percent));
+        widths.fold(0.0, f64::max)
+    };
+    let (open_m, whole_m) = (widest(setup.plan.open_percent), widest(100.0));
     for (n, pose) in placed {
-        let width_m = pose.grasp_width_m;
-        let (what, help) = if width_m > open_m && width_m <= gripper::STROKE_M {
+        if (open_m..=whole_m).contains(&pose.grasp_width_m) && pose.grasp_width_m > open_m {
             let what = format!("is wider than the fingers open: {:.1} mm", open_m * 1e3);
-            (what, "raise grip_open_percent of the arm")
-        } else if width_m > 0.0 && !gripper::is_felt(width_m) {
-            let least_m = gripper::DEAD_ZONE * gripper::STROKE_M;
-            let what = format!("is too thin to be detected: at least {:.1} mm", least_m * 1e3);
-            (what, "choose a thicker part to grip")
-        } else {
-            continue;
-        };
-        report.add(of_object(settings, *n, "grasp_width", &what, help));
+            let help = "raise grip_open_percent of the arm";
+            report.add(of_object(settings, *n, "grasp_width", &what, help));
+        }
     }
 }
 
@@ -166,5 +184,7 @@ pub fn pose(placement: &Placement) -> ObjectPose {
         yaw_rad: placement.yaw,
         size_m: placement.size,
         grasp_width_m: placement.grasp_width,
+        mass_kg: placement.mass_kg,
+        wall_rad: placement.wall_deg.to_radians(),
     }
 }

@@ -2,7 +2,7 @@
 
 use config::{RobotFiles, Settings};
 use diagnostics::{Diagnostic, Diagnostics};
-use manipulation::{Limb, PlanSettings, Robot, gripper};
+use manipulation::{Limb, PlanSettings, Robot};
 use robot_model::{BAXTER_SRDF, BAXTER_URDF};
 
 /// Robot, limb and settings of motions.
@@ -42,7 +42,7 @@ fn plan_settings(motion: &config::Motion) -> PlanSettings {
         hover_m: motion.hover_m,
         hand_over_xyz_m: motion.hand_over_xyz_m,
         table_z_m: motion.table_z_m,
-        open_width_m: gripper::width_m(motion.grip_open_percent),
+        open_percent: motion.grip_open_percent,
         standoff_m: motion.standoff_m,
         point_s: motion.point_s,
         margin_m: motion.margin_m,

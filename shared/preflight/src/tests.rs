@@ -113,11 +113,14 @@ fn preflight_reports_an_object_out_of_reach() {
     let wide = complaints(&bowl_with("grasp_width", "grasp_width = 0.09"), &[]);
     let expected = "scenes/bowls.toml:14: objects[0].grasp_width: `red_one` cannot be grasped: ";
     assert!(wide.starts_with(expected), "{wide}");
-    let thin = complaints(&bowl_with("grasp_width", "grasp_width = 0.002"), &[]);
-    assert!(thin.contains("`red_one` is too thin to be detected: at least 2.1 mm"), "{thin}");
+    let thin = complaints(&bowl_with("grasp_width", "grasp_width = 0.0015"), &[]);
+    assert!(thin.contains("would close on 1.5 mm but holds 1.9 mm at least; help: "), "{thin}");
+    let heavy = complaints(&bowl_with("grasp_width", "grasp_width = 0.006\nmass_kg = 2.0"), &[]);
+    let expected = "objects[0].mass_kg: `red_one` cannot be grasped: it weighs 2.00 kg";
+    assert!(heavy.contains(expected) && heavy.contains("help: use a lighter"), "{heavy}");
     let narrow = [("arm.grip_open_percent", "30.0")];
     let narrow = complaints(&bowl_with("grasp_width", "grasp_width = 0.02"), &narrow);
-    assert!(narrow.contains("`red_one` is wider than the fingers open: 12.5 mm"), "{narrow}");
+    assert!(narrow.contains("`red_one` is wider than the fingers open: 11.4 mm"), "{narrow}");
 }
 
 /// A scene with the bowl and `more` others at its place.

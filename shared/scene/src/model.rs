@@ -42,6 +42,10 @@ pub struct Placement {
     pub size: [f64; 3],
     /// Width that the gripper closes on, metres.
     pub grasp_width: f64,
+    /// Mass, kilograms, where it is known: the gripper may be too weak.
+    pub mass_kg: Option<f64>,
+    /// Slope of a wall that is gripped at its rim, degrees from the vertical, outwards.
+    pub wall_deg: f64,
 }
 
 /// An attribute with its values and the wording of its questions.

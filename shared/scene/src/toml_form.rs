@@ -21,6 +21,8 @@
 //! yaw = 0.5                          # radians, optional
 //! size = [0.14, 0.014, 0.014]        # metres
 //! grasp_width = 0.014                # metres
+//! mass_kg = 0.02                     # optional
+//! wall_deg = 8                       # slope of a bowl's wall, optional
 //! ```
 //!
 //! In a wording `{value}` is the value as `spoken` has it (in yes or no questions alone),
@@ -97,11 +99,14 @@ pub(crate) fn object(f: &mut Fields<'_>) -> DraftObject {
     }
 }
 
+/// Greatest slope of a wall that the fingers, coming from above, enclose: degrees from the vertical.
+const WALL_DEG_MAX: f64 = 30.0;
+
 /// The place and size of an object: all of it or nothing.
 fn placement(f: &mut Fields<'_>) -> Option<Placement> {
-    let given = ["xyz", "yaw", "size", "grasp_width"].into_iter().any(|key| f.has(key));
-    if !given {
-        f.allow(&["xyz", "yaw", "size", "grasp_width"]);
+    const KEYS: [&str; 6] = ["xyz", "yaw", "size", "grasp_width", "mass_kg", "wall_deg"];
+    if !KEYS.into_iter().any(|key| f.has(key)) {
+        f.allow(&KEYS);
         return None;
     }
     let placement = Placement {
@@ -109,8 +114,14 @@ fn placement(f: &mut Fields<'_>) -> Option<Placement> {
         yaw: if f.has("yaw") { f.any_number("yaw") } else { 0.0 },
         size: f.triple("size"),
         grasp_width: f.any_number("grasp_width"),
+        mass_kg: f.has("mass_kg").then(|| f.any_number("mass_kg")),
+        wall_deg: if f.has("wall_deg") { f.any_number("wall_deg") } else { 0.0 },
     };
-    f.allow(&["yaw"]);
+    for optional in ["yaw", "mass_kg", "wall_deg"] {
+        if !f.has(optional) {
+            f.allow(&[optional]);
+        }
+    }
     let sizes = placement.size.iter().enumerate().map(|(n, extent)| (format!("size[{n}]"), extent));
     let width = ("grasp_width".to_owned(), &placement.grasp_width);
     for (key, length_m) in sizes.chain([width]) {
@@ -118,6 +129,14 @@ fn placement(f: &mut Fields<'_>) -> Option<Placement> {
             let what = format!("expected a length above 0 m, found {length_m}");
             f.problem(&key, what, "");
         }
+    }
+    if let Some(mass_kg) = placement.mass_kg.filter(|mass_kg| *mass_kg <= 0.0) {
+        f.problem("mass_kg", format!("expected a mass above 0 kg, found {mass_kg}"), "");
+    }
+    if !(0.0..=WALL_DEG_MAX).contains(&placement.wall_deg) {
+        let what = format!("expected 0 to {WALL_DEG_MAX} degrees, found {}", placement.wall_deg);
+        let help = "flatter walls cannot be gripped from above: leave out the object's place";
+        f.problem("wall_deg", what, help);
     }
     Some(placement)
 }

@@ -93,7 +93,7 @@ impl BaxterDriver {
             measured,
             joints_at: None,
             assembly: None,
-            grippers: Default::default(),
+            grippers: Limb::BOTH.map(|limb| Gripper::new(&config.setup.robot.arm(limb).gripper)),
             limbs: [Set::default(); 2],
             now: Time(0),
             inhibit: MotionInhibit::Unheard,

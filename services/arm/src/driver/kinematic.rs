@@ -2,7 +2,8 @@
 
 use super::{ArmDriver, Command, Fingers, Measured, Source};
 use crate::state::ArmState;
-use manipulation::gripper;
+use manipulation::gripper::{self, Gripper};
+use manipulation::{Limb, Robot};
 
 /// Distance of a joint from the neutral posture that still counts as rest, radians.
 const ACCURACY_RAD: f64 = 1e-6;
@@ -12,13 +13,14 @@ const ACCURACY_RAD: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct KinematicArm {
     measured: Measured,
+    grippers: [Gripper; 2],
     /// Width at which each limb's closed fingers stop; none for open ones.
     grip: [Option<f64>; 2],
 }
 
 impl KinematicArm {
     /// Returns the arm as the journal left it.
-    pub fn at(state: &ArmState) -> Self {
+    pub fn at(state: &ArmState, robot: &Robot) -> Self {
         let posture = state.posture;
         let mut grip = [None; 2];
         if let Some(held) = &state.held {
@@ -34,7 +36,7 @@ impl KinematicArm {
             at: Source::Model,
             accuracy_rad: ACCURACY_RAD,
         };
-        Self { measured, grip }
+        Self { measured, grippers: Limb::BOTH.map(|limb| robot.arm(limb).gripper), grip }
     }
 }
 
@@ -44,8 +46,9 @@ impl ArmDriver for KinematicArm {
     }
 
     fn command(&mut self, command: &Command, seconds: f64) {
-        let Self { measured, grip } = self;
+        let Self { measured, grippers, grip } = self;
         let i = command.limb;
+        let own = &grippers[i];
         measured.posture.joints[i] = command.q;
         measured.velocity[i] = command.qd;
         let width_m = &mut measured.posture.width_m[i];
@@ -58,12 +61,12 @@ impl ArmDriver for KinematicArm {
             // The object between the fingers is decided when they begin to close.
             Fingers::Grip(on) => *grip[i].get_or_insert_with(|| {
                 let caught = gripper::catches(*width_m, on.object_m, on.offset_m);
-                if caught { gripper::closed_on(on.object_m) } else { 0.0 }
+                if caught { own.closed_on(on.object_m) } else { own.closed_m() }
             }),
         };
-        let travel_m = gripper::STROKE_M / gripper::STROKE_S * seconds;
+        let travel_m = gripper::SPEED_M_S * seconds;
         *width_m += (target_m - *width_m).clamp(-travel_m, travel_m);
         let closed = grip[i].is_some_and(|stop_m| *width_m <= stop_m + 1e-9);
-        measured.holding[i] = Some(closed && gripper::holds(*width_m));
+        measured.holding[i] = Some(closed && own.holds(*width_m));
     }
 }

@@ -5,11 +5,16 @@ use super::*;
 use crate::state::Cause;
 use manipulation::gripper;
 
+/// Opening of the gripper that fetches the object: the right one.
+fn open_m(config: &Config) -> f64 {
+    config.setup.robot.arm(Limb::Right).gripper.open_m
+}
+
 /// Objects stand so far beside their places that about every other grasp misses.
 fn inaccurate(attempts: u32) -> Config {
     let mut config = config_at(20.0);
     let rim_m = config.scene.object(ObjectId(1)).placement.unwrap().grasp_width;
-    config.arm.grasp.error_m = 0.5 * (config.setup.plan.open_width_m - rim_m) / 0.674;
+    config.arm.grasp.error_m = 0.5 * (open_m(&config) - rim_m) / 0.674;
     config.arm.grasp.attempts = attempts;
     config
 }
@@ -46,8 +51,7 @@ fn grasps_succeed_as_often_as_the_model_says_and_every_story_has_an_end() {
     }
     let config = inaccurate(1);
     let rim_m = config.scene.object(ObjectId(1)).placement.unwrap().grasp_width;
-    let open_m = config.setup.plan.open_width_m;
-    let p = gripper::success_probability(open_m, rim_m, config.arm.grasp.error_m);
+    let p = gripper::success_probability(open_m(&config), rim_m, config.arm.grasp.error_m);
     assert!((p - 0.5).abs() < 0.01, "{p}");
     let expected = p * STORIES as f64;
     let deviation = (expected * (1.0 - p)).sqrt();

@@ -39,7 +39,7 @@ impl Robot {
         let places = config.scene.objects().iter().filter_map(|object| object.placement);
         let cuboid = |p: Placement| Cuboid { centre: p.xyz, size: p.size, yaw: p.yaw };
         Self(Rc::new(RefCell::new(Body {
-            arm: KinematicArm::at(state),
+            arm: KinematicArm::at(state, &config.setup.robot),
             limbs: Limb::BOTH.map(|limb| config.setup.robot.arm(limb).clone()),
             velocity_is_zero: true,
             objects: places.map(cuboid).collect(),

@@ -34,6 +34,10 @@ pub struct ArmPlotArgs {
     /// Width of the picture, pixels.
     #[arg(long, value_name = "PIXELS", default_value = "1600", value_parser = width)]
     pub width: u32,
+    /// With --json: print that many samples per second of joints, velocities, finger width and what
+    /// is held, so that any physics engine can check the plan.
+    #[arg(long, value_name = "N", value_parser = samples_hz)]
+    pub samples_hz: Option<f64>,
     /// Configuration of the robot, its motions and the handover.
     #[command(flatten)]
     pub config: ConfigArgs,
@@ -47,6 +51,11 @@ const LIMBS: &[Choice<AnyLimb>] = &[
     ("right", "The arm at the robot's right", Some(Limb::Right)),
     ("auto", "The one with the faster motion", None),
 ];
+
+fn samples_hz(text: &str) -> Result<f64, String> {
+    let sensible = text.trim().parse().ok().filter(|hz| (1.0..=1000.0).contains(hz));
+    sensible.ok_or_else(|| "expected a number of samples per second from 1 to 1000".to_owned())
+}
 
 fn width(text: &str) -> Result<u32, String> {
     let sensible = text.trim().parse().ok().filter(|width| (800..=4000).contains(width));

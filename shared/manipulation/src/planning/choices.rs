@@ -4,7 +4,8 @@ use super::error::{Furthest, PlanError};
 use super::fetch::{ABOVE, GRASP, LIFT};
 use super::planning_scene::PlanningScene;
 use crate::kinematics::limb::Joints;
-use crate::planning::grasp::{Grasp, ObjectPose};
+use crate::planning::grasp::{Grasp, GraspError, ObjectPose};
+use crate::robot::Arm;
 
 /// A limb, a grasp for it, and a clear posture above it.
 #[derive(Clone, Copy)]
@@ -39,20 +40,24 @@ struct Turn {
 pub(crate) struct Choices<'a>(Vec<Choosable<'a>>);
 
 impl<'a> Choices<'a> {
-    /// Every limb of `scenes` with every one of `grasps` that it reaches; the others are added to
+    /// Every limb of `scenes` with every one of its `grasps` that it reaches; the others are added to
     /// `furthest`.
     pub(crate) fn new(
-        grasps: &[Grasp],
+        grasps: impl Fn(&Arm) -> Result<Vec<Grasp>, GraspError>,
         scenes: &'a [PlanningScene<'a>],
         furthest: &mut Furthest,
     ) -> Self {
         let mut options = Vec::new();
         for scene in scenes {
+            let grasps = grasps(scene.arm).unwrap_or_else(|error| {
+                furthest.add(0, error.into());
+                Vec::new()
+            });
             for grasp in grasps {
                 match scene.postures(&grasp.raised(scene.settings.hover_m), &scene.q) {
                     Ok(postures) => {
                         let postures = postures.into_iter();
-                        let mut option = Choosable { scene, grasp: *grasp, postures, turn: None };
+                        let mut option = Choosable { scene, grasp, postures, turn: None };
                         option.advance();
                         options.push(option);
                     }

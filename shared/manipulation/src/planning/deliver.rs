@@ -45,7 +45,7 @@ pub fn plan_delivery(
         limb,
         line,
     })?;
-    let width_m = gripper::closed_on(object.grasp_width_m);
+    let width_m = scene.arm.gripper.closed_on(object.grasp_width_m);
     let stages = deliver(&scene, &carrying, lift, width_m, Search::Yes)?;
     Ok(Timeline::new(limb, stages))
 }
@@ -85,7 +85,7 @@ pub fn plan_return(
     let stage = Stage {
         phase: Phase::Return,
         motion: scene.motion(HOME, &way)?,
-        width_m: (settings.open_width_m, settings.open_width_m),
+        width_m: (scene.open_m(), scene.open_m()),
     };
     Ok(Timeline::new(limb, vec![stage]))
 }
@@ -107,7 +107,7 @@ pub(crate) fn deliver(
     waypoints.push(*carry.end());
     let whole = carrying.motion(HAND_OVER, &waypoints)?;
     let (lift, hand_over) = whole.split(whole.time_nearest(&above));
-    let open_m = scene.settings.open_width_m;
+    let open_m = scene.open_m();
     let home = scene.motion(HOME, &home(scene, carry.end(), search)?)?;
     let closed = (width_m, width_m);
     Ok(vec![
@@ -158,6 +158,8 @@ mod tests {
             yaw_rad: 0.3,
             size_m: [0.14, 0.014, 0.014],
             grasp_width_m: 0.014,
+            mass_kg: None,
+            wall_rad: 0.0,
         };
         let settings = PlanSettings::default();
         let far = Isometry3::translation(0.2, 0.6, 0.3);

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 use crate::collision::Cuboid;
-use crate::gripper::STROKE_M;
+use crate::gripper::Gripper;
 use crate::kinematics::chain::positive;
 
 #[cfg(test)]
@@ -22,13 +22,18 @@ pub struct ObjectPose {
     pub size_m: [f64; 3],
     /// Width that the gripper closes on, metres: its thickness, or that of its rim.
     pub grasp_width_m: f64,
+    /// Mass, kilograms, where it is known.
+    pub mass_kg: Option<f64>,
+    /// Slope of the wall below the rim, radians from the vertical, outwards: what is gripped at its rim
+    /// is gripped along the wall, so that the fingers do not turn it.
+    pub wall_rad: f64,
 }
 
 /// A grasp of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grasp {
-    /// Pose of `<limb>_gripper` in `base` as the fingers close: its z axis straight down, the
-    /// fingers moving along its y axis.
+    /// Pose of `<limb>_gripper` in `base` as the fingers close: its z axis straight down, or down
+    /// along a sloped wall, the fingers moving along its y axis.
     pub gripper: Isometry3<f64>,
     /// Width between the fingers once closed, metres.
     pub width_m: f64,
@@ -41,11 +46,37 @@ pub enum GraspError {
     #[error(
         "the gripper would close on {:.0} mm but opens {:.0} mm at most",
         width_m * 1e3,
-        STROKE_M * 1e3
+        open_m * 1e3
     )]
     TooWide {
         /// The object's grasp width, metres.
         width_m: f64,
+        /// Opening of the gripper, metres.
+        open_m: f64,
+    },
+    /// The fingers do not close that far, or cannot tell the object from nothing.
+    #[error(
+        "the gripper would close on {:.1} mm but holds {:.1} mm at least",
+        width_m * 1e3,
+        least_m * 1e3
+    )]
+    TooThin {
+        /// The object's grasp width, metres.
+        width_m: f64,
+        /// Least width that the gripper holds and detects, metres.
+        least_m: f64,
+    },
+    /// The fingers do not press hard enough.
+    #[error(
+        "it weighs {mass_kg:.2} kg, and fingers that press with {force_n:.0} N hold {most_kg:.2} kg at most there"
+    )]
+    TooHeavy {
+        /// The object's mass, kilograms.
+        mass_kg: f64,
+        /// Greatest mass that is held so, kilograms.
+        most_kg: f64,
+        /// Force of each finger, newtons.
+        force_n: f64,
     },
     /// A number that no object has.
     #[error("{what} must be a finite number{}", if *positive { " above zero" } else { "" })]
@@ -61,7 +92,12 @@ pub enum GraspError {
 const DEPTH_M: f64 = 0.02;
 
 /// Fingertips stay this far above what the object stands on, metres.
-const TIP_CLEAR_M: f64 = 0.003;
+const TIP_CLEAR_M: f64 = 0.001;
+
+/// Friction between fingertips and objects at least: plastic on dry plastic.
+const FRICTION: f64 = 0.4;
+
+const GRAVITY_M_S2: f64 = 9.81;
 
 /// Directions in which a round rim is gripped: every 30°.
 const RIM_DIRECTIONS: usize = 12;
@@ -97,14 +133,38 @@ impl ObjectPose {
     /// object is wider than the gripper, on its rim.
     ///
     /// # Errors
-    /// [`GraspError`] for a width beyond the gripper's, or numbers that make no object.
-    pub fn grasps(&self) -> Result<Vec<Grasp>, GraspError> {
+    /// [`GraspError`] for a width that the gripper does not hold, or numbers that make no object.
+    pub fn grasps(&self, gripper: &Gripper) -> Result<Vec<Grasp>, GraspError> {
         self.refuse_malformed()?;
-        if self.grasp_width_m > STROKE_M {
-            return Err(GraspError::TooWide { width_m: self.grasp_width_m });
+        let width_m = self.grasp_width_m;
+        if width_m > gripper.open_m {
+            return Err(GraspError::TooWide { width_m, open_m: gripper.open_m });
         }
-        let across = self.across();
-        Ok(if across.is_empty() { self.on_rim() } else { across })
+        if !gripper.holds(width_m) {
+            return Err(GraspError::TooThin { width_m, least_m: gripper.least_m() });
+        }
+        let across = self.across(gripper);
+        let (grasps, most_kg) = if across.is_empty() {
+            (self.on_rim(gripper), self.most_on_rim_kg(gripper))
+        } else {
+            (across, 2.0 * FRICTION * gripper.force_n / GRAVITY_M_S2)
+        };
+        match self.mass_kg {
+            Some(mass_kg) if mass_kg > most_kg => {
+                Err(GraspError::TooHeavy { mass_kg, most_kg, force_n: gripper.force_n })
+            }
+            _ => Ok(grasps),
+        }
+    }
+
+    /// Greatest mass that a rim hold carries level, kilograms. The weight acts at the centre and turns
+    /// the object in the fingers; they resist with their force over the depth of the contact.
+    fn most_on_rim_kg(&self, gripper: &Gripper) -> f64 {
+        let [x, y, _] = self.size_m;
+        let arm_m = 0.5 * (x.max(y) - self.grasp_width_m);
+        let depth_m = self.top_z_m() - self.tip_z(self.xyz_m[2], gripper) + gripper.beyond_m;
+        let tilt = gripper.force_n * depth_m / (GRAVITY_M_S2 * arm_m);
+        tilt.min(2.0 * FRICTION * gripper.force_n / GRAVITY_M_S2)
     }
 
     fn refuse_malformed(&self) -> Result<(), GraspError> {
@@ -113,6 +173,9 @@ impl ObjectPose {
             if numbers.iter().any(|n| !n.is_finite()) {
                 return Err(GraspError::Malformed { what, positive: false });
             }
+        }
+        if !(0.0..FRAC_PI_2).contains(&self.wall_rad) {
+            return Err(GraspError::Malformed { what: "wall_deg", positive: false });
         }
         let width = std::slice::from_ref(&self.grasp_width_m);
         for (what, numbers) in [("size", &self.size_m[..]), ("grasp_width", width)] {
@@ -124,11 +187,11 @@ impl ObjectPose {
     }
 
     /// Over the centre, fingers closing along the narrow extents.
-    fn across(&self) -> Vec<Grasp> {
-        let z = self.tip_z(self.xyz_m[2]);
+    fn across(&self, gripper: &Gripper) -> Vec<Grasp> {
+        let z = self.tip_z(self.xyz_m[2], gripper);
         [1, 0]
             .into_iter()
-            .filter(|&axis| self.size_m[axis] <= STROKE_M)
+            .filter(|&axis| self.size_m[axis] <= gripper.open_m)
             .flat_map(|axis| {
                 let along = self.yaw_rad + if axis == 1 { FRAC_PI_2 } else { 0.0 };
                 self.both_ways(self.xyz_m[0], self.xyz_m[1], z, along)
@@ -137,29 +200,37 @@ impl ObjectPose {
     }
 
     /// On the wall of a bowl or box, one finger inside and one outside.
-    fn on_rim(&self) -> Vec<Grasp> {
+    fn on_rim(&self, gripper: &Gripper) -> Vec<Grasp> {
         let [x, y, _] = self.size_m;
         let round = (x - y).abs() <= ROUND * x.max(y);
         let count = if round { RIM_DIRECTIONS } else { 4 };
-        let z = self.tip_z(self.xyz_m[2]);
+        let z = self.tip_z(self.xyz_m[2], gripper);
         (0..count)
             .flat_map(|k| {
                 let turned = 2.0 * PI * k as f64 / count as f64;
                 // The extent that this direction crosses; a round footprint has only one.
                 let extent = if round || k % 2 == 0 { x } else { y };
-                let radius = 0.5 * (extent - self.grasp_width_m);
+                // Middle of the wall at the depth of the fingertips.
+                let inwards = (self.top_z_m() - z) * self.wall_rad.tan();
+                let radius =
+                    0.5 * extent - inwards - 0.5 * self.grasp_width_m / self.wall_rad.cos();
                 let along = self.yaw_rad + turned;
                 let centre =
                     [self.xyz_m[0] + radius * along.cos(), self.xyz_m[1] + radius * along.sin()];
-                self.both_ways(centre[0], centre[1], z, along)
+                let level = self.both_ways(centre[0], centre[1], z, along);
+                // About the tangent of the rim, the gripper's side away from the tips outwards.
+                let tangent = Vector3::new(-along.sin(), along.cos(), 0.0);
+                let lean = UnitQuaternion::new(tangent * self.wall_rad);
+                level.map(|grasp| Grasp { gripper: leaning(&lean, &grasp.gripper), ..grasp })
             })
             .collect()
     }
 
     /// Height of the fingertips: a little below the top, not below `lowest` and never on what the
     /// object stands on.
-    fn tip_z(&self, lowest: f64) -> f64 {
-        (self.top_z_m() - DEPTH_M).max(lowest).max(self.bottom_z_m() + TIP_CLEAR_M)
+    fn tip_z(&self, lowest: f64, gripper: &Gripper) -> f64 {
+        let clear_m = gripper.beyond_m + TIP_CLEAR_M;
+        (self.top_z_m() - DEPTH_M).max(lowest).max(self.bottom_z_m() + clear_m)
     }
 
     /// Returns the gripper at a point with its fingers moving along `along`; either finger may
@@ -177,6 +248,10 @@ impl Grasp {
     pub fn raised(&self, height_m: f64) -> Isometry3<f64> {
         Translation3::new(0.0, 0.0, height_m) * self.gripper
     }
+}
+
+fn leaning(lean: &UnitQuaternion<f64>, gripper: &Isometry3<f64>) -> Isometry3<f64> {
+    Isometry3::from_parts(gripper.translation, positive(lean * gripper.rotation))
 }
 
 /// Returns a gripper at `xyz` that points straight down, its y axis at `along` from the x axis of

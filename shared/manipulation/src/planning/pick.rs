@@ -6,10 +6,9 @@ use super::error::{Furthest, PlanError};
 use super::fetch::{ABOVE, Carry, GRASP};
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::collision::Cuboid;
-use crate::gripper;
 use crate::kinematics::limb::{Joints, Limb};
-use crate::planning::grasp::{Grasp, ObjectPose};
-use crate::robot::Robot;
+use crate::planning::grasp::{Grasp, GraspError, ObjectPose};
+use crate::robot::{Arm, Robot};
 use crate::trajectory::{Phase, Stage, Timeline};
 
 /// Choices that are tried.
@@ -41,12 +40,13 @@ pub fn plan_pick(
     settings: &PlanSettings,
 ) -> Result<Timeline, PlanError> {
     let scenes = planning_scenes(robot, object, limb, arms, others, settings)?;
-    cheapest(&object.grasps()?, &scenes, |choice, search| choice.plan(object, search))
+    let grasps = |arm: &Arm| object.grasps(&arm.gripper);
+    cheapest(grasps, &scenes, |choice, search| choice.plan(object, search))
 }
 
 /// Returns the cheapest of the complete plans that `plan` makes of choices; see [`plan_pick`].
 pub(crate) fn cheapest<'a>(
-    grasps: &[Grasp],
+    grasps: impl Fn(&Arm) -> Result<Vec<Grasp>, GraspError>,
     scenes: &'a [PlanningScene<'a>],
     plan: impl Fn(&Choice<'a>, Search) -> Result<Timeline, (usize, PlanError)>,
 ) -> Result<Timeline, PlanError> {
@@ -106,10 +106,10 @@ pub fn check_reachable(
         others.remove(i);
         let scenes =
             planning_scenes(robot, &objects[i], limb, &robot.neutral(), &others, settings)?;
-        let grasps = objects[i].grasps()?;
         let mut furthest = Furthest::default();
         for scene in &scenes {
-            let mut choices = Choices::new(&grasps, std::slice::from_ref(scene), &mut furthest);
+            let grasps = |arm: &Arm| objects[i].grasps(&arm.gripper);
+            let mut choices = Choices::new(grasps, std::slice::from_ref(scene), &mut furthest);
             while let Some(choice) = choices.next(&mut furthest) {
                 let carrying = choice.carrying(&objects[i]);
                 let fetched = choice.descent(&carrying).and_then(|_| {
@@ -166,7 +166,7 @@ impl Choice<'_> {
         let way = scene
             .way(&scene.q, &self.above, search)
             .ok_or_else(|| (5, scene.no_path(ABOVE, &scene.q, &self.above)))?;
-        let width_m = gripper::closed_on(self.grasp.width_m);
+        let width_m = scene.arm.gripper.closed_on(self.grasp.width_m);
         let lift: Vec<Joints> = descent.iter().rev().copied().collect();
         let at_grasp = lift[0];
         let delivery = deliver(scene, &carrying, lift, width_m, search);
@@ -174,7 +174,7 @@ impl Choice<'_> {
         // To above the grasp and straight down in one motion, with no stop between.
         let waypoints = [&way[..], &descent[CORNER.min(descent.len() - 1)..]].concat();
         let approach = scene.motion(GRASP, &waypoints).map_err(|error| (7, error))?;
-        let open_m = scene.settings.open_width_m;
+        let open_m = scene.open_m();
         let mut stages = vec![
             Stage { phase: Phase::Approach, motion: approach, width_m: (open_m, open_m) },
             fingers(scene, Phase::Close, &at_grasp, (open_m, width_m)),

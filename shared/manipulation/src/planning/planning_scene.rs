@@ -28,8 +28,8 @@ pub struct PlanSettings {
     pub hand_over_xyz_m: [f64; 3],
     /// Height of the table's top. An object that stands lower (in a rack, in a drawer) lowers it.
     pub table_z_m: f64,
-    /// Width to which the gripper opens, metres.
-    pub open_width_m: f64,
+    /// Position to which the gripper opens, percent of its range.
+    pub open_percent: f64,
     /// Distance from the gripper to the centre of an object that it points at.
     pub standoff_m: f64,
     /// Duration of pointing, seconds.
@@ -47,7 +47,7 @@ impl Default for PlanSettings {
             hover_m: 0.15,
             hand_over_xyz_m: [0.80, 0.30, 0.22],
             table_z_m: -0.155,
-            open_width_m: crate::gripper::STROKE_M,
+            open_percent: 100.0,
             standoff_m: 0.25,
             point_s: 1.0,
             margin_m: 0.01,
@@ -112,6 +112,11 @@ impl<'a> PlanningScene<'a> {
             board: None,
             held: None,
         })
+    }
+
+    /// Width to which the gripper opens, metres.
+    pub(crate) fn open_m(&self) -> f64 {
+        self.arm.gripper.width_m(self.settings.open_percent)
     }
 
     /// Adds the board that the object to be fetched stands on, as wide as the hand.

@@ -10,7 +10,6 @@ use super::fetch::{ABOVE, Carry, GRASP, HAND_OVER, HOME};
 use super::pick::{cheapest, planning_scene};
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::collision::Cuboid;
-use crate::gripper;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::planning::grasp::{Grasp, ObjectPose};
 use crate::robot::Robot;
@@ -100,7 +99,7 @@ impl<'a> Target<'a> {
         &self,
         plan: impl Fn(&Choice<'_>, Search) -> Attempt<Timeline>,
     ) -> Result<Timeline, PlanError> {
-        cheapest(&[self.grasp], &self.empty, plan)
+        cheapest(|_| Ok(vec![self.grasp]), &self.empty, plan)
     }
 
     /// From anywhere, with empty fingers.
@@ -114,7 +113,7 @@ impl<'a> Target<'a> {
             .ok_or_else(|| (6, scene.no_path(HAND_OVER, &scene.q, carry.end())))?;
         let take = scene.motion(HAND_OVER, &way).map_err(|error| (6, error))?;
         let offer = Trajectory::hold(carry.end(), OFFER_S, &scene.limits);
-        let open_m = scene.settings.open_width_m;
+        let open_m = scene.open_m();
         let open = |motion| Stage { phase: Phase::Take, motion, width_m: (open_m, open_m) };
         let mut stages = vec![
             open(take),
@@ -175,7 +174,7 @@ impl<'a> Target<'a> {
         let top = up[up.len() - 1];
         let home = home(&self.done, &top, search).map_err(|error| (9, error))?;
         let home = self.done.motion(HOME, &home).map_err(|error| (9, error))?;
-        let open_m = empty.settings.open_width_m;
+        let open_m = empty.open_m();
         let (closed, open) = ((self.closed_m(), self.closed_m()), (open_m, open_m));
         Ok(vec![
             Stage { phase: Phase::CarryBack, motion: carry, width_m: closed },
@@ -197,6 +196,6 @@ impl<'a> Target<'a> {
     }
 
     fn closed_m(&self) -> f64 {
-        gripper::closed_on(self.grasp.width_m)
+        self.carrying.arm.gripper.closed_on(self.grasp.width_m)
     }
 }

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use nalgebra::{Isometry3, Point3, Vector3};
 use robot_model::{Body as Shaped, Joint, JointKind, Limits, Robot as Description, Shape};
 
+use super::fingers::gripper;
 use super::{Arm, Body, Enclosure, Robot, pairs};
 use crate::collision::{ArmShape, Capsule, Cuboid};
 use crate::kinematics::chain::{Axis, Chain, ZeroPosture};
@@ -36,7 +37,8 @@ impl Robot {
     ///
     /// Joints without stated acceleration and jerk get 2 rad/s² and ten times that per second.
     /// Links of a limb are enclosed in capsules; the other links are the body, as it stands
-    /// with every joint at zero.
+    /// with every joint at zero. Opening and closed gap of a gripper are those of its fingers' shapes;
+    /// a description without fingers gets Baxter's travel.
     ///
     /// # Errors
     /// [`Unsuitable`] names what is missing.
@@ -77,6 +79,7 @@ fn arm(description: &Description, limb: Limb, body: &Arc<Body>) -> Result<Arm, U
         limb,
         joint_names: joints.map(|joint| joint.name.clone()),
         pairs: pairs(&chain, &enclosures, &may_touch(description, limb)),
+        gripper: gripper(description, limb)?,
         chain,
         limits,
         neutral: named(description, limb, "neutral", &joints)?,

@@ -1,6 +1,7 @@
 //! The robot: two limbs and the body that they hang on.
 
 mod describe;
+mod fingers;
 #[cfg(test)]
 mod tests;
 
@@ -9,6 +10,7 @@ use std::sync::{Arc, LazyLock};
 use robot_model::Robot as Description;
 
 use crate::collision::{Capsule, Cuboid};
+use crate::gripper::Gripper;
 use crate::kinematics::chain::Chain;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::kinematics::limits::MotionLimits;
@@ -29,6 +31,8 @@ pub struct Arm {
     pub limb: Limb,
     /// Its joints' names in the description, shoulder first.
     pub joint_names: [String; 7],
+    /// Its fingers.
+    pub gripper: Gripper,
     /// Its kinematics.
     pub chain: Chain,
     /// Motion limits of its joints.

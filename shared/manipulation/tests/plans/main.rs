@@ -9,7 +9,7 @@ mod shipped;
 mod support;
 mod tables;
 
-use manipulation::gripper::STROKE_M;
+use manipulation::gripper::Gripper;
 use manipulation::{Clearance, Cuboid, Joints, Limb, ObjectPose, Phase, Robot, Timeline};
 use nalgebra::{Isometry3, Vector3};
 use support::checker::broken_limit;
@@ -25,6 +25,8 @@ fn marker() -> ObjectPose {
         yaw_rad: 0.3,
         size_m: [0.14, 0.014, 0.014],
         grasp_width_m: 0.014,
+        mass_kg: None,
+        wall_rad: 0.0,
     }
 }
 
@@ -33,6 +35,10 @@ fn arms_with(limb: Limb, q: Joints) -> [Joints; 2] {
     let mut arms = robot().neutral();
     arms[limb] = q;
     arms
+}
+
+fn fingers(plan: &Timeline) -> &'static Gripper {
+    &robot().arm(plan.limb()).gripper
 }
 
 fn gripper(plan: &Timeline, t_s: f64) -> Isometry3<f64> {
@@ -47,7 +53,7 @@ fn assert_sound(plan: &Timeline, others: &[Cuboid], what: &str) {
     assert!(broken.is_none(), "{what}: {broken:?}");
     for k in 0..=(plan.duration_s() / 0.02).ceil() as usize {
         let now = plan.at(k as f64 * 0.02);
-        assert!((0.0..=STROKE_M).contains(&now.width_m), "{what}: {now:?}");
+        assert!((0.0..=fingers(plan).open_m).contains(&now.width_m), "{what}: {now:?}");
         let clearance = Clearance::of(robot(), &arms_with(limb, now.q), others);
         assert!(clearance.robot().distance_m > 0.008, "{what}: {now:?} {clearance:?}");
         let around = clearance.surroundings[limb];
@@ -72,8 +78,11 @@ fn assert_fetches(plan: &Timeline, object: &ObjectPose, what: &str) {
         let off = grasp.inverse() * at;
         off.translation.vector.norm() < 1e-5 && off.rotation.angle() < 1e-5
     };
-    assert!(object.grasps().unwrap().iter().any(|grasp| is_at(&grasp.gripper)), "{what}: {at}");
-    assert!((plan.at(closes_s).width_m - STROKE_M).abs() < 1e-12, "{what}");
+    assert!(
+        object.grasps(fingers(plan)).unwrap().iter().any(|grasp| is_at(&grasp.gripper)),
+        "{what}: {at}"
+    );
+    assert!((plan.at(closes_s).width_m - fingers(plan).open_m).abs() < 1e-12, "{what}");
     assert!((plan.at(closed_s - 1e-9).width_m - object.grasp_width_m).abs() < 1e-6, "{what}");
 
     // From the grasp outwards in time, both ways: straight until 10 cm above it.
@@ -92,7 +101,7 @@ fn assert_fetches(plan: &Timeline, object: &ObjectPose, what: &str) {
 
     assert_eq!(span(HandOver).1, span(Release).0, "{what}");
     assert_hands_over(plan, what);
-    assert!((plan.at(1e9).width_m - STROKE_M).abs() < 1e-12, "{what}");
+    assert!((plan.at(1e9).width_m - fingers(plan).open_m).abs() < 1e-12, "{what}");
 }
 
 /// What is held is upright where the person waits, or straight above.

@@ -103,7 +103,7 @@ wire_struct! {
         velocity: [f64; JOINT_STATE_LEN],
         /// Effort, newton metres; the kinematic arm has none.
         effort: [f64; JOINT_STATE_LEN],
-        /// Opening of the left and right gripper, percent of the stroke.
+        /// Opening of the left and right gripper, percent of its range.
         gripper_percent: [f64; 2],
     }
 }

@@ -48,6 +48,8 @@ pub enum Command {
     Release,
     /// `stop`: stays where it is.
     Stop,
+    /// `configure`: force with which held objects are pressed, percent.
+    Configure(f64),
 }
 
 wire_struct! {
@@ -57,9 +59,9 @@ wire_struct! {
         id: u32,
         /// Comes back in the state once the command is handled.
         sequence: u32,
-        /// `calibrate`, `go`, `grip`, `release` or `stop`.
+        /// `calibrate`, `go`, `grip`, `release`, `stop` or `configure`.
         command: FixedText<28>,
-        /// JSON; for `go` as `{"position": 50.0}`.
+        /// JSON; for `go` as `{"position": 50.0}`, for `configure` as `{"holding_force": 100.0}`.
         args: FixedText<60>,
         /// Comes back in the state once the command is handled.
         sender: FixedText<28>,
@@ -146,6 +148,7 @@ impl Command {
             Self::Grip => "grip",
             Self::Release => "release",
             Self::Stop => "stop",
+            Self::Configure(_) => "configure",
         }
     }
 }
@@ -155,6 +158,7 @@ impl EndEffectorCommand {
     pub fn new(id: u32, command: Command, sender: &str, sequence: u32) -> Self {
         let args = match command {
             Command::Go(position) => format!("{{\"position\": {position:.3}}}"),
+            Command::Configure(force) => format!("{{\"holding_force\": {force:.3}}}"),
             _ => String::new(),
         };
         Self {
@@ -169,30 +173,31 @@ impl EndEffectorCommand {
     /// Decodes it.
     ///
     /// # Errors
-    /// A word that no gripper knows, or a `go` without a position.
+    /// A word that no gripper knows, or a `go` or `configure` without its number.
     pub fn read(&self) -> Result<Command, WireError> {
         match self.command.as_str()? {
             "calibrate" => Ok(Command::Calibrate),
-            "go" => Ok(Command::Go(self.position()?)),
+            "go" => Ok(Command::Go(self.percent("\"position\"")?)),
             "grip" => Ok(Command::Grip),
             "release" => Ok(Command::Release),
             "stop" => Ok(Command::Stop),
+            "configure" => Ok(Command::Configure(self.percent("\"holding_force\"")?)),
             other => Err(WireError::new("gripper command of length", other.len() as u32)),
         }
     }
 
-    /// The position in its arguments, percent.
-    fn position(&self) -> Result<f64, WireError> {
+    /// The number under `key` in its arguments, percent.
+    fn percent(&self, key: &str) -> Result<f64, WireError> {
         let args = self.args.as_str()?;
-        let bad = || WireError::new("arguments of `go` of length", args.len() as u32);
-        let (_, after) = args.split_once("\"position\"").ok_or_else(bad)?;
+        let bad = || WireError::new("gripper arguments of length", args.len() as u32);
+        let (_, after) = args.split_once(key).ok_or_else(bad)?;
         let number: String = after
             .trim_start_matches([':', ' '])
             .chars()
             .take_while(|c| c.is_ascii_digit() || "+-.eE".contains(*c))
             .collect();
-        let position: f64 = number.parse().map_err(|_| bad())?;
-        if position.is_finite() { Ok(position.clamp(0.0, 100.0)) } else { Err(bad()) }
+        let percent: f64 = number.parse().map_err(|_| bad())?;
+        if percent.is_finite() { Ok(percent.clamp(0.0, 100.0)) } else { Err(bad()) }
     }
 }
 
@@ -210,8 +215,8 @@ mod tests {
 
     #[test]
     fn gripper_commands_round_trip() {
-        use Command::{Calibrate, Go, Grip, Release, Stop};
-        for command in [Calibrate, Go(12.5), Go(100.0), Grip, Release, Stop] {
+        use Command::{Calibrate, Configure, Go, Grip, Release, Stop};
+        for command in [Calibrate, Go(12.5), Go(100.0), Grip, Release, Stop, Configure(100.0)] {
             let message = EndEffectorCommand::new(3, command, "whichone", 7);
             assert_eq!(message.read(), Ok(command));
         }

@@ -18,12 +18,16 @@ const STALE: Span = Span::from_ms(1_000);
 const SETTLED_AFTER: Span = Span::from_ms(500);
 /// Fingers this near to their goal are there, percent: the SDK's dead zone.
 const DEAD_ZONE_PERCENT: f64 = 100.0 * gripper::DEAD_ZONE;
+/// Force with which held objects are pressed, percent. The SDK's default of 30 carries half of what
+/// `whichone check` allows.
+const HOLDING_FORCE_PERCENT: f64 = 100.0;
 /// Sender named in the commands.
 const SENDER: &str = "whichone";
 
 /// One gripper.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Gripper {
+    geometry: gripper::Gripper,
     state: Option<(EndEffectorState, Time)>,
     properties: Option<EndEffectorProperties>,
     /// Latest command, and the time when it was first sent.
@@ -32,6 +36,8 @@ pub(super) struct Gripper {
     handled: Option<Time>,
     sent: Option<Time>,
     sequence: u32,
+    /// The holding force was set.
+    configured: bool,
 }
 
 /// Condition of a gripper, from the best to the worst.
@@ -48,6 +54,20 @@ pub(super) enum Condition {
 }
 
 impl Gripper {
+    /// Returns a gripper before its first report.
+    pub(super) fn new(geometry: &gripper::Gripper) -> Self {
+        Self {
+            geometry: *geometry,
+            state: None,
+            properties: None,
+            command: None,
+            handled: None,
+            sent: None,
+            sequence: 0,
+            configured: false,
+        }
+    }
+
     pub(super) fn on_state(&mut self, state: &EndEffectorState, now: Time) {
         self.state = Some((*state, now));
         let confirmed = self.command.is_some_and(|(_, message, _)| state.has_handled(&message));
@@ -76,7 +96,7 @@ impl Gripper {
 
     /// Width between the fingers, metres.
     pub(super) fn width_m(&self) -> Option<f64> {
-        self.state.map(|(state, _)| gripper::width_m(f64::from(state.position)))
+        self.state.map(|(state, _)| self.geometry.width_m(f64::from(state.position)))
     }
 
     /// Returns whether something is between the fingers. Fingers that stopped at nothing wider than the
@@ -113,7 +133,7 @@ impl Gripper {
             Command::Go(goal) if !closes(command) => (position - goal).abs() <= DEAD_ZONE_PERCENT,
             Command::Go(_) | Command::Grip => is(state.gripping) || is(state.missed),
             Command::Calibrate => is(state.calibrated),
-            Command::Release | Command::Stop => false,
+            Command::Release | Command::Stop | Command::Configure(_) => false,
         };
         !is(state.moving) && (done || now.since(handled) > SETTLED_AFTER && !waits(command))
     }
@@ -121,17 +141,33 @@ impl Gripper {
     /// Commands the fingers of a motion.
     pub(super) fn want(&mut self, fingers: Fingers, now: Time) {
         let controls_grip = self.properties.is_some_and(|p| p.controls_grip != 0);
+        if fingers != Fingers::Stay && !self.configure(now) {
+            return;
+        }
         let controls_position = self.properties.is_none_or(|p| p.controls_position != 0);
         match fingers {
             Fingers::Stay if self.is_moving() => self.send(Command::Stop, now),
             Fingers::Stay => {}
             Fingers::Open(width_m) if controls_position => {
-                self.send(Command::Go(gripper::percent(width_m)), now);
+                self.send(Command::Go(self.geometry.percent(width_m)), now);
             }
             Fingers::Open(_) => self.send(Command::Release, now),
             Fingers::Grip(_) if controls_grip => self.send(Command::Grip, now),
             Fingers::Grip(_) => self.send(Command::Go(0.0), now),
         }
+    }
+
+    /// Sets the holding force before the first motion of the fingers. Returns whether it is set, or the
+    /// gripper has no such parameter.
+    fn configure(&mut self, now: Time) -> bool {
+        let command = Command::Configure(HOLDING_FORCE_PERCENT);
+        let is_sent = self.command.is_some_and(|(before, ..)| before == command);
+        self.configured |= is_sent && self.handled.is_some();
+        if self.configured || self.properties.is_none_or(|p| p.controls_force == 0) {
+            return true;
+        }
+        self.send(command, now);
+        false
     }
 
     /// Starts calibration, again after a timeout.

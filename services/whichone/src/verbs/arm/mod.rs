@@ -31,6 +31,10 @@ struct Pick<'a> {
 /// Draws the motion that fetches an object.
 pub(super) fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
     let ending = args.out.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if args.samples_hz.is_some() && !out.is_json() {
+        let what = "--samples-hz: samples are printed as JSON; help: add --json";
+        return Err(Failure::new(Exit::Usage, what));
+    }
     if !["png", "svg"].contains(&ending) {
         let help = "end its name with .png or .svg";
         let what = format!("{}: not a picture format; help: {help}", args.out.display());
@@ -46,7 +50,7 @@ pub(super) fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
     let robot = &setup.robot;
     let pick = planned(&scene, args.object.as_deref(), limb, robot, &setup.plan)?;
     if out.is_json() {
-        out.json(&to_json(&pick))?;
+        out.json(&to_json(&pick, args.samples_hz))?;
         return Ok(Exit::Ok);
     }
     let chart = figure::chart(&pick, args.width);
@@ -99,7 +103,7 @@ fn planned<'a>(
     Ok(Pick { scene, robot, settings, places, object, plan })
 }
 
-fn to_json(pick: &Pick<'_>) -> Json {
+fn to_json(pick: &Pick<'_>, samples_hz: Option<f64>) -> Json {
     let plan = &pick.plan;
     let stage = |phase: Phase| {
         let (begin_s, end_s) = plan.span_s(phase)?;
@@ -107,13 +111,49 @@ fn to_json(pick: &Pick<'_>) -> Json {
             json!({ "phase": phase, "begin_s": begin_s, "end_s": end_s, "seconds": end_s - begin_s }),
         )
     };
-    json!({
+    let mut json = json!({
         "scene": pick.scene.name(),
         "object": pick.scene.object(pick.object.into()).name,
         "limb": plan.limb().to_string(),
         "seconds": plan.duration_s(),
         "stages": figure::PHASES.iter().filter_map(|(phase, _)| stage(*phase)).collect::<Vec<_>>(),
-    })
+    });
+    if let Some(hz) = samples_hz {
+        json["joints"] = json!(pick.robot.arm(plan.limb()).joint_names);
+        json["object_in_gripper"] = json!(object_in_gripper(pick));
+        json["samples"] = samples(pick, hz);
+    }
+    json
+}
+
+/// Returns the pose of the object in frame `<limb>_gripper` while it is held: x, y, z in metres, and
+/// a quaternion x, y, z, w.
+fn object_in_gripper(pick: &Pick<'_>) -> Option<[f64; 7]> {
+    let (_, closed_s) = pick.plan.span_s(Phase::Close)?;
+    let chain = &pick.robot.arm(pick.plan.limb()).chain;
+    let gripper = chain.forward(&pick.plan.at(closed_s).q);
+    let pose = gripper.inverse() * pick.places[pick.object].isometry();
+    let (p, r) = (pose.translation, pose.rotation);
+    Some([p.x, p.y, p.z, r.i, r.j, r.k, r.w])
+}
+
+/// Returns the plan at equal intervals and at its end: positions in radians, velocities in rad/s, and
+/// the width between the fingers in metres.
+fn samples(pick: &Pick<'_>, hz: f64) -> Json {
+    let plan = &pick.plan;
+    let held = |t_s: f64| {
+        let (_, from_s) = plan.span_s(Phase::Close)?;
+        let (until_s, _) = plan.span_s(Phase::Release)?;
+        let name = &pick.scene.object(pick.object.into()).name;
+        (from_s..until_s).contains(&t_s).then_some(name)
+    };
+    let count = (plan.duration_s() * hz).ceil() as usize;
+    let sample = |n: usize| {
+        let t_s = (n as f64 / hz).min(plan.duration_s());
+        let now = plan.at(t_s);
+        json!({ "t_s": t_s, "q": now.q, "qd": now.qd, "width_m": now.width_m, "held": held(t_s) })
+    };
+    (0..=count).map(sample).collect()
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {

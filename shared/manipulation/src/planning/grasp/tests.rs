@@ -1,11 +1,19 @@
 use super::*;
+use crate::kinematics::limb::Limb;
+use crate::robot::Robot;
 use crate::samples::Random;
+
+fn paddles() -> Gripper {
+    Robot::baxter().arm(Limb::Left).gripper
+}
 
 const BOWL: ObjectPose = ObjectPose {
     xyz_m: [0.7, 0.2, -0.12],
     yaw_rad: 0.0,
     size_m: [0.18, 0.18, 0.07],
     grasp_width_m: 0.006,
+    mass_kg: None,
+    wall_rad: 0.0,
 };
 
 const MARKER: ObjectPose = ObjectPose {
@@ -13,6 +21,8 @@ const MARKER: ObjectPose = ObjectPose {
     yaw_rad: 0.3,
     size_m: [0.14, 0.014, 0.014],
     grasp_width_m: 0.014,
+    mass_kg: None,
+    wall_rad: 0.0,
 };
 
 fn axes(grasp: &Grasp) -> (Vector3<f64>, Vector3<f64>) {
@@ -21,7 +31,7 @@ fn axes(grasp: &Grasp) -> (Vector3<f64>, Vector3<f64>) {
 
 #[test]
 fn a_bowl_is_held_at_its_rim() {
-    let grasps = BOWL.grasps().unwrap();
+    let grasps = BOWL.grasps(&paddles()).unwrap();
     assert_eq!(grasps.len(), 24);
     for grasp in &grasps {
         let (fingers, down) = axes(grasp);
@@ -36,7 +46,7 @@ fn a_bowl_is_held_at_its_rim() {
 
 #[test]
 fn a_marker_is_held_across_its_middle() {
-    let grasps = MARKER.grasps().unwrap();
+    let grasps = MARKER.grasps(&paddles()).unwrap();
     assert_eq!(grasps.len(), 2);
     for grasp in &grasps {
         let (fingers, _) = axes(grasp);
@@ -55,11 +65,16 @@ fn fingertips_stay_above_what_the_object_stands_on() {
             xyz_m: std::array::from_fn(|_| random.between(-0.5, 0.9)),
             yaw_rad: random.between(-3.0, 3.0),
             size_m: std::array::from_fn(|_| random.between(0.002, 0.3)),
-            grasp_width_m: random.between(0.001, STROKE_M),
+            grasp_width_m: random.between(0.002, 0.0375),
+            mass_kg: None,
+            wall_rad: 0.0,
         };
-        for grasp in object.grasps().unwrap() {
+        for grasp in object.grasps(&paddles()).unwrap() {
             let z = grasp.gripper.translation.z;
-            assert!(z >= object.bottom_z_m() + TIP_CLEAR_M - 1e-12, "{object:?}");
+            assert!(
+                z >= object.bottom_z_m() + paddles().beyond_m + TIP_CLEAR_M - 1e-12,
+                "{object:?}"
+            );
             let raised = grasp.raised(0.2).translation.vector;
             assert!((raised.z - z - 0.2).abs() < 1e-12);
         }
@@ -69,7 +84,7 @@ fn fingertips_stay_above_what_the_object_stands_on() {
 #[test]
 fn a_long_box_is_held_at_the_middles_of_its_sides() {
     let object = ObjectPose { size_m: [0.3, 0.1, 0.05], yaw_rad: 1.0, ..BOWL };
-    let grasps = object.grasps().unwrap();
+    let grasps = object.grasps(&paddles()).unwrap();
     assert_eq!(grasps.len(), 8);
     let mut radii: Vec<f64> = grasps
         .iter()
@@ -82,15 +97,50 @@ fn a_long_box_is_held_at_the_middles_of_its_sides() {
 #[test]
 fn grasp_rejects_what_cannot_be_held() {
     let wide = ObjectPose { grasp_width_m: 0.05, ..BOWL };
-    let error = wide.grasps().unwrap_err();
-    assert_eq!(error, GraspError::TooWide { width_m: 0.05 });
-    assert!(error.to_string().contains("50 mm") && error.to_string().contains("42 mm"));
+    let error = wide.grasps(&paddles()).unwrap_err();
+    assert_eq!(error, GraspError::TooWide { width_m: 0.05, open_m: paddles().open_m });
+    assert!(error.to_string().contains("50 mm") && error.to_string().contains("38 mm"));
+    let slot_2 = Gripper { stop_m: 0.0153, open_m: 0.057, ..paddles() };
+    let error = BOWL.grasps(&slot_2).unwrap_err();
+    assert!(matches!(error, GraspError::TooThin { width_m: 0.006, .. }));
+    assert!(error.to_string().contains("6.0 mm but holds 17.4 mm"), "{error}");
     for (object, what) in [
         (ObjectPose { xyz_m: [f64::NAN, 0.0, 0.0], ..BOWL }, "xyz"),
         (ObjectPose { yaw_rad: f64::INFINITY, ..BOWL }, "yaw"),
         (ObjectPose { size_m: [0.1, 0.0, 0.1], ..BOWL }, "size"),
         (ObjectPose { grasp_width_m: -0.001, ..BOWL }, "grasp_width"),
     ] {
-        assert!(object.grasps().unwrap_err().to_string().contains(what));
+        assert!(object.grasps(&paddles()).unwrap_err().to_string().contains(what));
     }
+}
+
+#[test]
+fn a_sloped_wall_is_gripped_along_its_slope() {
+    let sloped = ObjectPose { wall_rad: 0.3, ..BOWL };
+    for grasp in &sloped.grasps(&paddles()).unwrap() {
+        let (fingers, down) = axes(grasp);
+        let at = grasp.gripper.translation.vector;
+        let out = (at - Vector3::from(BOWL.xyz_m)).xy().normalize();
+        // The wall's middle at any height, by its slope from the rim.
+        let wall = |z: f64| {
+            let below = BOWL.top_z_m() - z;
+            let radius = 0.09 - 0.003 / 0.3f64.cos() - below * 0.3f64.tan();
+            Vector3::new(BOWL.xyz_m[0] + out.x * radius, BOWL.xyz_m[1] + out.y * radius, z)
+        };
+        assert!((wall(at.z) - at).norm() < 1e-9);
+        let along = (wall(at.z - 0.01) - at).normalize();
+        assert!((along - down).norm() < 1e-9 && fingers.dot(&along).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn an_object_is_refused_if_the_fingers_cannot_carry_its_weight() {
+    let weighing = |mass_kg| ObjectPose { mass_kg: Some(mass_kg), ..BOWL };
+    // Measured in a physics engine at 20 N: 0.5 kg is held, 0.7 kg falls.
+    assert!(weighing(0.5).grasps(&paddles()).is_ok());
+    let error = weighing(0.7).grasps(&paddles()).unwrap_err().to_string();
+    assert!(error.contains("weighs 0.70 kg") && error.contains("20 N hold 0.55 kg"), "{error}");
+    let weak = Gripper { force_n: 10.5, ..paddles() };
+    assert!(weighing(0.3).grasps(&weak).is_err(), "the SDK's holding force");
+    assert!(ObjectPose { mass_kg: Some(0.3), ..MARKER }.grasps(&weak).is_ok());
 }

@@ -41,6 +41,8 @@ fn object(value: &Value) -> (String, ObjectPose) {
         yaw_rad: number("yaw").unwrap_or(0.0),
         size_m: triple("size"),
         grasp_width_m: number("grasp_width").unwrap(),
+        mass_kg: number("mass_kg"),
+        wall_rad: number("wall_deg").unwrap_or(0.0).to_radians(),
     };
     (value["name"].as_str().unwrap().to_owned(), pose)
 }

@@ -1,6 +1,5 @@
 //! Random tables, and what comes of picking everything on them.
 
-use manipulation::gripper::STROKE_M;
 use manipulation::{Cuboid, Limb, ObjectPose, PlanError, PlanSettings, Robot, plan_pick};
 
 use super::Random;
@@ -36,7 +35,7 @@ fn radius(object: &ObjectPose) -> f64 {
 }
 
 fn random_object(random: &mut Random) -> ObjectPose {
-    let thin = random.between(0.012, 0.040);
+    let thin = random.between(0.012, 0.033);
     let wide = random.between(0.06, 0.18);
     let wall = random.between(0.003, 0.009);
     let (size, grasp_width_m) = match (random.unit() * 10.0) as usize {
@@ -44,7 +43,7 @@ fn random_object(random: &mut Random) -> ObjectPose {
         3..=4 => ([wide, thin, random.between(0.012, 0.06)], thin),
         5..=7 => ([wide, wide, random.between(0.03, 0.09)], wall),
         8 => ([wide, random.between(0.05, 0.12), random.between(0.03, 0.08)], wall),
-        _ => ([wide, wide, random.between(0.03, 0.10)], random.between(STROKE_M + 0.001, 0.1)),
+        _ => ([wide, wide, random.between(0.03, 0.10)], random.between(0.04, 0.1)),
     };
     let z = TABLE_Z_M + 0.5 * size[2];
     ObjectPose {
@@ -52,6 +51,8 @@ fn random_object(random: &mut Random) -> ObjectPose {
         yaw_rad: random.between(-3.1, 3.1),
         size_m: size,
         grasp_width_m,
+        mass_kg: None,
+        wall_rad: 0.0,
     }
 }
 
