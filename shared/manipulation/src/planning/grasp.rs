@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector2, Vector3};
 
 use crate::collision::Cuboid;
 use crate::gripper::Gripper;
@@ -244,9 +244,13 @@ impl ObjectPose {
 }
 
 impl Grasp {
-    /// Returns the gripper `height_m` straight above the grasp.
+    /// Returns the gripper `height_m` above the grasp, back along the fingers: straight above it but
+    /// for a sloped wall, which the fingers enclose only along the slope.
     pub fn raised(&self, height_m: f64) -> Isometry3<f64> {
-        Translation3::new(0.0, 0.0, height_m) * self.gripper
+        let back = -(self.gripper.rotation * Vector3::z());
+        let aside = back.xy() * (height_m / back.z);
+        let aside = if aside.norm() < 1e-9 { Vector2::zeros() } else { aside };
+        Translation3::new(aside.x, aside.y, height_m) * self.gripper
     }
 }
 

@@ -130,6 +130,9 @@ fn a_sloped_wall_is_gripped_along_its_slope() {
         assert!((wall(at.z) - at).norm() < 1e-9);
         let along = (wall(at.z - 0.01) - at).normalize();
         assert!((along - down).norm() < 1e-9 && fingers.dot(&along).abs() < 1e-9);
+        // The fingers come along the wall as well.
+        let raised = grasp.raised(0.1).translation.vector - at;
+        assert!((raised.z - 0.1).abs() < 1e-12 && (raised.normalize() + down).norm() < 1e-9);
     }
 }
 
