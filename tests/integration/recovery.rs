@@ -1,11 +1,12 @@
 //! Any service is killed at any stage of a dialogue: no utterance is lost or counted twice, the right
 //! object is picked once, and the journal folds to the same belief.
 
-use rustix::process::Signal;
+use rustix::process::{Pid, Signal};
 use service::shm_cleanup::leftovers;
+use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Child, Stdio};
 use whichone_tests::{Group, wait_for};
 
 const SERVICES: [&str; 4] = ["speech", "grounding", "policy", "arm"];
@@ -161,6 +162,35 @@ fn interaction_survives_down_and_up() {
     group.must(&["down"]);
     assert_eq!(group.start(&[]).code, Some(0));
     assert_fetched(&group, "white3");
+    group.down();
+}
+
+#[test]
+fn client_that_outlives_a_group_takes_nothing_of_the_next_one() {
+    let mut group = Group::up(&[]);
+    group.fetch("the clear bowl", "clear");
+    let folder = tempfile::tempdir().unwrap();
+    let seen = folder.path().join("seen");
+    let mut clients = [&["watch", "--json"][..], &["await", "pick", "--json"]].map(|words| {
+        let output = File::options().append(true).create(true).open(&seen).unwrap();
+        group.command(words).stdout(output).stderr(Stdio::null()).spawn().unwrap()
+    });
+    wait_for("the client to look", 10.0, || {
+        (std::fs::metadata(&seen).unwrap().len() > 0).then_some(())
+    });
+    // They wake in the life of the next group, and end there.
+    let signal = |client: &Child, signal| {
+        rustix::process::kill_process(Pid::from_child(client), signal).unwrap();
+    };
+    clients.iter().for_each(|client| signal(client, Signal::STOP));
+    group.must(&["down"]);
+    assert_eq!(group.start(&[]).code, Some(0));
+    clients.iter().for_each(|client| signal(client, Signal::CONT));
+    for client in &mut clients {
+        client.wait().unwrap();
+        group.say("hello");
+    }
+    assert_eq!(group.fetch("get me the metal bowl", "metal")["object"], "metal");
     group.down();
 }
 
