@@ -47,8 +47,10 @@ async function askFor(page, group, n) {
   const before = (await group.state()).dialogue.last?.interaction ?? 0;
   await type(page, `get me the ${wanted.attributes.red} part`);
   for (let answered = 0; ; ) {
-    const { prompt, question: asked, decision } = await nextDecision(group, answered);
+    const { prompt, text, question: asked, decision } = await nextDecision(group, answered);
     if (decision !== "ask") break;
+    // An answer is to the question that the page shows.
+    await expect(question(page)).toContainText(text);
     await type(page, answer(asked, wanted));
     answered = prompt;
   }
