@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::driver::Grip;
-use messages::robot::{Command as Word, EndEffectorCommand, EndEffectorState, Tristate};
+use messages::robot::{
+    Command as Word, EndEffectorCommand, EndEffectorProperties, EndEffectorState, Tristate, UiType,
+};
 
 fn ready_gripper(now: Time) -> EndEffectorState {
     let yes = Tristate::True.code();
@@ -23,7 +25,7 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         let config = crate::tests::shipped(Some("baxter"), &[]);
-        let first = ArmState::first(&config.setup.robot, 0, 0.04);
+        let first = ArmState::first(&config.setup.robot, 0, 100.0);
         let driver = BaxterDriver::new(&config, &first);
         let now = Time(5_000_000_000);
         let joints = Limb::BOTH.map(|limb| config.setup.robot.arm(limb).neutral);
@@ -238,6 +240,27 @@ fn gripper_command_is_resent_until_confirmed() {
     bench.pass(Some(close));
     assert_eq!(bench.driver.has_arrived(&close, 0.5), Ok(true));
     assert_eq!(bench.driver.measured().holds(Limb::Left), Some(true));
+}
+
+#[test]
+fn holding_force_is_set_before_the_fingers_first_move() {
+    let mut bench = Bench::new();
+    let own = EndEffectorProperties {
+        ui_type: UiType::Electric.code(),
+        controls_force: 1,
+        controls_position: 1,
+        ..EndEffectorProperties::default()
+    };
+    bench.driver.on_report(&Report::Properties(Limb::Left, Box::new(own)), bench.now);
+    bench.pass(None);
+    let open = bench.moving(0.0, Fingers::Open(0.02));
+    let message = word(&bench.pass(Some(open))).unwrap();
+    assert_eq!(message.read(), Ok(Word::Configure(100.0)));
+    assert!((0..10).all(|_| word(&bench.pass(Some(open))).is_none()), "it is not confirmed yet");
+    bench.grippers[0].command_sender = message.sender;
+    bench.grippers[0].command_sequence = message.sequence;
+    let next = word(&bench.pass(Some(open))).unwrap();
+    assert!(matches!(next.read(), Ok(Word::Go(percent)) if percent > 0.0), "{next:?}");
 }
 
 #[test]
