@@ -26,6 +26,10 @@ install() {
     printf '%s\n' "${missing[@]}"
 }
 
+# A ROS 1 master, robot and recorder, for the tests and benchmarks of the bridge.
+ros1_packages=(python3-rosmaster python3-rospy python3-rosbag python3-sensor-msgs python3-trajectory-msgs
+    python3-genmsg python3-genpy ros-std-msgs ros-geometry-msgs ros-sensor-msgs)
+
 need_cargo() {
     command -v cargo >/dev/null || {
         say "no cargo on the PATH: install a Rust toolchain (1.89 or newer), see https://rustup.rs"

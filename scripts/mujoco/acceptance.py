@@ -35,7 +35,6 @@ TRIAL_M = 0.02
 WALL_DEG = {"straight": 0.0, "round": 7.0, "cone": 25.0}
 # Distance of the closed fingers by their shapes in the description; negative: they meet before.
 STOP_M = {"left": 0.0153 - 0.019, "right": 0.0111 - 0.019}
-FRICTION = 0.7
 
 
 def scene(name):
@@ -100,13 +99,13 @@ class Run:
     def begin(self):
         model, data = self.model, self.data
         sample = self.plan["samples"][0]
-        # The other arm rests as this one does, mirrored.
-        for side, sign in (("left", 1), ("right", 1)):
+        # The other arm rests with the joints of this one.
+        for side in ("left", "right"):
             for joint, q in zip(self.plan["joints"], sample["q"]):
                 name = side + joint[len(self.limb):]
                 actuator = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, name)
                 at = model.jnt_qposadr[model.actuator_trnid[actuator, 0]]
-                data.qpos[at] = data.ctrl[actuator] = sign * q
+                data.qpos[at] = data.ctrl[actuator] = q
         for side in ("left", "right"):
             for finger, sign in (("l", 1), ("r", -1)):
                 joint = f"{side[0]}_gripper_{finger}_finger_joint"

@@ -1,6 +1,5 @@
 //! Where the master is, and under which name the robot reaches us.
 
-use crate::subscription::with_port;
 use crate::xmlrpc::authority;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener, ToSocketAddrs, UdpSocket};
@@ -93,6 +92,14 @@ fn master_uri(written: &str) -> String {
     match has_port {
         true => format!("http://{place}/"),
         false => format!("http://{}/", with_port(place, MASTER_PORT)),
+    }
+}
+
+/// Joins host and port; an IPv6 address goes into brackets.
+pub(crate) fn with_port(host: &str, port: impl std::fmt::Display) -> String {
+    match host.contains(':') && !host.starts_with('[') {
+        true => format!("[{host}]:{port}"),
+        false => format!("{host}:{port}"),
     }
 }
 

@@ -7,6 +7,8 @@ use std::time::Duration;
 
 use rustix::net::sockopt;
 
+use crate::wire::Message;
+
 /// Largest header, bytes; that of a publisher contains the whole definition.
 const HEADER_BYTES_MAX: u32 = 64 << 10;
 /// Largest message, bytes. Those of the bridge's topics have some hundred.
@@ -31,6 +33,12 @@ pub struct Topic {
 pub type Header = HashMap<String, String>;
 
 impl Topic {
+    /// Describes the topic `name` of messages `M`.
+    pub fn of<M: Message>(name: &str) -> Self {
+        let name = name.to_owned();
+        Self { name, kind: M::NAME, md5: M::MD5, definition: M::full_definition() }
+    }
+
     /// Checks that the header of a peer means the same type.
     ///
     /// # Errors

@@ -4,10 +4,10 @@
 //! whether it is still registered there, and registers all topics where it is not. Connections between
 //! nodes do not depend on the master and go on without it.
 
-use crate::address::Address;
+use crate::address::{Address, with_port};
 use crate::guarded;
 use crate::publication::{self, Publication};
-use crate::subscription::{Subscription, with_port};
+use crate::subscription::Subscription;
 use crate::xmlrpc::{self, CallError, Value, call};
 use std::io;
 use std::net::{TcpListener, TcpStream};

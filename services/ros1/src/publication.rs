@@ -39,7 +39,7 @@ struct Outbox {
 impl Publication {
     /// Returns the topic `name` of messages `M`.
     pub fn new<M: Message>(name: &str) -> Self {
-        Self { topic: topic::<M>(name), subscribers: Mutex::default() }
+        Self { topic: Topic::of::<M>(name), subscribers: Mutex::default() }
     }
 
     /// Sends a message that was `made` then to every subscriber that has taken the one before; the
@@ -103,12 +103,6 @@ fn is_closed(stream: &TcpStream) -> bool {
     let mut fds = [PollFd::new(stream, PollFlags::RDHUP)];
     let now = Timespec { tv_sec: 0, tv_nsec: 0 };
     poll(&mut fds, Some(&now)).is_ok() && fds[0].revents().intersects(closed)
-}
-
-/// Describes the topic `name` of messages `M`.
-pub(crate) fn topic<M: Message>(name: &str) -> Topic {
-    let name = name.to_owned();
-    Topic { name, kind: M::NAME, md5: M::MD5, definition: M::full_definition() }
 }
 
 /// Answers a subscriber's header and sends it messages until it is gone.

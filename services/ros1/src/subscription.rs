@@ -1,8 +1,8 @@
 //! A topic that the bridge subscribes to.
 
+use crate::address::with_port;
 use crate::connection::{self, Topic};
 use crate::guarded;
-use crate::publication::topic;
 use crate::wire::{Message, Unreadable};
 use crate::xmlrpc::{Value, call, connect};
 use service::{Time, clock};
@@ -50,7 +50,7 @@ impl Subscription {
     /// Returns the topic `name` of messages `M`.
     pub fn new<M: Message>(name: &str, sink: impl Fn() -> Sink + Send + Sync + 'static) -> Self {
         let sink = Box::new(sink);
-        Self { topic: topic::<M>(name), sink, publishers: Mutex::default() }
+        Self { topic: Topic::of::<M>(name), sink, publishers: Mutex::default() }
     }
 
     /// Connects to the publishers that the master lists.
@@ -154,13 +154,5 @@ impl Subscription {
             }
         }
         before.is_some()
-    }
-}
-
-/// Joins host and port; an IPv6 address goes into brackets.
-pub(crate) fn with_port(host: &str, port: impl std::fmt::Display) -> String {
-    match host.contains(':') && !host.starts_with('[') {
-        true => format!("[{host}]:{port}"),
-        false => format!("{host}:{port}"),
     }
 }

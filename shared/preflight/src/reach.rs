@@ -40,11 +40,7 @@ pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) 
             continue;
         }
         let (key, help) = match &error {
-            PlanError::Grasp(GraspError::TooHeavy { .. }) => (
-                "mass_kg",
-                "use a lighter or smaller object, stronger fingers, or leave out its place",
-            ),
-            PlanError::Grasp(error) => ("grasp_width", grasp_help(error)),
+            PlanError::Grasp(error) => grasp_help(error),
             _ => (
                 "xyz",
                 "move it, leave out its place, or change limb, hover_m or table_z_m of the arm",
@@ -57,14 +53,20 @@ pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) 
     }
 }
 
-/// Returns how an object can be held after all.
-fn grasp_help(error: &GraspError) -> &'static str {
+/// Returns the key that keeps an object from being held, and how it can be held after all.
+fn grasp_help(error: &GraspError) -> (&'static str, &'static str) {
     match error {
-        GraspError::TooWide { .. } => "choose a thinner part to grip, or leave out its place",
-        GraspError::TooThin { .. } => {
-            "choose a thicker part to grip, or mount the fingers further in (docs/baxter.md)"
+        GraspError::TooWide { .. } => {
+            ("grasp_width", "choose a thinner part to grip, or leave out its place")
         }
-        GraspError::TooHeavy { .. } | GraspError::Malformed { .. } => "correct the number",
+        GraspError::TooThin { .. } => (
+            "grasp_width",
+            "choose a thicker part to grip, or mount the fingers further in (docs/baxter.md)",
+        ),
+        GraspError::TooHeavy { .. } => {
+            ("mass_kg", "use a lighter or smaller object, stronger fingers, or leave out its place")
+        }
+        GraspError::Malformed { .. } => ("grasp_width", "correct the number"),
     }
 }
 
@@ -109,7 +111,7 @@ fn check_widths(
     };
     let (open_m, whole_m) = (widest(setup.plan.open_percent), widest(100.0));
     for (n, pose) in placed {
-        if (open_m..=whole_m).contains(&pose.grasp_width_m) && pose.grasp_width_m > open_m {
+        if pose.grasp_width_m > open_m && pose.grasp_width_m <= whole_m {
             let what = format!("is wider than the fingers open: {:.1} mm", open_m * 1e3);
             let help = "raise grip_open_percent of the arm";
             report.add(of_object(settings, *n, "grasp_width", &what, help));
