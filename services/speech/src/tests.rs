@@ -1,5 +1,7 @@
 //! Rules of hearing and speaking, without devices.
 
+mod endings;
+mod prompts;
 mod set_aside;
 
 use crate::devices::recogniser::Rejected;
@@ -197,111 +199,6 @@ fn speech_is_ready_once_it_can_accept_an_utterance() {
 }
 
 #[test]
-fn utterance_names_the_questions_that_had_begun() {
-    let mut speech = Speech::new();
-    assert!(speech.take(0.0, ask(7)).spoken().is_some());
-    speech.playback(0.1, 1, PlaybackState::Started);
-    speech.playback(1.5, 1, PlaybackState::Ended);
-    let outputs = speech.type_in(0.8, "yes");
-    assert_eq!(outputs.asked(), [(7, 1, 1)]);
-    let utterance = outputs.utterance().unwrap();
-    let only = utterance.asked().unwrap()[0];
-    assert_eq!(only.ended_ns - only.began_ns, Span::from_s(1.5).0);
-}
-
-#[test]
-fn player_waits_while_a_user_speaks_or_an_utterance_is_processed() {
-    let mut speech = Speech::new();
-    let onset = speech.now;
-    let outputs = speech.take(0.1, began(onset, true));
-    assert_eq!(outputs.activity().map(|a| a.onset_ns), Some(onset.ns()), "published at once");
-    assert!(speech.take(0.2, ask(7)).spoken().is_none());
-    let outputs = speech.take(0.5, ended(onset));
-    assert!(outputs.spoken().is_none(), "the utterance is being recognised");
-    assert_eq!(outputs.recognises(), Some(SOUND));
-    assert_eq!(outputs.activity().map(|a| (a.onset_ns, a.pending)), Some((onset.ns(), 1)));
-    let outputs = speech.take(0.2, recognised(SOUND, None));
-    assert!(outputs.spoken().is_some(), "no speech found: {outputs:?}");
-    assert_eq!(outputs.activity().map(|a| a.onset_ns), Some(0));
-}
-
-#[test]
-fn player_waits_until_typed_text_is_applied() {
-    let mut speech = Speech::new();
-    speech.type_in(0.0, "get me the bowl");
-    assert!(speech.take(0.1, ask(7)).spoken().is_none(), "not applied yet");
-    assert!(speech.take(0.1, In::Mark(AppliedMark { seq: 1 })).spoken().is_some());
-}
-
-#[test]
-fn player_does_not_wait_forever_for_the_recogniser() {
-    let mut speech = Speech::new();
-    let onset = speech.now;
-    speech.take(0.0, began(onset, true));
-    assert!(speech.take(5.0, ask(7)).spoken().is_none());
-    assert!(speech.take(6.0, ask(7)).spoken().is_some());
-}
-
-#[test]
-fn player_repeats_an_interrupted_question() {
-    let mut speech = Speech::new();
-    speech.take(0.0, ask(7));
-    speech.playback(0.1, 1, PlaybackState::Started);
-    let onset = speech.now + Span::from_s(0.6);
-    let outputs = speech.take(0.7, began(onset, true));
-    assert!(outputs.stops_speaking(), "{outputs:?}");
-    let Some(Record::Presented(interrupted)) = speech.records.last() else { panic!() };
-    assert!(!interrupted.complete && interrupted.question == WHITE);
-    let presented = outputs.find(|out| match out {
-        Out::Presented(presented) => Some((presented.prompt, presented.state)),
-        _ => None,
-    });
-    assert_eq!(presented, Some((7, PresentationState::Interrupted.code())));
-    assert!(speech.take(0.1, ask(7)).spoken().is_none(), "the user is still speaking");
-    speech.take(0.5, ended(onset));
-    let outputs = speech.take(0.5, recognised(SOUND, None));
-    assert_eq!(outputs.spoken().map(|request| request.playback), Some(2), "{outputs:?}");
-    // The interrupting utterance may answer the question.
-    let outputs = speech.type_in(0.1, "yes");
-    let utterance = outputs.utterance().unwrap();
-    let asked = utterance.asked().unwrap();
-    assert!(asked.iter().any(|a| (a.prompt, a.whole) == (7, 0) && a.ended_ns > 0), "{asked:?}");
-}
-
-#[test]
-fn words_answer_no_question_that_their_client_had_not_shown() {
-    let mut speech = Speech::new();
-    speech.take(0.0, ask(7));
-    speech.playback(0.1, 1, PlaybackState::Started);
-    speech.take(0.5, ask(8));
-    speech.playback(0.1, 2, PlaybackState::Started);
-    let yes = |seen_prompt: u64| Injection {
-        key: RequestKey([seen_prompt as u8 + 1; 16]),
-        onset_ns: 0,
-        end_ns: 0,
-        seen_prompt,
-        sound: Sound::Text("yes".to_owned()),
-    };
-    assert_eq!(speech.take(1.0, In::Injection(yes(7))).asked(), [(7, 1, 0)]);
-    assert_eq!(speech.take(1.0, In::Injection(yes(6))).asked(), []);
-    assert_eq!(speech.take(1.0, In::Injection(yes(8))).asked(), [(8, 1, 0), (7, 1, 0)]);
-    assert_eq!(speech.take(1.0, In::Injection(yes(0))).asked(), [(8, 1, 0), (7, 1, 0)], "unknown");
-}
-
-#[test]
-fn superseded_question_may_still_be_answered() {
-    let mut speech = Speech::new();
-    speech.take(0.0, ask(7));
-    speech.playback(0.1, 1, PlaybackState::Started);
-    speech.take(0.5, ask(8));
-    speech.playback(0.1, 2, PlaybackState::Started);
-    let outputs = speech.type_in(0.3, "yes");
-    assert_eq!(outputs.asked(), [(8, 1, 0), (7, 1, 0)], "newest first");
-    let utterance = outputs.utterance().unwrap();
-    assert_eq!(utterance.asked().unwrap()[0].ended_ns, 0, "it is being spoken");
-}
-
-#[test]
 fn utterance_carries_all_hypotheses_with_word_confidences() {
     let mut speech = Speech::new();
     let outputs = speech.inject(0.0, 9, Sound::Wav("/some.wav".to_owned()));
@@ -344,16 +241,6 @@ fn live_utterance_has_one_result_with_its_times() {
 }
 
 #[test]
-fn half_duplex_microphone_does_not_interrupt_but_typed_text_does() {
-    let mut speech = Speech::new();
-    speech.take(0.0, ask(7));
-    speech.playback(0.1, 1, PlaybackState::Started);
-    let at = speech.now;
-    assert!(!speech.take(0.2, began(at, false)).stops_speaking());
-    assert!(speech.type_in(0.2, "the white one").stops_speaking());
-}
-
-#[test]
 fn talk_request_opens_the_microphone_and_reports_silence() {
     let mut speech = Speech::new();
     let talk = || Sound::Talk { longest_s: 5.0 };
@@ -374,77 +261,12 @@ fn talk_request_opens_the_microphone_and_reports_silence() {
     assert_eq!(note(outputs), "duration 61 s is out of range (1 to 60 s)");
 }
 
-#[test]
-fn interim_results_are_published_until_the_result() {
-    let mut speech = Speech::new();
-    let onset = speech.now;
-    let interim = |text: &str| In::InterimResult { sound: SOUND, text: text.to_owned() };
-    assert_eq!(speech.take(0.1, interim("unknown")).partials(), [], "no sound has begun");
-    speech.take(0.1, began(onset, true));
-    let samples = In::Stream(StreamEvent::Samples { sound: SOUND, samples: vec![0; 5_600] });
-    let outputs = speech.take(0.3, samples.clone());
-    assert!(matches!(outputs.0[..], [Out::InterimSamples(SOUND, _)]), "{outputs:?}");
-    let paused = StreamEvent::Paused { sound: SOUND, segment: segment(onset) };
-    let outputs = speech.take(0.1, In::Stream(paused));
-    assert!(matches!(outputs.0[..], [Out::DecodeEarly(SOUND, _)]), "{outputs:?}");
-    let outputs = speech.take(0.1, interim("the white"));
-    let Some(Out::Partial(partial)) = outputs.0.first() else { panic!("{outputs:?}") };
-    assert_eq!((partial.onset_ns, partial.request()), (onset.ns(), RequestKey([7; 16])));
-    assert_eq!(outputs.partials(), [("the white".to_owned(), 0)]);
-    speech.take(0.1, ended(onset));
-    assert_eq!(speech.take(0.1, interim("the whites")).partials(), [], "the sound has ended");
-    assert!(speech.take(0.0, samples).0.is_empty());
-    assert_eq!(speech.take(0.1, recognised(SOUND, None)).partials(), [(String::new(), 1)]);
-    assert!(speech.records.is_empty(), "interim results are not journaled");
-}
-
 /// Returns a result with these hypotheses, or one that the gate rejects.
 fn result(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> RecognisedSegment {
     let (reason, score) = (GateVerdict::OtherTalk, 0.1);
     let rejected = |text: &str| Rejected { text: text.to_owned(), reason, score };
     let accepted = RecognisedSegment::accepted((0.2, 0.7), snr_db, Vec::new());
     RecognisedSegment { hypotheses: words.map_err(rejected), ..accepted }
-}
-
-/// Returns the result for the pause at the end of [`segment`].
-fn early(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> In {
-    let result = Some(Box::new(result(words, snr_db)));
-    let at = segment(Time(0)).closing(std::time::Duration::ZERO);
-    In::EarlyResult { sound: SOUND, at, result }
-}
-
-#[test]
-fn pause_that_ends_an_utterance_depends_on_what_was_said() {
-    let said = |text: &str| Ok(vec![Hypothesis::certain(text)]);
-    let either = |best: &str, other: &str, weight: f64| {
-        let other = Hypothesis { weight, ..Hypothesis::certain(other) };
-        Ok(vec![Hypothesis { weight: 1.0 - weight, ..Hypothesis::certain(best) }, other])
-    };
-    for (what, interrupts, words, snr_db, expected) in [
-        ("complete", false, said("yes"), 30.0, 120),
-        ("a correction may follow", false, said("no"), 30.0, 500),
-        ("a correction interrupts", true, said("no"), 30.0, 310),
-        ("leads on", true, said("no the"), 30.0, 900),
-        ("in noise", true, said("yes"), 10.0, 500),
-        ("a stop in noise", false, said("stop"), 10.0, 120),
-        ("perhaps a stop", false, either("stop", "top", 0.4), 30.0, 120),
-        ("a stop that is not meant for the robot", false, Err("stop"), 30.0, 120),
-        ("perhaps not complete", true, either("yes", "yes the", 0.3), 30.0, 500),
-        ("hardly not complete", true, either("yes", "yes the", 0.1), 30.0, 120),
-        ("not meant for the robot", true, Err("yes"), 30.0, 500),
-        ("not meant for the robot so far", true, Err("um the"), 30.0, 900),
-    ] {
-        let mut speech = Speech::new();
-        speech.take(0.0, ask(7));
-        speech.playback(0.1, 1, PlaybackState::Started);
-        speech.playback(1.5, 1, PlaybackState::Ended);
-        let onset = speech.now;
-        speech.take(0.1, began(onset, interrupts));
-        let paused = StreamEvent::Paused { sound: SOUND, segment: segment(onset) };
-        assert!(speech.take(0.3, In::Stream(paused)).decodes_early());
-        let closes = speech.take(0.1, early(words, snr_db)).closes_ms();
-        assert_eq!(closes, Some(expected), "{what}");
-    }
 }
 
 #[test]
@@ -488,48 +310,4 @@ fn stop_is_obeyed_though_it_is_not_taken_for_a_request() {
         assert_eq!(outputs.stops_motion(), is_obeyed, "{text}");
         assert_eq!(outputs.utterance().is_some(), is_obeyed, "{text}");
     }
-}
-
-#[test]
-fn prompt_that_has_not_sounded_yet_waits_for_a_user_who_begins_to_speak() {
-    let mut speech = Speech::new();
-    assert!(speech.take(0.0, ask(7)).spoken().is_some());
-    let onset = speech.now;
-    assert!(speech.take(0.1, began(onset, false)).stops_speaking(), "nothing was heard of it");
-    speech.playback(0.0, 1, PlaybackState::Interrupted);
-    assert!(speech.take(0.1, ask(7)).spoken().is_none(), "the user is still speaking");
-    speech.take(0.5, ended(onset));
-    assert!(speech.take(0.1, recognised(SOUND, None)).spoken().is_some());
-}
-
-#[test]
-fn later_end_of_the_same_speech_is_decoded_only_if_the_earlier_one_is_not_complete() {
-    let said = |text: &str| Ok(vec![Hypothesis::certain(text)]);
-    for (text, is_decoded) in [("the clear bowl", false), ("get me the", true)] {
-        let mut speech = Speech::new();
-        let onset = speech.now;
-        speech.take(0.1, began(onset, false));
-        let paused = || In::Stream(StreamEvent::Paused { sound: SOUND, segment: segment(onset) });
-        assert!(speech.take(0.1, paused()).decodes_early());
-        assert!(!speech.take(0.1, paused()).decodes_early(), "it waits for the earlier one");
-        assert_eq!(speech.take(0.1, early(said(text), 30.0)).decodes_early(), is_decoded, "{text}");
-    }
-}
-
-#[test]
-fn repeated_end_of_a_stream_keeps_the_first_count() {
-    let mut speech = Speech::new();
-    let (onset, stream) = (speech.now, RequestKey([7; 16]));
-    speech.take(0.1, began(onset, true));
-    speech.take(0.4, ended(onset));
-    for utterances in [1, 0] {
-        let closed = In::Stream(StreamEvent::Closed { stream, utterances, lost: 0 });
-        assert_eq!(speech.take(0.1, closed).receipt(), None);
-    }
-    let outputs = speech.take(0.2, recognised(SOUND, None));
-    let closed = outputs.find(|out| match out {
-        Out::Receipt(receipt) if receipt.segment == u32::MAX => Some(receipt.segments),
-        _ => None,
-    });
-    assert_eq!(closed, Some(1));
 }
