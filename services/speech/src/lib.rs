@@ -4,6 +4,7 @@
 //! it is sent, in order, until the policy's mark confirms that it is applied. A prompt counts as heard
 //! only once it was spoken to its end.
 
+mod bounded;
 pub mod devices;
 mod doctor;
 mod endpointing;

@@ -6,6 +6,7 @@ use messages::outbox::Outbox;
 use messages::{AppliedMark, Receipt, RequestKey, UtteranceSeq, topics};
 use service::Time;
 
+use crate::bounded::push_bounded;
 use crate::record::Accepted;
 use crate::{Fx, Out};
 
@@ -28,7 +29,7 @@ impl AcceptedUtterances {
     }
 
     pub(super) fn add(&mut self, accepted: Accepted) {
-        push_bounded(&mut self.recent, accepted.clone());
+        push_bounded(&mut self.recent, ITEMS_MAX, accepted.clone());
         if accepted.seq > self.outbox.last() {
             self.outbox.push(accepted.seq, accepted);
         }
@@ -110,7 +111,7 @@ pub(super) struct Receipts {
 
 impl Receipts {
     pub(super) fn record(&mut self, receipt: Receipt) {
-        push_bounded(&mut self.sent, receipt);
+        push_bounded(&mut self.sent, ITEMS_MAX, receipt);
     }
 
     /// Publishes the receipts of a request again. Returns `false` unless it has all of them.
@@ -127,14 +128,6 @@ impl Receipts {
 
 /// Utterances and receipts that are remembered for repeated requests.
 const ITEMS_MAX: usize = 128;
-
-/// Appends an item and drops the oldest beyond a limit.
-fn push_bounded<T>(queue: &mut VecDeque<T>, item: T) {
-    if queue.len() >= ITEMS_MAX {
-        queue.pop_front();
-    }
-    queue.push_back(item);
-}
 
 #[cfg(test)]
 mod tests {

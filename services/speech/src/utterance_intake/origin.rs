@@ -68,7 +68,7 @@ impl Origin {
     /// Adds what each recogniser thought to the receipt.
     pub(super) fn with_views(&self, receipt: Receipt) -> Receipt {
         let Some(Heard { first, second }) = &self.heard else { return receipt };
-        let first = first.first().map_or("", |best| best.text.as_str());
+        let first = first.hypotheses.first().map_or("", |best| best.text.as_str());
         let (second, text) = match second {
             SecondView::NotAsked => (SecondState::NotAsked, ""),
             SecondView::Late => (SecondState::Late, ""),

@@ -5,6 +5,7 @@
 use std::collections::VecDeque;
 
 use crate::RecognisedSegment;
+use crate::bounded::push_bounded;
 use crate::devices::stream::SpeechSegment;
 
 /// Early results that are kept: one for each speaker, and one that turned out to be too early.
@@ -20,7 +21,7 @@ pub(super) struct EarlyResults {
 
 impl EarlyResults {
     pub(super) fn keep(&mut self, segment: SpeechSegment, result: RecognisedSegment) {
-        push(&mut self.results, (segment, result));
+        push_bounded(&mut self.results, EARLY_MAX, (segment, result));
     }
 
     pub(super) fn take(&mut self, segment: &SpeechSegment) -> Option<RecognisedSegment> {
@@ -32,17 +33,10 @@ impl EarlyResults {
     }
 
     pub(super) fn answered(&mut self, sound: u64) {
-        push(&mut self.answered, sound);
+        push_bounded(&mut self.answered, EARLY_MAX, sound);
     }
 
     pub(super) fn is_answered(&self, sound: u64) -> bool {
         self.answered.contains(&sound)
     }
-}
-
-fn push<T>(queue: &mut VecDeque<T>, item: T) {
-    if queue.len() >= EARLY_MAX {
-        queue.pop_front();
-    }
-    queue.push_back(item);
 }
