@@ -4,7 +4,7 @@ use crate::options::{Options, SpokenNoise};
 use crate::report::{Report, percentile, print};
 use std::path::Path;
 use std::process::Command;
-use whichone_tests::spoken::{Conditions, Held, Noise, Tally, tally};
+use whichone_tests::spoken::{Conditions, Ending, Held, Noise, Tally, tally};
 
 /// Noise under the speech: its option, how far the speech stands above it, decibels, what it is, and its name.
 const NOISES: [(SpokenNoise, f64, Noise, &str); 3] = [
@@ -34,6 +34,8 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         "noise",
         "right picks",
         "95 % interval",
+        "another object",
+        "none",
         "questions",
         "seconds to the decision",
         "utterances",
@@ -59,12 +61,16 @@ fn can_speak() -> bool {
 }
 
 fn show(held: &Held) {
-    let how = if held.is_right() { "right" } else { "WRONG" };
+    let how = match held.ending() {
+        Ending::Right => "right",
+        Ending::Another => "WRONG",
+        Ending::Nothing => "none ",
+    };
     let Held { number, speaker, wanted, questions, seconds, .. } = held;
     print(&format!(
         "{number:3} {how} {wanted:7} {speaker:9} {questions} questions {seconds:5.1} s"
     ));
-    if !held.is_right() {
+    if held.ending() != Ending::Right {
         held.story.iter().for_each(|line| print(line));
     }
 }
@@ -77,8 +83,10 @@ fn row(name: &str, tally: &Tally) -> Vec<String> {
     let share = |of: u32| format!("{of} ({:.1} %)", 100.0 * f64::from(of) / f64::from(said.max(1)));
     vec![
         name.to_owned(),
-        format!("{} of {all}", tally.right()),
+        format!("{} of {all}", tally.ended(Ending::Right)),
         format!("{:.1} to {:.1} %", 100.0 * low, 100.0 * high),
+        tally.ended(Ending::Another).to_string(),
+        tally.ended(Ending::Nothing).to_string(),
         format!("{:.2}", tally.mean(|held| f64::from(held.questions))),
         format!("{:.1}", tally.mean(|held| held.seconds)),
         said.to_string(),

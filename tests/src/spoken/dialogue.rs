@@ -65,10 +65,25 @@ pub struct Held {
 }
 
 impl Held {
-    /// Returns whether the right object was brought.
-    pub fn is_right(&self) -> bool {
-        self.brought.as_deref() == Some(self.wanted.as_str())
+    /// Returns how it ended.
+    pub fn ending(&self) -> Ending {
+        match self.brought.as_deref() {
+            Some(brought) if brought == self.wanted => Ending::Right,
+            Some(_) => Ending::Another,
+            None => Ending::Nothing,
+        }
     }
+}
+
+/// How a dialogue ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// The wanted object was brought.
+    Right,
+    /// Another object was brought.
+    Another,
+    /// None was brought in time.
+    Nothing,
 }
 
 /// Probability of a remark after an answer.

@@ -17,7 +17,7 @@ mod tally;
 mod taps;
 mod words;
 
-pub use dialogue::{Conditions, Held, converse, second_model};
+pub use dialogue::{Conditions, Ending, Held, converse, second_model};
 pub use room::Room;
 pub use sound::{Noise, Pink, SPEAKERS, SPEECH_RMS, Speaker, babble, levelled};
 pub use tally::{Tally, tally};

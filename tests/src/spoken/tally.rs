@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use evaluation::simulation::wilson;
 use serde::Serialize;
 
-use super::dialogue::{Conditions, Held, converse};
+use super::dialogue::{Conditions, Ending, Held, converse};
 
 /// Results of many dialogues.
 #[derive(Clone, Debug, Serialize)]
@@ -51,14 +51,14 @@ fn converse_or_retry(conditions: Conditions) -> Held {
 }
 
 impl Tally {
-    /// Dialogues in which the right object was brought.
-    pub fn right(&self) -> usize {
-        self.dialogues.iter().filter(|held| held.is_right()).count()
+    /// Number of dialogues that ended like this.
+    pub fn ended(&self, ending: Ending) -> usize {
+        self.dialogues.iter().filter(|held| held.ending() == ending).count()
     }
 
     /// Wilson's interval of 95 % for the share of right ones.
     pub fn interval(&self) -> (f64, f64) {
-        let interval = wilson(self.right() as u64, self.dialogues.len() as u64);
+        let interval = wilson(self.ended(Ending::Right) as u64, self.dialogues.len() as u64);
         (interval.low, interval.high)
     }
 
