@@ -156,7 +156,7 @@ pub struct RecognisedSegment {
 impl RecognisedSegment {
     /// Returns the result of one recogniser that passed the gate.
     pub fn accepted(span_s: (f64, f64), snr_db: f32, hypotheses: Vec<Hypothesis>) -> Self {
-        let heard = Heard { first: hypotheses.clone(), second: SecondView::NotAsked };
+        let heard = Heard { first: hypotheses.clone().into(), second: SecondView::NotAsked };
         Self { span_s, snr_db, hypotheses: Ok(hypotheses), heard, awaits_second: false }
     }
 

@@ -6,7 +6,7 @@ use ::speech::Hypothesis;
 use ::speech::devices::audio::RATE_HZ;
 use ::speech::devices::recogniser::{
     Ensemble, Gate, Opinion, PocketSphinx, PocketSphinxOptions, RecogniserUnavailable,
-    SecondOpinion, SecondView,
+    SecondOpinion, SecondView, is_voice,
 };
 use ::speech::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
 use crossbeam_channel::{Receiver, Select};
@@ -107,8 +107,8 @@ impl Listener {
         let _ = self.recognisers.judge(&heard, pcm, &voice);
         let took_s = (started.elapsed().as_secs_f64(), thread_s() - cpu_s);
         let hypotheses = heard.hypotheses();
-        let is_voice = self.recognisers.is_voice(&hypotheses, pcm, &voice);
-        let accepted = self.gates.each_ref().map(|gate| is_voice && gate.judge(&heard).is_ok());
+        let is_voice = is_voice(&heard.first, pcm, &voice);
+        let accepted = self.gates.each_ref().map(|gate| gate.judge(&heard, || is_voice).is_ok());
         let asked = heard.second != SecondView::NotAsked;
         let late = heard.second == SecondView::Late;
         Some(Heard { speech, decoded_at, hypotheses, accepted, took_s, asked, late })

@@ -13,13 +13,13 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
 
 use super::Limits;
-use super::doubt::{self, Doubt};
+use super::doubt::{Doubt, Listening};
 use super::early::EarlyResults;
 use crate::devices::audio::{RATE_HZ, read_wav, seconds, snr_db};
-use crate::devices::recogniser::{Ensemble, Heard, Opinion, PendingOpinion, SecondView};
+use crate::devices::recogniser::{Ensemble, FirstView, Heard, Opinion, SecondView};
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::{Segmenter, VadEvent};
-use crate::{Hypothesis, In, Recognised, RecognisedSegment};
+use crate::{In, Recognised, RecognisedSegment};
 
 /// Samples of a file that are searched for speech at a time: one second.
 const PIECE: usize = RATE_HZ as usize;
@@ -105,10 +105,10 @@ impl Worker {
         if let Some(result) = self.early.take(&segment) {
             return self.answer(sound, Ok(vec![result]));
         }
-        let listening = self.second_listens(&segment);
+        let listening = self.second_listens(sound, &segment);
         match self.ask_first(&segment) {
             Err(reason) => self.answer(sound, Err(reason)),
-            Ok(first) => match self.doubted(listening, sound, &segment, &first) {
+            Ok(first) => match self.doubted(listening, &first) {
                 Some(mut doubt) => {
                     doubt.owe();
                     self.doubt = Some(doubt);
@@ -130,7 +130,8 @@ impl Worker {
         // If the user speaks on, the opinion is about half an utterance.
         let is_other = |doubt: &mut Doubt| !doubt.is_owed && !doubt.is_about(sound, &segment);
         self.doubt.take_if(is_other);
-        let listening = self.doubt.is_none().then(|| self.second_listens(&segment)).flatten();
+        let listening =
+            self.doubt.is_none().then(|| self.second_listens(sound, &segment)).flatten();
         // A failure is retried when the end is certain, and reported then.
         let first = self.ask_first(&segment).ok();
         let Some(first) = first else { return self.publish_early(sound, &segment, None) };
@@ -138,7 +139,7 @@ impl Worker {
         match &mut self.doubt {
             Some(doubt) if doubt.is_owed => {}
             Some(doubt) => doubt.update(segment.clone(), first),
-            None => self.doubt = self.doubted(listening, sound, &segment, &first),
+            None => self.doubt = self.doubted(listening, &first),
         }
         let awaits_second =
             self.doubt.as_ref().is_some_and(|doubt| doubt.is_about(sound, &segment));
@@ -152,7 +153,8 @@ impl Worker {
     /// Ends the question to the second recogniser, if one is asked, with its opinion or without.
     fn settle(&mut self, opinion: Option<Opinion>) {
         let Some(doubt) = self.doubt.take() else { return };
-        let (sound, segment, heard, is_owed) = doubt.settled(opinion);
+        let heard = doubt.heard(opinion);
+        let Doubt { sound, segment, is_owed, .. } = doubt;
         let result = self.result(&segment, heard, false);
         if is_owed {
             return self.answer(sound, result.map(|result| vec![result]));
@@ -164,24 +166,19 @@ impl Worker {
     }
 
     /// Has the second recogniser listen while the first one decodes.
-    fn second_listens(&self, segment: &SpeechSegment) -> Option<PendingOpinion> {
-        doubt::second_listens(self.recognisers.as_ref().ok()?, segment, self.limits.patience)
+    fn second_listens(&self, sound: u64, segment: &SpeechSegment) -> Option<Listening> {
+        let recognisers = self.recognisers.as_ref().ok()?;
+        Listening::begin(recognisers, sound, segment, self.limits.patience)
     }
 
     /// Asks the second recogniser, which listens already, where the first one is in doubt.
-    fn doubted(
-        &self,
-        listening: Option<PendingOpinion>,
-        sound: u64,
-        segment: &SpeechSegment,
-        first: &[Hypothesis],
-    ) -> Option<Doubt> {
-        self.recognisers.as_ref().ok().filter(|recognisers| recognisers.is_in_doubt(first))?;
-        let pending = listening?;
-        Some(Doubt::raise(pending, sound, segment.clone(), first.to_vec(), &self.limits.segmenter))
+    fn doubted(&self, listening: Option<Listening>, first: &FirstView) -> Option<Doubt> {
+        let recognisers = self.recognisers.as_ref().ok()?;
+        let listening = listening.filter(|_| recognisers.is_in_doubt(&first.hypotheses))?;
+        Some(listening.doubted(first.clone(), self.limits.segmenter.post_roll_s))
     }
 
-    fn ask_first(&mut self, segment: &SpeechSegment) -> Result<Vec<Hypothesis>, String> {
+    fn ask_first(&mut self, segment: &SpeechSegment) -> Result<FirstView, String> {
         let recognisers = available(&mut self.recognisers)?;
         let first = recognisers.ask_first(&segment.samples, segment.speech.clone());
         first.map_err(|error| error.to_string())

@@ -20,14 +20,20 @@ const WARM_UP: usize = 10 * FRAME;
 /// that breaks more words than it repairs.
 const CLEAR_DB: f32 = 18.0;
 
-/// Returns the samples with the noise reduced. Returns them unchanged where the noise around `speech`
-/// is low, or where too little surrounds it to estimate the noise.
-pub fn denoised<'s>(samples: &'s [i16], speech: &Range<usize>) -> Cow<'s, [i16]> {
+/// Returns the samples with the noise reduced, and the evidence of a voice in `speech`, which the network
+/// finds on the way. Returns them unchanged, without evidence, where the noise around `speech` is low, or
+/// where too little surrounds it to estimate the noise.
+pub fn denoised<'s>(
+    samples: &'s [i16],
+    speech: &Range<usize>,
+) -> (Cow<'s, [i16]>, Option<VoiceEvidence>) {
     if snr_db(samples, &(0..samples.len()), speech) >= CLEAR_DB {
-        return Cow::Borrowed(samples);
+        return (Cow::Borrowed(samples), None);
     }
     // Resampling fails only at a rate of 0.
-    reduce_noise(samples).map_or(Cow::Borrowed(samples), Cow::Owned)
+    reduce_noise(samples).map_or((Cow::Borrowed(samples), None), |(clear, probabilities)| {
+        (Cow::Owned(clear), Some(VoiceEvidence::of(&probabilities, speech)))
+    })
 }
 
 /// Sound behind the speech that is judged with it: 0.1 s.
@@ -52,9 +58,15 @@ impl VoiceEvidence {
     /// precedes.
     pub fn in_speech(samples: &[i16], speech: &Range<usize>) -> Self {
         let end = samples.len().min(speech.end + BEHIND);
-        let mut frames = voice_probabilities(&samples[..end]);
-        let before = (speech.start * (NETWORK_HZ / RATE_HZ) as usize / FRAME).min(frames.len());
-        let mut frames = frames.split_off(before);
+        Self::of(&voice_probabilities(&samples[..end]), speech)
+    }
+
+    /// Judges `speech` by the probabilities of all frames of the sound around it.
+    fn of(probabilities: &[f32], speech: &Range<usize>) -> Self {
+        let frame = |sample: usize| {
+            (sample * (NETWORK_HZ / RATE_HZ) as usize / FRAME).min(probabilities.len())
+        };
+        let mut frames = probabilities[frame(speech.start)..frame(speech.end + BEHIND)].to_vec();
         frames.sort_by(|a, b| b.total_cmp(a));
         let voiced = frames.iter().take_while(|&&probability| probability > VOICED).count();
         Self {
@@ -73,22 +85,27 @@ fn voice_probabilities(samples: &[i16]) -> Vec<f32> {
     samples.chunks_exact(FRAME).map(|frame| network.process_frame(&mut output, frame)).collect()
 }
 
-fn reduce_noise(samples: &[i16]) -> Result<Vec<i16>, String> {
+/// Returns the samples with the noise reduced, and the probability of a voice in each frame.
+fn reduce_noise(samples: &[i16]) -> Result<(Vec<i16>, Vec<f32>), String> {
     let samples: Vec<f32> = samples.iter().map(|&s| f32::from(s)).collect();
     let noisy = resample(&samples, RATE_HZ, NETWORK_HZ)?;
     // The beginning played backwards, which is noise of the same kind.
     let mut input: Vec<f32> = noisy.iter().take(WARM_UP).rev().copied().collect();
-    let start = input.len() + FRAME;
+    let warm_up = input.len();
     input.extend_from_slice(&noisy);
     input.resize((input.len() + FRAME).next_multiple_of(FRAME), 0.0);
     let mut network = DenoiseState::new();
     let mut output = vec![0.0; input.len()];
-    for (noisy, clear) in input.chunks_exact(FRAME).zip(output.chunks_exact_mut(FRAME)) {
-        network.process_frame(clear, noisy);
-    }
+    let frames = input.chunks_exact(FRAME).zip(output.chunks_exact_mut(FRAME));
+    let mut probabilities: Vec<f32> =
+        frames.map(|(noisy, clear)| network.process_frame(clear, noisy)).collect();
+    probabilities.drain(..warm_up / FRAME);
+    // The output is late by a frame.
+    let start = warm_up + FRAME;
     let clear = resample(&output[start..start + noisy.len()], NETWORK_HZ, RATE_HZ)?;
     // The cast saturates: values beyond full scale are clipped.
-    Ok(clear.into_iter().take(samples.len()).map(|s| s.round() as i16).collect())
+    let clear = clear.into_iter().take(samples.len()).map(|s| s.round() as i16).collect();
+    Ok((clear, probabilities))
 }
 
 #[cfg(test)]
@@ -116,8 +133,9 @@ mod tests {
     #[test]
     fn denoise_removes_noise_and_keeps_the_voice() {
         let (clean, noisy, speech) = spoken(3_000.0);
-        let output = denoised(&noisy, &speech);
+        let (output, voice) = denoised(&noisy, &speech);
         assert_eq!(output.len(), noisy.len());
+        assert!(voice.is_some());
         // Before the speech the network is still learning.
         let after = speech.end + 4_800..clean.len();
         let before = error(&noisy, &clean, after.clone());
@@ -131,7 +149,7 @@ mod tests {
         for noise in [0.0, 300.0] {
             let (_, noisy, speech) = spoken(noise);
             let output = denoised(&noisy, &speech);
-            assert!(matches!(output, Cow::Borrowed(same) if same == noisy), "{noise}");
+            assert!(matches!(output, (Cow::Borrowed(same), None) if same == noisy), "{noise}");
         }
     }
 
@@ -140,7 +158,7 @@ mod tests {
         let (_, noisy, speech) = spoken(3_000.0);
         let samples = &noisy[speech];
         let output = denoised(samples, &(0..samples.len()));
-        assert!(matches!(output, Cow::Borrowed(same) if same == samples));
+        assert!(matches!(output, (Cow::Borrowed(same), None) if same == samples));
     }
 
     #[test]
@@ -160,7 +178,7 @@ mod tests {
     #[test]
     fn denoise_keeps_the_length_of_what_is_shorter_than_a_frame() {
         for len in [0, 1, 5, 159, 161] {
-            assert_eq!(denoised(&vec![1; len], &(0..len / 2)).len(), len);
+            assert_eq!(denoised(&vec![1; len], &(0..len / 2)).0.len(), len);
         }
     }
 }

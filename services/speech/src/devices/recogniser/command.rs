@@ -81,7 +81,7 @@ impl Recogniser for Command {
         })?;
         match answer.error {
             Some(reason) => Err(RecogniseError(reason)),
-            None => Ok(hypotheses(answer.hypotheses)),
+            None => Ok(hypotheses(answer.hypotheses).into()),
         }
     }
 }
@@ -217,8 +217,8 @@ mod tests {
         Command::open(CommandOptions { deadline, ..CommandOptions::new(command) }).unwrap()
     }
 
-    fn recognise(command: &mut Command, samples: usize) -> Recognition {
-        command.recognise(&vec![1; samples], 0..samples)
+    fn recognise(command: &mut Command, samples: usize) -> Result<Vec<Hypothesis>, RecogniseError> {
+        command.recognise(&vec![1; samples], 0..samples).map(|view| view.hypotheses)
     }
 
     #[test]

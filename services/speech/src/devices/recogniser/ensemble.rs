@@ -5,11 +5,9 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::Receiver;
 
-use messages::GateVerdict;
-
 use super::{
-    Gate, InterimDecoderOpener, Opinion, PendingOpinion, RecogniseError, Recogniser, Rejected,
-    SecondOpinion,
+    FirstView, Gate, InterimDecoderOpener, Opinion, PendingOpinion, RecogniseError, Recogniser,
+    Rejected, SecondOpinion,
 };
 use crate::Hypothesis;
 use crate::devices::audio::{RATE_HZ, VoiceEvidence};
@@ -19,8 +17,9 @@ const AROUND: usize = RATE_HZ as usize / 5;
 /// Probability from which on a voice speaks: that of most knocks is lower, and that of hardly any voice
 /// (docs/speech.md).
 const VOICE_MIN: f32 = 0.994;
-/// Longest voiced sound of a word or two, and of each of their letters, seconds: music is sustained.
-const VOICED_S: (f32, f32) = (0.5, 0.12);
+/// Share of the voiced sound that is words, at least: of music and knocks only a part resembles any, and
+/// talk about other things is often recognised in pieces (docs/speech.md).
+const WORDS_MIN: f32 = 0.8;
 /// Time limit of the second recogniser for recordings.
 const UNHURRIED: Duration = Duration::from_secs(20);
 
@@ -35,8 +34,8 @@ pub struct Ensemble {
 /// What the recognisers think of one utterance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heard {
-    /// Hypotheses of the first recogniser, best first.
-    pub first: Vec<Hypothesis>,
+    /// The first recogniser's view.
+    pub first: FirstView,
     /// The second recogniser's view.
     pub second: SecondView,
 }
@@ -56,8 +55,8 @@ impl Heard {
     /// Returns the hypotheses of all recognisers, best first.
     pub fn hypotheses(&self) -> Vec<Hypothesis> {
         match &self.second {
-            SecondView::Heard(opinion) => opinion.combined_with(&self.first),
-            SecondView::NotAsked | SecondView::Late => self.first.clone(),
+            SecondView::Heard(opinion) => opinion.combined_with(&self.first.hypotheses),
+            SecondView::NotAsked | SecondView::Late => self.first.hypotheses.clone(),
         }
     }
 }
@@ -76,7 +75,7 @@ impl Ensemble {
         &mut self,
         pcm: &[i16],
         speech: Range<usize>,
-    ) -> Result<Vec<Hypothesis>, RecogniseError> {
+    ) -> Result<FirstView, RecogniseError> {
         self.first.recognise(pcm, speech)
     }
 
@@ -112,11 +111,11 @@ impl Ensemble {
     ) -> Result<Heard, RecogniseError> {
         let listening = self.second_listens(pcm, &speech, Instant::now() + UNHURRIED);
         let first = self.ask_first(pcm, speech)?;
-        if !self.is_in_doubt(&first) {
+        if !self.is_in_doubt(&first.hypotheses) {
             return Ok(Heard { first, second: SecondView::NotAsked });
         }
         let opinion = listening.and_then(|pending| {
-            pending.ask_about(&first);
+            pending.ask_about(&first.hypotheses);
             let is_there = wait(pending.opinion(), pending.until());
             pending.opinion().try_recv().ok().filter(|_| is_there)
         });
@@ -133,21 +132,7 @@ impl Ensemble {
         pcm: &[i16],
         speech: &Range<usize>,
     ) -> Result<Vec<Hypothesis>, Rejected> {
-        let hypotheses = self.gate.judge(heard)?;
-        if self.is_voice(&hypotheses, pcm, speech) {
-            return Ok(hypotheses);
-        }
-        let text = hypotheses.first().map_or("", |best| best.text.as_str()).to_owned();
-        Err(Rejected { text, reason: GateVerdict::NoSpeech, score: self.gate.score(&hypotheses) })
-    }
-
-    /// Returns whether a voice says these words.
-    pub fn is_voice(&self, hypotheses: &[Hypothesis], pcm: &[i16], speech: &Range<usize>) -> bool {
-        let best = hypotheses.first().map_or("", |best| best.text.as_str());
-        let letters = best.chars().filter(|letter| letter.is_alphabetic()).count();
-        let longest_s = VOICED_S.0 + VOICED_S.1 * letters as f32;
-        let voice = VoiceEvidence::in_speech(pcm, speech);
-        voice.probability >= VOICE_MIN && voice.voiced_s <= longest_s
+        self.gate.judge(heard, || is_voice(&heard.first, pcm, speech))
     }
 
     /// See [`Recogniser::is_quick`].
@@ -158,5 +143,32 @@ impl Ensemble {
     /// See [`Recogniser::interim_decoder`].
     pub fn interim_decoder(&self) -> Option<InterimDecoderOpener> {
         self.first.interim_decoder()
+    }
+}
+
+/// Returns whether a voice says the words of the samples, in which `speech` are those of the voice.
+pub fn is_voice(first: &FirstView, pcm: &[i16], speech: &Range<usize>) -> bool {
+    let voice = first.voice.unwrap_or_else(|| VoiceEvidence::in_speech(pcm, speech));
+    let is_words = first.words_s.is_none_or(|words_s| words_s >= WORDS_MIN * voice.voiced_s);
+    voice.probability >= VOICE_MIN && is_words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn voice_says_words_that_are_most_of_its_sound() {
+        let voice = |probability, voiced_s| Some(VoiceEvidence { probability, voiced_s });
+        for (words_s, voice, expected) in [
+            (Some(0.4), voice(0.999, 0.45), true),
+            (Some(0.4), voice(0.99, 0.45), false),
+            (Some(0.2), voice(0.999, 0.45), false),
+            (Some(0.0), voice(0.999, 0.1), false),
+            (None, voice(0.999, 2.0), true),
+        ] {
+            let first = FirstView { words_s, voice, ..FirstView::default() };
+            assert_eq!(is_voice(&first, &[], &(0..0)), expected, "{first:?}");
+        }
     }
 }

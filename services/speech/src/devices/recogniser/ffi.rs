@@ -68,6 +68,7 @@ library! {
     ps_seg_iter: unsafe extern "C" fn(DecoderPtr) -> Segment,
     ps_seg_next: unsafe extern "C" fn(Segment) -> Segment,
     ps_seg_word: unsafe extern "C" fn(Segment) -> *const c_char,
+    ps_seg_frames: unsafe extern "C" fn(Segment, *mut c_int, *mut c_int),
     ps_nbest: unsafe extern "C" fn(DecoderPtr) -> NBest,
     ps_nbest_next: unsafe extern "C" fn(NBest) -> NBest,
     ps_nbest_hyp: unsafe extern "C" fn(NBest, *mut i32) -> *const c_char,
@@ -94,8 +95,9 @@ pub(super) enum Passes {
 /// The library's result for one utterance.
 #[derive(Default)]
 pub(super) struct Decoded {
-    /// Words of the best path, including fillers and pronunciation markers.
-    pub(super) best: String,
+    /// Words of the best path, including fillers and pronunciation markers, and the length of each in
+    /// [`FRAMES_PER_S`].
+    pub(super) best: Vec<(String, u32)>,
     /// Texts with the natural logarithms of their scores, not normalised. Best first; a text may
     /// appear more than once (other times or pronunciations).
     pub(super) n_best: Vec<(String, f64)>,
@@ -217,21 +219,24 @@ impl Decoder {
         }
     }
 
-    /// Returns the words of the best path.
-    fn best(&mut self) -> String {
+    /// Returns the words of the best path with their lengths, frames.
+    fn best(&mut self) -> Vec<(String, u32)> {
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
         let mut words = Vec::new();
         // SAFETY: the iterator is walked to its end, where the library frees it and answers null;
         // it is used only while not null. The word lives as long as the dictionary and is copied
-        // at once.
+        // at once; its first and last frames are written to the two numbers.
         unsafe {
             let mut segment = (lib.ps_seg_iter)(ps);
             while !segment.is_null() {
-                words.push(text_of((lib.ps_seg_word)(segment)));
+                let (mut first, mut last) = (0, 0);
+                (lib.ps_seg_frames)(segment, &raw mut first, &raw mut last);
+                let length = u32::try_from(last + 1 - first).unwrap_or_default();
+                words.push((text_of((lib.ps_seg_word)(segment)), length));
                 segment = (lib.ps_seg_next)(segment);
             }
         }
-        words.join(" ")
+        words
     }
 
     /// Returns the best paths through the word lattice, as texts without fillers.
@@ -274,6 +279,9 @@ impl Drop for Decoder {
 /// Weight of the language model beside the acoustic model. With the library's own (6.5) decoding takes
 /// a sixth longer and no more is understood; `docs/speech.md` compares values.
 const LANGUAGE_WEIGHT: &CStr = c"8.5";
+
+/// The library's frames (its option `-frate`).
+pub(super) const FRAMES_PER_S: f32 = 100.0;
 
 /// The library divides path scores by 2^10 so that they fit into 32 bits (`SENSCR_SHIFT`).
 const SCORE_UNIT: f64 = 1024.0;

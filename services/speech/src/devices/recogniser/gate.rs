@@ -50,11 +50,16 @@ impl Gate {
         Self { words, reader, threshold: threshold.into() }
     }
 
-    /// Accepts or rejects all hypotheses of one utterance together; returns them, best first.
+    /// Accepts or rejects all hypotheses of one utterance together; returns them, best first. `is_voice`
+    /// judges whether the sound is a voice's, and is asked last.
     ///
     /// # Errors
-    /// If the speech is not meant for the robot.
-    pub fn judge(&self, heard: &Heard) -> Result<Vec<Hypothesis>, Rejected> {
+    /// If there is no speech, or it is not meant for the robot.
+    pub fn judge(
+        &self,
+        heard: &Heard,
+        is_voice: impl FnOnce() -> bool,
+    ) -> Result<Vec<Hypothesis>, Rejected> {
         let hypotheses = heard.hypotheses();
         let rejected = |reason, score| {
             let text = hypotheses.first().map_or("", |best| best.text.as_str()).to_owned();
@@ -71,6 +76,9 @@ impl Gate {
         }
         if score < self.threshold && self.plain_content(&hypotheses) < PLAIN {
             return rejected(GateVerdict::OtherTalk, score);
+        }
+        if !is_voice() {
+            return rejected(GateVerdict::NoSpeech, score);
         }
         Ok(hypotheses)
     }
@@ -181,13 +189,13 @@ mod tests {
     }
 
     fn heard(weighed: &[(&str, f64)]) -> Heard {
-        Heard { first: hypotheses(weighed), second: SecondView::NotAsked }
+        Heard { first: hypotheses(weighed).into(), second: SecondView::NotAsked }
     }
 
     #[test]
     fn gate_accepts_speech_about_the_scene_and_short_answers_only() {
         let gate = Gate::new(&bowls(), Gate::THRESHOLD);
-        let judge = |weighed: &[(&str, f64)]| gate.judge(&heard(weighed));
+        let judge = |weighed: &[(&str, f64)]| gate.judge(&heard(weighed), || true);
         assert_eq!(judge(&[("yes the white one", 0.9), ("yes", 0.1)]).unwrap().len(), 2);
         let rejected = judge(&[("the weather today", 0.9), ("the white one", 0.1)]).unwrap_err();
         assert_eq!(rejected.text, "the weather today");
@@ -197,21 +205,25 @@ mod tests {
         assert!(gate.score(&hypotheses(&answer)) < gate.threshold);
         assert!(judge(&answer).is_ok(), "plain content");
         assert!(judge(&[("years", 0.6), ("yes", 0.4)]).is_err());
-        let nothing = Gate::new(&bowls(), 0.0).judge(&heard(&[])).unwrap_err();
+        let nothing = Gate::new(&bowls(), 0.0).judge(&heard(&[]), || true).unwrap_err();
         assert_eq!((nothing.text.as_str(), nothing.reason), ("", GateVerdict::NoWords));
     }
 
     #[test]
-    fn gate_rejects_what_the_second_recogniser_takes_for_silence() {
+    fn gate_rejects_what_is_no_voice_or_silence_to_the_second_recogniser() {
         let gate = Gate::new(&bowls(), Gate::THRESHOLD);
         let second = |no_speech| {
             let (text, ln_own) = ("yes".to_owned(), -1.0);
             SecondView::Heard(Opinion { text, ln_own, ln_likelihood: vec![-1.0], no_speech })
         };
-        let judge =
-            |no_speech| gate.judge(&Heard { second: second(no_speech), ..heard(&[("yes", 1.0)]) });
-        assert!(judge(0.2).is_ok());
-        assert_eq!(judge(0.7).unwrap_err().reason, GateVerdict::NoSpeech);
+        let judge = |no_speech, is_voice| {
+            let heard = Heard { second: second(no_speech), ..heard(&[("yes", 1.0)]) };
+            gate.judge(&heard, || is_voice)
+        };
+        assert!(judge(0.2, true).is_ok());
+        for (no_speech, is_voice) in [(0.7, true), (0.2, false)] {
+            assert_eq!(judge(no_speech, is_voice).unwrap_err().reason, GateVerdict::NoSpeech);
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 mod command;
 mod ensemble;
 mod ffi;
+mod first_view;
 mod gate;
 mod pocketsphinx;
 mod scene_files;
@@ -15,10 +16,9 @@ use std::path::Path;
 
 use scene::Scene;
 
-use crate::Hypothesis;
-
 pub use command::{Command, CommandOptions};
-pub use ensemble::{Ensemble, Heard, SecondView};
+pub use ensemble::{Ensemble, Heard, SecondView, is_voice};
+pub use first_view::FirstView;
 pub use gate::{Gate, Rejected};
 pub use pocketsphinx::{PocketSphinx, PocketSphinxOptions};
 pub use second_opinion::{Opinion, PendingOpinion, SecondOpinion};
@@ -55,8 +55,8 @@ impl RecogniserUnavailable {
     }
 }
 
-/// Hypotheses with different texts, best first; none if nothing was recognised.
-pub type Recognition = Result<Vec<Hypothesis>, RecogniseError>;
+/// What a recogniser thinks of an utterance.
+pub type Recognition = Result<FirstView, RecogniseError>;
 
 /// A recogniser of whole utterances.
 pub trait Recogniser: Send {

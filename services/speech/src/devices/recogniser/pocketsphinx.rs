@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 
 use scene::Scene;
 
-use super::ffi::{Decoded, Decoder, DecoderFiles, Library, Passes};
+use super::ffi::{Decoded, Decoder, DecoderFiles, FRAMES_PER_S, Library, Passes};
 use super::scene_files::SceneFiles;
 use super::word_confidence::hypotheses;
 use super::{
-    InterimDecoder, InterimDecoderOpener, RecogniseError, Recogniser, RecogniserUnavailable,
-    Recognition,
+    FirstView, InterimDecoder, InterimDecoderOpener, RecogniseError, Recogniser,
+    RecogniserUnavailable, Recognition,
 };
 use crate::Hypothesis;
 use crate::devices::audio::{RATE_HZ, denoised, with_noise_floor};
@@ -133,11 +133,12 @@ const PATHS_MAX: usize = 100;
 
 impl Recogniser for PocketSphinx {
     fn recognise(&mut self, pcm: &[i16], speech: Range<usize>) -> Recognition {
-        let clear = denoised(pcm, &speech);
+        let (clear, voice) = denoised(pcm, &speech);
         let pcm = with_noise_floor(&clear);
         let near = &pcm[speech.start.saturating_sub(LEAD)..];
         let decoded = self.decoder.decode(near, PATHS_MAX).ok_or_else(failed)?;
-        Ok(weighed(&decoded))
+        let words_s = Some(words_s(&decoded.best));
+        Ok(FirstView { hypotheses: weighed(&decoded), words_s, voice })
     }
 
     fn is_quick(&self) -> bool {
@@ -193,12 +194,19 @@ fn weighed(decoded: &Decoded) -> Vec<Hypothesis> {
     let mut paths: Vec<(String, f64)> =
         decoded.n_best.iter().map(|(text, score)| (plain(text), *score)).collect();
     // The best path may lie outside the paths that were examined; it is the best all the same.
-    let best = plain(&decoded.best);
+    let best: Vec<String> = decoded.best.iter().filter_map(|(word, _)| spelling(word)).collect();
+    let best = best.join(" ");
     if paths.iter().all(|(text, _)| *text != best) {
         let top = paths.iter().map(|(_, score)| *score).reduce(f64::max).unwrap_or(0.0);
         paths.insert(0, (best, top));
     }
     hypotheses(&paths, SCORE_SCALE)
+}
+
+/// Returns the length of the words of a path, without its pauses and noises, seconds.
+fn words_s(path: &[(String, u32)]) -> f32 {
+    let words = path.iter().filter(|(word, _)| spelling(word).is_some());
+    words.map(|(_, frames)| *frames as f32 / FRAMES_PER_S).sum()
 }
 
 /// Returns the words without markers and fillers.

@@ -15,7 +15,19 @@ use crate::devices::voice::{Synthesiser, VoiceOptions};
 
 fn decoded(best: &str, n_best: &[(&str, f64)]) -> Decoded {
     let scored = |&(text, ln_score): &(&str, f64)| (text.to_owned(), ln_score);
-    Decoded { best: best.to_owned(), n_best: n_best.iter().map(scored).collect() }
+    let best = best.split(' ').map(|word| (word.to_owned(), FRAMES_EACH)).collect();
+    Decoded { best, n_best: n_best.iter().map(scored).collect() }
+}
+
+/// Length of the words of [`decoded`]: 0.2 s.
+const FRAMES_EACH: u32 = 20;
+
+#[test]
+fn pocketsphinx_measures_the_words_without_markers_and_noises() {
+    for (best, expected_s) in [("<s> the white(2) <sil> one [NOISE] </s>", 0.6), ("<sil>", 0.0)] {
+        let found = words_s(&decoded(best, &[("no", -9.0)]).best);
+        assert!((found - expected_s).abs() < 1e-6, "{best}: {found}");
+    }
 }
 
 #[test]
@@ -186,13 +198,14 @@ struct TestRecogniser {
 impl TestRecogniser {
     fn judge(&mut self, pcm: &[i16]) -> Result<Vec<Hypothesis>, Rejected> {
         let hypotheses = self.recognise(pcm);
-        self.gate.judge(&Heard { first: hypotheses, second: SecondView::NotAsked })
+        let heard = Heard { first: hypotheses.into(), second: SecondView::NotAsked };
+        self.gate.judge(&heard, || true)
     }
 
     /// Recognises the speech inside the quiet that [`Speech::say`] adds.
     fn recognise(&mut self, pcm: &[i16]) -> Vec<Hypothesis> {
         let quiet = QUIET.min(pcm.len() / 2);
-        self.recogniser.recognise(pcm, quiet..pcm.len() - quiet).unwrap()
+        self.recogniser.recognise(pcm, quiet..pcm.len() - quiet).unwrap().hypotheses
     }
 }
 

@@ -12,7 +12,7 @@ impl Recogniser for Unsure {
     fn recognise(&mut self, pcm: &[i16], _: Range<usize>) -> Recognition {
         let of = |text, weight| Hypothesis { weight, ..Hypothesis::certain(text) };
         let best = if pcm.len() < 8_000 { "stop" } else { "right" };
-        Ok(vec![of(best, 0.6), of("white", 0.4)])
+        Ok(vec![of(best, 0.6), of("white", 0.4)].into())
     }
 
     fn is_quick(&self) -> bool {
@@ -90,7 +90,9 @@ fn asr_worker_asks_the_second_recogniser_where_the_first_is_in_doubt() {
     worker.submit(1, RecognitionInput::Speech(end)).unwrap();
     assert_eq!(answer(&events), last);
     assert_eq!(hears.try_iter().collect::<Vec<_>>(), [16_512], "it is asked once");
-    assert!(matches!(last.heard.second, SecondView::Heard(_)) && last.heard.first.len() == 2);
+    assert!(
+        matches!(last.heard.second, SecondView::Heard(_)) && last.heard.first.hypotheses.len() == 2
+    );
 }
 
 /// It is done the sooner.
