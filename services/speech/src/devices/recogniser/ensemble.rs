@@ -17,9 +17,9 @@ const AROUND: usize = RATE_HZ as usize / 5;
 /// Probability from which on a voice speaks: that of most knocks is lower, and that of hardly any voice
 /// (docs/speech.md).
 const VOICE_MIN: f32 = 0.994;
-/// Share of the voiced sound that is words, at least: of music and knocks only a part resembles any, and
-/// talk about other things is often recognised in pieces (docs/speech.md).
-const WORDS_MIN: f32 = 0.8;
+/// Share of the voiced sound that the words cover, at least: of music and knocks only a part resembles any
+/// (docs/speech.md).
+const WORDS_MIN: f32 = 0.7;
 /// Time limit of the second recogniser for recordings.
 const UNHURRIED: Duration = Duration::from_secs(20);
 
@@ -149,8 +149,8 @@ impl Ensemble {
 /// Returns whether a voice says the words of the samples, in which `speech` are those of the voice.
 pub fn is_voice(first: &FirstView, pcm: &[i16], speech: &Range<usize>) -> bool {
     let voice = first.voice.unwrap_or_else(|| VoiceEvidence::in_speech(pcm, speech));
-    let is_words = first.words_s.is_none_or(|words_s| words_s >= WORDS_MIN * voice.voiced_s);
-    voice.probability >= VOICE_MIN && is_words
+    let is_said = |words_s| words_s > 0.0 && words_s >= WORDS_MIN * voice.voiced_s;
+    voice.probability >= VOICE_MIN && first.words_s.is_none_or(is_said)
 }
 
 #[cfg(test)]
@@ -164,7 +164,7 @@ mod tests {
             (Some(0.4), voice(0.999, 0.45), true),
             (Some(0.4), voice(0.99, 0.45), false),
             (Some(0.2), voice(0.999, 0.45), false),
-            (Some(0.0), voice(0.999, 0.1), false),
+            (Some(0.0), voice(0.999, 0.0), false),
             (None, voice(0.999, 2.0), true),
         ] {
             let first = FirstView { words_s, voice, ..FirstView::default() };

@@ -8,7 +8,8 @@ use crate::devices::audio::VoiceEvidence;
 pub struct FirstView {
     /// Hypotheses with different texts, best first; none if nothing was recognised.
     pub hypotheses: Vec<Hypothesis>,
-    /// Length of the words on the best path without pauses and noises between them, seconds.
+    /// Length of the words on the best path and of other speech between them, without pauses and noises,
+    /// seconds; 0 if there is no word on it.
     pub words_s: Option<f32>,
     /// How much of the sound is a voice, where removing the noise has shown it.
     pub voice: Option<VoiceEvidence>,

@@ -203,10 +203,17 @@ fn weighed(decoded: &Decoded) -> Vec<Hypothesis> {
     hypotheses(&paths, SCORE_SCALE)
 }
 
-/// Returns the length of the words of a path, without its pauses and noises, seconds.
+/// The acoustic model's name for speech without words, such as the end of a drawn-out "nah".
+const SPEECH: &str = "[SPEECH]";
+
+/// Returns the length of the words of a path and of the speech between them, seconds; 0 without a word.
 fn words_s(path: &[(String, u32)]) -> f32 {
-    let words = path.iter().filter(|(word, _)| spelling(word).is_some());
-    words.map(|(_, frames)| *frames as f32 / FRAMES_PER_S).sum()
+    let is_word = |word: &str| spelling(word).is_some();
+    if !path.iter().any(|(word, _)| is_word(word)) {
+        return 0.0;
+    }
+    let spoken = path.iter().filter(|(word, _)| is_word(word) || word == SPEECH);
+    spoken.map(|(_, frames)| *frames as f32 / FRAMES_PER_S).sum()
 }
 
 /// Returns the words without markers and fillers.

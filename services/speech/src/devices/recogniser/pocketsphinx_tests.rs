@@ -24,7 +24,12 @@ const FRAMES_EACH: u32 = 20;
 
 #[test]
 fn pocketsphinx_measures_the_words_without_markers_and_noises() {
-    for (best, expected_s) in [("<s> the white(2) <sil> one [NOISE] </s>", 0.6), ("<sil>", 0.0)] {
+    for (best, expected_s) in [
+        ("<s> the white(2) <sil> one [NOISE] </s>", 0.6),
+        ("<s> nah [SPEECH] </s>", 0.4),
+        ("<s> [SPEECH] </s>", 0.0),
+        ("<sil>", 0.0),
+    ] {
         let found = words_s(&decoded(best, &[("no", -9.0)]).best);
         assert!((found - expected_s).abs() < 1e-6, "{best}: {found}");
     }
