@@ -48,9 +48,11 @@ fn certify(
         return search.root().value.upper;
     }
     search.roll_out(effort.beliefs_max + effort.certify_max);
-    let revealed = Revealed::of(reduced, &problem.costs);
-    let upper = revealed.map_or(f64::INFINITY, |mut easier| easier.upper(effort.certify_max));
     let Value { lower, upper: searched, .. } = search.root().value;
+    let enough = lower + effort.tolerance;
+    let revealed = Revealed::of(reduced, &problem.costs);
+    let upper =
+        revealed.map_or(f64::INFINITY, |mut easier| easier.upper(effort.certify_max, enough));
     searched.min(upper).max(lower)
 }
 

@@ -7,8 +7,11 @@
 //! than telling the class. The questions available, how evenly they split, and what a verification
 //! leaves in doubt all count as they are, so this bound is tighter than any price of information.
 //!
-//! The search is depth-first, the most promising question first, and passes over the questions
-//! that are bounded by the best one. Of a belief it keeps the key and the bound.
+//! The search is depth-first, the most promising question first. It passes over the questions that are
+//! bounded by the best one, and leaves a belief as soon as its bound is low enough for the question that
+//! led to it to be bounded so. It goes on where the bounds of the easier problem are apart by more than a
+//! threshold, weighed with the probability of what is left, and is repeated with half the threshold. Of
+//! a belief it keeps the key, the bound, and the threshold: whatever was found before still bounds it.
 
 use std::collections::HashMap;
 
@@ -25,12 +28,22 @@ pub(crate) struct Revealed<'a> {
     /// For classes of one object, and for the others if there are any.
     told: Vec<Told>,
     questions: Vec<Question<'a>>,
-    known: HashMap<u128, f64>,
+    known: HashMap<u128, Known>,
     /// Beliefs that were looked at, and the most that may be.
     looked_at: usize,
     beliefs_max: usize,
     /// Whether there was more to look into.
     is_cut: bool,
+    /// How far apart bounds may be, weighed with their probability; a search that goes on begins lower.
+    threshold: f64,
+}
+
+/// What was found about a belief.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    upper: f64,
+    /// The threshold that it was searched with; infinite where it was left once it was low enough.
+    threshold: f64,
 }
 
 /// "Is it of that block?"
@@ -50,6 +63,10 @@ struct State {
     log: Vec<f64>,
     /// The classes that the right answers leave.
     left: Vec<u16>,
+    /// Probability, at the first belief, that one of them is wanted.
+    likelihood: f64,
+    /// How many questions were asked.
+    depth: u32,
     key: u128,
 }
 
@@ -58,14 +75,32 @@ struct Outlook {
     question: usize,
     split: Split,
     value: f64,
-    /// Probability of each side among the classes that are left, and what a right answer is worth.
-    sides: [(f64, f64); 2],
+    sides: [Side; 2],
 }
+
+/// A side of a question, and the right answer of those who are on it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Side {
+    /// Its probability among the classes that are left.
+    share: f64,
+    /// Upper bound on the value after the answer.
+    right: f64,
+    /// How much that counts in the value of the question.
+    weight: f64,
+}
+
+/// No policy asks that often; a guard for the stack.
+const DEPTH_MAX: u32 = 64;
 
 impl Question<'_> {
     /// Side of a class: 0 if it says yes.
     fn side(&self, class: usize) -> usize {
         usize::from(self.blocks[class] != self.block)
+    }
+
+    /// What the right answer of a side adds to the key of a belief.
+    fn code(&self, side: usize) -> u128 {
+        if side == 0 { self.code } else { self.code.wrapping_neg() }
     }
 }
 
@@ -103,71 +138,97 @@ impl<'a> Revealed<'a> {
             looked_at: 0,
             beliefs_max: 0,
             is_cut: false,
+            threshold: f64::INFINITY,
         })
     }
 
-    /// Upper bound on the value of the belief, from looking at that many beliefs: one question ahead,
-    /// then two, and so on.
-    pub(crate) fn upper(&mut self, beliefs_max: usize) -> f64 {
+    /// Upper bound on the value of the belief, from looking at that many beliefs. A bound as low as
+    /// `enough` is not tightened any more.
+    pub(crate) fn upper(&mut self, beliefs_max: usize, enough: f64) -> f64 {
         (self.looked_at, self.beliefs_max, self.is_cut) = (0, beliefs_max, true);
         let root = State {
             log: self.reduced.mass.iter().map(|m| m.ln()).collect(),
             mass: self.reduced.mass.clone(),
             left: (0..self.reduced.classes() as u16).collect(),
+            likelihood: 1.0,
+            depth: 0,
             key: 0,
         };
         let mut upper = self.told_class(&root);
-        for questions in 1.. {
-            if !self.is_cut || self.looked_at >= beliefs_max {
-                break;
-            }
+        self.threshold = self.threshold.min(upper - self.stop(&root));
+        while self.is_cut && self.looked_at < beliefs_max && upper > enough {
             self.is_cut = false;
-            self.known.clear();
-            upper = upper.min(self.look_into(&root, questions));
+            upper = upper.min(self.look_into(&root, enough));
+            self.threshold *= 0.5;
         }
         upper
     }
 
-    /// Looks that many questions ahead. Where one class is left, it is as good as told.
-    fn look_into(&mut self, at: &State, questions: u32) -> f64 {
-        let told = self.told_class(at);
-        if at.left.len() == 1 {
-            return told;
+    /// Upper bound on the value of a belief; the first that is not above `enough`.
+    fn look_into(&mut self, at: &State, enough: f64) -> f64 {
+        let known = self.known.get(&at.key).copied();
+        if let Some(known) = known
+            && (known.upper <= enough || known.threshold <= self.threshold)
+        {
+            return known.upper;
         }
-        if questions == 0 || self.looked_at >= self.beliefs_max {
+        let (stop, told) = (self.stop(at), self.told_class(at));
+        let upper = known.map_or(told, |known| known.upper.min(told));
+        if upper <= enough.max(stop) || at.depth >= DEPTH_MAX {
+            return upper;
+        }
+        if at.likelihood * (upper - stop) < self.threshold || self.looked_at >= self.beliefs_max {
             self.is_cut = true;
-            return told;
-        }
-        if let Some(known) = self.known.get(&at.key) {
-            return *known;
+            return upper;
         }
         self.looked_at += 1;
-        let mut best = self.stop(at);
-        let mut outlooks = self.look_ahead(at);
-        outlooks.sort_by(|a, b| b.value.total_cmp(&a.value));
-        for outlook in &outlooks {
+        let mut best = stop.max(enough);
+        for outlook in self.outlooks(at, best) {
             if outlook.value <= best {
                 break;
             }
-            best = best.max(self.ask(at, outlook, questions, best));
+            best = best.max(self.ask(at, &outlook, best));
         }
-        let best = best.min(told);
-        self.known.insert(at.key, best);
-        best
+        let threshold = if best > enough { self.threshold } else { f64::INFINITY };
+        let upper = best.min(upper);
+        self.known.insert(at.key, Known { upper, threshold });
+        upper
     }
 
     /// Upper bound on the value of a question; the first that is not above `enough`.
-    fn ask(&mut self, at: &State, outlook: &Outlook, questions: u32, enough: f64) -> f64 {
-        let Channel { own, price, .. } = *self.questions[outlook.question].channel;
+    fn ask(&mut self, at: &State, outlook: &Outlook, enough: f64) -> f64 {
         let mut value = outlook.value;
-        for (side, (share, right)) in outlook.sides.into_iter().enumerate() {
+        for (side, Side { share, right, weight }) in outlook.sides.into_iter().enumerate() {
             if share > 0.0 && value > enough {
                 let next = self.answered(at, outlook, side);
-                let after = self.look_into(&next, questions - 1);
-                value -= price.discount * own * share * (right - after);
+                let after = self.look_into(&next, right - (value - enough) / weight);
+                value -= weight * (right - after).max(0.0);
             }
         }
         value
+    }
+
+    /// The questions that may be worth more than `enough`, the most promising first.
+    fn outlooks(&self, at: &State, enough: f64) -> Vec<Outlook> {
+        let mut outlooks = self.look_ahead(at);
+        outlooks.retain(|outlook| outlook.value > enough);
+        for outlook in &mut outlooks {
+            self.recall(at, outlook);
+        }
+        outlooks.sort_by(|a, b| b.value.total_cmp(&a.value));
+        outlooks
+    }
+
+    /// Takes into account what is known of the beliefs after the right answers.
+    fn recall(&self, at: &State, outlook: &mut Outlook) {
+        let question = &self.questions[outlook.question];
+        for (side, of) in outlook.sides.iter_mut().enumerate() {
+            let known = self.known.get(&at.key.wrapping_add(question.code(side)));
+            if let Some(known) = known.filter(|known| known.upper < of.right) {
+                outlook.value -= of.weight * (of.right - known.upper);
+                of.right = known.upper;
+            }
+        }
     }
 
     /// What telling the class is worth.
@@ -211,7 +272,8 @@ impl<'a> Revealed<'a> {
             let yes: f64 =
                 says.filter(|(block, _)| **block == question.block).map(|(_, m)| m).sum();
             let split = self.told[0].split(yes.clamp(0.0, 1.0));
-            let (logs, mut sides, mut wrong) = ([own.ln(), other.ln()], [(0.0, 0.0); 2], 0.0);
+            let (logs, mut wrong) = ([own.ln(), other.ln()], 0.0);
+            let mut sides = [(0.0, 0.0); 2];
             for &class in &at.left {
                 let ((mass, log), side) = (at.entry(class), question.side(usize::from(class)));
                 let after = |likelihood: f64, added: f64, heard: usize| {
@@ -225,8 +287,11 @@ impl<'a> Revealed<'a> {
             let right = sides[0].1 + sides[1].1;
             let paid = sides[0].0 * split.compensation[0] + sides[1].0 * split.compensation[1];
             let value = price.pay((own * right + other * wrong) / total) + paid / total;
-            let sides =
-                sides.map(|(mass, right)| (mass / total, right / mass.max(f64::MIN_POSITIVE)));
+            let sides = sides.map(|(mass, right)| Side {
+                share: mass / total,
+                right: right / mass.max(f64::MIN_POSITIVE),
+                weight: price.discount * own * mass / total,
+            });
             outlooks.push(Outlook { question: index, split, value, sides });
         }
         outlooks
@@ -242,8 +307,14 @@ impl<'a> Revealed<'a> {
         let mass = at.mass.iter().enumerate().map(|(class, m)| m * scale[of(class)]).collect();
         let log = at.log.iter().enumerate().map(|(class, log)| log + logs[of(class)]).collect();
         let left = at.left.iter().copied().filter(|class| of(usize::from(*class)) == 0).collect();
-        let code = if side == 0 { question.code } else { question.code.wrapping_neg() };
-        State { mass, log, left, key: at.key.wrapping_add(code) }
+        State {
+            mass,
+            log,
+            left,
+            likelihood: at.likelihood * outlook.sides[side].share,
+            depth: at.depth + 1,
+            key: at.key.wrapping_add(question.code(side)),
+        }
     }
 }
 
