@@ -10,9 +10,9 @@ from hand import named
 ROBOT, OBJECT, BOARD = range(3)
 # An object that is let go higher than this above its place is taken by a person, metres.
 HANDED_OVER_M = 0.05
-# A gripper this near to where it handed something over is given it back, metres and radians; one that
-# went further away than the second distance may come back for it.
-BACK_M, BACK_RAD, AWAY_M = 0.05, 0.2, 0.10
+# A gripper that waits with open fingers this near to where it handed something over is given it back,
+# metres, radians and seconds.
+BACK_M, BACK_RAD, BACK_S = 0.05, 0.2, 1.0
 # An object this far from its place is put back there by people, metres.
 ASTRAY_M = 0.03
 # Fingers that touch an object no longer have let go of it; after the longest time a person pulls it out.
@@ -63,8 +63,9 @@ class Things:
         # record: the greatest force of each pair, newtons.
         self.tips = {limb: {} for limb in limbs}
         self.touches = {}
-        # What a person took last: name, limb, the object in the gripper, the gripper; and whether it left.
-        self.handed_over, self.has_left = None, False
+        # What a person took last: name, limb, the object in the gripper, the gripper; and for how long the
+        # gripper has been waiting there.
+        self.handed_over, self.waiting_s = None, 0.0
         # What a person holds out: the object and where.
         self.offered = None
         self.with_people = set()
@@ -136,7 +137,7 @@ class Things:
                 self.report({"event": "missed", "limb": limb, "touches": self.touched()})
             if not closes:
                 self.closing[limb] = None
-        self.offer()
+        self.offer(seconds)
         if self.restock and not any(self.picks.values()) and all(map(self.rests, self.limbs)):
             self.put_all_back()
 
@@ -181,7 +182,7 @@ class Things:
             record |= {"in_gripper": pick.at_release, "carried_m": carried, "from_home_m": from_home,
                        "gripper_xyz": list(pick.gripper[0])}
             if pick.xyz[2] > z + HANDED_OVER_M:
-                self.handed_over, self.has_left = (name, limb, pick.at_release, pick.gripper), False
+                self.handed_over = (name, limb, pick.at_release, pick.gripper)
                 self.take_away(pick.thing)
         self.report(record)
 
@@ -198,23 +199,24 @@ class Things:
         place = list(self.all).index(thing.name)
         self.put(thing, [-2.0, 0.4 * place, -0.5, *thing.home[3:]])
 
-    def offer(self):
-        """A person holds out what was handed over last, where the gripper comes back for it."""
+    def offer(self, seconds):
+        """A person holds out what was handed over last, where the gripper waits for it."""
         if self.handed_over is None:
             return
         name, limb, in_gripper, (at, turned) = self.handed_over
         place, own = self.pose(self.frame[limb])
-        apart = float(np.linalg.norm(place - at))
-        self.has_left |= apart > AWAY_M
         turn = math.acos(max(-1.0, min(1.0, (np.trace(turned.T @ own) - 1.0) / 2.0)))
-        is_there = self.has_left and apart < BACK_M and turn < BACK_RAD
-        if self.offered and not is_there:
-            thing, self.offered = self.offered[0], None
-            self.take_away(thing)
-        elif is_there and not self.offered and not any(self.picks.values()):
-            hand, still = self.hands[limb], np.abs(self.limbs[limb].qd).max() < STILL_RAD_S
-            if still and hand.percent() > 90.0 and not hand.goals:
-                self.hold_out(self.all[name], in_gripper, place, own)
+        is_there = np.linalg.norm(place - at) < BACK_M and turn < BACK_RAD
+        if self.offered:
+            if not is_there:
+                thing, self.offered = self.offered[0], None
+                self.take_away(thing)
+            return
+        hand, is_still = self.hands[limb], np.abs(self.limbs[limb].qd).max() < STILL_RAD_S
+        is_open = hand.percent() > 90.0 and not hand.goals and not any(self.picks.values())
+        self.waiting_s = self.waiting_s + seconds if is_there and is_still and is_open else 0.0
+        if self.waiting_s >= BACK_S:
+            self.hold_out(self.all[name], in_gripper, place, own)
 
     def hold_out(self, thing, in_gripper, at, turned):
         quat, own = np.zeros(4), np.zeros(9)
