@@ -40,7 +40,7 @@ need_cargo() {
 # physics_python: installs MuJoCo into target/physics unless it is there, and prints the path of a
 # Python that has it. Fails without network.
 physics_python() {
-    local venv="$root/target/physics" packages="mujoco==4.0.0 numpy==2.4.6"
+    local venv="$root/target/physics" packages="mujoco==4.0.0 numpy==2.4.6 iceoryx2==0.10.0"
     if [[ "$(cat "$venv/packages" 2>/dev/null)" != "$packages" ]]; then
         say "installing into target/physics: $packages"
         # shellcheck disable=SC2086

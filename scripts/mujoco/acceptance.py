@@ -12,14 +12,15 @@ import random
 import subprocess
 import sys
 import tempfile
-import tomllib
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import mujoco
 import numpy as np
 
-from model import Model
+from hand import Hand, named
+from limb import JOINTS
+from model import Model, placed
 
 ROOT = Path(__file__).resolve().parents[2]
 URDF = ROOT / "config/robots/baxter.urdf"
@@ -33,21 +34,14 @@ PLACE_M = 0.002
 TRIAL_M = 0.02
 # Slope that a scene states for each form of bowls: a round wall's chord over the depth of the fingers.
 WALL_DEG = {"straight": 0.0, "round": 7.0, "cone": 25.0}
-# Distance of the closed fingers by their shapes in the description; negative: they meet before.
-STOP_M = {"left": 0.0153 - 0.019, "right": 0.0111 - 0.019}
 
 
 def scene(name):
-    with open(ROOT / f"config/scenes/{name}.toml", "rb") as file:
-        objects = tomllib.load(file)["objects"]
-    for item in objects:
-        item.setdefault("yaw", 0.0)
-        item.setdefault("wall_deg", 0.0)
-        # Objects without a stated mass: plastic and metal things of that size.
-        item.setdefault("mass_kg", 0.15)
-        item["hollow"] = min(item["size"][:2]) > 0.042
-        item["form"] = "straight"
-    return objects
+    return placed((ROOT / f"config/scenes/{name}.toml").read_text(encoding="utf-8"))
+
+
+def is_bowl(item):
+    return item["form"] == "hollow"
 
 
 def with_walls(name, wall_deg, folder):
@@ -77,17 +71,18 @@ class Run:
     def __init__(self, plan, objects, **conditions):
         self.plan, self.limb = plan, plan["limb"]
         target = plan["object"]
-        built = Model(URDF, objects, target, **conditions)
+        built = Model(URDF.read_text(encoding="utf-8"), objects, **conditions)
         self.model = mujoco.MjModel.from_xml_string(built.text())
         self.data = mujoco.MjData(self.model)
-        self.item = next(item for item in objects if item["name"] == target)
-        id_of = lambda kind, name: mujoco.mj_name2id(self.model, kind, name)
-        actuator = mujoco.mjtObj.mjOBJ_ACTUATOR
-        self.arm = [id_of(actuator, name) for name in plan["joints"]]
+        self.target = f"object/{target}"
+        self.arm = [named(self.model, mujoco.mjtObj.mjOBJ_ACTUATOR, name) for name in plan["joints"]]
         self.joints = [self.model.jnt_qposadr[self.model.actuator_trnid[a, 0]] for a in self.arm]
-        self.finger = id_of(actuator, f"{self.limb[0]}_gripper_l_finger_joint")
-        self.body = id_of(mujoco.mjtObj.mjOBJ_BODY, f"object/{target}")
-        self.gripper = id_of(mujoco.mjtObj.mjOBJ_BODY, f"{self.limb}_gripper")
+        self.hands = {limb: Hand(self.model, self.data, limb) for limb in ("left", "right")}
+        self.hand = self.hands[self.limb]
+        # As the arm sets it before the fingers first move.
+        self.hand.configure(100.0)
+        self.body = named(self.model, mujoco.mjtObj.mjOBJ_BODY, self.target)
+        self.gripper = named(self.model, mujoco.mjtObj.mjOBJ_BODY, f"{self.limb}_gripper")
         self.ratio = [self.model.actuator_biasprm[a, 2] / self.model.actuator_biasprm[a, 1]
                       for a in self.arm]
         names = [mujoco.mj_id2name(self.model, mujoco.mjtObj.mjOBJ_GEOM, g) or ""
@@ -98,29 +93,20 @@ class Run:
 
     def begin(self):
         model, data = self.model, self.data
-        sample = self.plan["samples"][0]
         # The other arm rests with the joints of this one.
-        for side in ("left", "right"):
-            for joint, q in zip(self.plan["joints"], sample["q"]):
-                name = side + joint[len(self.limb):]
-                actuator = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR, name)
+        for side, hand in self.hands.items():
+            for joint, q in zip(JOINTS, self.plan["samples"][0]["q"]):
+                actuator = named(model, mujoco.mjtObj.mjOBJ_ACTUATOR, f"{side}_{joint}")
                 at = model.jnt_qposadr[model.actuator_trnid[actuator, 0]]
                 data.qpos[at] = data.ctrl[actuator] = q
-        for side in ("left", "right"):
-            for finger, sign in (("l", 1), ("r", -1)):
-                joint = f"{side[0]}_gripper_{finger}_finger_joint"
-                j = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, joint)
-                data.qpos[model.jnt_qposadr[j]] = sign * 0.0208
-            a = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_ACTUATOR,
-                                  f"{side[0]}_gripper_l_finger_joint")
-            data.ctrl[a] = 0.0208
+            data.qpos[hand.at], data.qpos[hand.other] = hand.open_travel, -hand.open_travel
+            data.ctrl[hand.motor] = hand.open_travel
         mujoco.mj_forward(model, data)
 
     def command(self, sample, closing):
-        width = sample["width_m"]
         # Once closed on the object, the fingers press.
-        travel = 0.0 if closing else (width - STOP_M[self.limb]) / 2
-        self.data.ctrl[self.finger] = min(max(travel, 0.0), 0.020833)
+        travel = 0.0 if closing else (sample["width_m"] - self.hand.stop_m) / 2
+        self.data.ctrl[self.hand.motor] = min(max(travel, 0.0), self.hand.open_travel)
         for actuator, q, qd, ratio in zip(self.arm, sample["q"], sample["qd"], self.ratio):
             self.data.ctrl[actuator] = q + ratio * qd
 
@@ -136,13 +122,16 @@ class Run:
         """Notes contacts of the robot, and of the object with others, that no pick should have."""
         for n, contact in enumerate(self.data.contact[:self.data.ncon]):
             a, b = (self.owner[g] for g in contact.geom)
-            if a.split("/")[0] in ("target", "other", "board"):
+            if a.startswith(("object/", "board/")):
                 a, b = b, a
             kinds = {owner.split("/")[0] for owner in (a, b)}
-            if kinds <= {"board", "target"} or "finger_tip" in a and b.startswith("target/"):
+            has_target = self.target in (a, b)
+            if kinds <= {"board", "object"} and (kinds != {"object"} or not has_target):
+                continue
+            if "finger_tip" in a and b == self.target:
                 continue
             # What is let go falls, here without a person who takes it.
-            if kinds <= {"other", "board"} or self.is_released and kinds <= {"other", "target"}:
+            if kinds == {"object"} and self.is_released:
                 continue
             mujoco.mj_contactForce(self.model, self.data, n, self.forces)
             if self.forces[0] > 0.0:
@@ -166,7 +155,7 @@ class Run:
             self.error = max(self.error, float(np.abs(q - np.array(sample["q"])).max()))
             self.step()
         fell_m = height - self.data.xpos[self.body][2]
-        return {"object": self.item["name"], "limb": self.limb, "seconds": self.plan["seconds"],
+        return {"object": self.plan["object"], "limb": self.limb, "seconds": self.plan["seconds"],
                 "error_rad": self.error, "torque": self.torque, "off_mm": 1e3 * off_m,
                 "tilt_deg": math.degrees(tilt), "released": bool(fell_m > 0.05), "stray": self.stray}
 
@@ -224,17 +213,18 @@ def trial(job):
     plan, objects, form, seed = job
     draw = random.Random(seed)
     slope = WALL_DEG[form]
-    objects = [dict(item, form=form, wall_deg=slope) if item["hollow"] else item for item in objects]
+    objects = [dict(item, wall=form, wall_deg=slope) if is_bowl(item) else item for item in objects]
     item = next(item for item in objects if item["name"] == plan["object"])
     distance, angle = draw.uniform(0.0, 0.01), draw.uniform(-math.pi, math.pi)
     offset = (distance * math.cos(angle), distance * math.sin(angle))
-    yaw = draw.uniform(-math.pi, math.pi) if item["hollow"] else math.radians(draw.uniform(-10, 10))
+    yaw = draw.uniform(-math.pi, math.pi) if is_bowl(item) else math.radians(draw.uniform(-10, 10))
     friction, mass = draw.uniform(0.4, 1.0), draw.uniform(0.5, 1.5)
-    run = Run(plan, objects, friction=friction, mass_share=mass, offset=offset, yaw=yaw)
+    displaced = {item["name"]: (offset, yaw)}
+    run = Run(plan, objects, friction=friction, mass_share=mass, displaced=displaced)
     result = run.run()
     held = result["off_mm"] < 1e3 * TRIAL_M and result["released"]
-    stray = [pair for pair in result["stray"] if not pair.startswith(("target/", "board/"))]
-    return form if item["hollow"] else "tool", held, result, stray
+    stray = [pair for pair in result["stray"] if not pair.startswith("object/")]
+    return form if is_bowl(item) else "tool", held, result, stray
 
 
 def trials(arguments):
@@ -245,8 +235,8 @@ def trials(arguments):
         for name in SCENES:
             objects = scene(name)
             for item in objects:
-                for form in arguments.walls if item["hollow"] else ["straight"]:
-                    file = with_walls(name, WALL_DEG[form], folder) if item["hollow"] else name
+                for form in arguments.walls if is_bowl(item) else ["straight"]:
+                    file = with_walls(name, WALL_DEG[form], folder) if is_bowl(item) else name
                     kinds.append((plan(arguments.whichone, file, item["name"]), objects, form))
     jobs = [(*kinds[n % len(kinds)], arguments.seed * 1_000_003 + n) for n in range(arguments.count)]
     tally = {}

@@ -6,6 +6,7 @@ Gravity on the robot is compensated, as a Baxter's springs and firmware do.
 """
 
 import math
+import tomllib
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -13,6 +14,10 @@ import numpy as np
 # Stiffness (N m/rad) and damping (N m s/rad) of the joints' servos by their torque limit.
 SERVO = {True: (4000.0, 160.0), False: (500.0, 8.0)}
 SERVO_STRONG_NM = 20.0
+# Step of the simulation, seconds.
+STEP_S = 0.001
+# Height of the floor in frame `base`, metres.
+FLOOR_M = -0.93
 # Sectors of a bowl's wall, and segments from its rim to its foot if it is round.
 SECTORS, SEGMENTS = 36, 4
 # Share of the height of a round bowl at which its ellipse would close: below is a flat foot.
@@ -38,11 +43,29 @@ def about_z(yaw):
     return [math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)]
 
 
-class Model:
-    """Builds the MJCF text; `geoms` says what each named shape belongs to."""
+def placed(scene):
+    """The objects of a scene file's text that have a place, with the defaults of what they leave out."""
+    objects = [item for item in tomllib.loads(scene)["objects"] if "xyz" in item]
+    for item in objects:
+        item.setdefault("yaw", 0.0)
+        item.setdefault("wall_deg", 0.0)
+        item.setdefault("form", "solid")
+        # Objects without a stated mass: plastic and metal things of that size.
+        item.setdefault("mass_kg", 0.15)
+        item.setdefault("wall", "straight")
+    return objects
 
-    def __init__(self, urdf, objects, target, friction=0.7, mass_share=1.0, offset=(0.0, 0.0), yaw=0.0):
-        self.robot = ET.parse(urdf).getroot()
+
+class Model:
+    """Builds the MJCF text. Names of shapes begin with what they belong to: a link of the robot,
+    `object/NAME`, or `board/NAME` below that object.
+
+    `urdf` is the text of the description. All `objects` are free to move; bodies that rest sleep, and
+    cost nothing until something touches them. `displaced` is the offset (x, y) in metres and the turn in
+    radians of one object by its name."""
+
+    def __init__(self, urdf, objects, friction=0.7, mass_share=1.0, displaced=None):
+        self.robot = ET.fromstring(urdf)
         self.links = {link.get("name"): link for link in self.robot.findall("link")}
         self.children = {}
         for joint in self.robot.findall("joint"):
@@ -50,8 +73,9 @@ class Model:
         self.friction, self.mass_share = friction, mass_share
         self.count = 0
         self.root = ET.Element("mujoco", model=self.robot.get("name"))
-        ET.SubElement(self.root, "option", timestep="0.001", integrator="implicitfast",
-                      cone="elliptic", impratio="20")
+        option = ET.SubElement(self.root, "option", timestep=str(STEP_S), integrator="implicitfast",
+                               cone="elliptic", impratio="20")
+        ET.SubElement(option, "flag", sleep="enable")
         ET.SubElement(self.root, "compiler", angle="radian", autolimits="true")
         self.world = ET.SubElement(self.root, "worldbody")
         self.contact = ET.SubElement(self.root, "contact")
@@ -60,9 +84,9 @@ class Model:
         self.sensors = ET.SubElement(self.root, "sensor")
         roots = set(self.links) - {j.find("child").get("link") for j in self.robot.findall("joint")}
         self.link(self.world, roots.pop(), [0.0] * 3, [1.0, 0.0, 0.0, 0.0], None)
+        self.floor()
         for item in objects:
-            moved = (offset, yaw) if item["name"] == target else ((0.0, 0.0), 0.0)
-            self.object(item, item["name"] == target, *moved)
+            self.object(item, *(displaced or {}).get(item["name"], ((0.0, 0.0), 0.0)))
 
     def text(self):
         return ET.tostring(self.root, encoding="unicode")
@@ -129,24 +153,27 @@ class Model:
                       contype="1", conaffinity="2", mass="0", condim="4",
                       friction=f"{self.friction} 0.005 0.0001", solref="0.004 1")
 
-    def object(self, item, free, offset, turn):
+    def floor(self):
+        """Catches what falls. The robot, bolted to it, does not meet it."""
+        ET.SubElement(self.world, "geom", name=self.name("board/floor"), type="plane", size="0 0 1",
+                      pos=f"0 0 {FLOOR_M}", contype="1", conaffinity="0")
+
+    def object(self, item, offset, turn):
         name, size = item["name"], item["size"]
         x, y, z = item["xyz"]
         bottom = z - size[2] / 2
         board = [size[0] / 2 + 0.03, size[1] / 2 + 0.03, 0.005]
         self.solid(self.world, f"board/{name}", "box", board, [x, y, bottom - 0.005],
                    about_z(item["yaw"]), 0.0)
-        pos = [x + offset[0], y + offset[1], z + (0.0005 if free else 0.0)]
+        pos = [x + offset[0], y + offset[1], z + 0.0005]
         body = ET.SubElement(self.world, "body", name=f"object/{name}", pos=words(pos),
                              quat=words(about_z(item["yaw"] + turn)))
-        if free:
-            ET.SubElement(body, "freejoint", name="target")
-        parts = self.bowl(item) if item["hollow"] else self.tool(item)
+        ET.SubElement(body, "freejoint", name=f"object/{name}")
+        parts = self.bowl(item) if item["form"] == "hollow" else self.tool(item)
         volume = sum(part[3] for part in parts)
-        owner = f"{'target' if free else 'other'}/{name}"
         for kind, half, (at, quat), share in parts:
             mass = item["mass_kg"] * self.mass_share * share / volume
-            self.solid(body, owner, kind, half, at, quat, mass)
+            self.solid(body, f"object/{name}", kind, half, at, quat, mass)
 
     def solid(self, body, owner, kind, half, at, quat, mass):
         ET.SubElement(body, "geom", name=self.name(owner), type=kind, size=words(half), pos=words(at),
@@ -173,7 +200,7 @@ class Model:
         """A wall of boxes round a bottom: straight, or rounded over a foot."""
         (x, _, z), width = item["size"], item["grasp_width"]
         radius = x / 2
-        if item["form"] == "round":
+        if item["wall"] == "round":
             # An ellipse; its upper part is steep, and a foot cuts off its lower end.
             heights = np.linspace(z / 2, -z / 2 + width, SEGMENTS + 1)
             share = (z / 2 - heights) / z * FOOT

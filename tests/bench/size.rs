@@ -204,7 +204,7 @@ fn random_scene(objects: usize, attributes: usize, seed: u64) -> String {
                 (0.6 + 0.1 * (i / 6) as f64, [-0.45, -0.3, -0.15, 0.15, 0.3, 0.45][i % 6]);
             let _ = writeln!(
                 text,
-                "xyz = [{x_m}, {y_m}, -0.125]\nsize = [0.08, 0.08, 0.06]\ngrasp_width = 0.004"
+                "xyz = [{x_m}, {y_m}, -0.125]\nsize = [0.08, 0.08, 0.06]\ngrasp_width = 0.004\nform = \"hollow\""
             );
         }
     }

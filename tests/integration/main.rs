@@ -19,6 +19,7 @@ mod isolation;
 mod journal_format;
 mod journal_loss;
 mod own_voice;
+mod physics;
 mod planners;
 mod pointing;
 mod put_back;

@@ -13,6 +13,7 @@ attributes = { color = "white", material = "plastic", size = "small", shape = "r
 xyz = [0.60, 0.40, 0.125]
 size = [0.12, 0.12, 0.05]
 grasp_width = 0.006
+form = "hollow"
 "#;
 
 /// Takes the objects of these names out of the scene file, and puts `more` behind the others.

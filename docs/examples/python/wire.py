@@ -27,6 +27,17 @@ def fnv1a(data, value=0xCBF29CE484222325):
     return value
 
 
+def text_of(fixed):
+    """The text of a `FixedText`."""
+    return bytes(fixed.bytes[:fixed.len]).decode(errors="replace")
+
+
+def put_text(fixed, text):
+    """Writes a text into a `FixedText`, without what does not fit."""
+    data = text.encode()[:len(fixed.bytes)].decode(errors="ignore").encode()
+    fixed.len, fixed.bytes[:len(data)] = len(data), data
+
+
 class Layout:
     """The wire layout's structs by name, and the schema key of each."""
 

@@ -237,8 +237,8 @@ pub mod robot {
     ];
 }
 
-/// Every topic that the group's services and clients share; those of [`robot`] are only used with a
-/// robot behind them.
+/// Every topic that the group's services and clients share, but for those of [`robot`], which are only
+/// used with a robot behind them.
 pub const ALL: [Topic; 17] = [
     INJECTION,
     AUDIO,

@@ -3,7 +3,7 @@
 use config::{CostsFrom, Settings};
 use diagnostics::{Diagnostic, Report};
 use manipulation::{GraspError, Limb, ObjectPose, PlanError, PlanSettings, check_reachable};
-use scene::Placement;
+use scene::{Form, Placement};
 
 use crate::ArmSetup;
 
@@ -62,6 +62,10 @@ fn grasp_help(error: &GraspError) -> (&'static str, &'static str) {
         GraspError::TooThin { .. } => (
             "grasp_width",
             "choose a thicker part to grip, or mount the fingers further in (docs/baxter.md)",
+        ),
+        GraspError::NoRim { .. } => (
+            "form",
+            "write `form = \"hollow\"` if it is gripped at its rim, else leave out its place",
         ),
         GraspError::TooHeavy { .. } => {
             ("mass_kg", "use a lighter or smaller object, stronger fingers, or leave out its place")
@@ -188,5 +192,6 @@ pub fn pose(placement: &Placement) -> ObjectPose {
         grasp_width_m: placement.grasp_width,
         mass_kg: placement.mass_kg,
         wall_rad: placement.wall_deg.to_radians(),
+        hollow: placement.form == Form::Hollow,
     }
 }

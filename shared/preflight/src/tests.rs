@@ -24,6 +24,7 @@ attributes = { color = "red" }
 xyz = [0.7, 0.2, -0.125]
 size = [0.10, 0.10, 0.06]
 grasp_width = 0.004
+form = "hollow"
 "#;
 
 /// The folder that is shipped.
@@ -118,6 +119,10 @@ fn preflight_reports_an_object_out_of_reach() {
     let heavy = complaints(&bowl_with("grasp_width", "grasp_width = 0.006\nmass_kg = 2.0"), &[]);
     let expected = "objects[0].mass_kg: `red_one` cannot be grasped: it weighs 2.00 kg";
     assert!(heavy.contains(expected) && heavy.contains("help: use a lighter"), "{heavy}");
+    let solid = complaints(&bowl_with("form", "form = \"solid\""), &[]);
+    let expected = "`red_one` cannot be grasped: it is solid and 100 mm wide between the fingers, \
+                    which open 38 mm at most; help: write `form = \"hollow\"` if";
+    assert!(solid.contains("objects[0].form: ") && solid.contains(expected), "{solid}");
     let narrow = [("arm.grip_open_percent", "30.0")];
     let narrow = complaints(&bowl_with("grasp_width", "grasp_width = 0.02"), &narrow);
     assert!(narrow.contains("`red_one` is wider than the fingers open: 11.4 mm"), "{narrow}");

@@ -2,7 +2,7 @@
 //! `{"objects":[{"name":ID,"attributes":{K:V,…}},…],"values":{K:[V,…],…}}`.
 //!
 //! Optional beside these: `name`, `noun`, `synonyms` (`{K:{V:[…],…},…}`), and an object's
-//! `xyz`, `yaw`, `size`, `grasp_width`, `mass_kg` and `wall_deg` as in the scene file. Without `values`, every value is
+//! `xyz`, `yaw`, `size`, `grasp_width`, `mass_kg`, `wall_deg` and `form` as in the scene file. Without `values`, every value is
 //! listed in the order in which the objects bring it up.
 
 use diagnostics::{Diagnostics, Fields, Node, Report, Source, Table};
@@ -72,6 +72,7 @@ impl Scene {
             json["size"] = json!(placement.size);
             json["grasp_width"] = json!(placement.grasp_width);
             json["wall_deg"] = json!(placement.wall_deg);
+            json["form"] = json!(placement.form.name());
             if let Some(mass_kg) = placement.mass_kg {
                 json["mass_kg"] = json!(mass_kg);
             }

@@ -23,7 +23,7 @@ mod wording;
 mod tests;
 
 pub use ids::{AttributeId, ObjectId, ValueId, WordId};
-pub use model::{Attribute, Object, Placement, Role, Scene, Value};
+pub use model::{Attribute, Form, Object, Placement, Role, Scene, Value};
 pub use plural::plural;
 pub use question::Question;
 pub use question_json::{QuestionError, question_from_json, question_to_json, reading_to_json};

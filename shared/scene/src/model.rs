@@ -46,6 +46,28 @@ pub struct Placement {
     pub mass_kg: Option<f64>,
     /// Slope of a wall that is gripped at its rim, degrees from the vertical, outwards.
     pub wall_deg: f64,
+    /// Whether it has a rim to be gripped at.
+    pub form: Form,
+}
+
+/// Form of an object, as far as it decides how the fingers take it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Form {
+    /// The fingers span it.
+    #[default]
+    Solid,
+    /// A bowl, cup or box without a lid: where it is wider than the fingers open, they take its rim.
+    Hollow,
+}
+
+impl Form {
+    /// The names of the forms in a scene file.
+    pub const NAMES: [(&str, Self); 2] = [("solid", Self::Solid), ("hollow", Self::Hollow)];
+
+    /// Returns its name in a scene file.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize].0
+    }
 }
 
 /// An attribute with its values and the wording of its questions.

@@ -22,6 +22,7 @@
 //! size = [0.14, 0.014, 0.014]        # metres
 //! grasp_width = 0.014                # metres
 //! mass_kg = 0.02                     # optional
+//! form = "hollow"                    # has a rim, as a bowl; optional, "solid" by default
 //! wall_deg = 8                       # slope of a bowl's wall, optional
 //! ```
 //!
@@ -34,7 +35,7 @@
 use diagnostics::{Diagnostics, Fields, Report, Source, Table};
 
 use crate::check::{Checks, Draft, DraftAttribute, DraftObject, DraftValue};
-use crate::{Placement, Scene};
+use crate::{Form, Placement, Scene};
 
 impl Scene {
     /// Reads the text of a scene file; `file` is its name in diagnostics.
@@ -104,7 +105,7 @@ const WALL_DEG_MAX: f64 = 30.0;
 
 /// The place and size of an object: all of it or nothing.
 fn placement(f: &mut Fields<'_>) -> Option<Placement> {
-    const KEYS: [&str; 6] = ["xyz", "yaw", "size", "grasp_width", "mass_kg", "wall_deg"];
+    const KEYS: [&str; 7] = ["xyz", "yaw", "size", "grasp_width", "mass_kg", "wall_deg", "form"];
     if !KEYS.into_iter().any(|key| f.has(key)) {
         f.allow(&KEYS);
         return None;
@@ -116,8 +117,9 @@ fn placement(f: &mut Fields<'_>) -> Option<Placement> {
         grasp_width: f.any_number("grasp_width"),
         mass_kg: f.has("mass_kg").then(|| f.any_number("mass_kg")),
         wall_deg: if f.has("wall_deg") { f.any_number("wall_deg") } else { 0.0 },
+        form: if f.has("form") { f.choice("form", &Form::NAMES) } else { Form::default() },
     };
-    for optional in ["yaw", "mass_kg", "wall_deg"] {
+    for optional in ["yaw", "mass_kg", "wall_deg", "form"] {
         if !f.has(optional) {
             f.allow(&[optional]);
         }

@@ -86,7 +86,7 @@ fn arm_reports_an_unreachable_object_without_moving() {
     let text = "name = \"far\"\nnoun = \"cup\"\n\
         [[attributes]]\nname = \"color\"\nvalues = [\"red\", \"blue\"]\n\
         [[objects]]\nname = \"away\"\nattributes = { color = \"red\" }\nxyz = [3.0, 0.0, 0.0]\n\
-        size = [0.1, 0.1, 0.05]\ngrasp_width = 0.006\n\
+        size = [0.1, 0.1, 0.05]\ngrasp_width = 0.006\nform = \"hollow\"\n\
         [[objects]]\nname = \"nowhere\"\nattributes = { color = \"blue\" }\n";
     config.scene = scene::Scene::from_toml("far.toml", text).unwrap();
     let mut machine = Machine::new(config);

@@ -107,7 +107,7 @@ mod tests {
     /// A scene of so many mugs, all alike; the first three have a place.
     fn mugs(count: usize) -> Scene {
         let mug = |n: usize| {
-            let place = "xyz = [0.7, 0.2, 0.0]\nsize = [0.1, 0.1, 0.1]\ngrasp_width = 0.004\n";
+            let place = "xyz = [0.7, 0.2, 0.0]\nsize = [0.1, 0.1, 0.1]\ngrasp_width = 0.004\nform = \"hollow\"\n";
             let place = if n < 3 { place } else { "" };
             format!("[[objects]]\nname = \"m{n}\"\nattributes = {{ colour = \"red\" }}\n{place}")
         };

@@ -35,6 +35,7 @@ attributes = { color = "red" }
 xyz = [0.7, 0.2, -0.125]
 size = [0.10, 0.10, 0.06]
 grasp_width = 0.004
+form = "hollow"
 "#;
 
 impl Folder {

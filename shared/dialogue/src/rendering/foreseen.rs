@@ -54,7 +54,7 @@ mod tests {
 
     /// A scene of so many mugs; the last one alone has a place if asked for.
     fn mugs(count: usize, placed: bool) -> Scene {
-        let place = "xyz = [0.7, 0.2, 0.0]\nsize = [0.1, 0.1, 0.1]\ngrasp_width = 0.004\n";
+        let place = "xyz = [0.7, 0.2, 0.0]\nsize = [0.1, 0.1, 0.1]\ngrasp_width = 0.004\nform = \"hollow\"\n";
         let mug = |n: usize| {
             let place = if placed && n + 1 == count { place } else { "" };
             format!("[[objects]]\nname = \"m{n}\"\nattributes = {{ size = \"s{n}\" }}\n{place}")

@@ -160,6 +160,7 @@ mod tests {
             grasp_width_m: 0.014,
             mass_kg: None,
             wall_rad: 0.0,
+            hollow: false,
         };
         let settings = PlanSettings::default();
         let far = Isometry3::translation(0.2, 0.6, 0.3);

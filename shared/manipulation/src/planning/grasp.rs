@@ -27,6 +27,8 @@ pub struct ObjectPose {
     /// Slope of the wall below the rim, radians from the vertical, outwards: what is gripped at its rim
     /// is gripped along the wall, so that the fingers do not turn it.
     pub wall_rad: f64,
+    /// Whether it has a rim with room inside for a finger: a bowl, a cup, a box without a lid.
+    pub hollow: bool,
 }
 
 /// A grasp of an object.
@@ -65,6 +67,18 @@ pub enum GraspError {
         width_m: f64,
         /// Least width that the gripper holds and detects, metres.
         least_m: f64,
+    },
+    /// It is wider than the fingers open, and has no rim that they could take instead.
+    #[error(
+        "it is solid and {:.0} mm wide between the fingers, which open {:.0} mm at most",
+        extent_m * 1e3,
+        open_m * 1e3
+    )]
+    NoRim {
+        /// The smaller one of its horizontal extents, metres.
+        extent_m: f64,
+        /// Opening of the gripper, metres.
+        open_m: f64,
     },
     /// The fingers do not press hard enough.
     #[error(
@@ -129,7 +143,7 @@ impl ObjectPose {
         Cuboid { centre: self.xyz_m, size: self.size_m, yaw: self.yaw_rad }
     }
 
-    /// Every grasp from straight above: across each side that the fingers span, or, where the
+    /// Every grasp from straight above: across each side that the fingers span, or, where a hollow
     /// object is wider than the gripper, on its rim.
     ///
     /// # Errors
@@ -144,6 +158,10 @@ impl ObjectPose {
             return Err(GraspError::TooThin { width_m, least_m: gripper.least_m() });
         }
         let across = self.across(gripper);
+        if across.is_empty() && !self.hollow {
+            let extent_m = self.size_m[0].min(self.size_m[1]);
+            return Err(GraspError::NoRim { extent_m, open_m: gripper.open_m });
+        }
         let (grasps, most_kg) = if across.is_empty() {
             (self.on_rim(gripper), self.most_on_rim_kg(gripper))
         } else {

@@ -27,6 +27,7 @@ fn marker() -> ObjectPose {
         grasp_width_m: 0.014,
         mass_kg: None,
         wall_rad: 0.0,
+        hollow: false,
     }
 }
 

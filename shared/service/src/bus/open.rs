@@ -70,12 +70,14 @@ pub struct Topics {
 }
 
 impl Topics {
-    /// Opens (or, where this process is the first, creates) every topic and wake-up.
+    /// Opens (or, where this process is the first, creates) every topic and wake-up. The robot's are
+    /// among them: a bridge in another language can only open what exists.
     ///
     /// # Errors
     /// iceoryx2 fails, or a topic with another schema exists.
     pub fn create(bus: &Bus) -> Result<Self, BusError> {
-        let topics = topics::ALL.iter().map(|topic| keep(bus, topic)).collect::<Result<_, _>>()?;
+        let topics = topics::ALL.iter().chain(&topics::robot::ALL);
+        let topics = topics.map(|topic| keep(bus, topic)).collect::<Result<_, _>>()?;
         let notifiers = topics::woken().into_iter().map(|service| wake::open(bus, service));
         Ok(Self { _topics: topics, _notifiers: notifiers.collect::<Result<_, _>>()? })
     }
@@ -83,30 +85,41 @@ impl Topics {
 
 /// Holds a topic open without reading or writing it; its type is found by its payload's name.
 fn keep(bus: &Bus, topic: &Topic) -> Result<Box<dyn std::fmt::Debug>, BusError> {
+    use messages::{robot, schema::Schema};
     macro_rules! by_name {
-        ($($payload:ident),+) => {
+        ($($payload:ty),+) => {
             match topic.payload {
-                $(name if name == <messages::$payload as messages::schema::Schema>::NAME => {
-                    Box::new(open_topic!(bus, topic, messages::$payload)?)
+                $(name if name == <$payload as Schema>::NAME => {
+                    Box::new(open_topic!(bus, topic, $payload)?)
                 })+
                 _ => Box::new(open_topic!(bus, topic, [u8])?),
             }
         };
     }
     Ok(by_name!(
-        Receipt,
-        Utterance,
-        Presented,
-        Activity,
-        Hearing,
-        Partial,
-        AudioChunk,
-        Observation,
-        AppliedMark,
-        RobotAct,
-        ArmStatus,
-        JointStates,
-        MotionCommand
+        messages::Receipt,
+        messages::Utterance,
+        messages::Presented,
+        messages::Activity,
+        messages::Hearing,
+        messages::Partial,
+        messages::AudioChunk,
+        messages::Observation,
+        messages::AppliedMark,
+        messages::RobotAct,
+        messages::ArmStatus,
+        messages::JointStates,
+        messages::MotionCommand,
+        robot::JointState,
+        robot::AssemblyState,
+        robot::JointCommand,
+        robot::JointTrajectoryPoint,
+        robot::SpeedRatio,
+        robot::EndpointState,
+        robot::EndEffectorCommand,
+        robot::EndEffectorState,
+        robot::EndEffectorProperties,
+        robot::Drill
     ))
 }
 

@@ -12,6 +12,9 @@ use service::{Span, Time};
 const RESEND_EVERY: Span = Span::from_ms(250);
 /// Timeout of a calibration, after which it is requested again.
 const CALIBRATION_MAX: Span = Span::from_ms(10_000);
+/// Timeout of the holding force, after which the fingers move without it: a gripper of another firmware
+/// may not confirm `configure`.
+const CONFIGURE_MAX: Span = Span::from_ms(2_000);
 /// Age beyond which a gripper's state says nothing.
 const STALE: Span = Span::from_ms(1_000);
 /// Fingers that have not begun to move this long after a command will not.
@@ -36,7 +39,7 @@ pub(super) struct Gripper {
     handled: Option<Time>,
     sent: Option<Time>,
     sequence: u32,
-    /// The holding force was set.
+    /// The holding force was set, or given up.
     configured: bool,
 }
 
@@ -157,13 +160,21 @@ impl Gripper {
         }
     }
 
-    /// Sets the holding force before the first motion of the fingers. Returns whether it is set, or the
-    /// gripper has no such parameter.
+    /// Sets the holding force before the first motion of the fingers. Returns whether they may move: it is
+    /// set, the gripper has no such parameter, or it has not confirmed it in time.
     fn configure(&mut self, now: Time) -> bool {
         let command = Command::Configure(HOLDING_FORCE_PERCENT);
-        let is_sent = self.command.is_some_and(|(before, ..)| before == command);
-        self.configured |= is_sent && self.handled.is_some();
+        let sent = self.command.filter(|(before, ..)| *before == command).map(|(.., since)| since);
+        self.configured |= sent.is_some() && self.handled.is_some();
         if self.configured || self.properties.is_none_or(|p| p.controls_force == 0) {
+            return true;
+        }
+        if sent.is_some_and(|since| now.since(since) > CONFIGURE_MAX) {
+            tracing::warn!(
+                "the gripper has not confirmed its holding force ({HOLDING_FORCE_PERCENT} %) within 2 s and \
+                 keeps its own, 30 % by default; help: heavy objects may slip, see docs/baxter.md"
+            );
+            self.configured = true;
             return true;
         }
         self.send(command, now);

@@ -242,8 +242,8 @@ fn gripper_command_is_resent_until_confirmed() {
     assert_eq!(bench.driver.measured().holds(Limb::Left), Some(true));
 }
 
-#[test]
-fn holding_force_is_set_before_the_fingers_first_move() {
+/// A bench whose left gripper has a holding force, and its first command: to set it.
+fn unconfigured() -> (Bench, Command, EndEffectorCommand) {
     let mut bench = Bench::new();
     let own = EndEffectorProperties {
         ui_type: UiType::Electric.code(),
@@ -256,11 +256,31 @@ fn holding_force_is_set_before_the_fingers_first_move() {
     let open = bench.moving(0.0, Fingers::Open(0.02));
     let message = word(&bench.pass(Some(open))).unwrap();
     assert_eq!(message.read(), Ok(Word::Configure(100.0)));
+    (bench, open, message)
+}
+
+#[test]
+fn holding_force_is_set_before_the_fingers_first_move() {
+    let (mut bench, open, message) = unconfigured();
     assert!((0..10).all(|_| word(&bench.pass(Some(open))).is_none()), "it is not confirmed yet");
     bench.grippers[0].command_sender = message.sender;
     bench.grippers[0].command_sequence = message.sequence;
     let next = word(&bench.pass(Some(open))).unwrap();
     assert!(matches!(next.read(), Ok(Word::Go(percent)) if percent > 0.0), "{next:?}");
+}
+
+#[test]
+fn fingers_move_with_the_force_they_have_if_none_is_confirmed() {
+    let (mut bench, open, _) = unconfigured();
+    let begin = bench.now;
+    let moves = |bench: &mut Bench| {
+        let sent = word(&bench.pass(Some(open)));
+        sent.filter(|message| message.read() != Ok(Word::Configure(100.0)))
+    };
+    let next = (0..1_000).find_map(|_| moves(&mut bench)).expect("a command to the fingers");
+    assert!(matches!(next.read(), Ok(Word::Go(percent)) if percent > 0.0), "{next:?}");
+    let waited = bench.now.since(begin);
+    assert!((Span::from_ms(1_900)..Span::from_ms(2_200)).contains(&waited), "{waited:?}");
 }
 
 #[test]

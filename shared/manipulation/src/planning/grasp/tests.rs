@@ -14,6 +14,7 @@ const BOWL: ObjectPose = ObjectPose {
     grasp_width_m: 0.006,
     mass_kg: None,
     wall_rad: 0.0,
+    hollow: true,
 };
 
 const MARKER: ObjectPose = ObjectPose {
@@ -23,6 +24,7 @@ const MARKER: ObjectPose = ObjectPose {
     grasp_width_m: 0.014,
     mass_kg: None,
     wall_rad: 0.0,
+    hollow: false,
 };
 
 fn axes(grasp: &Grasp) -> (Vector3<f64>, Vector3<f64>) {
@@ -68,6 +70,7 @@ fn fingertips_stay_above_what_the_object_stands_on() {
             grasp_width_m: random.between(0.002, 0.0375),
             mass_kg: None,
             wall_rad: 0.0,
+            hollow: true,
         };
         for grasp in object.grasps(&paddles()).unwrap() {
             let z = grasp.gripper.translation.z;
@@ -100,6 +103,13 @@ fn grasp_rejects_what_cannot_be_held() {
     let error = wide.grasps(&paddles()).unwrap_err();
     assert_eq!(error, GraspError::TooWide { width_m: 0.05, open_m: paddles().open_m });
     assert!(error.to_string().contains("50 mm") && error.to_string().contains("38 mm"));
+    let wrench = ObjectPose { size_m: [0.24, 0.036, 0.012], grasp_width_m: 0.016, ..MARKER };
+    assert!(wrench.grasps(&paddles()).is_ok());
+    let half_round = Robot::baxter().arm(Limb::Right).gripper;
+    let error = wrench.grasps(&half_round).unwrap_err();
+    assert_eq!(error, GraspError::NoRim { extent_m: 0.036, open_m: half_round.open_m });
+    assert!(error.to_string().contains("36 mm wide between the fingers, which open 34 mm"));
+    assert!(ObjectPose { hollow: true, ..wrench }.grasps(&half_round).is_ok());
     let slot_2 = Gripper { stop_m: 0.0153, open_m: 0.057, ..paddles() };
     let error = BOWL.grasps(&slot_2).unwrap_err();
     assert!(matches!(error, GraspError::TooThin { width_m: 0.006, .. }));

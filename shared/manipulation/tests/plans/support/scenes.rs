@@ -43,6 +43,7 @@ fn object(value: &Value) -> (String, ObjectPose) {
         grasp_width_m: number("grasp_width").unwrap(),
         mass_kg: number("mass_kg"),
         wall_rad: number("wall_deg").unwrap_or(0.0).to_radians(),
+        hollow: value.get("form").is_some_and(|form| form.as_str() == Some("hollow")),
     };
     (value["name"].as_str().unwrap().to_owned(), pose)
 }

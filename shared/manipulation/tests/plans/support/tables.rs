@@ -53,6 +53,7 @@ fn random_object(random: &mut Random) -> ObjectPose {
         grasp_width_m,
         mass_kg: None,
         wall_rad: 0.0,
+        hollow: true,
     }
 }
 

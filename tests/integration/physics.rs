@@ -1,0 +1,227 @@
+//! Dialogues with a robot in the physics engine MuJoCo, judged by what happened to the objects there.
+
+use rustix::process::Signal;
+use serde_json::Value;
+use std::collections::HashMap;
+use std::process::Command;
+use std::time::{Duration, Instant};
+use whichone_tests::{Group, program, run, wait_for};
+
+const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
+/// Longest time for an event on a busy machine, seconds.
+const PATIENCE_S: f64 = 60.0;
+
+/// A group whose robot is in MuJoCo; `options` are those of the robot.
+fn group(options: &[&str]) -> Group {
+    let python = std::env::var("WHICHONE_PHYSICS").expect("WHICHONE_PHYSICS names a Python");
+    let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts/mujoco/robot.py");
+    let words: Vec<&str> = [&*python, robot].into_iter().chain(options.iter().copied()).collect();
+    let command = format!("group.services.baxter.command={words:?}");
+    // Only the robot starts late on a busy machine.
+    let deadline = "group.services.baxter.start_deadline_s=60";
+    let group = Group::up(&[&command, deadline, "arm.driver=baxter", "arm.time_scale=1.0"]);
+    wait_for_arm(&group, "the robot is heard", |arm| arm["hindrance"] == "none");
+    group
+}
+
+fn wait_for_arm(group: &Group, what: &str, holds: impl Fn(&Value) -> bool) {
+    wait_for(what, PATIENCE_S, || Some(group.arm()).filter(&holds));
+}
+
+/// Waits until the arm carries the object.
+fn wait_for_carry(group: &Group) {
+    wait_for_arm(group, "the carry", |arm| arm["phase"] == "holding" && arm["moving"] == true);
+}
+
+/// What happened to the objects, in order.
+fn records(group: &Group) -> Vec<Value> {
+    let path = group.paths().log().join("physics.jsonl");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    text.lines().map(|line| serde_json::from_str(line).expect("a record")).collect()
+}
+
+/// Something happens to the robot.
+fn drill(group: &Group, words: &[&str]) {
+    let mut command = Command::new(program("whichone-baxter"));
+    command.env("WHICHONE_HOME", group.paths().home());
+    command.env("WHICHONE_GROUP", group.paths().name().as_str());
+    let ended = run(command.args(words), "", 20.0);
+    assert_eq!(ended.code, Some(0), "{words:?}: {ended:?}");
+}
+
+fn numbers<const N: usize>(value: &Value) -> [f64; N] {
+    let list = value.as_array().unwrap_or_else(|| panic!("no numbers: {value}"));
+    std::array::from_fn(|n| list[n].as_f64().unwrap())
+}
+
+/// Distance of two places of an object in the gripper, millimetres. The gripper may be turned by half a turn:
+/// either finger may be the one inside.
+fn apart_mm(a: &[f64; 7], b: &[f64; 7]) -> f64 {
+    let apart = |side: f64| {
+        let turned = [side * b[0], side * b[1], b[2]];
+        a.iter().zip(turned).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt() * 1e3
+    };
+    apart(1.0).min(apart(-1.0))
+}
+
+/// Where the plan of a pick has the object in the gripper.
+fn planned(group: &Group, object: &str, limb: &str) -> [f64; 7] {
+    let words = ["arm", "plot", "--json", "--samples-hz", "1", "--object", object, "--limb", limb];
+    numbers(&group.must(&words).json()["object_in_gripper"])
+}
+
+fn assert_delivered(group: &Group, outcome: &Value, object: &str) {
+    let facts = (&outcome["outcome"], &outcome["object"]);
+    assert_eq!(facts, (&"delivered".into(), &object.into()), "{outcome}\n{}", group.logs());
+    group.verify_journals();
+}
+
+/// The record of the pick that has ended last: the object was lifted, carried to where it is handed over, and let
+/// go there, and the robot touched nothing but it, with its fingertips.
+fn assert_carried(group: &Group, object: &str) -> Value {
+    let record = wait_for("the release", PATIENCE_S, || {
+        let last = records(group).pop()?;
+        (last["event"] == "released" && last["object"] == object).then_some(last)
+    });
+    let number = |key: &str| record[key].as_f64().unwrap();
+    assert!(number("lifted_m") > 0.1 && number("carried_m") > 0.1, "{record}");
+    assert_eq!(record["released"], true, "{record}");
+    assert_eq!(record["touches"], serde_json::json!({}), "{record}");
+    let [x, y, z] = numbers(&record["gripper_xyz"]);
+    let side = if record["limb"] == "left" { 1.0 } else { -1.0 };
+    let off_m = ((x - 0.8).powi(2) + (y - 0.3 * side).powi(2) + (z - 0.22).powi(2)).sqrt();
+    assert!(off_m < 0.005, "{record}");
+    record
+}
+
+#[test]
+#[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+fn dialogues_end_with_objects_handed_over() {
+    let count = std::env::var("WHICHONE_DIALOGUES").map_or(3, |text| text.parse().unwrap());
+    let group = group(&[]);
+    let mut plans = HashMap::new();
+    println!("object  limb   lifted  carried  gripper off  moved in the gripper  questions");
+    for object in BOWLS.iter().rev().cycle().take(count) {
+        let outcome = group.fetch("get me the bowl", object);
+        assert_delivered(&group, &outcome, object);
+        let record = assert_carried(&group, object);
+        let limb = record["limb"].as_str().unwrap();
+        let planned = *plans.entry(object).or_insert_with(|| planned(&group, object, limb));
+        let (before, after) = (numbers(&record["before"]), numbers(&record["in_gripper"]));
+        let (reached_mm, moved_mm) = (apart_mm(&planned, &before), apart_mm(&before, &after));
+        println!(
+            "{object:7} {limb:5}  {:3.0} mm   {:3.0} mm       {reached_mm:.2} mm               {moved_mm:.2} mm  {:9}",
+            1e3 * record["lifted_m"].as_f64().unwrap(),
+            1e3 * record["carried_m"].as_f64().unwrap(),
+            outcome["questions"],
+        );
+        // The arm's own accuracy, and the grasp's.
+        assert!(reached_mm < 2.0 && moved_mm < 2.0, "{record}");
+    }
+    println!("{count} of {count} dialogues ended with the right object handed over");
+    group.down();
+}
+
+#[test]
+#[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+fn motion_stop_and_emergency_stop_in_the_carry_keep_hold_of_the_object() {
+    let group = group(&[]);
+    let outcome = group.fetch_while("the clear bowl", "clear", || {
+        wait_for_carry(&group);
+        group.must(&["stop-motion"]);
+        wait_for_arm(&group, "at rest", |arm| arm["stopped"] == true && arm["moving"] == false);
+        std::thread::sleep(Duration::from_secs(1));
+        assert_eq!(records(&group), [] as [Value; 0], "it is still held");
+        group.must(&["resume-motion"]);
+        wait_for_carry(&group);
+        drill(&group, &["press-estop"]);
+        wait_for_arm(&group, "latched", |arm| arm["stopped"] == true && arm["moving"] == false);
+        assert_eq!(group.arm()["hindrance"], "stopped");
+        std::thread::sleep(Duration::from_secs(1));
+        assert_eq!(records(&group), [] as [Value; 0], "it is still held");
+        for word in ["release-estop", "reset", "enable"] {
+            drill(&group, &[word]);
+        }
+        wait_for_arm(&group, "the robot is back", |arm| arm["hindrance"] == "none");
+        group.must(&["resume-motion"]);
+    });
+    assert_delivered(&group, &outcome, "clear");
+    assert_carried(&group, "clear");
+    group.down();
+}
+
+#[test]
+#[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+fn obstructed_arm_gives_up_and_fetches_once_it_is_free() {
+    let group = group(&[]);
+    let outcome = group.fetch_while("the clear bowl", "clear", || {
+        wait_for_arm(&group, "moving", |arm| arm["phase"] == "moving" && arm["moving"] == true);
+        drill(&group, &["obstruct", "3"]);
+    });
+    assert_eq!(outcome["outcome"], "failed", "{outcome}\n{}", group.logs());
+    assert_eq!(group.arm()["outcome"], "blocked");
+    std::thread::sleep(Duration::from_secs(3));
+    group.must(&["resume-motion"]);
+    assert_delivered(&group, &group.fetch("the clear bowl", "clear"), "clear");
+    assert_carried(&group, "clear");
+    group.down();
+}
+
+#[test]
+#[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+fn grasp_of_what_is_not_there_fails_after_its_retry() {
+    let group = group(&["--displace", "white", "0.5", "0"]);
+    let outcome = group.fetch("the bowl in the dishwasher", "white");
+    assert_eq!(outcome["outcome"], "failed", "{outcome}\n{}", group.logs());
+    let text = group.dialogue()["text"].as_str().unwrap_or_default().to_owned();
+    assert!(text.contains("could not get hold"), "{text}");
+    let events: Vec<Value> = records(&group).iter().map(|it| it["event"].clone()).collect();
+    assert_eq!(events, ["missed", "missed"], "{}", group.logs());
+    assert_delivered(&group, &group.fetch("the clear bowl", "clear"), "clear");
+    assert_carried(&group, "clear");
+    group.down();
+}
+
+/// A machine on which the physics runs at a tenth of its speed, and then a killed robot.
+#[test]
+#[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+fn slow_physics_halts_the_arm_and_a_killed_robot_goes_on_where_it_was() {
+    let group = group(&[]);
+    let outcome = group.fetch_while("the clear bowl", "clear", || {
+        wait_for_carry(&group);
+        let until = Instant::now() + Duration::from_secs(3);
+        let mut halted = false;
+        while Instant::now() < until {
+            group.signal("baxter", Signal::STOP);
+            std::thread::sleep(Duration::from_millis(300));
+            halted |= group.arm()["hindrance"] == "stale";
+            group.signal("baxter", Signal::CONT);
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        assert!(halted, "the arm notices\n{}", group.logs());
+        let before = group.incarnation("baxter");
+        group.signal("baxter", Signal::KILL);
+        group.wait_for_restart("baxter", before);
+    });
+    assert_delivered(&group, &outcome, "clear");
+    assert_carried(&group, "clear");
+    assert!(!group.logs().contains("Traceback"), "{}", group.logs());
+    group.down();
+}
+
+#[test]
+#[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+fn what_was_handed_over_is_taken_back_and_stands_in_its_place() {
+    let group = group(&[]);
+    assert_delivered(&group, &group.fetch("the clear bowl", "clear"), "clear");
+    assert_carried(&group, "clear");
+    group.say("put it back");
+    wait_for_arm(&group, "the object back in its place", |arm| arm["outcome"] == "put_back");
+    let record = records(&group).pop().unwrap();
+    assert_eq!((&record["event"], &record["object"]), (&"released".into(), &"clear".into()));
+    assert_eq!(record["touches"], serde_json::json!({}), "{record}");
+    assert!(record["from_home_m"].as_f64().unwrap() < 0.005, "{record}");
+    assert_delivered(&group, &group.fetch("the clear bowl", "clear"), "clear");
+    assert_carried(&group, "clear");
+    group.down();
+}
