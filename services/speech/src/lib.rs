@@ -145,6 +145,7 @@ impl SpeechNode {
             In::RecogniserState(state) => self.intake.set_recogniser(state, fx),
             In::Mark(mark) => {
                 if self.intake.accepted.acknowledge(mark) {
+                    self.intake.accept_waiting(&self.player, now, fx);
                     self.send(now, fx);
                 }
             }

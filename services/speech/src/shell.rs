@@ -175,10 +175,7 @@ impl Shell<SpeechNode> for SpeechShell {
         self.marks.drain(|message| take(In::Mark(*message)))?;
         self.arm.drain(|message| take(In::Arm(*message)))?;
         self.audio.drain(|chunk| self.streams.take(chunk))?;
-        while let Some(injection) = self.injections.take()? {
-            take(In::Injection(injection));
-        }
-        Ok(())
+        self.injections.drain_in_turn(|injection| take(In::Injection(injection)))
     }
 
     fn publish(&mut self, output: Out) -> Result<(), PortError> {

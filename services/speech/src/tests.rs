@@ -1,5 +1,6 @@
 //! Rules of hearing and speaking, without devices.
 
+mod fair_share;
 mod set_aside;
 
 use crate::devices::recogniser::Rejected;

@@ -22,7 +22,7 @@ pub mod wire;
 pub use dialogue::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 pub use dialogue::{ActKind, Ended, Interpretation, Outcome, PickOutcome, PickPhase, Task};
 pub use fixed::*;
-pub use ids::{Epoch, Incarnation, RequestKey};
+pub use ids::{ClientId, Epoch, Incarnation, RequestKey};
 pub use payloads::*;
 pub use services::{SUPERVISOR, Service};
 pub use text::{FixedText, TextTooLong};
