@@ -61,7 +61,7 @@ pub struct Config {
 
 impl Node for SpeechNode {
     type Config = Config;
-    type In = In;
+    type In<'a> = In<'a>;
     type Out = Out;
     type Record = Record;
 
@@ -77,7 +77,7 @@ impl Node for SpeechNode {
         Ok(Self { intake, player, next_send: Time(0) })
     }
 
-    fn on(&mut self, event: Event<In>, now: Time, fx: &mut Fx) {
+    fn on(&mut self, event: Event<In<'_>>, now: Time, fx: &mut Fx) {
         match event {
             Event::SetAside(SetAside { over, .. }) => {
                 self.intake.accepted.skip(UtteranceSeq(over));
@@ -117,7 +117,7 @@ impl Node for SpeechNode {
 }
 
 impl SpeechNode {
-    fn handle(&mut self, message: In, now: Time, fx: &mut Fx) {
+    fn handle(&mut self, message: In<'_>, now: Time, fx: &mut Fx) {
         match message {
             In::Injection(injection) => {
                 // A user who presses talk, types or points interrupts the robot.

@@ -14,7 +14,7 @@ use crate::{
 };
 use language::{CompletenessJudge, Language, Reader};
 use messages::{
-    ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, MotionOrder,
+    ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, MessageRef, MotionOrder,
     PresentationState, Receipt, RequestKey, RobotAct, Sound, Source, Utterance, WireCode,
 };
 use scene::{AttributeId, Question, ValueId};
@@ -52,7 +52,7 @@ impl Speech {
     }
 
     /// Handles a message after a delay.
-    fn take(&mut self, after_s: f64, message: In) -> Outputs {
+    fn take(&mut self, after_s: f64, message: In<'_>) -> Outputs {
         self.now = self.now + Span::from_s(after_s);
         let mut effects = Effects::default();
         self.node.on(Event::Message(message), self.now, &mut effects);
@@ -151,7 +151,7 @@ impl Outputs {
 const SOUND: u64 = LIVE_FROM;
 
 /// Returns the beginning of an utterance in a microphone that does not record the robot.
-fn began(at: Time, interrupts: bool) -> In {
+fn began(at: Time, interrupts: bool) -> In<'static> {
     In::Stream(StreamEvent::Began(Began { interrupts, ..testing::began(at) }))
 }
 
@@ -160,22 +160,22 @@ fn segment(onset: Time) -> SpeechSegment {
     SpeechSegment { onset, end, samples: vec![0; 4_800], speech: 0..4_800 }
 }
 
-fn ended(onset: Time) -> In {
+fn ended(onset: Time) -> In<'static> {
     In::Stream(StreamEvent::Ended { sound: SOUND, segment: segment(onset) })
 }
 
 /// Returns a result of the recogniser with these hypotheses, or without speech.
-fn recognised(sound: u64, hypotheses: Option<Vec<Hypothesis>>) -> In {
+fn recognised(sound: u64, hypotheses: Option<Vec<Hypothesis>>) -> In<'static> {
     let segment = |hypotheses| RecognisedSegment::accepted((0.2, 0.7), 30.0, hypotheses);
     let segments = Ok(hypotheses.map(segment).into_iter().collect());
     In::Recognised(Recognised { sound, segments })
 }
 
-fn ask(prompt: u64) -> In {
+fn ask(prompt: u64) -> In<'static> {
     let text = FixedText::truncated("Is it white?");
     let (kind, question) = (ActKind::Ask.code(), WHITE.into());
     let (act, presentation) = (prompt, 1);
-    In::Act(Box::new(RobotAct {
+    In::Act(MessageRef::from(RobotAct {
         act,
         prompt,
         presentation,
@@ -408,7 +408,7 @@ fn result(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> RecognisedSegmen
 }
 
 /// Returns the result for the pause at the end of [`segment`].
-fn early(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> In {
+fn early(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> In<'static> {
     let result = Some(Box::new(result(words, snr_db)));
     let at = segment(Time(0)).closing(std::time::Duration::ZERO);
     In::EarlyResult { sound: SOUND, at, result }
