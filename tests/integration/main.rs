@@ -11,6 +11,7 @@ mod console_study;
 mod console_voice;
 mod dialogues;
 mod export;
+mod fair_share;
 mod forged;
 mod full_log;
 mod full_memory;

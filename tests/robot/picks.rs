@@ -1,7 +1,7 @@
 //! Picks on the simulated Baxter, and the commands that it needs.
 
 use crate::world::World;
-use arm::Order;
+use messages::robot::Order;
 use messages::robot::{Command, DrillKind};
 use messages::{MotionInhibit, PickOutcome, PickPhase};
 use service::Span;
@@ -46,7 +46,7 @@ fn grippers_are_calibrated_before_any_motion() {
 }
 
 fn gripper_commands(world: &World) -> Vec<Command> {
-    let read = |(_, order): &(_, Order)| match order {
+    let read = |(_, order): &(_, Order<'_>)| match order {
         Order::Gripper(_, message) => message.read().ok(),
         _ => None,
     };
@@ -69,7 +69,7 @@ fn both_limbs_get_position_commands_at_100_hz() {
         if let Order::Joints(limb, command) = order {
             assert_eq!(command.mode, 1, "position mode, never raw");
             let names = command.joints().unwrap();
-            let own = limb.joint_names();
+            let own = manipulation::Limb::BOTH[*limb].joint_names();
             assert!(names.iter().map(|(name, _)| *name).eq(own.iter().map(String::as_str)));
         }
     }
@@ -81,7 +81,7 @@ fn robot_without_feed_forward_arrives() {
     world.pick(1, 3);
     world.run_until("over", |w| w.phase() == PickPhase::Done);
     world.assert_delivered_once();
-    let fed = |order: &Order| matches!(order, Order::FeedForward(..));
+    let fed = |order: &Order<'_>| matches!(order, Order::FeedForward(..));
     assert!(!world.orders.iter().any(|(_, order)| fed(order)));
 }
 

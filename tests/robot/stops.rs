@@ -1,8 +1,8 @@
 //! Stops: the motion stop, the emergency stop, disabled motors.
 
 use crate::world::World;
-use arm::Order;
 use messages::robot::DrillKind;
+use messages::robot::Order;
 use messages::{MotionInhibit, MotionOrder, PickPhase};
 use service::{Span, Time};
 
@@ -70,7 +70,7 @@ fn emergency_stop_latches_and_the_pick_resumes_after_release() {
 
 fn assert_nothing_is_commanded_since(world: &World, since: Time) {
     let late = since + Span::from_ms(20);
-    let commands = |order: &Order| matches!(order, Order::Joints(..) | Order::Gripper(..));
+    let commands = |order: &Order<'_>| matches!(order, Order::Joints(..) | Order::Gripper(..));
     let found = world.orders.iter().find(|(at, order)| *at > late && commands(order));
     assert!(found.is_none(), "{found:?}");
 }

@@ -1,14 +1,15 @@
 //! The arm and the simulated Baxter, each in a simulated process, and the messages between them.
 
 use arm::state::ArmState;
-use arm::{ArmNode, In, Order, Out, Report};
+use arm::{ArmNode, In, Out};
 use baxter::BaxterNode;
 use baxter::robot::Robot;
 use config::Settings;
 use messages::WireCode;
-use messages::robot::{Drill, DrillKind, JointState};
+use messages::robot::{Drill, DrillKind, JointState, Order, Report};
 use messages::{
-    ActKind, ArmStatus, MotionCommand, MotionInhibit, MotionOrder, PickOutcome, PickPhase, RobotAct,
+    ActKind, ArmStatus, MessageRef, MotionCommand, MotionInhibit, MotionOrder, PickOutcome,
+    PickPhase, RobotAct,
 };
 use service::{Span, Time};
 use std::path::Path;
@@ -22,14 +23,14 @@ pub(crate) struct World {
     pub(crate) now: Time,
     arm: Host<ArmNode>,
     robot: Host<BaxterNode>,
-    to_arm: Vec<In>,
+    to_arm: Vec<In<'static>>,
     act: Option<RobotAct>,
     drills: u64,
     pub(crate) statuses: Vec<ArmStatus>,
     pub(crate) joint_states: Vec<JointState>,
     /// When each limb was commanded its joints, left first.
     pub(crate) commanded: [Vec<Time>; 2],
-    pub(crate) orders: Vec<(Time, Order)>,
+    pub(crate) orders: Vec<(Time, Order<'static>)>,
     /// Number of grasps that held.
     pub(crate) grasps: u32,
 }
@@ -81,7 +82,7 @@ impl World {
         self.now = self.now + LOOK_EVERY;
         self.pass_robot(Vec::new());
         let again = self.now.ns() % 250_000_000 < LOOK_EVERY.0;
-        self.to_arm.extend(self.act.filter(|_| again).map(|act| In::Act(Box::new(act))));
+        self.to_arm.extend(self.act.filter(|_| again).map(|act| In::Act(MessageRef::from(act))));
         let inbox = std::mem::take(&mut self.to_arm);
         let outputs = self.arm.wake(inbox, self.now, &mut Faults::none());
         self.route_arm(outputs);
@@ -115,7 +116,7 @@ impl World {
             ..RobotAct::default()
         };
         self.act = Some(act);
-        self.to_arm.push(In::Act(Box::new(act)));
+        self.to_arm.push(In::Act(MessageRef::from(act)));
     }
 
     pub(crate) fn motion(&mut self, order: MotionOrder) {
@@ -172,7 +173,7 @@ impl World {
                         self.commanded[*limb].push(self.now);
                     }
                     self.orders.push((self.now, order.clone()));
-                    commands.push(to_robot(order));
+                    commands.push(baxter::In::Order(order));
                 }
                 Out::Plan(request) => {
                     self.to_arm.push(In::Planned(Box::new(request.solve())));
@@ -183,7 +184,7 @@ impl World {
         self.pass_robot(commands);
     }
 
-    fn pass_robot(&mut self, inbox: Vec<baxter::In>) {
+    fn pass_robot(&mut self, inbox: Vec<baxter::In<'static>>) {
         let held =
             |robot: &Robot| manipulation::Limb::BOTH.map(|l| robot.objects().held(l).is_some());
         let before = self.robot.node().map(|node| held(node.robot()));
@@ -194,35 +195,16 @@ impl World {
         self.route_robot(outputs);
     }
 
-    fn route_robot(&mut self, outputs: Vec<baxter::Out>) {
+    fn route_robot(&mut self, outputs: Vec<Report<'static>>) {
         for output in outputs {
-            if let baxter::Out::Joints(state) = &output
+            if let Report::Joints(state) = &output
                 && state.len > 1
             {
                 self.joint_states.push(**state);
             }
             if self.arm.is_up() {
-                self.to_arm.extend(to_arm(output).map(In::Robot));
+                self.to_arm.push(In::Robot(output));
             }
         }
-    }
-}
-
-fn to_robot(order: Order) -> baxter::In {
-    match order {
-        Order::Joints(limb, command) => baxter::In::Joints(limb, command),
-        Order::FeedForward(limb, point) => baxter::In::FeedForward(limb, point),
-        Order::SpeedRatio(limb, ratio) => baxter::In::SpeedRatio(limb, ratio),
-        Order::Gripper(limb, command) => baxter::In::Gripper(limb, command),
-    }
-}
-
-fn to_arm(out: baxter::Out) -> Option<Report> {
-    match out {
-        baxter::Out::Joints(state) => Some(Report::Joints(state)),
-        baxter::Out::Assembly(state) => Some(Report::Assembly(state)),
-        baxter::Out::Gripper(limb, state) => Some(Report::Gripper(limb, state)),
-        baxter::Out::Properties(limb, own) => Some(Report::Properties(limb, own)),
-        baxter::Out::Endpoint(..) => None,
     }
 }

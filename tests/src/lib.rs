@@ -5,6 +5,7 @@ mod command;
 pub mod console;
 pub mod fuzz;
 mod group;
+pub mod hammer;
 pub mod isolated;
 pub mod ros1;
 pub mod second_user;

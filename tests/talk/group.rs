@@ -72,10 +72,10 @@ struct Saying {
 
 #[derive(Default)]
 struct Inboxes {
-    speech: Vec<speech::In>,
-    grounding: Vec<Box<messages::Utterance>>,
-    policy: Vec<policy::In>,
-    arm: Vec<arm::In>,
+    speech: Vec<speech::In<'static>>,
+    grounding: Vec<messages::MessageRef<'static, messages::Utterance>>,
+    policy: Vec<policy::In<'static>>,
+    arm: Vec<arm::In<'static>>,
 }
 
 /// All services, a voice, and a world.
@@ -174,7 +174,9 @@ impl Group {
         let outputs = self.speech.wake(speech, now, &mut self.faults);
         self.route_speech(outputs);
         let outputs = self.grounding.wake(grounding, now, &mut self.faults);
-        self.inboxes.policy.extend(outputs.into_iter().map(policy::In::Observation));
+        self.inboxes
+            .policy
+            .extend(outputs.into_iter().map(|it| policy::In::Observation(it.into())));
         let outputs = self.policy.wake(policy, now, &mut self.faults);
         self.route_policy(outputs);
         let outputs = self.arm.wake(arm, now, &mut self.faults);
@@ -184,7 +186,7 @@ impl Group {
     fn route_speech(&mut self, outputs: Vec<<SpeechNode as Node>::Out>) {
         for output in outputs {
             match output {
-                speech::Out::Utterance(utterance) => self.inboxes.grounding.push(utterance),
+                speech::Out::Utterance(utterance) => self.inboxes.grounding.push(utterance.into()),
                 speech::Out::Presented(presented) => {
                     self.inboxes.policy.push(policy::In::Presented(presented));
                 }
@@ -240,8 +242,8 @@ impl Group {
                 policy::Out::Mark(mark) => self.inboxes.speech.push(speech::In::Mark(mark)),
                 policy::Out::Act(act) => {
                     self.see_act(&act);
-                    self.inboxes.speech.push(speech::In::Act(act.clone()));
-                    self.inboxes.arm.push(arm::In::Act(act));
+                    self.inboxes.speech.push(speech::In::Act(act.clone().into()));
+                    self.inboxes.arm.push(arm::In::Act(act.into()));
                 }
                 _ => {}
             }

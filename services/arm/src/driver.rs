@@ -9,10 +9,7 @@ pub use kinematic::KinematicArm;
 use crate::state::Posture;
 use manipulation::{Joints, Limb, Robot};
 use messages::MotionInhibit;
-use messages::robot::{
-    AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, JointCommand,
-    JointState, JointTrajectoryPoint, SpeedRatio,
-};
+use messages::robot::{Order, Report};
 use service::{Span, Time};
 
 /// A robot or its model. The executor commands it a hundred times a second and trusts its sensors, so
@@ -31,7 +28,7 @@ pub trait ArmDriver {
     fn command(&mut self, command: &Command, seconds: f64);
 
     /// Handles a report of the robot.
-    fn on_report(&mut self, _report: &Report, _now: Time) {}
+    fn on_report(&mut self, _report: &Report<'_>, _now: Time) {}
 
     /// Begins a pass; `may_calibrate` marks the grippers, left first, that hold nothing a
     /// calibration would drop.
@@ -39,7 +36,7 @@ pub trait ArmDriver {
 
     /// Ends a pass: limbs without a command are held where they are. Returns the
     /// orders to the robot.
-    fn end_pass(&mut self, _now: Time) -> Vec<Order> {
+    fn end_pass(&mut self, _now: Time) -> Vec<Order<'static>> {
         Vec::new()
     }
 
@@ -158,32 +155,6 @@ pub struct Grip {
     pub object_m: f64,
     /// Its offset from the middle between the fingers, metres.
     pub offset_m: f64,
-}
-
-/// A report of the robot.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Report {
-    /// Joint states, of all or some joints.
-    Joints(Box<JointState>),
-    /// State of the whole robot.
-    Assembly(AssemblyState),
-    /// State of a gripper.
-    Gripper(Limb, Box<EndEffectorState>),
-    /// Properties of a mounted gripper.
-    Properties(Limb, Box<EndEffectorProperties>),
-}
-
-/// An order to the robot.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Order {
-    /// Joint positions of a limb.
-    Joints(Limb, Box<JointCommand>),
-    /// Feed-forward position, velocity and acceleration.
-    FeedForward(Limb, Box<JointTrajectoryPoint>),
-    /// Share of its velocity that a limb may use.
-    SpeedRatio(Limb, SpeedRatio),
-    /// Command to a gripper.
-    Gripper(Limb, Box<EndEffectorCommand>),
 }
 
 /// A motion that the robot did not carry out as commanded.

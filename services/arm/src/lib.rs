@@ -28,17 +28,17 @@ mod world;
 mod tests;
 
 pub use driver::{
-    ArmDriver, BaxterDriver, Command, Fault, Fingers, Grip, KinematicArm, Measured, Order, Report,
-    Source,
+    ArmDriver, BaxterDriver, Command, Fault, Fingers, Grip, KinematicArm, Measured, Source,
 };
 pub use plan::{PlanRequest, Planned};
 
 use executor::Executor;
 use goal::PlanFailures;
 use messages::pick::Pick;
+use messages::robot::{Order, Report};
 use messages::{
-    ArmStatus, JointStates, MotionCommand, MotionInhibit, MotionOrder, PickOutcome, PickPhase,
-    RobotAct, TrajectoryView, WorldView,
+    ArmStatus, JointStates, MessageRef, MotionCommand, MotionInhibit, MotionOrder, PickOutcome,
+    PickPhase, RobotAct, TrajectoryView, WorldView,
 };
 use orders::StandingAct;
 use plan::Planning;
@@ -54,15 +54,15 @@ use world::World;
 
 /// Inputs of the arm.
 #[derive(Clone, Debug, PartialEq)]
-pub enum In {
+pub enum In<'a> {
     /// Act of the policy.
-    Act(Box<RobotAct>),
+    Act(MessageRef<'a, RobotAct>),
     /// Stop or resume, from speech and clients.
     Motion(MotionCommand),
     /// The same from a client that is answered.
     StopOrder(MotionCommand, Caller),
     /// Report of a real robot.
-    Robot(Report),
+    Robot(Report<'a>),
     /// Result of a [`PlanRequest`].
     Planned(Box<Planned>),
 }
@@ -79,7 +79,7 @@ pub enum Out {
     /// Planned path of the gripper, to clients.
     Trajectory(Box<TrajectoryView>),
     /// Command to a real robot.
-    Robot(Order),
+    Robot(Order<'static>),
     /// A motion to be planned; its result is awaited as [`In::Planned`].
     Plan(Box<PlanRequest>),
     /// Answer to an order to the motion stop.
@@ -135,7 +135,7 @@ const STEP_EVERY: Span = Span::from_ms(10);
 
 impl Node for ArmNode {
     type Config = Config;
-    type In = In;
+    type In<'a> = In<'a>;
     type Out = Out;
     type Record = Record;
 
@@ -150,7 +150,7 @@ impl Node for ArmNode {
         Ok(Self::with_driver(config, state, driver))
     }
 
-    fn on(&mut self, event: Event<In>, now: Time, fx: &mut Fx) {
+    fn on(&mut self, event: Event<In<'_>>, now: Time, fx: &mut Fx) {
         match event {
             Event::SetAside(set_aside) => self.set_aside(set_aside, now, fx),
             Event::Started => self.begin(now, fx),

@@ -68,7 +68,7 @@ pub struct ArmShell {
 }
 
 impl Shell<ArmNode> for ArmShell {
-    fn open(context: &Context<'_, In>) -> Result<Self, Failure> {
+    fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
         let (bus, paths) = (context.bus, &context.environment.paths);
         let robot = (context.settings.arm.driver == Driver::Baxter).then(|| RobotTopics::open(bus));
         Ok(Self {
@@ -89,7 +89,7 @@ impl Shell<ArmNode> for ArmShell {
     fn drain_urgent(
         &mut self,
         is_readable: bool,
-        take: &mut dyn FnMut(In),
+        take: &mut dyn FnMut(In<'_>),
     ) -> Result<(), PortError> {
         if is_readable {
             self.stop.drain(|command, caller| take(In::StopOrder(command, caller)));
@@ -101,8 +101,8 @@ impl Shell<ArmNode> for ArmShell {
         Some(self.stop.fd())
     }
 
-    fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
-        self.acts.drain(|message| take(In::Act(Box::new(*message))))?;
+    fn drain(&mut self, take: &mut dyn FnMut(In<'_>)) -> Result<(), PortError> {
+        self.acts.drain(|message| take(In::Act(message.into())))?;
         self.robot.iter().try_for_each(|robot| robot.drain(|report| take(In::Robot(report))))
     }
 

@@ -14,44 +14,21 @@ pub mod robot;
 pub mod servo;
 pub mod shell;
 
-use manipulation::Limb;
-use messages::robot::{
-    AssemblyState, Drill, EndEffectorCommand, EndEffectorProperties, EndEffectorState,
-    EndpointState, JointCommand, JointState, JointTrajectoryPoint, SpeedRatio,
-};
+use messages::robot::{Drill, Order, Report};
 use robot::{Body, Robot};
 use scene::Scene;
 use service::{Effects, Event, Node, NodeError, Span, Time};
 
 /// Inputs of the robot.
 #[derive(Clone, Debug, PartialEq)]
-pub enum In {
-    /// `joint_command`.
-    Joints(Limb, Box<JointCommand>),
-    /// `inverse_dynamics_command`.
-    FeedForward(Limb, Box<JointTrajectoryPoint>),
-    /// `set_speed_ratio`.
-    SpeedRatio(Limb, SpeedRatio),
-    /// `end_effector/<limb>_gripper/command`.
-    Gripper(Limb, Box<EndEffectorCommand>),
+pub enum In<'a> {
+    /// An order of the arm.
+    Order(Order<'a>),
     /// Injected faults and button presses.
     Drill(Drill),
 }
 
-/// Outputs of the robot.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Out {
-    /// `joint_states`.
-    Joints(Box<JointState>),
-    /// `state`.
-    Assembly(AssemblyState),
-    /// `endpoint_state`.
-    Endpoint(Limb, Box<EndpointState>),
-    /// `end_effector/<limb>_gripper/state`.
-    Gripper(Limb, Box<EndEffectorState>),
-    /// `end_effector/<limb>_gripper/properties`.
-    Properties(Limb, Box<EndEffectorProperties>),
-}
+type Fx = Effects<Report<'static>, Body>;
 
 /// Configuration of the robot.
 #[derive(Clone, Debug)]
@@ -88,8 +65,8 @@ pub struct BaxterNode {
 
 impl Node for BaxterNode {
     type Config = Config;
-    type In = In;
-    type Out = Out;
+    type In<'a> = In<'a>;
+    type Out = Report<'static>;
     type Record = Body;
 
     fn recover(config: Config, mut records: Vec<Body>) -> Result<Self, NodeError> {
@@ -98,7 +75,7 @@ impl Node for BaxterNode {
         Ok(Self { robot, beat: 0, next: Time(0), published: false, remembered })
     }
 
-    fn on(&mut self, event: Event<In>, now: Time, fx: &mut Effects<Out, Body>) {
+    fn on(&mut self, event: Event<In<'_>>, now: Time, fx: &mut Fx) {
         match event {
             Event::SetAside(_) => {}
             Event::Started => self.next = now,
@@ -126,7 +103,7 @@ impl BaxterNode {
         &self.robot
     }
 
-    fn tick(&mut self, now: Time, fx: &mut Effects<Out, Body>) {
+    fn tick(&mut self, now: Time, fx: &mut Fx) {
         self.robot.advance(now);
         // The disk is waited for between two cycles.
         if std::mem::take(&mut self.published) && now < self.next {
@@ -142,7 +119,7 @@ impl BaxterNode {
     }
 
     /// Journals changes: the joints at intervals, everything else at once.
-    fn remember(&mut self, now: Time, fx: &mut Effects<Out, Body>) {
+    fn remember(&mut self, now: Time, fx: &mut Fx) {
         let body = self.robot.body();
         let (last, at) = &self.remembered;
         let other = body.assembly != last.assembly

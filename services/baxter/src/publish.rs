@@ -1,11 +1,12 @@
 //! Publication of the robot's reports, at the rates and in the order of the real one.
 
-use crate::Out;
 use crate::object_world::to_array;
 use crate::robot::Robot;
 use manipulation::Limb;
 use messages::FixedText;
-use messages::robot::{EndEffectorProperties, EndpointState, JointState, Measurement, UiType};
+use messages::robot::{
+    EndEffectorProperties, EndpointState, JointState, Measurement, Report, UiType,
+};
 use messages::{JOINT_STATE_NAMES, WireError};
 use nalgebra::SVector;
 use service::Time;
@@ -17,22 +18,22 @@ const PROPERTIES_BEATS: u64 = 100;
 const VELOCITY_NOISE: f64 = 25.0;
 
 /// Everything that is due in beat number `beat`.
-pub(crate) fn all(robot: &mut Robot, beat: u64, now: Time) -> Vec<Out> {
-    let mut reports = vec![Out::Assembly(robot.assembly.state())];
+pub(crate) fn all(robot: &mut Robot, beat: u64, now: Time) -> Vec<Report<'static>> {
+    let mut reports = vec![Report::Assembly(robot.assembly.state())];
     let lost = robot.random.uniform() < robot.config.simulated.loss || now < robot.silent_until;
     let joints = joint_states(robot, now);
     if !lost {
-        reports.extend(joints.into_iter().flatten().map(|state| Out::Joints(Box::new(state))));
+        reports.extend(joints.into_iter().flatten().map(|state| Report::Joints(state.into())));
     }
     for limb in Limb::BOTH {
-        reports.push(Out::Endpoint(limb, Box::new(endpoint(robot, limb, now))));
+        reports.push(Report::Endpoint(limb as usize, endpoint(robot, limb, now).into()));
         if beat.is_multiple_of(GRIPPER_BEATS) {
             let enabled = robot.assembly.is_enabled();
             let state = robot.fingers[limb].state(now.ns(), enabled, &robot.gripper(limb));
-            reports.push(Out::Gripper(limb, Box::new(state)));
+            reports.push(Report::Gripper(limb as usize, state.into()));
         }
         if beat.is_multiple_of(PROPERTIES_BEATS) {
-            reports.push(Out::Properties(limb, Box::new(properties(limb))));
+            reports.push(Report::Properties(limb as usize, properties(limb).into()));
         }
     }
     reports

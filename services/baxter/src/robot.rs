@@ -4,11 +4,13 @@ use crate::assembly::Assembly;
 use crate::fingers::{Event, Fingers};
 use crate::object_world::{ObjectWorld, Whereabouts};
 use crate::servo::{Servo, Target};
-use crate::{Config, In, Out, publish};
+use crate::{Config, In, publish};
 use dialogue::Rng;
 use manipulation::gripper::Gripper;
 use manipulation::{Joints, Limb};
-use messages::robot::{Drill, DrillKind, JointCommand, JointMode, JointTrajectoryPoint};
+use messages::robot::{
+    Drill, DrillKind, JointCommand, JointMode, JointTrajectoryPoint, Order, Report,
+};
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 use std::collections::VecDeque;
@@ -113,19 +115,26 @@ impl Robot {
     }
 
     /// Handles a message.
-    pub fn on_message(&mut self, message: &In, now: Time) {
+    pub fn on_message(&mut self, message: &In<'_>, now: Time) {
         self.advance(now);
         match message {
             In::Drill(drill) => self.drill(drill, now),
             // What is switched off obeys nothing, and hears nothing either.
             _ if !self.assembly.is_enabled() => {}
-            In::Joints(limb, command) => self.command(*limb, command),
-            In::FeedForward(limb, point) => self.feed_forward(*limb, point),
-            In::SpeedRatio(limb, ratio) => self.servos[*limb].set_speed_ratio(ratio.data),
-            In::Gripper(limb, command) => {
-                let gripper = self.gripper(*limb);
-                let event = self.fingers[*limb].command(command, &gripper);
-                event.into_iter().for_each(|event| self.react(*limb, event));
+            In::Order(order) => self.obey(order),
+        }
+    }
+
+    fn obey(&mut self, order: &Order<'_>) {
+        match order {
+            Order::Joints(limb, command) => self.command(Limb::BOTH[*limb], command),
+            Order::FeedForward(limb, point) => self.feed_forward(Limb::BOTH[*limb], point),
+            Order::SpeedRatio(limb, ratio) => self.servos[*limb].set_speed_ratio(ratio.data),
+            Order::Gripper(limb, command) => {
+                let limb = Limb::BOTH[*limb];
+                let gripper = self.gripper(limb);
+                let event = self.fingers[limb].command(command, &gripper);
+                event.into_iter().for_each(|event| self.react(limb, event));
             }
         }
     }
@@ -156,7 +165,7 @@ impl Robot {
     }
 
     /// Returns the reports of cycle number `beat`, at a hundred a second.
-    pub fn reports(&mut self, beat: u64, now: Time) -> Vec<Out> {
+    pub fn reports(&mut self, beat: u64, now: Time) -> Vec<Report<'static>> {
         publish::all(self, beat, now)
     }
 

@@ -12,7 +12,9 @@ pub mod shell;
 
 use interpret::interpretations;
 use language::Reader;
-use messages::{Fits, FixedText, Interpretation, Observation, Utterance, WireError, WireReading};
+use messages::{
+    Fits, FixedText, Interpretation, MessageRef, Observation, Utterance, WireError, WireReading,
+};
 use scene::{Reading, Scene};
 use service::{Effects, Event, Never, Node, NodeError, Time};
 
@@ -31,7 +33,7 @@ pub struct GroundingNode {
 
 impl Node for GroundingNode {
     type Config = Config;
-    type In = Box<Utterance>;
+    type In<'a> = MessageRef<'a, Utterance>;
     type Out = Box<Observation>;
     type Record = Never;
 
@@ -41,7 +43,7 @@ impl Node for GroundingNode {
 
     fn on(
         &mut self,
-        event: Event<Box<Utterance>>,
+        event: Event<MessageRef<'_, Utterance>>,
         now: Time,
         fx: &mut Effects<Box<Observation>, Never>,
     ) {

@@ -4,7 +4,7 @@ use crate::{Config, GroundingNode};
 use config::Settings;
 use language::{Language, Reader as TextReader};
 use messages::Service;
-use messages::{Observation, Utterance, topics};
+use messages::{MessageRef, Observation, Utterance, topics};
 use service::bus::{PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
 use service::lifecycle::Environment;
@@ -50,15 +50,15 @@ pub struct GroundingShell {
 }
 
 impl Shell<GroundingNode> for GroundingShell {
-    fn open(context: &Context<'_, Box<Utterance>>) -> Result<Self, Failure> {
+    fn open(context: &Context<'_, MessageRef<'static, Utterance>>) -> Result<Self, Failure> {
         Ok(Self {
             utterances: context.bus.reader(&topics::UTTERANCE)?,
             observations: context.bus.writer(&topics::OBSERVATION)?,
         })
     }
 
-    fn drain(&mut self, take: &mut dyn FnMut(Box<Utterance>)) -> Result<(), PortError> {
-        self.utterances.drain(|utterance| take(Box::new(*utterance)))
+    fn drain(&mut self, take: &mut dyn FnMut(MessageRef<'_, Utterance>)) -> Result<(), PortError> {
+        self.utterances.drain(|utterance| take(utterance.into()))
     }
 
     fn publish(&mut self, observation: Box<Observation>) -> Result<(), PortError> {

@@ -17,8 +17,8 @@ use dialogue::manager::{Cause, Floor, HEARING_MAX, Manager, Record, State, Utter
 use dialogue::{PickOutcome, PickPhase, Presentation};
 use messages::inbox::{Inbox, Verdict};
 use messages::{
-    Activity, AppliedMark, ArmStatus, Observation, PolicyView, PresentationState, Presented,
-    RobotAct, Source,
+    Activity, AppliedMark, ArmStatus, MessageRef, Observation, PolicyView, PresentationState,
+    Presented, RobotAct, Source,
 };
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 
@@ -29,9 +29,9 @@ const OUTAGE: Span = Span::from_ms(1_000);
 
 /// Input of the policy.
 #[derive(Clone, Debug, PartialEq)]
-pub enum In {
+pub enum In<'a> {
     /// From grounding.
-    Observation(Box<Observation>),
+    Observation(MessageRef<'a, Observation>),
     /// From speech: the latest prompt said.
     Presented(Presented),
     /// From speech: whether the user is speaking.
@@ -71,7 +71,7 @@ pub struct PolicyNode {
 
 impl Node for PolicyNode {
     type Config = Manager;
-    type In = In;
+    type In<'a> = In<'a>;
     type Out = Out;
     type Record = Record;
 
@@ -89,7 +89,7 @@ impl Node for PolicyNode {
         })
     }
 
-    fn on(&mut self, event: Event<In>, now: Time, fx: &mut Fx) {
+    fn on(&mut self, event: Event<In<'_>>, now: Time, fx: &mut Fx) {
         match event {
             Event::SetAside(SetAside { over, .. }) if self.state.applied.0 < over => {
                 tracing::warn!(over, "a journal was set aside: what was in progress has ended");

@@ -83,7 +83,7 @@ pub struct PolicyShell {
 }
 
 impl Shell<PolicyNode> for PolicyShell {
-    fn open(context: &Context<'_, In>) -> Result<Self, Failure> {
+    fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
         let bus = context.bus;
         Ok(Self {
             observations: bus.reader(&topics::OBSERVATION)?,
@@ -96,10 +96,10 @@ impl Shell<PolicyNode> for PolicyShell {
         })
     }
 
-    fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
+    fn drain(&mut self, take: &mut dyn FnMut(In<'_>)) -> Result<(), PortError> {
         self.presented.drain(|message| take(In::Presented(*message)))?;
         self.activity.drain(|message| take(In::Activity(*message)))?;
-        self.observations.drain(|message| take(In::Observation(Box::new(*message))))?;
+        self.observations.drain(|message| take(In::Observation(message.into())))?;
         self.arm.drain(|message| take(In::Arm(*message)))
     }
 

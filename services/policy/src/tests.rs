@@ -26,8 +26,8 @@ use dialogue::{ActKind, Interpretation, Outcome, PickOutcome, PickPhase, Present
 use dialogue::{Answer, Belief, Model, Posterior, Rng};
 use messages::WireCode;
 use messages::{
-    ArmStatus, AskedQuestion, FixedText, Observation, PickId, PresentationState, Presented,
-    PromptId, UtteranceSeq, WireReading,
+    ArmStatus, AskedQuestion, FixedText, MessageRef, Observation, PickId, PresentationState,
+    Presented, PromptId, UtteranceSeq, WireReading,
 };
 use scene::{Intent, ObjectId, Question, Reading, Response};
 use service::{Effects, Event, Node, Span, Time};
@@ -203,7 +203,7 @@ fn starting_over_forgets_what_was_said() {
 }
 
 /// Speaks to the reducer as grounding would.
-fn observation(seq: u64, prompt: u64, reading: &Reading) -> In {
+fn observation(seq: u64, prompt: u64, reading: &Reading) -> In<'static> {
     let mut observation = Observation {
         seq,
         scene_key: settings().scene.key(),
@@ -218,10 +218,10 @@ fn observation(seq: u64, prompt: u64, reading: &Reading) -> In {
     let question = (prompt > 0).then_some(0);
     let meant = Interpretation { weight: 1.0, answers: question, reading: reading.clone() };
     observation.readings[0] = WireReading::new(&meant).0;
-    In::Observation(Box::new(observation))
+    In::Observation(MessageRef::from(observation))
 }
 
-fn tell(node: &mut PolicyNode, message: In, now: Time) -> (Vec<Record>, Vec<Out>) {
+fn tell(node: &mut PolicyNode, message: In<'_>, now: Time) -> (Vec<Record>, Vec<Out>) {
     let mut effects = Effects::default();
     node.on(Event::Message(message), now, &mut effects);
     (effects.take_records(), effects.take_outputs())
@@ -243,12 +243,10 @@ fn each_utterance_is_applied_once_and_in_order() {
 fn an_observation_that_makes_no_sense_is_refused_and_comes_again() {
     let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
     let In::Observation(good) = observation(1, 0, &Reading::default()) else { unreachable!() };
-    let mut other_scene = good.clone();
-    other_scene.scene_key ^= 1;
-    let mut no_readings = good.clone();
-    no_readings.reading_count = 0;
+    let other_scene = Observation { scene_key: good.scene_key ^ 1, ..*good };
+    let no_readings = Observation { reading_count: 0, ..*good };
     for bad in [other_scene, no_readings] {
-        assert!(tell(&mut node, In::Observation(bad), at(1)).0.is_empty());
+        assert!(tell(&mut node, In::Observation(bad.into()), at(1)).0.is_empty());
         assert_eq!(node.state().applied, UtteranceSeq(0));
     }
     assert_eq!(tell(&mut node, In::Observation(good), at(2)).0.len(), 1);

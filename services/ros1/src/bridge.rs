@@ -8,15 +8,13 @@ use crate::subscription::{Sink, Subscription};
 use crate::wire::{Message, RosTime, Unreadable};
 use crate::{convert, guarded, types as ros};
 use config::Settings;
-use messages::robot::{
-    AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, EndpointState,
-    JointCommand, JointState, JointTrajectoryPoint, SpeedRatio,
-};
+use messages::robot::{Order, Report};
 use messages::topics::robot;
-use messages::{Service, Stamp, Topic};
-use service::bus::{Bus, BusError, PortError, Reader, WireMessage, Writer};
+use messages::{Service, Topic};
+use service::bus::PortError;
 use service::exit::{Exit, Failure};
 use service::lifecycle::Environment;
+use service::robot_topics::RobotSide;
 use service::service_loop::{Context, Program, Shell};
 use service::worker_channel::DeviceSender;
 use service::{Effects, Event, Never, NodeError, Time};
@@ -25,47 +23,17 @@ use std::sync::{Arc, Mutex};
 /// Reports that wait for the main loop: one of each kind and, of joint states, of each set of joints.
 const WAITING_MAX: usize = 32;
 
-/// What the robot reports; limbs are 0, left, and 1, right.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Report {
-    /// `joint_states`.
-    Joints(Box<JointState>),
-    /// `state`.
-    Assembly(AssemblyState),
-    /// `endpoint_state`.
-    Endpoint(usize, Box<EndpointState>),
-    /// `end_effector/<limb>_gripper/state`.
-    Gripper(usize, Box<EndEffectorState>),
-    /// `end_effector/<limb>_gripper/properties`.
-    Properties(usize, Box<EndEffectorProperties>),
-}
-
-impl Report {
-    /// Returns whether a reader of the newest reports has no use for `other` beside this one.
-    fn replaces(&self, other: &Self) -> bool {
-        match (self, other) {
-            // Limbs and fingers come in messages of their own.
-            (Self::Joints(new), Self::Joints(old)) => (new.len, new.name) == (old.len, old.name),
-            (Self::Assembly(_), Self::Assembly(_)) => true,
-            (Self::Endpoint(new, _), Self::Endpoint(old, _))
-            | (Self::Gripper(new, _), Self::Gripper(old, _))
-            | (Self::Properties(new, _), Self::Properties(old, _)) => new == old,
-            _ => false,
-        }
+/// Returns whether a reader of the newest reports has no use for `old` beside `new`.
+fn replaces(new: &Report<'_>, old: &Report<'_>) -> bool {
+    match (new, old) {
+        // Limbs and fingers come in messages of their own.
+        (Report::Joints(new), Report::Joints(old)) => (new.len, new.name) == (old.len, old.name),
+        (Report::Assembly(_), Report::Assembly(_)) => true,
+        (Report::Endpoint(new, _), Report::Endpoint(old, _))
+        | (Report::Gripper(new, _), Report::Gripper(old, _))
+        | (Report::Properties(new, _), Report::Properties(old, _)) => new == old,
+        _ => false,
     }
-}
-
-/// Commands to the robot; limbs as in [`Report`].
-#[derive(Clone, Debug, PartialEq)]
-pub enum Order {
-    /// `joint_command`.
-    Joints(usize, Box<JointCommand>),
-    /// `inverse_dynamics_command`.
-    FeedForward(usize, Box<JointTrajectoryPoint>),
-    /// `set_speed_ratio`.
-    SpeedRatio(usize, SpeedRatio),
-    /// `end_effector/<limb>_gripper/command`.
-    Gripper(usize, Box<EndEffectorCommand>),
 }
 
 /// Inputs of the bridge.
@@ -83,9 +51,9 @@ pub enum In {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Out {
     /// To the group.
-    Report(Report),
+    Report(Report<'static>),
     /// To the robot, with the time when the arm sent it.
-    Order(Order, Time),
+    Order(Order<'static>, Time),
 }
 
 /// The bridge as a reducer: everything is passed on, nothing is decided.
@@ -94,7 +62,7 @@ pub struct Bridge;
 
 impl service::Node for Bridge {
     type Config = ();
-    type In = In;
+    type In<'a> = In;
     type Out = Out;
     type Record = Never;
 
@@ -135,15 +103,15 @@ impl Program for Ros1Program {
 /// Reports on their way from the connections to the main loop.
 #[derive(Debug)]
 struct Waiting {
-    reports: Mutex<Vec<Report>>,
+    reports: Mutex<Vec<Report<'static>>>,
     wake: DeviceSender<In>,
 }
 
 impl Waiting {
     /// Hands over a report in place of the one before.
-    fn put(&self, report: Report) -> Result<(), Unreadable> {
+    fn put(&self, report: Report<'static>) -> Result<(), Unreadable> {
         let mut reports = guarded(&self.reports);
-        if let Some(old) = reports.iter_mut().find(|old| report.replaces(old)) {
+        if let Some(old) = reports.iter_mut().find(|old| replaces(&report, old)) {
             *old = report;
             return Ok(());
         }
@@ -160,15 +128,7 @@ impl Waiting {
 /// The bridge's topics on both sides; pairs are left and right.
 #[derive(Debug)]
 pub struct BridgeShell {
-    commands: [Reader<JointCommand>; 2],
-    feed_forward: [Reader<JointTrajectoryPoint>; 2],
-    ratios: [Reader<SpeedRatio>; 2],
-    fingers: [Reader<EndEffectorCommand>; 2],
-    joints: Writer<JointState>,
-    assembly: Writer<AssemblyState>,
-    endpoints: [Writer<EndpointState>; 2],
-    grippers: [Writer<EndEffectorState>; 2],
-    properties: [Writer<EndEffectorProperties>; 2],
+    topics: RobotSide,
     waiting: Arc<Waiting>,
     robot: ToRobot,
     _node: Node,
@@ -200,7 +160,7 @@ impl ToRobot {
         [joints, feed_forward, ratios, fingers].into_iter().flatten().cloned().collect()
     }
 
-    fn send(&self, order: &Order, made: Time) -> Result<(), Unreadable> {
+    fn send(&self, order: &Order<'_>, made: Time) -> Result<(), Unreadable> {
         match order {
             Order::Joints(limb, command) => {
                 self.joints[*limb].publish(&convert::joint_command(command)?, made);
@@ -233,7 +193,7 @@ fn subscription<M: Message + 'static>(
     topic: &Topic,
     waiting: &Arc<Waiting>,
     stamp: fn(&M) -> Option<RosTime>,
-    convert: impl Fn(&M, Time) -> Result<Report, Unreadable> + Clone + Send + Sync + 'static,
+    convert: impl Fn(&M, Time) -> Result<Report<'static>, Unreadable> + Clone + Send + Sync + 'static,
 ) -> Arc<Subscription> {
     let waiting = Arc::clone(waiting);
     let sink = move || -> Sink {
@@ -254,7 +214,7 @@ fn subscriptions(waiting: &Arc<Waiting>) -> Vec<Arc<Subscription>> {
             &robot::JOINT_STATES,
             waiting,
             |state| Some(state.header.stamp),
-            |state, made| Ok(Report::Joints(Box::new(convert::joint_state(state, made)?))),
+            |state, made| Ok(Report::Joints(convert::joint_state(state, made)?.into())),
         ),
         subscription::<ros::AssemblyState>(
             &robot::STATE,
@@ -268,19 +228,19 @@ fn subscriptions(waiting: &Arc<Waiting>) -> Vec<Arc<Subscription>> {
             &robot::ENDPOINT_STATE[limb],
             waiting,
             |state| Some(state.header.stamp),
-            move |s, made| Ok(Report::Endpoint(limb, Box::new(convert::endpoint_state(s, made)))),
+            move |s, made| Ok(Report::Endpoint(limb, convert::endpoint_state(s, made).into())),
         ));
         all.push(subscription::<ros::EndEffectorState>(
             &robot::GRIPPER_STATE[limb],
             waiting,
             |state| Some(state.timestamp),
-            move |s, made| Ok(Report::Gripper(limb, Box::new(convert::gripper_state(s, made)))),
+            move |s, made| Ok(Report::Gripper(limb, convert::gripper_state(s, made).into())),
         ));
         all.push(subscription::<ros::EndEffectorProperties>(
             &robot::GRIPPER_PROPERTIES[limb],
             waiting,
             |_| None,
-            move |own, _| Ok(Report::Properties(limb, Box::new(convert::gripper_properties(own)))),
+            move |own, _| Ok(Report::Properties(limb, convert::gripper_properties(own).into())),
         ));
     }
     all
@@ -288,7 +248,6 @@ fn subscriptions(waiting: &Arc<Waiting>) -> Vec<Arc<Subscription>> {
 
 impl Shell<Bridge> for BridgeShell {
     fn open(context: &Context<'_, In>) -> Result<Self, Failure> {
-        let bus = context.bus;
         let address = Address::new(&context.settings.arm.ros1, |name| std::env::var(name).ok());
         let address = address.map_err(|error| Failure::new(Exit::Config, error))?;
         let wake = context.devices.clone();
@@ -296,15 +255,7 @@ impl Shell<Bridge> for BridgeShell {
         let to_robot = ToRobot::new();
         let topics = Topics { published: to_robot.all(), subscribed: subscriptions(&waiting) };
         Ok(Self {
-            commands: readers(bus, &robot::JOINT_COMMAND)?,
-            feed_forward: readers(bus, &robot::INVERSE_DYNAMICS_COMMAND)?,
-            ratios: readers(bus, &robot::SET_SPEED_RATIO)?,
-            fingers: readers(bus, &robot::GRIPPER_COMMAND)?,
-            joints: bus.writer(&robot::JOINT_STATES)?,
-            assembly: bus.writer(&robot::STATE)?,
-            endpoints: writers(bus, &robot::ENDPOINT_STATE)?,
-            grippers: writers(bus, &robot::GRIPPER_STATE)?,
-            properties: writers(bus, &robot::GRIPPER_PROPERTIES)?,
+            topics: RobotSide::open(context.bus)?,
             waiting,
             robot: to_robot,
             _node: Node::start(address, topics, move |reason| {
@@ -317,22 +268,12 @@ impl Shell<Bridge> for BridgeShell {
     fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
         let reports = std::mem::take(&mut *guarded(&self.waiting.reports));
         reports.into_iter().for_each(|report| take(In::Pass(Out::Report(report))));
-        for limb in [0, 1] {
-            newest(&self.ratios[limb], take, |ratio| Order::SpeedRatio(limb, *ratio))?;
-            newest(&self.feed_forward[limb], take, |p| Order::FeedForward(limb, Box::new(*p)))?;
-            newest(&self.commands[limb], take, |c| Order::Joints(limb, Box::new(*c)))?;
-            newest(&self.fingers[limb], take, |c| Order::Gripper(limb, Box::new(*c)))?;
-        }
-        Ok(())
+        self.topics.newest(|order, made| take(In::Pass(Out::Order(order, made))))
     }
 
     fn publish(&mut self, output: Out) -> Result<(), PortError> {
         match output {
-            Out::Report(Report::Joints(state)) => self.joints.send(&state),
-            Out::Report(Report::Assembly(state)) => self.assembly.send(&state),
-            Out::Report(Report::Endpoint(limb, state)) => self.endpoints[limb].send(&state),
-            Out::Report(Report::Gripper(limb, state)) => self.grippers[limb].send(&state),
-            Out::Report(Report::Properties(limb, own)) => self.properties[limb].send(&own),
+            Out::Report(report) => self.topics.send(&report),
             Out::Order(order, made) => {
                 if let Err(error) = self.robot.send(&order, made) {
                     tracing::error!(%error, "a command is not sent to the robot");
@@ -341,26 +282,4 @@ impl Shell<Bridge> for BridgeShell {
             }
         }
     }
-}
-
-/// Hands over the newest waiting message, with the time when it was sent.
-fn newest<T: WireMessage>(
-    reader: &Reader<T>,
-    take: &mut dyn FnMut(In),
-    order: impl Fn(&T) -> Order,
-) -> Result<(), PortError> {
-    let mut newest = None;
-    reader.drain_stamped(|message, Stamp { sent_ns, .. }| newest = Some((*message, *sent_ns)))?;
-    if let Some((message, sent_ns)) = newest {
-        take(In::Pass(Out::Order(order(&message), Time(sent_ns))));
-    }
-    Ok(())
-}
-
-fn readers<T: WireMessage>(bus: &Bus, [l, r]: &[Topic; 2]) -> Result<[Reader<T>; 2], BusError> {
-    Ok([bus.reader(l)?, bus.reader(r)?])
-}
-
-fn writers<T: WireMessage>(bus: &Bus, [l, r]: &[Topic; 2]) -> Result<[Writer<T>; 2], BusError> {
-    Ok([bus.writer(l)?, bus.writer(r)?])
 }

@@ -1,8 +1,8 @@
 //! Inputs and outputs of the reducer.
 
 use messages::{
-    Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MotionCommand, Partial,
-    Presented, PromptId, Receipt, RobotAct, Utterance,
+    Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MessageRef, MotionCommand,
+    Partial, Presented, PromptId, Receipt, RobotAct, Utterance,
 };
 use service::Span;
 
@@ -15,13 +15,13 @@ use crate::stream_events::StreamEvent;
 
 /// Events delivered to the reducer.
 #[derive(Clone, Debug, PartialEq)]
-pub enum In {
+pub enum In<'a> {
     /// An utterance or a request from a client.
     Injection(Injection),
     /// Progress of the belief, from the policy.
     Mark(AppliedMark),
     /// A prompt to speak, from the policy.
-    Act(Box<RobotAct>),
+    Act(MessageRef<'a, RobotAct>),
     /// Status of the arm, which may aim at an object.
     Arm(ArmStatus),
     /// An event of a microphone or of a client's stream.

@@ -62,7 +62,7 @@ pub struct Config {
 
 impl Node for SpeechNode {
     type Config = Config;
-    type In = In;
+    type In<'a> = In<'a>;
     type Out = Out;
     type Record = Record;
 
@@ -78,7 +78,7 @@ impl Node for SpeechNode {
         Ok(Self { intake, player, next_send: Time(0) })
     }
 
-    fn on(&mut self, event: Event<In>, now: Time, fx: &mut Fx) {
+    fn on(&mut self, event: Event<In<'_>>, now: Time, fx: &mut Fx) {
         match event {
             Event::SetAside(SetAside { over, .. }) => {
                 self.intake.accepted.skip(UtteranceSeq(over));
@@ -118,7 +118,7 @@ impl Node for SpeechNode {
 }
 
 impl SpeechNode {
-    fn handle(&mut self, message: In, now: Time, fx: &mut Fx) {
+    fn handle(&mut self, message: In<'_>, now: Time, fx: &mut Fx) {
         match message {
             In::Injection(injection) => {
                 // A user who presses talk, types or points interrupts the robot.
@@ -146,6 +146,7 @@ impl SpeechNode {
             In::RecogniserState(state) => self.intake.set_recogniser(state, fx),
             In::Mark(mark) => {
                 if self.intake.accepted.acknowledge(mark) {
+                    self.intake.accept_waiting(&self.player, now, fx);
                     self.send(now, fx);
                 }
             }

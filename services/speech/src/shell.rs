@@ -102,14 +102,14 @@ pub struct SpeechShell {
     /// Pauses that close utterances in progress.
     closings: Arc<Closings>,
     voice: Voice,
-    inbox: DeviceSender<In>,
+    inbox: DeviceSender<In<'static>>,
     /// Replies on behalf of the devices that did not fit into the inbox.
-    replies: Vec<In>,
+    replies: Vec<In<'static>>,
 }
 
 impl SpeechShell {
     /// Replies on behalf of a device, without waiting: the main loop must not wait for itself.
-    fn reply(&mut self, message: In) {
+    fn reply(&mut self, message: In<'static>) {
         self.replies.extend(self.inbox.offer(message).err());
     }
 
@@ -134,7 +134,7 @@ impl SpeechShell {
 }
 
 impl Shell<SpeechNode> for SpeechShell {
-    fn open(context: &Context<'_, In>) -> Result<Self, Failure> {
+    fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
         let bus = context.bus;
         let work = context.environment.paths.run();
         let (settings, inbox) = (context.settings, &context.devices);
@@ -169,16 +169,13 @@ impl Shell<SpeechNode> for SpeechShell {
         })
     }
 
-    fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
+    fn drain(&mut self, take: &mut dyn FnMut(In<'_>)) -> Result<(), PortError> {
         self.replies.drain(..).for_each(&mut *take);
-        self.acts.drain(|message| take(In::Act(Box::new(*message))))?;
+        self.acts.drain(|message| take(In::Act(message.into())))?;
         self.marks.drain(|message| take(In::Mark(*message)))?;
         self.arm.drain(|message| take(In::Arm(*message)))?;
         self.audio.drain(|chunk| self.streams.take(chunk))?;
-        while let Some(injection) = self.injections.take()? {
-            take(In::Injection(injection));
-        }
-        Ok(())
+        self.injections.drain_in_turn(|injection| take(In::Injection(injection)))
     }
 
     fn publish(&mut self, output: Out) -> Result<(), PortError> {
@@ -223,7 +220,7 @@ impl Shell<SpeechNode> for SpeechShell {
 fn start_recogniser(
     settings: &Settings,
     work: &Path,
-    inbox: &DeviceSender<In>,
+    inbox: &DeviceSender<In<'static>>,
 ) -> Result<AsrWorker, String> {
     if settings.speech.recogniser == config::Recogniser::None {
         inbox.send(In::RecogniserState(EarState::Off));

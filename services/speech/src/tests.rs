@@ -1,6 +1,7 @@
 //! Rules of hearing and speaking, without devices.
 
 mod endings;
+mod fair_share;
 mod prompts;
 mod set_aside;
 
@@ -15,7 +16,7 @@ use crate::{
 };
 use language::{CompletenessJudge, Language, Reader};
 use messages::{
-    ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, MotionOrder,
+    ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, MessageRef, MotionOrder,
     PresentationState, Receipt, RequestKey, RobotAct, Sound, Source, Utterance, WireCode,
 };
 use scene::{AttributeId, Question, ValueId};
@@ -53,7 +54,7 @@ impl Speech {
     }
 
     /// Handles a message after a delay.
-    fn take(&mut self, after_s: f64, message: In) -> Outputs {
+    fn take(&mut self, after_s: f64, message: In<'_>) -> Outputs {
         self.now = self.now + Span::from_s(after_s);
         let mut effects = Effects::default();
         self.node.on(Event::Message(message), self.now, &mut effects);
@@ -152,7 +153,7 @@ impl Outputs {
 const SOUND: u64 = LIVE_FROM;
 
 /// Returns the beginning of an utterance in a microphone that does not record the robot.
-fn began(at: Time, interrupts: bool) -> In {
+fn began(at: Time, interrupts: bool) -> In<'static> {
     In::Stream(StreamEvent::Began(Began { interrupts, ..testing::began(at) }))
 }
 
@@ -161,22 +162,22 @@ fn segment(onset: Time) -> SpeechSegment {
     SpeechSegment { onset, end, samples: vec![0; 4_800], speech: 0..4_800 }
 }
 
-fn ended(onset: Time) -> In {
+fn ended(onset: Time) -> In<'static> {
     In::Stream(StreamEvent::Ended { sound: SOUND, segment: segment(onset) })
 }
 
 /// Returns a result of the recogniser with these hypotheses, or without speech.
-fn recognised(sound: u64, hypotheses: Option<Vec<Hypothesis>>) -> In {
+fn recognised(sound: u64, hypotheses: Option<Vec<Hypothesis>>) -> In<'static> {
     let segment = |hypotheses| RecognisedSegment::accepted((0.2, 0.7), 30.0, hypotheses);
     let segments = Ok(hypotheses.map(segment).into_iter().collect());
     In::Recognised(Recognised { sound, segments })
 }
 
-fn ask(prompt: u64) -> In {
+fn ask(prompt: u64) -> In<'static> {
     let text = FixedText::truncated("Is it white?");
     let (kind, question) = (ActKind::Ask.code(), WHITE.into());
     let (act, presentation) = (prompt, 1);
-    In::Act(Box::new(RobotAct {
+    In::Act(MessageRef::from(RobotAct {
         act,
         prompt,
         presentation,

@@ -4,6 +4,7 @@
 mod accepted;
 mod hearing_status;
 mod origin;
+mod waiting_requests;
 
 use crate::devices::microphone::MicrophoneStatus;
 use crate::devices::recogniser::Rejected;
@@ -26,6 +27,7 @@ use origin::Origin;
 use scene::Question;
 use service::{Span, Time};
 use std::ops::RangeInclusive;
+use waiting_requests::{Request, SHARE, WaitingRequests};
 
 /// Longest time that a user's speech delays the robot's prompts.
 const BUSY_MAX: Span = Span::from_ms(10_000);
@@ -36,6 +38,7 @@ const TALK_S: RangeInclusive<f64> = 1.0..=60.0;
 pub(crate) struct UtteranceIntake {
     config: Config,
     pub(crate) accepted: AcceptedUtterances,
+    waiting: WaitingRequests,
     receipts: Receipts,
     pending: PendingSounds,
     status: HearingStatus,
@@ -49,6 +52,7 @@ impl UtteranceIntake {
         Self {
             config,
             accepted: AcceptedUtterances::new(),
+            waiting: WaitingRequests::default(),
             receipts: Receipts::default(),
             pending: PendingSounds::default(),
             status: HearingStatus::default(),
@@ -73,7 +77,7 @@ impl UtteranceIntake {
         fx: &mut Fx,
     ) -> bool {
         let key = injection.key;
-        let is_pending = self.pending.contains(key);
+        let is_pending = self.pending.contains(key) || self.waiting.contains(key);
         if is_pending || self.receipts.repeat(key, fx) || !self.accepted.is_marked() {
             return false;
         }
@@ -98,7 +102,40 @@ impl UtteranceIntake {
                 return self.talk(origin, longest_s, now, fx);
             }
         };
-        self.accept(Origin { source, ..origin }, content, player, now, fx)
+        self.enqueue(Origin { source, ..origin }, content, player, now, fx)
+    }
+
+    /// Has a request wait for its turn, which may be now. Returns whether it is new.
+    fn enqueue(
+        &mut self,
+        origin: Origin,
+        content: Result<UtteranceContent, String>,
+        player: &PromptPlayer,
+        now: Time,
+        fx: &mut Fx,
+    ) -> bool {
+        if self.repeat(&origin, fx) {
+            return false;
+        }
+        let content = match content.and_then(|content| content.checked(&self.config)) {
+            Ok(content) => content,
+            Err(reason) => return self.reject(&origin, &reason, fx),
+        };
+        self.obey_stop(&content, now, fx);
+        let is_taken = self.waiting.push(Request { origin, content });
+        self.accept_waiting(player, now, fx);
+        is_taken
+    }
+
+    /// Accepts the requests whose turn it is.
+    pub(crate) fn accept_waiting(&mut self, player: &PromptPlayer, now: Time, fx: &mut Fx) {
+        while let Some(Request { origin, content }) = self.next_request() {
+            self.accept(origin, content, player, now, fx);
+        }
+    }
+
+    fn next_request(&mut self) -> Option<Request> {
+        self.waiting.take(|client| self.accepted.of_client(client) < SHARE)
     }
 
     fn talk(&mut self, origin: Origin, longest_s: f64, now: Time, fx: &mut Fx) -> bool {
@@ -252,9 +289,7 @@ impl UtteranceIntake {
             let origin = Origin::of(&sound, number, count).measured(&segment, now);
             self.status.set_measured(origin.span.0, segment.snr_db);
             match self.meant(segment.hypotheses, sound.is_cut) {
-                Ok(hypotheses) => {
-                    self.accept(origin, Ok(UtteranceContent::words(hypotheses)), player, now, fx);
-                }
+                Ok(hypotheses) => self.hear(origin, hypotheses, player, now, fx),
                 Err(rejected) => {
                     is_covered |= rejected.reason == GateVerdict::Covered;
                     let receipt = Receipt {
@@ -294,39 +329,71 @@ impl UtteranceIntake {
         }
     }
 
-    /// Accepts an utterance unless its content is invalid. Returns whether it is new.
-    fn accept(
+    /// Accepts what was heard, ahead of waiting requests: a user speaks no faster than the robot
+    /// recognises.
+    fn hear(
         &mut self,
         origin: Origin,
-        content: Result<UtteranceContent, String>,
+        hypotheses: Vec<Hypothesis>,
         player: &PromptPlayer,
         now: Time,
         fx: &mut Fx,
-    ) -> bool {
-        // A segment that was accepted before a restart keeps its number.
-        if let Some(accepted) = self.accepted.find(origin.key, origin.segment.0) {
-            fx.publish(Out::Receipt(Box::new(accepted.receipt())));
-            return false;
+    ) {
+        if self.repeat(&origin, fx) {
+            return;
         }
-        let content = content.and_then(|content| content.checked(&self.config));
-        let numbered = content.and_then(|content| Ok((content, self.accepted.next()?)));
-        let (content, seq) = match numbered {
-            Ok(numbered) => numbered,
-            Err(reason) => return self.reject(&origin, &reason, fx),
-        };
+        match UtteranceContent::words(hypotheses).checked(&self.config) {
+            Ok(content) => {
+                self.obey_stop(&content, now, fx);
+                self.accept(origin, content, player, now, fx);
+            }
+            Err(reason) => {
+                self.reject(&origin, &reason, fx);
+            }
+        }
+    }
+
+    /// Publishes the receipt of a segment that was accepted before, perhaps before a restart: it keeps
+    /// its number. Returns `false` if it is new.
+    fn repeat(&self, origin: &Origin, fx: &mut Fx) -> bool {
+        let known = self.accepted.find(origin.key, origin.segment.0);
+        let receipt = known.map(|accepted| Out::Receipt(Box::new(accepted.receipt())));
+        let is_known = receipt.is_some();
+        receipt.into_iter().for_each(|receipt| fx.publish(receipt));
+        is_known
+    }
+
+    /// Stops the arm if the words say so, which waits for no disk and for nobody's turn.
+    fn obey_stop(&self, content: &UtteranceContent, now: Time, fx: &mut Fx) {
         if content.is_stop(&self.config) {
             let order = MotionOrder::Stop.code();
             let command = MotionCommand { given_ns: now.ns(), order, ..MotionCommand::default() };
-            // A stop waits for no disk.
             fx.publish_urgent(Out::Motion(command));
         }
+    }
+
+    /// Accepts an utterance if there is room for it.
+    fn accept(
+        &mut self,
+        origin: Origin,
+        content: UtteranceContent,
+        player: &PromptPlayer,
+        now: Time,
+        fx: &mut Fx,
+    ) {
+        let seq = match self.accepted.next() {
+            Ok(seq) => seq,
+            Err(reason) => {
+                self.reject(&origin, &reason, fx);
+                return;
+            }
+        };
         let accepted = origin.accepted(seq, content, player.asked(), now);
         fx.append(Record::Accepted(accepted.clone()));
         self.report(origin.with_views(accepted.receipt()), fx);
         fx.publish(Out::Utterance(Box::new(accepted.utterance())));
         self.accepted.add(accepted);
         self.publish_activity(fx);
-        true
     }
 
     /// Reports why there is no new utterance. Returns `false`.

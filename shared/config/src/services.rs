@@ -29,7 +29,8 @@ pub struct ServiceConfig {
     /// Program and arguments. `None`, for built-in and optional services only: the program
     /// `whichone-NAME` beside this one.
     pub command: Option<Vec<String>>,
-    /// Services that must be ready before this one is started for the first time.
+    /// Services that must be ready before this one is started for the first time. When the group
+    /// stops, they are stopped only once this one has ended.
     pub after: Vec<String>,
     /// Stop the whole group when this service is held.
     pub critical: bool,
@@ -133,10 +134,7 @@ fn check_order(services: &[ServiceConfig], f: &mut Fields<'_>) {
             );
         }
     }
-    if let Some(mut cycle) = cycle(services) {
-        let written = |name: &&str| !f.is_built_in(&["services", name, "after"]);
-        let start = cycle.iter().position(written).unwrap_or(0);
-        cycle.rotate_left(start);
+    if let Some(cycle) = cycle(services) {
         let names = cycle.iter().chain(&cycle[..1]).copied().collect::<Vec<_>>();
         let what = format!("these services wait for each other: {}", names.join(" after "));
         f.problem_at(&["services", cycle[0], "after"], what, "remove one of them from an `after`");

@@ -10,7 +10,8 @@ use crate::journal_set::JournalSet;
 use crate::lifecycle::Environment;
 use crate::submission::Submission;
 use crate::{Span, Time};
-use messages::{Epoch, Injection, Receipt, RequestKey, Sound, topics};
+use messages::{ClientId, Epoch, Injection, Receipt, RequestKey, Sound, topics};
+use std::sync::OnceLock;
 use std::time::Duration;
 
 /// First and longest pause of a client that polls.
@@ -143,6 +144,18 @@ pub fn deliver(
         polling.pause();
     }
     Err(ClientError::Timeout { what: "speech", seconds: patience.s() })
+}
+
+/// Returns the identity of this process among the clients of the speech service, which gives each its
+/// share.
+pub fn own_id() -> ClientId {
+    static OWN: OnceLock<ClientId> = OnceLock::new();
+    *OWN.get_or_init(|| random_key().client())
+}
+
+/// Returns the key of a new request of `client`.
+pub fn request_key(client: ClientId) -> RequestKey {
+    RequestKey::new(client, random_key().client().0)
 }
 
 /// Returns a unique key.

@@ -21,6 +21,7 @@ pub mod logging;
 pub mod notify;
 pub mod printable;
 mod reducer;
+pub mod robot_topics;
 pub mod service_loop;
 pub mod shm_cleanup;
 pub mod status;

@@ -35,11 +35,11 @@ pub struct SetAside {
 }
 
 /// A service as a reducer.
-pub trait Node: Sized {
+pub trait Node: Sized + 'static {
     /// Its configuration.
     type Config;
-    /// Messages and device results that it receives.
-    type In;
+    /// Messages and device results that it receives; messages are read where they lie in shared memory.
+    type In<'a>;
     /// Messages that it publishes, and requests to its devices.
     type Out;
     /// Records of its journal. A stateless node uses [`Never`].
@@ -53,7 +53,12 @@ pub trait Node: Sized {
     fn recover(config: Self::Config, records: Vec<Self::Record>) -> Result<Self, NodeError>;
 
     /// Handles one event. Must be deterministic in `(self, event, now)`.
-    fn on(&mut self, event: Event<Self::In>, now: Time, fx: &mut Effects<Self::Out, Self::Record>);
+    fn on(
+        &mut self,
+        event: Event<Self::In<'_>>,
+        now: Time,
+        fx: &mut Effects<Self::Out, Self::Record>,
+    );
 
     /// Learns that every record stated so far is durable.
     fn on_durable(&mut self) {}

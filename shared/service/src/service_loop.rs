@@ -91,9 +91,9 @@ pub trait Shell<N: Node>: Sized {
     ///
     /// # Errors
     /// A topic of another schema, or a device that is needed and missing.
-    fn open(context: &Context<'_, N::In>) -> Result<Self, Failure>;
+    fn open(context: &Context<'_, N::In<'static>>) -> Result<Self, Failure>;
 
-    /// Hands every waiting urgent message to `take`: inputs that come before all others, and are taken
+    /// Hands every waiting urgent message to `take`, where it lies: inputs that come before all others, and are taken
     /// even while the service waits for storage. `is_readable` is that of [`Shell::urgent_fd`].
     ///
     /// # Errors
@@ -101,7 +101,7 @@ pub trait Shell<N: Node>: Sized {
     fn drain_urgent(
         &mut self,
         _is_readable: bool,
-        _take: &mut dyn FnMut(N::In),
+        _take: &mut dyn FnMut(N::In<'_>),
     ) -> Result<(), PortError> {
         Ok(())
     }
@@ -111,11 +111,11 @@ pub trait Shell<N: Node>: Sized {
         None
     }
 
-    /// Hands every other waiting message to `take`.
+    /// Hands every other waiting message to `take`, where it lies.
     ///
     /// # Errors
     /// A topic cannot be read.
-    fn drain(&mut self, take: &mut dyn FnMut(N::In)) -> Result<(), PortError>;
+    fn drain(&mut self, take: &mut dyn FnMut(N::In<'_>)) -> Result<(), PortError>;
 
     /// Sends one output or gives it to a device.
     ///
@@ -202,7 +202,6 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
         inbox,
         wake_listener,
         effects: Effects::default(),
-        arrived: Vec::new(),
         port_error: None,
         port_failure: None,
         bus,
@@ -229,7 +228,8 @@ fn open_topics<P: Program>(
 
 /// Journal record of a program's node.
 pub type Record<P> = <<P as Program>::Node as Node>::Record;
-type In<P> = <<P as Program>::Node as Node>::In;
+/// What devices hand over.
+type In<P> = <<P as Program>::Node as Node>::In<'static>;
 type Out<P> = <<P as Program>::Node as Node>::Out;
 /// The journal of a service, if it has one, its records, and the numbers that are over.
 type Recovered<P> = (Option<Journal<Record<P>>>, Vec<Record<P>>, Option<SetAside>);
@@ -252,8 +252,6 @@ struct Loop<P: Program> {
     inbox: DeviceReceiver<In<P>>,
     wake_listener: WakeListener,
     effects: Effects<Out<P>, Record<P>>,
-    /// Messages of a pass, kept for its memory.
-    arrived: Vec<In<P>>,
     /// Failure of a topic in this pass.
     port_error: Option<PortError>,
     /// Failure of a topic in the last pass, and since when passes have had one.
@@ -323,21 +321,22 @@ impl<P: Program> Loop<P> {
     /// Feeds everything that waits to the node.
     fn take_in(&mut self, is_urgent: bool) -> Result<(), PortError> {
         self.inbox.clear();
-        let mut arrived = std::mem::take(&mut self.arrived);
-        let mut result = self.shell.drain_urgent(is_urgent, &mut |message| arrived.push(message));
-        if self.takes_inputs() {
-            let ordinary = self.shell.drain(&mut |message| arrived.push(message));
-            result = result.and(ordinary);
-            while arrived.len() < PASS_EVENTS_MAX
-                && let Some(message) = self.inbox.take()
-            {
-                arrived.push(message);
+        let takes_inputs = self.takes_inputs();
+        let Self { node, shell, inbox, effects, .. } = self;
+        let mut handled = 0;
+        // A message is handled where it lies in shared memory, before the next one is taken.
+        let mut handle = |message: <P::Node as Node>::In<'_>| {
+            node.on(Event::Message(message), clock::now(), effects);
+            handled += 1;
+        };
+        let mut result = shell.drain_urgent(is_urgent, &mut handle);
+        if takes_inputs {
+            result = result.and(shell.drain(&mut handle));
+            let left = PASS_EVENTS_MAX.saturating_sub(handled);
+            for message in std::iter::from_fn(|| inbox.take()).take(left) {
+                node.on(Event::Message(message), clock::now(), effects);
             }
         }
-        for message in arrived.drain(..) {
-            self.node.on(Event::Message(message), clock::now(), &mut self.effects);
-        }
-        self.arrived = arrived;
         if self.takes_ticks() && self.node.deadline().is_some_and(|due| due <= clock::now()) {
             self.node.on(Event::Tick, clock::now(), &mut self.effects);
         }

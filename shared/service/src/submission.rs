@@ -1,9 +1,9 @@
 //! A request to the speech service, resent under one key until its receipts have arrived, so that
 //! a restart in between neither loses nor doubles it.
 
-use messages::{Injection, PromptId, Receipt, RequestKey, Sound};
+use messages::{ClientId, Injection, PromptId, Receipt, RequestKey, Sound};
 
-use crate::client::random_key;
+use crate::client::{own_id, request_key};
 use crate::{Span, Time};
 
 /// Time between two transmissions of an unanswered request.
@@ -20,12 +20,20 @@ pub struct Submission {
 }
 
 impl Submission {
-    /// A request that was said from `began` to `ended` (0: its arrival) and expires after
-    /// `patience`.
+    /// A request of this process that was said from `began` to `ended` (0: its arrival) and expires
+    /// after `patience`.
     pub fn new(sound: Sound, (began, ended): (Time, Time), now: Time, patience: Span) -> Self {
         let (onset_ns, end_ns) = (began.ns(), ended.ns());
-        let injection = Injection { key: random_key(), onset_ns, end_ns, seen_prompt: 0, sound };
+        let key = request_key(own_id());
+        let injection = Injection { key, onset_ns, end_ns, seen_prompt: 0, sound };
         Self { injection, expires: now + patience, sent: None, receipts: Vec::new() }
+    }
+
+    /// Makes it a request of `client`, for a process that speaks for several.
+    #[must_use]
+    pub fn of(mut self, client: ClientId) -> Self {
+        self.injection.key = request_key(client);
+        self
     }
 
     /// Notes the latest prompt that the user was shown before; 0 where that is not known.

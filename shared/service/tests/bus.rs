@@ -5,7 +5,9 @@
 use iceoryx2::prelude::ZeroCopySend;
 use messages::schema::{Field, Schema};
 use messages::topics::{self, Topic};
-use messages::{AppliedMark, Epoch, Incarnation, PolicyView, Presented, Service};
+use messages::{
+    AppliedMark, Epoch, Incarnation, Injection, PolicyView, Presented, RequestKey, Service, Sound,
+};
 use service::Span;
 use service::bus::{Bus, BusError, Identity, Joined, WakeListener};
 use service::group::{GroupName, GroupPaths};
@@ -171,6 +173,37 @@ fn encoded_bytes_are_read_where_they_lie_and_invalid_ones_are_skipped() {
     };
     assert_eq!(reader.take_with(decode).unwrap().as_deref(), Some("second"));
     assert_eq!(reader.take_with(decode).unwrap(), None);
+}
+
+/// The first writer was read until it had nothing left, so one that kept sending was the only one heard.
+#[test]
+fn writers_are_read_in_turn_and_one_that_keeps_sending_does_not_hold_the_reader() {
+    let shm = Shm::new();
+    let [busy, other, speech] = [(); 3].map(|()| shm.join(1, 0));
+    let reader = speech.encoded_reader::<Injection>(&topics::INJECTION).unwrap();
+    let [busy, other] = [busy, other].map(|bus| {
+        let writer = bus.encoded_writer::<Injection>(&topics::INJECTION).unwrap();
+        move |text: &str| {
+            let (key, sound) = (RequestKey::default(), Sound::Text(text.to_owned()));
+            let injection = Injection { key, onset_ns: 0, end_ns: 0, seen_prompt: 0, sound };
+            // The bus is kept with its writer.
+            let _ = &bus;
+            writer.send(&injection).unwrap();
+        }
+    });
+    (0..topics::WINDOW).for_each(|_| busy("busy"));
+    other("other");
+    let mut read = Vec::new();
+    let keep_sending = |injection: Injection| {
+        busy("busy");
+        read.push(injection.sound == Sound::Text("other".to_owned()));
+    };
+    reader.drain_in_turn(keep_sending).unwrap();
+    assert_eq!(read.len(), topics::WINDOW + 1, "what was there");
+    assert!(read[0] || read[1], "the other one's turn comes first or second");
+    let mut left = 0;
+    reader.drain_in_turn(|_| left += 1).unwrap();
+    assert!(left > 0, "what arrived meanwhile comes next");
 }
 
 /// Returns whether a wake-up waits.

@@ -6,8 +6,8 @@ use arm::shell::ArmProgram;
 use config::Settings;
 use grounding::shell::GroundingProgram;
 use messages::{
-    Activity, AppliedMark, ArmStatus, Injection, MotionCommand, Observation, Presented, RequestKey,
-    RobotAct, Sound, Utterance,
+    Activity, AppliedMark, ArmStatus, Injection, MessageRef, MotionCommand, Observation, Presented,
+    RequestKey, RobotAct, Sound, Utterance,
 };
 use policy::shell::PolicyProgram;
 use service::lifecycle::Environment;
@@ -72,7 +72,7 @@ impl<P: Program> Process<P> {
     /// One pass of the main loop: what has arrived, and a tick that is due.
     fn wake(
         &mut self,
-        inbox: Vec<<P::Node as Node>::In>,
+        inbox: Vec<<P::Node as Node>::In<'static>>,
         now: Time,
     ) -> Vec<<P::Node as Node>::Out> {
         let deadline = self.node.as_ref().and_then(Node::deadline);
@@ -82,7 +82,7 @@ impl<P: Program> Process<P> {
 
     fn pass(
         &mut self,
-        events: impl IntoIterator<Item = Event<<P::Node as Node>::In>>,
+        events: impl IntoIterator<Item = Event<<P::Node as Node>::In<'static>>>,
         now: Time,
     ) -> Vec<<P::Node as Node>::Out> {
         let Some(node) = &mut self.node else { return Vec::new() };
@@ -100,10 +100,10 @@ pub(super) struct Group {
     pub(super) policy: Process<PolicyProgram>,
     pub(super) arm: Process<ArmProgram>,
     pub(super) latest: Latest,
-    pub(super) to_speech: Vec<speech::In>,
-    pub(super) to_grounding: Vec<Box<Utterance>>,
-    pub(super) to_policy: Vec<policy::In>,
-    pub(super) to_arm: Vec<arm::In>,
+    pub(super) to_speech: Vec<speech::In<'static>>,
+    pub(super) to_grounding: Vec<MessageRef<'static, Utterance>>,
+    pub(super) to_policy: Vec<policy::In<'static>>,
+    pub(super) to_arm: Vec<arm::In<'static>>,
     now: Time,
     said: u8,
     /// The playback that sounds, and its remaining steps.
@@ -190,7 +190,7 @@ impl Group {
         let inbox = std::mem::take(&mut self.to_grounding);
         for observation in self.grounding.wake(inbox, now) {
             self.latest.observation = *observation;
-            self.to_policy.push(policy::In::Observation(observation));
+            self.to_policy.push(policy::In::Observation(observation.into()));
         }
         let inbox = std::mem::take(&mut self.to_policy);
         let outputs = self.policy.wake(inbox, now);
@@ -208,7 +208,7 @@ impl Group {
         match output {
             speech::Out::Utterance(utterance) => {
                 self.latest.utterance = *utterance;
-                self.to_grounding.push(utterance);
+                self.to_grounding.push(utterance.into());
             }
             speech::Out::Presented(presented) => {
                 self.latest.presented = presented;
@@ -244,8 +244,8 @@ impl Group {
             }
             policy::Out::Act(act) => {
                 self.latest.act = *act;
-                self.to_speech.push(speech::In::Act(act.clone()));
-                self.to_arm.push(arm::In::Act(act));
+                self.to_speech.push(speech::In::Act(act.clone().into()));
+                self.to_arm.push(arm::In::Act(act.into()));
             }
             policy::Out::View(_) => {}
         }

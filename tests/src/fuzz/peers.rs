@@ -1,6 +1,6 @@
 //! Forged messages between the services of a group at work: valid as messages, with any numbers.
 
-use messages::{Injection, WireField};
+use messages::{Injection, MessageRef, WireField};
 use speech::record::Record;
 
 use super::bytes::Input;
@@ -46,12 +46,12 @@ fn forge(group: &mut Group, input: &mut Input<'_>) {
     match kind {
         0 => {
             if let Some(it) = forged(&latest.utterance, input) {
-                group.to_grounding.push(Box::new(it));
+                group.to_grounding.push(it.into());
             }
         }
         1 => {
             if let Some(it) = forged(&latest.observation, input) {
-                group.to_policy.push(policy::In::Observation(Box::new(it)));
+                group.to_policy.push(policy::In::Observation(MessageRef::from(it)));
             }
         }
         2 => {
@@ -81,12 +81,12 @@ fn forge(group: &mut Group, input: &mut Input<'_>) {
         }
         7 => {
             if let Some(it) = forged(&latest.act, input) {
-                group.to_speech.push(speech::In::Act(Box::new(it)));
+                group.to_speech.push(speech::In::Act(MessageRef::from(it)));
             }
         }
         8 => {
             if let Some(it) = forged(&latest.act, input) {
-                group.to_arm.push(arm::In::Act(Box::new(it)));
+                group.to_arm.push(arm::In::Act(MessageRef::from(it)));
             }
         }
         _ => {

@@ -4,7 +4,7 @@
 use dialogue::Rng;
 use messages::judge::COUNT_MAX;
 use messages::{
-    ActKind, Activity, AppliedMark, ArmStatus, Code, FixedText, Hypothesis, Injection,
+    ActKind, Activity, AppliedMark, ArmStatus, Code, FixedText, Hypothesis, Injection, MessageRef,
     MotionCommand, MotionOrder, Observation, PickOutcome, PickPhase, PresentationState, Presented,
     RequestKey, RobotAct, Sound, Utterance, WireCode, WireQuestion,
 };
@@ -30,7 +30,7 @@ impl SimulatedGroup {
             insert(&mut self.inboxes.speech, forged, &mut rng);
         }
         if rng.uniform() < FORGED {
-            let forged = Box::new(utterance(&mut rng));
+            let forged = utterance(&mut rng).into();
             insert(&mut self.inboxes.grounding, forged, &mut rng);
         }
         if rng.uniform() < FORGED {
@@ -112,10 +112,10 @@ fn status(rng: &mut Rng) -> ArmStatus {
     }
 }
 
-fn to_speech(rng: &mut Rng, scene_key: u64) -> speech::In {
+fn to_speech(rng: &mut Rng, scene_key: u64) -> speech::In<'static> {
     match rng.below(4) {
         0 => speech::In::Mark(AppliedMark { seq: number(rng) }),
-        1 => speech::In::Act(act(rng, scene_key)),
+        1 => speech::In::Act(act(rng, scene_key).into()),
         2 => speech::In::Arm(status(rng)),
         _ => speech::In::Injection(injection(rng)),
     }
@@ -168,7 +168,7 @@ fn utterance(rng: &mut Rng) -> Utterance {
     forged
 }
 
-fn to_policy(rng: &mut Rng, scene_key: u64) -> policy::In {
+fn to_policy(rng: &mut Rng, scene_key: u64) -> policy::In<'static> {
     match rng.below(4) {
         0 => policy::In::Arm(status(rng)),
         1 => policy::In::Activity(Activity {
@@ -185,7 +185,7 @@ fn to_policy(rng: &mut Rng, scene_key: u64) -> policy::In {
             state: PresentationState::Ended.into(),
             ..Presented::default()
         }),
-        _ => policy::In::Observation(Box::new(observation(rng, scene_key))),
+        _ => policy::In::Observation(MessageRef::from(observation(rng, scene_key))),
     }
 }
 
@@ -210,9 +210,9 @@ fn observation(rng: &mut Rng, scene_key: u64) -> Observation {
     forged
 }
 
-fn to_arm(rng: &mut Rng, scene_key: u64) -> arm::In {
+fn to_arm(rng: &mut Rng, scene_key: u64) -> arm::In<'static> {
     match rng.below(2) {
-        0 => arm::In::Act(act(rng, scene_key)),
+        0 => arm::In::Act(act(rng, scene_key).into()),
         _ => arm::In::Motion(MotionCommand {
             given_ns: COUNT_MAX << rng.below(11),
             order: MotionOrder::Resume.code(),

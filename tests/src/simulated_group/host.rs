@@ -108,7 +108,12 @@ where
 
     /// One pass of the main loop if there is anything to do: what has waited for the disk, the inbox,
     /// and a tick that is due. The process may die in it.
-    pub fn wake(&mut self, inbox: Vec<N::In>, now: Time, faults: &mut Faults) -> Vec<N::Out> {
+    pub fn wake(
+        &mut self,
+        inbox: Vec<N::In<'static>>,
+        now: Time,
+        faults: &mut Faults,
+    ) -> Vec<N::Out> {
         if !self.is_up() {
             return Vec::new();
         }
@@ -130,7 +135,7 @@ where
     /// On a full disk the node goes on, and everything but urgent outputs waits for room.
     fn pass(
         &mut self,
-        events: Vec<Event<N::In>>,
+        events: Vec<Event<N::In<'static>>>,
         now: Time,
         crash: Option<Crash>,
         faults: &mut Faults,

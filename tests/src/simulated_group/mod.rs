@@ -62,10 +62,10 @@ struct Decoding {
 /// Messages that wait for each process.
 #[derive(Default)]
 struct Inboxes {
-    speech: Vec<speech::In>,
-    grounding: Vec<Box<messages::Utterance>>,
-    policy: Vec<policy::In>,
-    arm: Vec<arm::In>,
+    speech: Vec<speech::In<'static>>,
+    grounding: Vec<messages::MessageRef<'static, messages::Utterance>>,
+    policy: Vec<policy::In<'static>>,
+    arm: Vec<arm::In<'static>>,
 }
 
 /// The services of a group, and everything around them.

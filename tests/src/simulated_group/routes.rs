@@ -76,7 +76,7 @@ impl SimulatedGroup {
             let copies = self.faults.copies(self.now);
             match output {
                 speech::Out::Utterance(utterance) => {
-                    self.inboxes.grounding.extend(repeat_n(utterance, copies));
+                    self.inboxes.grounding.extend(repeat_n(utterance.into(), copies));
                 }
                 speech::Out::Receipt(receipt) => match &mut self.client {
                     Some(client) => client.publish(copies, |it| it.receipts.push(*receipt)),
@@ -140,7 +140,7 @@ impl SimulatedGroup {
         for observation in outputs {
             for _ in 0..self.faults.copies(self.now) {
                 // The bus may hand over a doubled message out of turn.
-                self.inboxes.policy.insert(0, policy::In::Observation(observation.clone()));
+                self.inboxes.policy.insert(0, policy::In::Observation(observation.clone().into()));
             }
         }
     }
@@ -160,7 +160,8 @@ impl SimulatedGroup {
                         self.user.announce(act.prompt, act.scene_key, question);
                     }
                     self.picked = self.picked.or(act.pick().map(|(_, object)| object));
-                    let (to_speech, to_arm) = (speech::In::Act(act.clone()), arm::In::Act(act));
+                    let to_speech = speech::In::Act(act.clone().into());
+                    let to_arm = arm::In::Act(act.into());
                     self.inboxes.speech.extend(repeat_n(to_speech, copies));
                     self.inboxes.arm.extend(repeat_n(to_arm, copies));
                 }

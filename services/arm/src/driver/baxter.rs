@@ -180,7 +180,7 @@ impl BaxterDriver {
     }
 
     /// The commands to one limb in this pass.
-    fn command_limb(&mut self, limb: Limb, now: Time, orders: &mut Vec<Order>) {
+    fn command_limb(&mut self, limb: Limb, now: Time, orders: &mut Vec<Order<'static>>) {
         let q = self.measured_of(limb);
         let (path, moving) = (self.settings.path_tolerance_rad, self.limbs[limb].command.is_some());
         let set = &mut self.limbs[limb];
@@ -201,23 +201,23 @@ impl BaxterDriver {
                 accelerations: command.qdd,
                 time_from_start_s: command.t_s,
             };
-            orders.push(Order::FeedForward(limb, Box::new(point)));
+            orders.push(Order::FeedForward(limb as usize, point.into()));
         }
         let names = &self.robot.arm(limb).joint_names;
         let joints: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(hold).collect();
         match JointCommand::new(JointMode::Position, &joints) {
-            Ok(message) => orders.push(Order::Joints(limb, Box::new(message))),
+            Ok(message) => orders.push(Order::Joints(limb as usize, message.into())),
             Err(error) => tracing::error!(%error, "a limb cannot be commanded"),
         }
     }
 
-    fn send_ratio(&mut self, now: Time, orders: &mut Vec<Order>) {
+    fn send_ratio(&mut self, now: Time, orders: &mut Vec<Order<'static>>) {
         if self.ratio_sent.is_some_and(|sent| now.since(sent) < RATIO_EVERY) {
             return;
         }
         self.ratio_sent = Some(now);
         let ratio = SpeedRatio { data: self.settings.speed_ratio };
-        orders.extend(Limb::BOTH.map(|limb| Order::SpeedRatio(limb, ratio)));
+        orders.extend(Limb::BOTH.map(|limb| Order::SpeedRatio(limb as usize, ratio)));
     }
 }
 
@@ -235,7 +235,7 @@ impl ArmDriver for BaxterDriver {
         self.grippers[command.limb].want(command.fingers, self.now);
     }
 
-    fn on_report(&mut self, report: &Report, now: Time) {
+    fn on_report(&mut self, report: &Report<'_>, now: Time) {
         match report {
             Report::Joints(state) => self.on_joints(state, now),
             Report::Assembly(state) => self.assembly = Some((*state, now)),
@@ -249,6 +249,8 @@ impl ArmDriver for BaxterDriver {
             Report::Properties(limb, properties) => {
                 self.grippers[*limb].on_properties(properties);
             }
+            // The chain of the joints says the same.
+            Report::Endpoint(..) => {}
         }
     }
 
@@ -269,7 +271,7 @@ impl ArmDriver for BaxterDriver {
         }
     }
 
-    fn end_pass(&mut self, now: Time) -> Vec<Order> {
+    fn end_pass(&mut self, now: Time) -> Vec<Order<'static>> {
         let mut orders = Vec::new();
         if !self.accepts_commands() {
             return orders;
@@ -278,7 +280,7 @@ impl ArmDriver for BaxterDriver {
         Limb::BOTH.into_iter().for_each(|limb| self.command_limb(limb, now, &mut orders));
         for limb in Limb::BOTH {
             let due = self.grippers[limb].due(now);
-            orders.extend(due.map(|message| Order::Gripper(limb, Box::new(message))));
+            orders.extend(due.map(|message| Order::Gripper(limb as usize, message.into())));
         }
         orders
     }

@@ -19,7 +19,7 @@ impl PlannerThread {
     ///
     /// # Errors
     /// No thread is left.
-    pub(super) fn start(results: DeviceSender<In>) -> io::Result<Self> {
+    pub(super) fn start(results: DeviceSender<In<'static>>) -> io::Result<Self> {
         let (requests, waiting) = mpsc::channel();
         let work = move || solve_all(&waiting, &results);
         thread::Builder::new().name("planner".into()).spawn(work)?;
@@ -32,7 +32,7 @@ impl PlannerThread {
     }
 }
 
-fn solve_all(requests: &Receiver<Box<PlanRequest>>, results: &DeviceSender<In>) {
+fn solve_all(requests: &Receiver<Box<PlanRequest>>, results: &DeviceSender<In<'static>>) {
     let _panic_ends_service = PanicEndsService;
     while let Ok(next) = requests.recv() {
         // The latest request alone counts.

@@ -1,13 +1,12 @@
 //! The arm's side of the robot's own topics.
 
-use crate::driver::{Order, Report};
-use manipulation::Limb;
 use messages::robot::{
     AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, JointCommand,
-    JointState, JointTrajectoryPoint, SpeedRatio,
+    JointState, JointTrajectoryPoint, Order, Report, SpeedRatio,
 };
 use messages::topics::robot;
-use service::bus::{Bus, BusError, PortError, Reader, WireMessage, Writer};
+use service::bus::{Bus, BusError, PortError, Reader, Writer};
+use service::robot_topics::{readers, writers};
 
 /// The robot's topics as the arm uses them; pairs are left and right.
 #[derive(Debug)]
@@ -36,17 +35,17 @@ impl RobotTopics {
         })
     }
 
-    pub(super) fn drain(&self, mut take: impl FnMut(Report)) -> Result<(), PortError> {
+    pub(super) fn drain(&self, mut take: impl FnMut(Report<'_>)) -> Result<(), PortError> {
         // The robot as a whole first: joints mean nothing on one that has been switched off.
         self.assembly.drain(|state| take(Report::Assembly(*state)))?;
-        for limb in Limb::BOTH {
-            self.properties[limb].drain(|own| take(Report::Properties(limb, Box::new(*own))))?;
-            self.grippers[limb].drain(|state| take(Report::Gripper(limb, Box::new(*state))))?;
+        for limb in [0, 1] {
+            self.properties[limb].drain(|own| take(Report::Properties(limb, own.into())))?;
+            self.grippers[limb].drain(|state| take(Report::Gripper(limb, state.into())))?;
         }
-        self.joints.drain(|state| take(Report::Joints(Box::new(*state))))
+        self.joints.drain(|state| take(Report::Joints(state.into())))
     }
 
-    pub(super) fn send(&self, order: &Order) -> Result<(), PortError> {
+    pub(super) fn send(&self, order: &Order<'_>) -> Result<(), PortError> {
         match order {
             Order::Joints(limb, command) => self.commands[*limb].send(command),
             Order::FeedForward(limb, point) => self.feed_forward[*limb].send(point),
@@ -54,14 +53,4 @@ impl RobotTopics {
             Order::Gripper(limb, command) => self.fingers[*limb].send(command),
         }
     }
-}
-
-type Pair = [messages::Topic; 2];
-
-fn readers<T: WireMessage>(bus: &Bus, [left, right]: &Pair) -> Result<[Reader<T>; 2], BusError> {
-    Ok([bus.reader(left)?, bus.reader(right)?])
-}
-
-fn writers<T: WireMessage>(bus: &Bus, [left, right]: &Pair) -> Result<[Writer<T>; 2], BusError> {
-    Ok([bus.writer(left)?, bus.writer(right)?])
 }

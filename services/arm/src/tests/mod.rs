@@ -22,7 +22,7 @@ use config::Settings;
 use manipulation::{Joints, Limb};
 use messages::WireCode;
 use messages::{
-    ActKind, ArmStatus, InteractionId, JointStates, MotionCommand, MotionOrder, PickId,
+    ActKind, ArmStatus, InteractionId, JointStates, MessageRef, MotionCommand, MotionOrder, PickId,
     PickOutcome, PickPhase, RobotAct, TrajectoryView, WorldView,
 };
 use preflight::ArmSetup;
@@ -113,7 +113,7 @@ struct Machine {
     now: Time,
     /// The policy's standing act, sent again every 250 ms.
     act: Option<RobotAct>,
-    waiting: Vec<In>,
+    waiting: Vec<In<'static>>,
     /// Requested plans, with the times at which they are there.
     planning: Vec<(Time, PlanRequest)>,
     planning_time: Span,
@@ -194,7 +194,7 @@ impl Machine {
     }
 
     /// One pass of the main loop, in the order of the runtime.
-    fn pass(&mut self, events: Vec<Event<In>>, death: Option<Death>) {
+    fn pass(&mut self, events: Vec<Event<In<'static>>>, death: Option<Death>) {
         let mut effects = Effects::default();
         for event in events {
             self.node.on(event, self.now, &mut effects);
@@ -241,7 +241,7 @@ impl Machine {
         self.now = deadline.clamp(self.now + Span(300_000), self.now + Span::from_ms(10));
         self.passes += 1;
         if self.passes.is_multiple_of(25) {
-            self.waiting.extend(self.act.iter().map(|act| In::Act(Box::new(*act))));
+            self.waiting.extend(self.act.iter().map(|act| In::Act(MessageRef::from(*act))));
         }
         let now = self.now;
         let planned = self.planning.extract_if(.., |(ready, _)| *ready <= now);
@@ -292,7 +292,7 @@ impl Machine {
         let scene_key = if act.scene_key == 0 { own } else { act.scene_key };
         let act = RobotAct { scene_key, ..act };
         self.act = Some(act);
-        self.waiting.push(In::Act(Box::new(act)));
+        self.waiting.push(In::Act(MessageRef::from(act)));
     }
 
     fn motion(&mut self, order: MotionOrder) {

@@ -1,7 +1,8 @@
 //! Utterances of viewers and of the study on their way to the robot.
 
-use messages::{Hypothesis, Injection, Receipt, ReceiptStatus, Sound};
+use messages::{ClientId, Hypothesis, Injection, Receipt, ReceiptStatus, Sound};
 use service::bus::EncodedWriter;
+use service::client::own_id;
 use service::submission::Submission;
 use service::{Span, Time};
 
@@ -11,8 +12,14 @@ use crate::hub::{Hub, ViewerId};
 
 /// Deadline of a receipt.
 const PATIENCE: Span = Span::from_ms(8_000);
-/// Most utterances on their way.
-const WORDS_MAX: usize = 32;
+/// Most utterances of one viewer on their way, and of all of them.
+const WORDS_MAX: (usize, usize) = (8, 128);
+
+/// Returns a viewer's identity among the clients of the speech service; the study's is the console's
+/// own.
+fn client_of(viewer: Option<ViewerId>) -> ClientId {
+    ClientId(own_id().0.wrapping_add(viewer.map_or(0, |viewer| viewer.0)))
+}
 
 /// Utterances without a receipt, each with the viewer and command that wait for it.
 #[derive(Debug, Default)]
@@ -25,7 +32,9 @@ impl Submissions {
         words: Words,
         now: Time,
     ) -> Result<(), String> {
-        if self.0.len() >= WORDS_MAX {
+        let client = client_of(viewer.map(|(viewer, _)| viewer));
+        let own = self.0.iter().filter(|(_, submission)| submission.key().client() == client);
+        if own.count() >= WORDS_MAX.0 || self.0.len() >= WORDS_MAX.1 {
             return Err("too many utterances at a time; help: wait a moment".to_owned());
         }
         let Words { text, alternatives, spoken, began, ended, seen } = words;
@@ -39,7 +48,8 @@ impl Submissions {
             Sound::Text(text)
         };
         let said = (began.unwrap_or(now), ended.unwrap_or(Time(0)));
-        self.0.push((viewer, Submission::new(sound, said, now, PATIENCE).after(seen)));
+        let submission = Submission::new(sound, said, now, PATIENCE).after(seen);
+        self.0.push((viewer, submission.of(client)));
         Ok(())
     }
 

@@ -67,7 +67,7 @@ pub(crate) struct AsrWorker {
 impl AsrWorker {
     /// Starts the thread, which opens the recogniser of the configuration with work files in `work`.
     /// Its events are the state of the recogniser, interim results and results.
-    pub(crate) fn start(settings: &Settings, work: &Path) -> (Self, Receiver<In>) {
+    pub(crate) fn start(settings: &Settings, work: &Path) -> (Self, Receiver<In<'static>>) {
         let (scene, speech) = (settings.scene.clone(), &settings.speech);
         let gate = Gate::new(&scene, speech.accept_score_min as f32);
         let backend = Backend::of(speech, work);
@@ -85,7 +85,7 @@ impl AsrWorker {
         open: impl FnOnce() -> Result<Opened, String> + Send + 'static,
         gate: Gate,
         limits: Limits,
-    ) -> (Self, Receiver<In>) {
+    ) -> (Self, Receiver<In<'static>>) {
         let (hints, hinted) = bounded(HINTS_MAX);
         let (blocks, spoken) = bounded(interim::BLOCKS_MAX);
         let (files, recorded) = bounded(WAITING_MAX);

@@ -15,7 +15,7 @@ pub(super) fn start(
     settings: &Settings,
     mask: &Arc<PlaybackMask>,
     closings: &Arc<Closings>,
-    inbox: &DeviceSender<In>,
+    inbox: &DeviceSender<In<'static>>,
 ) -> Result<Microphone, String> {
     let speech = &settings.speech;
     let reason = match (speech.microphone.mode, speech.recogniser) {
@@ -37,7 +37,7 @@ pub(super) fn start(
 }
 
 /// Returns a sink for the events of a live source: the main loop, which may be busy.
-pub(super) fn sink(inbox: &DeviceSender<In>) -> Sink {
+pub(super) fn sink(inbox: &DeviceSender<In<'static>>) -> Sink {
     let inbox = inbox.clone();
     Box::new(move |event| inbox.offer(event))
 }

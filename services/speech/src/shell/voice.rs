@@ -15,7 +15,7 @@ pub(super) fn start(
     settings: &Settings,
     work: &Path,
     mask: Arc<PlaybackMask>,
-    inbox: &DeviceSender<In>,
+    inbox: &DeviceSender<In<'static>>,
 ) -> Voice {
     let options = VoiceOptions {
         audio_dir: settings.voice_dir(work),

@@ -45,9 +45,9 @@ fn prompts_of_a_policy_without_memory_are_said() {
         text: FixedText::truncated("All right."),
         ..RobotAct::default()
     };
-    let said = speech.take(1.0, In::Act(Box::new(act(9)))).spoken().expect("it is said");
+    let said = speech.take(1.0, In::Act(MessageRef::from(act(9)))).spoken().expect("it is said");
     speech.playback(1.0, said.playback, PlaybackState::Started);
     speech.playback(1.0, said.playback, PlaybackState::Ended);
-    assert!(speech.take(1.0, In::Act(Box::new(act(9)))).spoken().is_none(), "it was said");
-    assert!(speech.take(1.0, In::Act(Box::new(act(OVER + 1)))).spoken().is_some());
+    assert!(speech.take(1.0, In::Act(MessageRef::from(act(9)))).spoken().is_none(), "it was said");
+    assert!(speech.take(1.0, In::Act(MessageRef::from(act(OVER + 1)))).spoken().is_some());
 }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use messages::outbox::Outbox;
-use messages::{AppliedMark, Receipt, RequestKey, UtteranceSeq, topics};
+use messages::{AppliedMark, ClientId, Receipt, RequestKey, UtteranceSeq, topics};
 use service::Time;
 
 use crate::bounded::push_bounded;
@@ -87,6 +87,11 @@ impl AcceptedUtterances {
     /// Returns when the oldest utterance that is not applied was accepted.
     pub(super) fn oldest(&self) -> Option<Time> {
         self.outbox.window().map(|(_, accepted)| accepted.accepted).min()
+    }
+
+    /// Returns the number of utterances of a client that are not applied.
+    pub(super) fn of_client(&self, client: ClientId) -> usize {
+        self.outbox.waiting().filter(|accepted| accepted.key.client() == client).count()
     }
 
     /// Returns the number of utterances that are not applied.

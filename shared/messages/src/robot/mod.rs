@@ -10,7 +10,9 @@
 mod end_effector;
 mod joints;
 mod state;
+mod traffic;
 
 pub use end_effector::*;
 pub use joints::*;
 pub use state::*;
+pub use traffic::{Order, Report};

@@ -7,8 +7,9 @@ use super::renewed::Renewed;
 use super::segment_error::{self, SegmentError};
 use super::sender::Sender;
 use super::{Bus, BusError, Connect, Ipc, PortError, create};
-use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
+use iceoryx2::port::{ReceiveError, publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};
+use iceoryx2::sample::Sample;
 use messages::Stamp;
 use messages::schema::Schema;
 use messages::topics::Topic;
@@ -66,7 +67,8 @@ impl Bus {
         let subscriber = subscribe(service, topic)?;
         self.greet(topic);
         let gate = Gate::new(self, topic);
-        Ok(EncodedReader { topic: topic.name, subscriber, gate, _payload: PhantomData })
+        let (buffer, topic) = (topic.buffer, topic.name);
+        Ok(EncodedReader { topic, buffer, subscriber, gate, _payload: PhantomData })
     }
 }
 
@@ -164,10 +166,15 @@ impl Flavor for Unwritten<'_> {
     }
 }
 
+/// Encoded bytes in shared memory.
+type Slice = Sample<Ipc, [u8], Stamp>;
+
 /// Reads a topic of postcard payloads.
 #[derive(Debug)]
 pub struct EncodedReader<T: Schema> {
     topic: &'static str,
+    /// Unread payloads of each writer that are kept.
+    buffer: usize,
     subscriber: Renewed<Subscriber<Ipc, [u8], Stamp>>,
     gate: Gate,
     _payload: PhantomData<T>,
@@ -209,6 +216,41 @@ impl<T: Schema + DeserializeOwned> EncodedReader<T> {
     /// As [`EncodedReader::take_with`].
     pub fn take(&self) -> Result<Option<T>, PortError> {
         self.take_with(|bytes| postcard::from_bytes(bytes))
+    }
+
+    /// Takes what is pending, one payload of each writer in turn. It ends even where a writer sends as
+    /// fast as it is read: what arrives meanwhile wakes the reader again.
+    ///
+    /// # Errors
+    /// As [`EncodedReader::take`].
+    pub fn drain_in_turn(&self, mut take: impl FnMut(T)) -> Result<(), PortError> {
+        self.subscriber.with(|subscriber| {
+            for _ in 0..self.buffer {
+                let turn = self.turn(subscriber)?;
+                if turn.is_empty() {
+                    break;
+                }
+                for sample in turn.iter().filter(|it| self.gate.admits(it.user_header())) {
+                    match postcard::from_bytes(sample.payload()) {
+                        Ok(payload) => take(payload),
+                        Err(error) => reject(self.topic, &error),
+                    }
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Returns the next payload of every writer: none gives another one while the first is held.
+    fn turn(&self, subscriber: &Subscriber<Ipc, [u8], Stamp>) -> Result<Vec<Slice>, PortError> {
+        let mut turn = Vec::new();
+        loop {
+            match subscriber.receive() {
+                Ok(Some(sample)) => turn.push(sample),
+                Ok(None) | Err(ReceiveError::ExceedsMaxBorrows) => return Ok(turn),
+                Err(error) => return Err(PortError::new(self.topic, format!("{error:?}"))),
+            }
+        }
     }
 
     /// Returns the newest pending payload.

@@ -49,19 +49,19 @@ impl Bench {
         self.driver.on_report(&Report::Assembly(self.assembly), self.now);
         for limb in Limb::BOTH {
             let state = Box::new(self.grippers[limb]);
-            self.driver.on_report(&Report::Gripper(limb, state), self.now);
+            self.driver.on_report(&Report::Gripper(limb as usize, state.into()), self.now);
         }
-        self.driver.on_report(&Report::Joints(Box::new(self.joint_state())), self.now);
+        self.driver.on_report(&Report::Joints(self.joint_state().into()), self.now);
     }
 
     /// A pass 10 ms after the one before, in which the robot is heard.
-    fn pass(&mut self, command: Option<Command>) -> Vec<Order> {
+    fn pass(&mut self, command: Option<Command>) -> Vec<Order<'static>> {
         self.now = self.now + Span::from_ms(10);
         self.report_all();
         self.deaf_pass(command)
     }
 
-    fn deaf_pass(&mut self, command: Option<Command>) -> Vec<Order> {
+    fn deaf_pass(&mut self, command: Option<Command>) -> Vec<Order<'static>> {
         self.driver.begin_pass(self.now, [true; 2]);
         command.into_iter().for_each(|command| self.driver.command(&command, 0.01));
         self.driver.end_pass(self.now)
@@ -77,7 +77,7 @@ impl Bench {
 
 fn commanded(orders: &[Order], limb: Limb) -> Option<Vec<f64>> {
     orders.iter().find_map(|order| match order {
-        Order::Joints(own, command) if *own == limb => {
+        Order::Joints(own, command) if *own == limb as usize => {
             Some(command.joints().unwrap().into_iter().map(|(_, q)| q).collect())
         }
         _ => None,
@@ -86,7 +86,7 @@ fn commanded(orders: &[Order], limb: Limb) -> Option<Vec<f64>> {
 
 fn word(orders: &[Order]) -> Option<EndEffectorCommand> {
     orders.iter().find_map(|order| match order {
-        Order::Gripper(Limb::Left, message) => Some(**message),
+        Order::Gripper(0, message) => Some(**message),
         _ => None,
     })
 }
@@ -102,7 +102,7 @@ fn joints_are_found_by_name_and_fingers_disturb_nothing() {
     assert_eq!(at, Source::Sensors(bench.now));
     let later = bench.now.ns() + 5_000_000;
     let finger = JointState::new(later, &[("l_gripper_l_finger_joint", [0.01; 3])]).unwrap();
-    bench.driver.on_report(&Report::Joints(Box::new(finger)), Time(later));
+    bench.driver.on_report(&Report::Joints(finger.into()), Time(later));
     assert_eq!(
         (bench.driver.measured().at, bench.driver.measured().posture.joints),
         (at, bench.joints)
@@ -149,7 +149,7 @@ fn silence_is_noticed_after_its_time_and_stamps_of_another_clock_do_not_hide_it(
     let mut future = bench.joint_state();
     future.stamp_ns = u64::MAX;
     bench.pass(None);
-    bench.driver.on_report(&Report::Joints(Box::new(future)), bench.now);
+    bench.driver.on_report(&Report::Joints(future.into()), bench.now);
     let heard = bench.now;
     for (after_ms, inhibit) in [(140, MotionInhibit::None), (160, MotionInhibit::Stale)] {
         bench.now = heard + Span::from_ms(after_ms);
@@ -164,7 +164,7 @@ fn baxter_driver_ignores_an_invalid_joint_state() {
     bench.pass(None);
     bench.joints[0][0] = f64::NAN;
     let state = bench.joint_state();
-    bench.driver.on_report(&Report::Joints(Box::new(state)), bench.now);
+    bench.driver.on_report(&Report::Joints(state.into()), bench.now);
     assert!(bench.driver.measured().posture.joints[0][0].is_finite());
 }
 
@@ -196,9 +196,7 @@ fn baxter_driver_reports_a_joint_off_its_path() {
 fn velocities_and_accelerations_are_fed_forward_while_a_limb_moves() {
     let mut bench = Bench::new();
     let feeds = |orders: &[Order]| {
-        orders
-            .iter()
-            .any(|o| matches!(o, Order::FeedForward(Limb::Left, p) if p.velocities == [0.1; 7]))
+        orders.iter().any(|o| matches!(o, Order::FeedForward(0, p) if p.velocities == [0.1; 7]))
     };
     assert!(!feeds(&bench.pass(None)));
     assert!(feeds(&bench.pass(Some(bench.moving(0.01, Fingers::Stay)))));
@@ -251,7 +249,7 @@ fn unconfigured() -> (Bench, Command, EndEffectorCommand) {
         controls_position: 1,
         ..EndEffectorProperties::default()
     };
-    bench.driver.on_report(&Report::Properties(Limb::Left, Box::new(own)), bench.now);
+    bench.driver.on_report(&Report::Properties(0, own.into()), bench.now);
     bench.pass(None);
     let open = bench.moving(0.0, Fingers::Open(0.02));
     let message = word(&bench.pass(Some(open))).unwrap();

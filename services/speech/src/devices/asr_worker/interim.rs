@@ -17,7 +17,7 @@ const NICENESS: i32 = 10;
 pub(super) fn run(
     open: InterimDecoderOpener,
     blocks: &Receiver<(u64, Vec<i16>)>,
-    events: &Sender<In>,
+    events: &Sender<In<'static>>,
 ) {
     // Without the permission it runs at normal priority.
     let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), NICENESS);

@@ -41,7 +41,7 @@ impl Recogniser for Stub {
 
 fn worker(
     open: impl FnOnce() -> Result<Opened, String> + Send + 'static,
-) -> (AsrWorker, Receiver<In>) {
+) -> (AsrWorker, Receiver<In<'static>>) {
     let gate = Gate::new(&bowls(), Gate::THRESHOLD);
     let segmenter = SegmenterOptions::default();
     let limits = Limits { segmenter, longest_s: 10.0, patience: Duration::from_millis(600) };
@@ -54,18 +54,18 @@ fn alone(stub: Stub) -> Opened {
     Opened { first: Box::new(stub), second: None, unpronounceable: vec!["qwz".to_owned()] }
 }
 
-fn ready(fails: bool) -> (AsrWorker, Receiver<In>) {
+fn ready(fails: bool) -> (AsrWorker, Receiver<In<'static>>) {
     let stub = Stub { calls: unbounded().0, permission: None, is_quick: false, fails };
     let (worker, events) = worker(move || Ok(alone(stub)));
     assert_eq!(next(&events), In::RecogniserState(EarState::Ready));
     (worker, events)
 }
 
-fn next(events: &Receiver<In>) -> In {
+fn next(events: &Receiver<In<'static>>) -> In<'static> {
     events.recv_timeout(PATIENCE).expect("an event in time")
 }
 
-fn result(events: &Receiver<In>) -> Recognised {
+fn result(events: &Receiver<In<'static>>) -> Recognised {
     match next(events) {
         In::Recognised(recognised) => recognised,
         event => panic!("expected a result, found {event:?}"),
@@ -165,7 +165,7 @@ fn asr_worker_reports_a_crash_of_its_thread() {
 }
 
 /// Starts a worker whose decoding waits for permission.
-fn waiting(is_quick: bool) -> (AsrWorker, Receiver<In>, Receiver<usize>, Sender<()>) {
+fn waiting(is_quick: bool) -> (AsrWorker, Receiver<In<'static>>, Receiver<usize>, Sender<()>) {
     let ((calls, called), (go, permission)) = (unbounded(), unbounded());
     let stub = Stub { calls, permission: Some(permission), is_quick, fails: false };
     let (worker, events) = worker(move || Ok(alone(stub)));

@@ -29,7 +29,7 @@ pub(super) struct Worker {
     pub(super) recognisers: Result<Ensemble, String>,
     pub(super) limits: Limits,
     pub(super) closed: Arc<AtomicBool>,
-    pub(super) events: Sender<In>,
+    pub(super) events: Sender<In<'static>>,
     pub(super) early: EarlyResults,
     pub(super) doubt: Option<Doubt>,
 }

@@ -6,7 +6,7 @@ use crate::devices::testing::voice;
 
 struct Client {
     streams: ClientStreams,
-    events: Receiver<In>,
+    events: Receiver<In<'static>>,
     number: u64,
     first_sample: u64,
     flags: u8,

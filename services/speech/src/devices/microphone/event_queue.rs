@@ -6,7 +6,7 @@ use crate::In;
 use crate::stream_events::StreamEvent;
 
 /// Accepts an event, or returns it where there is no room.
-pub(crate) type Sink = Box<dyn Fn(In) -> Result<(), In> + Send>;
+pub(crate) type Sink = Box<dyn Fn(In<'static>) -> Result<(), In> + Send>;
 
 /// Events that may wait; beyond it new utterances are dropped as a whole.
 const WAITING_MAX: usize = 16;
@@ -14,7 +14,7 @@ const WAITING_MAX: usize = 16;
 /// Events that wait for the sink.
 pub(crate) struct EventQueue {
     sink: Sink,
-    waiting: VecDeque<In>,
+    waiting: VecDeque<In<'static>>,
     /// An utterance whose beginning was dropped; its end is dropped as well.
     skipped: Option<u64>,
     dropped: u32,
@@ -31,7 +31,7 @@ impl EventQueue {
     }
 
     /// Sends an event as soon as there is room.
-    pub(crate) fn send(&mut self, event: In) {
+    pub(crate) fn send(&mut self, event: In<'static>) {
         self.flush();
         let full = self.waiting.len() >= WAITING_MAX;
         match &event {
@@ -77,11 +77,11 @@ mod tests {
     use crossbeam_channel::{TrySendError, bounded};
     use service::Time;
 
-    fn began(sound: u64) -> In {
+    fn began(sound: u64) -> In<'static> {
         In::Stream(StreamEvent::Began(Began { sound, ..testing::began(Time(0)) }))
     }
 
-    fn ended(sound: u64) -> In {
+    fn ended(sound: u64) -> In<'static> {
         let segment =
             SpeechSegment { onset: Time(0), end: Time(0), samples: Vec::new(), speech: 0..0 };
         In::Stream(StreamEvent::Ended { sound, segment })

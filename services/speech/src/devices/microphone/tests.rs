@@ -15,7 +15,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 struct Listening {
     microphone: Microphone,
-    events: Receiver<In>,
+    events: Receiver<In<'static>>,
     mask: Arc<PlaybackMask>,
 }
 
@@ -58,7 +58,7 @@ fn raw(folder: &Path, quiet_after_s: f64) -> String {
 }
 
 impl Listening {
-    fn next<T>(&self, what: &str, mut wanted: impl FnMut(In) -> Option<T>) -> T {
+    fn next<T>(&self, what: &str, mut wanted: impl FnMut(In<'static>) -> Option<T>) -> T {
         let start = Instant::now();
         while start.elapsed() < PATIENCE {
             let event = self.events.recv_timeout(PATIENCE).expect("an event in time");

@@ -49,7 +49,7 @@ impl Network for Sure {
 
 /// Starts a worker with an unsure first recogniser; returns also the lengths of what the second one
 /// hears, and its permission to answer.
-fn unsure() -> (AsrWorker, Receiver<In>, Receiver<usize>, Sender<()>) {
+fn unsure() -> (AsrWorker, Receiver<In<'static>>, Receiver<usize>, Sender<()>) {
     let ((heard, hears), (go, permission)) = (unbounded(), unbounded());
     let second = SecondOpinion::with(move || Some(Box::new(Sure { heard, permission })));
     let opened =
@@ -65,14 +65,14 @@ fn paused(speech: usize, pause: usize) -> SpeechSegment {
     SpeechSegment { onset: end, end, samples: vec![7; speech + pause], speech: 0..speech }
 }
 
-fn early(events: &Receiver<In>) -> RecognisedSegment {
+fn early(events: &Receiver<In<'static>>) -> RecognisedSegment {
     match next(events) {
         In::EarlyResult { result: Some(result), .. } => *result,
         event => panic!("expected an early result, found {event:?}"),
     }
 }
 
-fn answer(events: &Receiver<In>) -> RecognisedSegment {
+fn answer(events: &Receiver<In<'static>>) -> RecognisedSegment {
     result(events).segments.unwrap().remove(0)
 }
 

@@ -1,0 +1,71 @@
+//! Requests that wait for their turn, so that a client that asks for much delays no other.
+//!
+//! Each client has a share of the utterances that are accepted and not yet applied. What it asks for
+//! beyond that waits here, in its own order, and the clients take turns. What does not fit is not
+//! acknowledged, and its client sends it again.
+
+use std::collections::VecDeque;
+
+use messages::{ClientId, RequestKey};
+
+use super::origin::Origin;
+use crate::utterance_content::UtteranceContent;
+
+/// Utterances of one client that are accepted and not yet applied: as many as keep speech, grounding and
+/// policy busy.
+pub(super) const SHARE: usize = 4;
+/// Waiting requests of one client.
+const EACH_MAX: usize = 16;
+/// Clients whose requests wait.
+const CLIENTS_MAX: usize = 32;
+
+/// A valid request without a number.
+pub(super) struct Request {
+    pub(super) origin: Origin,
+    pub(super) content: UtteranceContent,
+}
+
+/// The waiting requests of every client, the client whose turn it is first; none without requests.
+#[derive(Default)]
+pub(super) struct WaitingRequests {
+    clients: VecDeque<(ClientId, VecDeque<Request>)>,
+}
+
+impl WaitingRequests {
+    /// Returns whether a request is waiting.
+    pub(super) fn contains(&self, key: RequestKey) -> bool {
+        let of_client = self.clients.iter().filter(|(client, _)| *client == key.client());
+        of_client.flat_map(|(_, requests)| requests).any(|request| request.origin.key == key)
+    }
+
+    /// Adds a request behind the others of its client. Returns `false` if there is no room for it.
+    pub(super) fn push(&mut self, request: Request) -> bool {
+        let client = request.origin.key.client();
+        let at = match self.clients.iter().position(|(other, _)| *other == client) {
+            Some(at) => at,
+            None if self.clients.len() >= CLIENTS_MAX => return false,
+            None => {
+                self.clients.push_back((client, VecDeque::new()));
+                self.clients.len() - 1
+            }
+        };
+        let requests = &mut self.clients[at].1;
+        let has_room = requests.len() < EACH_MAX;
+        if has_room {
+            requests.push_back(request);
+        }
+        has_room
+    }
+
+    /// Takes the oldest request of the next client that `may` have one accepted; afterwards it is the
+    /// others' turn.
+    pub(super) fn take(&mut self, may: impl Fn(ClientId) -> bool) -> Option<Request> {
+        let next = self.clients.iter().position(|(client, _)| may(*client))?;
+        let (client, mut requests) = self.clients.remove(next)?;
+        let request = requests.pop_front();
+        if !requests.is_empty() {
+            self.clients.push_back((client, requests));
+        }
+        request
+    }
+}

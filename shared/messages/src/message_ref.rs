@@ -1,0 +1,55 @@
+//! A message as its reader gets it.
+
+use std::fmt;
+use std::ops::Deref;
+
+/// A message where it lies in shared memory, or one in memory of its own: a test or a simulation, which
+/// has no shared memory, carries messages itself.
+#[derive(Clone)]
+pub enum MessageRef<'a, T> {
+    /// In shared memory, for as long as it is being handled. A reader copies what it keeps.
+    Lent(&'a T),
+    /// On the heap.
+    Owned(Box<T>),
+}
+
+impl<T> Deref for MessageRef<'_, T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        match self {
+            Self::Lent(message) => message,
+            Self::Owned(message) => message,
+        }
+    }
+}
+
+impl<'a, T> From<&'a T> for MessageRef<'a, T> {
+    fn from(message: &'a T) -> Self {
+        Self::Lent(message)
+    }
+}
+
+impl<T> From<Box<T>> for MessageRef<'_, T> {
+    fn from(message: Box<T>) -> Self {
+        Self::Owned(message)
+    }
+}
+
+impl<T> From<T> for MessageRef<'_, T> {
+    fn from(message: T) -> Self {
+        Self::Owned(Box::new(message))
+    }
+}
+
+impl<T: PartialEq> PartialEq for MessageRef<'_, T> {
+    fn eq(&self, other: &Self) -> bool {
+        **self == **other
+    }
+}
+
+impl<T: fmt::Debug> fmt::Debug for MessageRef<'_, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        (**self).fmt(f)
+    }
+}
