@@ -3,7 +3,7 @@
 use super::*;
 
 /// Returns the result for the pause at the end of [`segment`].
-fn early(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> In {
+fn early(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> In<'static> {
     let result = Some(Box::new(result(words, snr_db)));
     let at = segment(Time(0)).closing(std::time::Duration::ZERO);
     In::EarlyResult { sound: SOUND, at, result }
