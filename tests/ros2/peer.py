@@ -99,7 +99,7 @@ def run(make):
         word, _, rest = line.partition(" ")
         answer = {}
         if word == "look":
-            answer = seen.report() | {"matched": peer.matched()}
+            answer = seen.report() | {"matched": peer.matched(), "untyped": getattr(peer, "untyped", [])}
         elif word == "say":
             peer.say(rest)
         elif word == "flood":

@@ -7,6 +7,7 @@ pub mod fuzz;
 mod group;
 pub mod isolated;
 pub mod ros1;
+pub mod ros2;
 pub mod second_user;
 pub mod shortage;
 pub mod simulated_group;

@@ -63,6 +63,7 @@ impl Implementation {
         (peer, group)
     }
 
+    /// Starts a program in a domain.
     fn peer(self, domain: u16) -> Ros2Peer {
         let Self { python, script, .. } = self;
         let python = std::env::var(python)
@@ -89,13 +90,19 @@ impl Ros2Peer {
 
     /// Waits until messages go both ways.
     pub fn wait_until_found(&mut self, group: &Group) {
-        let what = || format!("the node and the peer find each other\n{}", group.logs());
-        let found = |seen: &Value| {
-            seen["matched"] == true
-                && seen["count"]["/joint_states"].as_u64().is_some_and(|count| count > 10)
+        let is_found = |seen: &Value| {
+            let joints = seen["count"]["/joint_states"].as_u64();
+            seen["matched"] == true && joints.is_some_and(|count| count > 10)
         };
-        let found = crate::try_for(30.0, || Some(self.tell("look")).filter(&found));
-        assert!(found.is_some(), "{}", what());
+        let what = "the node and the peer find each other";
+        wait_for(what, 30.0, || Some(self.tell("look")).filter(&is_found));
+        assert_eq!(group.service("ros2")["actual"], "ready", "{}", group.logs());
+    }
+
+    /// Kills the program, which cannot take its leave, and starts another one.
+    pub fn restart(&mut self) {
+        self.process.kill().expect("a child of ours");
+        *self = self.implementation.peer(self.domain);
     }
 
     /// Gives the program a command and returns its answer.
