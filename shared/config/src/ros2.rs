@@ -56,8 +56,9 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Ros2 {
 
 fn namespace(f: &mut Fields<'_>) -> String {
     let text = f.text("namespace");
-    let parts = text.strip_prefix('/').unwrap_or("?");
-    if !(parts.is_empty() || parts.split('/').all(is_name)) && !f.is_wrong("namespace") {
+    let is_namespace = |parts: &str| parts.is_empty() || parts.split('/').all(is_name);
+    let is_good = text.strip_prefix('/').is_some_and(is_namespace);
+    if !is_good && !f.is_wrong("namespace") {
         let what = format!("`{text}` is not a ROS namespace");
         f.problem("namespace", what, "write \"/\", or e.g. \"/lab\": letters, digits and _");
     }
