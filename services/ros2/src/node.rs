@@ -61,7 +61,7 @@ fn serve(arguments: Vec<String>) -> Result<(), Failure> {
 /// Who waits for the answer to an utterance.
 #[derive(Debug)]
 enum Speaking {
-    /// Nobody: it came by topic.
+    /// No call: the words came by topic.
     Topic,
     /// A call of `cancel`.
     Cancel(Call),

@@ -23,7 +23,7 @@ struct Pending<C> {
     sent: Option<Time>,
     progress: Progress,
     callers: Vec<C>,
-    /// Nobody listened to the latest repetition.
+    /// No process listened to the latest repetition.
     is_absent: bool,
     /// Callers have been answered that it is late.
     is_late: bool,
@@ -66,7 +66,7 @@ impl<C> Orders<C> {
         Some((pending.order, pending.given))
     }
 
-    /// Notes whether somebody listened.
+    /// Notes whether a process listened.
     pub fn on_sent(&mut self, sent: &Result<(), StopError>) {
         if let Some(pending) = &mut self.0 {
             pending.is_absent = matches!(sent, Err(StopError::Absent));

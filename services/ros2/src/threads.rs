@@ -1,6 +1,6 @@
 //! Watch over the threads of the DDS implementation. They end, and say nothing, when a wait of theirs is
 //! interrupted: by a stop and continuation of the process, a suspension of the machine, a debugger.
-//! Publishing succeeds all the same afterwards, and reaches nobody.
+//! Publishing succeeds all the same afterwards, and reaches no subscriber.
 
 use std::fs;
 

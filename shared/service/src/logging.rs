@@ -31,7 +31,7 @@ const FLUSH_MAX: Duration = Duration::from_secs(1);
 ///
 /// The program must keep the result to its end, so that its last lines are written.
 pub fn init() -> LogFlush {
-    let wanted = std::env::var(ENV_LOG).unwrap_or_default();
+    let wanted = std::env::var(ENV_LOG).unwrap_or_else(|_| "info".to_owned());
     let filter = EnvFilter::try_new(format!("{QUIET},{wanted}"))
         .unwrap_or_else(|_| EnvFilter::new(format!("{QUIET},info")));
     let colour = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();

@@ -282,7 +282,7 @@ impl Progress {
         self.state = Some(state);
     }
 
-    /// Returns the result once there is one. `absent`: nobody has listened to the latest repetition.
+    /// Returns the result once there is one. `absent`: no process listened to the latest repetition.
     ///
     /// # Errors
     /// As [`give`].
