@@ -37,16 +37,27 @@ need_cargo() {
     }
 }
 
-# physics_python: installs MuJoCo into target/physics unless it is there, and prints the path of a
-# Python that has it. Fails without network.
-physics_python() {
-    local venv="$root/target/physics" packages="mujoco==4.0.0 numpy==2.4.6 iceoryx2==0.10.0"
-    if [[ "$(cat "$venv/packages" 2>/dev/null)" != "$packages" ]]; then
-        say "installing into target/physics: $packages"
-        # shellcheck disable=SC2086
-        python3 -m venv "$venv" >&2 &&
-            "$venv/bin/pip" install --quiet --disable-pip-version-check $packages >&2 || return 1
-        printf '%s\n' "$packages" >"$venv/packages"
+# python_with FOLDER PACKAGE…: installs packages of PyPI into target/FOLDER unless they are there, and prints the
+# path of a Python that has them. Fails without network. PYTHON names the interpreter, python3 by default.
+python_with() {
+    local venv="$root/target/$1"
+    shift
+    if [[ "$(cat "$venv/packages" 2>/dev/null)" != "$*" ]]; then
+        say "installing into ${venv#"$root"/}: $*"
+        "${PYTHON:-python3}" -m venv "$venv" >&2 &&
+            "$venv/bin/pip" install --quiet --disable-pip-version-check "$@" >&2 || return 1
+        printf '%s\n' "$*" >"$venv/packages"
     fi
     printf '%s\n' "$venv/bin/python"
+}
+
+# For physics: MuJoCo, and shared memory for the robot in it.
+physics_python() { python_with physics mujoco==4.0.0 numpy==2.4.6 iceoryx2==0.10.0; }
+
+# For the ROS 2 node: Cyclone DDS, and ROS 2 Jazzy, whose packages are for Python 3.11 alone.
+cyclone_python() { python_with cyclone cyclonedds==11.0.1; }
+rclpy_python() {
+    command -v python3.11 >/dev/null || return 1
+    PYTHON=python3.11 python_with rclpy ros-jazzy-rclpy==7.1.6 ros-jazzy-rmw-fastrtps-cpp==8.4.3 \
+        ros-jazzy-{std,sensor,visualization,diagnostic}-msgs==5.3.6 ros-jazzy-std-srvs==5.3.6
 }

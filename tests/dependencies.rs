@@ -25,11 +25,13 @@ const LICENCES: [(&str, &str); 10] = [
 ];
 
 /// Crates of which two versions are built, and who brings the older one.
-const DUPLICATES: [(&str, &str); 13] = [
+const DUPLICATES: [(&str, &str); 15] = [
     ("cpufeatures", "sha1 of axum's web sockets"),
     ("getrandom", "rand of axum's web sockets"),
+    ("itertools", "bindgen, to build iceoryx2"),
     ("libloading", "clang-sys, to build iceoryx2"),
     ("miniz_oxide", "png"),
+    ("nom", "bindgen's cexpr, to build iceoryx2"),
     ("rand", "axum's web sockets"),
     ("rand_core", "rand of axum's web sockets"),
     ("shlex", "bindgen, to build iceoryx2"),
@@ -67,7 +69,7 @@ struct Package {
 fn packages() -> Vec<Package> {
     let output = Command::new(env!("CARGO"))
         .args(["tree", "--offline", "--locked", "--workspace", "--prefix", "none", "--no-dedupe"])
-        .args(["--edges", "normal,build,dev", "--format", "{p}\t{l}"])
+        .args(["--features", "ros2/dds", "--edges", "normal,build,dev", "--format", "{p}\t{l}"])
         .current_dir(TOP)
         .output()
         .unwrap();

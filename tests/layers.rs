@@ -5,8 +5,18 @@
 use std::collections::BTreeSet;
 use std::process::Command;
 
-const SERVICES: [&str; 9] =
-    ["speech", "grounding", "policy", "arm", "baxter", "ros1", "console", "supervisor", "whichone"];
+const SERVICES: [&str; 10] = [
+    "speech",
+    "grounding",
+    "policy",
+    "arm",
+    "baxter",
+    "ros1",
+    "ros2",
+    "console",
+    "supervisor",
+    "whichone",
+];
 
 /// Everything that `package` is built from, itself included, down to this depth.
 fn tree(package: &str, depth: &str) -> BTreeSet<String> {

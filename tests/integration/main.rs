@@ -29,6 +29,7 @@ mod recovery;
 mod reload;
 mod robot;
 mod ros1;
+mod ros2;
 mod second_user;
 mod shortage;
 mod speech;

@@ -138,6 +138,7 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
         Some(Service::Policy) => (&[Section::Dialogue], true),
         Some(Service::Arm) => (&[Section::Arm], false),
         Some(Service::Console) => (&Section::ALL[1..], false),
+        Some(Service::Ros2) => (&[Section::Ros2, Section::Arm], false),
         Some(Service::Robot) | None => (&[Section::Speech, Section::Dialogue, Section::Arm], true),
     };
     let texts = sections.iter().map(|&section| settings.section_text(section));

@@ -17,6 +17,7 @@ mod group;
 mod load;
 mod manager;
 mod resolved;
+mod ros2;
 mod services;
 mod snapshot;
 mod speech;
@@ -39,6 +40,7 @@ pub use crate::files::{RobotFiles, read_file};
 pub use crate::group::{Group, Log, RestartLimits};
 pub use crate::manager::ManagerError;
 pub use crate::resolved::{Origin, Section};
+pub use crate::ros2::{Network, Ros2, ServiceMapping};
 pub use crate::services::{Restart, ServiceConfig};
 pub use crate::snapshot::SNAPSHOT_FILE;
 pub use crate::speech::{Microphone, MicrophoneMode, Recogniser, Speech, Voice};
@@ -61,6 +63,8 @@ pub struct Settings {
     pub study: Study,
     /// The web page.
     pub console: Console,
+    /// The ROS 2 node.
+    pub ros2: Ros2,
     /// The scene; after `preflight`, every object has a place that the arm can reach.
     pub scene: Scene,
     /// Measured seconds of every question and pick, under [`CostsFrom::Robot`]; set by

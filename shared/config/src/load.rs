@@ -8,7 +8,7 @@ use toml::Value;
 
 use crate::files::{FILE_BYTES_MAX, Files, names, one_of, read_text};
 use crate::resolved::{self, Resolved, Section};
-use crate::{Settings, arm, console, dialogue, group, services, snapshot, speech, study};
+use crate::{Settings, arm, console, dialogue, group, ros2, services, snapshot, speech, study};
 
 pub(crate) fn load(
     dir: &Path,
@@ -55,6 +55,7 @@ pub(crate) fn check(
     let arm = fields.table("arm", arm::read);
     let study = fields.table("study", |f| study::read(f, &dialogue.planner));
     let console = fields.table("console", console::read);
+    let ros2 = fields.table("ros2", ros2::read);
     fields.finish();
     let Files { scene: file, robot } = files;
     let read = file.as_ref().map(|file| Scene::from_toml(&file.label, &file.text));
@@ -68,7 +69,7 @@ pub(crate) fn check(
             snapshot::read_durations(node, &dialogue, &scene, &source, &mut report)
         });
         let resolved = Resolved { tree, scene: file, robot };
-        Settings { group, dialogue, speech, arm, study, console, scene, durations, resolved }
+        Settings { group, dialogue, speech, arm, study, console, ros2, scene, durations, resolved }
     });
     report.verdict(settings)
 }

@@ -19,12 +19,21 @@ pub enum Section {
     Study,
     /// `console.toml`
     Console,
+    /// `ros2.toml`
+    Ros2,
 }
 
 impl Section {
     /// Every section.
-    pub const ALL: [Self; 6] =
-        [Self::Group, Self::Dialogue, Self::Speech, Self::Arm, Self::Console, Self::Study];
+    pub const ALL: [Self; 7] = [
+        Self::Group,
+        Self::Dialogue,
+        Self::Speech,
+        Self::Arm,
+        Self::Console,
+        Self::Study,
+        Self::Ros2,
+    ];
 
     /// Its name: the first part of its keys.
     pub fn name(self) -> &'static str {
@@ -35,6 +44,7 @@ impl Section {
             Self::Arm => "arm",
             Self::Study => "study",
             Self::Console => "console",
+            Self::Ros2 => "ros2",
         }
     }
 
@@ -52,6 +62,7 @@ impl Section {
             Self::Arm => include_str!("../../../config/arm.toml"),
             Self::Study => include_str!("../../../config/study.toml"),
             Self::Console => include_str!("../../../config/console.toml"),
+            Self::Ros2 => include_str!("../../../config/ros2.toml"),
         }
     }
 }

@@ -19,6 +19,8 @@ pub enum Service {
     Console,
     /// Simulates a Baxter behind the robot's topics; optional.
     Robot,
+    /// Presents the group as a ROS 2 node; optional.
+    Ros2,
 }
 
 impl Service {
@@ -41,11 +43,15 @@ impl Service {
             Self::Arm => "arm",
             Self::Console => "console",
             Self::Robot => "baxter",
+            Self::Ros2 => "ros2",
         }
     }
 
     /// Returns the service with this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::BUILT_IN.into_iter().chain([Self::Robot]).find(|service| service.name() == name)
+        Self::BUILT_IN
+            .into_iter()
+            .chain([Self::Robot, Self::Ros2])
+            .find(|service| service.name() == name)
     }
 }

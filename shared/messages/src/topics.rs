@@ -129,9 +129,12 @@ pub const STATUS: Topic = Topic {
     readers: &[Service::Policy, Service::Speech, Service::Console],
     ..topic::<ArmStatus>("arm/status", Some(Service::Arm))
 };
-/// Arm to clients, 100 Hz.
-pub const JOINTS: Topic =
-    Topic { buffer: WINDOW, ..topic::<JointStates>("arm/joints", Some(Service::Arm)) };
+/// Arm to clients, 100 Hz, and to the ROS 2 node, which passes them on.
+pub const JOINTS: Topic = Topic {
+    readers: &[Service::Ros2],
+    buffer: WINDOW,
+    ..topic::<JointStates>("arm/joints", Some(Service::Arm))
+};
 /// Arm to clients.
 pub const WORLD: Topic = topic::<WorldView>("arm/world", Some(Service::Arm));
 /// Arm to clients, when a motion begins, enters its next phase, or ends.

@@ -17,6 +17,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use tracing_subscriber::EnvFilter;
 
+/// Libraries that report every step of a connection, unless the filter says otherwise.
+const QUIET: &str = "rustdds=error,ros2_client=error";
 /// Bytes that a descriptor takes without blocking once it polls as writable: a pipe's page.
 const CHUNK_BYTES: usize = 4096;
 /// Most lines that wait for the thread.
@@ -29,7 +31,9 @@ const FLUSH_MAX: Duration = Duration::from_secs(1);
 ///
 /// The program must keep the result to its end, so that its last lines are written.
 pub fn init() -> LogFlush {
-    let filter = EnvFilter::try_from_env(ENV_LOG).unwrap_or_else(|_| EnvFilter::new("info"));
+    let wanted = std::env::var(ENV_LOG).unwrap_or_else(|_| "info".to_owned());
+    let filter = EnvFilter::try_new(format!("{QUIET},{wanted}"))
+        .unwrap_or_else(|_| EnvFilter::new(format!("{QUIET},info")));
     let colour = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     let json = std::env::var("WHICHONE_LOG_FORMAT").is_ok_and(|format| format == "json");
     let nowhere = LogFlush(None);

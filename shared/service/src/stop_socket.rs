@@ -256,9 +256,9 @@ pub fn give(
     }
 }
 
-/// Progress of one order.
+/// Progress of one order. Pure: the caller sends the order and hands in the answers.
 #[derive(Debug)]
-struct Progress {
+pub struct Progress {
     order: MotionOrder,
     given: Time,
     patience: Span,
@@ -268,11 +268,13 @@ struct Progress {
 }
 
 impl Progress {
-    fn new(order: MotionOrder, given: Time, patience: Span) -> Self {
+    /// An order that was given at `given` and is carried out within `patience`, or has failed.
+    pub fn new(order: MotionOrder, given: Time, patience: Span) -> Self {
         Self { order, given, patience, state: None, rests_since: None }
     }
 
-    fn on_answer(&mut self, state: StopState, now: Time) {
+    /// Takes in an answer; those to other orders are ignored.
+    pub fn on_answer(&mut self, state: StopState, now: Time) {
         if state.given_ns != self.given.ns() {
             return;
         }
@@ -280,8 +282,11 @@ impl Progress {
         self.state = Some(state);
     }
 
-    /// Returns the result once there is one.
-    fn result(&self, absent: bool, now: Time) -> Option<Result<StopState, StopError>> {
+    /// Returns the result once there is one. `absent`: no process listened to the latest repetition.
+    ///
+    /// # Errors
+    /// As [`give`].
+    pub fn result(&self, absent: bool, now: Time) -> Option<Result<StopState, StopError>> {
         let waited = now.since(self.given);
         let late = waited >= self.patience;
         let Some(state) = self.state else {

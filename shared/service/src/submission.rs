@@ -43,6 +43,13 @@ impl Submission {
         self
     }
 
+    /// Replaces the random key by one that a further delivery of the same message would have, too.
+    #[must_use]
+    pub fn under(mut self, key: RequestKey) -> Self {
+        self.injection.key = key;
+        self
+    }
+
     /// Key of the request, which its receipts repeat.
     pub fn key(&self) -> RequestKey {
         self.injection.key

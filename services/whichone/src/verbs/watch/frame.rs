@@ -5,7 +5,7 @@ use messages::{ArmStatus, PickOutcome, PickPhase, PolicyView, Task};
 use scene::Scene;
 use service::status::GroupState;
 use service::status::{GroupStatus, ServiceStatus};
-use service::view::Speaker;
+use service::view::{SaidView, Speaker};
 
 use super::model::{WatchModel, object_name};
 use crate::output::{Ink, Style};
@@ -147,9 +147,9 @@ fn bar(p: f64, length: usize) -> String {
 }
 
 fn said(model: &WatchModel, style: Style, columns: usize) -> Vec<String> {
-    let line = |(speaker, text): &(Speaker, String)| {
+    let line = |SaidView { who, text }| {
         let text = cut(text, columns.saturating_sub(8));
-        match speaker {
+        match who {
             Speaker::Person => format!("   you  {text}"),
             Speaker::Unmeant | Speaker::System => {
                 style.paint(Ink::Dim, format!("        {text}")).to_string()
@@ -157,7 +157,7 @@ fn said(model: &WatchModel, style: Style, columns: usize) -> Vec<String> {
             Speaker::Robot => format!(" {}  {text}", style.paint(Ink::Cyan, "robot")),
         }
     };
-    model.said.iter().map(line).collect()
+    model.lines.said().into_iter().map(line).collect()
 }
 
 fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {

@@ -1,0 +1,25 @@
+//! The group as a ROS 2 node: joint states, objects and dialogue as topics of standard types, words and
+//! orders in.
+//!
+//! The crate is [`types`], the conversions to them, [`hear`] and [`orders`], all without a DDS
+//! implementation. The node itself comes with the feature `dds`.
+
+pub mod diagnostics;
+pub mod hear;
+pub mod joints;
+pub mod objects;
+pub mod orders;
+pub mod types;
+
+#[cfg(feature = "dds")]
+mod dds;
+#[cfg(feature = "dds")]
+pub mod node;
+#[cfg(feature = "dds")]
+mod threads;
+
+/// Name of a topic or service: own names are below the node's, `joint_states` is in its namespace.
+pub fn own_name(settings: &config::Ros2, name: &str) -> (String, String) {
+    let namespace = settings.namespace.trim_end_matches('/');
+    (format!("{namespace}/{}", settings.node), name.to_owned())
+}

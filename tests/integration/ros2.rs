@@ -1,0 +1,205 @@
+//! The ROS 2 node and programs of other implementations, on the loopback network.
+
+use rustix::process::Signal;
+use serde_json::Value;
+use std::time::Duration;
+use whichone_tests::ros2::{Implementation, Ros2Peer};
+use whichone_tests::{Group, wait_for};
+
+/// The tests with each implementation.
+macro_rules! with_peers {
+    ($($name:ident)+) => {
+        mod ros2_cyclone {
+            $(#[test]
+            #[ignore = "needs cyclonedds, and whichone-ros2 built with ros2/dds"]
+            fn $name() {
+                super::$name(whichone_tests::ros2::CYCLONE);
+            })+
+        }
+        mod ros2_rclpy {
+            $(#[test]
+            #[ignore = "needs rclpy, and whichone-ros2 built with ros2/dds"]
+            fn $name() {
+                super::$name(whichone_tests::ros2::RCLPY);
+            })+
+        }
+    };
+}
+
+with_peers! {
+    request_by_topic_ends_in_a_delivered_object
+    every_topic_is_seen_with_its_contents
+    motion_stop_and_cancel_are_services
+    node_that_was_stopped_is_restarted_and_publishes
+    flood_of_words_is_refused_and_harms_nothing
+    killed_peer_harms_nothing_and_the_next_one_sees_everything
+}
+
+/// The program says this, and the robot delivers the object.
+fn deliver(peer: &mut Ros2Peer, group: &Group, words: &str, object: &str) {
+    peer.tell(&format!("say {words}"));
+    let outcome = group.await_pick(None);
+    let facts = (&outcome["outcome"], &outcome["object"]);
+    assert_eq!(facts, (&"delivered".into(), &object.into()), "{outcome}\n{}", group.logs());
+}
+
+fn texts<'a>(seen: &'a Value, topic: &str) -> Vec<&'a str> {
+    seen["texts"][topic].as_array().into_iter().flatten().filter_map(Value::as_str).collect()
+}
+
+fn is_stopped(group: &Group, stopped: bool) {
+    wait_for("the motion stop", 10.0, || (group.arm()["stopped"] == stopped).then_some(()));
+}
+
+fn request_by_topic_ends_in_a_delivered_object(implementation: Implementation) {
+    let (mut peer, group) = implementation.start(&[]);
+    peer.tell("say the bowl");
+    group.wait_for_decision("ask");
+    let outcome = group.await_pick(Some("white2"));
+    assert_eq!(outcome["outcome"], "delivered", "{outcome}");
+    assert_eq!(outcome["object"], "white2", "{outcome}");
+    let seen = peer.wait_for("the end in /whichone/state", |seen| {
+        seen["state"]["dialogue"]["last"]["outcome"] == "delivered"
+    });
+    let (said, heard) = (texts(&seen, "/whichone/say"), texts(&seen, "/whichone/heard"));
+    assert_eq!(heard.iter().filter(|text| **text == "the bowl").count(), 1, "{heard:?}");
+    assert!(heard.len() >= 2, "the answers, which came another way, too: {heard:?}");
+    assert!(said.iter().any(|text| text.ends_with('?')), "{said:?}");
+    assert!(said.iter().any(|text| text.contains("white bowl")), "{said:?}");
+    group.verify_journals();
+    group.down();
+}
+
+fn every_topic_is_seen_with_its_contents(implementation: Implementation) {
+    let (mut peer, group) = implementation.start(&[]);
+    deliver(&mut peer, &group, "the clear bowl", "clear");
+    let seen = peer.wait_for("every topic", |seen| {
+        let untyped = seen["untyped"].as_array().map_or(&[][..], Vec::as_slice);
+        let mut counts = seen["count"].as_object().into_iter().flatten();
+        counts.all(|(topic, count)| count != 0 || untyped.contains(&topic.as_str().into()))
+            && seen["state"]["dialogue"]["last"]["object"] == "clear"
+    });
+    let shipped = include_str!("../../config/robots/baxter.urdf");
+    assert!(seen["description"] == shipped, "the description as it is in its file");
+    for joint in ["left_s0", "right_w2", "l_gripper_l_finger_joint"] {
+        assert!(seen["joints"][joint].is_number(), "{joint}: {}", seen["joints"]);
+    }
+    let keys = |view: &Value| {
+        let keys = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+        [keys(view), keys(&view["dialogue"]), keys(&view["arm"]), keys(&view["group"])]
+    };
+    let view = group.call(&["watch", "--once", "--json"]).json();
+    assert_eq!(keys(&seen["state"]), keys(&view));
+    let diagnostics = &seen["diagnostics"];
+    for service in ["speech", "grounding", "policy", "arm", "ros2"] {
+        assert_eq!(diagnostics[format!("whichone: {service}")]["level"], 0, "{diagnostics}");
+    }
+    assert_eq!(diagnostics["whichone: ROS 2 node"]["values"]["accepted"], "1", "{diagnostics}");
+    if let Some(markers) = seen["markers"].as_array() {
+        let named = |name: &str| {
+            let begins = format!("{name} ");
+            markers.iter().any(|marker| marker["text"].as_str().unwrap().starts_with(&begins))
+        };
+        assert!(named("white2") && named("metal"), "{markers:?}");
+    }
+    if let Some(frames) = seen["frames"].as_array() {
+        let expected: Value = serde_json::json!(["base", "object/white2"]);
+        assert!(frames.contains(&expected), "{frames:?}");
+    }
+    group.down();
+}
+
+fn motion_stop_and_cancel_are_services(implementation: Implementation) {
+    let (mut peer, group) = implementation.start(&[]);
+    let answer = peer.tell("call stop");
+    assert_eq!(answer["success"], true, "{answer}\n{}", group.logs());
+    assert_eq!(answer["message"], "stopped, at rest");
+    is_stopped(&group, true);
+    let answer = peer.tell("call resume");
+    assert_eq!(answer["success"], true, "{answer}");
+    is_stopped(&group, false);
+    peer.tell("stop");
+    is_stopped(&group, true);
+    assert_eq!(peer.tell("call resume")["success"], true);
+    is_stopped(&group, false);
+
+    let answer = peer.tell("call cancel");
+    assert_eq!(
+        (&answer["success"], &answer["message"]),
+        (&false.into(), &"no request is open".into())
+    );
+    peer.tell("say the bowl");
+    group.wait_for_decision("ask");
+    peer.wait_for("the question in the node", |seen| {
+        seen["state"]["dialogue"]["decision"] == "ask"
+    });
+    let answer = peer.tell("call cancel");
+    assert_eq!(answer["success"], true, "{answer}");
+    peer.wait_for("withdrawal", |seen| seen["state"]["dialogue"]["last"]["outcome"] == "cancelled");
+
+    // Without the arm's service a stop is not confirmed, and is carried out when it is back.
+    group.must(&["hold", "arm"]);
+    let answer = peer.tell("call stop");
+    assert_eq!(answer["success"], false, "{answer}");
+    assert!(answer["message"].as_str().unwrap().contains("emergency stop"), "{answer}");
+    group.must(&["release", "arm"]);
+    is_stopped(&group, true);
+    group.down();
+}
+
+fn node_that_was_stopped_is_restarted_and_publishes(implementation: Implementation) {
+    let (mut peer, group) = implementation.start(&[]);
+    let before = group.incarnation("ros2");
+    group.signal("ros2", Signal::STOP);
+    std::thread::sleep(Duration::from_secs(1));
+    group.signal("ros2", Signal::CONT);
+    group.wait_for_restart("ros2", before);
+    assert!(group.logs().contains("DDS threads"), "{}", group.logs());
+    peer.tell("forget");
+    peer.wait_until_found(&group);
+    peer.wait_for("latched topics of the new node", |seen| seen["description"].is_string());
+    deliver(&mut peer, &group, "the clear bowl", "clear");
+    group.down();
+}
+
+fn flood_of_words_is_refused_and_harms_nothing(implementation: Implementation) {
+    let (mut peer, group) = implementation.start(&[]);
+    let rss_kib = || group.service("ros2")["rss_kib"].as_u64().unwrap();
+    let before_kib = rss_kib();
+    let incarnation = group.incarnation("ros2");
+    peer.tell("flood 3000");
+    let answer = peer.tell("call stop");
+    assert_eq!(answer["success"], true, "in the flood: {answer}");
+    is_stopped(&group, true);
+    assert_eq!(peer.tell("call resume")["success"], true);
+    let figure = |seen: &Value, key: &str| -> u64 {
+        let values = &seen["diagnostics"]["whichone: ROS 2 node"]["values"];
+        values[key].as_str().and_then(|text| text.parse().ok()).unwrap_or(0)
+    };
+    let seen = peer.wait_for("refusals", |seen| figure(seen, "refused") > 0);
+    assert!(figure(&seen, "accepted") < 3_000, "{seen}");
+    assert_eq!(group.incarnation("ros2"), incarnation, "{}", group.logs());
+    let grown_kib = rss_kib().saturating_sub(before_kib);
+    assert!(grown_kib < 32 << 10, "{grown_kib} KiB");
+    wait_for("the flood is over", 60.0, || {
+        let answer = peer.tell("call cancel");
+        (answer["success"] == false && answer["message"] == "no request is open").then_some(())
+    });
+    deliver(&mut peer, &group, "the clear bowl", "clear");
+    group.verify_journals();
+    group.down();
+}
+
+fn killed_peer_harms_nothing_and_the_next_one_sees_everything(implementation: Implementation) {
+    let (mut peer, group) = implementation.start(&[]);
+    let incarnation = group.incarnation("ros2");
+    peer.restart();
+    peer.wait_until_found(&group);
+    let seen = peer.wait_for("latched topics", |seen| {
+        seen["description"].is_string() && seen["state"]["dialogue"].is_object()
+    });
+    assert!(seen["delay_ms"]["max"].as_f64().unwrap() < 5_000.0, "{}", seen["delay_ms"]);
+    deliver(&mut peer, &group, "the clear bowl", "clear");
+    assert_eq!(group.incarnation("ros2"), incarnation, "{}", group.logs());
+    group.down();
+}
