@@ -11,6 +11,7 @@ mod publish;
 mod put_back;
 mod robot;
 mod set_aside;
+mod standing;
 mod stop;
 mod trajectory_view;
 

@@ -168,6 +168,11 @@ impl<'a> PlanningScene<'a> {
         held.near_surroundings(&held.block(pose), 0.0)
     }
 
+    /// Returns the gap between the arm and the other limb, if it is below `within_m`.
+    pub(crate) fn other_gap(&self, arm: &ArmShape<'_>, within_m: f64) -> Gap {
+        arm.to_arm(&self.other, within_m)
+    }
+
     /// Returns the arm and what it holds at one posture.
     pub(crate) fn look(&self, q: &Joints) -> Look<'a> {
         let block = self.held.as_ref().map(|held| held.block(&self.chain.forward(q)));
