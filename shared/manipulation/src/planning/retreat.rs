@@ -164,7 +164,7 @@ mod tests {
             let scene =
                 PlanningScene::new(robot, Limb::Left, &arms, &[], place, &settings).unwrap();
             let first = scene.nearest(&q, f64::INFINITY).distance_m;
-            if first >= 0.0 || first < -0.05 {
+            if !(-0.05..0.0).contains(&first) {
                 continue;
             }
             found += 1;
