@@ -78,7 +78,7 @@ impl Robot {
 
     /// Somebody moves a limb at rest: every joint by `angle_rad`, towards the middle of its range.
     pub(super) fn push(&self, limb: Limb, angle_rad: f64) {
-        let mut body = self.0.borrow_mut();
+        let body = self.0.borrow();
         let mut q = body.arm.measured().posture.joints[limb];
         for (q, (lower, upper)) in q.iter_mut().zip(body.limbs[limb].limits.position.0) {
             *q += angle_rad.copysign(0.5 * (lower + upper) - *q);
