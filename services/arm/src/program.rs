@@ -227,7 +227,7 @@ impl Planner<'_> {
     ) -> Result<T, PlanError> {
         let rests = |limb| self.measured.is_at_rest(self.robot, limb);
         match plan(self.settings) {
-            Err(PlanError::Blocked { .. }) if !Limb::BOTH.into_iter().all(rests) => {
+            Err(PlanError::Blocked { .. }) if !self.robot.limbs().iter().copied().all(rests) => {
                 plan(&PlanSettings { margin_m: 0.0, ..*self.settings })
             }
             plan => plan,
@@ -235,8 +235,8 @@ impl Planner<'_> {
     }
 
     fn refuse_other(&self, limb: Limb) -> Result<(), Refusal> {
-        let rests = self.measured.is_at_rest(self.robot, limb.other());
-        if rests { Ok(()) } else { Err(Refusal::OtherLimb) }
+        let rests = |other| self.measured.is_at_rest(self.robot, other);
+        if limb.other().is_none_or(rests) { Ok(()) } else { Err(Refusal::OtherLimb) }
     }
 
     /// Returns the limb's motion limits at the configured speed.
@@ -284,7 +284,8 @@ impl Planner<'_> {
     fn start(&self, fetched: Option<ObjectId>, rise_m: f64) -> Result<Start, Refusal> {
         let mut arms = self.measured.posture.joints;
         let mut steps = VecDeque::new();
-        let away = Limb::BOTH.into_iter().find(|limb| !self.measured.is_at_rest(self.robot, *limb));
+        let limbs = self.robot.limbs().iter().copied();
+        let away = limbs.into_iter().find(|limb| !self.measured.is_at_rest(self.robot, *limb));
         let others = self.world.obstacles(self.state, fetched);
         let Some(limb) = away else { return Ok(Start { steps, arms, obstacles: others }) };
         let holds = self.state.held.is_some();

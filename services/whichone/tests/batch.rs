@@ -21,7 +21,7 @@ fn repository(path: &str) -> PathBuf {
 
 /// The built-in robot's arm.
 fn arm(limb: Limb) -> DescribedArm {
-    DescribedArm::load(None, &WhichArm { limb: Some(limb), tip: None }).unwrap()
+    DescribedArm::load(None, &WhichArm { limb: Some(limb.name().to_owned()), tip: None }).unwrap()
 }
 
 fn fixture(path: &str) -> String {

@@ -89,7 +89,8 @@ impl<'a> Checker<'a> {
         others: &[Cuboid],
         table_z_m: f64,
     ) -> Option<Violation> {
-        let (limb, other) = (plan.limb(), plan.limb().other());
+        let limb = plan.limb();
+        let other = limb.other().unwrap();
         let around = surroundings(others, table_z_m);
         let solid = Solid::cuboid("the object", object.size_m);
         let (still, _) = self.poses(other, &self.robot.neutral()[other]);
