@@ -64,11 +64,12 @@ fn joint_states(robot: &mut Robot, now: Time) -> Vec<Result<JointState, WireErro
     let body: Vec<(&str, Measurement)> =
         measured.iter().map(|(name, measured)| (name.as_str(), *measured)).collect();
     let body = JointState::new(now.ns(), &body);
-    let fingers = [("l", Limb::Left), ("r", Limb::Right)].into_iter().filter_map(|(letter, limb)| {
-        let name = format!("{letter}_gripper_l_finger_joint");
-        let travel_m = robot.gripper(limb).travel_m(robot.fingers[limb].width_m);
-        has(&name).then(|| JointState::new(now.ns(), &[(&name, [travel_m, 0.0, 0.0])]))
-    });
+    let fingers =
+        [("l", Limb::Left), ("r", Limb::Right)].into_iter().filter_map(|(letter, limb)| {
+            let name = format!("{letter}_gripper_l_finger_joint");
+            let travel_m = robot.gripper(limb).travel_m(robot.fingers[limb].width_m);
+            has(&name).then(|| JointState::new(now.ns(), &[(&name, [travel_m, 0.0, 0.0])]))
+        });
     std::iter::once(body).chain(fingers).collect()
 }
 

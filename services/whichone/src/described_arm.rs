@@ -120,7 +120,13 @@ mod tests {
         limb: Option<Limb>,
         tip: Option<&str>,
     ) -> Result<DescribedArm, Failure> {
-        DescribedArm::load(robot, &WhichArm { limb: limb.map(|limb| limb.name().to_owned()), tip: tip.map(str::to_owned) })
+        DescribedArm::load(
+            robot,
+            &WhichArm {
+                limb: limb.map(|limb| limb.name().to_owned()),
+                tip: tip.map(str::to_owned),
+            },
+        )
     }
 
     fn fixture(name: &str) -> std::path::PathBuf {

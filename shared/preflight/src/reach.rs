@@ -105,7 +105,8 @@ fn check_widths(
     report: &mut Report,
 ) {
     let widest = |percent: f64| {
-        let limbs = setup.robot.limbs().iter().filter(|limb| setup.limb.is_none_or(|own| own == **limb));
+        let limbs =
+            setup.robot.limbs().iter().filter(|limb| setup.limb.is_none_or(|own| own == **limb));
         let widths = limbs.map(|limb| setup.robot.arm(*limb).gripper.width_m(percent));
         widths.fold(0.0, f64::max)
     };

@@ -38,7 +38,10 @@ fn limb(settings: &Settings, robot: &Robot) -> Result<Option<Limb>, Diagnostics>
     let known = robot.limbs().iter().map(|limb| robot.arm(*limb).name.as_str());
     let known: Vec<&str> = std::iter::once("auto").chain(known).collect();
     let what = format!("expected one of {}, found `{name}`", known.join(", "));
-    let help = format!("use a limb of robot {}", robot.description().name());
+    let help = diagnostics::nearest(name, known.iter().copied()).map_or_else(
+        || format!("use a limb of robot {}", robot.description().name()),
+        |near| format!("did you mean `{near}`?"),
+    );
     Err(settings.diagnostic(&["arm", "limb"], what, help).into())
 }
 

@@ -91,9 +91,9 @@ fn answer(chain: &Chain, line: &Pose) -> Result<Json, String> {
 
 fn expect_joints(key: &str, q: &[f64], joints: usize) -> Result<(), String> {
     let found = q.len();
-    (found == joints).then_some(()).ok_or_else(|| {
-        format!("{key}: expected {joints} joint positions, found {found}")
-    })
+    (found == joints)
+        .then_some(())
+        .ok_or_else(|| format!("{key}: expected {joints} joint positions, found {found}"))
 }
 
 fn posture(q: &[f64], joints: usize) -> Result<Joints, String> {

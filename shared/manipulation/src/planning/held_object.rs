@@ -91,7 +91,8 @@ impl Held {
             moved.map(|(e, capsule)| (e.link, *capsule)).collect::<Vec<_>>()
         };
         let own = links(arm, own, arm.wrist());
-        let theirs = other.map_or_else(Vec::new, |(other, theirs)| links(other, theirs, usize::MAX));
+        let theirs =
+            other.map_or_else(Vec::new, |(other, theirs)| links(other, theirs, usize::MAX));
         let cuboids = body.cuboids.iter();
         cuboids
             .map(|(name, cuboid)| (block.to_cuboid(cuboid), *name))

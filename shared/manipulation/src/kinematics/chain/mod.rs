@@ -14,8 +14,8 @@ pub(crate) use alternating::Alternating;
 pub use frame::Frame;
 pub(crate) use frame::positive;
 use general::General;
-pub(crate) use six::{Found, Six};
 pub use line::LineError;
+pub(crate) use six::{Found, Six};
 pub(crate) use zero::{Axis, ZeroPosture};
 
 use crate::kinematics::limb::Joints;

@@ -98,7 +98,8 @@ impl Six {
     fn elbow(&self, rest: &Isometry3<f64>, last_rad: f64, add: &mut impl FnMut([f64; 5], bool)) {
         let along = self.axes[1].direction;
         for (fifth, sixth, near) in self.last_two(&along, &rest.rotation, last_rad) {
-            let before = rest * (turned(&self.axes[4], fifth) * turned(&self.axes[5], sixth)).inverse();
+            let before =
+                rest * (turned(&self.axes[4], fifth) * turned(&self.axes[5], sixth)).inverse();
             let sum = angle_of(&before.rotation, &along);
             let corner = self.axes[3].point;
             let at = before * nalgebra::Point3::from(corner);

@@ -31,12 +31,17 @@ pub(crate) fn first(goal: &Goal<'_>, arm: &Six) -> Result<IkSolution, Refined> {
     }
     let found = arm.postures(&goal.tool.isometry(), middle[JOINTS - 1]);
     let reached = found.iter().filter(|found| found.reaches);
-    let answer = reached.filter_map(|found| turned(goal, found, &middle)).find_map(|q| exact(goal, &q));
+    let answer =
+        reached.filter_map(|found| turned(goal, found, &middle)).find_map(|q| exact(goal, &q));
     answer.map_or_else(|| near(goal, &found), Ok)
 }
 
 /// Returns the posture that reaches the goal at the least joint distance from `seed`.
-pub(crate) fn nearest(goal: &Goal<'_>, arm: &Six, seed: &Joints) -> Result<IkSolution, Unreachable> {
+pub(crate) fn nearest(
+    goal: &Goal<'_>,
+    arm: &Six,
+    seed: &Joints,
+) -> Result<IkSolution, Unreachable> {
     if !goal.is_finite() || seed.iter().any(|q| !q.is_finite()) {
         return first(goal, arm).map_err(Unreachable::from);
     }
