@@ -33,6 +33,31 @@ fn arm_fetches_in_every_scene_with_a_slow_and_noisy_robot() {
     }
 }
 
+/// The robot's topics of a robot with one arm are those of the left limb.
+#[test]
+fn single_arm_of_six_joints_delivers_on_the_same_topics() {
+    let single = [
+        ("group.scene", "blocks"),
+        ("arm.robot", "ur5e"),
+        ("arm.hand_over_xyz", "[0.45, 0.42, 0.25]"),
+        ("arm.table_z_m", "0.0"),
+    ];
+    let mut world = World::new(&single);
+    for object in [0, 3, 7] {
+        world.grasps = 0;
+        world.pick(u64::from(object) + 1, object);
+        world.run_until("taken on", |w| w.phase() != PickPhase::Done);
+        world.run_until("over", |w| w.phase() == PickPhase::Done);
+        assert_eq!(world.outcome(), PickOutcome::Delivered, "object {object}");
+        assert_eq!(world.grasps, 1, "object {object}");
+    }
+    let named = |order: &Order| match order {
+        Order::Joints(_, command) => command.joints().unwrap().len() == 6,
+        _ => true,
+    };
+    assert!(world.orders.iter().all(|(_, order)| named(order)), "six joints are commanded");
+}
+
 #[test]
 fn grippers_are_calibrated_before_any_motion() {
     let mut world = World::new(&[]);

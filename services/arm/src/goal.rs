@@ -66,7 +66,7 @@ impl ArmNode {
     pub(crate) fn limb_away(&self) -> Option<Limb> {
         let measured = self.driver.measured();
         let robot = &self.config.setup.robot;
-        Limb::BOTH.into_iter().find(|limb| !measured.is_at_rest(robot, *limb))
+        robot.limbs().iter().copied().find(|limb| !measured.is_at_rest(robot, *limb))
     }
 
     fn can_start(&self) -> bool {

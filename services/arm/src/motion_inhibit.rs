@@ -2,7 +2,6 @@
 
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
-use manipulation::Limb;
 use messages::{MotionInhibit, MotionOrder, PickPhase};
 use service::Time;
 
@@ -43,11 +42,13 @@ impl ArmNode {
     fn may_calibrate(&self) -> [bool; 2] {
         let phase = self.state.open_pick().map(|pick| pick.phase);
         let grasps = matches!(phase, Some(PickPhase::Closing | PickPhase::Holding));
-        Limb::BOTH.map(|limb| {
-            let held = self.state.held.is_some_and(|held| held.limb == limb);
-            let grasping = grasps && self.state.limb == Some(limb);
-            !held && !grasping
-        })
+        let mut may_calibrate = [true; 2];
+        for limb in self.config.setup.robot.limbs() {
+            let held = self.state.held.is_some_and(|held| held.limb == *limb);
+            let grasping = grasps && self.state.limb == Some(*limb);
+            may_calibrate[*limb] = !held && !grasping;
+        }
+        may_calibrate
     }
 }
 

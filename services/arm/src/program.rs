@@ -10,7 +10,7 @@ use dialogue::Rng;
 use manipulation::{
     ArmShape, Cuboid, Joints, Limb, MotionLimits, Phase, PlanError, PlanSettings, Robot, Stage,
     Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_put_back, plan_put_down,
-    plan_return,
+    plan_retreat, plan_return,
 };
 use messages::pick::Pick;
 use messages::{MotionPhase, PickId, PickPhase, Task};
@@ -125,7 +125,7 @@ impl Planner<'_> {
         if self.state.gone.contains(&pick.object) {
             return Err(Refusal::Gone);
         }
-        let start = self.start(Some(pick.object), 0.0);
+        let start = self.start(Some(pick.object), 0.0)?;
         let plan = self.with_reduced_margin(|settings| {
             plan_pick(self.robot, object, self.limb, &start.arms, &start.obstacles, settings)
         })?;
@@ -147,7 +147,7 @@ impl Planner<'_> {
         let held = self.state.handed_over(pick.object).ok_or(Refusal::NotHandedOver)?;
         let (limb, in_gripper) = (held.limb, from_array(&held.in_gripper));
         self.refuse_other(limb)?;
-        let start = self.start(None, 0.0);
+        let start = self.start(None, 0.0)?;
         let plan = self.with_reduced_margin(|settings| {
             let Start { arms, obstacles, .. } = &start;
             plan_put_back(self.robot, object, &in_gripper, limb, arms, obstacles, settings)
@@ -163,7 +163,7 @@ impl Planner<'_> {
         let steps = VecDeque::from([Step {
             kind: MotionPhase::Release,
             phase: Some(PickPhase::Holding),
-            ..self.opening(held.limb)
+            ..self.opening(held.limb, &self.measured.posture.joints[held.limb])
         }]);
         Program { purpose: Purpose::Pick(pick), limb: held.limb, steps }
     }
@@ -171,7 +171,7 @@ impl Planner<'_> {
     /// Aims at `object`.
     pub(crate) fn aim(&self, object: ObjectId) -> Result<Program, Refusal> {
         let place = self.world.place(object).ok_or(Refusal::NoPlace)?;
-        let start = self.start(None, 0.0);
+        let start = self.start(None, 0.0)?;
         let plan = self.with_reduced_margin(|settings| {
             plan_point(self.robot, place.xyz_m, self.limb, &start.arms, &start.obstacles, settings)
         })?;
@@ -189,7 +189,7 @@ impl Planner<'_> {
     }
 
     fn rest_from(&self, limb: Limb, rise_m: f64) -> Result<Program, Refusal> {
-        let start = self.start(None, rise_m);
+        let start = self.start(None, rise_m)?;
         let plan = self.with_reduced_margin(|settings| {
             plan_return(self.robot, limb, &start.arms, &start.obstacles, settings)
         })?;
@@ -227,7 +227,7 @@ impl Planner<'_> {
     ) -> Result<T, PlanError> {
         let rests = |limb| self.measured.is_at_rest(self.robot, limb);
         match plan(self.settings) {
-            Err(PlanError::Blocked { .. }) if !Limb::BOTH.into_iter().all(rests) => {
+            Err(PlanError::Blocked { .. }) if !self.robot.limbs().iter().copied().all(rests) => {
                 plan(&PlanSettings { margin_m: 0.0, ..*self.settings })
             }
             plan => plan,
@@ -235,8 +235,8 @@ impl Planner<'_> {
     }
 
     fn refuse_other(&self, limb: Limb) -> Result<(), Refusal> {
-        let rests = self.measured.is_at_rest(self.robot, limb.other());
-        if rests { Ok(()) } else { Err(Refusal::OtherLimb) }
+        let rests = |other| self.measured.is_at_rest(self.robot, other);
+        if limb.other().is_none_or(rests) { Ok(()) } else { Err(Refusal::OtherLimb) }
     }
 
     /// Returns the limb's motion limits at the configured speed.
@@ -254,7 +254,7 @@ impl Planner<'_> {
         let q = &self.measured.posture.joints[limb];
         (short_s > 0.0 && self.opening_s(limb) > 0.0).then(|| Step {
             motion: Trajectory::hold(q, short_s, &self.limits(limb)),
-            ..self.opening(limb)
+            ..self.opening(limb, q)
         })
     }
 
@@ -268,43 +268,57 @@ impl Planner<'_> {
         gripper::seconds_between(width_m, self.open_m(limb))
     }
 
-    /// Stands until the fingers are open.
-    fn opening(&self, limb: Limb) -> Step {
+    /// Stands at `q` until the fingers are open.
+    fn opening(&self, limb: Limb, q: &Joints) -> Step {
         let travel_s = self.opening_s(limb);
         let seconds = if travel_s > 0.0 { travel_s + SETTLE_S } else { 0.0 };
-        let q = &self.measured.posture.joints[limb];
         let motion = Trajectory::hold(q, seconds, &self.limits(limb));
         let fingers = Fingers::Open(self.open_m(limb));
         Step { kind: MotionPhase::Clear, phase: None, motion, fingers }
     }
 
-    /// Returns the start of a plan: with a limb that is away from rest clear of every object, and `rise_m`
-    /// higher than it is. It may stand among them, stopped or killed on its way down; what it then
-    /// touches it leaves as it came, straight up with open fingers.
-    fn start(&self, fetched: Option<ObjectId>, rise_m: f64) -> Start {
+    /// Returns the start of a plan: with a limb that is away from rest within its joint limits, clear of
+    /// every object, and `rise_m` higher than it is. It may stand among them, stopped or killed on its
+    /// way down, or where a person moved it; what it then touches it leaves as it came, straight up
+    /// with open fingers.
+    fn start(&self, fetched: Option<ObjectId>, rise_m: f64) -> Result<Start, Refusal> {
         let mut arms = self.measured.posture.joints;
         let mut steps = VecDeque::new();
-        let away = Limb::BOTH.into_iter().find(|limb| !self.measured.is_at_rest(self.robot, *limb));
+        let limbs = self.robot.limbs().iter().copied();
+        let away = limbs.into_iter().find(|limb| !self.measured.is_at_rest(self.robot, *limb));
         let others = self.world.obstacles(self.state, fetched);
-        let Some(limb) = away else { return Start { steps, arms, obstacles: others } };
-        if let Some(up) = self.up(limb, rise_m) {
-            let holds = self.state.held.is_some();
-            let opening = self.opening(limb);
+        let Some(limb) = away else { return Ok(Start { steps, arms, obstacles: others }) };
+        let holds = self.state.held.is_some();
+        let step =
+            |motion, fingers| Step { kind: MotionPhase::Clear, phase: None, motion, fingers };
+        let untouched = self.without_touched(limb, &arms[limb], others.clone());
+        let retreat = plan_retreat(self.robot, limb, &arms, &untouched, self.settings)?;
+        if let Some(retreat) = retreat {
+            tracing::info!(%limb, "the limb stands outside its limits or in collision; retreating");
+            arms[limb] = retreat.end();
+            steps.push_back(step(retreat, Fingers::Stay));
+        }
+        if let Some(up) = self.up(limb, &arms[limb], rise_m) {
+            let opening = self.opening(limb, &arms[limb]);
             let fingers = if holds { Fingers::Stay } else { opening.fingers };
             arms[limb] = up.end();
             steps.extend((!holds && opening.motion.duration_s() > 0.0).then_some(opening));
-            steps.push_back(Step { kind: MotionPhase::Clear, phase: None, motion: up, fingers });
+            steps.push_back(step(up, fingers));
         }
         // An object that it still touches cannot be an obstacle.
-        let shape = ArmShape::at(self.robot.arm(limb), &arms[limb]);
-        let obstacles = others.into_iter().filter(|cuboid| !touches(&shape, cuboid)).collect();
-        Start { steps, arms, obstacles }
+        let obstacles = self.without_touched(limb, &arms[limb], others);
+        Ok(Start { steps, arms, obstacles })
+    }
+
+    fn without_touched(&self, limb: Limb, q: &Joints, mut others: Vec<Cuboid>) -> Vec<Cuboid> {
+        let shape = ArmShape::at(self.robot.arm(limb), q);
+        others.retain(|cuboid| !touches(&shape, cuboid));
+        others
     }
 
     /// Straight up from the objects that the limb touches, and at least by `rise_m`, as far as the
     /// limb can.
-    fn up(&self, limb: Limb, rise_m: f64) -> Option<Trajectory> {
-        let q = &self.measured.posture.joints[limb];
+    fn up(&self, limb: Limb, q: &Joints, rise_m: f64) -> Option<Trajectory> {
         let shape = ArmShape::at(self.robot.arm(limb), q);
         let chain = &self.robot.arm(limb).chain;
         let pose = chain.forward(q);

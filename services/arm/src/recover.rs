@@ -4,7 +4,7 @@
 
 use crate::Config;
 use crate::state::{ArmState, Record};
-use manipulation::Limb;
+use manipulation::{Limb, OUTSIDE_MAX_RAD};
 use messages::pick::Pick;
 use messages::{PickOutcome, PickPhase};
 use scene::Scene;
@@ -40,14 +40,17 @@ pub fn next(phase: PickPhase, holding: Option<bool>, at_goal: bool) -> Next {
 /// Returns the last state of the journal, or the initial state if it is empty.
 ///
 /// # Errors
-/// The journal's joint positions are outside the joint limits.
+/// The journal's joint positions are too far outside the joint limits to be true.
 pub fn state(config: &Config, mut records: Vec<Record>) -> Result<ArmState, NodeError> {
     let first =
         || ArmState::first(&config.setup.robot, config.scene.key(), config.setup.plan.open_percent);
     let state = records.pop().map_or_else(first, |record| record.state);
     let outside = Limb::BOTH.into_iter().find_map(|limb| {
         let q = state.posture.joints[limb];
-        (!config.setup.robot.arm(limb).chain.limits().within(&q)).then_some(q)
+        let clamped = config.setup.robot.arm(limb).chain.limits().clamp(&q);
+        let plausible =
+            q.iter().zip(&clamped).all(|(q, limit)| (q - limit).abs() <= OUTSIDE_MAX_RAD);
+        (!plausible).then_some(q)
     });
     match outside {
         None => Ok(state),

@@ -38,7 +38,7 @@ impl MotionView {
             interaction: pick.map_or(0, |id| id.interaction.0),
             attempt: pick.map_or(0, |id| id.attempt),
             object: object.map(|object| object.0),
-            limb: program.limb as u8,
+            limb: program.limb.index() as u8,
             began_ns: 0,
             phases: phases(program, config.setup.robot.arm(program.limb), config.arm.time_scale),
         };

@@ -25,7 +25,7 @@ pub(crate) fn all(robot: &mut Robot, beat: u64, now: Time) -> Vec<Report<'static
     if !lost {
         reports.extend(joints.into_iter().flatten().map(|state| Report::Joints(state.into())));
     }
-    for limb in Limb::BOTH {
+    for limb in robot.config.robot.limbs().iter().copied() {
         reports.push(Report::Endpoint(limb as usize, endpoint(robot, limb, now).into()));
         if beat.is_multiple_of(GRIPPER_BEATS) {
             let enabled = robot.assembly.is_enabled();
@@ -39,11 +39,12 @@ pub(crate) fn all(robot: &mut Robot, beat: u64, now: Time) -> Vec<Report<'static
     reports
 }
 
-/// Returns the 17 joints, and the joint of one finger of each gripper in a message of its own.
+/// Returns the joints in alphabetical order, 17 of a Baxter, and the joint of one finger of each of its
+/// grippers in a message of its own.
 fn joint_states(robot: &mut Robot, now: Time) -> Vec<Result<JointState, WireError>> {
     let noise_rad = robot.config.simulated.noise_rad;
     let mut measured: Vec<(String, Measurement)> = Vec::new();
-    for limb in Limb::BOTH {
+    for limb in robot.config.robot.limbs().iter().copied() {
         let names = robot.config.robot.arm(limb).joint_names.clone();
         for (j, name) in names.into_iter().enumerate() {
             let servo = &robot.servos[limb];
@@ -53,16 +54,23 @@ fn joint_states(robot: &mut Robot, now: Time) -> Vec<Result<JointState, WireErro
             measured.push((name, [q, qd, 0.0]));
         }
     }
-    let of = |name: &'static str| {
-        let found = measured.iter().find(|(own, _)| own == name);
-        (name, found.map_or([0.0; 3], |(_, measured)| *measured))
-    };
-    let body = JointState::new(now.ns(), &JOINT_STATE_NAMES.map(of));
-    let fingers = [("l", Limb::Left), ("r", Limb::Right)].map(|(letter, limb)| {
-        let name = format!("{letter}_gripper_l_finger_joint");
-        let travel_m = robot.gripper(limb).travel_m(robot.fingers[limb].width_m);
-        JointState::new(now.ns(), &[(&name, [travel_m, 0.0, 0.0])])
-    });
+    // Head and torso of a Baxter stand still.
+    let has = |name: &str| robot.config.robot.description().joint(name).is_some();
+    for name in JOINT_STATE_NAMES.into_iter().filter(|name| has(name)) {
+        if measured.iter().all(|(own, _)| own != name) {
+            measured.push((name.to_owned(), [0.0; 3]));
+        }
+    }
+    measured.sort_by(|a, b| a.0.cmp(&b.0));
+    let body: Vec<(&str, Measurement)> =
+        measured.iter().map(|(name, measured)| (name.as_str(), *measured)).collect();
+    let body = JointState::new(now.ns(), &body);
+    let fingers =
+        [("l", Limb::Left), ("r", Limb::Right)].into_iter().filter_map(|(letter, limb)| {
+            let name = format!("{letter}_gripper_l_finger_joint");
+            let travel_m = robot.gripper(limb).travel_m(robot.fingers[limb].width_m);
+            has(&name).then(|| JointState::new(now.ns(), &[(&name, [travel_m, 0.0, 0.0])]))
+        });
     std::iter::once(body).chain(fingers).collect()
 }
 

@@ -159,7 +159,7 @@ impl Robot {
                 self.react(limb, event);
             }
         }
-        if self.config.restock && Limb::BOTH.into_iter().all(|limb| self.rests(limb)) {
+        if self.config.restock && self.config.robot.limbs().iter().all(|limb| self.rests(*limb)) {
             self.objects.restock();
         }
     }

@@ -10,7 +10,7 @@ mod group;
 mod study;
 mod talk;
 
-pub use arm::{AnyLimb, ArmPlotArgs, ArmVerb};
+pub use arm::{ArmPlotArgs, ArmVerb};
 pub use batch::{
     ArmArgs, ExportArgs, Exported, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm,
 };

@@ -4,14 +4,14 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use diagnostics::TextFile;
-use manipulation::{Chain, JOINTS, Joints};
+use manipulation::Chain;
 use nalgebra::Isometry3;
 use robot_model::{Joint, Robot};
 use service::exit::{Exit, Failure};
 
 use crate::cli::WhichArm;
 
-/// An arm of seven joints, and which of the robot's links it is about.
+/// An arm of six or seven joints, and which of the robot's links it is about.
 #[derive(Debug)]
 pub struct DescribedArm {
     robot: Cow<'static, Robot>,
@@ -40,10 +40,15 @@ impl DescribedArm {
     ///
     /// With `--limb` these are the links from the arm's mount on with all that hangs off them,
     /// fingers closed; with `--tip` those from the root to the tip.
-    pub fn links(&self, q: &Joints) -> impl Iterator<Item = (&str, Isometry3<f64>)> {
+    pub fn links(&self, q: &[f64]) -> impl Iterator<Item = (&str, Isometry3<f64>)> {
         let position = |joint: &Joint| self.places[joint.child - 1].map_or(0.0, |place| q[place]);
         let poses = self.robot.poses(position);
         self.links.iter().map(move |&link| (self.robot.links()[link].name.as_str(), poses[link]))
+    }
+
+    /// Number of joints, six or seven.
+    pub fn joints(&self) -> usize {
+        self.places.iter().flatten().count()
     }
 
     /// Returns the chain from the robot's root to its last link.
@@ -56,7 +61,7 @@ impl DescribedArm {
     }
 
     fn of(robot: Cow<'static, Robot>, which: &WhichArm) -> Result<Self, String> {
-        let limb = which.limb;
+        let limb = which.limb.as_deref();
         let tip = match (&which.tip, limb) {
             (Some(tip), _) => tip.clone(),
             (None, Some(limb)) => format!("{limb}_gripper"),
@@ -67,14 +72,13 @@ impl DescribedArm {
             format!("{error}; it has {}", names.join(", "))
         })?;
         let movable: Vec<&Joint> = chain.movable().collect();
-        if movable.len() != JOINTS.len() {
+        if !matches!(movable.len(), 6 | 7) {
             let names: Vec<&str> = movable.iter().map(|joint| joint.name.as_str()).collect();
             return Err(format!(
-                "{} of robot {:?}'s joints move link {tip:?} ({}); an arm has {}",
+                "{} of robot {:?}'s joints move link {tip:?} ({}); an arm has 6 or 7",
                 movable.len(),
                 robot.name(),
                 if names.is_empty() { "none".to_owned() } else { names.join(", ") },
-                JOINTS.len(),
             ));
         }
         let mut places = vec![None; robot.joints().len()];
@@ -116,7 +120,13 @@ mod tests {
         limb: Option<Limb>,
         tip: Option<&str>,
     ) -> Result<DescribedArm, Failure> {
-        DescribedArm::load(robot, &WhichArm { limb, tip: tip.map(str::to_owned) })
+        DescribedArm::load(
+            robot,
+            &WhichArm {
+                limb: limb.map(|limb| limb.name().to_owned()),
+                tip: tip.map(str::to_owned),
+            },
+        )
     }
 
     fn fixture(name: &str) -> std::path::PathBuf {
@@ -151,7 +161,7 @@ mod tests {
         let error = |robot, limb, tip| arm(robot, limb, tip).unwrap_err().to_string();
         assert_eq!(
             error(Some(&seven), None, Some("link_3")),
-            "3 of robot \"seven_joints\"'s joints move link \"link_3\" (a1, a2, a3); an arm has 7"
+            "3 of robot \"seven_joints\"'s joints move link \"link_3\" (a1, a2, a3); an arm has 6 or 7"
         );
         assert!(error(None, None, Some("pedestal")).contains("0 of robot \"baxter\"'s joints"));
         let unknown = error(Some(&seven), Some(Limb::Left), None);

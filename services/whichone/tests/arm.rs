@@ -44,6 +44,25 @@ fn arm_plot_draws_a_pick_as_png_and_svg() {
 }
 
 #[test]
+fn arm_plot_draws_a_single_arm_with_six_joints() {
+    let folder = tempfile::tempdir().unwrap();
+    let svg = folder.path().join("pick.svg").to_str().unwrap().to_owned();
+    let single = ["--profile", "ur5e", "--object", "green_large", "--limb", "arm"];
+    let ended = plot(&[&single[..], &["--width", "800", "--out", &svg]].concat());
+    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+    let output = String::from_utf8(ended.stdout).unwrap();
+    assert!(output.contains("the arm limb fetches green_large in"), "{output}");
+    let text = std::fs::read_to_string(&svg).unwrap();
+    // Six joints in two panels, eight objects and the gripper in two.
+    assert!(text.matches("<polyline").count() >= 2 * 6 + 2 * 9);
+    assert!(text.contains("wrist_3_joint"));
+    let ended = plot(&[&single[..5], &["left"]].concat());
+    let error = String::from_utf8_lossy(&ended.stderr);
+    assert_eq!(ended.status.code(), Some(64));
+    assert!(error.contains("--limb: expected one of arm, auto, found `left`"), "{error}");
+}
+
+#[test]
 fn arm_plot_prints_the_stages_as_json() {
     let run = |words: &[&str]| -> Value {
         let ended = plot(&[&["--json"], words].concat());

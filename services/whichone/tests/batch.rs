@@ -21,7 +21,7 @@ fn repository(path: &str) -> PathBuf {
 
 /// The built-in robot's arm.
 fn arm(limb: Limb) -> DescribedArm {
-    DescribedArm::load(None, &WhichArm { limb: Some(limb), tip: None }).unwrap()
+    DescribedArm::load(None, &WhichArm { limb: Some(limb.name().to_owned()), tip: None }).unwrap()
 }
 
 fn fixture(path: &str) -> String {
@@ -302,7 +302,28 @@ fn unreachable_pose_is_answered_and_invalid_input_rejected() {
     assert_eq!(exit, Exit::NotReached);
     let postures = "{\"q\":[1,2,3]}\n{\"q\":[0,0,0,0,0,0,1e300]}\n{\"q\":[0,0,0,0,0,0,1e999]}\n";
     let (found, _) = answers(|out| batch::fk(&arm(Limb::Right), postures.as_bytes(), out));
-    assert!(found[0]["error"].as_str().unwrap().contains("length 3"));
+    assert!(found[0]["error"].as_str().unwrap().contains("expected 7 joint positions, found 3"));
     assert!(found[1]["error"].as_str().unwrap().contains("no position of a joint"));
     assert!(found[2]["error"].as_str().unwrap().contains("out of range"));
+}
+
+#[test]
+fn arms_of_six_joints_are_answered_with_six_positions() {
+    let robot =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config/robots/ur5e.urdf");
+    let which = WhichArm { limb: Some("arm".to_owned()), tip: None };
+    let arm = DescribedArm::load(Some(&robot), &which).unwrap();
+    let q = [0.4, -1.5, 1.2, -1.0, -1.4, 0.3];
+    let input = vec![json!({ "id": 1, "q": q }), json!({ "id": 2, "q": vec![0.0; 7] })];
+    let (found, exit) = answers(|out| batch::fk(&arm, lines(&input).as_bytes(), out));
+    assert_eq!(exit, Exit::NotReached);
+    let pose = &found[0]["links"]["arm_gripper"];
+    let error = found[1]["error"].as_str().unwrap();
+    assert_eq!(error, "q: expected 6 joint positions, found 7");
+    let input = vec![json!({ "id": 3, "xyz": pose["xyz"], "xyzw": pose["xyzw"], "q_seed": q })];
+    let chain = arm.chain().unwrap();
+    let (found, _) = answers(|out| batch::ik(&chain, lines(&input).as_bytes(), out));
+    let solved: Vec<f64> = serde_json::from_value(found[0]["q"].clone()).unwrap();
+    assert!(found[0]["ok"] == true && solved.len() == 6, "{}", found[0]);
+    assert!(solved.iter().zip(q).all(|(a, b)| (a - b).abs() < 1e-6), "{solved:?}");
 }

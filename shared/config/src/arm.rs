@@ -7,8 +7,9 @@ use diagnostics::Fields;
 pub struct Arm {
     /// The driver of its joints.
     pub driver: Driver,
-    /// The limb that fetches.
-    pub limb: Limb,
+    /// The limb that fetches, by its name in the robot's description; `None`: the one that reaches the
+    /// object better.
+    pub limb: Option<String>,
     /// Settings of its motions.
     pub motion: Motion,
     /// Simulated seconds per second.
@@ -25,17 +26,6 @@ pub struct Arm {
     pub simulated: Simulated,
     /// The bridge to a Baxter's ROS 1 topics.
     pub ros1: Ros1,
-}
-
-/// The limb that fetches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limb {
-    /// The one that reaches the object better.
-    Auto,
-    /// Always the left one.
-    Left,
-    /// Always the right one.
-    Right,
 }
 
 /// Settings of motions. Positions in frame `base`.
@@ -126,8 +116,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Arm {
     f.text("robot");
     let arm = Arm {
         driver: f.choice("driver", &[("kinematic", Driver::Kinematic), ("baxter", Driver::Baxter)]),
-        limb: f
-            .choice("limb", &[("auto", Limb::Auto), ("left", Limb::Left), ("right", Limb::Right)]),
+        limb: Some(f.text("limb")).filter(|limb| limb != "auto"),
         motion: motion(f),
         time_scale: f.number("time_scale", 0.01..=1000.0),
         restock: f.flag("restock"),

@@ -33,7 +33,7 @@ use diagnostics::{Diagnostic, Diagnostics, Report, Source, Table, TextFile};
 use messages::Service;
 use scene::Scene;
 
-pub use crate::arm::{Arm, Baxter, Driver, Grasps, Limb, Motion, Ros1, Simulated};
+pub use crate::arm::{Arm, Baxter, Driver, Grasps, Motion, Ros1, Simulated};
 pub use crate::console::{Access, Camera, Console};
 pub use crate::dialogue::{CostsFrom, Dialogue, Gesture};
 pub use crate::files::{RobotFiles, read_file};

@@ -11,7 +11,7 @@ use std::time::Instant;
 use manipulation::{Cuboid, ObjectPose, Robot, plan_pick, plan_point};
 use support::checker::Checker;
 use support::scenes;
-use support::tables::{Tally, all_but, settings, try_table};
+use support::tables::{Bench, Tally, all_but, settings, try_table};
 
 fn main() {
     let mut arguments = std::env::args().skip(1).map(|n| n.parse::<u64>().ok());
@@ -22,7 +22,9 @@ fn main() {
     println!("\nbowl: seconds of its pick at the places of");
     bowls_at_places();
     println!("\n{count} random tables, seed {seed}");
-    random_tables(count, seed);
+    random_tables(&Robot::baxter().clone(), &Bench::baxter(), count, seed);
+    println!("\n{count} random tables of the UR5e, seed {seed}");
+    random_tables(&support::ur5e(), &Bench::ur5e(), count, seed);
 }
 
 fn scene(scene: &str) {
@@ -80,17 +82,19 @@ fn bowls_at_places() {
     }
 }
 
-fn random_tables(count: u64, seed: u64) {
-    let robot = Robot::baxter();
+fn random_tables(robot: &Robot, bench: &Bench, count: u64, seed: u64) {
     let threads = std::thread::available_parallelism().map_or(1, usize::from) as u64;
     let mut tally = Tally::default();
     std::thread::scope(|scope| {
         let share = |k: u64| {
             move || {
-                let checker = Checker::new(robot);
+                let checker = match robot.limbs() {
+                    [_] => Checker::described(robot),
+                    _ => Checker::new(robot),
+                };
                 let mut tally = Tally::default();
                 for table in (k..count).step_by(threads as usize) {
-                    tally.add(try_table(robot, &checker, seed * 1_000_000 + table));
+                    tally.add(try_table(robot, bench, &checker, seed * 1_000_000 + table));
                 }
                 tally
             }

@@ -1,4 +1,4 @@
-//! Motion planning for a robot with two arms of seven joints, such as Baxter: forward and inverse
+//! Motion planning for a robot with one or two arms of six or seven joints, such as Baxter: forward and inverse
 //! kinematics, collision checking, trajectories, and plans that fetch an object, put it back or
 //! point at it.
 //!
@@ -36,8 +36,8 @@ pub use kinematics::inverse::{IkSolution, TOLERANCE_M, TOLERANCE_RAD, Unreachabl
 pub use kinematics::limb::{JOINTS, Joints, Limb};
 pub use kinematics::limits::{MotionLimits, PositionLimits};
 pub use planning::{
-    Grasp, GraspError, ObjectPose, PlanError, PlanSettings, check_reachable, plan_delivery,
-    plan_pick, plan_point, plan_put_back, plan_put_down, plan_return,
+    Grasp, GraspError, OUTSIDE_MAX_RAD, ObjectPose, PlanError, PlanSettings, check_reachable,
+    plan_delivery, plan_pick, plan_point, plan_put_back, plan_put_down, plan_retreat, plan_return,
 };
 pub use robot::{Arm, Robot, Unsuitable};
 pub use trajectory::{

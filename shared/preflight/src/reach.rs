@@ -2,7 +2,7 @@
 
 use config::{CostsFrom, Settings};
 use diagnostics::{Diagnostic, Report};
-use manipulation::{GraspError, Limb, ObjectPose, PlanError, PlanSettings, check_reachable};
+use manipulation::{GraspError, ObjectPose, PlanError, PlanSettings, check_reachable};
 use scene::{Form, Placement};
 
 use crate::ArmSetup;
@@ -109,8 +109,9 @@ fn check_widths(
     report: &mut Report,
 ) {
     let widest = |percent: f64| {
-        let limbs = Limb::BOTH.into_iter().filter(|limb| setup.limb.is_none_or(|own| own == *limb));
-        let widths = limbs.map(|limb| setup.robot.arm(limb).gripper.width_m(percent));
+        let limbs =
+            setup.robot.limbs().iter().filter(|limb| setup.limb.is_none_or(|own| own == **limb));
+        let widths = limbs.map(|limb| setup.robot.arm(*limb).gripper.width_m(percent));
         widths.fold(0.0, f64::max)
     };
     let (open_m, whole_m) = (widest(setup.plan.open_percent), widest(100.0));
@@ -153,8 +154,11 @@ fn check_unplaced(settings: &Settings, placed: usize, report: &mut Report) {
 }
 
 fn reason(error: &PlanError, setup: &ArmSetup) -> String {
-    let limbs =
-        setup.limb.map_or_else(|| "both limbs".to_owned(), |limb| format!("the {limb} limb"));
+    let limbs = match (setup.limb, setup.robot.limbs()) {
+        (Some(limb), _) => format!("the {limb} limb"),
+        (None, [_]) => "the limb".to_owned(),
+        (None, _) => "both limbs".to_owned(),
+    };
     match error {
         PlanError::Unreachable { at, distance_m, .. } => {
             let mm = distance_m * 1e3;

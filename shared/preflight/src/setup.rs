@@ -20,20 +20,29 @@ impl ArmSetup {
     /// Reads the robot's description and converts the settings of the arm.
     ///
     /// # Errors
-    /// Every fault of the description, or the parts that an arm needs and it lacks.
+    /// Every fault of the description, the parts that an arm needs and it lacks, or a limb that it does
+    /// not have.
     pub fn new(settings: &Settings) -> Result<Self, Diagnostics> {
         let robot = robot(settings.robot_files())?;
-        Ok(Self { robot, limb: limb(settings.arm.limb), plan: plan_settings(&settings.arm.motion) })
+        let limb = limb(settings, &robot)?;
+        Ok(Self { robot, limb, plan: plan_settings(&settings.arm.motion) })
     }
 }
 
-/// Converts the setting of the limb; `None` if either may fetch.
-fn limb(setting: config::Limb) -> Option<Limb> {
-    match setting {
-        config::Limb::Auto => None,
-        config::Limb::Left => Some(Limb::Left),
-        config::Limb::Right => Some(Limb::Right),
+/// Returns the configured limb; `None` if any may fetch.
+fn limb(settings: &Settings, robot: &Robot) -> Result<Option<Limb>, Diagnostics> {
+    let Some(name) = &settings.arm.limb else { return Ok(None) };
+    if let Some(limb) = robot.limb_named(name) {
+        return Ok(Some(limb));
     }
+    let known = robot.limbs().iter().map(|limb| robot.arm(*limb).name.as_str());
+    let known: Vec<&str> = std::iter::once("auto").chain(known).collect();
+    let what = format!("expected one of {}, found `{name}`", known.join(", "));
+    let help = diagnostics::nearest(name, known.iter().copied()).map_or_else(
+        || format!("use a limb of robot {}", robot.description().name()),
+        |near| format!("did you mean `{near}`?"),
+    );
+    Err(settings.diagnostic(&["arm", "limb"], what, help).into())
 }
 
 fn plan_settings(motion: &config::Motion) -> PlanSettings {

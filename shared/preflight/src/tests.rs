@@ -64,6 +64,33 @@ fn shipped_scenes_are_within_reach() {
 }
 
 #[test]
+fn shipped_single_arm_reaches_its_scene() {
+    let settings = load(&shipped(), Some("ur5e"), &[]).unwrap_or_else(|e| panic!("{e}"));
+    let setup = ArmSetup::new(&settings).unwrap();
+    assert_eq!((settings.scene.name(), setup.robot.limbs()), ("blocks", &[Limb::Only][..]));
+    for (limb, expected) in [("auto", None), ("arm", Some(Limb::Only))] {
+        let over = owned(&[("arm.limb", limb)]);
+        let settings = Settings::load(&shipped(), Some("ur5e"), &over).unwrap();
+        assert_eq!(ArmSetup::new(&settings).unwrap().limb, expected);
+    }
+}
+
+#[test]
+fn limb_that_the_robot_lacks_is_reported() {
+    for (profile, limb, expected) in [
+        (
+            None,
+            "lefft",
+            "arm.limb: expected one of auto, left, right, found `lefft`; help: did you mean `left`?",
+        ),
+        (Some("ur5e"), "left", "arm.limb: expected one of auto, arm, found `left`; help: "),
+    ] {
+        let error = load(&shipped(), profile, &owned(&[("arm.limb", limb)])).unwrap_err();
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+}
+
+#[test]
 fn default_settings_plan_as_the_planner_does_by_default() {
     let setup = ArmSetup::new(&Settings::load(&shipped(), None, &[]).unwrap()).unwrap();
     assert_eq!((setup.limb, &setup.robot), (None, Robot::baxter()));

@@ -13,6 +13,7 @@ import {
   viewOf,
 } from "../../../services/console/page/js/arm/cameras.js";
 import { Fineness, Rolling } from "../../../services/console/page/js/arm/figures.js";
+import { limbNames } from "../../../services/console/page/js/arm/joints.js";
 import { lookOf, partsOf } from "../../../services/console/page/js/arm/looks.js";
 import { armWords, indexOf, thoughtsOf } from "../../../services/console/page/js/arm/words.js";
 import { translator } from "../../../services/console/page/js/strings.js";
@@ -146,6 +147,24 @@ describe("looks", () => {
         assert.ok(forms.includes(form) && !["box", "rod"].includes(form), `${scene}: ${kind}`);
       }
     }
+  });
+});
+
+describe("limbs of a description", () => {
+  const robot = (...links) => ({ links: Object.fromEntries(links.map((link) => [link, {}])) });
+
+  it("are both, or the only one under its own name", () => {
+    assert.deepEqual(limbNames(robot("left_gripper", "right_gripper", "l_gripper_l_finger")), [
+      "left",
+      "right",
+    ]);
+    const text = readFileSync(
+      new URL("../../../config/robots/ur5e.urdf", import.meta.url),
+      "utf8",
+    );
+    const links = [...text.matchAll(/<link name="(\w+)"/g)].map((match) => match[1]);
+    assert.deepEqual(limbNames(robot(...links)), ["arm"]);
+    assert.deepEqual(limbNames(robot("world")), []);
   });
 });
 

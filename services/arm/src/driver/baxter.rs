@@ -78,6 +78,10 @@ impl BaxterDriver {
     pub fn new(config: &Config, state: &ArmState) -> Self {
         let settings = config.arm.baxter;
         let still = [[0.0; 7]; 2];
+        let mut used = [false; 2];
+        for own in config.setup.robot.limbs() {
+            used[*own] = config.setup.limb.is_none_or(|limb| limb == *own);
+        }
         let measured = Measured {
             posture: state.posture,
             velocity: still,
@@ -89,7 +93,7 @@ impl BaxterDriver {
         Self {
             settings,
             robot: config.setup.robot.clone(),
-            used: Limb::BOTH.map(|own| config.setup.limb.is_none_or(|limb| limb == own)),
+            used,
             measured,
             joints_at: None,
             assembly: None,
@@ -117,14 +121,15 @@ impl BaxterDriver {
             found += 1;
         }
         // Messages of fingers, and of parts of the robot, do not update the arms.
-        if found < 2 * JOINTS.len() {
+        let limbs = self.robot.limbs().iter();
+        if found < limbs.map(|limb| self.robot.arm(*limb).joint_names.len()).sum::<usize>() {
             return;
         }
         let stamp = Time(state.stamp_ns);
         if stamp > now + CLOCK_SLACK && self.joints_at.is_none() {
             tracing::warn!("joint states are stamped by another clock; their arrival counts");
         }
-        for limb in Limb::BOTH {
+        for limb in self.robot.limbs().iter().copied() {
             let limits = &self.robot.arm(limb).limits.position;
             self.measured.posture.joints[limb] = on_limits(&posture[limb], limits);
         }
@@ -137,7 +142,7 @@ impl BaxterDriver {
 
     /// Limb and joint of a joint's name.
     fn place(&self, name: &str) -> Option<(Limb, usize)> {
-        Limb::BOTH.into_iter().find_map(|limb| {
+        self.robot.limbs().iter().copied().find_map(|limb| {
             let names = &self.robot.arm(limb).joint_names;
             Some((limb, names.iter().position(|own| own == name)?))
         })
@@ -217,7 +222,8 @@ impl BaxterDriver {
         }
         self.ratio_sent = Some(now);
         let ratio = SpeedRatio { data: self.settings.speed_ratio };
-        orders.extend(Limb::BOTH.map(|limb| Order::SpeedRatio(limb as usize, ratio)));
+        let limbs = self.robot.limbs().iter();
+        orders.extend(limbs.map(|limb| Order::SpeedRatio(*limb as usize, ratio)));
     }
 }
 
@@ -277,8 +283,10 @@ impl ArmDriver for BaxterDriver {
             return orders;
         }
         self.send_ratio(now, &mut orders);
-        Limb::BOTH.into_iter().for_each(|limb| self.command_limb(limb, now, &mut orders));
-        for limb in Limb::BOTH {
+        for limb in self.robot.limbs().iter().copied() {
+            self.command_limb(limb, now, &mut orders);
+        }
+        for limb in self.robot.limbs().iter().copied() {
             let due = self.grippers[limb].due(now);
             orders.extend(due.map(|message| Order::Gripper(limb as usize, message.into())));
         }
@@ -290,7 +298,7 @@ impl ArmDriver for BaxterDriver {
     }
 
     fn fault(&self) -> Option<Fault> {
-        Limb::BOTH.into_iter().find_map(|limb| {
+        self.robot.limbs().iter().copied().find_map(|limb| {
             let set = &self.limbs[limb];
             let (joint, error_rad) = furthest(&set.q?, &self.measured_of(limb));
             let tolerance_rad = self.settings.path_tolerance_rad;

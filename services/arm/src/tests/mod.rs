@@ -4,6 +4,7 @@ mod fetch;
 mod full_disk;
 mod grasp;
 mod kills;
+mod one_arm;
 mod orders;
 mod planning;
 mod point;
@@ -11,6 +12,7 @@ mod publish;
 mod put_back;
 mod robot;
 mod set_aside;
+mod standing;
 mod stop;
 mod trajectory_view;
 
@@ -310,8 +312,8 @@ impl Machine {
     }
 
     fn rests(&self) -> bool {
-        let measured = self.robot.measured();
-        Limb::BOTH.into_iter().all(|limb| measured.is_at_rest(&self.config.setup.robot, limb))
+        let (measured, robot) = (self.robot.measured(), &self.config.setup.robot);
+        robot.limbs().iter().all(|limb| measured.is_at_rest(robot, *limb))
     }
 
     fn tip(&self, limb: Limb) -> nalgebra::Isometry3<f64> {

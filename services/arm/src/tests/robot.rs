@@ -3,7 +3,7 @@
 use crate::Config;
 use crate::driver::{ArmDriver, Command, Fingers, KinematicArm, Measured};
 use crate::state::{ArmState, Posture};
-use manipulation::{Arm, ArmShape, Cuboid, Limb};
+use manipulation::{Arm, ArmShape, Cuboid, Joints, Limb};
 use messages::PickPhase;
 use messages::pick::Pick;
 use scene::Placement;
@@ -78,11 +78,18 @@ impl Robot {
 
     /// Somebody moves a limb at rest: every joint by `angle_rad`, towards the middle of its range.
     pub(super) fn push(&self, limb: Limb, angle_rad: f64) {
-        let mut body = self.0.borrow_mut();
+        let body = self.0.borrow();
         let mut q = body.arm.measured().posture.joints[limb];
         for (q, (lower, upper)) in q.iter_mut().zip(body.limbs[limb].limits.position.0) {
             *q += angle_rad.copysign(0.5 * (lower + upper) - *q);
         }
+        drop(body);
+        self.place(limb, q);
+    }
+
+    /// Somebody moves a limb at rest to a posture.
+    pub(super) fn place(&self, limb: Limb, q: Joints) {
+        let mut body = self.0.borrow_mut();
         let still = [0.0; 7];
         let command = Command { limb, q, qd: still, qdd: still, t_s: 0.0, fingers: Fingers::Stay };
         body.arm.command(&command, 0.0);
@@ -144,7 +151,12 @@ impl Body {
         let from = &before.posture.joints[command.limb];
         let mut moved = false;
         let limits = self.limbs[command.limb].limits;
-        if !limits.position.within(&command.q) {
+        let outside = |q: &Joints| {
+            let clamped = limits.position.clamp(q);
+            q.iter().zip(clamped).map(|(q, limit)| (q - limit).abs()).fold(0.0, f64::max)
+        };
+        // A joint that a person moved outside its limits only returns.
+        if outside(&command.q) > outside(from) {
             self.wrongs.push(format!("outside the limits: {:?}", command.q));
         }
         for (j, (start, fastest)) in from.iter().zip(limits.velocity).enumerate() {

@@ -17,7 +17,7 @@ use crate::output::Output;
 struct Posture {
     #[serde(default)]
     id: Json,
-    q: Joints,
+    q: Vec<f64>,
 }
 
 /// Answers each posture with `{"id","links":{name:{"xyz","xyzw"}}}`: metres in the frame of the
@@ -29,6 +29,7 @@ struct Posture {
 pub fn fk(arm: &DescribedArm, input: impl Read, out: &mut Output<'_>) -> Outcome {
     run(input, out, |line| {
         let line: Posture = parse(line)?;
+        expect_joints("q", &line.q, arm.joints())?;
         if let Some(q) = line.q.iter().find(|q| q.abs() > POSITION_MAX) {
             return Err(format!("q: {q} rad is no position of a joint"));
         }
@@ -54,7 +55,7 @@ struct Pose {
     xyz: [f64; 3],
     xyzw: [f64; 4],
     #[serde(default)]
-    q_seed: Option<Joints>,
+    q_seed: Option<Vec<f64>>,
 }
 
 /// Answers each pose of the chain's tip with
@@ -70,8 +71,9 @@ pub fn ik(chain: &Chain, input: impl Read, out: &mut Output<'_>) -> Outcome {
 
 fn answer(chain: &Chain, line: &Pose) -> Result<Json, String> {
     let target = pose(line)?;
+    let seed = line.q_seed.as_ref().map(|q| posture(q, chain.joints())).transpose()?;
     let started = Instant::now();
-    let solved = chain.inverse(&target, line.q_seed.as_ref());
+    let solved = chain.inverse(&target, seed.as_ref());
     let micros = started.elapsed().as_secs_f64() * 1e6;
     let (ok, q, position_error_m, rotation_error_rad) = match solved {
         Ok(found) => (true, found.q, found.position_error_m, found.rotation_error_rad),
@@ -80,11 +82,23 @@ fn answer(chain: &Chain, line: &Pose) -> Result<Json, String> {
     Ok(json!({
         "id": line.id,
         "ok": ok,
-        "q": q,
+        "q": q[..chain.joints()],
         "position_error_m": position_error_m,
         "rotation_error_rad": rotation_error_rad,
         "micros": micros,
     }))
+}
+
+fn expect_joints(key: &str, q: &[f64], joints: usize) -> Result<(), String> {
+    let found = q.len();
+    (found == joints)
+        .then_some(())
+        .ok_or_else(|| format!("{key}: expected {joints} joint positions, found {found}"))
+}
+
+fn posture(q: &[f64], joints: usize) -> Result<Joints, String> {
+    expect_joints("q_seed", q, joints)?;
+    Ok(std::array::from_fn(|j| q.get(j).copied().unwrap_or(0.0)))
 }
 
 fn pose(line: &Pose) -> Result<Isometry3<f64>, String> {

@@ -3,10 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use manipulation::Limb;
 
 use super::ConfigArgs;
-use super::batch::{Choice, one_of};
 
 /// Actions of the arm that need no group.
 #[derive(Debug, Subcommand)]
@@ -25,9 +23,10 @@ pub struct ArmPlotArgs {
     /// Object to fetch; the scene's first by default.
     #[arg(long, value_name = "NAME")]
     pub object: Option<String>,
-    /// Limb; the configured one by default.
-    #[arg(long, value_parser = one_of(LIMBS))]
-    pub limb: Option<AnyLimb>,
+    /// Limb by its name in the description, or auto for the one with the faster motion; the configured
+    /// one by default.
+    #[arg(long, value_name = "NAME")]
+    pub limb: Option<String>,
     /// Picture; PNG or SVG by its extension.
     #[arg(long, value_name = "FILE", default_value = "pick.png")]
     pub out: PathBuf,
@@ -42,15 +41,6 @@ pub struct ArmPlotArgs {
     #[command(flatten)]
     pub config: ConfigArgs,
 }
-
-/// A limb, or none for an automatic choice.
-pub type AnyLimb = Option<Limb>;
-
-const LIMBS: &[Choice<AnyLimb>] = &[
-    ("left", "The arm at the robot's left", Some(Limb::Left)),
-    ("right", "The arm at the robot's right", Some(Limb::Right)),
-    ("auto", "The one with the faster motion", None),
-];
 
 fn samples_hz(text: &str) -> Result<f64, String> {
     let sensible = text.trim().parse().ok().filter(|hz| (1.0..=1000.0).contains(hz));

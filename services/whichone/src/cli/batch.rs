@@ -6,7 +6,6 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use dialogue::{Announce, Costs, Mode};
 use language::Language;
-use manipulation::Limb;
 
 use super::ConfigArgs;
 
@@ -110,14 +109,14 @@ pub struct ArmArgs {
     pub input: InputArgs,
 }
 
-/// An arm of a robot: one of Baxter's two, or whatever ends in a link.
+/// An arm of a robot: by its name, or whatever ends in a link.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 pub struct WhichArm {
-    /// The arm of a robot with Baxter's names.
-    #[arg(long, value_parser = one_of(LIMBS))]
-    pub limb: Option<Limb>,
-    /// The last link of an arm with seven joints, of any robot.
+    /// The arm that ends in the link NAME_gripper: left or right of Baxter, arm of the UR5e.
+    #[arg(long, value_name = "NAME")]
+    pub limb: Option<String>,
+    /// The last link of an arm with six or seven joints, of any robot.
     #[arg(long, value_name = "LINK")]
     pub tip: Option<String>,
 }
@@ -142,9 +141,6 @@ const MODES: &[Choice<Mode>] = &[
     ("remote", "The user does not see the robot", Mode::Remote),
     ("present", "The user sees what the robot points at", Mode::Present),
 ];
-
-const LIMBS: &[Choice<Limb>] =
-    &[("left", "The left arm", Limb::Left), ("right", "The right arm", Limb::Right)];
 
 /// Parses the name of one of the choices.
 pub(super) fn one_of<T>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T>

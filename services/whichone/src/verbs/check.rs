@@ -63,11 +63,8 @@ fn summary(settings: &Settings) -> Vec<String> {
     ];
     let asks: Vec<&str> = asks.into_iter().filter(|(on, _)| *on).map(|(_, what)| what).collect();
     let asks = if asks.is_empty() { "no".to_owned() } else { asks.join(", ") };
-    let limb = match arm.limb {
-        config::Limb::Auto => "the nearer limb",
-        config::Limb::Left => "the left limb",
-        config::Limb::Right => "the right limb",
-    };
+    let limb = arm.limb.as_ref();
+    let limb = limb.map_or("the nearer limb".to_owned(), |limb| format!("the {limb} limb"));
     let mut lines = vec![
         format!("  scene     {} ({objects}; {})", scene.name(), attributes.join(", ")),
         format!("  fetching  {}", fetched(scene)),

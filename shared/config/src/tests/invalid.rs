@@ -66,7 +66,7 @@ fn errors_of_all_layers_are_reported_at_once() {
         ("group.toml", "scnee = 'bowls'\n[log]\nlevel = 'inof'"),
         ("dialogue.toml", "alpha = 0\nmode = 'far'\n[turns]\nrepeats_max = -1"),
         ("speech.toml", "voice_words_per_minute = 9000"),
-        ("arm.toml", "limb = 'both'\nhover_m = 'high'"),
+        ("arm.toml", "limb = 2\nhover_m = 'high'"),
         ("profiles/odd.toml", "[speech]\nvoise = 'print'"),
         ("scenes/bowls.toml", &bowls),
     ]);
@@ -79,7 +79,7 @@ fn errors_of_all_layers_are_reported_at_once() {
         dialogue.toml:4: turns.repeats_max: expected a value from 0 to 100, found -1
         speech.toml:1: voice_words_per_minute: expected a value from 80 to 450, found 9000
         profiles/odd.toml:2: speech.voise: unknown key; help: did you mean `voice`?
-        arm.toml:1: limb: expected one of auto, left, right, found `both`
+        arm.toml:1: limb: expected a string, found an integer; help: write it in double quotes
         arm.toml:2: hover_m: expected a finite number, found a string; help: write digits, e.g. `1.5`
         --set: arm.restock: expected a boolean, found a string; help: write `true` or `false`
         scenes/bowls.toml:15: objects[0].colour_blind: unknown key; help: remove it; the keys here are name, attributes, xyz, size, grasp_width, yaw, mass_kg, wall_deg, form"#]].assert_eq(&complaints.join("\n"));

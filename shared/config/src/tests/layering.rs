@@ -6,7 +6,7 @@ use std::time::Duration;
 use language::Language;
 
 use super::{Folder, ONE_BOWL, shipped};
-use crate::{Limb, Recogniser, Restart, Section, Settings, Voice};
+use crate::{Recogniser, Restart, Section, Settings, Voice};
 use messages::Service;
 
 #[test]
@@ -73,7 +73,7 @@ fn defaults_are_as_documented() {
     assert!(dialogue.actions.attribute && !dialogue.actions.which);
     assert_eq!((speech.voice, speech.recogniser), (Voice::Auto, Recogniser::Auto));
     assert_eq!((speech.player, speech.model_dir), (None, None));
-    assert_eq!((arm.limb, arm.time_scale, arm.restock), (Limb::Auto, 1.0, true));
+    assert_eq!((arm.limb.as_ref(), arm.time_scale, arm.restock), (None, 1.0, true));
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn overrides_need_no_quotes_in_a_shell() {
     ];
     let settings = folder.load(None, &overrides).unwrap();
     assert_eq!(settings.speech.voice, Voice::Print);
-    assert_eq!((settings.arm.limb, settings.arm.restock), (Limb::Left, false));
+    assert_eq!((settings.arm.limb.as_deref(), settings.arm.restock), (Some("left"), false));
     assert_eq!(settings.arm.motion.hand_over_xyz_m, [0.75, 0.4, 0.15]);
     assert_eq!(settings.dialogue.costs.wrong, 80.0);
     assert_eq!(settings.group.services[3].watchdog, None);

@@ -167,7 +167,8 @@ impl<'a> ArmShape<'a> {
     }
 }
 
-/// Both arms' clearances by group, metres, negative where shapes overlap; pairs are left and right.
+/// The arms' clearances by group, metres, negative where shapes overlap; pairs are left and right, or
+/// the only arm twice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
     /// Arm to arm.
@@ -184,13 +185,15 @@ impl Clearance {
     /// Clearances with the arms at `q` among `surroundings`.
     pub fn of(robot: &Robot, q: &[Joints; 2], surroundings: &[Cuboid]) -> Self {
         let arms = Limb::BOTH.map(|limb| ArmShape::at(robot.arm(limb), &q[limb]));
+        let apart = || arms[0].to_arm(&arms[1], f64::INFINITY);
+        let two = robot.limbs().len() == 2;
         let around = |arm: &ArmShape<'_>| {
             surroundings.iter().fold(Gap::none(f64::INFINITY), |gap, cuboid| {
                 gap.min(arm.to_cuboid("surroundings", cuboid, gap.distance_m))
             })
         };
         Self {
-            arms: arms[0].to_arm(&arms[1], f64::INFINITY),
+            arms: if two { apart() } else { Gap::none(f64::INFINITY) },
             body: arms.each_ref().map(|arm| arm.to_trunk(f64::INFINITY)),
             own: arms.each_ref().map(|arm| arm.to_itself(f64::INFINITY)),
             surroundings: arms.each_ref().map(around),

@@ -39,7 +39,7 @@ fn clearance_bound_is_exact_below_and_truncates_above() {
     let mut random = Random::seeded(41);
     for _ in 0..300 {
         let limb = random.limb();
-        let [own, other] = [limb, limb.other()].map(|limb| robot().arm(limb));
+        let [own, other] = [limb, limb.other().unwrap()].map(|limb| robot().arm(limb));
         let arm = ArmShape::at(own, &random.posture());
         let other = ArmShape::at(other, &random.posture());
         let asks: [&dyn Fn(f64) -> Gap; 4] = [

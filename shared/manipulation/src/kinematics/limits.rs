@@ -34,10 +34,11 @@ impl PositionLimits {
         })
     }
 
-    /// Distance from `q` to the nearest limit of any joint, radians; negative outside.
+    /// Distance from `q` to the nearest limit of any joint that can move, radians; negative outside.
     pub fn margin_rad(&self, q: &Joints) -> f64 {
         q.iter()
             .zip(&self.0)
+            .filter(|(_, (lower, upper))| lower < upper)
             .map(|(q, (lower, upper))| (q - lower).min(upper - q))
             .fold(f64::INFINITY, f64::min)
     }

@@ -20,7 +20,7 @@ pub(crate) const CORNER: usize = 6;
 const SETTLE_S: f64 = 0.2;
 
 /// The enclosing capsules end this far below the fingertips, and a little, metres.
-const BELOW_TIP_M: f64 = 0.005;
+pub(crate) const BELOW_TIP_M: f64 = 0.005;
 
 /// Plans the rest of a pick for an arm that already holds `object`, given as it stood, at
 /// `object_in_gripper`: lift it if the gripper is still over its place, hand over, release, return.

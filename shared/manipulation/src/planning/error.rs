@@ -48,6 +48,18 @@ pub enum PlanError {
         /// Colliding shapes; a negative distance is an overlap.
         gap: Gap,
     },
+    /// The limb stands in collision and no motion leads out of it.
+    #[error(
+        "the {limb} arm stands in collision: its {} is {:.0} mm from the {}; help: move the arm \
+         clear by hand",
+        gap.link, gap.distance_m * 1e3, gap.other
+    )]
+    Stuck {
+        /// The arm.
+        limb: Limb,
+        /// Colliding shapes; a negative distance is an overlap.
+        gap: Gap,
+    },
     /// Both ends are clear, but no path between them was found.
     #[error("no way for the {limb} arm to {at} was found that touches nothing{}", in_way(gap))]
     NoPath {

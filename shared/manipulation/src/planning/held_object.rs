@@ -32,9 +32,6 @@ const SLACK_M: f64 = 5e-4;
 /// Largest horizontal distance of its centre from its place that counts as over it, metres.
 const BESIDE_M: f64 = 0.005;
 
-/// The joint whose links may touch it: the wrist's, with the gripper.
-const WRIST: usize = 6;
-
 impl Held {
     /// `object` as it stands among `surroundings`, held at `in_gripper`.
     pub(crate) fn new(
@@ -76,12 +73,12 @@ impl Held {
     }
 
     /// Returns the first part of the robot that the box comes nearer to than `margin_m`: its body,
-    /// the other arm, and the links of the arm that holds it before the wrist.
+    /// the other arm, and the links of the arm that holds it before the wrist, which may touch it.
     pub(crate) fn near_robot(
         &self,
         block: &Block,
         (arm, own): (&Arm, &ArmShape<'_>),
-        (other, theirs): (&Arm, &ArmShape<'_>),
+        other: Option<(&Arm, &ArmShape<'_>)>,
         margin_m: f64,
     ) -> Option<Gap> {
         let near = |distance_m: f64, name: &'static str| {
@@ -93,8 +90,9 @@ impl Held {
             let moved = capsules.filter(|(enclosure, _)| enclosure.joint < last);
             moved.map(|(e, capsule)| (e.link, *capsule)).collect::<Vec<_>>()
         };
-        let own = links(arm, own, WRIST);
-        let theirs = links(other, theirs, usize::MAX);
+        let own = links(arm, own, arm.wrist());
+        let theirs =
+            other.map_or_else(Vec::new, |(other, theirs)| links(other, theirs, usize::MAX));
         let cuboids = body.cuboids.iter();
         cuboids
             .map(|(name, cuboid)| (block.to_cuboid(cuboid), *name))

@@ -11,6 +11,7 @@ mod planning_scene;
 mod point;
 mod posture;
 mod put_back;
+mod retreat;
 mod static_obstacles;
 
 pub use deliver::{plan_delivery, plan_return};
@@ -20,4 +21,5 @@ pub use pick::{check_reachable, plan_pick};
 pub use planning_scene::PlanSettings;
 pub use point::plan_point;
 pub use put_back::{plan_put_back, plan_put_down};
+pub use retreat::{OUTSIDE_MAX_RAD, plan_retreat};
 pub(crate) use static_obstacles::Obstacle;

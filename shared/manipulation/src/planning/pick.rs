@@ -135,8 +135,12 @@ fn planning_scenes<'a>(
     others: &[Cuboid],
     settings: &'a PlanSettings,
 ) -> Result<Vec<PlanningScene<'a>>, PlanError> {
-    let mut limbs: Vec<Limb> =
-        Limb::BOTH.into_iter().filter(|side| limb.is_none_or(|limb| limb == *side)).collect();
+    let mut limbs: Vec<Limb> = robot
+        .limbs()
+        .iter()
+        .copied()
+        .filter(|side| limb.is_none_or(|limb| limb == *side))
+        .collect();
     // The arm on the object's own side first.
     limbs.sort_by(|a, b| (b.side() * object.xyz_m[1]).total_cmp(&(a.side() * object.xyz_m[1])));
     limbs

@@ -74,8 +74,8 @@ pub(crate) struct PlanningScene<'a> {
     /// Present joint positions.
     pub(crate) q: Joints,
     pub(crate) settings: &'a PlanSettings,
-    other_arm: &'a Arm,
-    pub(crate) other: ArmShape<'a>,
+    /// The other limb, if there is one.
+    other: Option<(&'a Arm, ArmShape<'a>)>,
     pub(crate) surroundings: Vec<Obstacle>,
     /// Number of the board under the object to fetch.
     board: Option<usize>,
@@ -106,8 +106,10 @@ impl<'a> PlanningScene<'a> {
             limits: arm.limits.at_speed_ratio(settings.speed_ratio),
             q: arms[limb],
             settings,
-            other_arm: robot.arm(limb.other()),
-            other: ArmShape::at(robot.arm(limb.other()), &arms[limb.other()]),
+            other: limb.other().map(|other| {
+                let arm = robot.arm(other);
+                (arm, ArmShape::at(arm, &arms[other]))
+            }),
             surroundings,
             board: None,
             held: None,
@@ -168,6 +170,12 @@ impl<'a> PlanningScene<'a> {
         held.near_surroundings(&held.block(pose), 0.0)
     }
 
+    /// Returns the gap between the arm and the other limb, if it is below `within_m`.
+    pub(crate) fn other_gap(&self, arm: &ArmShape<'_>, within_m: f64) -> Gap {
+        let other = self.other.as_ref();
+        other.map_or(Gap::none(within_m), |(_, other)| arm.to_arm(other, within_m))
+    }
+
     /// Returns the arm and what it holds at one posture.
     pub(crate) fn look(&self, q: &Joints) -> Look<'a> {
         let block = self.held.as_ref().map(|held| held.block(&self.chain.forward(q)));
@@ -181,8 +189,8 @@ impl<'a> PlanningScene<'a> {
         let held = || {
             let (held, block) = (self.held.as_ref()?, block.as_ref()?);
             held.near_surroundings(block, moved_m).or_else(|| {
-                let (own, other) = ((self.arm, arm), (self.other_arm, &self.other));
-                held.near_robot(block, own, other, margin_m)
+                let other = self.other.as_ref().map(|(arm, shape)| (*arm, shape));
+                held.near_robot(block, (self.arm, arm), other, margin_m)
             })
         };
         let around = self.surroundings.iter();
@@ -190,7 +198,7 @@ impl<'a> PlanningScene<'a> {
             .map(|(name, cuboid)| arm.to_cuboid(name, cuboid, near_m))
             .chain([arm.to_itself(margin_m)])
             .chain(std::iter::once_with(|| arm.to_trunk(margin_m)))
-            .chain(std::iter::once_with(|| arm.to_arm(&self.other, margin_m)))
+            .chain(std::iter::once_with(|| self.other_gap(arm, margin_m)))
             .find(Gap::is_some)
             .or_else(held)
     }

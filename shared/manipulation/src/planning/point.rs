@@ -49,7 +49,7 @@ pub fn plan_point(
 ) -> Result<Timeline, PlanError> {
     let mut furthest = Furthest::default();
     let mut choices = Vec::new();
-    let sides = Limb::BOTH.into_iter().filter(|side| limb.is_none_or(|limb| limb == *side));
+    let sides = robot.limbs().iter().copied().filter(|side| limb.is_none_or(|limb| limb == *side));
     let place = (target_m, target_m[2] - LOWER_M);
     let scenes: Vec<_> = sides
         .map(|side| PlanningScene::new(robot, side, arms, others, place, settings))

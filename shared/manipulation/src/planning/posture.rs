@@ -58,7 +58,7 @@ impl PlanningScene<'_> {
         let gap = around
             .map(|(name, cuboid)| arm.to_cuboid(name, cuboid, ROOMY_M))
             .chain([arm.to_itself(ROOMY_M), arm.to_trunk(ROOMY_M)])
-            .fold(arm.to_arm(&self.other, ROOMY_M), Gap::min);
+            .fold(self.other_gap(arm, ROOMY_M), Gap::min);
         Ok(CROWDED_S * ((ROOMY_M - gap.distance_m) / ROOMY_M))
     }
 

@@ -30,10 +30,10 @@ const ACCELERATION_RAD_S2: f64 = 2.0;
 const JERK_PER_S: f64 = 10.0;
 
 impl Robot {
-    /// Returns the robot of a description whose links `left_gripper` and `right_gripper` each hang
-    /// on seven turning joints. Groups `left_arm` and `right_arm` have a posture `neutral`, in
-    /// which the limb rests; other postures of theirs are used as via_postures where the limb is
-    /// clear there.
+    /// Returns the robot of a description: two limbs that end in the links `left_gripper` and
+    /// `right_gripper`, or one that ends in a link `<name>_gripper`, each on six or seven turning
+    /// joints. A group `<name>_arm` has a posture `neutral`, in which the limb rests; other postures
+    /// of its are used as via postures where the limb is clear there.
     ///
     /// Joints without stated acceleration and jerk get 2 rad/s² and ten times that per second.
     /// Links of a limb are enclosed in capsules; the other links are the body, as it stands
@@ -43,46 +43,85 @@ impl Robot {
     /// # Errors
     /// [`Unsuitable`] names what is missing.
     pub fn from_description(description: &Description) -> Result<Self, Unsuitable> {
-        let body = Arc::new(body(description)?);
-        let [left, right] = Limb::BOTH.map(|limb| arm(description, limb, &body));
-        Ok(Self { description: Arc::new(description.clone()), limbs: Arc::new([left?, right?]) })
+        let names = limb_names(description)?;
+        let body = Arc::new(body(description, &names)?);
+        let arms = match &names[..] {
+            [only] => {
+                let only = arm(description, Limb::Only, only, &body)?;
+                [only.clone(), only]
+            }
+            _ => {
+                let [left, right] =
+                    Limb::BOTH.map(|limb| arm(description, limb, limb.name(), &body));
+                [left?, right?]
+            }
+        };
+        Ok(Self { description: Arc::new(description.clone()), arms: Arc::new(arms) })
+    }
+}
+
+/// Returns the names of the limbs: what stands before `_gripper` in the links at their ends.
+fn limb_names(description: &Description) -> Result<Vec<String>, Unsuitable> {
+    let links = description.links().iter();
+    let names: Vec<&str> = links.filter_map(|link| link.name.strip_suffix("_gripper")).collect();
+    let both = Limb::BOTH.map(Limb::name);
+    if both.iter().any(|name| names.contains(name)) {
+        return Ok(both.map(str::to_owned).to_vec());
+    }
+    match names[..] {
+        [only] => Ok(vec![only.to_owned()]),
+        _ => Err(Unsuitable {
+            what: format!("expected one link `<limb>_gripper`, found {}", names.len()),
+            help: "name the link between the fingertips arm_gripper, or left_gripper and \
+                   right_gripper where there are two limbs; no other link may end in _gripper"
+                .to_owned(),
+        }),
     }
 }
 
 impl Chain {
     /// Returns the chain from the root to the link `tip` of any described robot; it must hang on
-    /// seven turning joints.
+    /// six or seven turning joints.
     ///
     /// # Errors
     /// [`Unsuitable`] if the link is missing, or for another number of joints.
     pub fn from_description(description: &Description, tip: &str) -> Result<Self, Unsuitable> {
         let joints = joints(description, tip)?;
         let posture = posture(description, &joints, tip);
-        Ok(Self::new(&posture, PositionLimits(joints.map(limits_of))))
+        Ok(Self::new(&posture, PositionLimits(padded(&joints, (0.0, 0.0), limits_of))))
     }
 }
 
-fn arm(description: &Description, limb: Limb, body: &Arc<Body>) -> Result<Arm, Unsuitable> {
-    let tip = format!("{limb}_gripper");
+fn arm(
+    description: &Description,
+    limb: Limb,
+    name: &str,
+    body: &Arc<Body>,
+) -> Result<Arm, Unsuitable> {
+    let tip = format!("{name}_gripper");
     let joints = joints(description, &tip)?;
-    let of = |f: &dyn Fn(&Limits) -> f64| joints.map(|joint| joint.limits.as_ref().map_or(0.0, f));
+    // What does not move may have any limit but zero.
+    let of = |f: &dyn Fn(&Limits) -> f64| {
+        padded(&joints, 1.0, |joint| joint.limits.as_ref().map_or(0.0, f))
+    };
     let acceleration = |limits: &Limits| limits.acceleration.unwrap_or(ACCELERATION_RAD_S2);
     let limits = MotionLimits::new(
-        PositionLimits(joints.map(limits_of)),
+        PositionLimits(padded(&joints, (0.0, 0.0), limits_of)),
         of(&|limits| limits.velocity),
         of(&acceleration),
         of(&|limits| limits.jerk.unwrap_or_else(|| JERK_PER_S * acceleration(limits))),
     );
     let chain = Chain::new(&posture(description, &joints, &tip), limits.position);
-    let enclosures = enclosures(description, limb, &joints, &chain)?;
+    let enclosures = enclosures(description, name, &joints, &chain)?;
     let mut arm = Arm {
         limb,
-        joint_names: joints.map(|joint| joint.name.clone()),
-        pairs: pairs(&chain, &enclosures, &may_touch(description, limb)),
-        gripper: gripper(description, limb)?,
+        name: name.to_owned(),
+        joint_names: joints.iter().map(|joint| joint.name.clone()).collect(),
+        pairs: pairs(&chain, &enclosures, &may_touch(description, name)),
+        gripper: gripper(description, name)?,
         chain,
         limits,
-        neutral: named(description, limb, "neutral", &joints)?,
+        neutral: named(description, name, "neutral", &joints)?,
         via_postures: Vec::new(),
         enclosures,
         body: Arc::clone(body),
@@ -91,77 +130,89 @@ fn arm(description: &Description, limb: Limb, body: &Arc<Body>) -> Result<Arm, U
     Ok(arm)
 }
 
-/// Returns the seven joints that move `tip`, shoulder first.
-fn joints<'a>(description: &'a Description, tip: &str) -> Result<[&'a Joint; 7], Unsuitable> {
+/// Returns the six or seven joints that move `tip`, shoulder first.
+fn joints<'a>(description: &'a Description, tip: &str) -> Result<Vec<&'a Joint>, Unsuitable> {
     let chain = description.chain(tip).map_err(|error| Unsuitable {
         what: error.to_string(),
-        help: "name the link at the end of a limb of seven turning joints".to_owned(),
+        help: "name the link at the end of a limb of six or seven turning joints".to_owned(),
     })?;
     let joints: Vec<&Joint> = chain.movable().collect();
     let turning = joints.iter().all(|joint| joint.kind == JointKind::Revolute);
+    if turning && matches!(joints.len(), 6 | 7) {
+        return Ok(joints);
+    }
     let count = joints.len();
-    joints.try_into().ok().filter(|_| turning).ok_or_else(|| Unsuitable {
+    Err(Unsuitable {
         what: format!(
-            "link {tip:?} hangs on {count} moving joints that are not seven revolute ones"
+            "link {tip:?} hangs on {count} moving joints that are not six or seven revolute ones"
         ),
-        help: "limbs of seven revolute joints with limits are supported".to_owned(),
+        help: "limbs of six or seven revolute joints with limits are supported".to_owned(),
     })
+}
+
+/// Returns a value for each of seven joints; `none` for those that a limb does not have.
+fn padded<T: Copy>(joints: &[&Joint], none: T, value: impl Fn(&Joint) -> T) -> [T; 7] {
+    std::array::from_fn(|i| joints.get(i).map_or(none, |joint| value(joint)))
 }
 
 fn limits_of(joint: &Joint) -> (f64, f64) {
     joint.limits.map_or((0.0, 0.0), |limits| (limits.lower, limits.upper))
 }
 
-fn posture(description: &Description, joints: &[&Joint; 7], tip: &str) -> ZeroPosture {
+fn posture(description: &Description, joints: &[&Joint], tip: &str) -> ZeroPosture {
     let poses = description.poses(|_| 0.0);
-    let axes = joints.map(|joint| {
+    let axis = |i: usize| {
+        let joint = joints[i.min(joints.len() - 1)];
         let pose = &poses[joint.child];
         let direction = pose.rotation * joint.axis.into_inner();
         Axis { point: pose.translation.vector, direction }
-    });
+    };
     let tool = description.link_index(tip).map_or_else(Isometry3::identity, |link| poses[link]);
-    ZeroPosture { axes, tool }
+    ZeroPosture { axes: std::array::from_fn(axis), joints: joints.len(), tool }
 }
 
-fn group(limb: Limb) -> String {
+fn group(limb: &str) -> String {
     format!("{limb}_arm")
 }
 
 /// A named posture of the limb; joints that it leaves out are at zero.
 fn named(
     description: &Description,
-    limb: Limb,
+    limb: &str,
     name: &str,
-    joints: &[&Joint; 7],
+    joints: &[&Joint],
 ) -> Result<Joints, Unsuitable> {
     let group = group(limb);
     let posture = description.posture(&group, name).ok_or_else(|| Unsuitable {
         what: format!("no posture {name:?} in group {group:?}"),
         help: format!("add <group_state name={name:?} group={group:?}> to the SRDF"),
     })?;
-    let q = joints.map(|joint| posture.position(joint.child - 1).unwrap_or(0.0));
-    match PositionLimits(joints.map(limits_of)).first_violation(&q) {
+    let position = |joint: &Joint| posture.position(joint.child - 1).unwrap_or(0.0);
+    let q = padded(joints, 0.0, position);
+    let outside = joints.iter().map(|joint| (joint, position(joint), limits_of(joint)));
+    let mut outside = outside.filter(|(_, at, (lower, upper))| !(lower..=upper).contains(&at));
+    match outside.next() {
         None => Ok(q),
         Some((joint, at, (lower, upper))) => Err(Unsuitable {
-            what: format!("posture {name:?} of {group:?} has {joint} at {at} rad"),
+            what: format!("posture {name:?} of {group:?} has {} at {at} rad", joint.name),
             help: format!("keep it between {lower} and {upper}"),
         }),
     }
 }
 
 /// Returns the limb's named postures in which it is clear of itself and of the body.
-fn via_postures(description: &Description, joints: &[&Joint; 7], arm: &Arm) -> Vec<Joints> {
+fn via_postures(description: &Description, joints: &[&Joint], arm: &Arm) -> Vec<Joints> {
     let clear = |q: &Joints| {
         let shape = ArmShape::at(arm, q);
         !shape.to_itself(0.0).is_some() && !shape.to_trunk(0.0).is_some()
     };
-    let of_limb = description.postures().iter().filter(|posture| posture.group == group(arm.limb));
-    let named = of_limb.filter_map(|own| named(description, arm.limb, &own.name, joints).ok());
+    let of_limb = description.postures().iter().filter(|posture| posture.group == group(&arm.name));
+    let named = of_limb.filter_map(|own| named(description, &arm.name, &own.name, joints).ok());
     named.filter(clear).collect()
 }
 
 /// Returns the last of the limb's joints that moves a link.
-fn mover(description: &Description, joints: &[&Joint; 7], mut link: usize) -> Option<usize> {
+fn mover(description: &Description, joints: &[&Joint], mut link: usize) -> Option<usize> {
     while let Some(joint) = description.carrier(link) {
         if let Some(place) = joints.iter().position(|own| own.child == joint.child) {
             return Some(place);
@@ -174,8 +225,8 @@ fn mover(description: &Description, joints: &[&Joint; 7], mut link: usize) -> Op
 /// Returns the capsules round the limb's links, each in the frame of the joint that moves it.
 fn enclosures(
     description: &Description,
-    limb: Limb,
-    joints: &[&Joint; 7],
+    limb: &str,
+    joints: &[&Joint],
     chain: &Chain,
 ) -> Result<Vec<Enclosure>, Unsuitable> {
     let poses = description.poses(|_| 0.0);
@@ -194,8 +245,9 @@ fn enclosures(
 }
 
 /// Shapes of the body.
-fn body(description: &Description) -> Result<Body, Unsuitable> {
-    let limbs = [joints(description, "left_gripper")?, joints(description, "right_gripper")?];
+fn body(description: &Description, names: &[String]) -> Result<Body, Unsuitable> {
+    let limbs = names.iter().map(|name| joints(description, &format!("{name}_gripper")));
+    let limbs = limbs.collect::<Result<Vec<_>, _>>()?;
     let poses = description.poses(|_| 0.0);
     let mut body = Body::default();
     for (index, link) in description.links().iter().enumerate() {
@@ -254,14 +306,14 @@ fn enclosing(shaped: &Shaped, link: &Isometry3<f64>, name: &str) -> Result<Capsu
     }
 }
 
-fn may_touch(description: &Description, limb: Limb) -> Vec<(String, String)> {
+fn may_touch(description: &Description, limb: &str) -> Vec<(String, String)> {
     let name = |link: usize| short(limb, &description.links()[link].name).to_owned();
     description.may_touch().iter().map(|(a, b)| (name(*a), name(*b))).collect()
 }
 
 /// Returns a link's name without its limb's.
-fn short(limb: Limb, name: &str) -> &str {
-    name.strip_prefix(limb.name()).and_then(|rest| rest.strip_prefix('_')).unwrap_or(name)
+fn short<'a>(limb: &str, name: &'a str) -> &'a str {
+    name.strip_prefix(limb).and_then(|rest| rest.strip_prefix('_')).unwrap_or(name)
 }
 
 /// Returns the name for as long as the program runs: a program knows few robots, and errors that

@@ -5,7 +5,6 @@ use robot_model::{Body, JointKind, Robot as Description, Shape};
 
 use super::Unsuitable;
 use crate::gripper::Gripper;
-use crate::kinematics::limb::Limb;
 
 /// Shapes that end further than this behind the fingertips are not what grips, metres.
 const TIP_M: f64 = 0.02;
@@ -25,7 +24,7 @@ struct Tip {
 ///
 /// # Errors
 /// [`Unsuitable`] for fingers that have no shapes at the tips, or that never open.
-pub(super) fn gripper(description: &Description, limb: Limb) -> Result<Gripper, Unsuitable> {
+pub(super) fn gripper(description: &Description, limb: &str) -> Result<Gripper, Unsuitable> {
     let name = format!("{limb}_gripper");
     let Some(frame) = description.link_index(&name) else { return Ok(Gripper::default()) };
     let base = description.carrier(frame).map_or(frame, |joint| joint.parent);
@@ -125,11 +124,12 @@ fn half_extents(body: &Body, pose: &Isometry3<f64>) -> Option<Vector3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kinematics::limb::Limb;
     use robot_model::{BAXTER_SRDF, BAXTER_URDF};
 
     fn shipped(change: impl Fn(&str) -> String) -> [Result<Gripper, Unsuitable>; 2] {
         let description = Description::parse(&change(BAXTER_URDF), Some(BAXTER_SRDF)).unwrap();
-        Limb::BOTH.map(|limb| gripper(&description, limb))
+        Limb::BOTH.map(|limb| gripper(&description, limb.name()))
     }
 
     fn ends_mm(gripper: &Gripper) -> [f64; 3] {

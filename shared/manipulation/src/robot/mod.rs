@@ -1,4 +1,4 @@
-//! The robot: two limbs and the body that they hang on.
+//! The robot: its limbs and the body that they hang on.
 
 mod describe;
 mod fingers;
@@ -17,20 +17,23 @@ use crate::kinematics::limits::MotionLimits;
 
 pub use describe::Unsuitable;
 
-/// A robot of two limbs with seven turning joints each. Copies share what it holds.
+/// A robot of one or two limbs with six or seven turning joints each. Copies share what it holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
     description: Arc<Description>,
-    limbs: Arc<[Arm; 2]>,
+    /// Both arms, or the only one twice.
+    arms: Arc<[Arm; 2]>,
 }
 
 /// One limb: how it moves, and the room that it takes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
-    /// Name.
+    /// Which of the robot's limbs it is.
     pub limb: Limb,
-    /// Its joints' names in the description, shoulder first.
-    pub joint_names: [String; 7],
+    /// Its name in the description: the link at its end is `<name>_gripper`.
+    pub name: String,
+    /// Its joints' names in the description, shoulder first: six or seven.
+    pub joint_names: Vec<String>,
     /// Its fingers.
     pub gripper: Gripper,
     /// Its kinematics.
@@ -53,7 +56,7 @@ pub struct Arm {
 /// A capsule that moves with a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Enclosure {
-    /// 0 shoulder to 6 wrist.
+    /// 0 shoulder to 5 or 6 wrist.
     pub(crate) joint: usize,
     /// The link that it encloses, without the limb's name.
     pub(crate) link: &'static str,
@@ -83,18 +86,36 @@ impl Robot {
         &self.description
     }
 
-    /// One of its limbs.
-    pub fn arm(&self, limb: Limb) -> &Arm {
-        &self.limbs[limb]
+    /// Returns the limbs that it has: both, left first, or the only one.
+    pub fn limbs(&self) -> &'static [Limb] {
+        match self.arms[0].limb {
+            Limb::Only => &[Limb::Only],
+            Limb::Left | Limb::Right => &Limb::BOTH,
+        }
     }
 
-    /// Both limbs at rest.
+    /// Returns the limb of that name in the description, e.g. `left`.
+    pub fn limb_named(&self, name: &str) -> Option<Limb> {
+        self.limbs().iter().copied().find(|limb| self.arm(*limb).name == name)
+    }
+
+    /// One of its limbs. A limb that the robot does not have stands for the one that it has.
+    pub fn arm(&self, limb: Limb) -> &Arm {
+        &self.arms[limb]
+    }
+
+    /// Both limbs at rest; the only one twice.
     pub fn neutral(&self) -> [Joints; 2] {
-        self.limbs.each_ref().map(|arm| arm.neutral)
+        self.arms.each_ref().map(|arm| arm.neutral)
     }
 }
 
 impl Arm {
+    /// Number of the wrist's last joint.
+    pub(crate) fn wrist(&self) -> usize {
+        self.chain.joints() - 1
+    }
+
     /// Returns the enclosing capsules at `q`, in `base`.
     pub(crate) fn capsules(&self, q: &Joints) -> Vec<Capsule> {
         placed(&self.chain, &self.enclosures, q)

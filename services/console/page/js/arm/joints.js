@@ -14,6 +14,17 @@ export const LIMB_JOINTS = ["s0", "s1", "e0", "e1", "w0", "w1", "w2"];
 /** Both limbs, in the order in which the server lists what there is of each. */
 export const LIMBS = ["left", "right"];
 
+/**
+ * Names of the limbs: both, or that of the only one. The link at a limb's end is `NAME_gripper`.
+ * @param {{links: Record<string, any>}} robot
+ * @returns {string[]}
+ */
+export function limbNames(robot) {
+  if (LIMBS.some((limb) => robot.links[`${limb}_gripper`])) return LIMBS;
+  const ends = Object.keys(robot.links).filter((link) => link.endsWith("_gripper"));
+  return ends.slice(0, 1).map((link) => link.slice(0, -"_gripper".length));
+}
+
 /** Messages that are kept. */
 const KEPT = 40;
 /** Messages farther apart than this are no stream: the arm stood between them. */

@@ -1,6 +1,6 @@
 // @ts-check
 import { Vector3 } from "../../vendor/three/build/three.module.js";
-import { LIMBS } from "./joints.js";
+import { limbNames } from "./joints.js";
 
 /** Queries and actions on the picture for tests. */
 export class Questions {
@@ -31,7 +31,7 @@ export class Questions {
       robot: robot?.object.robotName ?? null,
       bodies: robot?.bodies ?? 0,
       joints: Object.fromEntries(values.map(([name, joint]) => [name, joint.jointValue[0]])),
-      grippers: LIMBS.map((limb) => robot?.placeOf(`${limb}_gripper`) ?? null),
+      grippers: limbNames(robot?.object ?? { links: {} }).map((limb) => robot?.placeOf(`${limb}_gripper`) ?? null),
       objects: Array.from({ length: things.count }, (_, n) =>
         things.placeOf(n, new Vector3()).toArray(),
       ),

@@ -11,7 +11,7 @@ import {
 import URDFLoader from "../../vendor/urdf-loader/src/URDFLoader.js";
 import { ball, box, capsule, cylinder, merged, poseMatrix } from "./bodies.js";
 import { TreeElement } from "./elements.js";
-import { fingerPosition, JOINT_NAMES, LIMB_JOINTS, LIMBS } from "./joints.js";
+import { fingerPosition, JOINT_NAMES, LIMB_JOINTS, LIMBS, limbNames } from "./joints.js";
 
 /** Paint of a robot whose description gives no colours. */
 const BARE = [0.55, 0.57, 0.6];
@@ -38,11 +38,12 @@ export class RobotModel {
     for (const [carrier, bodies] of bodiesOf(this.object)) {
       this.#meshes.push(dress(carrier, bodies, this.#rich));
     }
-    const limbs = LIMBS.map((limb) => limbJoints(this.object, limb));
+    const names = limbNames(this.object);
+    const limbs = names.map((limb) => limbJoints(this.object, limb));
     this.#setters = JOINT_NAMES.map((name) => setter(this.object, limbs, name));
-    this.#fingers = LIMBS.map((limb, n) => fingersOf(this.object, limbs[n], limb));
-    /** The frames that hold things, left and right. */
-    this.grippers = LIMBS.map((limb) => this.object.links[`${limb}_gripper`] ?? null);
+    this.#fingers = names.map((limb, n) => fingersOf(this.object, limbs[n], limb));
+    /** The frames that hold things, left and right, or the only one. */
+    this.grippers = names.map((limb) => this.object.links[`${limb}_gripper`] ?? null);
   }
 
   /** Number of bodies drawn. */
@@ -99,7 +100,7 @@ export class RobotModel {
   }
 }
 
-/** A limb's seven joints from the trunk to the gripper: by name, or else in their order. */
+/** A limb's joints from the trunk to the gripper: by name, or else in their order. */
 function limbJoints(robot, limb) {
   const named = LIMB_JOINTS.map((joint) => robot.joints[`${limb}_${joint}`]);
   if (named.every((joint) => joint?.isURDFJoint)) return named;
@@ -114,7 +115,8 @@ function limbJoints(robot, limb) {
 function setter(robot, limbs, name) {
   const [limb, joint] = name.split("_");
   const side = LIMBS.indexOf(limb);
-  const own = side < 0 ? robot.joints[name] : limbs[side][LIMB_JOINTS.indexOf(joint)];
+  // The only limb has the place of the left one.
+  const own = side < 0 ? robot.joints[name] : limbs[side]?.[LIMB_JOINTS.indexOf(joint)];
   if (!own || own.jointType === "fixed") return null;
   own.ignoreLimits = true;
   return (value) => own.setJointValue(value);

@@ -159,10 +159,11 @@ export class Tableau {
   #heldBy(n, world) {
     if (world.held !== n && world.held !== this.objects[n].name) return null;
     const object = poseOf(world.objects[n]);
-    const far = world.grippers.map(([x, y, z]) =>
+    const limbs = this.robot?.grippers.length ?? world.grippers.length;
+    const far = world.grippers.slice(0, limbs).map(([x, y, z]) =>
       Math.hypot(...[x, y, z].map((v, k) => v - world.objects[n][k])),
     );
-    const side = far[0] <= far[1] ? 0 : 1;
+    const side = far[1] < far[0] ? 1 : 0;
     const frame = this.robot?.grippers[side];
     return frame
       ? { frame, inFrame: poseOf(world.grippers[side]).invert().multiply(object) }

@@ -1,7 +1,7 @@
 //! Chart of a planned pick: joints over time, and the path of the gripper.
 
 use evaluation::charts::{Axis, Chart, Panel, Point, Shape};
-use manipulation::{JOINTS, ObjectPose, Phase};
+use manipulation::{ObjectPose, Phase};
 use nalgebra::Vector3;
 
 use super::Pick;
@@ -18,8 +18,7 @@ pub(super) const PHASES: [(Phase, &str); 6] = [
 
 /// Moments that curves are drawn through.
 const MOMENTS: usize = 240;
-/// Series of the gripper's path, after those of the joints, and of everything grey.
-const GRIPPER: usize = JOINTS.len();
+/// Series of everything grey.
 const GREY: usize = 6;
 /// Width of margins and legend, pixels.
 const AROUND_PANELS: u32 = 205;
@@ -27,8 +26,8 @@ const AROUND_PANELS: u32 = 205;
 /// Returns the chart, about that many pixels wide.
 pub(super) fn chart(pick: &Pick<'_>, width: u32) -> Chart {
     let name = &pick.scene.object(pick.object.into()).name;
-    let (limb, seconds) = (pick.plan.limb(), pick.plan.duration_s());
-    let limits = pick.robot.arm(limb).limits;
+    let (arm, seconds) = (pick.robot.arm(pick.plan.limb()), pick.plan.duration_s());
+    let (limb, limits) = (&arm.name, arm.limits);
     let ratio = pick.settings.speed_ratio;
     let share = |t_s: f64, joint: usize| {
         100.0 * pick.plan.at(t_s).qd[joint].abs() / (ratio * limits.velocity[joint])
@@ -40,7 +39,7 @@ pub(super) fn chart(pick: &Pick<'_>, width: u32) -> Chart {
         over_time(pick, "joint speed, % of the limit", share),
         path(pick, "gripper's path, from above", "y, m", 1),
     ];
-    let names = pick.robot.arm(limb).joint_names.iter();
+    let names = arm.joint_names.iter();
     let prefix = format!("{limb}_");
     let legend = names.map(|name| name.strip_prefix(&prefix).unwrap_or(name).to_owned());
     let panel = width.saturating_sub(AROUND_PANELS) / 2;
@@ -54,6 +53,11 @@ pub(super) fn chart(pick: &Pick<'_>, width: u32) -> Chart {
     }
 }
 
+/// Returns the number of the series of the gripper's path: it follows those of the joints.
+fn gripper_series(pick: &Pick<'_>) -> usize {
+    pick.robot.arm(pick.plan.limb()).chain.joints()
+}
+
 fn times(pick: &Pick<'_>) -> impl Iterator<Item = f64> {
     let whole_s = pick.plan.duration_s();
     (0..=MOMENTS).map(move |n| whole_s * n as f64 / MOMENTS as f64)
@@ -62,7 +66,7 @@ fn times(pick: &Pick<'_>) -> impl Iterator<Item = f64> {
 /// A curve for each joint, on a background of the phases.
 fn over_time(pick: &Pick<'_>, heading: &str, value: impl Fn(f64, usize) -> f64) -> Panel {
     let curve = |joint| times(pick).map(|t_s| (t_s, value(t_s, joint))).collect::<Vec<Point>>();
-    let curves: Vec<Vec<Point>> = (0..JOINTS.len()).map(curve).collect();
+    let curves: Vec<Vec<Point>> = (0..gripper_series(pick)).map(curve).collect();
     let y = holding("", curves.iter().flatten().map(|point| point.1).chain([0.0]));
     let (low, high) = y.ends();
     let mut shapes = Vec::new();
@@ -103,8 +107,8 @@ fn path(pick: &Pick<'_>, heading: &str, label: &str, axis: usize) -> Panel {
         let name = pick.scene.object(index.into()).name.clone();
         shapes.push((series, Shape::Text((high.0, 0.5 * (low.1 + high.1)), name)));
     }
-    shapes.push((GRIPPER, Shape::Line(path)));
-    shapes.push((GRIPPER, Shape::Marks(marks)));
+    shapes.push((gripper_series(pick), Shape::Line(path)));
+    shapes.push((gripper_series(pick), Shape::Marks(marks)));
     Panel { heading: heading.to_owned(), x, y, shapes }
 }
 

@@ -46,8 +46,12 @@ pub(super) fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
         Some(named) => scene_file::load(&planning::scene_path(named, &args.config)?)?,
     };
     let setup = ArmSetup::new(&settings)?;
-    let limb = args.limb.unwrap_or(setup.limb);
     let robot = &setup.robot;
+    let limb = match args.limb.as_deref() {
+        None => setup.limb,
+        Some("auto") => None,
+        Some(name) => Some(limb_named(robot, name)?),
+    };
     let pick = planned(&scene, args.object.as_deref(), limb, robot, &setup.plan)?;
     if out.is_json() {
         out.json(&to_json(&pick, args.samples_hz))?;
@@ -62,10 +66,18 @@ pub(super) fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
     write(&args.out, &bytes)?;
     let name = &pick.scene.object(pick.object.into()).name;
     let seconds = pick.plan.duration_s();
-    let limb = pick.plan.limb();
+    let limb = &robot.arm(pick.plan.limb()).name;
     let file = args.out.display();
     out.line(format_args!("{file}: the {limb} limb fetches {name} in {seconds:.2} s"))?;
     Ok(Exit::Ok)
+}
+
+fn limb_named(robot: &Robot, name: &str) -> Result<Limb, Failure> {
+    robot.limb_named(name).ok_or_else(|| {
+        let known = robot.limbs().iter().map(|limb| robot.arm(*limb).name.as_str());
+        let known = known.chain(["auto"]).collect::<Vec<_>>().join(", ");
+        Failure::new(Exit::Usage, format!("--limb: expected one of {known}, found `{name}`"))
+    })
 }
 
 /// Plans the pick as the arm's service does, from rest.
@@ -114,7 +126,7 @@ fn to_json(pick: &Pick<'_>, samples_hz: Option<f64>) -> Json {
     let mut json = json!({
         "scene": pick.scene.name(),
         "object": pick.scene.object(pick.object.into()).name,
-        "limb": plan.limb().to_string(),
+        "limb": pick.robot.arm(plan.limb()).name,
         "seconds": plan.duration_s(),
         "stages": figure::PHASES.iter().filter_map(|(phase, _)| stage(*phase)).collect::<Vec<_>>(),
     });
@@ -151,7 +163,9 @@ fn samples(pick: &Pick<'_>, hz: f64) -> Json {
     let sample = |n: usize| {
         let t_s = (n as f64 / hz).min(plan.duration_s());
         let now = plan.at(t_s);
-        json!({ "t_s": t_s, "q": now.q, "qd": now.qd, "width_m": now.width_m, "held": held(t_s) })
+        let joints = ..pick.robot.arm(plan.limb()).chain.joints();
+        let (q, qd) = (&now.q[joints], &now.qd[joints]);
+        json!({ "t_s": t_s, "q": q, "qd": qd, "width_m": now.width_m, "held": held(t_s) })
     };
     (0..=count).map(sample).collect()
 }

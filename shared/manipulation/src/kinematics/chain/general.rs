@@ -1,6 +1,7 @@
-//! A chain of seven turning joints of any kind.
+//! A chain of six or seven turning joints of any kind.
 
 use super::frame::Frame;
+use super::six::Six;
 use super::zero::ZeroPosture;
 use crate::kinematics::chain::trig::sin_cos;
 use crate::kinematics::limb::Joints;
@@ -13,6 +14,10 @@ pub(crate) struct General {
     steps: [Frame; 7],
     /// The tool in the last frame.
     tool: Frame,
+    /// Number of joints that move; those behind stand at zero.
+    joints: usize,
+    /// Closed form, for six joints of a known family.
+    six: Option<Six>,
 }
 
 impl General {
@@ -27,7 +32,19 @@ impl General {
         let steps = std::array::from_fn(|i| {
             if i == 0 { frames[0] } else { frames[i - 1].relative(&frames[i]) }
         });
-        Self { steps, tool: frames[6].relative(&Frame::from(&posture.tool)) }
+        let joints = posture.joints;
+        let six = (joints == 6).then(|| Six::of(posture)).flatten();
+        Self { steps, tool: frames[6].relative(&Frame::from(&posture.tool)), joints, six }
+    }
+
+    /// Returns the number of joints that move.
+    pub(crate) fn joints(&self) -> usize {
+        self.joints
+    }
+
+    /// Returns the closed form, if there is one.
+    pub(crate) fn six(&self) -> Option<&Six> {
+        self.six.as_ref()
     }
 
     /// Returns a point of the first axis, in `base`, metres.

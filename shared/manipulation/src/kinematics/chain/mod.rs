@@ -4,6 +4,7 @@ mod alternating;
 mod frame;
 mod general;
 mod line;
+mod six;
 pub(crate) mod trig;
 mod zero;
 
@@ -14,6 +15,7 @@ pub use frame::Frame;
 pub(crate) use frame::positive;
 use general::General;
 pub use line::LineError;
+pub(crate) use six::{Found, Six};
 pub(crate) use zero::{Axis, ZeroPosture};
 
 use crate::kinematics::limb::Joints;
@@ -46,11 +48,20 @@ pub(crate) enum Geometry {
 impl Chain {
     /// Returns the chain of a limb with these axes, tool and position limits.
     pub(crate) fn new(posture: &ZeroPosture, limits: PositionLimits) -> Self {
-        let geometry = match Alternating::of(posture) {
+        let alternating = (posture.joints == 7).then(|| Alternating::of(posture)).flatten();
+        let geometry = match alternating {
             Some(alternating) => Geometry::Alternating(alternating),
             None => Geometry::General(General::of(posture)),
         };
         Self { geometry, limits }
+    }
+
+    /// Number of joints that move, six or seven; the others stand at zero.
+    pub fn joints(&self) -> usize {
+        match &self.geometry {
+            Geometry::Alternating(_) => 7,
+            Geometry::General(chain) => chain.joints(),
+        }
     }
 
     /// Position limits of the joints.
@@ -112,7 +123,8 @@ impl Chain {
             Geometry::General(chain) => {
                 let frames = chain.frames(q);
                 let tool = chain.tool_on(&frames[6]);
-                (tool, jacobian(&frames, &tool, |_, frame| frame.z))
+                let moves = |i: usize| if i < chain.joints() { 1.0 } else { 0.0 };
+                (tool, jacobian(&frames, &tool, |i, frame| frame.z * moves(i)))
             }
         }
     }

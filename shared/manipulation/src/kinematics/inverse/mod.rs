@@ -1,5 +1,6 @@
 //! Inverse kinematics: a semi-analytic sweep over s0, then refinement within the limits. Limbs that
-//! are not of Baxter's family are refined from many postures instead.
+//! are not of Baxter's family are refined from many postures instead; those with six joints are
+//! solved in closed form where they belong to a family that has one.
 //!
 //! Every result has passed forward kinematics and the limits: an answer is
 //! within [`TOLERANCE_M`] and [`TOLERANCE_RAD`] of the target and inside every joint limit to the
@@ -13,6 +14,7 @@ mod nearest;
 mod posture;
 mod refine;
 mod restarts;
+mod six;
 mod slice;
 mod solve;
 #[cfg(test)]
@@ -77,7 +79,10 @@ impl Chain {
                 let goal = Goal::new(self, target);
                 match self.geometry() {
                     Geometry::Alternating(arm) => solve::first(&Aim::new(goal, arm)),
-                    Geometry::General(_) => restarts::first(&goal),
+                    Geometry::General(arm) => match arm.six() {
+                        Some(arm) => six::first(&goal, arm),
+                        None => restarts::first(&goal),
+                    },
                 }
                 .map_err(Unreachable::from)
             }
@@ -97,7 +102,10 @@ impl Chain {
         let goal = Goal::new(self, target);
         match self.geometry() {
             Geometry::Alternating(arm) => nearest::nearest(&Aim::new(goal, arm), seed),
-            Geometry::General(_) => restarts::nearest(&goal, seed),
+            Geometry::General(arm) => match arm.six() {
+                Some(arm) => six::nearest(&goal, arm, seed),
+                None => restarts::nearest(&goal, seed),
+            },
         }
     }
 
@@ -113,14 +121,17 @@ impl Chain {
         IkSolution::accept(&goal, &refined).ok_or_else(|| refined.into())
     }
 
-    /// Postures that reach `target`, of every branch at samples of s0 (the arm has one joint
-    /// more than a pose has dimensions, so each branch is a curve). Empty if there is
-    /// none.
+    /// Postures that reach `target`, of every branch at samples of s0 (an arm of seven joints has one
+    /// more than a pose has dimensions, so each branch is a curve); all of them where there are six.
+    /// Empty if there is none.
     pub fn solutions(&self, target: &Isometry3<f64>) -> Vec<Joints> {
         let goal = Goal::new(self, target);
         match self.geometry() {
             Geometry::Alternating(arm) => solve::all(&Aim::new(goal, arm)),
-            Geometry::General(_) => restarts::all(&goal),
+            Geometry::General(arm) => match arm.six() {
+                Some(arm) => six::all(&goal, arm),
+                None => restarts::all(&goal),
+            },
         }
     }
 }

@@ -25,6 +25,8 @@ const TABLE_MIDDLE_M: [f64; 2] = [0.95, 0.0];
 struct Part {
     solid: Solid,
     link: usize,
+    /// Pose in the frame of the link.
+    origin: Isometry3<f64>,
     /// `true` if the held object may touch it.
     wrist: bool,
 }
@@ -80,6 +82,49 @@ impl<'a> Checker<'a> {
         Self { robot, arms: [arm(Limb::Left), arm(Limb::Right)], body, own_pairs, body_pairs }
     }
 
+    /// Returns the checker of a robot with one arm, whose description is its only source: the collision
+    /// shapes, which links may touch, and what hangs on which joint.
+    pub(crate) fn described(robot: &'a Robot) -> Self {
+        let description = robot.description();
+        let names = &robot.arm(Limb::Only).joint_names;
+        let joint_of = |mut link: usize| {
+            while let Some(carrier) = description.carrier(link) {
+                if let Some(joint) = names.iter().position(|name| *name == carrier.name) {
+                    return Some(joint);
+                }
+                link = carrier.parent;
+            }
+            None
+        };
+        let still = description.poses(|_| 0.0);
+        let (mut arm, mut joints, mut body) = (Vec::new(), Vec::new(), Vec::new());
+        for (index, link) in description.links().iter().enumerate() {
+            for shape in &link.collision {
+                let (solid, origin) = Solid::described(&link.name, shape);
+                match joint_of(index) {
+                    Some(joint) => {
+                        let wrist = joint + 1 == names.len();
+                        arm.push(Part { solid, link: index, origin, wrist });
+                        joints.push(joint);
+                    }
+                    None => body.push((solid, still[index] * origin)),
+                }
+            }
+        }
+        let excused = |a: usize, b: usize| {
+            description.may_touch().iter().any(|pair| *pair == (a, b) || *pair == (b, a))
+        };
+        let count = arm.len();
+        let own_pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
+        let own_pairs: Vec<_> = own_pairs
+            .filter(|(i, j)| joints[*j] >= joints[*i] + 2 && !excused(arm[*i].link, arm[*j].link))
+            .collect();
+        let loose = (0..count).filter(|i| joints[*i] >= 2);
+        let body_pairs = loose.flat_map(|i| (0..body.len()).map(move |k| (i, k))).collect();
+        assert!(own_pairs.len() > 10 && !body.is_empty(), "shapes of the description");
+        Self { robot, arms: [arm, Vec::new()], body, own_pairs, body_pairs }
+    }
+
     /// Carries `plan` out from neutral arms: `object` among `others` on a table. The first thing
     /// that goes wrong.
     pub(crate) fn violation(
@@ -89,12 +134,15 @@ impl<'a> Checker<'a> {
         others: &[Cuboid],
         table_z_m: f64,
     ) -> Option<Violation> {
-        let (limb, other) = (plan.limb(), plan.limb().other());
+        let limb = plan.limb();
         let around = surroundings(others, table_z_m);
         let solid = Solid::cuboid("the object", object.size_m);
-        let (still, _) = self.poses(other, &self.robot.neutral()[other]);
+        let other = limb.other();
+        let still = other.map(|other| self.poses(other, &self.robot.neutral()[other]).0);
+        let still = still.unwrap_or_default();
+        let parts = other.map_or(&[][..], |other| &self.arms[other]);
         // What stays where it is: the other arm, and what stands around.
-        let parts = self.arms[other].iter().map(|part| &part.solid).zip(&still);
+        let parts = parts.iter().map(|part| &part.solid).zip(&still);
         let fixed: Vec<Placed<'_>> = parts.chain(around.iter().map(|(s, p)| (s, p))).collect();
         let released_s = plan.span_s(Phase::Release)?.0;
         let closed_s = plan.span_s(Phase::Close)?.1;
@@ -144,8 +192,12 @@ impl<'a> Checker<'a> {
         let names = &self.robot.arm(limb).joint_names;
         let poses = description
             .poses(|joint| names.iter().position(|name| *name == joint.name).map_or(0.0, |i| q[i]));
-        let gripper = description.link_index(&format!("{limb}_gripper")).unwrap();
-        (self.arms[limb].iter().map(|part| poses[part.link]).collect(), poses[gripper])
+        let gripper =
+            description.link_index(&format!("{}_gripper", self.robot.arm(limb).name)).unwrap();
+        (
+            self.arms[limb].iter().map(|part| poses[part.link] * part.origin).collect(),
+            poses[gripper],
+        )
     }
 }
 
@@ -210,6 +262,7 @@ fn part(robot: &Robot, limb: Limb, capsule: &toml::Value) -> Part {
     Part {
         solid: Solid::round(&name, triple("a"), triple("b"), radius),
         link: robot.description().link_index(&name).unwrap(),
+        origin: Isometry3::identity(),
         wrist: ["wrist", "hand"].contains(&link),
     }
 }

@@ -2,6 +2,7 @@
 //! planner's distances.
 
 use nalgebra::{Isometry3, Point3, Vector3};
+use robot_model::Shape;
 
 /// Distance between neighbouring points of a surface, metres.
 const SPACING_M: f64 = 0.02;
@@ -27,6 +28,24 @@ pub(crate) struct Solid {
 }
 
 impl Solid {
+    /// Returns a shape of a description and its pose in the frame of its link. Cylinders have round ends
+    /// here.
+    pub(crate) fn described(name: &str, body: &robot_model::Body) -> (Self, Isometry3<f64>) {
+        let along = |length: f64, radius: f64| {
+            let end = Vector3::z() * (0.5 * length);
+            Self::round(name, -end, end, radius)
+        };
+        let solid = match &body.shape {
+            Shape::Capsule { radius, length } | Shape::Cylinder { radius, length } => {
+                along(*length, *radius)
+            }
+            Shape::Sphere { radius } => along(0.0, *radius),
+            Shape::Box { size } => Self::cuboid(name, (*size).into()),
+            Shape::Mesh { file } => panic!("{file}: no mesh is supported"),
+        };
+        (solid, body.origin)
+    }
+
     pub(crate) fn round(name: &str, a: Vector3<f64>, b: Vector3<f64>, radius: f64) -> Self {
         let along = b - a;
         let axis = if along.norm() > 1e-9 { along.normalize() } else { Vector3::z() };

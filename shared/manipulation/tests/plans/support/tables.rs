@@ -1,18 +1,18 @@
 //! Random tables, and what comes of picking everything on them.
 
-use manipulation::{Cuboid, Limb, ObjectPose, PlanError, PlanSettings, Robot, plan_pick};
+use manipulation::{Cuboid, ObjectPose, PlanError, PlanSettings, Robot, plan_pick};
 
 use super::Random;
 use super::checker::{Checker, broken_limit};
 
 /// Six to twelve objects of all kinds on the table, that do not overlap: blocks, bars, bowls and
 /// boxes that are held at the rim, and some that are too wide to be held.
-pub(crate) fn random_table(random: &mut Random) -> Vec<ObjectPose> {
+pub(crate) fn random_table(random: &mut Random, bench: &Bench) -> Vec<ObjectPose> {
     let count = 6 + (random.unit() * 7.0) as usize;
     let mut objects: Vec<ObjectPose> = Vec::new();
     let mut misses = 0;
     while objects.len() < count {
-        let object = random_object(random);
+        let object = random_object(random, bench);
         let apart_m = random.between(0.005, 0.08);
         let beside = |other: &ObjectPose| {
             let way = [0, 1].map(|i| other.xyz_m[i] - object.xyz_m[i]);
@@ -34,7 +34,7 @@ fn radius(object: &ObjectPose) -> f64 {
     0.5 * object.size_m[0].hypot(object.size_m[1])
 }
 
-fn random_object(random: &mut Random) -> ObjectPose {
+fn random_object(random: &mut Random, bench: &Bench) -> ObjectPose {
     let thin = random.between(0.012, 0.033);
     let wide = random.between(0.06, 0.18);
     let wall = random.between(0.003, 0.009);
@@ -45,9 +45,10 @@ fn random_object(random: &mut Random) -> ObjectPose {
         8 => ([wide, random.between(0.05, 0.12), random.between(0.03, 0.08)], wall),
         _ => ([wide, wide, random.between(0.03, 0.10)], random.between(0.04, 0.1)),
     };
-    let z = TABLE_Z_M + 0.5 * size[2];
+    let z = bench.settings.table_z_m + 0.5 * size[2];
+    let (x, y) = (bench.x_m, bench.y_m);
     ObjectPose {
-        xyz_m: [random.between(0.50, 0.85), random.between(-0.65, 0.65), z],
+        xyz_m: [random.between(x.0, x.1), random.between(y.0, y.1), z],
         yaw_rad: random.between(-3.1, 3.1),
         size_m: size,
         grasp_width_m,
@@ -58,6 +59,43 @@ fn random_object(random: &mut Random) -> ObjectPose {
 }
 
 pub(crate) const TABLE_Z_M: f64 = -0.155;
+
+/// Where a robot's random tables are, and the settings of its plans.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bench {
+    x_m: (f64, f64),
+    y_m: (f64, f64),
+    pub(crate) settings: PlanSettings,
+}
+
+impl Bench {
+    /// Baxter's.
+    pub(crate) fn baxter() -> Self {
+        Self { x_m: (0.50, 0.85), y_m: (-0.65, 0.65), settings: settings() }
+    }
+
+    /// The UR5e's, with the settings of its profile.
+    pub(crate) fn ur5e() -> Self {
+        let settings =
+            PlanSettings { hand_over_xyz_m: [0.45, 0.42, 0.25], table_z_m: 0.0, ..settings() };
+        Self { x_m: (0.44, 0.68), y_m: (-0.45, 0.45), settings }
+    }
+
+    /// Returns the settings with other heights above the grasp and other places of handing over.
+    fn variants(&self) -> Vec<PlanSettings> {
+        let mut variants = vec![self.settings];
+        for hover_m in [0.05, 0.10, 0.20] {
+            variants.push(PlanSettings { hover_m, ..self.settings });
+        }
+        let [x, y, z] = self.settings.hand_over_xyz_m;
+        for aside in [[x - 0.05, y + 0.15, z + 0.08], [x - 0.2, y + 0.3, z + 0.03]] {
+            let hand_over_xyz_m = aside;
+            variants.push(PlanSettings { hand_over_xyz_m, ..self.settings });
+            variants.push(PlanSettings { hand_over_xyz_m, hover_m: 0.10, ..self.settings });
+        }
+        variants
+    }
+}
 
 /// Returns the settings of the configuration that ships.
 pub(crate) fn settings() -> PlanSettings {
@@ -106,9 +144,9 @@ impl Tally {
 }
 
 /// Plans a pick of every object of one random table, and carries out every plan.
-pub(crate) fn try_table(robot: &Robot, checker: &Checker<'_>, seed: u64) -> Tally {
-    let objects = random_table(&mut Random::seeded(seed));
-    let settings = settings();
+pub(crate) fn try_table(robot: &Robot, bench: &Bench, checker: &Checker<'_>, seed: u64) -> Tally {
+    let objects = random_table(&mut Random::seeded(seed), bench);
+    let settings = bench.settings;
     let mut tally = Tally { objects: objects.len(), ..Tally::default() };
     for (i, object) in objects.iter().enumerate() {
         let others = all_but(&objects, i);
@@ -132,7 +170,7 @@ pub(crate) fn try_table(robot: &Robot, checker: &Checker<'_>, seed: u64) -> Tall
             Err(PlanError::Grasp(_)) => tally.too_wide += 1,
             Err(_) => {
                 tally.refuse_ms.push(ms);
-                refused(robot, object, &others, &mut tally);
+                refused(robot, bench, object, &others, &mut tally);
             }
         }
     }
@@ -140,31 +178,23 @@ pub(crate) fn try_table(robot: &Robot, checker: &Checker<'_>, seed: u64) -> Tall
 }
 
 /// Kind of refusal.
-fn refused(robot: &Robot, object: &ObjectPose, others: &[Cuboid], tally: &mut Tally) {
+fn refused(
+    robot: &Robot,
+    bench: &Bench,
+    object: &ObjectPose,
+    others: &[Cuboid],
+    tally: &mut Tally,
+) {
     let neutral = robot.neutral();
     let possible = |others: &[Cuboid], settings: &PlanSettings| {
-        Limb::BOTH
-            .into_iter()
-            .any(|limb| plan_pick(robot, object, Some(limb), &neutral, others, settings).is_ok())
+        let mut limbs = robot.limbs().iter().copied();
+        limbs.any(|limb| plan_pick(robot, object, Some(limb), &neutral, others, settings).is_ok())
     };
-    if !possible(&[], &settings()) {
+    if !possible(&[], &bench.settings) {
         tally.refused_alone += 1;
-    } else if variants().iter().any(|settings| possible(others, settings)) {
+    } else if bench.variants().iter().any(|settings| possible(others, settings)) {
         tally.possible_otherwise += 1;
     } else {
         tally.refused_among += 1;
     }
-}
-
-/// Returns the settings with other heights above the grasp and other places of handing over.
-fn variants() -> Vec<PlanSettings> {
-    let mut variants = vec![settings()];
-    for hover_m in [0.05, 0.10, 0.20] {
-        variants.push(PlanSettings { hover_m, ..settings() });
-    }
-    for hand_over_xyz_m in [[0.75, 0.45, 0.30], [0.60, 0.60, 0.25]] {
-        variants.push(PlanSettings { hand_over_xyz_m, ..settings() });
-        variants.push(PlanSettings { hand_over_xyz_m, hover_m: 0.10, ..settings() });
-    }
-    variants
 }
