@@ -185,8 +185,9 @@ impl World {
     }
 
     fn pass_robot(&mut self, inbox: Vec<baxter::In<'static>>) {
-        let held =
-            |robot: &Robot| manipulation::Limb::BOTH.map(|l| robot.objects().held(l).is_some());
+        use manipulation::Limb;
+        let limbs = [Limb::Left, Limb::Right, Limb::Only];
+        let held = |robot: &Robot| limbs.map(|limb| robot.objects().held(limb).is_some());
         let before = self.robot.node().map(|node| held(node.robot()));
         let outputs = self.robot.wake(inbox, self.now, &mut Faults::none());
         let after = self.robot.node().map(|node| held(node.robot()));

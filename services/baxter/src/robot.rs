@@ -200,6 +200,8 @@ impl Robot {
     }
 
     fn react(&mut self, limb: Limb, event: Event) {
+        // Topics know a left and a right limb; the only one has the left one's.
+        let limb = self.config.robot.arm(limb).limb;
         let tip = self.config.robot.arm(limb).chain.forward(&self.servos[limb].q);
         let gripper = self.gripper(limb);
         match event {

@@ -158,10 +158,7 @@ describe("limbs of a description", () => {
       "left",
       "right",
     ]);
-    const text = readFileSync(
-      new URL("../../../config/robots/ur5e.urdf", import.meta.url),
-      "utf8",
-    );
+    const text = readFileSync(new URL("../../../config/robots/ur5e.urdf", import.meta.url), "utf8");
     const links = [...text.matchAll(/<link name="(\w+)"/g)].map((match) => match[1]);
     assert.deepEqual(limbNames(robot(...links)), ["arm"]);
     assert.deepEqual(limbNames(robot("world")), []);

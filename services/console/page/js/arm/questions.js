@@ -31,7 +31,9 @@ export class Questions {
       robot: robot?.object.robotName ?? null,
       bodies: robot?.bodies ?? 0,
       joints: Object.fromEntries(values.map(([name, joint]) => [name, joint.jointValue[0]])),
-      grippers: limbNames(robot?.object ?? { links: {} }).map((limb) => robot?.placeOf(`${limb}_gripper`) ?? null),
+      grippers: limbNames(robot?.object ?? { links: {} }).map(
+        (limb) => robot?.placeOf(`${limb}_gripper`) ?? null,
+      ),
       objects: Array.from({ length: things.count }, (_, n) =>
         things.placeOf(n, new Vector3()).toArray(),
       ),

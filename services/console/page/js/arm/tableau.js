@@ -160,9 +160,9 @@ export class Tableau {
     if (world.held !== n && world.held !== this.objects[n].name) return null;
     const object = poseOf(world.objects[n]);
     const limbs = this.robot?.grippers.length ?? world.grippers.length;
-    const far = world.grippers.slice(0, limbs).map(([x, y, z]) =>
-      Math.hypot(...[x, y, z].map((v, k) => v - world.objects[n][k])),
-    );
+    const far = world.grippers
+      .slice(0, limbs)
+      .map(([x, y, z]) => Math.hypot(...[x, y, z].map((v, k) => v - world.objects[n][k])));
     const side = far[1] < far[0] ? 1 : 0;
     const frame = this.robot?.grippers[side];
     return frame
