@@ -18,6 +18,8 @@ SERVO_STRONG_NM = 20.0
 STEP_S = 0.001
 # Height of the floor in frame `base`, metres.
 FLOOR_M = -0.93
+# Forms of bowls: a vertical wall, an ellipse over a foot, or one as sloped as the scene says.
+WALLS = ("straight", "round", "cone")
 # Sectors of a bowl's wall, and segments from its rim to its foot if it is round.
 SECTORS, SEGMENTS = 36, 4
 # Share of the height of a round bowl at which its ellipse would close: below is a flat foot.

@@ -24,7 +24,7 @@ import numpy as np
 
 from hand import named
 from limb import JOINTS
-from model import placed
+from model import WALLS, placed
 from wire import Bond, Bus, Layout, put_text, text_of
 from world import BEAT_S, LIMBS, World
 
@@ -65,6 +65,8 @@ class Robot:
         unknown = conditions.displaced.keys() - {item["name"] for item in objects}
         if unknown:
             raise ValueError(f"--displace: the scene has no {', '.join(sorted(unknown))} with a place")
+        for item in objects:
+            item["wall"] = conditions.walls
         self.world = World(urdf, srdf, objects, self.arm, self.report_pick, conditions)
         self.file = Path(bus.root) / "physics.json"
         # The world goes on where it was if it is the same one.
@@ -289,6 +291,7 @@ def conditions():
     parser.add_argument("--friction", type=float, default=0.7, help="of everything on everything: 0.7")
     parser.add_argument("--mass-share", type=float, default=1.0, metavar="SHARE",
                         help="mass of the objects as a multiple of what the scene says")
+    parser.add_argument("--walls", choices=WALLS, default=WALLS[0], help="of bowls: straight")
     parser.add_argument("--displace", nargs=3, action=Displaced, metavar=("NAME", "X", "Y"),
                         help="an object stands so many metres beside its place; may be repeated")
     parser.set_defaults(displaced={})

@@ -49,6 +49,15 @@ fn drill(group: &Group, words: &[&str]) {
     assert_eq!(ended.code, Some(0), "{words:?}: {ended:?}");
 }
 
+/// Processor time that a process has taken, seconds.
+fn cpu_s(pid: rustix::process::Pid) -> f64 {
+    let stat = std::fs::read_to_string(format!("/proc/{}/stat", pid.as_raw_nonzero())).unwrap();
+    let (_, after_name) = stat.rsplit_once(')').unwrap();
+    let fields: Vec<&str> = after_name.split_whitespace().collect();
+    let ticks: f64 = fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap();
+    ticks / rustix::param::clock_ticks_per_second() as f64
+}
+
 fn numbers<const N: usize>(value: &Value) -> [f64; N] {
     let list = value.as_array().unwrap_or_else(|| panic!("no numbers: {value}"));
     std::array::from_fn(|n| list[n].as_f64().unwrap())
@@ -98,7 +107,12 @@ fn assert_carried(group: &Group, object: &str) -> Value {
 #[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
 fn dialogues_end_with_objects_handed_over() {
     let count = std::env::var("WHICHONE_DIALOGUES").map_or(3, |text| text.parse().unwrap());
-    let group = group(&[]);
+    let walls = std::env::var("WHICHONE_WALLS").unwrap_or_else(|_| "straight".to_owned());
+    // A round wall turns until it lies flat in the fingers; the scene says that it is straight.
+    let limit_mm = if walls == "straight" { 2.0 } else { 20.0 };
+    let group = group(&["--walls", &walls]);
+    let (pid, begin) = (group.pid("baxter"), Instant::now());
+    let spent_s = cpu_s(pid);
     let mut plans = HashMap::new();
     println!("object  limb   lifted  carried  gripper off  moved in the gripper  questions");
     for object in BOWLS.iter().rev().cycle().take(count) {
@@ -116,8 +130,10 @@ fn dialogues_end_with_objects_handed_over() {
             outcome["questions"],
         );
         // The arm's own accuracy, and the grasp's.
-        assert!(reached_mm < 2.0 && moved_mm < 2.0, "{record}");
+        assert!(reached_mm < 2.0 && moved_mm < limit_mm, "{record}");
     }
+    let share = (cpu_s(pid) - spent_s) / begin.elapsed().as_secs_f64();
+    println!("the robot took {:.0} % of a core", 100.0 * share);
     println!("{count} of {count} dialogues ended with the right object handed over");
     group.down();
 }
@@ -179,6 +195,30 @@ fn grasp_of_what_is_not_there_fails_after_its_retry() {
     assert_eq!(events, ["missed", "missed"], "{}", group.logs());
     assert_delivered(&group, &group.fetch("the clear bowl", "clear"), "clear");
     assert_carried(&group, "clear");
+    group.down();
+}
+
+#[test]
+#[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+fn faults_are_injected_as_into_the_simulated_robot() {
+    let group = group(&[]);
+    for (word, hindrance) in [("disable", "disabled"), ("fail", "error")] {
+        drill(&group, &[word]);
+        wait_for_arm(&group, word, |arm| arm["hindrance"] == hindrance);
+        drill(&group, &["reset"]);
+        drill(&group, &["enable"]);
+        wait_for_arm(&group, "the robot is back", |arm| arm["hindrance"] == "none");
+    }
+    drill(&group, &["miss", "1"]);
+    let outcome = group.fetch_while("the clear bowl", "clear", || {
+        wait_for_arm(&group, "moving", |arm| arm["phase"] == "moving" && arm["moving"] == true);
+        drill(&group, &["silence", "1.5"]);
+        wait_for_arm(&group, "silence is noticed", |arm| arm["hindrance"] == "stale");
+    });
+    assert_delivered(&group, &outcome, "clear");
+    assert_carried(&group, "clear");
+    let events: Vec<Value> = records(&group).iter().map(|it| it["event"].clone()).collect();
+    assert_eq!(events, ["missed", "released"], "{}", group.logs());
     group.down();
 }
 
