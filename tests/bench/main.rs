@@ -62,6 +62,9 @@ fn measure(options: &Options, report: &mut Report) {
         let effort = if options.quick { core::Effort::QUICK } else { core::Effort::FULL };
         core::measure(report, effort);
     }
+    if all || options.bounds {
+        core::bounds::measure(report, options.seconds(), options.quick);
+    }
     if all || options.kinematics {
         arm::measure(report, options.quick);
     }

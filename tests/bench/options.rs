@@ -12,6 +12,13 @@ pub(crate) struct Options {
     /// Only the decision core, without starting a group
     #[arg(long)]
     pub(crate) core: bool,
+    /// Only certified bounds on hard scenes against time; --quick: on one of each size
+    #[arg(long)]
+    pub(crate) bounds: bool,
+    /// Seconds of processor time that a scene of --bounds gets at last, and again on the way
+    /// [60; 5 among all parts or with --quick]
+    #[arg(long, value_name = "N")]
+    seconds: Option<f64>,
     /// Only the arm: inverse kinematics, motions and clearances beside other solvers
     #[arg(long)]
     pub(crate) kinematics: bool,
@@ -78,11 +85,19 @@ pub(crate) struct Options {
 }
 
 impl Options {
+    /// Seconds of `--bounds`.
+    pub(crate) fn seconds(&self) -> f64 {
+        let few = self.quick || self.wants_all();
+        self.seconds.unwrap_or(if few { 5.0 } else { 60.0 })
+    }
+
     /// Returns whether all parts are selected.
     pub(crate) fn wants_all(&self) -> bool {
-        let Self { core, kinematics, processes, long, joints, orders, stops, ros1, .. } = *self;
+        let Self { core, bounds, kinematics, processes, long, joints, orders, stops, ros1, .. } =
+            *self;
         let Self { speech, endings, turns, console, size, spoken, .. } = *self;
-        let measured = core || kinematics || processes || long || joints || orders || stops || ros1;
+        let measured =
+            core || bounds || kinematics || processes || long || joints || orders || stops || ros1;
         !(measured || speech || endings || turns || console || size || spoken)
     }
 }

@@ -14,9 +14,9 @@ const SAMPLES: usize = 200;
 /// The table of the reference.
 const TABLE: Cuboid = Cuboid::aligned([0.9, 0.0, -0.2], [0.6, 1.4, 0.04]);
 
-pub(super) fn measure(report: &mut Report) {
+pub(super) fn measure(report: &mut Report, python: &super::python::Measured) {
     refusal(report);
-    forward(report);
+    forward(report, python);
     clearance(report);
 }
 
@@ -50,7 +50,7 @@ fn refusal(report: &mut Report) {
 }
 
 /// Forward kinematics and Jacobian.
-fn forward(report: &mut Report) {
+fn forward(report: &mut Report, python: &super::python::Measured) {
     let postures = postures(Limb::Left, POSTURES);
     let chain = &arm(Limb::Left).chain;
     let pose_of = |q: &Joints| chain.tool_frame(q).origin.x;
@@ -64,15 +64,26 @@ fn forward(report: &mut Report) {
         let theirs = nanos(&postures, |q| super::k_crate::jacobian(&peer, q));
         report.add(&format!("k 0.32: {both}"), "ns", &theirs, "left arm");
     }
-    report.add_beside(
-        pose,
-        "ns",
-        &nanos(&postures, pose_of),
-        &format!("k 0.32: {pose}"),
-        "base to gripper, left arm",
-    );
-    let peer = format!("k 0.32: {both}");
-    report.add_beside(both, "ns", &nanos(&postures, jacobian), &peer, "left arm");
+    let mut peer = "k 0.32";
+    for theirs in &python.forward {
+        peer = "Pinocchio 4.1";
+        let place = |q: &Joints| chain.tool_frame(q).origin;
+        let apart = postures.iter().zip(&theirs.places).map(|(q, theirs)| {
+            let [x, y, z] = *theirs;
+            (place(q) - nalgebra::vector![x, y, z]).norm()
+        });
+        let note = format!(
+            "all frames of the left arm, less the same call from Python for no joints; \
+             grippers within {:.0e} m of ours",
+            apart.fold(0.0, f64::max)
+        );
+        report.add(&format!("{peer}: {pose}"), "ns", &theirs.pose_ns, &note);
+        report.add(&format!("{peer}: {both}"), "ns", &theirs.jacobian_ns, "gripper, left arm");
+    }
+    let (ours, beside) = (nanos(&postures, pose_of), format!("{peer}: {pose}"));
+    report.add_beside(pose, "ns", &ours, &beside, "base to gripper, left arm");
+    let (ours, beside) = (nanos(&postures, jacobian), format!("{peer}: {both}"));
+    report.add_beside(both, "ns", &ours, &beside, "left arm");
 }
 
 /// Nanoseconds of one call, a sample for each pass over the postures.

@@ -23,7 +23,7 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
     let python = python::measure(&targets, effort);
     inverse::measure(report, &targets, &python, effort);
     inverse::measure_nearest(report, &targets, &python, effort);
-    checks::measure(report);
+    checks::measure(report, &python);
     motion::measure(report);
 }
 

@@ -14,14 +14,19 @@ reply_to = os.dup(1)
 os.dup2(2, 1)
 
 
-def run(name, solve, nearest=False, random_seed=False, count=None, clock=time.process_time):
-    """Answers and microseconds of one solver over the targets: processor time for one thread."""
+def clocks():
+    """Processor time of all threads, and elapsed time, seconds."""
+    return time.process_time(), time.perf_counter()
+
+
+def run(name, solve, nearest=False, random_seed=False, count=None):
+    """Answers and microseconds of one solver over the targets: of processor, and elapsed."""
     answers, micros = [], []
     for target in targets[:count]:
         seed = target["random" if random_seed else "middle"]
-        start = clock()
+        start = clocks()
         answer = solve(target, seed)
-        micros.append((clock() - start) * 1e6)
+        micros.append([(now - then) * 1e6 for now, then in zip(clocks(), start)])
         answers.append(None if answer is None else [float(x) for x in answer])
     runs.append(
         dict(name=name, nearest=nearest, random_seed=random_seed, answers=answers, micros=micros)
@@ -85,14 +90,12 @@ def trac_ik():
 
         return solve
 
-    # Its two threads race: elapsed time.
-    clock = time.perf_counter
     name = "TRAC-IK Speed (pytracik), two threads, 5 ms"
-    run(name, solver(pytracik.SolveType.Speed), clock=clock)
+    run(name, solver(pytracik.SolveType.Speed))
     for random_seed in (False, True):
         name = "TRAC-IK Distance (pytracik), two threads, 5 ms"
         kind = solver(pytracik.SolveType.Distance)
-        run(name, kind, nearest=True, random_seed=random_seed, clock=clock)
+        run(name, kind, nearest=True, random_seed=random_seed)
 
 
 def ikpy():
@@ -123,8 +126,48 @@ def ikpy():
     run("ikpy 4.2, one call", solve, count=question["slow"])
 
 
-for package in (optik_py, trac_ik, ikpy):
+def pinocchio():
+    """Forward kinematics of the left arm, less the same calls for a robot without joints."""
+    import numpy
+    import pinocchio as pin
+
+    whole = pin.buildModelFromUrdf(question["urdf"])
+    names = [f"left_{joint}" for joint in ("s0", "s1", "e0", "e1", "w0", "w1", "w2")]
+    others = [i for i in range(1, whole.njoints) if whole.names[i] not in names]
+    arm = pin.buildReducedModel(whole, others, pin.neutral(whole))
+    empty = pin.buildReducedModel(whole, list(range(1, whole.njoints)), pin.neutral(whole))
+    postures = [numpy.array(q) for q in question["postures"]]
+
+    def calls(model):
+        data, tip = model.createData(), model.getFrameId("left_gripper")
+        frame = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+        return data, (
+            lambda q: pin.framesForwardKinematics(model, data, q),
+            lambda q: pin.computeFrameJacobian(model, data, q, tip, frame),
+        )
+
+    def nanos(call, postures):
+        start = time.process_time()
+        for q in postures:
+            call(q)
+        return (time.process_time() - start) * 1e9 / len(postures)
+
+    (data, of_arm), (_, of_empty) = calls(arm), calls(empty)
+    nothing = [numpy.zeros(0)] * len(postures)
+    tip, places = arm.getFrameId("left_gripper"), []
+    for q in postures:
+        of_arm[0](q)
+        places.append(data.oMf[tip].translation.tolist())
+    samples = [
+        [nanos(call, postures) - nanos(way, nothing) for _ in range(question["samples"])]
+        for call, way in zip(of_arm, of_empty)
+    ]
+    forward.append(dict(pose_ns=samples[0], jacobian_ns=samples[1], places=places))
+
+
+forward = []
+for package in (optik_py, trac_ik, ikpy, pinocchio):
     of_package(package)
 sys.stdout.flush()
 with os.fdopen(reply_to, "w") as reply:
-    reply.write("\n" + json.dumps(dict(runs=runs, left_out=left_out)) + "\n")
+    reply.write("\n" + json.dumps(dict(runs=runs, left_out=left_out, forward=forward)) + "\n")

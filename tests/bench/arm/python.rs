@@ -3,7 +3,7 @@
 //! Each call is timed in Python, so it holds a few microseconds of the way there and back.
 
 use super::inverse::{Outcome, Seed};
-use super::targets::{Rule, Target, middle};
+use super::targets::{Rule, Target, middle, postures};
 use super::{BUDGET_S, Effort};
 use manipulation::{Joints, Limb};
 use serde::Deserialize;
@@ -22,7 +22,24 @@ pub(super) struct Measured {
     runs: Vec<Run>,
     /// Peers that were left out, with the reason.
     pub(super) left_out: Vec<String>,
+    /// Forward kinematics by Pinocchio, if it is there.
+    pub(super) forward: Vec<Forward>,
 }
+
+/// Forward kinematics of the left arm in [`postures`].
+#[derive(Debug, Deserialize)]
+pub(super) struct Forward {
+    /// Poses of all frames, nanoseconds.
+    pub(super) pose_ns: Vec<f64>,
+    /// The Jacobian of the gripper, with the kinematics that it needs, nanoseconds.
+    pub(super) jacobian_ns: Vec<f64>,
+    /// Where the gripper is in each posture, metres.
+    pub(super) places: Vec<[f64; 3]>,
+}
+
+/// Postures of its forward kinematics, and samples.
+const POSTURES: usize = 1000;
+const SAMPLES: usize = 20;
 
 #[derive(Debug, Deserialize)]
 struct Run {
@@ -31,7 +48,8 @@ struct Run {
     nearest: bool,
     random_seed: bool,
     answers: Vec<Option<Joints>>,
-    micros: Vec<f64>,
+    /// Of processor, and elapsed.
+    micros: Vec<[f64; 2]>,
 }
 
 impl Measured {
@@ -54,6 +72,7 @@ pub(super) fn measure(targets: &[Target], effort: Effort) -> Measured {
     let python = std::env::var(VARIABLE).unwrap_or_else(|_| "python3".to_owned());
     call(&python, &question(&targets[..effort.peers], effort)).unwrap_or_else(|error| Measured {
         runs: Vec::new(),
+        forward: Vec::new(),
         left_out: vec![format!("Solvers in Python are left out: {error}.")],
     })
 }
@@ -87,6 +106,8 @@ fn question(targets: &[Target], effort: Effort) -> String {
         "budget_s": BUDGET_S,
         "slow": effort.slow,
         "targets": all,
+        "postures": postures(Limb::Left, POSTURES),
+        "samples": SAMPLES,
     })
     .to_string()
 }

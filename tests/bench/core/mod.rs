@@ -2,6 +2,7 @@
 //!
 //! Everything is deterministic but the clock: the same scenes, beliefs and draws in every run.
 
+pub(crate) mod bounds;
 mod decide;
 mod gap;
 mod quality;
