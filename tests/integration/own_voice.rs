@@ -284,7 +284,9 @@ fn recognised_stops(robot_db: Option<f64>) -> (usize, usize) {
             };
             let pcm: Vec<i16> = (0..LEAD + said.len() + 3_200).zip(noise).map(sample).collect();
             let heard = recogniser.recognise(&pcm, LEAD..LEAD + said.len()).unwrap();
-            found += usize::from(heard.hypotheses.first().is_some_and(|best| reader.is_stop(&best.text)));
+            found += usize::from(
+                heard.hypotheses.first().is_some_and(|best| reader.is_stop(&best.text)),
+            );
             all += 1;
         }
     }

@@ -49,13 +49,14 @@ fn drill(group: &Group, words: &[&str]) {
     assert_eq!(ended.code, Some(0), "{words:?}: {ended:?}");
 }
 
-/// Processor time that a process has taken, seconds.
+/// Processor time that all threads of a process have taken, seconds.
 fn cpu_s(pid: rustix::process::Pid) -> f64 {
-    let stat = std::fs::read_to_string(format!("/proc/{}/stat", pid.as_raw_nonzero())).unwrap();
-    let (_, after_name) = stat.rsplit_once(')').unwrap();
-    let fields: Vec<&str> = after_name.split_whitespace().collect();
-    let ticks: f64 = fields[11].parse::<f64>().unwrap() + fields[12].parse::<f64>().unwrap();
-    ticks / rustix::param::clock_ticks_per_second() as f64
+    let tasks = std::fs::read_dir(format!("/proc/{}/task", pid.as_raw_nonzero())).unwrap();
+    let spent_ns = tasks.map(|task| {
+        let text = std::fs::read_to_string(task.unwrap().path().join("schedstat")).unwrap();
+        text.split(' ').next().unwrap().parse::<f64>().unwrap()
+    });
+    spent_ns.sum::<f64>() / 1e9
 }
 
 fn numbers<const N: usize>(value: &Value) -> [f64; N] {

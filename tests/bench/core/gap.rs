@@ -4,7 +4,6 @@ use super::scenes::{OPEN, YES_NO, configured, random};
 use super::{Effort, micros};
 use crate::report::{Report, percentile};
 use dialogue::{Actions, Belief, Costs, DecisionProblem, Model, Optimal, Params, Planner, Step};
-use std::time::Instant;
 
 /// Beliefs looked at.
 const BELIEFS: [usize; 7] = [4, 16, 64, 256, 1_024, 4_096, 16_384];

@@ -31,7 +31,7 @@ function sceneFile() {
     const values = Object.entries(valuesOf(n)).map(([k, v]) => `${k} = "${v}"`);
     const at = `xyz = [0.65, ${n === 0 ? 0.2 : -0.2}, -0.125]`;
     const place =
-        n < 2 ? `\n${at}\nsize = [0.08, 0.08, 0.06]\ngrasp_width = 0.004\nform = "hollow"` : "";
+      n < 2 ? `\n${at}\nsize = [0.08, 0.08, 0.06]\ngrasp_width = 0.004\nform = "hollow"` : "";
     return `[[objects]]\nname = "p${n}"\nattributes = { ${values.join(", ")} }${place}`;
   };
   const parts = ['name = "store"\nnoun = "part"', ...traits.map(attribute)];
