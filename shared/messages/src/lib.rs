@@ -24,6 +24,7 @@ pub use dialogue::{ActKind, Ended, Interpretation, Outcome, PickOutcome, PickPha
 pub use fixed::*;
 pub use ids::{Epoch, Incarnation, RequestKey};
 pub use payloads::*;
+pub use perception::{Change, Detection, Look, Sighting};
 pub use services::{SUPERVISOR, Service};
 pub use text::{FixedText, TextTooLong};
 pub use topics::Topic;

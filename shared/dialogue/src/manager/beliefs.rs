@@ -8,12 +8,16 @@ use super::state::{Interaction, State};
 use crate::user_model::Person;
 use crate::{Belief, Posterior, PriorObjects};
 
+/// Factor of an object that a person has already.
+const TAKEN: f64 = 1e-12;
+
 impl Manager {
     /// Returns the belief of an interaction in which nothing was said.
     pub fn prior(&self, state: &State) -> Belief {
         let objects = self.setup.scene.objects();
+        let any_taken = objects.iter().any(|object| object.taken);
         let mut weights = match self.setup.prior.objects {
-            PriorObjects::Uniform if self.setup.model.absent().is_none() => {
+            PriorObjects::Uniform if self.setup.model.absent().is_none() && !any_taken => {
                 return Belief::uniform(objects.len());
             }
             PriorObjects::Uniform => vec![1.0 / objects.len() as f64; objects.len()],
@@ -22,9 +26,14 @@ impl Manager {
                 state.history.prior(names, self.setup.prior.smoothing)
             }
         };
+        for (weight, object) in weights.iter_mut().zip(objects) {
+            *weight *= if object.taken { TAKEN } else { 1.0 };
+        }
         if self.setup.model.absent().is_some() {
+            let nothing = self.setup.nothing_stands();
+            let absent = if nothing { 1.0 } else { self.setup.prior.absent };
             weights.iter_mut().for_each(|p| *p *= 1.0 - self.setup.prior.absent);
-            weights.push(self.setup.prior.absent);
+            weights.push(absent);
         }
         Belief::from_probabilities(&weights).expect("settings are checked: each weight is positive")
     }
