@@ -109,6 +109,7 @@ pub(crate) fn perceived(rng: &mut Rng, scene: &Scene) -> Scene {
             classes: vec![(object.name.clone(), 1.0)],
             xyz: [0.0; 3],
             yaw: 0.0,
+            seen_by: Vec::new(),
             taken: false,
         }
     });

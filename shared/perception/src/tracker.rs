@@ -72,8 +72,6 @@ struct Track {
     estimate: Estimate,
     /// Source and its name for the object; of those the latest.
     track: Option<(String, String)>,
-    /// Sources that have seen it.
-    seen_by: Vec<String>,
     seen: Time,
     missed: Span,
     misses: u32,
@@ -112,7 +110,6 @@ impl Tracker {
                 ..Detection::default()
             }),
             track: None,
-            seen_by: Vec::new(),
             seen: now,
             missed: Span(0),
             misses: 0,
@@ -384,7 +381,7 @@ impl Tracker {
         let mut lost = self.tracks.iter_mut().filter(|it| {
             !it.object.taken
                 && it.seen < since
-                && it.seen_by.contains(&source)
+                && it.object.seen_by.contains(&source)
                 && likeliest(&it.estimate.classes) == class.as_deref()
         });
         let moved = match (lost.next(), lost.next()) {
@@ -431,10 +428,11 @@ impl Tracker {
             attributes: estimate.attributes.clone(),
             xyz: [x, y, z],
             yaw,
+            seen_by: Vec::new(),
             taken: false,
         };
-        let (seen_by, missed) = (Vec::new(), Span(0));
-        self.tracks.push(Track { object, estimate, track, seen_by, seen: at, missed, misses: 0 });
+        let missed = Span(0);
+        self.tracks.push(Track { object, estimate, track, seen: at, missed, misses: 0 });
         Some(number)
     }
 
@@ -443,7 +441,7 @@ impl Tracker {
     fn miss(&mut self, source: &str, shown: &[ObjectId], hiding: &Hiding, span: Span) {
         for track in &mut self.tracks {
             let [x, y, z, _] = track.estimate.place;
-            let is_expected = track.seen_by.iter().any(|known| known == source)
+            let is_expected = track.object.seen_by.iter().any(|known| known == source)
                 && !track.object.taken
                 && hiding.handled != Some(track.object.number)
                 && !hiding.hides(&[x, y, z], self.settings.hidden_m);
@@ -468,8 +466,9 @@ impl Track {
 
     fn note_source(&mut self, source: &str) {
         const SOURCES_MAX: usize = 4;
-        if !self.seen_by.iter().any(|known| known == source) && self.seen_by.len() < SOURCES_MAX {
-            self.seen_by.push(source.to_owned());
+        let seen_by = &mut self.object.seen_by;
+        if !seen_by.iter().any(|known| known == source) && seen_by.len() < SOURCES_MAX {
+            seen_by.push(source.to_owned());
         }
     }
 

@@ -29,6 +29,8 @@ pub struct Perceived {
     pub xyz: [f64; 3],
     /// Rotation about the vertical, radians.
     pub yaw: f64,
+    /// Names of the sources that have seen it, so that it is missed where they look and do not.
+    pub seen_by: Vec<String>,
     /// Whether it was handed to a person, who may still refuse it or have it put back.
     pub taken: bool,
 }
@@ -144,6 +146,7 @@ mod tests {
             attributes: Vec::new(),
             xyz: [0.7, 0.1, -0.1],
             yaw: 0.5,
+            seen_by: Vec::new(),
             taken: false,
         }
     }

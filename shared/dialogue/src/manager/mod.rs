@@ -385,7 +385,8 @@ impl Manager {
             let interaction = Interaction { deferred: None, ..interaction };
             HandedOver { interaction, at, lines: vec![state.last_prompt] }
         });
-        let goes_on = [PickOutcome::Delivered, PickOutcome::Unreachable, PickOutcome::Missed];
+        use PickOutcome::{Delivered, Missed, Unreachable, Vanished};
+        let goes_on = [Delivered, Unreachable, Missed, Vanished];
         if goes_on.contains(&outcome) {
             state.queue = queue;
         }

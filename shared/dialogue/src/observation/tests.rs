@@ -187,6 +187,7 @@ fn values_in_doubt_are_mixtures() {
         attributes: vec![("color".to_owned(), named(colors))],
         xyz: [0.0; 3],
         yaw: 0.0,
+        seen_by: Vec::new(),
         taken: false,
     };
     fn named(colors: &[(&str, f64)]) -> Vec<(String, f64)> {
