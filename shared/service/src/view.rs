@@ -5,6 +5,7 @@
 
 mod dialogue;
 mod latest;
+mod table;
 
 use messages::{
     ArmStatus, EarState, Hearing, MicrophoneState, MotionInhibit, PickOutcome, PickPhase, Task,
@@ -16,6 +17,7 @@ pub use dialogue::{
     ActionView, AlternativeView, DeliveryView, DialogueView, EndedView, QuestionView, UserView,
 };
 pub use latest::{Arrived, Latest, LatestTopics, PromptId, drain, quiet};
+pub use table::TableScene;
 
 use crate::Time;
 
