@@ -18,6 +18,7 @@ pub mod gesture;
 pub mod ids;
 mod interaction;
 mod interpretation;
+mod learned;
 pub mod manager;
 mod model;
 mod model_user;

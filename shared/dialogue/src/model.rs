@@ -252,6 +252,20 @@ impl Model {
         !self.tables.columns[k.index()].doubtful.is_empty()
     }
 
+    /// `α` of words, which may be another for those that are certain.
+    pub(crate) fn smoothing(&self, is_certain: bool) -> f64 {
+        if is_certain { self.tables.certain.alpha } else { self.tables.smoothing.alpha }
+    }
+
+    /// Multiplies the probabilities of values in doubt by their likelihoods.
+    pub(crate) fn weigh_doubts(&mut self, k: AttributeId, likelihood: &[f64]) {
+        for chances in &mut Arc::make_mut(&mut self.tables).columns[k.index()].doubtful {
+            chances.iter_mut().zip(likelihood).for_each(|(chance, p)| *chance *= p);
+            let sum: f64 = chances.iter().sum();
+            chances.iter_mut().for_each(|chance| *chance /= sum);
+        }
+    }
+
     /// Probability of `attr_k,v(i)`.
     pub(crate) fn chance(&self, i: ObjectId, k: AttributeId, v: ValueId) -> f64 {
         let entry = self.column(k)[i.index()];

@@ -275,7 +275,10 @@ impl Manager {
         let step = Step { interaction: open.id.0, step: open.step };
         open.step += 1;
         let concessions = open.conceded.in_scene(&self.setup.scene);
-        let problem = DecisionProblem { concessions: &concessions, ..self.setup.problem() };
+        // What was said of values in doubt counts for the questions to come.
+        let model = self.learned(open.evidence.iter()).into_owned();
+        let problem =
+            DecisionProblem { model: &model, concessions: &concessions, ..self.setup.problem() };
         Some(open.posterior.decide(&mut *self.planner, &problem, step))
     }
 
