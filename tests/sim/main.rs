@@ -14,6 +14,7 @@
 mod bad_days;
 mod checkers;
 mod forged;
+mod objects;
 mod turns;
 
 use config::Settings;

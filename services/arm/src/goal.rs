@@ -90,7 +90,7 @@ impl ArmNode {
     /// Returns the goal other than resting.
     fn goal(&self) -> Option<Purpose> {
         if let Some(pick) = self.state.open_pick() {
-            return Some(Purpose::Pick(pick.id));
+            return self.knows_target().then_some(Purpose::Pick(pick.id));
         }
         let aim = self.act.aim.filter(|object| self.plan_failures.aim != Some(*object))?;
         let stands = self.config.arm.restock || !self.state.gone.contains(&aim);
@@ -204,6 +204,11 @@ impl ArmNode {
 
     fn name(&self, object: ObjectId) -> &str {
         let objects = self.config.scene.objects();
-        objects.get(object.index()).map_or("an object that the scene lacks", |o| &o.name)
+        let unnamed = if self.config.perceives {
+            "a perceived object"
+        } else {
+            "an object that the scene lacks"
+        };
+        objects.get(object.index()).map_or(unnamed, |o| &o.name)
     }
 }

@@ -15,6 +15,7 @@ mod inspection;
 mod motion;
 mod motion_inhibit;
 mod orders;
+mod perceived;
 mod plan;
 mod program;
 mod publish;
@@ -38,7 +39,7 @@ use messages::pick::Pick;
 use messages::robot::{Order, Report};
 use messages::{
     ArmStatus, JointStates, MessageRef, MotionCommand, MotionInhibit, MotionOrder, PickOutcome,
-    PickPhase, RobotAct, TrajectoryView, WorldView,
+    PickPhase, RobotAct, TableView, TrajectoryView, WorldView,
 };
 use orders::StandingAct;
 use plan::Planning;
@@ -65,6 +66,8 @@ pub enum In<'a> {
     Robot(Report<'a>),
     /// Result of a [`PlanRequest`].
     Planned(Box<Planned>),
+    /// The objects on the table, where they come from perception.
+    Table(Box<TableView>),
 }
 
 /// Outputs of the arm.
@@ -97,12 +100,18 @@ pub struct Config {
     pub setup: ArmSetup,
     /// Objects and their places.
     pub scene: Scene,
+    /// Whether objects and places come from perception; the scene's are then what they may be.
+    pub perceives: bool,
 }
 
 /// The arm as a reducer.
 pub struct ArmNode {
     config: Arc<Config>,
     world: Arc<World>,
+    /// The world of the running plan.
+    planned_world: Arc<World>,
+    /// Since when the ordered object is not on the table that the arm knows.
+    unknown_since: Option<Time>,
     state: ArmState,
     driver: Box<dyn ArmDriver>,
     executor: Executor,
@@ -165,6 +174,7 @@ impl Node for ArmNode {
             Event::Message(In::Planned(planned)) => {
                 self.urgent |= self.planning.on_planned(*planned);
             }
+            Event::Message(In::Table(table)) => self.lay(&table),
             Event::Tick => self.tick(now, fx),
             Event::Shutdown => {
                 self.ending = true;
@@ -208,8 +218,14 @@ impl ArmNode {
     pub fn with_driver(config: Config, state: ArmState, driver: Box<dyn ArmDriver>) -> Self {
         let settled = recover::other_scene(&state, &config.scene);
         let scene_changed = settled.is_some();
+        let world = Arc::new(match config.perceives {
+            true => World::unknown(&config.setup.robot),
+            false => World::new(&config.setup.robot, &config.scene),
+        });
         Self {
-            world: Arc::new(World::new(&config.setup.robot, &config.scene)),
+            planned_world: Arc::clone(&world),
+            unknown_since: None,
+            world,
             publisher: Publisher::new(&config.arm, &config.setup.robot),
             motion_view: MotionView::default(),
             state: settled.unwrap_or(state),
@@ -273,6 +289,7 @@ impl ArmNode {
         self.urgent = false;
         let seconds = self.passed_s(now);
         self.read_sensors(now, fx);
+        self.watch_target(now, fx);
         self.decide(now, fx);
         self.step(seconds, now, fx);
         self.record_progress(now, fx);

@@ -37,6 +37,7 @@ pub(crate) struct Basis {
     pub(crate) motion: Motion,
     pub(crate) state: ArmState,
     pub(crate) measured: Measured,
+    pub(crate) world: Arc<World>,
 }
 
 /// A motion to be planned.
@@ -45,7 +46,6 @@ pub struct PlanRequest {
     /// Number in this run of the service.
     number: u64,
     config: Arc<Config>,
-    world: Arc<World>,
     basis: Basis,
 }
 
@@ -80,6 +80,7 @@ impl Basis {
         self.motion == present.motion
             && self.state.has_same_objects(&present.state)
             && self.measured.stands_as(&present.measured)
+            && self.world.fits(&present.world)
     }
 }
 
@@ -99,8 +100,8 @@ impl Measured {
 impl PlanRequest {
     /// Plans the motion. Equal requests have equal results.
     pub fn solve(self) -> Planned {
-        let Self { number, config, world, basis } = self;
-        let planner = Planner::new(&config, &world, &basis.state, &basis.measured);
+        let Self { number, config, basis } = self;
+        let planner = Planner::new(&config, &basis.world, &basis.state, &basis.measured);
         let program = match &basis.motion {
             Motion::Take(pick) => planner.take(pick),
             Motion::Carry(pick, held) => planner.carry(pick, held),
@@ -147,9 +148,13 @@ impl ArmNode {
         fx: &mut Fx,
     ) -> Option<Result<Program, Refusal>> {
         let (state, measured) = (self.state.clone(), self.driver.measured());
-        let basis = Basis { motion, state, measured };
+        let basis = Basis { motion, state, measured, world: Arc::clone(&self.world) };
         match std::mem::take(&mut self.planning.stage) {
-            Stage::Done(planned) if planned.basis.fits(&basis) => return Some(planned.program),
+            Stage::Done(planned) if planned.basis.fits(&basis) => {
+                // Later estimates are compared with those that it rests on.
+                self.planned_world = planned.basis.world;
+                return Some(planned.program);
+            }
             Stage::Requested(requested, at) if requested.fits(&basis) => {
                 self.planning.stage = Stage::Requested(requested, at);
                 return None;
@@ -162,7 +167,6 @@ impl ArmNode {
         fx.publish(Out::Plan(Box::new(PlanRequest {
             number: self.planning.number,
             config: Arc::clone(&self.config),
-            world: Arc::clone(&self.world),
             basis,
         })));
         None

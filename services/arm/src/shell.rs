@@ -5,12 +5,12 @@ use crate::{ArmNode, Config, In, Out, inspection};
 use config::{Driver, Settings};
 use messages::Service;
 use messages::{
-    ArmStatus, JointStates, MotionCommand, RobotAct, TrajectoryView, WorldView, topics,
+    ArmStatus, JointStates, MotionCommand, RobotAct, TableView, TrajectoryView, WorldView, topics,
 };
 use planner::PlannerThread;
 use preflight::ArmSetup;
 use robot::RobotTopics;
-use service::bus::{EncodedWriter, PortError, Reader, Writer};
+use service::bus::{EncodedReader, EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
 use service::inspection::{Part, SharedFacts};
 use service::lifecycle::Environment;
@@ -36,7 +36,12 @@ impl Program for ArmProgram {
     fn config(_: &Environment, settings: &Settings) -> Result<Config, Failure> {
         let setup = ArmSetup::new(settings)
             .map_err(|problems| Failure::new(Exit::Config, problems.to_string()))?;
-        Ok(Config { arm: settings.arm.clone(), setup, scene: settings.scene.clone() })
+        Ok(Config {
+            arm: settings.arm.clone(),
+            setup,
+            scene: settings.scene.clone(),
+            perceives: settings.group.perception.enabled,
+        })
     }
 
     fn describe(_: Option<&Settings>, record: &Record) -> String {
@@ -65,11 +70,15 @@ pub struct ArmShell {
     planner: PlannerThread,
     /// Topics of a real robot.
     robot: Option<RobotTopics>,
+    /// Where the objects come from perception.
+    table: Option<EncodedReader<TableView>>,
 }
 
 impl Shell<ArmNode> for ArmShell {
     fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
         let (bus, paths) = (context.bus, &context.environment.paths);
+        let perceives = context.settings.group.perception.enabled;
+        let table = perceives.then(|| bus.encoded_reader(&topics::OBJECTS));
         let robot = (context.settings.arm.driver == Driver::Baxter).then(|| RobotTopics::open(bus));
         Ok(Self {
             motion: bus.reader(&topics::MOTION)?,
@@ -83,6 +92,7 @@ impl Shell<ArmNode> for ArmShell {
             planner: PlannerThread::start(context.devices.clone())
                 .map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?,
             robot: robot.transpose()?,
+            table: table.transpose()?,
         })
     }
 
@@ -102,6 +112,11 @@ impl Shell<ArmNode> for ArmShell {
     }
 
     fn drain(&mut self, take: &mut dyn FnMut(In<'_>)) -> Result<(), PortError> {
+        if let Some(table) = &mut self.table
+            && let Some(view) = table.latest()?
+        {
+            take(In::Table(Box::new(view)));
+        }
         self.acts.drain(|message| take(In::Act(message.into())))?;
         self.robot.iter().try_for_each(|robot| robot.drain(|report| take(In::Robot(report))))
     }

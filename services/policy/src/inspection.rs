@@ -13,7 +13,10 @@ use service::journal_set::NUMBERS_SKIPPED;
 /// Renders a record as one line. Without the scene that it is about, the robot's words are left out.
 pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
     let Record { cause, state, .. } = record;
+    let table = scene.zip(state.table.as_ref());
+    let table = table.map(|(scene, table)| scene.with_objects(&table.objects));
     // Numbers of another scene have no words here.
+    let scene = table.as_ref().or(scene);
     let scene = scene.filter(|scene| scene.key() == state.scene_key);
     let why = match cause {
         Cause::Snapshot => "started over".to_owned(),
@@ -24,6 +27,7 @@ pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
             format!("pick {}.{} {outcome:?}", pick.interaction, pick.attempt).to_lowercase()
         }
         Cause::Reconfigured => "reconfigured".to_owned(),
+        Cause::Objects(table) => format!("table {} of {}", table.version, table.objects.len()),
         Cause::MotionStop(true) => "stopped".to_owned(),
         Cause::MotionStop(false) => "released".to_owned(),
         Cause::SetAside(over) => format!("set aside, {over} over"),

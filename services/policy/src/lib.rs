@@ -5,6 +5,7 @@
 //! anything that follows from it can be seen.
 
 mod inspection;
+mod perceived;
 mod policy_cache;
 pub mod shell;
 mod view;
@@ -18,8 +19,9 @@ use dialogue::{PickOutcome, PickPhase, Presentation};
 use messages::inbox::{Inbox, Verdict};
 use messages::{
     Activity, AppliedMark, ArmStatus, MessageRef, Observation, PolicyView, PresentationState,
-    Presented, RobotAct, Source,
+    Presented, RobotAct, Sighting, Source, TableView, WorldView,
 };
+use perceived::Perceived;
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 
 /// Interval at which the standing decision is sent again.
@@ -38,6 +40,10 @@ pub enum In<'a> {
     Activity(Activity),
     /// From the arm.
     Arm(ArmStatus),
+    /// From the arm: where its grippers are.
+    World(Box<WorldView>),
+    /// From a camera, another source or a client.
+    Sighting(Box<Sighting>),
 }
 
 /// Output of the policy.
@@ -49,6 +55,23 @@ pub enum Out {
     Act(Box<RobotAct>),
     /// To clients: belief and reasons.
     View(Box<PolicyView>),
+    /// To arm and clients: the objects on the table.
+    Objects(Box<TableView>),
+}
+
+/// Configuration of the policy.
+#[allow(missing_debug_implementations, reason = "planners have none")]
+pub struct Config {
+    /// The dialogue manager.
+    pub manager: Manager,
+    /// How objects are followed, where they come from perception.
+    pub tracker: Option<perception::Settings>,
+}
+
+impl From<Manager> for Config {
+    fn from(manager: Manager) -> Self {
+        Self { manager, tracker: None }
+    }
 }
 
 type Fx = Effects<Out, Record>;
@@ -57,6 +80,8 @@ type Fx = Effects<Out, Record>;
 pub struct PolicyNode {
     manager: Manager,
     state: State,
+    /// Objects from perception, where they come from there.
+    perceived: Option<Perceived>,
     floor: Floor,
     /// The latest standing prompt that was said to its end, and which presentation of it.
     said: (PromptId, u32),
@@ -70,15 +95,20 @@ pub struct PolicyNode {
 }
 
 impl Node for PolicyNode {
-    type Config = Manager;
+    type Config = Config;
     type In<'a> = In<'a>;
     type Out = Out;
     type Record = Record;
 
-    fn recover(manager: Manager, mut records: Vec<Record>) -> Result<Self, NodeError> {
+    fn recover(config: Config, mut records: Vec<Record>) -> Result<Self, NodeError> {
+        let Config { mut manager, tracker } = config;
         let state = records.pop().map_or_else(|| manager.first(), |record| record.state);
+        if state.settings_key == manager.key() {
+            manager.follow(&state);
+        }
         Ok(Self {
             manager,
+            perceived: tracker.map(Perceived::new),
             state,
             floor: Floor::default(),
             said: Default::default(),
@@ -106,7 +136,12 @@ impl Node for PolicyNode {
                 self.floor.pending = activity.pending;
                 self.decide_deferred(now, fx);
             }
-            Event::Message(In::Arm(status)) => self.watch_arm(&status, now, fx),
+            Event::Message(In::Arm(status)) => {
+                self.note_handling(&status);
+                self.watch_arm(&status, now, fx);
+            }
+            Event::Message(In::World(world)) => self.note_grippers(&world),
+            Event::Message(In::Sighting(sighting)) => self.sight(&sighting, now, fx),
             Event::Tick => self.tick(now, fx),
             Event::Shutdown => fx.exit(),
         }
@@ -156,7 +191,7 @@ impl PolicyNode {
             // meanwhile, and nothing is lost.
             self.rejected += 1;
             self.waiting_since.get_or_insert(now);
-            let same_scene = observation.scene_key == self.manager.scene().key();
+            let same_scene = observation.scene_key == self.manager.scene_file().key();
             tracing::warn!(%seq, same_scene, "invalid observation; the utterance stays pending");
             return;
         };
@@ -168,7 +203,7 @@ impl PolicyNode {
     /// Returns the utterance of an observation; none where it is invalid or of another scene.
     /// A time in the future is none: it is of a clock before a restart of the machine, or a defect.
     fn utterance(&self, observation: &Observation, now: Time) -> Option<Utterance> {
-        let scene = self.manager.scene();
+        let scene = self.manager.scene_file();
         let begun =
             if observation.onset_ns > 0 { observation.onset_ns } else { observation.accepted_ns };
         let presentations = observation.asked().ok()?.iter().map(Presentation::try_from);
@@ -206,6 +241,7 @@ impl PolicyNode {
             None => PickOutcome::Delivered,
         };
         let is_done = matches!(outcome, PickOutcome::Delivered | PickOutcome::PutBack);
+        let object = self.manager.scene().number(object);
         if is_done && (status.object != u32::from(object.0) || outcome != done) {
             // The order has a key, an object and a task. Whatever the arm did, it was not what this
             // one names.
@@ -242,6 +278,7 @@ impl PolicyNode {
 
     fn tick(&mut self, now: Time, fx: &mut Fx) {
         self.decide_deferred(now, fx);
+        self.step_table(None, now, fx);
         if self.manager.silence_is_due(&self.state, &self.floor(now), now) {
             self.apply(Cause::Silence, now, fx);
         } else if now >= self.next_send {
@@ -266,12 +303,14 @@ impl PolicyNode {
     fn apply(&mut self, cause: Cause, now: Time, fx: &mut Fx) {
         self.manager.step(&mut self.state, &cause, now);
         fx.append(Record { cause, at: now, state: self.state.clone() });
+        self.sync_table(now);
         self.send(now, fx);
     }
 
     fn send(&mut self, now: Time, fx: &mut Fx) {
         // The act first: the mark lets speech continue, which it must not do with the former act.
-        fx.publish(Out::Act(Box::new(view::act(self.manager.scene(), &self.state))));
+        self.send_table(now, fx);
+        fx.publish(Out::Act(Box::new(view::act(&self.manager, &self.state))));
         fx.publish(Out::Mark(AppliedMark { seq: self.state.applied.0 }));
         let view = view::view(&self.manager, &self.state, self.rejected);
         fx.publish(Out::View(Box::new(view)));

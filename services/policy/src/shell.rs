@@ -1,13 +1,14 @@
 //! The policy's topics and configuration.
 
-use crate::{In, Out, PolicyNode, inspection, policy_cache};
+use crate::{Config, In, Out, PolicyNode, inspection, policy_cache};
 use config::{ManagerError, Settings};
-use dialogue::manager::{Manager, Record};
+use dialogue::manager::Record;
 use messages::Service;
 use messages::{
-    Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, topics,
+    Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, Sighting,
+    TableView, WorldView, topics,
 };
-use service::bus::{EncodedWriter, PortError, Reader, Writer};
+use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
 use service::inspection::{Part, SharedFacts};
 use service::lifecycle::Environment;
@@ -20,13 +21,13 @@ pub struct PolicyProgram;
 
 impl Program for PolicyProgram {
     const SERVICE: Service = Service::Policy;
-    const RECORD: Option<&'static str> = Some("policy/9");
+    const RECORD: Option<&'static str> = Some("policy/10");
     const ABOUT: &'static str = "maintains the belief over the objects and decides what to ask or do \
                                  [--planner NAME]";
     type Node = PolicyNode;
     type Shell = PolicyShell;
 
-    fn config(environment: &Environment, settings: &Settings) -> Result<Manager, Failure> {
+    fn config(environment: &Environment, settings: &Settings) -> Result<Config, Failure> {
         let manager = match planner(&environment.arguments)? {
             Some(planner) => settings.manager_with(planner),
             None => settings.manager(),
@@ -39,7 +40,9 @@ impl Program for PolicyProgram {
             Failure::new(exit, error.to_string())
         })?;
         policy_cache::precompute(&mut manager, &environment.paths.policies());
-        Ok(manager)
+        let perception = &settings.group.perception;
+        let tracker = perception.enabled.then(|| perception.tracker.clone());
+        Ok(Config { tracker, ..Config::from(manager) })
     }
 
     fn describe(settings: Option<&Settings>, record: &Record) -> String {
@@ -80,11 +83,31 @@ pub struct PolicyShell {
     mark: Writer<AppliedMark>,
     act: Writer<RobotAct>,
     view: EncodedWriter<PolicyView>,
+    /// Where the objects come from perception.
+    table: Option<TableTopics>,
+}
+
+#[derive(Debug)]
+struct TableTopics {
+    sightings: EncodedReader<Sighting>,
+    world: EncodedReader<WorldView>,
+    objects: EncodedWriter<TableView>,
+}
+
+impl TableTopics {
+    fn open(bus: &Bus) -> Result<Self, BusError> {
+        Ok(Self {
+            sightings: bus.encoded_reader(&topics::SIGHTING)?,
+            world: bus.encoded_reader(&topics::WORLD)?,
+            objects: bus.encoded_writer(&topics::OBJECTS)?,
+        })
+    }
 }
 
 impl Shell<PolicyNode> for PolicyShell {
     fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
         let bus = context.bus;
+        let table = context.settings.group.perception.enabled.then(|| TableTopics::open(bus));
         Ok(Self {
             observations: bus.reader(&topics::OBSERVATION)?,
             presented: bus.reader(&topics::PRESENTED)?,
@@ -93,6 +116,7 @@ impl Shell<PolicyNode> for PolicyShell {
             mark: bus.writer(&topics::MARK)?,
             act: bus.writer(&topics::ACT)?,
             view: bus.encoded_writer(&topics::VIEW)?,
+            table: table.transpose()?,
         })
     }
 
@@ -100,7 +124,15 @@ impl Shell<PolicyNode> for PolicyShell {
         self.presented.drain(|message| take(In::Presented(*message)))?;
         self.activity.drain(|message| take(In::Activity(*message)))?;
         self.observations.drain(|message| take(In::Observation(message.into())))?;
-        self.arm.drain(|message| take(In::Arm(*message)))
+        self.arm.drain(|message| take(In::Arm(*message)))?;
+        let Some(table) = &mut self.table else { return Ok(()) };
+        if let Some(world) = table.world.latest()? {
+            take(In::World(Box::new(world)));
+        }
+        while let Some(sighting) = table.sightings.take()? {
+            take(In::Sighting(Box::new(sighting)));
+        }
+        Ok(())
     }
 
     fn publish(&mut self, output: Out) -> Result<(), PortError> {
@@ -108,6 +140,7 @@ impl Shell<PolicyNode> for PolicyShell {
             Out::Mark(mark) => self.mark.send(&mark),
             Out::Act(act) => self.act.send(&act),
             Out::View(view) => self.view.send(&view),
+            Out::Objects(view) => self.table.as_ref().map_or(Ok(()), |it| it.objects.send(&view)),
         }
     }
 }

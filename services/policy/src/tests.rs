@@ -5,6 +5,7 @@ mod correct;
 mod hand_over;
 mod held_back;
 mod long;
+mod objects;
 mod person;
 mod pointing;
 mod prior;
@@ -229,7 +230,7 @@ fn tell(node: &mut PolicyNode, message: In<'_>, now: Time) -> (Vec<Record>, Vec<
 
 #[test]
 fn each_utterance_is_applied_once_and_in_order() {
-    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let request = |seq| observation(seq, 0, &Reading::default());
     assert!(tell(&mut node, request(2), at(1)).0.is_empty(), "the first is missing");
     assert!(node.pending_since().is_some(), "the operator sees that something waits");
@@ -241,7 +242,7 @@ fn each_utterance_is_applied_once_and_in_order() {
 
 #[test]
 fn an_observation_that_makes_no_sense_is_refused_and_comes_again() {
-    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let In::Observation(good) = observation(1, 0, &Reading::default()) else { unreachable!() };
     let other_scene = Observation { scene_key: good.scene_key ^ 1, ..*good };
     let no_readings = Observation { reading_count: 0, ..*good };
@@ -254,7 +255,7 @@ fn an_observation_that_makes_no_sense_is_refused_and_comes_again() {
 
 #[test]
 fn silence_counts_from_the_end_of_the_spoken_question() {
-    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     tell(&mut node, observation(1, 0, &Reading::default()), at(1));
     let act = node.state().act.clone();
     let silent = |node: &mut PolicyNode, now| {
@@ -286,7 +287,7 @@ fn silence_counts_from_the_end_of_the_spoken_question() {
     says(&mut node, up, up + Span::from_ms(1));
     assert!(silent(&mut node, up + Span::from_ms(500)));
     let record = Record { cause: Cause::Snapshot, at: up, state: node.state().clone() };
-    let mut node = PolicyNode::recover(manager(), vec![record]).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), vec![record]).unwrap();
     let again = Presented { presentation: 2, ended_ns: up.ns(), ..said };
     tell(&mut node, In::Presented(again), at(8000));
     assert!(!silent(&mut node, at(8000)), "the policy was down");
@@ -311,7 +312,7 @@ fn journals_fold_again_bit_for_bit() {
             let records = random_dialogue(&settings, seed);
             refold(&mut manager(), &records).unwrap_or_else(|e| panic!("{over:?}, {seed}: {e}"));
             for cut in 0..records.len() {
-                let node = PolicyNode::recover(manager(), records[..=cut].to_vec()).unwrap();
+                let node = PolicyNode::recover(manager().into(), records[..=cut].to_vec()).unwrap();
                 assert_eq!(node.state(), &records[cut].state, "{over:?}, seed {seed}, {cut}");
             }
         }
@@ -396,7 +397,7 @@ fn decisions_of_a_planner_swapped_in_fold_again_with_it() {
 
 #[test]
 fn only_the_ordered_pick_s_end_ends_the_interaction() {
-    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let sure = words(&["small", "white", "plastic", "dishwasher", "dishwasher", "dishwasher"]);
     tell(&mut node, observation(1, 0, &sure), at(1));
     let (pick, object) = node.state().act.pick.expect("sure enough to pick");

@@ -1,31 +1,52 @@
 //! The state as other services see it.
 
+use dialogue::Action;
 use dialogue::ids::UtteranceSeq;
 use dialogue::manager::{Interaction, Manager, State};
 use dialogue::{ActKind, rendering};
 use messages::{Delivery, FixedText, PolicyView, RobotAct, WireCode};
-use scene::{Question, Scene};
+use scene::{ObjectId, Question, Scene};
 use service::Span;
 
 /// Returns the standing decision as it is published.
-pub(crate) fn act(scene: &Scene, state: &State) -> RobotAct {
+pub(crate) fn act(manager: &Manager, state: &State) -> RobotAct {
+    let scene = manager.scene();
     let act = &state.act;
     let interaction = act.pick.map_or(state.last_interaction, |(pick, _)| pick.interaction);
     RobotAct {
         act: act.id.0,
-        scene_key: state.scene_key,
+        scene_key: scene_key(manager, state),
         interaction: interaction.0,
         prompt: act.prompt.0,
         presentation: act.presentation,
         kind: act.kind.code(),
-        question: answerable(state).into(),
-        object: act.pick.map_or(0, |(_, object)| object.0.into()),
+        question: numbered(scene, answerable(state)).into(),
+        object: act.pick.map_or(0, |(_, object)| scene.number(object).0.into()),
         attempt: act.pick.map_or(0, |(pick, _)| pick.attempt),
         decided_ns: act.decided.ns(),
         utterance: act.utterance.0,
         text: FixedText::truncated(&rendering::text(scene, act)),
         ..RobotAct::default()
     }
+}
+
+/// Returns the key of the scene that the words of a message belong to. Objects from perception have
+/// numbers that are not the scene's, so that it stays the same whatever is on the table.
+fn scene_key(manager: &Manager, state: &State) -> u64 {
+    if state.table.is_some() { manager.scene_file().key() } else { state.scene_key }
+}
+
+/// Returns the question with the object's number.
+fn numbered(scene: &Scene, question: Question) -> Question {
+    match question {
+        Question::Point(object) => Question::Point(scene.number(object)),
+        other => other,
+    }
+}
+
+/// Returns the object's number; one past the scene's objects, for what is not here, stays as it is.
+fn number(scene: &Scene, object: ObjectId) -> ObjectId {
+    if object.index() < scene.objects().len() { scene.number(object) } else { ObjectId(u16::MAX) }
 }
 
 /// Returns the question that waits for an answer: that of the act, or whether what was decided while
@@ -55,7 +76,7 @@ fn delivery(manager: &Manager, state: &State) -> Option<Delivery> {
     let window = Span::from_s(manager.turns().refusal_s);
     Some(Delivery {
         interaction: handed_over.interaction.id.0,
-        object: handed_over.object()?.0,
+        object: manager.scene().number(handed_over.object()?).0,
         until_ns: (handed_over.at + window).ns(),
     })
 }
@@ -65,23 +86,32 @@ pub(crate) fn view(manager: &Manager, state: &State, rejected: u64) -> PolicyVie
     let open = state.open.as_ref();
     let belief = open.map_or_else(|| manager.prior(state), Interaction::belief);
     let mut belief = belief.probabilities();
-    let objects = manager.scene().objects().len();
-    let absent = belief.split_off(objects.min(belief.len())).into_iter().next().unwrap_or(0.0);
+    let scene = manager.scene();
+    let count = scene.objects().len();
+    let all = (0..count).map(|object| scene.number(object.into()));
+    let objects = if state.table.is_some() { all.collect() } else { Vec::new() };
+    let alternative = |(action, value): &(Action, f64)| match action {
+        Action::Ask(question) => (Action::Ask(numbered(scene, *question)), *value),
+        Action::Pick(object) => (Action::Pick(number(scene, *object)), *value),
+        Action::Wait => (Action::Wait, *value),
+    };
+    let absent = belief.split_off(count.min(belief.len())).into_iter().next().unwrap_or(0.0);
     let ended = state.ended.as_ref().map(|ended| ended.utterances);
     let utterances = open.map(|open| open.utterances).or(ended);
     PolicyView {
-        scene_key: state.scene_key,
+        scene_key: scene_key(manager, state),
         applied: state.applied.0,
         interaction: open.map_or(0, |open| open.id.0),
         belief,
         absent,
         person: manager.user_params(state),
-        question: asked(state),
+        objects,
+        question: numbered(scene, asked(state)),
         prompt: state.act.prompt.0,
         text: rendering::text(manager.scene(), &state.act),
         decision: state.act.kind,
         value: state.act.value,
-        alternatives: state.act.alternatives.clone(),
+        alternatives: state.act.alternatives.iter().map(alternative).collect(),
         expected_questions: state.act.expected_questions,
         bounds: state.act.bounds,
         attributed: state.attributed.clone(),

@@ -7,6 +7,7 @@ use service::group::{ENV_GROUP, GroupName};
 mod arm;
 mod batch;
 mod group;
+mod objects;
 mod study;
 mod talk;
 
@@ -18,6 +19,7 @@ pub use group::{
     CheckArgs, ConfigArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs,
     SwapArgs, UpArgs, WaitFor,
 };
+pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
 pub use study::{ALL as STUDY_ALL, Preset, ReportArgs, StudyArgs, StudyVerb};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalAction, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
@@ -98,6 +100,8 @@ pub enum Verb {
     /// Metres in frame `base` of the robot: x forward, y left, z up. Requires
     /// `dialogue.gesture.enabled`.
     Point(PointArgs),
+    /// List or change the objects on the table, where they come from perception.
+    Objects(ObjectsArgs),
     /// Play a WAV file to the robot's speech recogniser.
     Listen(ListenArgs),
     /// Talk to the robot through the microphone of its computer.

@@ -29,6 +29,7 @@ mod leftovers;
 mod listen;
 mod logs;
 mod motion;
+mod objects;
 mod operate;
 mod paths;
 mod planning;
@@ -63,6 +64,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Swap(args) => operate::swap(&paths()?, args, out),
         Verb::Say(args) => speak::say(&paths()?, &args, out),
         Verb::Point(args) => speak::point(&paths()?, &args, out),
+        Verb::Objects(args) => objects::objects(&paths()?, &args, out),
         Verb::Listen(args) => listen::listen(&paths()?, &args, out),
         Verb::Talk(args) => speak::talk(&paths()?, &args, out),
         Verb::Watch(args) => watch::watch(&paths()?, &args, out),

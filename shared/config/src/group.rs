@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use crate::services::{self, ServiceConfig};
+use ::dialogue::time::Span;
 use diagnostics::Fields;
+use perception::Frame;
 
 /// The process group.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +21,17 @@ pub struct Group {
     pub log: Log,
     /// Shared memory that must be free for the group to start, MiB.
     pub shared_memory_free_min_mib: u32,
+    /// Objects from perception.
+    pub perception: Perception,
+}
+
+/// Objects from perception.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Perception {
+    /// Whether the objects on the table are those that are perceived; else they are the scene's.
+    pub enabled: bool,
+    /// How they are followed.
+    pub tracker: perception::Settings,
 }
 
 /// Intensity and backoff of restarts, the same for every service.
@@ -55,6 +68,26 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Group {
         log: f.table("log", log),
         shared_memory_free_min_mib: f
             .table("shared_memory", |f| f.whole("free_min_mib", 0..=1 << 20)),
+        perception: f.table("perception", perceived),
+    }
+}
+
+fn perceived(f: &mut Fields<'_>) -> Perception {
+    Perception {
+        enabled: f.flag("enabled"),
+        tracker: perception::Settings {
+            appear: f.whole("appear_detections", 1..=100),
+            moved_m: f.number("moved_m", 0.001..=0.2),
+            gate_m: f.number("gate_m", 0.01..=1.0),
+            vanish: Span::from_s(f.number("vanish_s", 0.5..=600.0)),
+            age_max: Span::from_s(f.number("age_max_s", 0.05..=10.0)),
+            hidden_m: f.number("hidden_m", 0.0..=2.0),
+            frames: f.list("frames", "", |f| Frame {
+                name: f.text("name"),
+                xyz: f.triple("xyz"),
+                rpy: f.triple("rpy"),
+            }),
+        },
     }
 }
 

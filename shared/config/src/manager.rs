@@ -72,6 +72,7 @@ impl Settings {
             prior: dialogue.prior,
             gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
             turns: dialogue.turns,
+            perceives: self.group.perception.enabled,
         })
     }
 
@@ -94,6 +95,9 @@ impl Settings {
         hash.text(&self.scene_file().text);
         if self.durations.is_some() {
             hash.text(&self.durations_text());
+        }
+        if self.group.perception.enabled {
+            hash.text("objects from perception");
         }
         hash.value()
     }

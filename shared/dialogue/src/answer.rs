@@ -62,13 +62,18 @@ impl Answer {
                 let yes = model.unknown_yes(k);
                 params.p_l * if self == Self::Yes { yes } else { 1.0 - yes }
             }
+            (Self::Yes | Self::No, Question::Attribute(k, v)) if model.is_doubtful(k) => {
+                let (chance, epsilon) = (model.chance(wanted, k, v), params.epsilon);
+                let yes = chance * (1.0 - epsilon) + (1.0 - chance) * epsilon;
+                params.p_l * if self == Self::Yes { yes } else { 1.0 - yes }
+            }
             (Self::Yes | Self::No, Question::Point(_) | Question::Attribute(..)) => {
                 let right = self == Self::truthful(model, question, wanted);
                 params.p_l * if right { 1.0 - params.epsilon } else { params.epsilon }
             }
             (Self::Value(k, v), Question::Which(asked)) if k == asked => {
                 let entry = model.column(k)[wanted.index()];
-                params.p_l * OpenQuestion::new(model, k).answer(v, entry)
+                params.p_l * OpenQuestion::new(model, k).answer(model, (k, v), entry)
             }
             _ => 0.0,
         }

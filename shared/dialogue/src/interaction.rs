@@ -92,6 +92,8 @@ pub enum PickOutcome {
     Blocked,
     /// The object is back in its place.
     PutBack,
+    /// The object is no longer where it was seen; nothing is held.
+    Vanished,
 }
 
 /// Outcome of an interaction.
@@ -124,6 +126,7 @@ impl Outcome {
             PickOutcome::Unreachable
             | PickOutcome::Interrupted
             | PickOutcome::Missed
+            | PickOutcome::Vanished
             | PickOutcome::Blocked => Some(Self::Failed),
             PickOutcome::Cancelled => Some(Self::Cancelled),
         }

@@ -50,6 +50,9 @@ struct Vocabulary {
 #[derive(Clone, Debug, PartialEq)]
 struct Column {
     values: Vec<u16>,
+    /// Probabilities of the values of hypotheses whose value is in doubt, by entry from
+    /// [`Model::DOUBTFUL`] on.
+    doubtful: Vec<Vec<f64>>,
     words: Vec<WordId>,
     /// Per value: whether some hypotheses have it and others do not.
     splits: Vec<bool>,
@@ -68,6 +71,9 @@ impl Model {
     pub const LACKS: u16 = u16::MAX;
     /// Stands in every column for what is not here: its values are unknown.
     pub const UNKNOWN: u16 = u16::MAX - 1;
+    /// Entries of a column from this one up to [`Model::UNKNOWN`] stand for values in doubt
+    /// ([`Model::chances`]): equal entries for equal doubts.
+    pub const DOUBTFUL: u16 = 1 << 15;
 
     /// The tables of a scene.
     ///
@@ -92,6 +98,17 @@ impl Model {
         let mut tables = Tables { confusion, columns, words, smoothing, certain };
         tables.find_what_splits();
         Self { params, objects, absent: false, tables: Arc::new(tables) }
+    }
+
+    /// The same model of a scene with other objects and the same words.
+    ///
+    /// # Panics
+    /// If the words are not the same.
+    #[must_use]
+    pub fn with_objects(&self, scene: &Scene) -> Self {
+        assert_eq!(scene.words().len(), self.tables.words.len(), "a scene with the same words");
+        let same = Self::new(scene, self.params).with_certain_words(self.tables.certain.alpha);
+        same.with_confusion(self.tables.confusion.clone())
     }
 
     /// The model with another smoothing for words that are certain ([`CERTAIN_DOUBT`](crate::CERTAIN_DOUBT)).
@@ -205,15 +222,65 @@ impl Model {
         1.0 / (self.values(k) as f64 + 1.0)
     }
 
-    /// The value of object `i` for attribute `k`, if it has one.
+    /// The value of object `i` for attribute `k`, if it has one; the likeliest of those in doubt.
     pub fn value(&self, i: ObjectId, k: AttributeId) -> Option<ValueId> {
-        let value = self.column(k)[i.index()];
-        (value < Self::UNKNOWN).then_some(ValueId(value))
+        let entry = self.column(k)[i.index()];
+        match self.chances(k, entry) {
+            None => (entry < Self::DOUBTFUL).then_some(ValueId(entry)),
+            Some(chances) => {
+                let likelier = |best, v| if chances[v] > chances[best] { v } else { best };
+                (0..chances.len()).reduce(likelier).map(ValueId::from)
+            }
+        }
     }
 
-    /// `attr_k,v(i)`: false for an object that lacks the attribute, and for what is not here.
+    /// `attr_k,v(i)`: false for an object that lacks the attribute, and for what is not here. Of values
+    /// in doubt it is true of the likeliest.
     pub fn has(&self, i: ObjectId, k: AttributeId, v: ValueId) -> bool {
-        self.column(k)[i.index()] == v.0
+        let entry = self.column(k)[i.index()];
+        entry == v.0 || entry >= Self::DOUBTFUL && self.value(i, k) == Some(v)
+    }
+
+    /// Probability of each value of attribute `k`, if that entry of its column stands for a doubt.
+    pub fn chances(&self, k: AttributeId, entry: u16) -> Option<&[f64]> {
+        let doubt = entry.checked_sub(Self::DOUBTFUL).filter(|_| entry < Self::UNKNOWN)?;
+        self.tables.columns[k.index()].doubtful.get(usize::from(doubt)).map(Vec::as_slice)
+    }
+
+    /// Whether any object's value of attribute `k` is in doubt.
+    pub fn is_doubtful(&self, k: AttributeId) -> bool {
+        !self.tables.columns[k.index()].doubtful.is_empty()
+    }
+
+    /// `α` of words, which may be another for those that are certain.
+    pub(crate) fn smoothing(&self, is_certain: bool) -> f64 {
+        if is_certain { self.tables.certain.alpha } else { self.tables.smoothing.alpha }
+    }
+
+    /// Multiplies the probabilities of values in doubt by their likelihoods.
+    pub(crate) fn weigh_doubts(&mut self, k: AttributeId, likelihood: &[f64]) {
+        for chances in &mut Arc::make_mut(&mut self.tables).columns[k.index()].doubtful {
+            chances.iter_mut().zip(likelihood).for_each(|(chance, p)| *chance *= p);
+            let sum: f64 = chances.iter().sum();
+            chances.iter_mut().for_each(|chance| *chance /= sum);
+        }
+    }
+
+    /// Probability of `attr_k,v(i)`.
+    pub(crate) fn chance(&self, i: ObjectId, k: AttributeId, v: ValueId) -> f64 {
+        let entry = self.column(k)[i.index()];
+        self.chances(k, entry).map_or(f64::from(u8::from(entry == v.0)), |it| it[v.index()])
+    }
+
+    /// Probability of `1_{V_D}(w)` with `D = i`: at least one of the values that are the word.
+    pub(crate) fn word_chance(&self, i: ObjectId, word: WordId) -> f64 {
+        let lacking = self.meanings(word).iter().map(|&(k, v)| 1.0 - self.chance(i, k, v));
+        1.0 - lacking.product::<f64>()
+    }
+
+    /// Whether one of the values that are the word is in doubt of some object.
+    fn is_doubtful_word(&self, word: WordId) -> bool {
+        self.meanings(word).iter().any(|(k, _)| self.is_doubtful(*k))
     }
 
     /// `1_{V_D}(w)` with `D = i`.
@@ -240,6 +307,7 @@ impl Model {
         tell(self.hypotheses() as u64);
         for column in &self.tables.columns {
             tell(column.words.len() as u64);
+            column.doubtful.iter().flatten().for_each(|chance| tell(chance.to_bits()));
             column.values.iter().for_each(|value| tell(u64::from(*value)));
             column.words.iter().for_each(|word| tell(word.index() as u64));
         }
@@ -248,6 +316,9 @@ impl Model {
     /// `ln P(w | D)` of eq. (5), but for a constant that is returned, added to every entry. The
     /// constant is chosen so that entries only fall.
     pub(crate) fn add_log_word(&self, word: WordId, out: &mut [f64]) -> f64 {
+        if self.is_doubtful_word(word) {
+            return self.add_doubted_word(word, 0.0, out);
+        }
         let Smoothing { alpha, vocabulary } = &self.tables.certain;
         let own = (1.0 + alpha).ln();
         let other = alpha.ln() - own;
@@ -286,6 +357,11 @@ impl Model {
         let Vocabulary { least, above } = vocabulary;
         let mut said = vec![*alpha; out.len()];
         for (u, share) in tables.confusion.said_instead(word, doubt) {
+            if self.is_doubtful_word(u) {
+                let chance = |i: usize| self.word_chance(ObjectId::from(i), u);
+                said.iter_mut().enumerate().for_each(|(i, s)| *s += share * chance(i));
+                continue;
+            }
             let own = |i: usize| self.has_word(ObjectId::from(i), u);
             said.iter_mut().enumerate().filter(|(i, _)| own(*i)).for_each(|(_, s)| *s += share);
         }
@@ -311,17 +387,25 @@ impl Tables {
 
     /// `|V_D|` of every object.
     fn vocabulary_lengths(&self, objects: usize) -> Vec<usize> {
+        // A value in doubt is one of the object's words, whichever it is.
+        let in_doubt = |i: usize| -> usize {
+            let doubtful =
+                |column: &&Column| (Model::DOUBTFUL..Model::UNKNOWN).contains(&column.values[i]);
+            self.columns.iter().filter(doubtful).count()
+        };
         let has = |i: usize, word: &&Word| {
             word.meanings.iter().any(|(k, v)| self.columns[k.index()].values[i] == v.0)
         };
-        (0..objects).map(|i| self.words.iter().filter(|word| has(i, word)).count()).collect()
+        let certain = |i: usize| self.words.iter().filter(|word| has(i, word)).count();
+        (0..objects).map(|i| certain(i) + in_doubt(i)).collect()
     }
 
     fn find_what_splits(&mut self) {
         for column in &mut self.columns {
-            let unsure = column.values.len() > 1 && column.values.contains(&Model::UNKNOWN);
+            let unsure = column.values.len() > 1
+                && (!column.doubtful.is_empty() || column.values.contains(&Model::UNKNOWN));
             let mut count = vec![0; column.words.len()];
-            for &value in column.values.iter().filter(|value| **value < Model::UNKNOWN) {
+            for &value in column.values.iter().filter(|value| **value < Model::DOUBTFUL) {
                 count[usize::from(value)] += 1;
             }
             let some = |n: usize| n > 0 && n < column.values.len();
@@ -334,7 +418,11 @@ impl Tables {
             let has = |i: usize| {
                 (word.meanings.iter()).any(|(k, v)| self.columns[k.index()].values[i] == v.0)
             };
-            word.splits = vocabulary || (1..hypotheses).any(|i| has(i) != has(0));
+            let doubtful =
+                |(k, _): &(AttributeId, ValueId)| !self.columns[k.index()].doubtful.is_empty();
+            word.splits = vocabulary
+                || word.meanings.iter().any(doubtful)
+                || (1..hypotheses).any(|i| has(i) != has(0));
         }
     }
 }
@@ -357,11 +445,21 @@ impl Vocabulary {
 
 impl Column {
     fn of(scene: &Scene, k: AttributeId) -> Self {
-        let values = (scene.objects().iter())
-            .map(|object| object.values[k.index()].map_or(Model::LACKS, |v| v.0))
-            .collect();
+        let mut doubtful: Vec<Vec<f64>> = Vec::new();
+        let mut entry = |object: &scene::Object| match object.chances.get(k.index()) {
+            Some(Some(chances)) => {
+                let known = doubtful.iter().position(|known| known == chances);
+                let place = known.unwrap_or_else(|| {
+                    doubtful.push(chances.clone());
+                    doubtful.len() - 1
+                });
+                Model::DOUBTFUL + place as u16
+            }
+            _ => object.values[k.index()].map_or(Model::LACKS, |v| v.0),
+        };
+        let values = scene.objects().iter().map(&mut entry).collect();
         let words = scene.attributes()[k.index()].values.iter().map(|value| value.word).collect();
-        Self { values, words, splits: Vec::new() }
+        Self { values, doubtful, words, splits: Vec::new() }
     }
 }
 

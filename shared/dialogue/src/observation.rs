@@ -11,6 +11,7 @@
 //! | excluded group | `ε` for an object that has all of its words, `1−ε` for others | extension |
 //! | word doubted by `d` | `(1−d) P(w∣D) + d Σ_u κ(u∣w) P(u∣D)`, `κ` of [`Confusion`](crate::Confusion) | extension |
 //! | answer or group doubted by `d` | `ε + d (1/2 − ε)` in place of `ε` | extension |
+//! | value of `D` in doubt | the mixture over what it may be, per word and answer | extension |
 //!
 //! Words that are certain ([`CERTAIN_DOUBT`]) may have an `α` of their own
 //! ([`Model::with_certain_words`]).
@@ -134,14 +135,20 @@ impl OpenQuestion {
         Self { own: blend(self.own), other: blend(self.other), lacking: self.lacking }
     }
 
-    /// Probability of naming `v`, given an answer, for a user who wants an object with that entry
-    /// in the model's column.
-    pub fn answer(&self, v: ValueId, entry: u16) -> f64 {
-        match entry {
-            Model::LACKS | Model::UNKNOWN => self.lacking,
-            own if own == v.0 => self.own,
+    /// Probability of naming value `v` of attribute `k`, given an answer, for a user who wants an object
+    /// with that entry in the model's column.
+    pub fn answer(&self, model: &Model, (k, v): (AttributeId, ValueId), entry: u16) -> f64 {
+        match (entry, model.chances(k, entry)) {
+            (Model::LACKS | Model::UNKNOWN, _) => self.lacking,
+            (_, Some(chances)) => self.mixture(chances[v.index()]),
+            (own, None) if own == v.0 => self.own,
             _ => self.other,
         }
+    }
+
+    /// The same where the value is `v` with that probability.
+    fn mixture(&self, chance: f64) -> f64 {
+        chance * self.own + (1.0 - chance) * self.other
     }
 }
 
@@ -184,15 +191,16 @@ fn add_base(model: &Model, question: Question, reading: &Reading, log: &mut [f64
 fn add_open(model: &Model, k: AttributeId, v: ValueId, doubt: f64, log: &mut [f64]) -> f64 {
     let open = OpenQuestion::new(model, k).doubted(doubt, model.values(k));
     let column = model.column(k);
-    if column.iter().all(|entry| *entry == column[0]) {
-        return open.answer(v, column[0]).ln();
+    if !model.is_doubtful(k) && column.iter().all(|entry| *entry == column[0]) {
+        return open.answer(model, (k, v), column[0]).ln();
     }
     let constant = open.own.ln();
     let others = [open.other, open.lacking].map(|p| p.ln() - constant);
     for (entry, &value) in log.iter_mut().zip(column) {
-        *entry += match value {
-            Model::LACKS | Model::UNKNOWN => others[1],
-            own if own == v.0 => 0.0,
+        *entry += match (value, model.chances(k, value)) {
+            (Model::LACKS | Model::UNKNOWN, _) => others[1],
+            (_, Some(chances)) => open.mixture(chances[v.index()]).ln() - constant,
+            (own, None) if own == v.0 => 0.0,
             _ => others[0],
         };
     }
@@ -224,7 +232,11 @@ fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut 
         }
         Question::Attribute(k, v) => {
             for (entry, &value) in log.iter_mut().zip(model.column(k)) {
-                *entry += if value == v.0 { if_true } else { if_false };
+                *entry += match model.chances(k, value) {
+                    Some(chances) => mixture(chances[v.index()], if_true, if_false),
+                    None if value == v.0 => if_true,
+                    None => if_false,
+                };
             }
             if let Some(absent) = model.absent() {
                 let unknown = model.unknown_yes(k);
@@ -249,17 +261,27 @@ fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut 
 /// "Not the small white one": an error of the person's or of the listening is as likely as in an
 /// answer.
 fn add_excluded(model: &Model, group: &[WordId], doubt: f64, log: &mut [f64]) -> f64 {
-    let ruled_out = |i: usize| group.iter().all(|&word| model.has_word(i.into(), word));
+    let chance =
+        |i: usize| -> f64 { group.iter().map(|&word| model.word_chance(i.into(), word)).product() };
     let epsilon = doubted(model.params(), doubt).epsilon;
     let constant = (1.0 - epsilon).ln();
     let factor = epsilon.ln() - constant;
-    if (0..log.len()).all(ruled_out) {
+    if (0..log.len()).all(|i| chance(i) == 1.0) {
         return constant + factor;
     }
     for (i, entry) in log.iter_mut().enumerate() {
-        *entry += if ruled_out(i) { factor } else { 0.0 };
+        *entry += mixture(chance(i), factor, 0.0);
     }
     constant
+}
+
+/// `ln(p e^a + (1−p) e^b)`, where `p` may be certain.
+fn mixture(p: f64, a: f64, b: f64) -> f64 {
+    match p {
+        0.0 => b,
+        1.0 => a,
+        _ => (p * a.exp() + (1.0 - p) * b.exp()).ln(),
+    }
 }
 
 #[cfg(test)]

@@ -161,6 +161,7 @@ fn pick_ended(it: &str, outcome: PickOutcome) -> String {
         PickOutcome::Missed => {
             format!("I could not get hold of the {it}. It may have moved a little.")
         }
+        PickOutcome::Vanished => format!("The {it} is no longer there."),
         PickOutcome::Blocked => {
             "My arm did not move as it should. Please look before you ask again.".to_owned()
         }
@@ -182,6 +183,7 @@ fn put_back_ended(it: &str, outcome: PickOutcome) -> String {
         PickOutcome::Pending
         | PickOutcome::Delivered
         | PickOutcome::Interrupted
+        | PickOutcome::Vanished
         | PickOutcome::Blocked => format!(
             "I was interrupted while putting the {it} back. Please look before you ask again."
         ),

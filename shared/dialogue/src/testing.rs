@@ -1,6 +1,6 @@
 //! Scenes and readings for the tests of this crate.
 
-use scene::{ObjectId, Reading, Response, Scene};
+use scene::{ObjectId, Perceived, Reading, Response, Scene};
 use serde_json::{Value as Json, json};
 
 use crate::{Costs, Durations, Model, Rng};
@@ -85,4 +85,33 @@ pub(crate) fn random_durations(rng: &mut Rng, model: &Model, costs: Costs) -> Du
     let lists = own.attribute.iter_mut().chain([&mut own.which, &mut own.point]);
     lists.flatten().for_each(|seconds| *seconds *= 0.5 + 1.5 * rng.uniform());
     own
+}
+
+/// The scene's objects as perceived: about half of the values in doubt.
+pub(crate) fn perceived(rng: &mut Rng, scene: &Scene) -> Scene {
+    let chances = |rng: &mut Rng, k: usize| {
+        let values = scene.attributes()[k].values.iter();
+        values.map(|value| (value.name.clone(), rng.uniform())).collect::<Vec<_>>()
+    };
+    let objects = scene.objects().iter().zip(100..).map(|(object, number)| {
+        let all = 0..scene.attributes().len();
+        let doubtful: Vec<usize> = all.filter(|_| rng.below(2) == 0).collect();
+        let attributes = doubtful.into_iter().map(|k| {
+            let mut values = chances(rng, k);
+            let sum: f64 = values.iter().map(|(_, p)| p).sum();
+            values.iter_mut().for_each(|(_, p)| *p /= sum);
+            (scene.attributes()[k].name.clone(), values)
+        });
+        Perceived {
+            number: ObjectId(number),
+            name: format!("{}-{number}", object.name),
+            attributes: attributes.collect(),
+            classes: vec![(object.name.clone(), 1.0)],
+            xyz: [0.0; 3],
+            yaw: 0.0,
+            seen_by: Vec::new(),
+            taken: false,
+        }
+    });
+    scene.with_objects(&objects.collect::<Vec<_>>())
 }

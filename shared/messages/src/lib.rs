@@ -26,6 +26,7 @@ pub use fixed::*;
 pub use ids::{ClientId, Epoch, Incarnation, RequestKey};
 pub use message_ref::MessageRef;
 pub use payloads::*;
+pub use perception::{Change, Detection, Look, Sighting};
 pub use services::{SUPERVISOR, Service};
 pub use text::{FixedText, TextTooLong};
 pub use topics::Topic;

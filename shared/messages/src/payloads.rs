@@ -3,7 +3,8 @@
 use crate::schema::payloads;
 use crate::{Hypothesis, RequestKey};
 use dialogue::{ActKind, Action, Attributed, Ended, Outcome};
-use scene::Question;
+use perception::{Change, Sighting};
+use scene::{ObjectId, Perceived, Question};
 use serde::{Deserialize, Serialize};
 
 payloads! {
@@ -11,6 +12,8 @@ payloads! {
     PolicyView [Question, ActKind, Action, Outcome]
     WorldView []
     TrajectoryView [MotionPhase]
+    Sighting [Change]
+    TableView []
 }
 
 /// Something that a client gives to the speech service to hear. Clients to speech; sent again with
@@ -67,8 +70,11 @@ pub struct PolicyView {
     pub applied: u64,
     /// The open interaction, 0 for none.
     pub interaction: u64,
-    /// Probability of each object, in the scene's order.
+    /// Probability of each object, in the scene's order or in that of [`objects`](Self::objects).
     pub belief: Vec<f64>,
+    /// Numbers of the objects of the belief, where they come from perception; empty where they are
+    /// those of the scene. Every object of this message is given by its number.
+    pub objects: Vec<ObjectId>,
     /// Probability that the wanted object is not here; 0 where that is not believed possible.
     pub absent: f64,
     /// Estimated parameters of the user, if the robot learns them: `p_l`, the probability that a
@@ -111,7 +117,7 @@ pub struct PolicyView {
 pub struct Delivery {
     /// The interaction that ended with it.
     pub interaction: u64,
-    /// The object, numbered as in the scene.
+    /// The object, by its number.
     pub object: u16,
     /// End of the time for a refusal, monotonic clock.
     pub until_ns: u64,
@@ -125,10 +131,54 @@ pub struct WorldView {
     /// Pose of each object in the scene's order, frame `base`: x, y, z in metres and quaternion
     /// x, y, z, w. None: handed over.
     pub objects: Vec<Option<[f64; 7]>>,
-    /// The object in the gripper.
+    /// Numbers of these objects, where they come from perception; else empty.
+    pub numbers: Vec<ObjectId>,
+    /// The object in the gripper, by its number.
     pub held: Option<u16>,
     /// Pose of the left and right gripper, as the objects'.
     pub grippers: [[f64; 7]; 2],
+}
+
+/// The objects on the table, where they come from perception. Policy to arm and clients.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TableView {
+    /// Number of changes of the table so far: each is a step of the dialogue.
+    pub version: u64,
+    /// The objects.
+    pub objects: Vec<TableObject>,
+    /// The latest changes by hand, by key: the object, or why it was refused.
+    pub answers: Vec<ChangeAnswer>,
+    /// Reports of sources that were refused.
+    pub refused: u64,
+    /// Why the latest of them was.
+    pub refusal: String,
+}
+
+/// An object on the table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TableObject {
+    /// The object as the dialogue knows it.
+    pub known: Perceived,
+    /// The best estimate of its place at this moment: centre in frame `base`, metres, and yaw, radians.
+    pub place: [f64; 4],
+    /// Standard deviation of each.
+    pub sd: [f64; 4],
+    /// When it was last seen, monotonic clock, nanoseconds.
+    pub seen_ns: u64,
+    /// Whether it was looked for in vain for so long that it counts as gone; the dialogue hears of it when
+    /// the arm is done.
+    pub gone: bool,
+}
+
+/// What became of a change by hand.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChangeAnswer {
+    /// Its key.
+    pub key: u64,
+    /// The object's number.
+    pub object: u16,
+    /// Why it was refused; empty if it was not.
+    pub refusal: String,
 }
 
 /// Largest number of points in a published trajectory.

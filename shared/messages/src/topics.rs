@@ -122,6 +122,19 @@ pub const ACT: Topic = Topic {
     readers: &[Service::Speech, Service::Arm, Service::Console],
     ..topic::<RobotAct>("policy/act", Some(Service::Policy))
 };
+/// Cameras and other sources, and clients, to policy.
+pub const SIGHTING: Topic = Topic {
+    readers: &[Service::Policy],
+    writers_max: CLIENTS_MAX,
+    buffer: WINDOW,
+    history: 0,
+    ..topic::<Sighting>("scene/sightings", None)
+};
+/// Policy to arm and clients.
+pub const OBJECTS: Topic = Topic {
+    readers: &[Service::Arm],
+    ..topic::<TableView>("scene/objects", Some(Service::Policy))
+};
 /// Policy to clients.
 pub const VIEW: Topic = topic::<PolicyView>("policy/view", Some(Service::Policy));
 /// Arm to policy and speech, and to the console, whose pages show it.
@@ -242,7 +255,7 @@ pub mod robot {
 
 /// Every topic that the group's services and clients share, but for those of [`robot`], which are only
 /// used with a robot behind them.
-pub const ALL: [Topic; 17] = [
+pub const ALL: [Topic; 19] = [
     INJECTION,
     AUDIO,
     RECEIPT,
@@ -254,6 +267,8 @@ pub const ALL: [Topic; 17] = [
     OBSERVATION,
     MARK,
     ACT,
+    SIGHTING,
+    OBJECTS,
     VIEW,
     STATUS,
     JOINTS,

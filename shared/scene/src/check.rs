@@ -178,7 +178,10 @@ impl Draft {
         let objects = (self.objects.into_iter().zip(places))
             .map(|(object, values)| Object {
                 name: object.name,
+                number: None,
                 values,
+                chances: Vec::new(),
+                taken: false,
                 placement: object.placement,
             })
             .collect();

@@ -11,6 +11,7 @@ mod describe;
 mod ids;
 mod json;
 mod model;
+mod perceived;
 mod plural;
 mod question;
 mod question_json;
@@ -24,6 +25,7 @@ mod tests;
 
 pub use ids::{AttributeId, ObjectId, ValueId, WordId};
 pub use model::{Attribute, Form, Object, Placement, Role, Scene, Value};
+pub use perceived::{Perceived, likeliest};
 pub use plural::plural;
 pub use question::Question;
 pub use question_json::{QuestionError, question_from_json, question_to_json, reading_to_json};

@@ -1,5 +1,5 @@
-//! The checked scene. Built only by the readers of this crate, so every invariant below holds:
-//! at least one object, names unique, every value of an object listed by its attribute.
+//! The checked scene. Built only by this crate, so every invariant below holds: names are unique,
+//! every value of an object is listed by its attribute, and a scene file has at least one object.
 
 use std::collections::HashMap;
 
@@ -25,8 +25,15 @@ pub struct Scene {
 pub struct Object {
     /// Unique name; not something that people say.
     pub name: String,
-    /// Value per attribute, in the scene's attribute order; an object may lack one.
+    /// The number under which it was perceived; none for an object of the scene file.
+    pub number: Option<ObjectId>,
+    /// Value per attribute, in the scene's attribute order; an object may lack one. Of a value that is
+    /// in doubt it is the likeliest.
     pub values: Vec<Option<ValueId>>,
+    /// Per attribute the probability of each value, where it is in doubt; empty if nothing is.
+    pub chances: Vec<Option<Vec<f64>>>,
+    /// Whether it was handed to a person ([`Perceived::taken`](crate::Perceived::taken)).
+    pub taken: bool,
     /// Place and size; an object without them can be talked about and not fetched.
     pub placement: Option<Placement>,
 }
@@ -215,6 +222,13 @@ impl Scene {
         Self { name, noun, asks, objects, attributes, words, key, names, vocabularies }
     }
 
+    /// The same words about other objects.
+    pub(crate) fn with(&self, objects: Vec<Object>) -> Self {
+        let (name, noun, asks) = (self.name.clone(), self.noun.clone(), self.asks.clone());
+        let (attributes, words) = (self.attributes.clone(), self.words.clone());
+        Self::assemble(name, noun, asks, objects, attributes, words)
+    }
+
     /// The scene's name.
     pub fn name(&self) -> &str {
         &self.name
@@ -359,6 +373,9 @@ fn key(objects: &[Object], attributes: &[Attribute]) -> u64 {
         hash.text(&object.name);
         for value in &object.values {
             hash.count(value.map_or(0, |v| v.index() + 1));
+        }
+        for chance in object.chances.iter().flatten().flatten() {
+            hash.number(*chance);
         }
     }
     hash.value()

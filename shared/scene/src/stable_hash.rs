@@ -28,6 +28,11 @@ impl StableHash {
         self.bytes(&(count as u64).to_le_bytes());
     }
 
+    /// Adds a number by its bits.
+    pub fn number(&mut self, number: f64) {
+        self.bytes(&number.to_bits().to_le_bytes());
+    }
+
     /// Adds the length of a text and the text.
     pub fn text(&mut self, text: &str) {
         self.count(text.len());

@@ -6,6 +6,7 @@
 mod dialogue;
 mod latest;
 mod lines;
+mod table;
 
 use messages::{
     ArmStatus, EarState, Hearing, MicrophoneState, MotionInhibit, PickOutcome, PickPhase, Task,
@@ -18,6 +19,7 @@ pub use dialogue::{
 };
 pub use latest::{Arrived, Latest, LatestTopics, PromptId, drain, quiet};
 pub use lines::Lines;
+pub use table::TableScene;
 
 use crate::Time;
 

@@ -116,7 +116,7 @@ impl Group {
             speech: Process::new(configured::<SpeechProgram>),
             grounding: Process::new(configured::<GroundingProgram>),
             // Without the precomputed decisions, which take longer than a dialogue.
-            policy: Process::new(|| SETTINGS.manager().expect("valid settings")),
+            policy: Process::new(|| SETTINGS.manager().expect("valid settings").into()),
             arm: Process::new(configured::<ArmProgram>),
             latest: Latest::default(),
             to_speech: Vec::new(),
@@ -247,7 +247,7 @@ impl Group {
                 self.to_speech.push(speech::In::Act(act.clone().into()));
                 self.to_arm.push(arm::In::Act(act.into()));
             }
-            policy::Out::View(_) => {}
+            policy::Out::View(_) | policy::Out::Objects(_) => {}
         }
     }
 

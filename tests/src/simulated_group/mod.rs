@@ -10,6 +10,7 @@
 //! | `user.rs` | the user and the input channels |
 //! | `client.rs` | the user at a terminal, by the command line's own code, who is killed as well |
 //! | `routes.rs` | routing of the services' messages |
+//! | `table.rs`, `perceived.rs` | objects from perception: a table under a simulated camera, and dialogues about it |
 //! | `attribution.rs` | a study of turn-taking: to which question each answer is credited |
 
 mod attribution;
@@ -18,7 +19,9 @@ mod disk;
 mod faults;
 mod forger;
 mod host;
+mod perceived;
 mod routes;
+mod table;
 mod user;
 
 use config::Settings;
@@ -35,6 +38,8 @@ pub use attribution::{Count, study};
 pub use client::Client;
 pub use faults::{Fault, Faults};
 pub use host::{Crash, Host};
+pub use perceived::{Perceived, converse, perceive};
+pub use table::{Happening, TableTop};
 pub use user::{Channel, GroupUser};
 
 /// Time between two passes.
@@ -106,6 +111,10 @@ pub struct SimulatedGroup {
     story: Vec<String>,
     /// Random numbers of the forger of messages, if there is one.
     forger: Option<Rng>,
+    /// The table, where the objects come from perception.
+    pub table: Option<TableTop>,
+    /// When the user makes the request, seconds.
+    request_s: f64,
 }
 
 impl SimulatedGroup {
@@ -135,6 +144,8 @@ impl SimulatedGroup {
             view: PolicyView::default(),
             story: Vec::new(),
             forger: None,
+            table: None,
+            request_s: user::REQUEST_S,
         }
     }
 
@@ -142,6 +153,17 @@ impl SimulatedGroup {
     pub fn talking(settings: Settings, user: GroupUser, seed: u64) -> Self {
         let (arm, sentence_s, rng) = (None, SENTENCE_S, Rng::new(seed));
         Self { arm, sentence_s, rng, ..Self::new(settings, user, Faults::none()) }
+    }
+
+    /// Puts a table under a camera in front of the robot; the user lets it look first.
+    #[must_use]
+    pub fn with_table(self, table: TableTop) -> Self {
+        Self { table: Some(table), request_s: 1.5, ..self }
+    }
+
+    /// Returns the number of questions in the latest interaction that ended.
+    pub fn questions(&self) -> u32 {
+        self.view.last.as_ref().map_or(0, |ended| ended.questions)
     }
 
     /// Changes the scene under the dialogue, right after the first question was decided.
@@ -178,7 +200,8 @@ impl SimulatedGroup {
     /// Runs until the interaction is over and published, or the time is up.
     pub fn run(&mut self) {
         if self.client.is_none() {
-            self.user.request(Domain { scene: &self.settings.scene, model: &self.model });
+            let domain = Domain { scene: &self.settings.scene, model: &self.model };
+            self.user.request(domain, self.request_s);
         }
         while self.now < END && !self.is_over() {
             self.now = self.now + STEP;
@@ -189,6 +212,7 @@ impl SimulatedGroup {
             self.user_speaks();
             self.client_looks();
             self.finish_decoding();
+            self.camera_looks();
             self.pass_all();
         }
     }
@@ -307,6 +331,15 @@ impl SimulatedGroup {
         if !is_up && self.restarts[which].is_none() {
             self.restarts[which] = Some(self.now + self.faults.downtime());
             self.log(format_args!("{name} dies"));
+        }
+    }
+
+    fn camera_looks(&mut self) {
+        let Some(table) = &mut self.table else { return };
+        for sighting in table.look(self.now) {
+            let copies = self.faults.copies(self.now);
+            let message = policy::In::Sighting(Box::new(sighting));
+            self.inboxes.policy.extend(std::iter::repeat_n(message, copies));
         }
     }
 

@@ -157,6 +157,8 @@ impl SimulatedGroup {
                     if act.kind == ActKind::Ask
                         && let Ok(question) = act.question.try_into()
                     {
+                        let table = self.table.as_ref();
+                        let question = table.map_or(question, |table| table.question(question));
                         self.user.announce(act.prompt, act.scene_key, question);
                     }
                     self.picked = self.picked.or(act.pick().map(|(_, object)| object));
@@ -164,6 +166,12 @@ impl SimulatedGroup {
                     let to_arm = arm::In::Act(act.into());
                     self.inboxes.speech.extend(repeat_n(to_speech, copies));
                     self.inboxes.arm.extend(repeat_n(to_arm, copies));
+                }
+                policy::Out::Objects(view) => {
+                    if let Some(table) = &mut self.table {
+                        table.on_table(&view);
+                    }
+                    self.inboxes.arm.extend(repeat_n(arm::In::Table(view), copies));
                 }
                 policy::Out::View(view) => {
                     if let Some(client) = &mut self.client {
@@ -178,7 +186,16 @@ impl SimulatedGroup {
     pub(super) fn route_arm(&mut self, outputs: Vec<arm::Out>) {
         for output in outputs {
             match output {
+                arm::Out::World(world) => {
+                    if let Some(table) = &mut self.table {
+                        table.on_world(&world);
+                        self.inboxes.policy.push(policy::In::World(world));
+                    }
+                }
                 arm::Out::Status(status) => {
+                    if let Some(table) = &mut self.table {
+                        table.on_arm(&status);
+                    }
                     let copies = self.faults.copies(self.now);
                     self.inboxes.policy.extend(repeat_n(policy::In::Arm(status), copies));
                     self.inboxes.speech.extend(repeat_n(speech::In::Arm(status), copies));

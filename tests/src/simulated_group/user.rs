@@ -32,7 +32,7 @@ const PROMPT_S: (f64, f64) = (0.35, 2.2);
 /// Delay between the decision to speak and speech with push-to-talk, seconds.
 const CLICK_S: f64 = 1.0;
 /// When the request begins, seconds.
-const REQUEST_S: f64 = 0.1;
+pub(super) const REQUEST_S: f64 = 0.1;
 /// Probability of answering by value instead of yes or no, in the study of turn-taking.
 const BY_VALUE: f64 = 0.1;
 
@@ -121,8 +121,8 @@ impl GroupUser {
         self.timed.user_mut().want(object);
     }
 
-    pub(super) fn request(&mut self, domain: Domain<'_>) {
-        self.timed.request(domain, REQUEST_S);
+    pub(super) fn request(&mut self, domain: Domain<'_>, at_s: f64) {
+        self.timed.request(domain, at_s);
     }
 
     /// The robot has decided on a question.

@@ -6,6 +6,7 @@ mod grasp;
 mod kills;
 mod one_arm;
 mod orders;
+mod perceived;
 mod planning;
 mod point;
 mod publish;
@@ -45,7 +46,8 @@ pub(crate) fn shipped(profile: Option<&str>, over: &[(String, String)]) -> Confi
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
     let settings = Settings::load(folder, profile, over).unwrap();
     let setup = ArmSetup::new(&settings).unwrap();
-    Config { arm: settings.arm, setup, scene: settings.scene }
+    let perceives = settings.group.perception.enabled;
+    Config { arm: settings.arm, setup, scene: settings.scene, perceives }
 }
 
 /// Returns the shipped configuration with its six bowls, in real time.

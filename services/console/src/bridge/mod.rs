@@ -86,9 +86,13 @@ struct Topics {
 }
 
 impl Topics {
-    fn open(bus: &Bus) -> Result<Self, BusError> {
+    fn open(bus: &Bus, settings: &Settings) -> Result<Self, BusError> {
+        let latest = LatestTopics::open(bus)?;
         Ok(Self {
-            latest: LatestTopics::open(bus)?,
+            latest: match settings.group.perception.enabled {
+                true => latest.with_table(bus, &settings.scene)?,
+                false => latest,
+            },
             acts: bus.reader(&topics::ACT)?,
             partials: bus.reader(&topics::PARTIAL)?,
             observations: bus.reader(&topics::OBSERVATION)?,
@@ -110,14 +114,18 @@ impl Bridge {
         let bus = client.bus();
         let failed =
             |error| Failure::new(Exit::NotReached, format!("the motion stop's socket: {error}"));
+        let scene = match settings.group.perception.enabled {
+            true => settings.scene.with_objects(&[]),
+            false => settings.scene.clone(),
+        };
         let lines = LineStore::in_folder(&paths.run(), "console.lines");
         let past = LineStore::in_folder(&paths.run(), "console.history");
         let transcript = Transcript::after(lines.read(), now().unix_ms);
         let history = History::after(past.read());
         Ok(Self {
-            topics: Topics::open(bus)?,
+            topics: Topics::open(bus, settings)?,
             injections: bus.encoded_writer(&topics::INJECTION)?,
-            model: ViewModel::new(settings.scene.clone(), transcript, history),
+            model: ViewModel::new(scene, transcript, history),
             voice: Voice::default(),
             study,
             submissions: Submissions::default(),
@@ -165,14 +173,23 @@ impl Bridge {
     fn take_in(&mut self, now: Now) {
         let Self { topics, model, .. } = self;
         let (observations, acts) = (drain(&topics.observations), drain(&topics.acts));
-        let arrived = topics.latest.take();
+        let mut arrived = topics.latest.take();
+        if let Some(scene) = arrived.scene.take() {
+            model.set_scene(scene);
+        }
         for receipt in &arrived.receipts {
             // What an accepted utterance still needs.
             let later = [Service::Grounding, Service::Policy, Service::Arm];
             self.submissions.on_receipt(receipt, || model.unavailable(&later), &self.app.hub);
             model.on_receipt(receipt, now);
         }
-        observations.iter().for_each(|observation| model.on_observation(observation));
+        let table = topics.latest.table();
+        for observation in &observations {
+            match table {
+                Some(table) => model.on_observation(&table.observation(observation)),
+                None => model.on_observation(observation),
+            }
+        }
         acts.iter().for_each(|act| model.on_act(act));
         arrived.activity.into_iter().for_each(|activity| model.on_activity(activity));
         if let Some(presented) = arrived.presented {
@@ -184,7 +201,9 @@ impl Bridge {
         for (status, _) in arrived.statuses {
             model.on_arm(status, now);
         }
-        quiet(topics.worlds.latest()).into_iter().for_each(|world| model.on_world(world));
+        let world = quiet(topics.worlds.latest());
+        let world = world.map(|world| table.map_or(world.clone(), |table| table.world(&world)));
+        world.into_iter().for_each(|world| model.on_world(world));
         let trajectory = quiet(topics.trajectories.latest());
         trajectory.into_iter().for_each(|trajectory| model.on_trajectory(trajectory));
         self.newest_joints = quiet(topics.joints.latest()).or(self.newest_joints);
@@ -205,7 +224,7 @@ impl Bridge {
         if self.model.is_of_another_scene()
             && let Ok(settings) = Settings::load_snapshot(&self.paths.run())
         {
-            self.model.set_scene(settings.scene);
+            self.model.set_scene(self.topics.latest.set_scene(settings.scene));
         }
     }
 

@@ -254,6 +254,7 @@ fn view_model_sections_keep_their_keys() {
     model.on_hearing(Hearing { microphone: MicrophoneState::Off.into(), ..Hearing::default() });
     model.on_arm(ArmStatus { phase: PickPhase::Idle.into(), ..ArmStatus::default() }, now(2));
     let world = WorldView {
+        numbers: Vec::new(),
         at_ns: 1,
         objects: vec![Some([0.5, 0.0, 0.1, 0.0, 0.0, 0.0, 1.0]), None],
         held: None,

@@ -73,7 +73,7 @@ fn a_stop_changes_no_order() {
 
 #[test]
 fn the_stop_is_heard_from_the_arm() {
-    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let status = |stopped| In::Arm(ArmStatus { stopped, ..ArmStatus::default() });
     assert_eq!(tell(&mut node, status(1), at(1)).0.len(), 1);
     assert!(node.state().stopped);

@@ -28,8 +28,8 @@ fn policy_is_recovered_from_a_snapshot_in_the_middle_of_an_interaction() {
     let mut manager = manager();
     let state = asked(&mut manager);
     let record = Record { cause: Cause::Silence, at: at(1), state };
-    let node = PolicyNode::recover(manager, vec![record.clone()]).unwrap();
+    let node = PolicyNode::recover(manager.into(), vec![record.clone()]).unwrap();
     let snapshot = node.snapshot().expect("a snapshot");
-    let again = PolicyNode::recover(super::manager(), snapshot).unwrap();
+    let again = PolicyNode::recover(super::manager().into(), snapshot).unwrap();
     assert_eq!(again.state(), &record.state);
 }

@@ -219,7 +219,7 @@ fn it_can_be_called_off_until_the_arm_holds_it() {
 
 #[test]
 fn an_end_of_another_task_is_no_end() {
-    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     node.state = handed_over(&mut manager(), &["clear"]);
     node.state = remark(&mut manager(), &node.state, wish(&[]));
     let (pick, ObjectId(object)) = node.state().ordered().expect("an order");
@@ -232,7 +232,7 @@ fn an_end_of_another_task_is_no_end() {
         outcome: outcome.into(),
         ..ArmStatus::default()
     };
-    let mut forged = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut forged = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     forged.state = node.state.clone();
     tell(&mut forged, In::Arm(done(PickOutcome::Delivered)), at(9));
     assert!(text(forged.state()).starts_with("I was interrupted"), "{}", text(forged.state()));

@@ -223,7 +223,7 @@ fn settings_that_change_at_rest_are_recorded_and_change_nothing_else() {
     let before = manager.first();
     let other = settings_with(&[("dialogue.epsilon", "0.02")]);
     let mut node = PolicyNode::recover(
-        manager_of(&other),
+        manager_of(&other).into(),
         vec![Record { cause: Cause::Snapshot, at: at(1), state: before.clone() }],
     )
     .unwrap();

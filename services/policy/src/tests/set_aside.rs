@@ -15,7 +15,7 @@ fn start(node: &mut PolicyNode, is_own: bool, now: Time) -> Vec<Record> {
 
 #[test]
 fn policy_without_memory_takes_no_old_utterance_and_gives_no_old_number() {
-    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let mut records = start(&mut node, true, at(1));
     assert_eq!(records.len(), 1);
     for old in [1, 2, 17, OVER] {
@@ -29,16 +29,16 @@ fn policy_without_memory_takes_no_old_utterance_and_gives_no_old_number() {
     refold(&mut manager(), &records).unwrap();
 
     // Every further start repeats it.
-    let mut again = PolicyNode::recover(manager(), records).unwrap();
+    let mut again = PolicyNode::recover(manager().into(), records).unwrap();
     assert_eq!(start(&mut again, false, at(4)), []);
     assert_eq!(again.state(), state);
 }
 
 #[test]
 fn interaction_ends_with_the_reason_when_a_journal_was_set_aside() {
-    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let mut records = tell(&mut node, observation(1, 0, &Reading::default()), at(1)).0;
-    let mut node = PolicyNode::recover(manager(), records.clone()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), records.clone()).unwrap();
     records.extend(start(&mut node, false, at(2)));
     let state = node.state();
     assert_eq!(state.ended.as_ref().map(|ended| ended.outcome), Some(Outcome::Abandoned));
@@ -50,7 +50,7 @@ fn interaction_ends_with_the_reason_when_a_journal_was_set_aside() {
 /// The arm's journal may remember another pick under the number of this one.
 #[test]
 fn delivery_of_another_object_than_the_ordered_one_is_none() {
-    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let sure = words(&["small", "white", "plastic", "dishwasher", "dishwasher", "dishwasher"]);
     tell(&mut node, observation(1, 0, &sure), at(1));
     let (pick, object) = node.state().act.pick.expect("sure enough to pick");

@@ -193,7 +193,7 @@ fn while_the_person_speaks_on_nothing_is_decided() {
 
 #[test]
 fn what_was_held_is_decided_when_the_person_has_ended() {
-    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let speaks = Activity { onset_ns: at(1).ns(), pending: 1, ..Activity::default() };
     tell(&mut node, In::Activity(speaks), at(1));
     tell(&mut node, observation(1, 0, &Reading::default()), at(2));
@@ -205,7 +205,7 @@ fn what_was_held_is_decided_when_the_person_has_ended() {
 
 #[test]
 fn a_sound_that_never_ends_holds_nothing_back_for_ever() {
-    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let speaks = Activity { onset_ns: at(1).ns(), pending: 1, ..Activity::default() };
     tell(&mut node, In::Activity(speaks), at(1));
     tell(&mut node, observation(1, 0, &Reading::default()), at(2));

@@ -54,12 +54,20 @@ impl Conversation {
         let client = Client::join(paths)?;
         let settings = Settings::load_snapshot(&paths.run())?;
         Ok(Self {
-            topics: LatestTopics::open(client.bus())?,
+            topics: match settings.group.perception.enabled {
+                true => {
+                    LatestTopics::open(client.bus())?.with_table(client.bus(), &settings.scene)?
+                }
+                false => LatestTopics::open(client.bus())?,
+            },
             injections: None,
             saying: VecDeque::new(),
             own: HashSet::new(),
             latest: Latest::default(),
-            scene: settings.scene,
+            scene: match settings.group.perception.enabled {
+                true => settings.scene.with_objects(&[]),
+                false => settings.scene,
+            },
             may_be_absent: settings.dialogue.prior.absent > 0.0,
             paths: paths.clone(),
             folder: folder(paths).ok_or_else(|| ended(paths))?,
@@ -137,7 +145,10 @@ impl Conversation {
         if self.checked.elapsed() >= CHECK_EVERY {
             self.check()?;
         }
-        let arrived = self.topics.take();
+        let mut arrived = self.topics.take();
+        if let Some(scene) = arrived.scene.take() {
+            self.scene = scene;
+        }
         if let Some(view) = &arrived.view {
             self.follow_scene(view);
         }
@@ -179,7 +190,7 @@ impl Conversation {
         let before = self.latest.view.as_ref().map_or(self.scene.key(), |view| view.scene_key);
         let is_news = view.scene_key != before && view.scene_key != self.scene.key();
         if is_news && let Ok(settings) = Settings::load_snapshot(&self.paths.run()) {
-            self.scene = settings.scene;
+            self.scene = self.topics.set_scene(settings.scene);
         }
     }
 }

@@ -6,14 +6,22 @@ use super::Manager;
 use super::evidence::{Evidence, Mark};
 use super::state::{Interaction, State};
 use crate::user_model::Person;
-use crate::{Belief, Posterior, PriorObjects};
+use crate::{Belief, Model, Posterior, PriorObjects};
+use std::borrow::Cow;
+
+/// Interpretations, the point that is pointed at, and objects that are refused or meant.
+type Content<'a> = (&'a [(f64, Question, Reading)], Option<[f64; 3]>, Option<&'a Mark>);
+
+/// Factor of an object that a person has already.
+const TAKEN: f64 = 1e-12;
 
 impl Manager {
     /// Returns the belief of an interaction in which nothing was said.
     pub fn prior(&self, state: &State) -> Belief {
         let objects = self.setup.scene.objects();
+        let any_taken = objects.iter().any(|object| object.taken);
         let mut weights = match self.setup.prior.objects {
-            PriorObjects::Uniform if self.setup.model.absent().is_none() => {
+            PriorObjects::Uniform if self.setup.model.absent().is_none() && !any_taken => {
                 return Belief::uniform(objects.len());
             }
             PriorObjects::Uniform => vec![1.0 / objects.len() as f64; objects.len()],
@@ -22,9 +30,14 @@ impl Manager {
                 state.history.prior(names, self.setup.prior.smoothing)
             }
         };
+        for (weight, object) in weights.iter_mut().zip(objects) {
+            *weight *= if object.taken { TAKEN } else { 1.0 };
+        }
         if self.setup.model.absent().is_some() {
+            let nothing = self.setup.nothing_stands();
+            let absent = if nothing { 1.0 } else { self.setup.prior.absent };
             weights.iter_mut().for_each(|p| *p *= 1.0 - self.setup.prior.absent);
-            weights.push(self.setup.prior.absent);
+            weights.push(absent);
         }
         Belief::from_probabilities(&weights).expect("settings are checked: each weight is positive")
     }
@@ -53,11 +66,10 @@ impl Manager {
     pub(super) fn update(
         &self,
         posterior: &mut Posterior,
-        interpretations: &[(f64, Question, Reading)],
-        gesture: Option<[f64; 3]>,
-        mark: Option<&Mark>,
+        model: &Model,
+        (interpretations, gesture, mark): Content<'_>,
     ) {
-        posterior.update_mixture(&self.setup.model, interpretations);
+        posterior.update_mixture(model, interpretations);
         if let (Some(pointing), Some(at)) = (&self.pointing, gesture)
             && let Some(log) = pointing.log_likelihood(at, self.setup.model.hypotheses())
         {
@@ -69,13 +81,30 @@ impl Manager {
         }
     }
 
+    /// Returns the observation model after what was said of the wanted object: what values in doubt are
+    /// likely to be.
+    pub(super) fn learned<'a>(
+        &'a self,
+        evidence: impl Iterator<Item = &'a Evidence>,
+    ) -> Cow<'a, Model> {
+        let mut model = Cow::Borrowed(&self.setup.model);
+        if model.has_doubts() {
+            evidence.for_each(|it| model.to_mut().learn(&it.in_scene(&self.setup.scene)));
+        }
+        model
+    }
+
     /// Returns the posterior after all evidence of the interaction, in the present scene.
     pub(super) fn fold(&self, state: &State, open: &Interaction) -> Posterior {
         let mut posterior = self.beginning(state);
+        let mut model = self.learned(std::iter::empty());
         for evidence in &open.evidence {
             let interpretations = evidence.in_scene(&self.setup.scene);
             let Evidence { gesture, mark, .. } = evidence;
-            self.update(&mut posterior, &interpretations, *gesture, mark.as_ref());
+            self.update(&mut posterior, &model, (&interpretations, *gesture, mark.as_ref()));
+            if model.has_doubts() {
+                model.to_mut().learn(&interpretations);
+            }
         }
         posterior
     }

@@ -102,7 +102,9 @@ impl Manager {
     /// Updates the interaction's posterior with an utterance, and remembers its content.
     pub(super) fn take_in(&self, open: &mut Interaction, heard: Heard) {
         let Heard { interpretations, unknown, gesture, mark } = heard;
-        self.update(&mut open.posterior, &interpretations, gesture, mark.as_ref());
+        let model = self.learned(open.evidence.iter());
+        let content = (&interpretations[..], gesture, mark.as_ref());
+        self.update(&mut open.posterior, &model, content);
         if self.recall {
             let interpretations = interpretations
                 .iter()

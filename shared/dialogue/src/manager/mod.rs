@@ -17,6 +17,7 @@
 //! | `put_back.rs` | putting back what was handed over |
 //! | `floor.rs` | deferred decisions and response windows |
 //! | `reconfigure.rs`, `evidence.rs` | an interaction under another scene or other settings |
+//! | `objects.rs` | objects from perception |
 //! | `refold.rs` | check of a journal |
 
 mod acts;
@@ -32,6 +33,7 @@ mod history;
 mod inform;
 mod intents;
 mod line;
+mod objects;
 mod pointing;
 mod put_back;
 mod queue;
@@ -56,6 +58,7 @@ pub use state::{
 };
 
 use acts::{order_again, say, set, set_reasons};
+use objects::SceneFile;
 use pointing::Pointing;
 use scene::{ObjectId, Scene};
 
@@ -64,7 +67,7 @@ use crate::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 use crate::time::Time;
 use crate::{
     ActKind, Action, Actions, Announce, Belief, Costs, Decision, DecisionProblem, Durations, Ended,
-    Model, Outcome, PickOutcome, Planner, PolicyTable, Prior, Step, TurnTaking, rendering,
+    Model, Outcome, PickOutcome, Planner, PolicyTable, Prior, Step, Table, TurnTaking, rendering,
 };
 
 /// Objects that are named before one of them is picked.
@@ -94,6 +97,8 @@ pub struct Setup {
     pub gestures: Option<(Gestures, [f64; 3])>,
     /// Settings of turn-taking.
     pub turns: TurnTaking,
+    /// Whether the objects come from perception; those of the scene are what they may be.
+    pub perceives: bool,
 }
 
 impl Setup {
@@ -107,6 +112,10 @@ impl Setup {
 /// The dialogue manager of one scene and one decision problem.
 pub struct Manager {
     setup: Setup,
+    /// What the setup was made of, where the objects come from perception.
+    file: Option<Box<SceneFile>>,
+    /// The table that the setup is about.
+    table: Option<Table>,
     pointing: Option<Pointing>,
     planner: Box<dyn Planner + Send>,
     /// Descriptions of the objects, as far as they were needed.
@@ -118,13 +127,17 @@ pub struct Manager {
 impl Manager {
     /// Returns the manager of a setup; `key` identifies setup and planner.
     pub fn new(mut setup: Setup, planner: Box<dyn Planner + Send>, key: u64) -> Self {
+        let file = setup.perceives.then(|| Box::new(SceneFile::of(&setup)));
         if setup.prior.absent > 0.0 {
             setup.model = setup.model.with_absent();
         }
         let pointing =
             setup.gestures.map(|(model, user_m)| Pointing::new(model, user_m, &setup.scene));
         let descriptions = vec![None; setup.scene.objects().len()];
-        Self { setup, pointing, planner, descriptions, recall: true, key }
+        let (table, recall) = (None, true);
+        let mut manager = Self { setup, file, table, pointing, planner, descriptions, recall, key };
+        manager.follow(&manager.first());
+        manager
     }
 
     /// Keeps no evidence by name in the state: for simulations, whose scene never changes. It
@@ -167,11 +180,13 @@ impl Manager {
     /// Returns the state before anything was said.
     pub fn first(&self) -> State {
         let (scene_key, settings_key) = (self.setup.scene.key(), self.key);
-        State { scene_key, settings_key, ..State::default() }
+        let table = self.file.is_some().then(Table::default);
+        State { scene_key, settings_key, table, ..State::default() }
     }
 
     /// Advances `state` by `cause`, at time `at`.
     pub fn step(&mut self, state: &mut State, cause: &Cause, at: Time) {
+        self.lay(state, cause);
         match cause {
             Cause::Snapshot => {}
             Cause::Utterance(utterance) => self.hear(state, utterance, at),
@@ -181,7 +196,7 @@ impl Manager {
                 Some((id, _)) if id == *pick => self.end_put_back(state, *outcome, at),
                 _ => self.end_pick(state, *pick, *outcome, at),
             },
-            Cause::Reconfigured => self.reconfigure(state, at),
+            Cause::Reconfigured | Cause::Objects(_) => self.reconfigure(state, at),
             Cause::MotionStop(stopped) => self.note_stop(state, *stopped, at),
             Cause::SetAside(over) => self.set_aside(state, *over, at),
         }
@@ -202,6 +217,10 @@ impl Manager {
     /// Lets the planner precompute decisions from the prior of a first interaction, and returns them
     /// if it is a planner that keeps any.
     pub fn precompute(&mut self) -> Option<&PolicyTable> {
+        if self.file.is_some() {
+            // The first interaction is about objects that are not known yet.
+            return None;
+        }
         self.planner.table()?;
         let prior = self.prior(&State::default());
         self.planner.prepare(&self.setup.problem(), &prior);
@@ -256,7 +275,10 @@ impl Manager {
         let step = Step { interaction: open.id.0, step: open.step };
         open.step += 1;
         let concessions = open.conceded.in_scene(&self.setup.scene);
-        let problem = DecisionProblem { concessions: &concessions, ..self.setup.problem() };
+        // What was said of values in doubt counts for the questions to come.
+        let model = self.learned(open.evidence.iter()).into_owned();
+        let problem =
+            DecisionProblem { model: &model, concessions: &concessions, ..self.setup.problem() };
         Some(open.posterior.decide(&mut *self.planner, &problem, step))
     }
 
@@ -352,6 +374,7 @@ impl Manager {
         let delivered = state.open.as_ref().filter(|_| outcome == PickOutcome::Delivered).cloned();
         if let Some(open) = &delivered {
             state.history.count(&open.picked);
+            self.hand_over_from_table(state, &open.picked, true);
         }
         let description = self.description(object);
         let content = Content::PickEnded(description.clone(), outcome);
@@ -365,7 +388,8 @@ impl Manager {
             let interaction = Interaction { deferred: None, ..interaction };
             HandedOver { interaction, at, lines: vec![state.last_prompt] }
         });
-        let goes_on = [PickOutcome::Delivered, PickOutcome::Unreachable, PickOutcome::Missed];
+        use PickOutcome::{Delivered, Missed, Unreachable, Vanished};
+        let goes_on = [Delivered, Unreachable, Missed, Vanished];
         if goes_on.contains(&outcome) {
             state.queue = queue;
         }
@@ -390,7 +414,7 @@ impl Manager {
         }
         state.ended = Some(Ended {
             interaction: open.id,
-            object: open.pick.map(|(_, object)| object),
+            object: open.pick.map(|(_, object)| self.setup.scene.number(object)),
             name: open.pick.map(|_| open.picked),
             outcome,
             questions,

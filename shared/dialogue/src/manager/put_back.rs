@@ -268,9 +268,10 @@ impl Manager {
     /// The arm has ended the order to put an object back.
     pub(super) fn end_put_back(&mut self, state: &mut State, outcome: PickOutcome, at: Time) {
         let Some(it) = state.putting_back.take() else { return };
-        let name = &self.setup.scene.object(it.object).name;
+        let name = self.setup.scene.object(it.object).name.clone();
         if outcome == PickOutcome::PutBack {
-            state.with_user.take_if(|with_user| with_user.name == *name);
+            state.with_user.take_if(|with_user| with_user.name == name);
+            self.hand_over_from_table(state, &name, false);
         }
         if let Some(with_user) = &mut state.with_user {
             with_user.at = at;

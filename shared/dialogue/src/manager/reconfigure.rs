@@ -24,18 +24,23 @@ impl Manager {
         if !same_scene {
             // Their numbers belong to the former scene.
             state.act.alternatives.clear();
-            state.handed_over = None;
+            let kept = state.table.is_some();
+            state.handed_over = (state.handed_over.take())
+                .filter(|_| kept)
+                .and_then(|mut it| self.keep_delivery(&mut it.interaction).then_some(it));
             if state.to_put_back().is_some() {
                 // The arm gives up the order.
                 (state.act.kind, state.act.pick) = (ActKind::Wait, None);
             }
-            (state.with_user, state.putting_back) = (None, None);
+            let is_known = |name: &str| self.setup.scene.object_named(name).is_some();
+            state.with_user = state.with_user.take().filter(|it| kept && is_known(&it.name));
+            state.putting_back = None;
         }
         if state.open.is_none() {
             state.act.question = Question::None;
             return;
         }
-        if self.nothing_is_left(state) {
+        if state.table.is_none() && self.nothing_is_left(state) {
             return self.close(state, Outcome::SceneChanged, at, Content::SceneReplaced);
         }
         let known = self.known_objects();
@@ -96,11 +101,15 @@ impl Manager {
         if objects > KNOWN_MAX || !self.recall {
             return Vec::new();
         }
+        let stands: Vec<ObjectId> = (0..objects)
+            .map(ObjectId::from)
+            .filter(|object| !self.setup.scene.object(*object).taken)
+            .collect();
         let known = |object: ObjectId| KnownObject {
             description: self.description(object),
             name: self.setup.scene.object(object).name.clone(),
         };
-        (0..objects).map(ObjectId::from).map(known).collect()
+        stands.into_iter().map(known).collect()
     }
 }
 

@@ -17,7 +17,7 @@ use crate::time::Time;
 use crate::user_model::{Person, Reaction};
 use crate::{
     ActKind, Action, Belief, Ended, Interpretation, NamedQuestion, PickOutcome, Posterior,
-    Presentation,
+    Presentation, Table,
 };
 
 /// The dialogue's state.
@@ -29,6 +29,8 @@ pub struct State {
     pub settings_key: u64,
     /// Latest utterance that the state includes.
     pub applied: UtteranceSeq,
+    /// The objects on the table, where they come from perception.
+    pub table: Option<Table>,
     /// Last interaction number assigned.
     pub last_interaction: InteractionId,
     /// Last key given to an order to the arm.
@@ -286,6 +288,8 @@ pub enum Cause {
     },
     /// The service was started with other settings, perhaps with another scene.
     Reconfigured,
+    /// The objects on the table are these.
+    Objects(Table),
     /// The motion stop was latched, or released.
     MotionStop(bool),
     /// A journal of the group was set aside: every number up to this one is over.

@@ -100,7 +100,7 @@ fn open_answers_are_a_distribution() {
         let open = OpenQuestion::new(&model, k);
         for i in everyone(3) {
             let sum: f64 = (0..model.values(k))
-                .map(|v| open.answer(ValueId::from(v), model.column(k)[i.index()]))
+                .map(|v| open.answer(&model, (k, ValueId::from(v)), model.column(k)[i.index()]))
                 .sum();
             assert!((sum - 1.0).abs() < 1e-15, "{k:?} {i:?}: {sum}");
         }
@@ -174,4 +174,51 @@ fn certain_words_have_their_own_smoothing() {
             }
         }
     }
+}
+
+/// Every word and every answer weighs an object by the mixture over what it may be.
+#[test]
+fn values_in_doubt_are_mixtures() {
+    let file = pots();
+    let perceived = |number, class: &str, colors: &[(&str, f64)]| scene::Perceived {
+        number: ObjectId(number),
+        name: format!("{class}-{number}"),
+        classes: vec![(class.to_owned(), 1.0)],
+        attributes: vec![("color".to_owned(), named(colors))],
+        xyz: [0.0; 3],
+        yaw: 0.0,
+        seen_by: Vec::new(),
+        taken: false,
+    };
+    fn named(colors: &[(&str, f64)]) -> Vec<(String, f64)> {
+        colors.iter().map(|(name, p)| ((*name).to_owned(), *p)).collect()
+    }
+    let table = file.with_objects(&[
+        perceived(9, "a", &[("red", 0.7), ("blue", 0.3)]),
+        perceived(10, "b", &[("blue", 1.0)]),
+    ]);
+    let model = model(&file).with_objects(&table);
+    let told = |question, words: &[&str], response| {
+        let log = log_likelihood(&model, question, &heard(&table, words, response));
+        log.into_iter().map(f64::exp).collect::<Vec<_>>()
+    };
+    let close = |got: Vec<f64>, expected: [f64; 2]| {
+        let off = got.iter().zip(expected).any(|(got, expected)| (got - expected).abs() > 1e-14);
+        assert!(!off, "{got:?} not {expected:?}");
+    };
+    let (third, silent, total) = (1.0 / 3.0, 1.0 - P_L, 2.0 + 5.0 * ALPHA);
+    let word = |p: f64| P_L * third * (p + ALPHA) / total;
+    close(told(Question::None, &["red"], Response::None), [word(0.7), word(0.0)]);
+    close(told(Question::None, &["blue"], Response::None), [word(0.3), word(1.0)]);
+    let yes = |p: f64| silent * P_L * (p * (1.0 - EPSILON) + (1.0 - p) * EPSILON);
+    let red = Question::Attribute(COLOR, RED);
+    close(told(red, &[], Response::Yes), [yes(0.7), yes(0.0)]);
+    close(told(red, &[], Response::No), [yes(0.3), yes(1.0)]);
+    let named = |p: f64| P_L * third * (p * (1.0 - EPSILON) + (1.0 - p) * EPSILON / 2.0);
+    close(told(Question::Which(COLOR), &["red"], Response::None), [named(0.7), named(0.0)]);
+    let mut not_red = heard(&table, &[], Response::None);
+    not_red.excluded = vec![vec![table.word_named("red").unwrap()]];
+    let log = log_likelihood(&model, Question::None, &not_red);
+    let excluded = |p: f64| silent * third * (p * EPSILON + (1.0 - p) * (1.0 - EPSILON));
+    close(log.into_iter().map(f64::exp).collect(), [excluded(0.7), excluded(0.0)]);
 }

@@ -151,7 +151,9 @@ impl<'a> OneStepEvaluator<'a> {
                 greatest = TwoGreatest::of(others.map(|(_, sum)| sum));
                 here = self.all.without(&self.absent, greatest.but(&Block::default()));
             }
+            let in_doubt = !self.reduced.partition(partition).doubtful.is_empty();
             choices.push(match query {
+                query if in_doubt => self.doubtful(query, partition, &blocks),
                 Query::Is { block, .. } => {
                     let yes = &blocks[usize::from(block)];
                     let no = here.without(yes, greatest.but(yes));
@@ -197,6 +199,32 @@ impl<'a> OneStepEvaluator<'a> {
         {
             let heard = yes.weigh(is).plus(&no.weigh(not));
             outlook.add(&heard.plus(&self.absent.weigh(unsure)));
+        }
+        outlook.choice(query, channel, self.entropy)
+    }
+
+    /// A question about an attribute whose value is in doubt of some classes: every answer weighs every
+    /// block.
+    fn doubtful(&self, query: Query, partition: u16, blocks: &[Block]) -> Choice {
+        let channel = self.reduced.channel(query);
+        let partition = self.reduced.partition(partition);
+        let mut outlook = Outlook::new(self.bound);
+        let mut add = |probability: &dyn Fn(u16) -> f64| {
+            let weighed = (0..).zip(blocks).map(|(block, sum)| sum.weigh(probability(block)));
+            outlook.add(&weighed.fold(Block::default(), |sum, block| sum.plus(&block)));
+        };
+        match query {
+            Query::Is { block: asked, .. } => {
+                for heard in [(channel.own, channel.other), (channel.other, channel.own)] {
+                    add(&|block| partition.answer(asked, block, heard));
+                }
+            }
+            _ => {
+                partition.named().for_each(|named| add(&|block| partition.names(named, block)));
+                if channel.absent_other > 0.0 {
+                    add(&|block| partition.names_absent(block));
+                }
+            }
         }
         outlook.choice(query, channel, self.entropy)
     }

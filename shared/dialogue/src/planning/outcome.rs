@@ -2,7 +2,6 @@
 
 use super::announced::Announced;
 use super::channel::Query;
-use super::partition::Partition;
 use super::reduced::Reduced;
 
 /// Probability of each answer that tells something, and the class probabilities after it.
@@ -16,28 +15,18 @@ pub(crate) fn outcomes(reduced: &Reduced, query: Query, mass: &[f64]) -> Vec<(f6
             answers.push(weigh(mass, |c| if is(c) { channel.other } else { channel.own }));
         }
         Query::Is { partition, block } => {
-            let Partition { blocks, unknown, .. } = reduced.partition(partition);
-            for (is, not) in [(channel.own, channel.other), (channel.other, channel.own)] {
-                answers.push(weigh(mass, |c| match (blocks[c], unknown) {
-                    (own, _) if own == block => is,
-                    (none, Some(unknown)) if none == unknown.block => unknown.probability(is > not),
-                    _ => not,
-                }));
+            let partition = reduced.partition(partition);
+            for heard in [(channel.own, channel.other), (channel.other, channel.own)] {
+                answers.push(weigh(mass, |c| partition.answer(block, partition.blocks[c], heard)));
             }
         }
         Query::Which { partition } => {
             let partition = reduced.partition(partition);
-            let lacks = |c: usize| partition.lacks(partition.blocks[c]);
             for block in partition.named() {
-                answers.push(weigh(mass, |c| match partition.blocks[c] {
-                    own if own == block => channel.own,
-                    _ if lacks(c) => channel.lacking,
-                    _ => channel.other,
-                }));
+                answers.push(weigh(mass, |c| partition.names(block, partition.blocks[c])));
             }
             if channel.absent_other > 0.0 {
-                let absent =
-                    |c| if lacks(c) { channel.absent_lacking } else { channel.absent_other };
+                let absent = |c| partition.names_absent(partition.blocks[c]);
                 answers.push(weigh(mass, absent));
             }
         }

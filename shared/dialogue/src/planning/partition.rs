@@ -11,11 +11,13 @@ pub(crate) struct Partition {
     pub(crate) attribute: AttributeId,
     /// The block of every class.
     pub(crate) blocks: Vec<u16>,
-    /// The value of every block; `None` for the block of classes that lack the attribute, and for
-    /// that of what is not here.
+    /// The value of every block; `None` for the block of classes that lack the attribute, for that of
+    /// what is not here, and for classes whose value is in doubt.
     pub(crate) values: Vec<Option<ValueId>>,
     /// The block of what is not here.
     pub(crate) unknown: Option<Unknown>,
+    /// The blocks of classes whose value is in doubt.
+    pub(crate) doubtful: Vec<Doubtful>,
     /// How "is its k v?" is answered, per block.
     pub(crate) yes_no: Channels,
     /// How "what is its k?" is answered.
@@ -28,6 +30,14 @@ pub(crate) struct Unknown {
     pub(crate) block: u16,
     /// Probability of yes, given an answer.
     pub(crate) yes: f64,
+}
+
+/// A block of classes whose value is in doubt.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Doubtful {
+    block: u16,
+    /// Probability of each block's value.
+    chances: Vec<f64>,
 }
 
 impl Unknown {
@@ -48,24 +58,47 @@ impl Partition {
         let model = problem.model;
         let mut block_of = vec![None; model.values(k) + 2];
         let mut values = Vec::new();
+        let mut entries = Vec::new();
         let mut blocks = Vec::with_capacity(classes.len());
         for object in classes {
             let entry = model.column(k)[object.index()];
             let place = match entry {
                 Model::LACKS => model.values(k),
                 Model::UNKNOWN => model.values(k) + 1,
-                value => usize::from(value),
+                value if value < Model::DOUBTFUL => usize::from(value),
+                doubt => model.values(k) + 2 + usize::from(doubt - Model::DOUBTFUL),
             };
+            if place >= block_of.len() {
+                block_of.resize(place + 1, None);
+            }
             let block = *block_of[place].get_or_insert_with(|| {
-                values.push((entry < Model::UNKNOWN).then_some(ValueId(entry)));
+                values.push((entry < Model::DOUBTFUL).then_some(ValueId(entry)));
+                entries.push(entry);
                 (values.len() - 1) as u16
             });
             blocks.push(block);
         }
+        let in_doubt = |entry: &u16| model.chances(k, *entry);
+        // What only classes in doubt may have can be asked about as well.
+        for (v, block) in block_of.iter_mut().enumerate().take(model.values(k)) {
+            if block.is_none()
+                && entries.iter().filter_map(in_doubt).any(|chances| chances[v] > 0.0)
+            {
+                *block = Some(values.len() as u16);
+                values.push(Some(ValueId::from(v)));
+            }
+        }
+        let doubtful: Vec<Doubtful> = (entries.iter().enumerate())
+            .filter_map(|(block, entry)| {
+                let chances = in_doubt(entry)?;
+                let of = |value: &Option<ValueId>| value.map_or(0.0, |v| chances[v.index()]);
+                Some(Doubtful { block: block as u16, chances: values.iter().map(of).collect() })
+            })
+            .collect();
         if values.len() < 2 {
             return None;
         }
-        let lacking = values.contains(&None);
+        let lacking = entries.iter().any(|entry| *entry >= Model::UNKNOWN);
         let named = values.iter().flatten().count();
         let absent = model.values(k) - named;
         let unknown = block_of[model.values(k) + 1];
@@ -75,12 +108,60 @@ impl Partition {
             value.map_or(Question::None, |value| Question::Attribute(k, value))
         };
         let yes_no = Channels::yes_no(problem, problem.costs.attribute_s, values.iter().map(is));
-        Some(Self { attribute: k, blocks, values, unknown, yes_no, open })
+        Some(Self { attribute: k, blocks, values, unknown, doubtful, yes_no, open })
     }
 
     /// Whether classes in that block have no value to be named.
     pub(super) fn lacks(&self, block: u16) -> bool {
         self.values[usize::from(block)].is_none()
+    }
+
+    /// Probability that classes in a block have the value of another one: neither 0 nor 1 where it is
+    /// in doubt.
+    pub(super) fn chance(&self, block: u16, of: u16) -> f64 {
+        match self.doubtful.iter().find(|doubtful| doubtful.block == block) {
+            Some(doubtful) => doubtful.chances[usize::from(of)],
+            None => f64::from(u8::from(block == of)),
+        }
+    }
+
+    /// Probability of yes, or no, to "is it in the block `asked`?" about classes in `block`; `is` and `not`
+    /// are those of that answer where it is and where it is not.
+    pub(super) fn answer(&self, asked: u16, block: u16, (is, not): (f64, f64)) -> f64 {
+        if let Some(unknown) = self.unknown.filter(|unknown| unknown.block == block) {
+            return unknown.probability(is > not);
+        }
+        let chance = self.chance(block, asked);
+        chance * is + (1.0 - chance) * not
+    }
+
+    /// Probability of naming the value of the block `named` about classes in `block`.
+    pub(super) fn names(&self, named: u16, block: u16) -> f64 {
+        if self.lacks(block) && !self.is_in_doubt(block) {
+            return self.open.lacking;
+        }
+        let chance = self.chance(block, named);
+        chance * self.open.own + (1.0 - chance) * self.open.other
+    }
+
+    /// Probability of naming a value that no class has about classes in `block`.
+    pub(super) fn names_absent(&self, block: u16) -> f64 {
+        let lacks = self.lacks(block) && !self.is_in_doubt(block);
+        if lacks { self.open.absent_lacking } else { self.open.absent_other }
+    }
+
+    /// Whether the value of classes in that block is in doubt.
+    pub(super) fn is_in_doubt(&self, block: u16) -> bool {
+        self.doubtful.iter().any(|doubtful| doubtful.block == block)
+    }
+
+    /// Tells apart questions about the same blocks that are answered differently about classes in doubt.
+    pub(super) fn doubt_code(&self, asked: u16) -> u64 {
+        let code = |doubtful: &Doubtful| {
+            let place = (u64::from(doubtful.block) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            doubtful.chances[usize::from(asked)].to_bits().wrapping_mul(place)
+        };
+        self.doubtful.iter().fold(0, |all, doubtful| all ^ code(doubtful))
     }
 
     /// The blocks that have a value.
@@ -104,14 +185,17 @@ impl Partition {
 
     /// Whether its open question has the same answers as a yes/no question.
     pub(super) fn is_yes_no(&self) -> bool {
-        self.values.len() == 2
+        self.doubtful.is_empty()
+            && self.values.len() == 2
             && self.named().count() == 2
             && self.open.own == self.yes_no.of(0).own
     }
 
     /// Equal for partitions whose open questions have the same answers for every class.
-    pub(super) fn identity(&self) -> (Vec<u16>, Vec<u16>, [u64; 3]) {
+    pub(super) fn identity(&self) -> (Vec<u16>, Vec<u16>, [u64; 3], Vec<u64>) {
         let answers = [self.open.other, self.open.lacking, self.open.absent_other];
-        (self.blocks.clone(), self.named().collect(), answers.map(f64::to_bits))
+        let doubts = self.doubtful.iter().flat_map(|it| it.chances.iter().map(|it| it.to_bits()));
+        let answers = answers.map(f64::to_bits);
+        (self.blocks.clone(), self.named().collect(), answers, doubts.collect())
     }
 }

@@ -178,7 +178,10 @@ impl Reduced {
             }
             if problem.actions.attribute {
                 for (block, set) in partition.sets(&codes) {
-                    let split = partition.unknown.map_or(split(set), |u| set ^ u.yes.to_bits());
+                    let split = match (partition.unknown, partition.doubt_code(block)) {
+                        (None, 0) => split(set),
+                        (unknown, doubt) => set ^ doubt ^ unknown.map_or(0, |u| u.yes.to_bits()),
+                    };
                     splits.offer(split, partition.yes_no.of(usize::from(block)).cost, found.len());
                     found.push(Query::Is { partition: index, block });
                 }

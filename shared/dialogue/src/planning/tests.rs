@@ -1,7 +1,7 @@
 use scene::{ObjectId, Question, Scene};
 
 use super::*;
-use crate::testing::{bowls, random_durations, random_scene, scene, uniform};
+use crate::testing::{bowls, perceived, random_durations, random_scene, scene, uniform};
 use crate::{
     Actions, Announce, Answer, Belief, Costs, DecisionProblem, Durations, Mode, Model, Params, Rng,
 };
@@ -20,8 +20,8 @@ fn random_belief(rng: &mut Rng, objects: usize) -> Belief {
     Belief::from_probabilities(&weights).unwrap()
 }
 
-/// Problems with identical objects, lacking attributes, values that no object has, where the wanted
-/// object may not be here, and where every question has a cost of its own.
+/// Problems with identical objects, lacking attributes, values that no object has, values in doubt,
+/// where the wanted object may not be here, and where every question has a cost of its own.
 fn for_many_problems(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Belief, &Reduced, &str)) {
     let check = |problem: &DecisionProblem<'_>, belief: &Belief, label: &str| {
         check(problem, belief, &Reduced::new(problem, belief), label);
@@ -30,6 +30,10 @@ fn for_many_problems(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Belief, &R
     let mut scenes: Vec<Scene> = vec![bowls()];
     for lacking in [0, 3, 3] {
         scenes.push(random_scene(&mut rng, 7, &[4, 2, 3, 1], lacking));
+    }
+    for lacking in [0, 3] {
+        let scene = random_scene(&mut rng, 5, &[3, 2, 3, 1], lacking);
+        scenes.push(perceived(&mut rng, &scene));
     }
     for (n, scene) in scenes.iter().enumerate() {
         let model = Model::new(scene, Params { p_l: 0.9, epsilon: 0.05, alpha: 0.2 });

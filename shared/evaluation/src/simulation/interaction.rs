@@ -57,6 +57,7 @@ impl<'a> Room<'a> {
             announce,
             prior: Prior { objects: PriorObjects::Uniform, smoothing: 1.0, absent: 0.0 },
             gestures: None,
+            perceives: false,
             turns: TurnTaking { attribution: Attribution::Onset, ..self.turns },
         };
         let planner: Box<dyn Planner + Send> = Box::new(planner);

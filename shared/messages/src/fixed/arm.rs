@@ -25,6 +25,7 @@ wire_codes!(PickOutcome {
     Missed = 5,
     Blocked = 6,
     PutBack = 7,
+    Vanished = 8,
 });
 wire_codes!(Task { Fetch = 0, PutBack = 1, });
 

@@ -2,8 +2,9 @@ use messages::{
     ActKind, Activity, ArmStatus, Hearing, PolicyView, PresentationState, Presented, Receipt,
     ReceiptStatus, topics,
 };
-use scene::Question;
+use scene::{Question, Scene};
 
+use super::TableScene;
 use crate::Time;
 use crate::bus::{Bus, BusError, EncodedReader, PortError, Reader, WireMessage};
 
@@ -19,6 +20,8 @@ pub struct LatestTopics {
     hearing: Reader<Hearing>,
     receipts: Reader<Receipt>,
     statuses: Reader<ArmStatus>,
+    /// Where the objects come from perception.
+    table: Option<TableScene>,
 }
 
 /// Messages that have arrived since the last poll.
@@ -36,6 +39,8 @@ pub struct Arrived {
     pub hearing: Option<Hearing>,
     /// Belief and decision of the policy.
     pub view: Option<PolicyView>,
+    /// The scene, if the objects on the table have changed.
+    pub scene: Option<Scene>,
 }
 
 /// The latest message of every topic.
@@ -68,11 +73,32 @@ impl LatestTopics {
             hearing: bus.reader(&topics::HEARING)?,
             receipts: bus.reader(&topics::RECEIPT)?,
             statuses: bus.reader(&topics::STATUS)?,
+            table: None,
         })
     }
 
+    /// Follows the objects on the table as well; what arrives is then about these.
+    ///
+    /// # Errors
+    /// A topic of another schema, or no shared memory.
+    pub fn with_table(self, bus: &Bus, file: &Scene) -> Result<Self, BusError> {
+        Ok(Self { table: Some(TableScene::open(bus, file)?), ..self })
+    }
+
+    /// Returns the objects on the table, where they come from perception.
+    pub fn table(&self) -> Option<&TableScene> {
+        self.table.as_ref()
+    }
+
+    /// Takes over the scene of a reload. Returns the scene to be shown.
+    pub fn set_scene(&mut self, file: Scene) -> Scene {
+        let Some(table) = &mut self.table else { return file };
+        table.set_file(&file);
+        table.scene().clone()
+    }
+
     /// Receives new messages. Pending utterances are read before the view, which is the newer of both.
-    pub fn take(&self) -> Arrived {
+    pub fn take(&mut self) -> Arrived {
         let mut statuses = Vec::new();
         let receipts = drain(&self.receipts);
         let activity = quiet(self.activity.latest());
@@ -82,8 +108,14 @@ impl LatestTopics {
             .statuses
             .drain_stamped(|status, stamp| statuses.push((*status, Time(stamp.sent_ns))));
         quiet(taken.map(Some));
-        let view = quiet(self.views.latest());
-        Arrived { receipts, statuses, activity, presented, hearing, view }
+        let mut view = quiet(self.views.latest());
+        let mut scene = None;
+        if let Some(table) = &mut self.table {
+            scene = table.take().cloned();
+            view = view.and_then(|view| table.view(view));
+            statuses.iter_mut().for_each(|(status, _)| *status = table.status(*status));
+        }
+        Arrived { scene, receipts, statuses, activity, presented, hearing, view }
     }
 }
 

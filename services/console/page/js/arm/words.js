@@ -10,6 +10,7 @@ const OUTCOMES = [
   "missed",
   "blocked",
   "put_back",
+  "vanished",
 ];
 /** Ends of an order that read otherwise where the object was to be put back. */
 const OUTCOMES_OF_PUT_BACK = ["unreachable", "cancelled", "missed"];

@@ -183,6 +183,7 @@ fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
             PickOutcome::Cancelled if puts_back => format!("has left {object} with the user"),
             PickOutcome::Cancelled => format!("has left {object} where it was"),
             PickOutcome::Missed => format!("could not get hold of {object}"),
+            PickOutcome::Vanished => format!("found {object} gone"),
             PickOutcome::Blocked => format!("was kept from moving to {object}"),
             PickOutcome::Pending => "is done".to_owned(),
         },

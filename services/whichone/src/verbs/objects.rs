@@ -1,0 +1,292 @@
+//! `objects`: lists and changes the objects on the table, where they come from perception.
+
+use std::collections::BTreeMap;
+use std::io::BufRead;
+use std::time::{Duration, Instant};
+
+use config::Settings;
+use messages::{Change, Detection, Look, Sighting, TableView, topics};
+use serde::Deserialize;
+use serde_json::{Value as Json, json};
+use service::bus::{EncodedReader, EncodedWriter};
+use service::client::{Client, Polling, random_key};
+use service::clock;
+use service::exit::{Exit, Failure};
+use service::group::GroupPaths;
+use service::view::quiet;
+use service::{Span, Time};
+
+use crate::Outcome;
+use crate::cli::{ObjectsArgs, ObjectsVerb};
+use crate::output::Output;
+
+/// Interval at which a change is sent until it is answered.
+const RESEND_EVERY: Duration = Duration::from_millis(200);
+
+/// The topics of a group's table.
+struct TableTopics {
+    sightings: EncodedWriter<Sighting>,
+    tables: EncodedReader<TableView>,
+    latest: Option<TableView>,
+    _client: Client,
+}
+
+/// Lists or changes the objects.
+pub(super) fn objects(paths: &GroupPaths, args: &ObjectsArgs, out: &mut Output<'_>) -> Outcome {
+    let client = Client::join(paths)?;
+    let settings = Settings::load_snapshot(&paths.run())?;
+    if !settings.group.perception.enabled {
+        return Err(Failure::new(Exit::Usage, perception::Refusal::Off.to_string()));
+    }
+    let mut table = TableTopics {
+        sightings: client.bus().encoded_writer(&topics::SIGHTING)?,
+        tables: client.bus().encoded_reader(&topics::OBJECTS)?,
+        latest: None,
+        _client: client,
+    };
+    let change = match args.what.as_ref().unwrap_or(&ObjectsVerb::List) {
+        ObjectsVerb::List => return list(&mut table, args.timeout, out),
+        ObjectsVerb::Feed => return feed(&table, out),
+        ObjectsVerb::Add { class, place, values } => {
+            let mut attributes: BTreeMap<String, Vec<(String, f64)>> = BTreeMap::new();
+            for (attribute, value, p) in values {
+                attributes.entry(attribute.clone()).or_default().push((value.clone(), *p));
+            }
+            Change::Add(Detection {
+                classes: vec![(class.clone(), 1.0)],
+                attributes: attributes.into_iter().collect(),
+                xyz: place.xyz(),
+                yaw: place.yaw,
+                ..Detection::default()
+            })
+        }
+        ObjectsVerb::Move { object, place } => {
+            Change::Move { object: object.clone(), xyz: place.xyz(), yaw: place.yaw }
+        }
+        ObjectsVerb::Remove { object } => Change::Remove { object: object.clone() },
+    };
+    let number = table.change(change, args.timeout)?;
+    let name = table.latest.as_ref().and_then(|view| {
+        let object = view.objects.iter().find(|it| it.known.number.0 == number);
+        object.map(|object| object.known.name.clone())
+    });
+    if out.is_json() {
+        out.json(&json!({ "number": number, "name": name }))?;
+    } else {
+        out.line(name.unwrap_or_else(|| format!("object {number} is off the table")))?;
+    }
+    Ok(Exit::Ok)
+}
+
+impl TableTopics {
+    fn look(&mut self) {
+        if let Some(view) = quiet(self.tables.latest()) {
+            self.latest = Some(view);
+        }
+    }
+
+    /// Sends a change under one key until it is answered. Returns the object's number.
+    fn change(&mut self, change: Change, patience: Duration) -> Result<u16, Failure> {
+        let (source, frame) = ("hand".to_owned(), "base".to_owned());
+        let sighting = Sighting { key: key(), source, frame, change };
+        let (until, mut polling) = (Instant::now() + patience, Polling::default());
+        let mut sent: Option<Instant> = None;
+        while Instant::now() < until {
+            if sent.is_none_or(|sent| sent.elapsed() >= RESEND_EVERY) {
+                quiet(self.sightings.send(&sighting).map(Some));
+                sent = Some(Instant::now());
+            }
+            self.look();
+            let answers = self.latest.iter().flat_map(|view| &view.answers);
+            if let Some(answer) = answers.into_iter().find(|it| it.key == sighting.key) {
+                return match answer.refusal.as_str() {
+                    "" => Ok(answer.object),
+                    refusal => Err(Failure::new(Exit::NotReached, refusal.to_owned())),
+                };
+            }
+            polling.pause();
+        }
+        Err(Failure::new(Exit::NotReached, "no answer from the policy; help: `whichone status`"))
+    }
+}
+
+fn list(table: &mut TableTopics, patience: Duration, out: &mut Output<'_>) -> Outcome {
+    let (until, mut polling) = (Instant::now() + patience, Polling::default());
+    table.look();
+    while Instant::now() < until && table.latest.is_none() {
+        polling.pause();
+        table.look();
+    }
+    let Some(view) = &table.latest else {
+        let what = "nothing from the policy; help: `whichone status`";
+        return Err(Failure::new(Exit::NotReached, what));
+    };
+    if out.is_json() {
+        out.json(&json_of(view))?;
+        return Ok(Exit::Ok);
+    }
+    if view.objects.is_empty() {
+        out.line("nothing on the table".to_owned())?;
+    }
+    for object in &view.objects {
+        out.line(line(object))?;
+    }
+    if view.refused > 0 {
+        out.line(format!("{} reports refused, the latest: {}", view.refused, view.refusal))?;
+    }
+    Ok(Exit::Ok)
+}
+
+fn line(object: &messages::TableObject) -> String {
+    let [x, y, z, yaw] = object.place;
+    let chances = |chances: &[(String, f64)]| -> Vec<String> {
+        chances.iter().map(|(name, p)| format!("{name} {:.0} %", p * 100.0)).collect()
+    };
+    let mut all = chances(&object.known.classes);
+    for (name, values) in &object.known.attributes {
+        all.push(format!("{name}: {}", chances(values).join(", ")));
+    }
+    let how = match (object.known.taken, object.gone) {
+        (true, _) => "  with a person",
+        (_, true) => "  gone",
+        _ => "",
+    };
+    let name = &object.known.name;
+    format!("{name:<16}  {x:.3} {y:.3} {z:.3} m  {yaw:.2} rad  {}{how}", all.join("; "))
+}
+
+fn json_of(view: &TableView) -> Json {
+    let now = clock::now();
+    let map = |chances: &[(String, f64)]| -> serde_json::Map<String, Json> {
+        chances.iter().map(|(name, p)| (name.clone(), json!(p))).collect()
+    };
+    let objects = view.objects.iter().map(|object| {
+        let attributes: serde_json::Map<String, Json> = (object.known.attributes.iter())
+            .map(|(name, values)| (name.clone(), json!(map(values))))
+            .collect();
+        json!({
+            "number": object.known.number.0,
+            "name": object.known.name,
+            "classes": map(&object.known.classes),
+            "attributes": attributes,
+            "xyz": object.place[..3],
+            "yaw": object.place[3],
+            "sd": object.sd,
+            "age_s": now.since(Time(object.seen_ns)).s(),
+            "taken": object.known.taken,
+            "gone": object.gone,
+        })
+    });
+    json!({
+        "version": view.version,
+        "objects": objects.collect::<Vec<_>>(),
+        "refused": view.refused,
+        "refusal": view.refusal,
+    })
+}
+
+/// One line of `feed`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FeedLine {
+    #[serde(default = "script")]
+    source: String,
+    #[serde(default = "base")]
+    frame: String,
+    /// Time since the look was taken, seconds.
+    #[serde(default)]
+    age_s: f64,
+    #[serde(default = "yes")]
+    whole: bool,
+    seen: Vec<FeedObject>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FeedObject {
+    #[serde(default)]
+    track: String,
+    classes: BTreeMap<String, f64>,
+    #[serde(default)]
+    attributes: BTreeMap<String, BTreeMap<String, f64>>,
+    xyz: [f64; 3],
+    #[serde(default)]
+    yaw: f64,
+    /// Variances of x, y, z and yaw.
+    #[serde(default)]
+    variances: [f64; 4],
+}
+
+fn script() -> String {
+    "script".to_owned()
+}
+
+fn base() -> String {
+    "base".to_owned()
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// Reports each line of standard input; a wrong one is told and skipped.
+fn feed(table: &TableTopics, out: &mut Output<'_>) -> Outcome {
+    let mut is_right = true;
+    for (n, line) in std::io::stdin().lock().lines().enumerate() {
+        let line = line.map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?;
+        if line.trim().is_empty() {
+            continue;
+        }
+        let sent = sighting(&line, clock::now()).and_then(|sighting| {
+            table.sightings.send(&sighting).map_err(|error| error.to_string())
+        });
+        if let Err(error) = sent {
+            is_right = false;
+            out.json(&json!({ "line": n + 1, "error": error }))?;
+        }
+    }
+    Ok(if is_right { Exit::Ok } else { Exit::NotReached })
+}
+
+fn sighting(line: &str, now: Time) -> Result<Sighting, String> {
+    let line: FeedLine = serde_json::from_str(line).map_err(|error| error.to_string())?;
+    let seen = line.seen.into_iter().map(|it| Detection {
+        track: it.track,
+        classes: it.classes.into_iter().collect(),
+        attributes: (it.attributes.into_iter())
+            .map(|(name, values)| (name, values.into_iter().collect()))
+            .collect(),
+        xyz: it.xyz,
+        yaw: it.yaw,
+        variances: it.variances,
+    });
+    let at_ns = (now - Span::from_s(line.age_s)).ns();
+    let look = Look { at_ns, whole: line.whole, seen: seen.collect() };
+    let (source, frame) = (line.source, line.frame);
+    Ok(Sighting { key: key(), source, frame, change: Change::Look(look) })
+}
+
+fn key() -> u64 {
+    let mut key = [0; 8];
+    key.copy_from_slice(&random_key().0[..8]);
+    u64::from_le_bytes(key)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn objects_feed_reads_looks_and_says_what_is_wrong() {
+        let line = r#"{"age_s": 0.5, "seen": [{"classes": {"white": 0.8, "metal": 0.2},
+            "attributes": {"color": {"white": 0.9}}, "xyz": [0.7, 0.1, -0.1]}]}"#;
+        let read = sighting(line, Time(2_000_000_000)).unwrap();
+        assert_eq!((read.source.as_str(), read.frame.as_str()), ("script", "base"));
+        let Change::Look(look) = read.change else { panic!("a look") };
+        assert_eq!((look.at_ns, look.whole, look.seen.len()), (1_500_000_000, true, 1));
+        assert_eq!(look.seen[0].attributes[0].1, [("white".to_owned(), 0.9)]);
+        let unknown = sighting(r#"{"seen": [], "colour": 1}"#, Time(0)).unwrap_err();
+        assert!(unknown.contains("colour"), "{unknown}");
+        assert!(sighting("nothing", Time(0)).is_err());
+    }
+}

@@ -1,0 +1,17 @@
+//! Objects from perception: what sources report, and the tracker that makes a table of it.
+//!
+//! This crate is pure: no IO, no clock, no threads. Positions are metres in frame `base`, angles
+//! radians, times those of the machine's monotonic clock.
+
+mod camera;
+mod estimate;
+mod sighting;
+mod tracker;
+
+#[cfg(test)]
+mod tests;
+
+pub use camera::{Camera, CameraSettings, Standing};
+pub use estimate::Estimate;
+pub use sighting::{Change, Detection, Frame, Look, Refusal, Sighting};
+pub use tracker::{Hiding, Live, Settings, Tracker};

@@ -1,0 +1,124 @@
+//! Many dialogues about perceived objects, each beside the same dialogue about a certain scene.
+
+use config::Settings;
+use dialogue::Rng;
+use messages::Outcome;
+use perception::CameraSettings;
+use scene::ObjectId;
+use service::{Span, Time};
+
+use super::table::{FORGIVEN_M, Happening, TableTop};
+use super::{Faults, GroupUser, SimulatedGroup};
+use crate::settings;
+
+/// Results of many dialogues.
+#[derive(Clone, Debug, Default)]
+pub struct Perceived {
+    /// Dialogues.
+    pub dialogues: u64,
+    /// Those in which something appeared, moved or vanished.
+    pub eventful: u64,
+    /// Those in which the wanted object was delivered.
+    pub right: u64,
+    /// Closings of the fingers at a place that was off by more than a grasp forgives.
+    pub beside: u64,
+    /// Interactions with more than one delivery.
+    pub twice: u64,
+    /// Questions, in all.
+    pub questions: u64,
+    /// Questions of the same dialogues about the certain scene.
+    pub questions_certain: u64,
+    /// The greatest error of a place at which the fingers closed, metres.
+    pub worst_m: f64,
+    /// Logs of the dialogues that went wrong.
+    pub stories: Vec<String>,
+}
+
+/// A camera with noise of 5 mm, a tenth of the objects missed, and qualities 80 to 99 % sure.
+fn camera(seed: u64) -> CameraSettings {
+    CameraSettings {
+        rate_hz: 10.0,
+        noise_m: 0.005,
+        misses: 0.1,
+        delay: Span::from_ms(150),
+        sure: (0.8, 0.99),
+        hidden_m: 0.15,
+        seed,
+    }
+}
+
+/// Holds dialogues about the shipped bowls under a simulated camera, half of them with something that
+/// appears, moves or vanishes meanwhile.
+pub fn perceive(dialogues: u64, seed: u64, faults: fn(u64) -> Faults) -> Perceived {
+    let (certain, perceiving) = (settings(&[]), settings(&[("group.perception.enabled", "true")]));
+    let mut found = Perceived::default();
+    for number in 0..dialogues {
+        let seed = seed.wrapping_mul(1_000_003).wrapping_add(number);
+        let mut rng = Rng::new(seed);
+        let wanted = rng.below(certain.scene.objects().len());
+        let happening = if number % 2 == 0 { Happening::Nothing } else { draw(&mut rng, wanted) };
+        let at = Time(0) + Span::from_s(2.0 + 8.0 * rng.uniform());
+        let group = converse(&perceiving, wanted, (happening, at), faults(seed), seed);
+        let plain = SimulatedGroup::new(certain.clone(), GroupUser::typing(wanted), Faults::none());
+        found.add(&group, happening, plain, seed);
+    }
+    found
+}
+
+fn draw(rng: &mut Rng, wanted: usize) -> Happening {
+    let other = (wanted + 1 + rng.below(5)) % 6;
+    let angle = std::f64::consts::TAU * rng.uniform();
+    let far_m = 0.03 + 0.03 * rng.uniform();
+    let by = [far_m * angle.cos(), far_m * angle.sin()];
+    match rng.below(4) {
+        0 => Happening::Appears(other),
+        1 => Happening::Vanishes(other),
+        2 => Happening::Moves(other, by),
+        _ => Happening::Moves(wanted, by),
+    }
+}
+
+/// Holds one dialogue with somebody who wants that object.
+pub fn converse(
+    settings: &Settings,
+    wanted: usize,
+    happening: (Happening, Time),
+    faults: Faults,
+    seed: u64,
+) -> SimulatedGroup {
+    let table = TableTop::new(&settings.scene, camera(seed), happening);
+    let user = GroupUser::typing(wanted);
+    let mut group = SimulatedGroup::new(settings.clone(), user, faults).with_table(table);
+    group.run();
+    group
+}
+
+impl Perceived {
+    fn add(
+        &mut self,
+        group: &SimulatedGroup,
+        happening: Happening,
+        mut plain: SimulatedGroup,
+        seed: u64,
+    ) {
+        plain.run();
+        self.dialogues += 1;
+        self.eventful += u64::from(happening != Happening::Nothing);
+        let grasps = group.table.as_ref().map_or(&[][..], |table| &table.grasps);
+        let wanted = group.user.wanted().map(ObjectId::index);
+        let delivered = matches!(group.outcome(), Some((Outcome::Delivered, _)));
+        let right = delivered && grasps.last().is_some_and(|(object, _)| *object == wanted);
+        self.right += u64::from(right);
+        let beside = grasps.iter().filter(|(_, m)| *m > FORGIVEN_M).count() as u64;
+        self.beside += beside;
+        self.twice += u64::from(grasps.iter().filter(|(object, _)| object.is_some()).count() > 1);
+        self.worst_m = grasps.iter().map(|(_, m)| *m).fold(self.worst_m, f64::max);
+        self.questions += u64::from(group.questions());
+        self.questions_certain += u64::from(plain.questions());
+        if !right || beside > 0 {
+            let story = group.story();
+            let what = format!("seed {seed}, wanted {wanted:?}, {happening:?}, grasps {grasps:?}");
+            self.stories.push(format!("{what}\n{story}"));
+        }
+    }
+}
