@@ -1,4 +1,5 @@
 //! Robots with one limb and six joints: the shipped UR5e, and an industrial arm with a spherical wrist.
+#![allow(clippy::unwrap_used, reason = "a test ends at what it does not expect")]
 
 use manipulation::{Chain, Joints, Limb, Robot, TOLERANCE_M, TOLERANCE_RAD};
 use robot_model::Robot as Description;
