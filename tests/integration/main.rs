@@ -20,6 +20,7 @@ mod isolation;
 mod journal_format;
 mod journal_loss;
 mod own_voice;
+mod perception;
 mod physics;
 mod planners;
 mod pointing;

@@ -115,6 +115,9 @@ pub(crate) fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
     let records = || parts.iter().flat_map(|part| part.records());
     let order = |record: &Record| {
         let (id, object) = record.state.ordered()?;
+        // The arm knows perceived objects by their numbers.
+        let number = record.state.table.as_ref().map(|table| table.objects.get(object.index()));
+        let object = number.map_or(Some(object), |perceived| Some(perceived?.number))?;
         Some((id.interaction.0, id.attempt, object.0))
     };
     let is_complete = |record: &&Record| {

@@ -26,6 +26,10 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
     let started = Instant::now();
     let mut conversation = Conversation::join(paths)?;
     let wanted = args.answer_as.as_deref();
+    if wanted.is_some() {
+        // Objects from perception are known with the first look.
+        conversation.first_look()?;
+    }
     let may_be_absent = conversation.may_be_absent();
     let user = wanted.map(|name| TruthfulUser::new(conversation.scene(), name, may_be_absent));
     let mut user = user.transpose().map_err(|what| Failure::new(Exit::Usage, what))?;
