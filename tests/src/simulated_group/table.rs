@@ -6,7 +6,7 @@ use scene::{ObjectId, Question, Scene};
 use service::{Span, Time};
 
 /// Distance from a gripper within which nobody moves an object, metres.
-const NEAR_M: f64 = 0.30;
+const NEAR_M: f64 = 0.50;
 /// Distance from where the arm grasps within which an object is the one that is grasped, metres.
 const GRASPED_M: f64 = 0.05;
 /// Error of a place that a grasp forgives, metres.
