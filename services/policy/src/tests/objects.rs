@@ -247,10 +247,10 @@ fn a_doubtful_detection_is_asked_about() {
         let values = [("white", white), ("metallic", 1.0 - white)];
         vec![("color".to_owned(), values.map(|(name, p)| (name.to_owned(), p)).to_vec())]
     };
-    let of = |white: f64, y| Detection { attributes: color(white), ..seen("white", y) };
+    let of = |white: f64, class, y| Detection { attributes: color(white), ..seen(class, y) };
     let pick_at_once = |white| {
-        let mut bench = Bench::with(&[of(1.0, 0.0), of(white, 0.3)]);
-        let said = bench.says(&["white", "white", "white"]);
+        let mut bench = Bench::with(&[of(1.0, "white", 0.0), of(white, "white2", 0.3)]);
+        let said = bench.says(&["white"]);
         bench.hear(&said);
         bench.check();
         bench.node.state().act.kind == ActKind::Pick
