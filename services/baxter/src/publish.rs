@@ -26,14 +26,14 @@ pub(crate) fn all(robot: &mut Robot, beat: u64, now: Time) -> Vec<Report<'static
         reports.extend(joints.into_iter().flatten().map(|state| Report::Joints(state.into())));
     }
     for limb in robot.config.robot.limbs().iter().copied() {
-        reports.push(Report::Endpoint(limb as usize, endpoint(robot, limb, now).into()));
+        reports.push(Report::Endpoint(limb.index(), endpoint(robot, limb, now).into()));
         if beat.is_multiple_of(GRIPPER_BEATS) {
             let enabled = robot.assembly.is_enabled();
             let state = robot.fingers[limb].state(now.ns(), enabled, &robot.gripper(limb));
-            reports.push(Report::Gripper(limb as usize, state.into()));
+            reports.push(Report::Gripper(limb.index(), state.into()));
         }
         if beat.is_multiple_of(PROPERTIES_BEATS) {
-            reports.push(Report::Properties(limb as usize, properties(limb).into()));
+            reports.push(Report::Properties(limb.index(), properties(limb).into()));
         }
     }
     reports

@@ -206,12 +206,12 @@ impl BaxterDriver {
                 accelerations: command.qdd,
                 time_from_start_s: command.t_s,
             };
-            orders.push(Order::FeedForward(limb as usize, point.into()));
+            orders.push(Order::FeedForward(limb.index(), point.into()));
         }
         let names = &self.robot.arm(limb).joint_names;
         let joints: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(hold).collect();
         match JointCommand::new(JointMode::Position, &joints) {
-            Ok(message) => orders.push(Order::Joints(limb as usize, message.into())),
+            Ok(message) => orders.push(Order::Joints(limb.index(), message.into())),
             Err(error) => tracing::error!(%error, "a limb cannot be commanded"),
         }
     }
@@ -223,7 +223,7 @@ impl BaxterDriver {
         self.ratio_sent = Some(now);
         let ratio = SpeedRatio { data: self.settings.speed_ratio };
         let limbs = self.robot.limbs().iter();
-        orders.extend(limbs.map(|limb| Order::SpeedRatio(*limb as usize, ratio)));
+        orders.extend(limbs.map(|limb| Order::SpeedRatio(limb.index(), ratio)));
     }
 }
 
@@ -288,7 +288,7 @@ impl ArmDriver for BaxterDriver {
         }
         for limb in self.robot.limbs().iter().copied() {
             let due = self.grippers[limb].due(now);
-            orders.extend(due.map(|message| Order::Gripper(limb as usize, message.into())));
+            orders.extend(due.map(|message| Order::Gripper(limb.index(), message.into())));
         }
         orders
     }

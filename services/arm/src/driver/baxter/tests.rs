@@ -49,7 +49,7 @@ impl Bench {
         self.driver.on_report(&Report::Assembly(self.assembly), self.now);
         for limb in Limb::BOTH {
             let state = Box::new(self.grippers[limb]);
-            self.driver.on_report(&Report::Gripper(limb as usize, state.into()), self.now);
+            self.driver.on_report(&Report::Gripper(limb.index(), state.into()), self.now);
         }
         self.driver.on_report(&Report::Joints(self.joint_state().into()), self.now);
     }
@@ -77,7 +77,7 @@ impl Bench {
 
 fn commanded(orders: &[Order], limb: Limb) -> Option<Vec<f64>> {
     orders.iter().find_map(|order| match order {
-        Order::Joints(own, command) if *own == limb as usize => {
+        Order::Joints(own, command) if *own == limb.index() => {
             Some(command.joints().unwrap().into_iter().map(|(_, q)| q).collect())
         }
         _ => None,
