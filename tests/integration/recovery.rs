@@ -187,7 +187,7 @@ fn client_that_outlives_a_group_takes_nothing_of_the_next_one() {
     assert_eq!(group.start(&[]).code, Some(0));
     clients.iter().for_each(|client| signal(client, Signal::CONT));
     for client in &mut clients {
-        client.wait().unwrap();
+        wait_for("the client to end", 20.0, || client.try_wait().unwrap());
         group.say("hello");
     }
     assert_eq!(group.fetch("get me the metal bowl", "metal")["object"], "metal");

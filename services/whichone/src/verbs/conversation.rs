@@ -4,7 +4,6 @@
 //! service that is restarted is only silent for a while.
 
 use std::collections::{HashSet, VecDeque};
-use std::os::unix::fs::MetadataExt;
 use std::time::{Duration, Instant};
 
 use config::Settings;
@@ -14,7 +13,7 @@ use service::bus::EncodedWriter;
 use service::client::{Client, Polling};
 use service::clock;
 use service::exit::{Exit, Failure};
-use service::group::GroupPaths;
+use service::group::{GroupPaths, ShmName};
 use service::stop_socket;
 use service::submission::Submission;
 use service::view::{Latest, LatestTopics, quiet};
@@ -42,8 +41,8 @@ pub(super) struct Conversation {
     scene: Scene,
     may_be_absent: bool,
     paths: GroupPaths,
-    /// The folder of the group's shared memory as it was: another one is another run.
-    folder: u64,
+    /// Name of the group's shared memory, another one is another run.
+    shared_memory: ShmName,
     checked: Instant,
     client: Client,
 }
@@ -70,7 +69,7 @@ impl Conversation {
             },
             may_be_absent: settings.dialogue.prior.absent > 0.0,
             paths: paths.clone(),
-            folder: folder(paths).ok_or_else(|| ended(paths))?,
+            shared_memory: paths.shm_name().map_err(|_| ended(paths))?,
             checked: Instant::now(),
             client,
         })
@@ -178,7 +177,7 @@ impl Conversation {
     /// Detects the end of the group.
     fn check(&mut self) -> Result<(), Failure> {
         self.checked = Instant::now();
-        if folder(&self.paths) != Some(self.folder) {
+        if self.paths.shm_name().ok().as_ref() != Some(&self.shared_memory) {
             return Err(ended(&self.paths));
         }
         Ok(())
@@ -193,10 +192,6 @@ impl Conversation {
             self.scene = self.topics.set_scene(settings.scene);
         }
     }
-}
-
-fn folder(paths: &GroupPaths) -> Option<u64> {
-    paths.shm_name_file().metadata().ok().map(|metadata| metadata.ino())
 }
 
 fn ended(paths: &GroupPaths) -> Failure {
