@@ -26,10 +26,12 @@ pub(crate) fn interpretations(
     Ok(meant)
 }
 
-/// The question in this scene; in another scene its numbers mean something else.
+/// The question in this scene; in another scene its numbers mean something else. Objects from perception
+/// have numbers that the scene file does not have.
 fn question(config: &Config, asked: &AskedQuestion) -> Result<Question, WireError> {
     let question = Question::try_from(asked.question)?;
-    let is_known = asked.scene == config.scene.key() && config.scene.contains(question);
+    let has_words = matches!(question, Question::Point(_)) || config.scene.contains(question);
+    let is_known = asked.scene == config.scene.key() && has_words;
     Ok(if is_known { question } else { Question::None })
 }
 
@@ -123,6 +125,17 @@ mod tests {
         assert!((best.doubt.of_word(0) - doubt).abs() < 1e-6, "{best:?}");
         assert!((meant.iter().map(|(weight, _)| weight).sum::<f64>() - 1.0).abs() < 1e-12);
         assert_eq!(readings(&config, &hypotheses, Question::None, 2).len(), 2);
+    }
+
+    #[test]
+    fn grounding_reads_answers_about_objects_from_perception() {
+        let (config, asked) = (config(), Question::Point(scene::ObjectId(9)));
+        for (text, response) in
+            [("no", Response::No), ("yes", Response::Yes), ("the white one", Response::None)]
+        {
+            let (_, reading) = readings(&config, &[heard(text, 1.0, &[])], asked, 8).remove(0);
+            assert_eq!(reading.response, response, "{text}");
+        }
     }
 
     #[test]

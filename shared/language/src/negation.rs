@@ -35,7 +35,9 @@ pub(crate) fn use_of_no(
             let asked_about = match asked {
                 QuestionWords::Value(_, word) => word == value.word,
                 QuestionWords::Object(words) => words.contains(&value.word),
-                QuestionWords::Nothing | QuestionWords::Attribute => true,
+                QuestionWords::Nothing
+                | QuestionWords::PerceivedObject
+                | QuestionWords::Attribute => true,
             };
             return if asked_about { NoUse::Determiner } else { NoUse::Answer };
         }

@@ -141,7 +141,7 @@ impl ParsedUtterance<'_> {
 
     /// "maybe", "it could be", and nothing else, in answer to a yes or no question.
     fn is_maybe(&self, best: &Reading) -> bool {
-        let asked = matches!(self.asked, QuestionWords::Value(..) | QuestionWords::Object(_));
+        let asked = !matches!(self.asked, QuestionWords::Nothing | QuestionWords::Attribute);
         asked
             && *best == Reading { intent: Intent::Inform, ..Reading::default() }
             && self.content.answers.is_empty()

@@ -9,6 +9,9 @@ pub(crate) enum QuestionWords<'a> {
     Nothing,
     /// "This one?": the words of the object pointed at.
     Object(&'a [WordId]),
+    /// The same of an object that the scene file does not have, because it comes from perception: only
+    /// what is said as yes or no answers it.
+    PerceivedObject,
     /// "Is it white?"
     Value(AttributeId, WordId),
     /// "What colour is it?"
@@ -22,7 +25,7 @@ impl QuestionWords<'_> {
         match self {
             Self::Value(_, asked) => group.iter().all(|word| *word == asked),
             Self::Object(words) => group.iter().all(|word| words.contains(word)),
-            Self::Nothing | Self::Attribute => false,
+            Self::Nothing | Self::PerceivedObject | Self::Attribute => false,
         }
     }
 }
@@ -51,7 +54,7 @@ impl SceneQuestions {
         self.objects.iter().filter(|object| has_all(object)).count()
     }
 
-    /// The question in words; one that the scene does not have asks nothing.
+    /// The question in words; one about a value that the scene does not have asks nothing.
     pub(crate) fn asked(&self, question: Question) -> QuestionWords<'_> {
         match question {
             Question::None => QuestionWords::Nothing,
@@ -59,7 +62,7 @@ impl SceneQuestions {
             Question::Point(i) => self
                 .objects
                 .get(i.index())
-                .map_or(QuestionWords::Nothing, |words| QuestionWords::Object(words)),
+                .map_or(QuestionWords::PerceivedObject, |words| QuestionWords::Object(words)),
             Question::Attribute(k, v) => {
                 let values = self.attributes.get(k.index());
                 let word = values.and_then(|values| values.get(v.index()));

@@ -48,12 +48,15 @@ fn camera(seed: u64) -> CameraSettings {
 }
 
 /// Holds dialogues about the shipped bowls under a simulated camera, half of them with something that
-/// appears, moves or vanishes meanwhile.
-pub fn perceive(dialogues: u64, seed: u64, faults: fn(u64) -> Faults) -> Perceived {
-    let (certain, perceiving) = (
-        settings(&[]),
-        settings(&[("group.perception.enabled", "true"), ("arm.time_scale", "1.0")]),
-    );
+/// appears, moves or vanishes meanwhile. `mode` is `remote` or `present`: whether the robot may point.
+pub fn perceive(mode: &str, dialogues: u64, seed: u64, faults: fn(u64) -> Faults) -> Perceived {
+    let certain = settings(&[("dialogue.mode", mode)]);
+    // A camera follows what happens at the arm's own speed alone.
+    let perceiving = settings(&[
+        ("dialogue.mode", mode),
+        ("group.perception.enabled", "true"),
+        ("arm.time_scale", "1.0"),
+    ]);
     let mut found = Perceived::default();
     for number in 0..dialogues {
         let seed = seed.wrapping_mul(1_000_003).wrapping_add(number);
