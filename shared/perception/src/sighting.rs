@@ -98,6 +98,12 @@ pub enum Refusal {
     /// There is no such class.
     #[error("no object `{0}` in the scene file; help: name one of its objects as the class")]
     NoClass(String),
+    /// There is no such attribute.
+    #[error("unknown attribute `{0}`; help: the scene file has {1}")]
+    NoAttribute(String, String),
+    /// The attribute has no such value.
+    #[error("unknown value `{1}` of {0}; help: write {2}")]
+    NoValue(String, String, String),
     /// There are too many.
     #[error("the table is full: {0} objects; help: remove some")]
     Full(usize),

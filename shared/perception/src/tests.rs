@@ -195,6 +195,14 @@ fn changes_by_hand_count_at_once_and_are_not_missed_before_they_are_seen() {
     assert_eq!(gone, Err(Refusal::NoObject("6".to_owned())));
     let teapot = it.report("hand", Change::Add(seen("teapot", 0.6, 0.0)));
     assert_eq!(teapot, Err(Refusal::NoClass("teapot".to_owned())));
+    let mut of = |name: &str, value: &str| {
+        let attributes = vec![(name.to_owned(), vec![(value.to_owned(), 1.0)])];
+        let detection = Detection { attributes, ..seen("metal", 0.6, 0.0) };
+        it.report("hand", Change::Add(detection)).unwrap_err().to_string()
+    };
+    let value = "unknown value `metal` of color; help: write white, metallic, clear";
+    assert_eq!(of("color", "metal"), value);
+    assert!(of("colour", "white").contains("unknown attribute `colour`"));
 }
 
 /// The camera sees it on its way, in the gripper: that is no motion of its own and no other object.

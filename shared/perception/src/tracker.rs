@@ -210,6 +210,26 @@ impl Tracker {
         if file.object_named(class).is_none() {
             return Err(Refusal::NoClass(class.to_owned()));
         }
+        check_values(detection, file)?;
         self.appear(Estimate::new(detection), None, now).ok_or(Refusal::Full(self.tracks.len()))
     }
+}
+
+/// Checks that the scene file has the attributes and values. Cameras may report others, which do not count.
+fn check_values(detection: &Detection, file: &Scene) -> Result<(), Refusal> {
+    for (name, values) in &detection.attributes {
+        let Some(k) = file.attribute_named(name) else {
+            let known = listed(file.attributes().iter().map(|attribute| attribute.name.as_str()));
+            return Err(Refusal::NoAttribute(name.clone(), known));
+        };
+        if let Some((value, _)) = values.iter().find(|(v, _)| file.value_named(k, v).is_none()) {
+            let known = file.attributes()[k.index()].values.iter().map(|value| value.name.as_str());
+            return Err(Refusal::NoValue(name.clone(), value.clone(), listed(known)));
+        }
+    }
+    Ok(())
+}
+
+fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    names.collect::<Vec<_>>().join(", ")
 }
