@@ -175,7 +175,14 @@ fn client_that_outlives_a_group_takes_nothing_of_the_next_one() {
         let output = File::options().append(true).create(true).open(&seen).unwrap();
         group.command(words).stdout(output).stderr(Stdio::null()).spawn().unwrap()
     });
-    wait_for("the client to look", 10.0, || {
+    let name = group.paths().shm_name().unwrap();
+    for client in &clients {
+        wait_for("the client to join", 20.0, || {
+            let maps = std::fs::read_to_string(format!("/proc/{}/maps", client.id())).unwrap();
+            maps.contains(name.prefix()).then_some(())
+        });
+    }
+    wait_for("the client to look", 20.0, || {
         (std::fs::metadata(&seen).unwrap().len() > 0).then_some(())
     });
     // They wake in the life of the next group, and end there.
