@@ -50,6 +50,8 @@ pub(super) struct Conversation {
 impl Conversation {
     /// Joins a running group.
     pub(super) fn join(paths: &GroupPaths) -> Result<Self, Failure> {
+        // Read first: what is joined after it is of this run or of a later one, which is noticed.
+        let shared_memory = paths.shm_name();
         let client = Client::join(paths)?;
         let settings = Settings::load_snapshot(&paths.run())?;
         Ok(Self {
@@ -69,7 +71,7 @@ impl Conversation {
             },
             may_be_absent: settings.dialogue.prior.absent > 0.0,
             paths: paths.clone(),
-            shared_memory: paths.shm_name().map_err(|_| ended(paths))?,
+            shared_memory: shared_memory.map_err(|_| ended(paths))?,
             checked: Instant::now(),
             client,
         })
