@@ -1,7 +1,7 @@
 //! Tables of a Markdown document, and the command that prints each.
 
 /// Programs whose commands print figures.
-const PROGRAMS: [&str; 4] = ["scripts/", "whichone ", "cargo ", "echo "];
+const PROGRAMS: [&str; 5] = ["scripts/", "whichone ", "cargo ", "node ", "echo "];
 
 /// A table of a document.
 #[derive(Debug, Default, PartialEq)]

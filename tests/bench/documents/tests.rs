@@ -160,7 +160,7 @@ fn numbers_are_read_with_their_signs_and_digits() {
     assert_eq!(of("33.9732–33.9735, 2"), [(33.9732, 4), (33.9735, 4), (2.0, 0)]);
     assert_eq!(of("9,028 of -1.50 at p50"), [(9028.0, 0), (-1.5, 2)]);
     assert_eq!(of("5-20 %"), [(5.0, 0), (20.0, 0)]);
-    assert_eq!(replaced("246 / 0.03 (of 9.95)", &[251.4, 0.004, 9.0]), "251 / 0.0040 (of 9)");
+    assert_eq!(replaced("246 / 0.03 (of 9.95)", &[251.4, 0.004, 9.0]), "251 / 0.0040 (of 9.00)");
     assert_eq!(
         [significant(1234.5), significant(0.0123), significant(0.0)],
         ["1234", "0.012", "0"]
@@ -255,7 +255,7 @@ fn figures_are_written_into_the_documents() {
 #[test]
 fn deviations_beyond_the_spread_are_off() {
     let reports = [report()];
-    for (before, after) in [("| 10 | 12 |", "| 7.9 | 12 |"), ("33.97 ", "33.96 "), ("0.50", "0.7")]
+    for (before, after) in [("| 10 | 12 |", "| 7.5 | 12 |"), ("33.97 ", "33.96 "), ("0.50", "0.75")]
     {
         let text = DOCUMENT.replace(before, after);
         let tables = tables(&text);

@@ -19,7 +19,7 @@ const PATHS: [Path; 10] = [
     ("belief update, 6 objects", 100_000, |times| decisions::update(6, times)),
     ("belief update, 1000 objects", 2_000, |times| decisions::update(1_000, times)),
     ("decision of lookahead, six bowls", 20, decisions::lookahead),
-    ("reading of an utterance", 500, decisions::read),
+    ("reading of four utterances", 500, decisions::read),
     ("policy's steps for a request and its cancellation", 100, messages::step),
     ("inverse kinematics, Baxter", 1_000, kinematics::baxter),
     ("inverse kinematics, UR5e", 1_000, kinematics::ur5e),
