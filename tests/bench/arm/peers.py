@@ -63,22 +63,25 @@ def optik():
     import numpy
     import optik
 
-    robots, from_mount = {}, {}
+    # From the first joint to what the last one moves: it puts fixed joints together in the wrong order.
+    robots, from_mount, from_tip = {}, {}, {}
     for limb, ends in limbs.items():
-        # From the first joint: with the fixed ones before it in the chain its poses are off.
         file = in_file(description(limb))
-        robots[limb] = optik.Robot.from_urdf_file(file, ends["mount"], ends["tip"])
+        robots[limb] = optik.Robot.from_urdf_file(file, ends["mount"], ends["last"])
         robots[limb].set_parallelism(1)
-        from_mount[limb] = numpy.linalg.inv(ends["mount_pose"])
         os.unlink(file)
+        from_mount[limb] = numpy.linalg.inv(ends["mount_pose"])
+        from_tip[limb] = numpy.linalg.inv(ends["tip_on_last"])
     for target in targets["reachable"] + targets["anywhere"]:
-        target["in_mount"] = (from_mount[target["limb"]] @ numpy.array(target["pose"])).tolist()
+        limb = target["limb"]
+        pose = from_mount[limb] @ numpy.array(target["pose"]) @ from_tip[limb]
+        target["of_last"] = pose.tolist()
 
     def solver(mode):
         config = optik.SolverConfig(solution_mode=mode, max_time=budget, tol_f=1e-10)
 
         def solve(target, seed):
-            found = robots[target["limb"]].ik(config, target["in_mount"], seed)
+            found = robots[target["limb"]].ik(config, target["of_last"], seed)
             return None if found is None else found[0]
 
         return solve

@@ -6,6 +6,7 @@ use super::inverse::{Outcome, Seed};
 use super::subject::{Subject, joints_of};
 use super::targets::{Rule, Target};
 use super::{BUDGET_S, Effort};
+use manipulation::Limb;
 use nalgebra::Isometry3;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
@@ -135,17 +136,23 @@ fn question(
     .to_string()
 }
 
-/// The links at the ends of each limb: where its first joint is mounted, and the gripper.
+/// The links at the ends of each limb: where its first joint is mounted, what its last joint moves, and
+/// the gripper; with their poses.
 fn limbs(subject: &Subject) -> Map<String, Value> {
     let description = subject.description();
     let poses = description.poses(|_| 0.0);
-    let ends = |limb: &manipulation::Limb| {
-        let first = subject.chain(*limb).movable().next();
-        let mount = first.map_or(0, |joint| joint.parent);
+    let ends = |limb: &Limb| {
+        let chain = subject.chain(*limb);
+        let (mut joints, tip) = (chain.movable(), subject.tip(*limb));
+        let mount = joints.next().map_or(0, |joint| joint.parent);
+        let last = joints.next_back().map_or(0, |joint| joint.child);
+        let tool = description.link_index(&tip).map(|tip| poses[last].inv_mul(&poses[tip]));
         let ends = json!({
-            "tip": subject.tip(*limb),
+            "tip": tip,
             "mount": description.links()[mount].name,
             "mount_pose": matrix(&poses[mount]),
+            "last": description.links()[last].name,
+            "tip_on_last": tool.map(|pose| matrix(&pose)),
         });
         (limb.name().to_owned(), ends)
     };
