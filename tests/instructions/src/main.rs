@@ -4,7 +4,7 @@
 //! Every run does the same work, so the difference between two numbers of times is that of the path
 //! alone, without what prepares it.
 
-#![allow(clippy::expect_used, clippy::print_stdout, reason = "a program of the tests")]
+#![allow(clippy::print_stdout, reason = "a program for the tests")]
 
 mod decisions;
 mod kinematics;
