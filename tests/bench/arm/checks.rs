@@ -18,8 +18,8 @@ pub(super) fn forward(report: &mut Report, subject: &Subject, python: &Measured)
     let chain = &subject.arm(limb).chain;
     let pose_of = |q: &Joints| chain.tool_frame(q).origin.x;
     let jacobian = |q: &Joints| std::hint::black_box(chain.tool_and_jacobian(q)).0.origin.x;
-    let [pose, both] = ["forward kinematics", "forward kinematics and Jacobian"]
-        .map(|what| format!("{what} of {}", subject.name));
+    let pose = format!("forward kinematics of {}", subject.name);
+    let both = format!("forward kinematics and Jacobian of {}", subject.name);
     let note = format!("base to gripper, {} joints", chain.joints());
     #[cfg(feature = "peers")]
     {
