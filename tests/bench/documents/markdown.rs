@@ -65,7 +65,10 @@ pub(super) fn tables(text: &str) -> Vec<Table> {
 
 /// Returns the cells of a row.
 fn cells(line: &str) -> Vec<String> {
-    line.trim().trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
+    let line = line.trim_end();
+    let inner = line.strip_prefix('|').unwrap_or(line);
+    let inner = inner.strip_suffix('|').unwrap_or(inner);
+    inner.split('|').map(|cell| cell.trim().to_owned()).collect()
 }
 
 /// Returns a row of these cells.

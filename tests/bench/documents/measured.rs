@@ -100,6 +100,12 @@ impl Cell {
                 own.greatest >= from.value - slack(from, own)
                     && own.least <= to.value + slack(to, own)
             }
+            // The value between bounds that hardly differ.
+            ([one], [lower, upper]) => {
+                let (from, to) =
+                    (lower.least - slack(one, lower), upper.greatest + slack(one, upper));
+                (from..=to).contains(&one.value)
+            }
             (shown, own) => {
                 let holds = |(shown, own): (&Number, &Spread)| {
                     let slack = slack(shown, own);
