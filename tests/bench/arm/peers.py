@@ -28,7 +28,7 @@ def run(name, solve, kind="reachable", seed="middle", nearest=False, count=None)
 
 
 def run_all(name, modes, solver):
-    """Any answer, the nearest one, and answers to poses of which some are out of reach; `name` takes the mode."""
+    """Any answer, the nearest one, and answers where some poses are out of reach; `name` takes the mode."""
     first, nearest = (solver(kind) for kind in modes.values())
     any_name, nearest_name = (name.format(mode) for mode in modes)
     run(any_name, first)

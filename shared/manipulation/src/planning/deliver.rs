@@ -47,7 +47,7 @@ pub fn plan_delivery(
     })?;
     let width_m = scene.arm.gripper.closed_on(object.grasp_width_m);
     let stages = deliver(&scene, &carrying, lift, width_m, Search::Yes)?;
-    Ok(Timeline::new(limb, stages))
+    Ok(Timeline::new(scene.limb, stages))
 }
 
 /// Returns the rise left before the gripper may leave the object's place, metres; 0 elsewhere.
@@ -87,7 +87,7 @@ pub fn plan_return(
         motion: scene.motion(HOME, &way)?,
         width_m: (scene.open_m(), scene.open_m()),
     };
-    Ok(Timeline::new(limb, vec![stage]))
+    Ok(Timeline::new(scene.limb, vec![stage]))
 }
 
 /// Lift, hand over, release and return, from the low end of `lift`: `carrying` the object, and

@@ -99,12 +99,9 @@ impl Carry {
                 }
             };
             for (_, end) in ends.into_iter().take(ENDS) {
-                match scene.blocked(&end) {
-                    Some(gap) => error = Some(PlanError::Blocked { at: HAND_OVER, limb, gap }),
-                    None => match scene.way(from, &end, search) {
-                        Some(waypoints) => return Ok(Self { waypoints, straight: false }),
-                        None => error = Some(scene.no_path(HAND_OVER, from, &end)),
-                    },
+                match way_to_end(scene, from, &end, search) {
+                    Ok(waypoints) => return Ok(Self { waypoints, straight: false }),
+                    Err(blocked) => error = Some(blocked),
                 }
             }
             tried.push(turn);
@@ -125,6 +122,19 @@ impl Carry {
 fn turn_of(k: usize) -> f64 {
     let side = if k % 2 == 1 { 1.0 } else { -1.0 };
     side * k.div_ceil(2) as f64 * 2.0 * PI / TURNS as f64
+}
+
+/// Returns the way through joint space to a posture at the hand over.
+fn way_to_end(
+    scene: &PlanningScene<'_>,
+    from: &Joints,
+    end: &Joints,
+    search: Search,
+) -> Result<Vec<Joints>, PlanError> {
+    if let Some(gap) = scene.blocked(end) {
+        return Err(PlanError::Blocked { at: HAND_OVER, limb: scene.limb, gap });
+    }
+    scene.way(from, end, search).ok_or_else(|| scene.no_path(HAND_OVER, from, end))
 }
 
 fn straight(

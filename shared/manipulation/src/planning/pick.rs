@@ -135,12 +135,7 @@ fn planning_scenes<'a>(
     others: &[Cuboid],
     settings: &'a PlanSettings,
 ) -> Result<Vec<PlanningScene<'a>>, PlanError> {
-    let mut limbs: Vec<Limb> = robot
-        .limbs()
-        .iter()
-        .copied()
-        .filter(|side| limb.is_none_or(|limb| limb == *side))
-        .collect();
+    let mut limbs = robot.limbs_of(limb);
     // The arm on the object's own side first.
     limbs.sort_by(|a, b| (b.side() * object.xyz_m[1]).total_cmp(&(a.side() * object.xyz_m[1])));
     limbs

@@ -95,10 +95,11 @@ impl<'a> PlanningScene<'a> {
         (place_m, lowest_z_m): ([f64; 3], f64),
         settings: &'a PlanSettings,
     ) -> Result<Self, PlanError> {
-        refuse_outside(robot.arm(limb).chain.limits(), &arms[limb])?;
+        let arm = robot.arm(limb);
+        let limb = arm.limb;
+        refuse_outside(arm.chain.limits(), &arms[limb])?;
         let mut surroundings = static_obstacles::table(settings.table_z_m, place_m, lowest_z_m);
         surroundings.extend(static_obstacles::objects(others, settings.table_z_m));
-        let arm = robot.arm(limb);
         Ok(Self {
             limb,
             arm,
