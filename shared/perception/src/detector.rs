@@ -138,8 +138,7 @@ impl Detector {
     /// Converts a single marker, of which the absence of a message says nothing. Returns none if no label
     /// has its identifier: transforms of all kinds share a topic.
     pub fn marker(&mut self, key: u64, at_ns: u64, reported: &Reported) -> Option<Sighting> {
-        let hypothesis = reported.hypotheses.first()?;
-        self.labels.iter().find(|label| label.id == hypothesis.id)?;
+        let hypothesis = reported.hypotheses.first().filter(|it| self.knows(&it.id))?;
         let mut sighting = self.look(key, at_ns, std::slice::from_ref(reported));
         // Messages about several markers may have the same time, so each is a source of its own.
         sighting.source = format!("{} {}", self.source, hypothesis.id);
@@ -147,6 +146,11 @@ impl Detector {
             look.whole = false;
         }
         Some(sighting)
+    }
+
+    /// Returns whether a label has the identifier.
+    pub fn knows(&self, id: &str) -> bool {
+        self.labels.iter().any(|label| label.id == id)
     }
 
     /// Returns how much was not used so far.

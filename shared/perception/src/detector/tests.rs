@@ -43,7 +43,8 @@ fn only(detector: &mut Detector, reported: Reported) -> Detection {
 
 #[test]
 fn identifiers_become_names_of_the_scene_and_unknown_ones_are_reported_once() {
-    let mut detector = detector(&[label("3", "white"), label("4", "white"), label("5", "clear")], &[]);
+    let mut detector =
+        detector(&[label("3", "white"), label("4", "white"), label("5", "clear")], &[]);
     let all = [("3", 0.25), ("4", 0.5), ("metal", 0.2), ("cup", 0.9), ("5", 0.0), ("5", f64::NAN)];
     let hypotheses: Vec<_> = all.iter().map(|(id, score)| hypothesis(id, *score)).collect();
     let found = only(&mut detector, reported(hypotheses.clone()));
@@ -104,7 +105,8 @@ fn covariance_of_zero_is_not_stated_and_neither_are_negative_ones() {
 #[test]
 fn message_in_an_unknown_frame_becomes_a_look_that_is_refused() {
     let mut detector = detector(&[], &[]);
-    let elsewhere = Reported { frame: "/lens".to_owned(), ..reported(vec![hypothesis("white", 1.0)]) };
+    let elsewhere =
+        Reported { frame: "/lens".to_owned(), ..reported(vec![hypothesis("white", 1.0)]) };
     let sighting = detector.look(1, 5, &[reported(vec![hypothesis("white", 1.0)]), elsewhere]);
     assert_eq!((sighting.frame.as_str(), seen(&sighting)), ("lens", &[][..]));
     let empty = detector.look(1, 5, &[]);
