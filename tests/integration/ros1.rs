@@ -259,14 +259,19 @@ fn ros1_objects_of_detectors_and_markers_are_fetched_by_request() {
     let log = group.must(&["logs", "baxter"]).stdout;
     assert_eq!(log.matches("unknown identifier `99`").count(), 1, "{log}");
 
-    // What waited while the bridge stood still is old, whatever the clock of the camera says.
+    // What waited while the bridge stood still is old, whatever the clock of the camera says. The bridge passes on the
+    // newest look only, so the camera has to fall silent for an old one to be that.
+    let pause = || std::thread::sleep(std::time::Duration::from_millis(1_500));
     group.signal("baxter", Signal::STOP);
-    std::thread::sleep(std::time::Duration::from_secs(3));
+    pause();
+    camera.signal(Signal::STOP);
+    pause();
     group.signal("baxter", Signal::CONT);
     wait_for("old looks are refused", 20.0, || {
         let table = group.must(&["objects", "--json"]).json();
-        table["refusal"].as_str()?.contains("old").then_some(())
+        table["refusal"].as_str()?.contains("s old").then_some(())
     });
+    camera.signal(Signal::CONT);
     wait_for_arm(&group, "the robot is heard again", |arm| arm["hindrance"] == "none");
 
     let (clear, _) = &found["clear"];

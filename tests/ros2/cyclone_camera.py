@@ -27,9 +27,14 @@ from cyclonedds.util import duration
 
 PERIOD_S = 0.1
 UNKNOWN = [0.0] * 36
-# As drivers of cameras publish, and as transforms are published.
+# As drivers of cameras publish, and as transforms are published. The subscription to /tf is opened with the same.
 BEST_EFFORT = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(5))
-RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(100))
+RELIABLE = Qos(
+    Policy.Reliability.Reliable(duration(seconds=1)),
+    Policy.Durability.Volatile,
+    Policy.History.KeepLast(100),
+    Policy.TypeConsistency.AllowTypeCoercion(),
+)
 TOPICS = {
     "detections": ("rt/camera/detections", Detection3DArray, BEST_EFFORT),
     "ar_markers": ("rt/ar_pose_marker", AlvarMarkers, RELIABLE),

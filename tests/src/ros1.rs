@@ -52,6 +52,11 @@ pub struct Peer {
 }
 
 impl Peer {
+    /// Sends the program a signal.
+    pub fn signal(&self, signal: Signal) {
+        self.process.signal(signal);
+    }
+
     /// Gives the program a line, and returns its answer.
     pub fn tell(&mut self, line: &str) -> Value {
         writeln!(self.to, "{line}").expect("the program reads");
