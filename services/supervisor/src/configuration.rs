@@ -143,5 +143,10 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
     };
     let texts = sections.iter().map(|&section| settings.section_text(section));
     let durations = decides.then(|| settings.durations_text());
-    texts.chain([settings.scene_file().text.clone()]).chain(durations).collect()
+    // Those that read detectors know the frames of the cameras.
+    let reads_detectors =
+        matches!(Service::from_name(name), Some(Service::Ros2 | Service::Robot) | None);
+    let perception = reads_detectors.then(|| settings.perception_text());
+    let texts = texts.chain([settings.scene_file().text.clone()]);
+    texts.chain(durations).chain(perception).collect()
 }

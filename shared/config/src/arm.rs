@@ -2,6 +2,8 @@
 
 use diagnostics::Fields;
 
+use crate::detectors::{self, Ros1Objects};
+
 /// The arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
@@ -58,13 +60,15 @@ pub struct Grasps {
     pub error_m: f64,
 }
 
-/// Addresses of the bridge to a Baxter's ROS 1 topics; those that are absent come from the environment.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// The bridge to a Baxter's ROS 1 topics. Addresses that are absent come from the environment.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ros1 {
     /// The robot's ROS master: `HOST`, `HOST:PORT` or a URI.
     pub master: Option<String>,
     /// Name or address under which the robot reaches this machine.
     pub host: Option<String>,
+    /// Objects from detectors.
+    pub objects: Ros1Objects,
 }
 
 /// Tolerances of a Baxter. The defaults are those of the robot's own trajectory server, except for the
@@ -159,7 +163,11 @@ fn simulated(f: &mut Fields<'_>) -> Simulated {
 }
 
 fn ros1(f: &mut Fields<'_>) -> Ros1 {
-    Ros1 { master: f.optional_text("master"), host: f.optional_text("host") }
+    Ros1 {
+        master: f.optional_text("master"),
+        host: f.optional_text("host"),
+        objects: f.table("objects", detectors::ros1),
+    }
 }
 
 fn motion(f: &mut Fields<'_>) -> Motion {

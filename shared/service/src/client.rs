@@ -158,6 +158,14 @@ pub fn request_key(client: ClientId) -> RequestKey {
     RequestKey::new(client, random_key().client().0)
 }
 
+/// Returns a number at random, the key of a sighting.
+pub fn random_number() -> u64 {
+    let RequestKey(key) = random_key();
+    let mut number = [0; 8];
+    number.copy_from_slice(&key[..8]);
+    u64::from_le_bytes(number)
+}
+
 /// Returns a unique key.
 pub fn random_key() -> RequestKey {
     let mut key = [0; 16];
