@@ -171,9 +171,10 @@ impl Moments {
         add("longest interval of joint states while the arm plans", &longest, "; nominal 10 ms");
     }
 
-    /// Longest interval between two joint states that overlaps the planning of an order.
+    /// Longest interval between two joint states that overlaps the planning of an order, which begins with
+    /// its acceptance.
     fn longest_interval_ms(&self, order: &Order) -> f64 {
-        let overlaps = |pair: &&[u64]| pair[1] > order.sent && pair[0] < order.moving;
+        let overlaps = |pair: &&[u64]| pair[1] > order.accepted && pair[0] < order.moving;
         let pairs = self.joints.windows(2).filter(overlaps);
         pairs.map(|pair| (pair[1] - pair[0]) as f64 / 1e6).fold(0.0, f64::max)
     }

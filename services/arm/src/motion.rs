@@ -2,6 +2,7 @@
 
 use crate::driver::Fault;
 use crate::executor::{Progress, Purpose};
+use crate::publish::Activity;
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
 use manipulation::Limb;
@@ -52,7 +53,7 @@ impl ArmNode {
         if self.unsynced {
             return;
         }
-        if self.publisher.due_joints(&self.driver.measured(), now).is_some() {
+        if self.publisher.due_joints(&self.driver.measured(), Activity::Busy, now).is_some() {
             self.urgent = true;
             return;
         }

@@ -94,7 +94,7 @@ impl ArmStatus {
 }
 
 wire_struct! {
-    /// Joint states at 100 Hz, in the order of [`JOINT_STATE_NAMES`]. Arm to clients.
+    /// Joint states, at 100 Hz while the arm is busy, in the order of [`JOINT_STATE_NAMES`]. Arm to clients.
     JointStates = "JointStates" {
         /// When the joints were so.
         at_ns: u64,
