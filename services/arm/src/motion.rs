@@ -2,16 +2,20 @@
 
 use crate::driver::Fault;
 use crate::executor::{Progress, Purpose};
-use crate::state::Cause;
+use crate::state::{Cause, Offered};
 use crate::{ArmNode, Fx};
 use manipulation::Limb;
 use messages::pick::Pick;
 use messages::{MotionPhase, PickOutcome, PickPhase, Task};
+use scene::ObjectId;
 use service::{Span, Time};
 
 /// Longest time step of a motion. A process that was suspended resumes
 /// from the same point, as a robot does whose controller was silent.
 const STRETCH_MAX: Span = Span::from_ms(50);
+/// Distance from where objects are handed over within which a user may hold one out between the
+/// fingers, metres.
+const OFFERED_M: f64 = 0.05;
 /// Interval between journal records of moving joints.
 const PROGRESS_EVERY: Span = Span::from_ms(200);
 
@@ -147,15 +151,22 @@ impl ArmNode {
         tracing::info!(id = ?pick.id, object = pick.object.0, ?outcome, "pick ended");
         let asks_for_person = [PickOutcome::Interrupted, PickOutcome::Blocked];
         self.state.waits_for_person = asks_for_person.contains(&outcome);
-        let is_taken_back = was.task == Task::PutBack && outcome != PickOutcome::PutBack;
-        if let Some(held) = self.state.handed_over(was.object).filter(|_| is_taken_back)
-            && was.phase >= PickPhase::Moving
-        {
-            // The user may have put it between the fingers already.
-            self.state.offered = Some(self.world.offered(held, &self.driver.measured()));
+        if was.task == Task::PutBack && outcome != PickOutcome::PutBack {
+            self.state.offered = self.put_between_fingers(was.object);
         }
         self.urgent = true;
         self.record(Cause::Ended, now, fx);
+    }
+
+    /// Returns the object that was to be taken from the user, where it is between the fingers already:
+    /// `None` if the gripper is elsewhere.
+    fn put_between_fingers(&self, object: ObjectId) -> Option<Offered> {
+        let (held, measured) = (self.state.handed_over(object)?, self.driver.measured());
+        let offered = self.world.offered(held, &measured);
+        let setup = &self.config.setup;
+        let gripper = setup.robot.arm(held.limb).chain.forward(&measured.posture.joints[held.limb]);
+        let tip = gripper.translation.vector;
+        setup.plan.is_hand_over(held.limb, &tip, OFFERED_M).then_some(offered)
     }
 
     fn ended(&mut self, kind: MotionPhase, purpose: Option<Purpose>, now: Time, fx: &mut Fx) {
