@@ -319,7 +319,8 @@ impl Planner<'_> {
 
     /// Back along the fingers from what a user may hold between them.
     fn withdrawal(&self, limb: Limb, q: &Joints) -> Option<Trajectory> {
-        let offered = self.state.offered.filter(|it| it.limb == limb && self.state.held.is_none())?;
+        let offered =
+            self.state.offered.filter(|it| it.limb == limb && self.state.held.is_none())?;
         let object = self.world.place(offered.object)?;
         let gripper = self.robot.arm(limb).chain.forward(q);
         let in_gripper = gripper.inverse() * from_array(&offered.pose);

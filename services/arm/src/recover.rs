@@ -81,9 +81,7 @@ pub fn other_scene(state: &ArmState, scene: &Scene) -> Option<ArmState> {
 fn outcome(pick: &Pick) -> PickOutcome {
     match pick.phase {
         PickPhase::Done => pick.outcome,
-        PickPhase::Closing | PickPhase::Holding | PickPhase::Returning => {
-            PickOutcome::Interrupted
-        }
+        PickPhase::Closing | PickPhase::Holding | PickPhase::Returning => PickOutcome::Interrupted,
         _ => PickOutcome::Cancelled,
     }
 }

@@ -31,8 +31,7 @@ fn delivered() -> (Machine, Limb) {
 /// fingers, until it is away from there. Returns how long it has stood there since.
 fn withdraws((mut machine, limb): (Machine, Limb), after_s: f64, then: Then) -> f64 {
     let released = machine.tip(limb);
-    let (until, deadline) =
-        (machine.now + Span::from_s(after_s), machine.now + Span::from_s(40.0));
+    let (until, deadline) = (machine.now + Span::from_s(after_s), machine.now + Span::from_s(40.0));
     let (mut happened, mut waited_s, mut far_m) = (false, 0.0, 0.0);
     while !happened || far_m < NEAR_M {
         assert!(machine.now < deadline, "{after_s} s: {:?}", machine.node.state());

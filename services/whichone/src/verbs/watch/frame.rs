@@ -169,7 +169,9 @@ fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
         PickPhase::Accepted if puts_back => format!("is to put {object} back"),
         PickPhase::Moving if puts_back => format!("comes for {object}, {left} to go"),
         PickPhase::Closing if puts_back => format!("takes {object}, {left} to go"),
-        PickPhase::Holding | PickPhase::Returning if puts_back => format!("puts {object} back, {left} to go"),
+        PickPhase::Holding | PickPhase::Returning if puts_back => {
+            format!("puts {object} back, {left} to go")
+        }
         PickPhase::Accepted => format!("sets out for {object}"),
         PickPhase::Moving => format!("moves to {object}, {left} to go"),
         PickPhase::Closing => format!("grasps {object}, {left} to go"),
