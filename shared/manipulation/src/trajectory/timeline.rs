@@ -6,7 +6,7 @@ use crate::gripper;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::trajectory::joint_trajectory::Trajectory;
 
-/// The stages of plans. A pick goes from `Approach` to `Return`; pointing is `Aim`, `Hold`, `Return`;
+/// The stages of plans. A pick is `Approach`, `Close`, `Lift`, `HandOver`, `Release`, `Raise`, `Return`; pointing is `Aim`, `Hold`, `Return`;
 /// putting back is `Take`, `Close`, `CarryBack`, `Lower`, `Release`, `Raise`, `Return`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -31,7 +31,7 @@ pub enum Phase {
     CarryBack,
     /// Straight down to it.
     Lower,
-    /// Straight up, fingers open.
+    /// Straight up from its place, or back along the fingers from where it was handed over, fingers open.
     Raise,
     /// Back to the neutral posture.
     Return,
