@@ -40,6 +40,36 @@ fn dialogue_ends_with_a_pick_by_the_robot() {
 }
 
 #[test]
+fn object_denied_in_the_gripper_goes_back_through_a_stop_and_a_killed_arm() {
+    let group = group();
+    group.say("the clear bowl");
+    wait_for_arm(&group, "the carry", |arm| arm["phase"] == "holding" && arm["moving"] == true);
+    assert_eq!(group.arm()["object"], "clear");
+    group.say("no, not that one");
+    wait_for_arm(&group, "the way back", |arm| arm["phase"] == "returning");
+    group.must(&["stop-motion"]);
+    wait_for_arm(&group, "at rest", |arm| arm["stopped"] == true && arm["moving"] == false);
+    let before = group.incarnation("arm");
+    group.signal("arm", Signal::KILL);
+    group.wait_for_restart("arm", before);
+    assert_eq!(group.arm()["phase"], "returning", "{}", group.logs());
+    group.must(&["resume-motion"]);
+    wait_for_arm(&group, "the object in its place", |arm| arm["outcome"] == "cancelled");
+    let dialogue = wait_for("the dialogue goes on", 20.0, || {
+        Some(group.dialogue()).filter(|it| it["decision"] != "cancel")
+    });
+    let belief = |object: &str| dialogue["belief"][object].as_f64().unwrap();
+    assert!(belief("clear") < belief("metal"), "{dialogue}");
+    let outcome = group.await_pick(Some("metal"));
+    let facts = (&outcome["outcome"], &outcome["object"]);
+    assert_eq!(facts, (&"delivered".into(), &"metal".into()), "{outcome}\n{}", group.logs());
+    assert_eq!(group.dialogue()["last"]["interaction"], 1, "it was one interaction");
+    // It stands where it was.
+    assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
+    group.down();
+}
+
+#[test]
 fn killed_robot_process_resumes_the_pick() {
     let group = group();
     let outcome = group.fetch_while("the clear bowl", "clear", || {

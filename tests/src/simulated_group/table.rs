@@ -1,6 +1,6 @@
 //! Objects on a simulated table under a simulated camera, while people put, move and take them.
 
-use messages::{PickPhase, Sighting, TableView, WorldView};
+use messages::{PickOutcome, PickPhase, Sighting, TableView, WorldView};
 use perception::{Camera, CameraSettings, Standing};
 use scene::{ObjectId, Question, Scene};
 use service::{Span, Time};
@@ -37,6 +37,8 @@ pub struct TableTop {
     table: TableView,
     world: WorldView,
     closing: bool,
+    /// What the arm has grasped, and where it stood.
+    grasped: Option<(usize, [f64; 3])>,
     /// Each closing of the fingers: the object that was there, and how far from where the arm took it
     /// to be, metres.
     pub grasps: Vec<(Option<usize>, f64)>,
@@ -58,6 +60,7 @@ impl TableTop {
             table: TableView::default(),
             world: WorldView::default(),
             closing: false,
+            grasped: None,
             grasps: Vec::new(),
         }
     }
@@ -126,10 +129,18 @@ impl TableTop {
             let there = self.nearest(&believed);
             self.grasps.push(there.map_or((None, f64::INFINITY), |(i, m)| (Some(i), m)));
             if let Some((object, _)) = there {
-                self.places[object] = None;
+                self.grasped = self.places[object].take().map(|xyz| (object, xyz));
             }
         }
-        self.closing &= matches!(phase, PickPhase::Closing | PickPhase::Holding);
+        self.closing &=
+            matches!(phase, PickPhase::Closing | PickPhase::Holding | PickPhase::Returning);
+        // What was called off while it was held is back in its place.
+        if phase == PickPhase::Done
+            && let Some((object, xyz)) = self.grasped.take()
+            && status.outcome.get() == PickOutcome::Cancelled
+        {
+            self.places[object] = Some(xyz);
+        }
     }
 
     /// Where the arm takes the object to be.

@@ -34,6 +34,7 @@ pub(crate) const ABOVE: &str = "the place above the object";
 pub(crate) const GRASP: &str = "the grasp";
 pub(crate) const LIFT: &str = "the lift";
 pub(crate) const HAND_OVER: &str = "the hand over";
+pub(crate) const WITHDRAWAL: &str = "clear of what was handed over";
 pub(crate) const HOME: &str = "the neutral posture";
 
 impl PlanSettings {

@@ -168,7 +168,9 @@ impl Choice<'_> {
         let width_m = scene.arm.gripper.closed_on(self.grasp.width_m);
         let lift: Vec<Joints> = descent.iter().rev().copied().collect();
         let at_grasp = lift[0];
-        let delivery = deliver(scene, &carrying, lift, width_m, search);
+        let in_gripper = self.grasp.gripper.inverse() * object.isometry();
+        let held = (object, &in_gripper, width_m);
+        let delivery = deliver(scene, &carrying, lift, held, search);
         let delivery = delivery.map_err(|error| (6, error))?;
         // To above the grasp and straight down in one motion, with no stop between.
         let waypoints = [&way[..], &descent[CORNER.min(descent.len() - 1)..]].concat();

@@ -122,6 +122,13 @@ impl<'a> PlanningScene<'a> {
         self.arm.gripper.width_m(self.settings.open_percent)
     }
 
+    /// Returns the same with one more obstacle.
+    pub(crate) fn with_obstacle(&self, obstacle: Obstacle) -> Self {
+        let mut scene = self.clone();
+        scene.surroundings.push(obstacle);
+        scene
+    }
+
     /// Adds the board that the object to be fetched stands on, as wide as the hand.
     pub(crate) fn with_board_under(mut self, object: &Cuboid) -> Self {
         self.board = Some(self.surroundings.len());
@@ -257,7 +264,7 @@ impl<'a> PlanningScene<'a> {
 
     /// Returns the obstacle too near during a motion. It is checked at intervals of [`CHECK_S`]; what moves
     /// between two checks is never further from one of them than half of its way.
-    fn blocked_during(&self, motion: &Trajectory) -> Option<Gap> {
+    pub(crate) fn blocked_during(&self, motion: &Trajectory) -> Option<Gap> {
         let checks = (motion.duration_s() / CHECK_S).ceil() as usize;
         let at = |k: usize| self.look(&motion.sample(k as f64 * CHECK_S).0);
         let (mut now, mut before_m) = (at(0), 0.0);
