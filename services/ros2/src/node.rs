@@ -117,8 +117,13 @@ impl Node {
         let client = Client::of_service(environment, Service::Ros2.name())?;
         let bus = client.bus();
         let wake_listener = bus.wake_listener(Service::Ros2)?;
+        let mut latest = LatestTopics::open(bus)?;
+        if settings.group.perception.enabled {
+            latest = latest.with_table(bus, &settings.scene)?;
+        }
+        let scene = latest.set_scene(settings.scene.clone());
         let group = Group {
-            latest: LatestTopics::open(bus)?,
+            latest,
             joints: bus.reader(&topics::JOINTS)?,
             worlds: bus.encoded_reader(&topics::WORLD)?,
             injections: bus.encoded_writer(&topics::INJECTION)?,
@@ -147,7 +152,7 @@ impl Node {
             waiting: hear::Waiting::default(),
             statuses,
             status: Err("no status yet".to_owned()),
-            scene: settings.scene.clone(),
+            scene,
             names: JointNames::new(&robot),
             latest: Latest::default(),
             lines: Lines::new(began),
@@ -290,17 +295,21 @@ impl Node {
             let state = self.names.convert(&states, offset.ros(Time(states.at_ns)));
             self.dds.joint_states.publish(state, &mut self.counters.dropped);
         }
-        let arrived = self.group.latest.take();
+        let mut arrived = self.group.latest.take();
         for receipt in &arrived.receipts {
             if let Some((speaking, answer)) = self.waiting.on_receipt(receipt) {
                 self.on_answer(speaking, answer);
             }
         }
         self.latest.update(&arrived);
+        if let Some(scene) = arrived.scene.take() {
+            self.scene = scene;
+            self.objects = None;
+        }
         if arrived.view.as_ref().is_some_and(|view| view.scene_key != self.scene.key())
             && let Ok(settings) = Settings::load_snapshot(&self.paths.run())
         {
-            self.scene = settings.scene;
+            self.scene = self.group.latest.set_scene(settings.scene);
         }
         for (speaker, data) in self.lines.take_in(&self.latest, &arrived.receipts) {
             let outlet = match speaker {
@@ -314,7 +323,8 @@ impl Node {
             outlet.publish(Text { data }, &mut self.counters.dropped);
         }
         if let Some(world) = quiet(self.group.worlds.latest()) {
-            let frames = objects::frames(&self.scene, &world, offset.ros(Time(world.at_ns)));
+            let located = objects::located(&self.group.latest, &world);
+            let frames = objects::frames(&self.scene, &located, offset.ros(Time(world.at_ns)));
             self.dds.tf.publish(frames, &mut self.counters.dropped);
             self.world = Some(world);
         }
@@ -328,13 +338,14 @@ impl Node {
         self.shown = now;
         let belief = self.latest.view.as_ref().map_or(&[][..], |view| &view.belief);
         if let Some(world) = &self.world {
+            let world = objects::located(&self.group.latest, world);
             let is_shown = self.objects.as_ref().is_some_and(|(before, shown_belief)| {
                 before.objects == world.objects && shown_belief == belief
             });
             if !is_shown {
-                let markers = objects::markers(&self.scene, world, belief);
+                let markers = objects::markers(&self.scene, &world, belief);
                 self.dds.objects.publish(markers, &mut self.counters.dropped);
-                self.objects = Some((world.clone(), belief.to_vec()));
+                self.objects = Some((world, belief.to_vec()));
             }
         }
         let state = self.state_text();
