@@ -2,22 +2,12 @@
 
 use rustix::process::Signal;
 use serde_json::Value;
-use std::process::Command;
-use whichone_tests::{Group, program, run, wait_for};
+use whichone_tests::{Group, wait_for};
 
 /// A group with the simulated robot behind the robot's own topics.
 fn group() -> Group {
     let robot = ["group.services.baxter.nice=0", "arm.driver=baxter", "arm.time_scale=1.0"];
     Group::up(&robot)
-}
-
-/// Something happens to the robot.
-fn drill(group: &Group, words: &[&str]) {
-    let mut command = Command::new(program("whichone-baxter"));
-    command.env("WHICHONE_HOME", group.paths().home());
-    command.env("WHICHONE_GROUP", group.paths().name().as_str());
-    let ended = run(command.args(words), "", 20.0);
-    assert_eq!(ended.code, Some(0), "{words:?}: {ended:?}");
 }
 
 fn wait_for_arm(group: &Group, what: &str, holds: impl Fn(&Value) -> bool) {
@@ -89,11 +79,11 @@ fn emergency_stop_latches_until_resume() {
     let group = group();
     let outcome = group.fetch_while("the clear bowl", "clear", || {
         wait_for_arm(&group, "moving", |arm| arm["phase"] == "moving" && arm["moving"] == true);
-        drill(&group, &["press-estop"]);
+        group.drill(&["press-estop"]);
         wait_for_arm(&group, "latched", |arm| arm["stopped"] == true && arm["moving"] == false);
         assert_eq!(group.arm()["hindrance"], "stopped");
         for word in ["release-estop", "reset", "enable"] {
-            drill(&group, &[word]);
+            group.drill(&[word]);
         }
         wait_for_arm(&group, "the robot is back", |arm| arm["hindrance"] == "none");
         assert_eq!(group.arm()["stopped"], true, "latched until an operator resumes");
@@ -107,12 +97,12 @@ fn emergency_stop_latches_until_resume() {
 fn missed_grasp_is_announced() {
     let group = group();
     // More often than is tried, also where a halt in between makes another try.
-    drill(&group, &["miss", "9"]);
+    group.drill(&["miss", "9"]);
     let outcome = group.fetch("the clear bowl", "clear");
     assert_eq!(outcome["outcome"], "failed", "{outcome}\n{}", group.logs());
     let text = group.dialogue()["text"].as_str().unwrap_or_default().to_owned();
     assert!(text.contains("could not get hold"), "{text}");
-    drill(&group, &["miss", "0"]);
+    group.drill(&["miss", "0"]);
     assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
     group.down();
 }

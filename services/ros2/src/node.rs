@@ -98,8 +98,13 @@ impl Node {
         let client = Client::of_service(environment, Service::Ros2.name())?;
         let bus = client.bus();
         let wake_listener = bus.wake_listener(Service::Ros2)?;
+        let mut latest = LatestTopics::open(bus)?;
+        if settings.group.perception.enabled {
+            latest = latest.with_table(bus, &settings.scene)?;
+        }
+        let scene = latest.set_scene(settings.scene.clone());
         let group = Group {
-            latest: LatestTopics::open(bus)?,
+            latest,
             joints: bus.reader(&topics::JOINTS)?,
             worlds: bus.encoded_reader(&topics::WORLD)?,
             injections: bus.encoded_writer(&topics::INJECTION)?,
@@ -129,7 +134,7 @@ impl Node {
             waiting: hear::Waiting::default(),
             statuses,
             status: Err("no status yet".to_owned()),
-            scene: settings.scene.clone(),
+            scene,
             names: JointNames::new(&robot),
             detectors: Detectors::new(settings),
             latest: Latest::default(),

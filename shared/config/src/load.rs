@@ -59,6 +59,7 @@ pub(crate) fn check(
     let console = fields.table("console", console::read);
     let ros2 = fields.table("ros2", ros2::read);
     fields.finish();
+    arm::check_camera(&arm, group.perception.enabled, &tree, &mut report);
     let Files { scene: file, robot } = files;
     let read = file.as_ref().map(|file| Scene::from_toml(&file.label, &file.text));
     let scene = read.and_then(|read| read.map_err(|found| report.extend(found)).ok());

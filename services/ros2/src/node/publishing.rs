@@ -19,17 +19,21 @@ impl Node {
             let state = self.names.convert(&states, clock.ros(Time(states.at_ns)));
             self.dds.joint_states.publish(state, &mut self.counters.dropped);
         }
-        let arrived = self.group.latest.take();
+        let mut arrived = self.group.latest.take();
         for receipt in &arrived.receipts {
             if let Some((speaking, answer)) = self.waiting.on_receipt(receipt) {
                 self.on_answer(speaking, answer);
             }
         }
         self.latest.update(&arrived);
+        if let Some(scene) = arrived.scene.take() {
+            self.scene = scene;
+            self.objects = None;
+        }
         if arrived.view.as_ref().is_some_and(|view| view.scene_key != self.scene.key())
             && let Ok(settings) = Settings::load_snapshot(&self.paths.run())
         {
-            self.scene = settings.scene;
+            self.scene = self.group.latest.set_scene(settings.scene);
         }
         for (speaker, data) in self.lines.take_in(&self.latest, &arrived.receipts) {
             let outlet = match speaker {
@@ -43,7 +47,8 @@ impl Node {
             outlet.publish(Text { data }, &mut self.counters.dropped);
         }
         if let Some(world) = quiet(self.group.worlds.latest()) {
-            let frames = objects::frames(&self.scene, &world, clock.ros(Time(world.at_ns)));
+            let located = objects::located(&self.group.latest, &world);
+            let frames = objects::frames(&self.scene, &located, clock.ros(Time(world.at_ns)));
             self.dds.tf.publish(frames, &mut self.counters.dropped);
             self.world = Some(world);
         }
@@ -57,13 +62,14 @@ impl Node {
         self.shown = now;
         let belief = self.latest.view.as_ref().map_or(&[][..], |view| &view.belief);
         if let Some(world) = &self.world {
+            let world = objects::located(&self.group.latest, world);
             let is_shown = self.objects.as_ref().is_some_and(|(before, shown_belief)| {
                 before.objects == world.objects && shown_belief == belief
             });
             if !is_shown {
-                let markers = objects::markers(&self.scene, world, belief);
+                let markers = objects::markers(&self.scene, &world, belief);
                 self.dds.objects.publish(markers, &mut self.counters.dropped);
-                self.objects = Some((world.clone(), belief.to_vec()));
+                self.objects = Some((world, belief.to_vec()));
             }
         }
         let state = self.state_text();
