@@ -128,7 +128,8 @@ fn beside(name: &str) -> String {
     path.unwrap_or(program)
 }
 
-/// Returns the text of everything that a service reads: its own section, and the scene, which all read.
+/// Returns the text of everything that a service reads: its own section, and the scene and where its objects
+/// come from, which all read.
 /// Speech rejects utterances that the dialogue would not understand, so it reads that section too. A
 /// service that is not built in may read all of them. Decisions depend on the robot's durations.
 fn fingerprint(name: &str, settings: &Settings) -> String {
@@ -143,10 +144,6 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
     };
     let texts = sections.iter().map(|&section| settings.section_text(section));
     let durations = decides.then(|| settings.durations_text());
-    // Those that read detectors know the frames of the cameras.
-    let reads_detectors =
-        matches!(Service::from_name(name), Some(Service::Ros2 | Service::Robot) | None);
-    let perception = reads_detectors.then(|| settings.perception_text());
     let texts = texts.chain([settings.scene_file().text.clone()]);
-    texts.chain(durations).chain(perception).collect()
+    texts.chain(durations).chain([settings.perception_text()]).collect()
 }
