@@ -64,7 +64,7 @@ impl Samples {
 
     fn add(&self, report: &mut Report, what: &str) {
         let nominal_ms = self.nominal_ms;
-        let name = format!("every {nominal_ms} ms by a sleeping thread, arm {what}");
+        let name = format!("a thread that sleeps as long, arm {what}");
         add(report, &name, nominal_ms, &self.beside_ms, None);
         let ms = self.sent_ns.windows(2).map(|w| (w[1] - w[0]) as f64 / 1e6);
         let note = if self.moved { "" } else { "no joint moved" };
