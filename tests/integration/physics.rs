@@ -84,7 +84,7 @@ fn assert_carried(group: &Group, object: &str) -> Value {
         (last["event"] == "released" && last["object"] == object).then_some(last)
     });
     let number = |key: &str| record[key].as_f64().unwrap();
-    assert!(number("lifted_m") > 0.1 && number("carried_m") > 0.1, "{record}");
+    assert!(number("lifted_m") > 0.1 && number("from_home_m") > 0.1, "{record}");
     assert_eq!(record["released"], true, "{record}");
     assert_eq!(record["touches"], serde_json::json!({}), "{record}");
     let [x, y, z] = numbers(&record["gripper_xyz"]);
