@@ -100,7 +100,8 @@ fn dialogues_end_with_objects_handed_over() {
     let count = std::env::var("WHICHONE_DIALOGUES").map_or(3, |text| text.parse().unwrap());
     let walls = std::env::var("WHICHONE_WALLS").unwrap_or_else(|_| "straight".to_owned());
     // A round wall turns until it lies flat in the fingers; the scene says that it is straight.
-    let limit_mm = if walls == "straight" { 2.0 } else { 20.0 };
+    // Offline a straight one moves by 1.9 mm at most (`scripts/physics accept`); in real time set-points come less evenly.
+    let limit_mm = if walls == "straight" { 2.5 } else { 20.0 };
     let group = group(&["--walls", &walls]);
     let (pid, begin) = (group.pid("baxter"), Instant::now());
     let spent_s = cpu_s(pid);
