@@ -163,11 +163,9 @@ impl ArmNode {
     /// `None` if the gripper is elsewhere.
     fn put_between_fingers(&self, object: ObjectId) -> Option<Offered> {
         let (held, measured) = (self.state.handed_over(object)?, self.driver.measured());
-        let offered = self.world.offered(held, &measured);
-        let setup = &self.config.setup;
-        let gripper = setup.robot.arm(held.limb).chain.forward(&measured.posture.joints[held.limb]);
-        let tip = gripper.translation.vector;
-        setup.plan.is_hand_over(held.limb, &tip, OFFERED_M).then_some(offered)
+        let tip = self.world.gripper(held.limb, &measured).translation.vector;
+        let is_there = self.config.setup.plan.is_hand_over(held.limb, &tip, OFFERED_M);
+        is_there.then(|| self.world.offered(held, &measured))
     }
 
     fn ended(&mut self, kind: MotionPhase, purpose: Option<Purpose>, now: Time, fx: &mut Fx) {

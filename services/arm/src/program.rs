@@ -4,9 +4,10 @@ use crate::Config;
 use crate::driver::{Fingers, Grip, Measured};
 use crate::executor::{Program, Purpose, Step};
 use crate::state::{ArmState, Held};
-use crate::world::{World, from_array};
+use crate::world::World;
 use config::Grasps;
 use dialogue::Rng;
+use manipulation::pose_array::from_array;
 use manipulation::{
     ArmShape, Cuboid, Joints, Limb, MotionLimits, Phase, PlanError, PlanSettings, Robot, Stage,
     Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_put_back, plan_put_down,
@@ -204,16 +205,14 @@ impl Planner<'_> {
     pub(crate) fn is_at_goal(&self, pick: &Pick, limb: Limb) -> bool {
         let within_m = AT_GOAL_M + REACH_M * self.measured.accuracy_rad;
         let tip = self.tip(limb).vector;
-        match pick.ends_at_place() {
-            false => self.settings.is_hand_over(limb, &tip, within_m),
-            true => {
-                let held = self.state.held.as_ref().filter(|held| held.limb == limb);
-                let goal = held
-                    .zip(self.world.place(pick.object))
-                    .map(|(held, place)| place.isometry() * from_array(&held.in_gripper).inverse());
-                goal.is_some_and(|goal| (goal.translation.vector - tip).norm() < within_m)
-            }
+        if !pick.ends_at_place() {
+            return self.settings.is_hand_over(limb, &tip, within_m);
         }
+        let held = self.state.held.as_ref().filter(|held| held.limb == limb);
+        let goal = held
+            .zip(self.world.place(pick.object))
+            .map(|(held, place)| place.isometry() * from_array(&held.in_gripper).inverse());
+        goal.is_some_and(|goal| (goal.translation.vector - tip).norm() < within_m)
     }
 
     /// Plans with the configured margin or, if something blocks a limb that is away

@@ -2,9 +2,10 @@
 
 use crate::driver::Measured;
 use crate::state::{ArmState, Held, Offered};
+use manipulation::pose_array::{from_array, to_array};
 use manipulation::{Cuboid, Limb, ObjectPose, Robot};
 use messages::{TableView, WorldView};
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use nalgebra::Isometry3;
 use scene::{ObjectId, Placement, Scene};
 use service::Time;
 
@@ -139,22 +140,25 @@ impl World {
         limb: Limb,
         measured: &Measured,
     ) -> Option<Held> {
-        let gripper = self.robot.arm(limb).chain.forward(&measured.posture.joints[limb]);
-        let in_gripper = gripper.inverse() * self.place(object)?.isometry();
+        let in_gripper = self.gripper(limb, measured).inverse() * self.place(object)?.isometry();
         Some(Held { object, limb, in_gripper: to_array(&in_gripper) })
     }
 
     /// Returns `held` where its gripper is now, as what a user may hold there.
     pub(crate) fn offered(&self, held: &Held, measured: &Measured) -> Offered {
         let Held { object, limb, in_gripper } = *held;
-        let gripper = self.robot.arm(limb).chain.forward(&measured.posture.joints[limb]);
-        Offered { object, limb, pose: to_array(&(gripper * from_array(&in_gripper))) }
+        let pose = self.gripper(limb, measured) * from_array(&in_gripper);
+        Offered { object, limb, pose: to_array(&pose) }
+    }
+
+    /// Returns the pose of a gripper's tip in frame `base`.
+    pub(crate) fn gripper(&self, limb: Limb, measured: &Measured) -> Isometry3<f64> {
+        self.robot.arm(limb).chain.forward(&measured.posture.joints[limb])
     }
 
     /// Returns the world view for clients.
     pub(crate) fn view(&self, state: &ArmState, measured: &Measured, now: Time) -> WorldView {
-        let joints = &measured.posture.joints;
-        let grippers = Limb::BOTH.map(|limb| self.robot.arm(limb).chain.forward(&joints[limb]));
+        let grippers = Limb::BOTH.map(|limb| self.gripper(limb, measured));
         let pose = |place: &Place| {
             let pose = place.pose.as_ref().filter(|_| !place.taken);
             pose.map(|pose| to_array(&pose.isometry()))
@@ -185,16 +189,4 @@ impl World {
 fn distance(a: &ObjectPose, b: &ObjectPose) -> f64 {
     let axes = a.xyz_m.iter().zip(b.xyz_m);
     axes.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
-}
-
-/// Position in metres and quaternion: x, y, z, x, y, z, w.
-fn to_array(pose: &Isometry3<f64>) -> [f64; 7] {
-    let (p, r) = (pose.translation.vector, pose.rotation.coords);
-    [p.x, p.y, p.z, r.x, r.y, r.z, r.w]
-}
-
-/// Returns the pose stored in [`Held::in_gripper`].
-pub(crate) fn from_array([x, y, z, i, j, k, w]: &[f64; 7]) -> Isometry3<f64> {
-    let rotation = UnitQuaternion::from_quaternion(Quaternion::new(*w, *i, *j, *k));
-    Isometry3::from_parts(Translation3::new(*x, *y, *z), rotation)
 }

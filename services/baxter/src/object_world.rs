@@ -1,8 +1,9 @@
 //! The objects around the robot: their locations, and grasps.
 
 use manipulation::gripper::{self, Gripper};
+use manipulation::pose_array::{from_array, to_array};
 use manipulation::{Limb, ObjectPose};
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use nalgebra::Isometry3;
 use perception::Standing;
 use scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -210,15 +211,4 @@ impl ObjectWorld {
 /// The object in another place.
 fn at(shape: &ObjectPose, [x, y, z, yaw_rad]: Place) -> ObjectPose {
     ObjectPose { xyz_m: [x, y, z], yaw_rad, ..*shape }
-}
-
-/// Position and quaternion of a pose: x, y, z, x, y, z, w.
-pub fn to_array(pose: &Isometry3<f64>) -> [f64; 7] {
-    let (p, r) = (pose.translation, pose.rotation);
-    [p.x, p.y, p.z, r.i, r.j, r.k, r.w]
-}
-
-fn from_array([x, y, z, i, j, k, w]: &[f64; 7]) -> Isometry3<f64> {
-    let rotation = UnitQuaternion::from_quaternion(Quaternion::new(*w, *i, *j, *k));
-    Isometry3::from_parts(Translation3::new(*x, *y, *z), rotation)
 }

@@ -1,8 +1,8 @@
 //! Publication of the robot's reports, at the rates and in the order of the real one.
 
-use crate::object_world::to_array;
 use crate::robot::Robot;
 use manipulation::Limb;
+use manipulation::pose_array::to_array;
 use messages::FixedText;
 use messages::robot::{
     EndEffectorProperties, EndpointState, JointState, Measurement, Report, UiType,

@@ -24,6 +24,7 @@ mod collision;
 pub mod gripper;
 mod kinematics;
 mod planning;
+pub mod pose_array;
 mod random;
 mod robot;
 #[cfg(test)]

@@ -12,7 +12,7 @@ use crate::{Change, Detection, Frame, Look, Sighting};
 const UNKNOWN_MAX: usize = 64;
 
 /// What an identifier of a detector stands for.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Label {
     /// Class, number of a marker, or name of a marker's frame.
     pub id: String,

@@ -10,8 +10,7 @@ fn detector(labels: &[(&str, &str)]) -> TopicDetector {
     let label = |(id, object): &(&str, &str)| Label {
         id: (*id).to_owned(),
         object: (*object).to_owned(),
-        xyz: [0.0; 3],
-        rpy: [0.0; 3],
+        ..Label::default()
     };
     let labels: Vec<_> = labels.iter().map(label).collect();
     let lens = Frame { name: "lens".to_owned(), xyz: [0.0, 0.0, 1.0], rpy: [0.0; 3] };
