@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::status::GroupStatus;
 
-pub use client::{Asked, CallError, ask, call};
+pub use client::{CallError, PendingReply, call, send};
 
 mod client;
 

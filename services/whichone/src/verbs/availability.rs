@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use messages::Service;
-use service::control::{self, CallError, Reply, Request};
+use service::control::{self, CallError, PendingReply, Reply, Request};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::status::{GroupStatus, ServiceState};
@@ -23,13 +23,13 @@ pub(super) const AFTER_SPEECH: &[Service] = &[Service::Grounding, Service::Polic
 /// the services.
 pub(super) struct Availability(Option<Box<GroupStatus>>);
 
-/// The question about them, which the supervisor answers while its asker does something else.
-pub(super) struct Asked(Result<control::Asked, CallError>);
+/// The same once the supervisor has answered; meanwhile the client can do something else.
+pub(super) struct PendingAvailability(Result<PendingReply, CallError>);
 
-impl Asked {
+impl PendingAvailability {
     /// Waits for the answer.
-    pub(super) fn answer(self) -> Availability {
-        match self.0.and_then(control::Asked::reply) {
+    pub(super) fn wait(self) -> Availability {
+        match self.0.and_then(PendingReply::wait) {
             Ok(Reply::Status(status)) => Availability(Some(status)),
             _ => Availability(None),
         }
@@ -38,13 +38,17 @@ impl Asked {
 
 impl Availability {
     /// Asks the supervisor.
-    pub(super) fn ask(paths: &GroupPaths) -> Asked {
-        Asked(control::ask(&paths.control_socket(), &Request::Status, STATUS_PATIENCE))
+    pub(super) fn request(paths: &GroupPaths) -> PendingAvailability {
+        PendingAvailability(control::send(
+            &paths.control_socket(),
+            &Request::Status,
+            STATUS_PATIENCE,
+        ))
     }
 
     /// Asks the supervisor and waits for its answer.
     pub(super) fn now(paths: &GroupPaths) -> Self {
-        Self::ask(paths).answer()
+        Self::request(paths).wait()
     }
 
     /// Fails where the service does nothing for now.

@@ -91,10 +91,10 @@ fn give_said(
     timeout: Duration,
     out: &mut Output<'_>,
 ) -> Outcome {
-    let services = Availability::ask(paths);
+    let services = Availability::request(paths);
     let client = Client::join(paths)?;
     let (injections, receipts) = client.submissions()?;
-    let services = services.answer();
+    let services = services.wait();
     services.require(Service::Speech)?;
     let mut lookout = Lookout::with_shortages();
     let standstill = || lookout.news(paths);

@@ -101,14 +101,14 @@ fn start(
     wait: Option<Duration>,
 ) -> Result<String, Failure> {
     let mut launched = launch::detached(&launch::program(), options, paths)?;
-    launched.wait_listening(EARLIER_SERVICES).map_err(|error| why(error, config))?;
+    launched.wait_listening(EARLIER_SERVICES).map_err(|error| explained(error, config))?;
     let Some(timeout) = wait else { return Ok("services are starting".to_owned()) };
     Ok(launch::wait_ready(paths, timeout)?)
 }
 
 /// Returns why a supervisor has ended. It checks the configuration, whose problems are printed here
 /// without its log around them; a check of our own before its start would only take time.
-fn why(error: LaunchError, config: &ConfigArgs) -> Failure {
+fn explained(error: LaunchError, config: &ConfigArgs) -> Failure {
     let refused = error.exit() == Exit::Config;
     let problems = refused.then(|| paths::settings(config).err()).flatten();
     problems.unwrap_or_else(|| error.into())

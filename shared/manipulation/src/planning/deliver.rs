@@ -24,14 +24,14 @@ const SETTLE_S: f64 = 0.2;
 /// of it and of the hand that holds it. Further up the motion may turn away.
 const WITHDRAWN_M: f64 = 0.06;
 
+/// Shares of that distance that are tried, the longest first: the arm may be near the end of its reach.
+const WITHDRAWN_SHARES: [f64; 3] = [1.0, 0.75, 0.5];
+
 /// Rounding of the corners of a withdrawal from where the arm stands, radians of joint distance.
 const BLEND_RAD: f64 = 0.15;
 
 /// A gripper whose tip is this far beside an object has nothing of it between its fingers, metres.
 const BESIDE_M: f64 = 0.03;
-
-/// Shares of that distance that are tried, the longest first: the arm may be near the end of its reach.
-const WITHDRAWN_SHARES: [f64; 3] = [1.0, 0.75, 0.5];
 
 /// The enclosing capsules end this far below the fingertips, and a little, metres.
 pub(crate) const BELOW_TIP_M: f64 = 0.005;

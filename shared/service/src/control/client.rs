@@ -57,7 +57,7 @@ fn of(group: &str) -> String {
 /// # Errors
 /// No reply, or a refusal; see [`CallError`].
 pub fn call(path: &Path, request: &Request, timeout: Duration) -> Result<Reply, CallError> {
-    ask(path, request, timeout)?.reply()
+    send(path, request, timeout)?.wait()
 }
 
 /// Sends a request to the supervisor at control socket `path`, whose reply is waited for later, at most
@@ -65,7 +65,7 @@ pub fn call(path: &Path, request: &Request, timeout: Duration) -> Result<Reply, 
 ///
 /// # Errors
 /// It cannot be sent; see [`CallError`].
-pub fn ask(path: &Path, request: &Request, timeout: Duration) -> Result<Asked, CallError> {
+pub fn send(path: &Path, request: &Request, timeout: Duration) -> Result<PendingReply, CallError> {
     let failed = |error: io::Error| explain(error, path, timeout);
     let mut stream = UnixStream::connect(path).map_err(failed)?;
     stream.set_read_timeout(Some(timeout)).map_err(failed)?;
@@ -73,23 +73,23 @@ pub fn ask(path: &Path, request: &Request, timeout: Duration) -> Result<Asked, C
     let mut line = serde_json::to_string(request).map_err(|e| failed(e.into()))?;
     line.push('\n');
     stream.write_all(line.as_bytes()).map_err(failed)?;
-    Ok(Asked { stream, path: path.to_owned(), timeout })
+    Ok(PendingReply { stream, path: path.to_owned(), timeout })
 }
 
-/// A request that has been sent.
+/// The reply to a request that has been sent.
 #[derive(Debug)]
-pub struct Asked {
+pub struct PendingReply {
     stream: UnixStream,
     path: PathBuf,
     timeout: Duration,
 }
 
-impl Asked {
+impl PendingReply {
     /// Waits for the reply.
     ///
     /// # Errors
     /// No reply, or a refusal; see [`CallError`].
-    pub fn reply(self) -> Result<Reply, CallError> {
+    pub fn wait(self) -> Result<Reply, CallError> {
         let Self { stream, path, timeout } = self;
         let mut answer = String::new();
         let read = BufReader::new(stream).read_line(&mut answer);
