@@ -36,7 +36,6 @@ pub(crate) fn options() -> WriteOptions {
         .profile("")
         .library(concat!("whichone ", env!("CARGO_PKG_VERSION")))
         .compression(Some(Compression::Lz4))
-        .compression_threads(0)
         .chunk_size(Some(CHUNK_BYTES))
         // A chunk is written whole or not at all.
         .disable_seeking(true)

@@ -77,9 +77,9 @@ fn sequences(folder: &Path) -> Vec<Vec<u32>> {
 fn a_week_stays_in_bounds_and_has_no_gap_at_a_change_of_file() {
     let folder = tempfile::tempdir().unwrap();
     let (mut ring, _) = ring(folder.path(), limits());
-    let (week, step) = (7 * 24 * HOUR, 10);
+    let (week, step) = (7 * 24 * HOUR, 10_u64);
     let mut most = 0;
-    for s in (0..week).step_by(step) {
+    for s in (0..week).step_by(step as usize) {
         ring.tend(at(s), clock());
         write(&mut ring, s);
         if s % 500 == 0 {
@@ -95,7 +95,7 @@ fn a_week_stays_in_bounds_and_has_no_gap_at_a_change_of_file() {
     // A day of files of ten minutes, each message once and none missing.
     assert!((24 * HOUR / step..=25 * HOUR / step).contains(&kept), "{kept} messages");
     assert!((144..=150).contains(&files.len()), "{} files", files.len());
-    let expected: Vec<u32> = (0..week).step_by(step).map(|s| s as u32).collect();
+    let expected: Vec<u32> = (0..week).step_by(step as usize).map(|s| s as u32).collect();
     assert_eq!(all, expected[expected.len() - all.len()..]);
     assert!(files.iter().skip(1).all(|file| file.len() as u64 == 600 / step));
 }
