@@ -245,7 +245,8 @@ impl Cycle for Recorder {
             self.wake_listener.take();
         }
         let now = clock::now();
-        if now >= self.next_look || self.is_ending {
+        // Clients wake it: what they sent is gone when they end.
+        if now >= self.next_look || ready.by_wake || self.is_ending {
             self.look(now);
             self.next_look = now + LOOK_EVERY;
             if now >= self.next_tend {

@@ -75,9 +75,9 @@ const fn topic<T: Schema>(name: &'static str, writer: Option<Service>) -> Topic 
     }
 }
 
-/// Clients to speech.
+/// Clients to speech. The recorder is woken, too: a client may end before it looks the next time.
 pub const INJECTION: Topic = Topic {
-    readers: &[Service::Speech],
+    readers: &[Service::Speech, Service::Recorder],
     writers_max: CLIENTS_MAX,
     buffer: WINDOW,
     history: 0,
@@ -138,7 +138,7 @@ pub const ACT: Topic = Topic {
 };
 /// Cameras and other sources, and clients, to policy.
 pub const SIGHTING: Topic = Topic {
-    readers: &[Service::Policy],
+    readers: &[Service::Policy, Service::Recorder],
     writers_max: CLIENTS_MAX,
     buffer: WINDOW,
     history: 0,
@@ -169,7 +169,7 @@ pub const WORLD: Topic = topic::<WorldView>("arm/world", Some(Service::Arm));
 pub const TRAJECTORY: Topic = topic::<TrajectoryView>("arm/trajectory", Some(Service::Arm));
 /// Speech and clients to arm, past the dialogue.
 pub const MOTION: Topic = Topic {
-    readers: &[Service::Arm],
+    readers: &[Service::Arm, Service::Recorder],
     writers_max: CLIENTS_MAX,
     buffer: 4,
     history: 0,

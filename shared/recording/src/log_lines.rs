@@ -12,7 +12,7 @@ const EXTENSION: &str = "log";
 
 /// Follows every log of a folder, from its end on.
 #[derive(Debug, Default)]
-pub struct LogLines {
+pub(crate) struct LogLines {
     files: Vec<LogFile>,
     has_begun: bool,
 }
@@ -20,7 +20,7 @@ pub struct LogLines {
 impl LogLines {
     /// Takes the lines that were completed since the last look, with their times in nanoseconds since
     /// 1970. A line without one has that of the look, `now_ns`.
-    pub fn take(&mut self, folder: &Path, now_ns: u64) -> Vec<(u64, Log)> {
+    pub(crate) fn take(&mut self, folder: &Path, now_ns: u64) -> Vec<(u64, Log)> {
         self.find(folder);
         let mut taken = Vec::new();
         for file in &mut self.files {

@@ -16,6 +16,8 @@ use crate::list::{Entry, entries};
 pub const TEND_EVERY: Span = Span::from_ms(1_000);
 /// Pause after a failure to write.
 const RETRY_AFTER: Span = Span::from_ms(5_000);
+/// Interval between two searches for old files, beside the one before each new file.
+const DELETE_EVERY: Span = Span::from_ms(600_000);
 /// Files that share the space of the ring at least: a full one is a small part of it.
 const FILES_MIN: u64 = 8;
 /// Space that must be free beyond the minimum before a paused recording continues, bytes.
@@ -43,6 +45,7 @@ pub struct Ring {
     current: Option<Recording>,
     /// Why nothing is written, and until when nothing is tried.
     paused: Option<(String, Time)>,
+    next_deletion: Time,
 }
 
 impl Ring {
@@ -54,7 +57,8 @@ impl Ring {
         free_space: FreeSpace,
     ) -> Self {
         let channels = channels::all();
-        Self { folder, limits, attached, channels, free_space, current: None, paused: None }
+        let (current, paused, next_deletion) = (None, None, Time(0));
+        Self { folder, limits, attached, channels, free_space, current, paused, next_deletion }
     }
 
     /// Why nothing is recorded, if so.
@@ -88,7 +92,9 @@ impl Ring {
         if let Some(error) = self.current.as_mut().and_then(|current| current.flush().err()) {
             self.on_failure(&error, now);
         }
-        self.delete_old(clock.wall_ns(now));
+        if now >= self.next_deletion {
+            self.delete_old(now, clock);
+        }
         self.look_at_space(now);
         if self.paused.is_some() {
             return false;
@@ -106,6 +112,7 @@ impl Ring {
     }
 
     fn begin(&mut self, now: Time, clock: WallClock) -> bool {
+        self.delete_old(now, clock);
         let begun = Recording::begin(&self.folder, clock.wall_ns(now), clock, &self.attached);
         match begun {
             Ok(recording) => {
@@ -127,19 +134,21 @@ impl Ring {
         }
     }
 
-    /// Deletes the oldest files until the others are young and small enough.
-    fn delete_old(&self, now_ns: u64) {
-        let files = entries(&self.folder);
-        // Room for what is written until the next look.
-        let most = self.limits.bytes_max - self.limits.bytes_max / 64;
-        let mut bytes: u64 = files.iter().map(|file| file.bytes).sum();
-        let others = files.iter().filter(|file| Some(file.path.as_path()) != self.current());
+    /// Deletes the oldest files until the others are young, and leave room for the one that is written.
+    fn delete_old(&mut self, now: Time, clock: WallClock) {
+        self.next_deletion = now + DELETE_EVERY;
+        let mut others = entries(&self.folder);
+        others.retain(|file| Some(file.path.as_path()) != self.current());
+        let bytes_max = self.limits.bytes_max;
+        // The file that is written grows by what is sent until the next look.
+        let most = bytes_max - bytes_max / FILES_MIN - bytes_max / 64;
+        let mut bytes: u64 = others.iter().map(|file| file.bytes).sum();
         for Entry { path, began_ns, bytes: own, .. } in others {
-            let age = u128::from(now_ns.saturating_sub(*began_ns));
-            if bytes <= most && age <= self.limits.age_max.as_nanos() {
+            let age_ns = clock.wall_ns(now).saturating_sub(began_ns);
+            if bytes <= most && u128::from(age_ns) <= self.limits.age_max.as_nanos() {
                 break;
             }
-            match fs::remove_file(path) {
+            match fs::remove_file(&path) {
                 Ok(()) => bytes -= own,
                 Err(error) => tracing::warn!(file = %path.display(), %error, "not deleted"),
             }
