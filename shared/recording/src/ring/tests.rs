@@ -162,6 +162,7 @@ fn new_file_begins_when_the_wall_clock_is_set() {
     let set = WallClock { offset_ns: clock().offset_ns + 5_000_000_000 };
     assert!(ring.tend(at(2), set));
     assert_eq!(ring.clock(), Some(set));
+    write(&mut ring, 2);
     drop(ring);
     recover_all(&unfinished(folder.path()));
     assert_eq!(entries(folder.path()).len(), 2);
