@@ -59,6 +59,8 @@ fn journal(group: &Group, service: &str) -> Vec<Value> {
 fn recorded_dialogue_is_read_by_the_libraries_of_others() {
     let group = recorded_group();
     assert_eq!(group.fetch("get me the bowl", "white2")["object"], "white2");
+    // It writes its log.
+    group.must(&["restart", "grounding"]);
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
     group.must(&["record", "stop"]);
     let status = group.call(&["status"]);

@@ -249,7 +249,8 @@ impl Cycle for Recorder {
         if now >= self.next_look || ready.by_wake || self.is_ending {
             self.look(now);
             self.next_look = now + LOOK_EVERY;
-            if now >= self.next_tend {
+            // At the end, too: what was logged in the last second.
+            if now >= self.next_tend || self.is_ending {
                 self.tend(now);
             }
         }
