@@ -116,17 +116,23 @@ fn recorded_dialogue_is_read_by_the_libraries_of_others() {
     let delivered =
         messages("/policy/view").iter().rev().find_map(|it| it["last"]["name"].as_str());
     assert_eq!(delivered, Some("clear"));
-    let bits = |belief: &Value| -> Option<Vec<u64>> {
-        belief.as_array()?.iter().map(|p| p.as_f64().map(f64::to_bits)).collect()
+    let numbers = |belief: &Value| -> Option<Vec<f64>> {
+        belief.as_array()?.iter().map(Value::as_f64).collect()
     };
-    let beliefs: BTreeSet<Vec<u64>> =
-        messages("/policy/view").iter().filter_map(|view| bits(&view["belief"])).collect();
+    let beliefs: Vec<Vec<f64>> =
+        messages("/policy/view").iter().filter_map(|view| numbers(&view["belief"])).collect();
     let mut compared = 0;
     for line in journal(&group, "policy") {
-        if let Some(belief) = bits(&line["record"]["state"]["open"]["posterior"]["Object"]) {
-            assert!(beliefs.contains(&belief), "the belief of {line} is not recorded");
-            compared += 1;
-        }
+        let posterior = &line["record"]["state"]["open"]["posterior"]["Object"];
+        // The journal holds natural logarithms.
+        let Some(logs) = numbers(posterior) else { continue };
+        let belief: Vec<f64> = logs.into_iter().map(f64::exp).collect();
+        let is_equal = |other: &Vec<f64>| {
+            let pairs = belief.iter().zip(other);
+            other.len() == belief.len() && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9)
+        };
+        assert!(beliefs.iter().any(is_equal), "{belief:?} is not among {beliefs:?}");
+        compared += 1;
     }
     assert!(compared > 2, "{compared} beliefs");
     let said = messages("/dialogue");
