@@ -124,9 +124,10 @@ fn recorded_dialogue_is_read_by_the_libraries_of_others() {
     let mut compared = 0;
     for line in journal(&group, "policy") {
         let posterior = &line["record"]["state"]["open"]["posterior"]["Object"];
-        // The journal holds natural logarithms.
+        // The journal holds natural logarithms, up to a constant.
         let Some(logs) = numbers(posterior) else { continue };
-        let belief: Vec<f64> = logs.into_iter().map(f64::exp).collect();
+        let whole: f64 = logs.iter().map(|log| log.exp()).sum();
+        let belief: Vec<f64> = logs.iter().map(|log| log.exp() / whole).collect();
         let is_equal = |other: &Vec<f64>| {
             let pairs = belief.iter().zip(other);
             other.len() == belief.len() && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9)
