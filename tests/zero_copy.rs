@@ -1,15 +1,18 @@
 //! The way of a fixed message from its writer to a reducer: filled in shared memory, read in shared
-//! memory, and no memory allocated for it in between.
+//! memory, and no memory allocated for it in between. What a reducer puts out waits for durable records as
+//! a value, which its shell copies into shared memory once, with no memory allocated for it either.
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use baxter::shell::BaxterShell;
 use grounding::shell::GroundingShell;
 use messages::robot::{JointCommand, Order};
-use messages::{Epoch, Incarnation, Observation, RobotAct, Service, Utterance, topics};
+use messages::{
+    Epoch, Incarnation, JointStates, Observation, RobotAct, Service, Utterance, topics,
+};
 use policy::shell::PolicyShell;
 use service::Node;
-use service::bus::{Bus, Identity, WireMessage, Writer};
+use service::bus::{Bus, Identity, Reader, WireMessage, Writer};
 use service::group::{GroupName, GroupPaths};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Shell};
@@ -131,6 +134,48 @@ fn assert_zero_copy<N: Node, T: WireMessage + Default>(
         let expected = if is_first { (sent - before, taken) } else { (LOAN_HANDLES, 0) };
         assert_eq!((sent - before, taken), expected, "allocations of sending and taking");
     }
+}
+
+/// Publishes outputs of a reducer through its shell, and asserts that each is read in shared memory, without
+/// an allocation for it on the way.
+fn assert_published_without_allocation<N: Node, T: WireMessage + Default>(
+    reader: &Reader<T>,
+    shell: &mut impl Shell<N>,
+    output: impl Fn() -> N::Out,
+) {
+    for is_first in [true, false, false] {
+        let output = output();
+        let before = ALLOCATIONS.get();
+        shell.publish(output).unwrap();
+        let sent = ALLOCATIONS.get();
+        let found = reader.take(|message| is_shared(message) && *message != T::default()).unwrap();
+        assert_eq!(found, Some(true), "{} is read in place", std::any::type_name::<T>());
+        // The first one connects the two.
+        assert!(is_first || sent - before == LOAN_HANDLES, "{} allocations", sent - before);
+    }
+}
+
+#[test]
+fn outputs_of_the_reducers_are_published_without_an_allocation() {
+    let shm = Shm::new();
+    let listen = |service: &Service| shm.bus.wake_listener(*service).unwrap();
+    let _listeners: Vec<_> =
+        Service::BUILT_IN.iter().chain([&Service::Robot]).map(listen).collect();
+    assert_published_without_allocation(
+        &shm.bus.reader::<Observation>(&topics::OBSERVATION).unwrap(),
+        &mut shm.open::<_, GroundingShell>(),
+        || Box::new(Observation { seq: 7, ..Observation::default() }),
+    );
+    assert_published_without_allocation(
+        &shm.bus.reader::<RobotAct>(&topics::ACT).unwrap(),
+        &mut shm.open::<_, PolicyShell>(),
+        || policy::Out::Act(Box::new(RobotAct { act: 7, ..RobotAct::default() })),
+    );
+    assert_published_without_allocation(
+        &shm.bus.reader::<JointStates>(&topics::JOINTS).unwrap(),
+        &mut shm.open::<_, arm::shell::ArmShell>(),
+        || arm::Out::Joints(Box::new(JointStates { at_ns: 7, ..JointStates::default() })),
+    );
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Regularity of the joint states: the intervals between those that the arm sends, for an arm that
-//! stands and for one that moves, beside a thread that does nothing but sleep until every tenth
-//! millisecond, measured at the same time on the same machine.
+//! stands and for one that moves, beside a thread that does nothing but sleep for as long, measured at the
+//! same time on the same machine.
 
 use crate::report::{Report, percentile};
 use messages::{JointStates, topics};
@@ -12,8 +12,8 @@ use whichone_tests::Group;
 
 /// Duration of each measurement.
 const WATCHED: Duration = Duration::from_secs(10);
-/// The interval that is promised, milliseconds.
-const NOMINAL_MS: f64 = 10.0;
+/// The intervals that are promised of an arm at rest and of one that moves, milliseconds.
+const NOMINAL_MS: (f64, f64) = (50.0, 10.0);
 /// Polling interval of the topic, which holds the last sixteen joint states.
 const LOOK_EVERY: Duration = Duration::from_millis(30);
 
@@ -22,9 +22,11 @@ pub(crate) fn measure(report: &mut Report) {
     let client = Client::join(group.paths()).expect("a running group");
     let joints: Reader<JointStates> = client.bus().reader(&topics::JOINTS).expect("joint states");
     std::thread::sleep(Duration::from_secs(2));
-    Samples::take(&joints).add(report, "standing");
+    Samples::take(&joints, NOMINAL_MS.0).add(report, "standing");
     let mut samples = None;
-    group.fetch_while("the clear bowl", "clear", || samples = Some(Samples::take(&joints)));
+    group.fetch_while("the clear bowl", "clear", || {
+        samples = Some(Samples::take(&joints, NOMINAL_MS.1))
+    });
     samples.expect("it was ordered to pick").add(report, "moving");
     drop((joints, client));
     group.down();
@@ -32,17 +34,18 @@ pub(crate) fn measure(report: &mut Report) {
 
 /// Joint states of one measurement.
 struct Samples {
+    nominal_ms: f64,
     sent_ns: Vec<u64>,
     moved: bool,
     beside_ms: Vec<f64>,
 }
 
 impl Samples {
-    fn take(joints: &Reader<JointStates>) -> Self {
+    fn take(joints: &Reader<JointStates>, nominal_ms: f64) -> Self {
         let (mut sent_ns, mut moved) = (Vec::new(), false);
         let stop = AtomicBool::new(false);
         let beside_ms = std::thread::scope(|scope| {
-            let peer = scope.spawn(|| sleep_regularly(&stop));
+            let peer = scope.spawn(|| sleep_regularly(&stop, nominal_ms));
             joints.latest().expect("a topic that can be read");
             let until = Instant::now() + WATCHED;
             while Instant::now() < until {
@@ -56,36 +59,44 @@ impl Samples {
             stop.store(true, Ordering::Relaxed);
             peer.join().expect("a thread of ours")
         });
-        Self { sent_ns, moved, beside_ms }
+        Self { nominal_ms, sent_ns, moved, beside_ms }
     }
 
     fn add(&self, report: &mut Report, what: &str) {
-        let name = format!("100 Hz by a sleeping thread, arm {what}");
-        add(report, &name, &self.beside_ms, None);
+        let nominal_ms = self.nominal_ms;
+        let name = format!("every {nominal_ms} ms by a sleeping thread, arm {what}");
+        add(report, &name, nominal_ms, &self.beside_ms, None);
         let ms = self.sent_ns.windows(2).map(|w| (w[1] - w[0]) as f64 / 1e6);
         let note = if self.moved { "" } else { "no joint moved" };
         let ms: Vec<f64> = ms.collect();
-        add(report, &format!("joint states, arm {what}"), &ms, Some((&name, note)));
+        add(report, &format!("joint states, arm {what}"), nominal_ms, &ms, Some((&name, note)));
     }
 }
 
 /// Deviation of every interval from the nominal one, with the intervals themselves in words.
-fn add(report: &mut Report, what: &str, intervals_ms: &[f64], beside: Option<(&str, &str)>) {
-    let off: Vec<f64> = intervals_ms.iter().map(|ms| (ms - NOMINAL_MS).abs() * 1e3).collect();
+fn add(
+    report: &mut Report,
+    what: &str,
+    nominal_ms: f64,
+    intervals_ms: &[f64],
+    beside: Option<(&str, &str)>,
+) {
+    let off: Vec<f64> = intervals_ms.iter().map(|ms| (ms - nominal_ms).abs() * 1e3).collect();
     let [p50, p99, max] = [0.5, 0.99, 1.0].map(|share| percentile(intervals_ms, share));
-    let span = format!("intervals p50 {p50:.3}, p99 {p99:.3}, max {max:.3} ms");
+    let span =
+        format!("nominal {nominal_ms} ms; intervals p50 {p50:.3}, p99 {p99:.3}, max {max:.3} ms");
     match beside {
-        None => report.add(what, "µs off 10 ms", &off, &span),
+        None => report.add(what, "µs off", &off, &span),
         Some((peer, note)) => {
             let note = if note.is_empty() { span } else { format!("{span}; {note}") };
-            report.add_beside(what, "µs off 10 ms", &off, peer, &note);
+            report.add_beside(what, "µs off", &off, peer, &note);
         }
     }
 }
 
-/// Notes when it wakes, a hundred times a second; the intervals in milliseconds.
-fn sleep_regularly(stop: &AtomicBool) -> Vec<f64> {
-    let period = Duration::from_secs_f64(NOMINAL_MS / 1e3);
+/// Notes when it wakes, every `nominal_ms`; the intervals in milliseconds.
+fn sleep_regularly(stop: &AtomicBool, nominal_ms: f64) -> Vec<f64> {
+    let period = Duration::from_secs_f64(nominal_ms / 1e3);
     let (mut next, mut last) = (Instant::now() + period, Instant::now());
     let mut intervals_ms = Vec::new();
     while !stop.load(Ordering::Relaxed) {

@@ -14,6 +14,7 @@
 mod arm;
 mod console;
 mod core;
+mod documents;
 mod hop;
 mod idle;
 mod jitter;
@@ -45,8 +46,14 @@ fn main() -> ExitCode {
             return ExitCode::from(if error.use_stderr() { 64 } else { 0 });
         }
     };
-    let mut report = Report::default();
-    measure(&options, &mut report);
+    if let Some(reports) = &options.compare {
+        return documents::compare(reports);
+    }
+    if let Some(reports) = &options.write {
+        return documents::write(reports);
+    }
+    let mut report = Report::new(documents::arguments());
+    (0..options.runs).for_each(|_| measure(&options, &mut report));
     match report.write() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -58,8 +65,10 @@ fn main() -> ExitCode {
 
 fn measure(options: &Options, report: &mut Report) {
     let all = options.wants_all();
-    if all || options.core {
+    if all || options.core || options.processes {
         peers::measure(report);
+    }
+    if all || options.core {
         let effort = if options.quick { core::Effort::QUICK } else { core::Effort::FULL };
         core::measure(report, effort);
     }

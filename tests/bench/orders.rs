@@ -7,7 +7,7 @@ use service::bus::Reader;
 use service::client::Client;
 use std::collections::BTreeMap;
 use std::time::Duration;
-use whichone_tests::Group;
+use whichone_tests::{Group, UR5E};
 
 /// Polling interval of the topics; the shortest of them holds 160 ms of joint states.
 const LOOK_EVERY: Duration = Duration::from_millis(5);
@@ -16,33 +16,48 @@ const REST: Duration = Duration::from_millis(500);
 /// Fetches in each situation.
 const FETCHES: usize = 20;
 
-/// A scene with a request and the objects that it may mean.
+/// A scene with a request and the objects that it may mean, and the settings for them.
 struct Orders {
     scene: &'static str,
+    settings: &'static [&'static str],
     request: &'static str,
     objects: [&'static str; 6],
 }
 
-/// Short plans and long ones.
-const ORDERS: [Orders; 2] = [
+/// Short plans and long ones, and those of one arm of six joints.
+const ORDERS: [Orders; 3] = [
     Orders {
         scene: "bowls",
+        settings: &["group.scene=bowls"],
         request: "get me the bowl",
         objects: ["white", "white2", "white3", "metal", "metal2", "clear"],
     },
     Orders {
         scene: "tools",
+        settings: &["group.scene=tools"],
         request: "get me the tool",
         objects: ["m_red", "m_black", "p_blue", "s_red", "w_black", "w_red"],
+    },
+    Orders {
+        scene: "blocks (UR5e)",
+        settings: &UR5E,
+        request: "get me a block",
+        objects: [
+            "red_small",
+            "red_large",
+            "blue_small",
+            "blue_large",
+            "green_large",
+            "yellow_small",
+        ],
     },
 ];
 
 pub(crate) fn measure(report: &mut Report, quick: bool) {
     let fetches = if quick { FETCHES / 5 } else { FETCHES };
     for orders in &ORDERS {
-        let setting = format!("group.scene={}", orders.scene);
-        orders.measure(report, "disk", &Group::up(&[&setting]), fetches);
-        let in_memory = Group::up_in_memory(&[&setting]);
+        orders.measure(report, "disk", &Group::up(orders.settings), fetches);
+        let in_memory = Group::up_in_memory(orders.settings);
         orders.measure(report, "a memory file system", &in_memory, fetches);
     }
 }
@@ -156,9 +171,10 @@ impl Moments {
         add("longest interval of joint states while the arm plans", &longest, "; nominal 10 ms");
     }
 
-    /// Longest interval between two joint states that overlaps the planning of an order.
+    /// Longest interval between two joint states that overlaps the planning of an order, which begins with
+    /// its acceptance.
     fn longest_interval_ms(&self, order: &Order) -> f64 {
-        let overlaps = |pair: &&[u64]| pair[1] > order.sent && pair[0] < order.moving;
+        let overlaps = |pair: &&[u64]| pair[1] > order.accepted && pair[0] < order.moving;
         let pairs = self.joints.windows(2).filter(overlaps);
         pairs.map(|pair| (pair[1] - pair[0]) as f64 / 1e6).fold(0.0, f64::max)
     }

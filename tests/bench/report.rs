@@ -1,36 +1,49 @@
 //! The table that is printed and written.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Consecutive parts of the samples, whose percentiles show how far those of a run spread.
+const PARTS: usize = 5;
 
 /// One measured figure.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Figure {
-    what: String,
-    unit: &'static str,
+    pub(crate) what: String,
+    pub(crate) unit: String,
     runs: usize,
-    p50: f64,
-    p99: f64,
+    pub(crate) p50: f64,
+    pub(crate) p99: f64,
+    pub(crate) max: f64,
+    /// Least and greatest p50 and p99 of the [`PARTS`] of the samples.
+    pub(crate) p50_range: (f64, f64),
+    pub(crate) p99_range: (f64, f64),
     /// The peer's name, and this p50 over the peer's.
-    peer: Option<(String, f64)>,
+    pub(crate) peer: Option<(String, f64)>,
     note: String,
 }
 
 /// Figures that belong together in rows and columns.
-#[derive(Debug, Serialize)]
-struct Table {
-    title: String,
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Table {
+    pub(crate) title: String,
     note: String,
-    heads: Vec<String>,
-    rows: Vec<Vec<String>>,
+    /// True if the cells do not depend on the machine.
+    #[serde(default)]
+    pub(crate) exact: bool,
+    pub(crate) heads: Vec<String>,
+    /// The first cell of a row is its name.
+    pub(crate) rows: Vec<Vec<String>>,
 }
 
-/// All figures of a run.
-#[derive(Debug, Default, Serialize)]
+/// All figures of a run; of several runs, each figure and table several times.
+#[derive(Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Report {
-    figures: Vec<Figure>,
-    tables: Vec<Table>,
+    /// The command's arguments.
+    pub(crate) arguments: Vec<String>,
+    pub(crate) figures: Vec<Figure>,
+    pub(crate) tables: Vec<Table>,
 }
 
 pub(crate) fn print(line: &str) {
@@ -46,18 +59,67 @@ pub(crate) fn percentile(samples: &[f64], share: f64) -> f64 {
     sorted.get(place).copied().unwrap_or(f64::NAN)
 }
 
+/// The least and the greatest of a percentile of the parts of the samples, in their order.
+fn range(samples: &[f64], share: f64) -> (f64, f64) {
+    let parts = samples.chunks(samples.len().div_ceil(PARTS).max(1));
+    let percentiles = parts.map(|part| percentile(part, share));
+    percentiles.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, greatest), value| {
+        (least.min(value), greatest.max(value))
+    })
+}
+
+/// The folder of the reports.
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/bench")
+}
+
+/// The latest report.
+pub(crate) fn latest() -> PathBuf {
+    folder().join("report.json")
+}
+
 impl Report {
-    /// Adds a figure from its samples.
-    pub(crate) fn add(&mut self, what: &str, unit: &'static str, samples: &[f64], note: &str) {
-        self.figures.push(Figure {
-            what: what.to_owned(),
-            unit,
-            runs: samples.len(),
-            p50: percentile(samples, 0.5),
-            p99: percentile(samples, 0.99),
-            peer: None,
-            note: note.to_owned(),
-        });
+    /// An empty report of a run with these arguments.
+    pub(crate) fn new(arguments: Vec<String>) -> Self {
+        Self { arguments, ..Self::default() }
+    }
+
+    /// Adds a figure from its samples, in the order in which they were taken.
+    pub(crate) fn add(&mut self, what: &str, unit: &str, samples: &[f64], note: &str) {
+        self.push(what, unit, samples, None, note);
+    }
+
+    /// Adds a figure with its ratio to a peer measured before.
+    pub(crate) fn add_beside(
+        &mut self,
+        what: &str,
+        unit: &str,
+        samples: &[f64],
+        peer: &str,
+        note: &str,
+    ) {
+        let peer_p50 = self.figures.iter().rfind(|figure| figure.what == peer).map(|f| f.p50);
+        let ratio = |peer_p50| (peer.to_owned(), percentile(samples, 0.5) / peer_p50);
+        self.push(what, unit, samples, peer_p50.map(ratio), note);
+    }
+
+    fn push(
+        &mut self,
+        what: &str,
+        unit: &str,
+        samples: &[f64],
+        peer: Option<(String, f64)>,
+        note: &str,
+    ) {
+        if samples.is_empty() {
+            return print(&format!("{what}: no samples"));
+        }
+        let [p50, p99, max] = [0.5, 0.99, 1.0].map(|share| percentile(samples, share));
+        let [p50_range, p99_range] = [0.5, 0.99].map(|share| range(samples, share));
+        let [what, unit, note] = [what, unit, note].map(str::to_owned);
+        let runs = samples.len();
+        let figure = Figure { what, unit, runs, p50, p99, max, p50_range, p99_range, peer, note };
+        self.figures.push(figure);
     }
 
     /// Adds a table.
@@ -69,34 +131,33 @@ impl Report {
         rows: Vec<Vec<String>>,
     ) {
         let heads = heads.into_iter().map(Into::into).collect();
-        self.tables.push(Table { title: title.into(), note: note.into(), heads, rows });
+        let (title, note) = (title.into(), note.into());
+        self.tables.push(Table { title, note, exact: false, heads, rows });
     }
 
-    /// Adds a figure with its ratio to a peer measured before.
-    pub(crate) fn add_beside(
+    /// Adds a table whose cells do not depend on the machine.
+    pub(crate) fn exact_table<H: Into<String>>(
         &mut self,
-        what: &str,
-        unit: &'static str,
-        samples: &[f64],
-        peer: &str,
-        note: &str,
+        title: impl Into<String>,
+        note: impl Into<String>,
+        heads: impl IntoIterator<Item = H>,
+        rows: Vec<Vec<String>>,
     ) {
-        self.add(what, unit, samples, note);
-        let peer_p50 = self.figures.iter().find(|figure| figure.what == peer).map(|f| f.p50);
-        if let (Some(peer_p50), Some(figure)) = (peer_p50, self.figures.last_mut()) {
-            figure.peer = Some((peer.to_owned(), figure.p50 / peer_p50));
+        self.table(title, note, heads, rows);
+        if let Some(table) = self.tables.last_mut() {
+            table.exact = true;
         }
     }
 
     /// All figures in one table, and the tables of figures below it.
     fn text(&self) -> String {
-        let heads = ["figure", "runs", "p50", "p99", "unit", "ratio of p50 to peer", "note"];
+        let heads = ["figure", "runs", "p50", "p99", "max", "unit", "ratio of p50 to peer", "note"];
         let row = |f: &Figure| {
             let peer = f.peer.as_ref();
             let peer = peer.map_or(String::new(), |(name, ratio)| format!("{ratio:.2} × {name}"));
-            let [p50, p99] = [f.p50, f.p99].map(|value| format!("{value:.3}"));
+            let [p50, p99, max] = [f.p50, f.p99, f.max].map(|value| format!("{value:.3}"));
             let (what, runs) = (f.what.clone(), f.runs.to_string());
-            vec![what, runs, p50, p99, f.unit.to_owned(), peer, f.note.clone()]
+            vec![what, runs, p50, p99, max, f.unit.clone(), peer, f.note.clone()]
         };
         let rows: Vec<Vec<String>> = self.figures.iter().map(row).collect();
         let mut text = markdown(&heads.map(str::to_owned), &rows);
@@ -111,11 +172,10 @@ impl Report {
     pub(crate) fn write(&self) -> std::io::Result<()> {
         let text = self.text();
         print(&text);
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/bench");
-        std::fs::create_dir_all(&folder)?;
-        std::fs::write(folder.join("report.md"), text)?;
+        std::fs::create_dir_all(folder())?;
+        std::fs::write(folder().join("report.md"), text)?;
         let json = serde_json::to_vec_pretty(self).map_err(std::io::Error::other)?;
-        std::fs::write(folder.join("report.json"), json)
+        std::fs::write(latest(), json)
     }
 }
 

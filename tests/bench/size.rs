@@ -26,12 +26,20 @@ const SERVICES: [&str; 5] = ["speech", "grounding", "policy", "arm", "console"];
 pub(crate) fn measure(report: &mut Report, options: &Options) {
     print(&format!("random scenes of seed {}", options.seed));
     let sizes = if options.quick { &SIZES[..1] } else { &SIZES[..] };
-    for &(objects, attributes) in sizes {
-        group(report, objects, attributes, options.seed);
-    }
+    let groups: Vec<_> = sizes.iter().map(|(n, k)| group(*n, *k, options.seed)).collect();
+    let sizes = sizes.iter().map(|(objects, attributes)| format!("{objects} × {attributes}"));
+    let rows = (0..groups[0].len()).map(|n| {
+        let name = groups[0][n].0.clone();
+        std::iter::once(name).chain(groups.iter().map(|group| group[n].1.clone())).collect()
+    });
+    let note =
+        format!("{PLACED} within reach, {VALUES} values of each attribute, seed {}.", options.seed);
+    let heads = std::iter::once("what".to_owned()).chain(sizes);
+    report.table("Groups with many objects", note, heads, rows.collect());
 }
 
-fn group(report: &mut Report, objects: usize, attributes: usize, seed: u64) {
+/// Measures a group of that size. Returns its figures, by name.
+fn group(objects: usize, attributes: usize, seed: u64) -> Vec<(String, String)> {
     let text = random_scene(objects, attributes, seed);
     let scene = Scene::from_toml("random.toml", &text).expect("a valid scene");
     let folder = config_with(&text);
@@ -61,13 +69,12 @@ fn group(report: &mut Report, objects: usize, attributes: usize, seed: u64) {
     }
     let sent = page.bytes as f64 / 1e3 / replies_ms.len() as f64;
     let (_, _, state) = http(&group.console(), "GET", "/api/state", &[], "");
-    let name = format!("{objects} × {attributes}");
     let memory = SERVICES.map(|service| {
-        let pid = group.pid(service).as_raw_nonzero().get();
-        format!("{service} {:.0}", resident_mib(pid).unwrap_or(f64::NAN))
+        let mib = resident_mib(group.pid(service).as_raw_nonzero().get());
+        (format!("memory of {service}, MiB"), format!("{:.0}", mib.unwrap_or(f64::NAN)))
     });
-    let row = |what: &str, figure: String| vec![what.to_owned(), figure];
-    let rows = vec![
+    let row = |what: &str, figure: String| (what.to_owned(), figure);
+    let mut figures = vec![
         row("scene file, kB", format!("{:.0}", text.len() as f64 / 1e3)),
         row("`check`, s", format!("{check_s:.2}")),
         row("`up --wait ready`, s", format!("{start_s:.2}")),
@@ -77,19 +84,18 @@ fn group(report: &mut Report, objects: usize, attributes: usize, seed: u64) {
         }),
         row("utterance to the decision at the page, p50 / p99, ms", {
             let [p50, p99] = [0.5, 0.99].map(|share| percentile(&replies_ms, share));
-            format!("{p50:.1} / {p99:.1} of {}", replies_ms.len())
+            format!("{p50:.1} / {p99:.1}")
         }),
         row("questions of a dialogue, mean", format!("{:.1}", questions as f64 / DIALOGUES as f64)),
         row("page's first view, s", format!("{view_s:.2}")),
         row("page's first view, kB", format!("{:.1}", first as f64 / 1e3)),
         row("frames to the page for each utterance, kB", format!("{sent:.1}")),
         row("`/api/state`, kB", format!("{:.1}", state.len() as f64 / 1e3)),
-        row("memory, MiB", memory.join(", ")),
     ];
-    let note = format!("{PLACED} within reach, {VALUES} values of each attribute, seed {seed}.");
-    report.table(format!("A group of {name} attributes"), note, ["what", "figure"], rows);
+    figures.extend(memory);
     drop(page);
     group.down();
+    figures
 }
 
 /// Holds one dialogue about an object, as a user who says one of its values after the other. Adds the

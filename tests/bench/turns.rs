@@ -16,8 +16,7 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         }
     }
     let heads = [
-        "attribution",
-        "words arrive",
+        "attribution, words arrive",
         "dialogues",
         "credited to the right question",
         "to another one",
@@ -33,14 +32,13 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
          in good time gets the right object."
     );
     let title = "Answers late, early, into the next question, and twice";
-    report.table(title, note, heads, counts.iter().map(row).collect());
+    report.exact_table(title, note, heads, counts.iter().map(row).collect());
 }
 
 fn row(count: &Count) -> Vec<String> {
     let n = count.dialogues.max(1) as f64;
     vec![
-        count.rule.clone(),
-        if count.live { "live" } else { "afterwards" }.to_owned(),
+        format!("{}, {}", count.rule, if count.live { "live" } else { "afterwards" }),
         count.dialogues.to_string(),
         format!("{:.2} %", 100.0 * count.share()),
         format!("{:.2} %", 100.0 * count.share_wrong()),

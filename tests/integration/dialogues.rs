@@ -1,6 +1,6 @@
 //! Ambiguous requests end with the right object.
 
-use whichone_tests::Group;
+use whichone_tests::{Group, UR5E};
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
 
@@ -83,20 +83,14 @@ fn other_scenes_are_fetched() {
 /// One arm of six joints: in the kinematic world, and behind the robot's topics.
 #[test]
 fn single_arm_delivers() {
-    let single = [
-        "group.scene=blocks",
-        "arm.robot=ur5e",
-        "arm.hand_over_xyz=[0.45, 0.42, 0.25]",
-        "arm.table_z_m=0.0",
-    ];
-    let group = Group::up(&single);
+    let group = Group::up(&UR5E);
     for block in ["red_small", "green_large", "yellow_small"] {
         assert_delivered(&group.fetch("get me a block", block), block, 6);
     }
     group.verify_journals();
     group.down();
     let robot = ["group.services.baxter.nice=0", "arm.driver=baxter", "arm.time_scale=1.0"];
-    let group = Group::up(&[&single[..], &robot].concat());
+    let group = Group::up(&[&UR5E[..], &robot].concat());
     assert_delivered(&group.fetch("the small blue block", "blue_small"), "blue_small", 2);
     group.verify_journals();
     group.down();

@@ -5,6 +5,7 @@
 
 mod absence;
 mod batch;
+mod camera;
 mod config;
 mod console;
 mod console_study;

@@ -4,7 +4,8 @@ use rustix::process::Signal;
 use serde_json::{Value, json};
 use whichone_tests::{Group, run, wait_for};
 
-const PERCEPTION: &[&str] = &["group.perception.enabled=true"];
+/// A pick lasts long enough to be observed on a busy machine.
+const PERCEPTION: &[&str] = &["group.perception.enabled=true", "arm.time_scale=5.0"];
 
 /// Puts an object of the scene on the table. Returns its name.
 fn add(group: &Group, class: &str, [x, y]: [&str; 2]) -> String {

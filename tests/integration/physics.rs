@@ -3,9 +3,8 @@
 use rustix::process::Signal;
 use serde_json::Value;
 use std::collections::HashMap;
-use std::process::Command;
 use std::time::{Duration, Instant};
-use whichone_tests::{Group, program, run, wait_for};
+use whichone_tests::{Group, wait_for};
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
 /// Longest time for an event on a busy machine, seconds.
@@ -38,15 +37,6 @@ fn records(group: &Group) -> Vec<Value> {
     let path = group.paths().log().join("physics.jsonl");
     let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     text.lines().map(|line| serde_json::from_str(line).expect("a record")).collect()
-}
-
-/// Something happens to the robot.
-fn drill(group: &Group, words: &[&str]) {
-    let mut command = Command::new(program("whichone-baxter"));
-    command.env("WHICHONE_HOME", group.paths().home());
-    command.env("WHICHONE_GROUP", group.paths().name().as_str());
-    let ended = run(command.args(words), "", 20.0);
-    assert_eq!(ended.code, Some(0), "{words:?}: {ended:?}");
 }
 
 /// Processor time that all threads of a process have taken, seconds.
@@ -151,13 +141,13 @@ fn motion_stop_and_emergency_stop_in_the_carry_keep_hold_of_the_object() {
         assert_eq!(records(&group), [] as [Value; 0], "it is still held");
         group.must(&["resume-motion"]);
         wait_for_carry(&group);
-        drill(&group, &["press-estop"]);
+        group.drill(&["press-estop"]);
         wait_for_arm(&group, "latched", |arm| arm["stopped"] == true && arm["moving"] == false);
         assert_eq!(group.arm()["hindrance"], "stopped");
         std::thread::sleep(Duration::from_secs(1));
         assert_eq!(records(&group), [] as [Value; 0], "it is still held");
         for word in ["release-estop", "reset", "enable"] {
-            drill(&group, &[word]);
+            group.drill(&[word]);
         }
         wait_for_arm(&group, "the robot is back", |arm| arm["hindrance"] == "none");
         group.must(&["resume-motion"]);
@@ -173,7 +163,7 @@ fn obstructed_arm_gives_up_and_fetches_once_it_is_free() {
     let group = group(&[]);
     let outcome = group.fetch_while("the clear bowl", "clear", || {
         wait_for_arm(&group, "moving", |arm| arm["phase"] == "moving" && arm["moving"] == true);
-        drill(&group, &["obstruct", "3"]);
+        group.drill(&["obstruct", "3"]);
     });
     assert_eq!(outcome["outcome"], "failed", "{outcome}\n{}", group.logs());
     assert_eq!(group.arm()["outcome"], "blocked");
@@ -204,16 +194,16 @@ fn grasp_of_what_is_not_there_fails_after_its_retry() {
 fn faults_are_injected_as_into_the_simulated_robot() {
     let group = group(&[]);
     for (word, hindrance) in [("disable", "disabled"), ("fail", "error")] {
-        drill(&group, &[word]);
+        group.drill(&[word]);
         wait_for_arm(&group, word, |arm| arm["hindrance"] == hindrance);
-        drill(&group, &["reset"]);
-        drill(&group, &["enable"]);
+        group.drill(&["reset"]);
+        group.drill(&["enable"]);
         wait_for_arm(&group, "the robot is back", |arm| arm["hindrance"] == "none");
     }
-    drill(&group, &["miss", "1"]);
+    group.drill(&["miss", "1"]);
     let outcome = group.fetch_while("the clear bowl", "clear", || {
         wait_for_arm(&group, "moving", |arm| arm["phase"] == "moving" && arm["moving"] == true);
-        drill(&group, &["silence", "1.5"]);
+        group.drill(&["silence", "1.5"]);
         wait_for_arm(&group, "silence is noticed", |arm| arm["hindrance"] == "stale");
     });
     assert_delivered(&group, &outcome, "clear");

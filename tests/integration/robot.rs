@@ -2,22 +2,12 @@
 
 use rustix::process::Signal;
 use serde_json::Value;
-use std::process::Command;
-use whichone_tests::{Group, program, run, wait_for};
+use whichone_tests::{Group, wait_for};
 
 /// A group with the simulated robot behind the robot's own topics.
 fn group() -> Group {
     let robot = ["group.services.baxter.nice=0", "arm.driver=baxter", "arm.time_scale=1.0"];
     Group::up(&robot)
-}
-
-/// Something happens to the robot.
-fn drill(group: &Group, words: &[&str]) {
-    let mut command = Command::new(program("whichone-baxter"));
-    command.env("WHICHONE_HOME", group.paths().home());
-    command.env("WHICHONE_GROUP", group.paths().name().as_str());
-    let ended = run(command.args(words), "", 20.0);
-    assert_eq!(ended.code, Some(0), "{words:?}: {ended:?}");
 }
 
 fn wait_for_arm(group: &Group, what: &str, holds: impl Fn(&Value) -> bool) {
@@ -36,6 +26,36 @@ fn dialogue_ends_with_a_pick_by_the_robot() {
     assert_eq!(group.service("baxter")["actual"], "ready");
     assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
     assert_eq!(group.arm()["hindrance"], "none");
+    group.down();
+}
+
+#[test]
+fn object_denied_in_the_gripper_goes_back_through_a_stop_and_a_killed_arm() {
+    let group = group();
+    group.say("the clear bowl");
+    wait_for_arm(&group, "the carry", |arm| arm["phase"] == "holding" && arm["moving"] == true);
+    assert_eq!(group.arm()["object"], "clear");
+    group.say("no, not that one");
+    wait_for_arm(&group, "the way back", |arm| arm["phase"] == "returning");
+    group.must(&["stop-motion"]);
+    wait_for_arm(&group, "at rest", |arm| arm["stopped"] == true && arm["moving"] == false);
+    let before = group.incarnation("arm");
+    group.signal("arm", Signal::KILL);
+    group.wait_for_restart("arm", before);
+    assert_eq!(group.arm()["phase"], "returning", "{}", group.logs());
+    group.must(&["resume-motion"]);
+    wait_for_arm(&group, "the object in its place", |arm| arm["outcome"] == "cancelled");
+    let dialogue = wait_for("the dialogue goes on", 20.0, || {
+        Some(group.dialogue()).filter(|it| it["decision"] != "cancel")
+    });
+    let belief = |object: &str| dialogue["belief"][object].as_f64().unwrap();
+    assert!(belief("clear") < belief("metal"), "{dialogue}");
+    let outcome = group.await_pick(Some("metal"));
+    let facts = (&outcome["outcome"], &outcome["object"]);
+    assert_eq!(facts, (&"delivered".into(), &"metal".into()), "{outcome}\n{}", group.logs());
+    assert_eq!(group.dialogue()["last"]["interaction"], 1, "it was one interaction");
+    // It stands where it was.
+    assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
     group.down();
 }
 
@@ -59,11 +79,11 @@ fn emergency_stop_latches_until_resume() {
     let group = group();
     let outcome = group.fetch_while("the clear bowl", "clear", || {
         wait_for_arm(&group, "moving", |arm| arm["phase"] == "moving" && arm["moving"] == true);
-        drill(&group, &["press-estop"]);
+        group.drill(&["press-estop"]);
         wait_for_arm(&group, "latched", |arm| arm["stopped"] == true && arm["moving"] == false);
         assert_eq!(group.arm()["hindrance"], "stopped");
         for word in ["release-estop", "reset", "enable"] {
-            drill(&group, &[word]);
+            group.drill(&[word]);
         }
         wait_for_arm(&group, "the robot is back", |arm| arm["hindrance"] == "none");
         assert_eq!(group.arm()["stopped"], true, "latched until an operator resumes");
@@ -77,12 +97,12 @@ fn emergency_stop_latches_until_resume() {
 fn missed_grasp_is_announced() {
     let group = group();
     // More often than is tried, also where a halt in between makes another try.
-    drill(&group, &["miss", "9"]);
+    group.drill(&["miss", "9"]);
     let outcome = group.fetch("the clear bowl", "clear");
     assert_eq!(outcome["outcome"], "failed", "{outcome}\n{}", group.logs());
     let text = group.dialogue()["text"].as_str().unwrap_or_default().to_owned();
     assert!(text.contains("could not get hold"), "{text}");
-    drill(&group, &["miss", "0"]);
+    group.drill(&["miss", "0"]);
     assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
     group.down();
 }

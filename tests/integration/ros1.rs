@@ -3,8 +3,21 @@
 
 use rustix::process::Signal;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use whichone_tests::ros1::Ros;
 use whichone_tests::{Group, wait_for};
+
+/// Settings for the objects that the camera sees. The marker is 3 cm above the bowl's centre.
+const OBJECTS: &[&str] = &[
+    "group.perception.enabled=true",
+    "group.perception.frames=[{ name = \"lens\", xyz = [0.5, 0.0, 0.0], rpy = [0.0, 0.0, 0.0] }]",
+    "arm.ros1.objects.detections=/detections",
+    "arm.ros1.objects.apriltags=/tag_detections",
+    "arm.ros1.objects.ar_markers=/ar_pose_marker",
+    "arm.ros1.objects.classes=[{ id = \"3\", object = \"white\" }]",
+    "arm.ros1.objects.markers=[{ id = \"7\", object = \"metal\" }, \
+     { id = \"8\", object = \"clear\", xyz = [0.0, 0.0, -0.03] }]",
+];
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
 
@@ -202,6 +215,94 @@ fn ros1_bridge_whose_name_is_taken_ends_and_says_why() {
     });
     assert!(group.logs().contains("new node registered with same name"), "{}", group.logs());
     assert!(!ros.knows_topics_of("/whichone"));
+    group.down();
+}
+
+/// What is on the table by likeliest class, with its name and place.
+fn table(group: &Group) -> BTreeMap<String, (String, [f64; 3])> {
+    let table = group.must(&["objects", "--json"]).json();
+    let of = |object: &Value| {
+        let classes = object["classes"].as_object()?.keys().next()?.clone();
+        let axis = |n: usize| object["xyz"][n].as_f64();
+        let name = object["name"].as_str()?.to_owned();
+        Some((classes, (name, [axis(0)?, axis(1)?, axis(2)?])))
+    };
+    table["objects"].as_array().unwrap().iter().filter_map(of).collect()
+}
+
+#[test]
+#[ignore = "needs rosmaster and rospy"]
+fn ros1_objects_of_detectors_and_markers_are_fetched_by_request() {
+    let ros = Ros::start();
+    let mut settings: Vec<String> = ros.settings().to_vec();
+    settings.extend(OBJECTS.iter().map(|own| (*own).to_owned()));
+    // The test stops the bridge for longer than a watchdog permits.
+    settings.push("group.services.baxter.watchdog_s=0".to_owned());
+    let group = Group::up(&settings.iter().map(String::as_str).collect::<Vec<_>>());
+    let mut camera = ros.camera();
+    camera.tell(
+        r#"{ "detections": [[3, 0.95, 0.2, 0.2, -0.12], [99, 0.9, 0.2, 0.4, -0.12]],
+             "apriltags": [[[70, 8], 0.2, -0.2, -0.09]], "ar_markers": [[7, 0.1, 0.4, -0.12]] }"#
+            .replace('\n', " ")
+            .as_str(),
+    );
+    let found = wait_for("the objects of all detectors", 60.0, || {
+        Some(table(&group)).filter(|table| table.len() == 3)
+    });
+    for (class, place) in
+        [("white", [0.7, 0.2, -0.12]), ("metal", [0.6, 0.4, -0.12]), ("clear", [0.7, -0.2, -0.12])]
+    {
+        let (_, found) = &found[class];
+        let off = found.iter().zip(place).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-6, "{class} at {found:?}");
+    }
+    let log = group.must(&["logs", "baxter"]).stdout;
+    assert_eq!(log.matches("unknown identifier `99`").count(), 1, "{log}");
+
+    // What waited while the bridge stood still is old, whatever the clock of the camera says. The bridge passes on the
+    // newest look only, so the camera has to fall silent for an old one to be that.
+    let pause = || std::thread::sleep(std::time::Duration::from_millis(1_500));
+    group.signal("baxter", Signal::STOP);
+    pause();
+    camera.signal(Signal::STOP);
+    pause();
+    group.signal("baxter", Signal::CONT);
+    wait_for("old looks are refused", 20.0, || {
+        let table = group.must(&["objects", "--json"]).json();
+        table["refusal"].as_str()?.contains("s old").then_some(())
+    });
+    camera.signal(Signal::CONT);
+    wait_for_arm(&group, "the robot is heard again", |arm| arm["hindrance"] == "none");
+
+    let (clear, _) = &found["clear"];
+    let outcome = group.fetch("get me the clear bowl", clear);
+    assert_delivered(&group, &outcome, clear);
+    // An object that its detector does not show any more is gone after a while.
+    camera.tell(r#"{ "ar_markers": [], "apriltags": [] }"#);
+    wait_for("the metal bowl is gone", 30.0, || {
+        (!table(&group).contains_key("metal")).then_some(())
+    });
+    assert!(table(&group).contains_key("white"));
+    group.down();
+}
+
+#[test]
+#[ignore = "needs rosmaster and rospy"]
+fn ros1_objects_in_an_unknown_frame_are_refused_with_the_reason() {
+    let ros = Ros::start();
+    let mut settings: Vec<String> = ros.settings().to_vec();
+    let known = OBJECTS.iter().filter(|own| !own.contains("frames"));
+    settings.extend(known.map(|own| (*own).to_owned()));
+    let group = Group::up(&settings.iter().map(String::as_str).collect::<Vec<_>>());
+    let mut camera = ros.camera();
+    camera.tell(r#"{ "ar_markers": [[7, 0.1, 0.4, -0.12]] }"#);
+    wait_for("the refusal", 40.0, || {
+        let table = group.must(&["objects", "--json"]).json();
+        let refusal = table["refusal"].as_str()?;
+        (refusal.contains("unknown frame `lens`") && refusal.contains("/ar_pose_marker"))
+            .then_some(())
+    });
+    assert!(table(&group).is_empty());
     group.down();
 }
 

@@ -35,6 +35,108 @@ with_peers! {
     killed_peer_harms_nothing_and_the_next_one_sees_everything
 }
 
+/// Settings for the objects that the program's detectors see.
+const OBJECTS: &[&str] = &[
+    "group.perception.enabled=true",
+    "group.perception.frames=[{ name = \"lens\", xyz = [0.5, 0.0, 0.0], rpy = [0.0, 0.0, 0.0] }]",
+    "ros2.objects.detections=/camera/detections",
+    "ros2.objects.ar_markers=/ar_pose_marker",
+    "ros2.objects.tf=/tf",
+    "ros2.objects.classes=[{ id = \"cup\", object = \"white2\" }]",
+    "ros2.objects.markers=[{ id = \"7\", object = \"metal\" }, \
+     { id = \"tag36h11:8\", object = \"clear\", xyz = [0.0, 0.0, -0.03] }]",
+];
+
+/// rclpy from PyPI has none of these messages.
+#[test]
+#[ignore = "needs cyclonedds, and whichone-ros2 built with ros2/dds"]
+fn ros2_cyclone_objects_of_detectors_and_markers_are_fetched_by_request() {
+    let (mut peer, group) = whichone_tests::ros2::CYCLONE.start(OBJECTS);
+    // Old images first: they are refused, and nothing appears.
+    let old = r#"{ "age_s": 5.0, "ar_markers": [[7, 0.1, 0.4, -0.12]] }"#;
+    peer.tell(&format!("see {old}"));
+    let table = || group.must(&["objects", "--json"]).json();
+    wait_for("refusal of old looks", 40.0, || {
+        table()["refusal"].as_str()?.contains("old").then_some(())
+    });
+    assert_eq!(table()["objects"], serde_json::json!([]));
+    let seen = r#"{ "detections": [["white", 0.9, "1", 0.2, 0.2, -0.12], ["cup", 0.9, "2", 0.3, 0.3, -0.12],
+                                   ["dog", 0.9, "3", 0.2, 0.4, -0.12]],
+                    "tf": [["tag36h11:8", 0.2, -0.2, -0.09], ["left_wrist", 0.1, 0.1, 0.1]] }"#;
+    peer.tell(&format!("see {}", seen.replace('\n', " ")));
+    let found = wait_for("the objects of all detectors", 40.0, || {
+        Some(table()).filter(|table| table["objects"].as_array().is_some_and(|all| all.len() == 4))
+    });
+    let named = |class: &str| {
+        let mut all = found["objects"].as_array().unwrap().iter();
+        all.find(|it| it["classes"][class].is_number())
+            .unwrap_or_else(|| panic!("{class}: {found}"))
+    };
+    for (class, place) in [
+        ("white", [0.7, 0.2, -0.12]),
+        ("white2", [0.8, 0.3, -0.12]),
+        ("metal", [0.6, 0.4, -0.12]),
+        ("clear", [0.7, -0.2, -0.12]),
+    ] {
+        let off = |n: usize| (named(class)["xyz"][n].as_f64().unwrap() - place[n]).abs();
+        assert!((0..3).all(|n| off(n) < 1e-6), "{class}: {}", named(class));
+    }
+    let seen = peer.wait_for("counts in the diagnostics", |seen| {
+        let figure = |key: &str| {
+            let values = &seen["diagnostics"]["whichone: ROS 2 node"]["values"];
+            values[key].as_str().and_then(|text| text.parse::<u64>().ok()).unwrap_or(0)
+        };
+        figure("sightings") > 10 && figure("unknown_ids") > 1
+    });
+    assert_eq!(seen["diagnostics"]["whichone: ROS 2 node"]["values"]["without_pose"], "0");
+    let log = group.must(&["logs", "ros2"]).stdout;
+    assert_eq!(log.matches("unknown identifier `dog`").count(), 1, "{log}");
+
+    let clear = named("clear")["name"].as_str().unwrap();
+    peer.tell("say get me the clear bowl");
+    let outcome = group.await_pick(Some(clear));
+    let facts = (&outcome["outcome"], &outcome["object"]);
+    assert_eq!(facts, (&"delivered".into(), &clear.into()), "{outcome}\n{}", group.logs());
+    // An object that its detector does not show any more is gone after a while.
+    peer.tell(r#"see { "ar_markers": [] }"#);
+    wait_for("the metal bowl is gone", 30.0, || {
+        let table = table();
+        let mut all = table["objects"].as_array()?.iter();
+        all.all(|it| it["classes"]["metal"].is_null()).then_some(())
+    });
+    group.verify_journals();
+    group.down();
+}
+
+/// A robot with one arm, whose joints have names of their own.
+#[test]
+#[ignore = "needs cyclonedds, and whichone-ros2 built with ros2/dds"]
+fn ros2_cyclone_joints_of_a_single_arm_are_seen() {
+    let settings = &[
+        "group.scene=blocks",
+        "arm.robot=ur5e",
+        "arm.hand_over_xyz=[0.45, 0.42, 0.25]",
+        "arm.table_z_m=0.0",
+        // Slow enough for the motion to be seen.
+        "arm.time_scale=4.0",
+    ];
+    let (mut peer, group) = whichone_tests::ros2::CYCLONE.start(settings);
+    let before = peer.tell("look")["joints"].clone();
+    let names: Vec<_> = before.as_object().unwrap().keys().map(String::as_str).collect();
+    for joint in ["shoulder_pan_joint", "elbow_joint", "wrist_3_joint", "finger_1_joint"] {
+        assert!(names.contains(&joint), "{names:?}");
+    }
+    assert!(names.iter().all(|name| !name.starts_with("left_")), "{names:?}");
+    peer.tell("say the small yellow block");
+    peer.wait_for("the arm moves", |seen| {
+        let at = |joints: &Value| joints["shoulder_pan_joint"].as_f64().unwrap();
+        (at(&seen["joints"]) - at(&before)).abs() > 0.05
+    });
+    let outcome = group.await_pick(None);
+    assert_eq!(outcome["object"], "yellow_small", "{outcome}\n{}", group.logs());
+    group.down();
+}
+
 /// The program says this, and the robot delivers the object.
 fn deliver(peer: &mut Ros2Peer, group: &Group, words: &str, object: &str) {
     peer.tell(&format!("say {words}"));

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test without a value fails")]
 
+mod camera;
 mod faults;
 mod picks;
 mod stops;

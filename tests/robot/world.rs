@@ -9,7 +9,7 @@ use messages::WireCode;
 use messages::robot::{Drill, DrillKind, JointState, Order, Report};
 use messages::{
     ActKind, ArmStatus, MessageRef, MotionCommand, MotionInhibit, MotionOrder, PickOutcome,
-    PickPhase, RobotAct,
+    PickPhase, RobotAct, Sighting, TableView,
 };
 use service::{Span, Time};
 use std::path::Path;
@@ -33,6 +33,8 @@ pub(crate) struct World {
     pub(crate) orders: Vec<(Time, Order<'static>)>,
     /// Number of grasps that held.
     pub(crate) grasps: u32,
+    /// The camera's reports.
+    pub(crate) sightings: Vec<Sighting>,
 }
 
 impl World {
@@ -53,6 +55,7 @@ impl World {
             commanded: [Vec::new(), Vec::new()],
             orders: Vec::new(),
             grasps: 0,
+            sightings: Vec::new(),
         };
         world.start_robot();
         world.start_arm();
@@ -127,9 +130,28 @@ impl World {
 
     /// Injects a fault into the robot.
     pub(crate) fn drill(&mut self, kind: DrillKind, amount: f64) {
+        self.inject(Drill { amount, kind: kind.code(), ..Drill::default() });
+    }
+
+    /// A person puts an object at a place, or takes it.
+    pub(crate) fn by_hand(&mut self, kind: DrillKind, object: u16, place: [f64; 4]) {
+        let scene_key = self.settings.scene.key();
+        self.inject(Drill { scene_key, object, place, kind: kind.code(), ..Drill::default() });
+    }
+
+    fn inject(&mut self, drill: Drill) {
         self.drills += 1;
-        let drill = Drill { key: self.drills, amount, kind: kind.code(), ..Drill::default() };
-        self.pass_robot(vec![baxter::In::Drill(drill)]);
+        self.pass_robot(vec![baxter::In::Drill(Drill { key: self.drills, ..drill })]);
+    }
+
+    /// The arm is given the objects on the table.
+    pub(crate) fn table(&mut self, table: TableView) {
+        self.to_arm.push(In::Table(Box::new(table)));
+    }
+
+    /// The scene file.
+    pub(crate) fn scene(&self) -> &scene::Scene {
+        &self.settings.scene
     }
 
     pub(crate) fn arm_state(&self) -> Option<&ArmState> {
@@ -196,8 +218,15 @@ impl World {
         self.route_robot(outputs);
     }
 
-    fn route_robot(&mut self, outputs: Vec<Report<'static>>) {
+    fn route_robot(&mut self, outputs: Vec<baxter::Out>) {
         for output in outputs {
+            let output = match output {
+                baxter::Out::Report(report) => report,
+                baxter::Out::Sighting(sighting) => {
+                    self.sightings.push(*sighting);
+                    continue;
+                }
+            };
             if let Report::Joints(state) = &output
                 && state.len > 1
             {

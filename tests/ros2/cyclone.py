@@ -6,7 +6,6 @@ One command a line on standard input, each answered with one line of JSON; see p
 import os
 import struct
 import time
-from dataclasses import dataclass
 
 # Loopback only, found by unicast: set before the library reads it.
 os.environ.setdefault(
@@ -18,194 +17,23 @@ os.environ.setdefault(
 )
 
 import peer
+from cyclone_camera import Camera
+from cyclone_types import (
+    DiagnosticArray,
+    Empty,
+    JointState,
+    MarkerArray,
+    String,
+    TFMessage,
+    TriggerRequest,
+    TriggerResponse,
+)
 from cyclonedds.core import Policy, Qos
 from cyclonedds.domain import DomainParticipant
-from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.annotations import final
-from cyclonedds.idl.types import float32, float64, int32, int64, sequence, uint8, uint32, uint64
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
-
-
-
-
-@dataclass
-@final
-class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
-    sec: int32
-    nanosec: uint32
-
-
-@dataclass
-@final
-class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
-    stamp: Time
-    frame_id: str
-
-
-@dataclass
-@final
-class String(IdlStruct, typename="std_msgs::msg::dds_::String_"):
-    data: str
-
-
-@dataclass
-@final
-class Empty(IdlStruct, typename="std_msgs::msg::dds_::Empty_"):
-    structure_needs_at_least_one_member: uint8
-
-
-@dataclass
-@final
-class JointState(IdlStruct, typename="sensor_msgs::msg::dds_::JointState_"):
-    header: Header
-    name: sequence[str]
-    position: sequence[float64]
-    velocity: sequence[float64]
-    effort: sequence[float64]
-
-
-@dataclass
-@final
-class Vector3(IdlStruct, typename="geometry_msgs::msg::dds_::Vector3_"):
-    x: float64
-    y: float64
-    z: float64
-
-
-@dataclass
-@final
-class Quaternion(IdlStruct, typename="geometry_msgs::msg::dds_::Quaternion_"):
-    x: float64
-    y: float64
-    z: float64
-    w: float64
-
-
-@dataclass
-@final
-class Pose(IdlStruct, typename="geometry_msgs::msg::dds_::Pose_"):
-    position: Vector3
-    orientation: Quaternion
-
-
-@dataclass
-@final
-class TransformStamped(IdlStruct, typename="geometry_msgs::msg::dds_::TransformStamped_"):
-    header: Header
-    child_frame_id: str
-    transform: Pose
-
-
-@dataclass
-@final
-class TFMessage(IdlStruct, typename="tf2_msgs::msg::dds_::TFMessage_"):
-    transforms: sequence[TransformStamped]
-
-
-@dataclass
-@final
-class ColorRGBA(IdlStruct, typename="std_msgs::msg::dds_::ColorRGBA_"):
-    r: float32
-    g: float32
-    b: float32
-    a: float32
-
-
-@dataclass
-@final
-class CompressedImage(IdlStruct, typename="sensor_msgs::msg::dds_::CompressedImage_"):
-    header: Header
-    format: str
-    data: sequence[uint8]
-
-
-@dataclass
-@final
-class UVCoordinate(IdlStruct, typename="visualization_msgs::msg::dds_::UVCoordinate_"):
-    u: float32
-    v: float32
-
-
-@dataclass
-@final
-class MeshFile(IdlStruct, typename="visualization_msgs::msg::dds_::MeshFile_"):
-    filename: str
-    data: sequence[uint8]
-
-
-@dataclass
-@final
-class Marker(IdlStruct, typename="visualization_msgs::msg::dds_::Marker_"):
-    header: Header
-    ns: str
-    id: int32
-    type: int32
-    action: int32
-    pose: Pose
-    scale: Vector3
-    color: ColorRGBA
-    lifetime: Time
-    frame_locked: bool
-    points: sequence[Vector3]
-    colors: sequence[ColorRGBA]
-    texture_resource: str
-    texture: CompressedImage
-    uv_coordinates: sequence[UVCoordinate]
-    text: str
-    mesh_resource: str
-    mesh_file: MeshFile
-    mesh_use_embedded_materials: bool
-
-
-@dataclass
-@final
-class MarkerArray(IdlStruct, typename="visualization_msgs::msg::dds_::MarkerArray_"):
-    markers: sequence[Marker]
-
-
-@dataclass
-@final
-class KeyValue(IdlStruct, typename="diagnostic_msgs::msg::dds_::KeyValue_"):
-    key: str
-    value: str
-
-
-@dataclass
-@final
-class DiagnosticStatus(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticStatus_"):
-    level: uint8
-    name: str
-    message: str
-    hardware_id: str
-    values: sequence[KeyValue]
-
-
-@dataclass
-@final
-class DiagnosticArray(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticArray_"):
-    header: Header
-    status: sequence[DiagnosticStatus]
-
-
-@dataclass
-@final
-class TriggerRequest(IdlStruct, typename="std_srvs::srv::dds_::Trigger_Request_"):
-    guid: uint64
-    seq: int64
-    structure_needs_at_least_one_member: uint8
-
-
-@dataclass
-@final
-class TriggerResponse(IdlStruct, typename="std_srvs::srv::dds_::Trigger_Response_"):
-    guid: uint64
-    seq: int64
-    success: bool
-    message: str
-
 
 TYPES = {
     "String": String,
@@ -247,6 +75,7 @@ class Peer:
                 DataReader(self.participant, reply, qos=qos(False, 10)),
             )
         self.number = 0
+        self.camera = Camera(self.participant)
 
     def poll(self, seen):
         for name, reader in self.readers.items():
@@ -254,6 +83,7 @@ class Peer:
                 if getattr(sample, "sample_info", None) and not sample.sample_info.valid_data:
                     continue
                 seen(name, sample)
+        self.camera.publish()
         time.sleep(0.002)
 
     def matched(self):

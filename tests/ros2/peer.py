@@ -7,6 +7,7 @@ Commands, one a line on standard input, each answered with one line of JSON:
     stop                publishes an Empty
     call NAME           calls a service
     forget              forgets what has been seen
+    see JSON            lets detectors see objects, with Cyclone DDS alone
 """
 
 import json
@@ -113,6 +114,8 @@ def run(make):
             began = time.monotonic()
             answer = peer.call(rest, CALL_TIMEOUT_S, poll) or {"success": None, "message": "no response"}
             answer["ms"] = 1e3 * (time.monotonic() - began)
+        elif word == "see":
+            peer.camera.see(json.loads(rest))
         elif word == "forget":
             seen.forget()
         else:

@@ -210,6 +210,15 @@ impl Group {
         self.service(service)["incarnation"].as_u64().expect("a service that was started")
     }
 
+    /// Has something happen to the simulated robot, or to the objects on its table.
+    pub fn drill(&self, words: &[&str]) {
+        let mut command = Command::new(program("whichone-baxter"));
+        command.env("WHICHONE_HOME", self.paths.home());
+        command.env("WHICHONE_GROUP", self.paths.name().as_str());
+        let ended = run(command.args(words), "", CALL_S);
+        assert_eq!(ended.code, Some(0), "{words:?}: {ended:?}");
+    }
+
     /// Checks the journals as an operator would.
     pub fn verify_journals(&self) {
         self.must(&["journal", "--verify"]);

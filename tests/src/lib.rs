@@ -20,6 +20,14 @@ pub use group::Group;
 use config::Settings;
 use std::path::Path;
 
+/// The settings of the profile of the arm with six joints: a group has the profile for tests.
+pub const UR5E: [&str; 4] = [
+    "group.scene=blocks",
+    "arm.robot=ur5e",
+    "arm.hand_over_xyz=[0.45, 0.42, 0.25]",
+    "arm.table_z_m=0.0",
+];
+
 /// The shipped configuration with the profile for tests, and these settings over it.
 ///
 /// # Panics

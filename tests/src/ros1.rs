@@ -1,7 +1,7 @@
 //! A ROS 1 master of Debian's packages, and a robot in rospy with the interface of a Baxter.
 
 use crate::{Group, program, wait_for};
-use ros1::types::of_baxter;
+use ros1::types::without_a_package;
 use ros1::xmlrpc::{Value as Xml, call};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
@@ -40,14 +40,31 @@ pub struct Ros {
     folder: tempfile::TempDir,
     port: u16,
     master: Process,
-    robot: Robot,
+    robot: Peer,
 }
 
+/// A program in rospy that takes lines on its standard input and answers each with a line of JSON.
 #[derive(Debug)]
-struct Robot {
+pub struct Peer {
     process: Process,
     to: ChildStdin,
     from: BufReader<ChildStdout>,
+}
+
+impl Peer {
+    /// Sends the program a signal.
+    pub fn signal(&self, signal: Signal) {
+        self.process.signal(signal);
+    }
+
+    /// Gives the program a line, and returns its answer.
+    pub fn tell(&mut self, line: &str) -> Value {
+        writeln!(self.to, "{line}").expect("the program reads");
+        // rospy prints there, too.
+        let mut lines = (&mut self.from).lines().map_while(Result::ok);
+        let line = lines.find(|line| line.starts_with('{')).expect("the program answers");
+        serde_json::from_str(&line).unwrap_or_else(|e| panic!("{e}: {line}"))
+    }
 }
 
 impl Ros {
@@ -59,7 +76,7 @@ impl Ros {
         generate_messages(folder.path());
         let master = start_master(folder.path(), port);
         wait_for_master(port);
-        let robot = start_robot(folder.path(), port);
+        let robot = start_peer(folder.path(), port, "robot");
         let ros = Self { folder, port, master, robot };
         wait_for("the robot", 20.0, || ros.knows_topics_of("/robot").then_some(()));
         ros
@@ -95,7 +112,7 @@ impl Ros {
 
     /// Starts another robot in the place of one that was killed.
     pub fn start_robot(&mut self) {
-        self.robot = start_robot(self.folder.path(), self.port);
+        self.robot = start_peer(self.folder.path(), self.port, "robot");
     }
 
     /// Kills the master and starts another one on its port, which knows nobody.
@@ -106,13 +123,14 @@ impl Ros {
         wait_for_master(self.port);
     }
 
+    /// Starts a camera with detectors, which sees nothing yet.
+    pub fn camera(&self) -> Peer {
+        start_peer(self.folder.path(), self.port, "camera")
+    }
+
     /// Gives the robot a word, and returns what it has seen.
     pub fn robot(&mut self, word: &str) -> Value {
-        writeln!(self.robot.to, "{word}").expect("the robot reads");
-        // rospy prints there, too.
-        let mut lines = (&mut self.robot.from).lines().map_while(Result::ok);
-        let line = lines.find(|line| line.starts_with('{')).expect("the robot answers");
-        serde_json::from_str(&line).unwrap_or_else(|e| panic!("{e}: {line}"))
+        self.robot.tell(word)
     }
 
     /// Calls the master.
@@ -165,50 +183,59 @@ fn wait_for_master(port: u16) {
     wait_for("the ROS master", 20.0, || call(&uri(port), "getPid", &parameters, PATIENCE).ok());
 }
 
-fn start_robot(folder: &Path, port: u16) -> Robot {
-    let errors = std::fs::File::create(folder.join("robot.log")).expect("a log");
+fn start_peer(folder: &Path, port: u16, name: &str) -> Peer {
+    let errors = std::fs::File::create(folder.join(format!("{name}.log"))).expect("a log");
     let mut command = command(folder, port, PYTHON);
-    command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/ros1/robot.py"));
+    command.arg(format!("{}/ros1/{name}.py", env!("CARGO_MANIFEST_DIR")));
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(errors);
     let mut child = command.spawn().expect("python3 is installed");
     let to = child.stdin.take().expect("piped");
     let from = BufReader::new(child.stdout.take().expect("piped"));
-    Robot { process: Process(child), to, from }
+    Peer { process: Process(child), to, from }
 }
 
 /// Generates the Python classes of the bridge's own definitions, and compares the checksums.
 fn generate_messages(folder: &Path) {
-    let (source, package) = (folder.join("msg"), folder.join("gen/baxter_core_msgs"));
-    std::fs::create_dir_all(&source).expect("a folder");
-    std::fs::create_dir_all(package.join("msg")).expect("a folder");
-    std::fs::write(package.join("__init__.py"), "").expect("a file");
-    let mut files: Vec<PathBuf> = Vec::new();
-    for (name, _, definition) in of_baxter() {
-        let short = name.rsplit('/').next().expect("a name");
-        files.push(source.join(format!("{short}.msg")));
-        std::fs::write(&files[files.len() - 1], definition).expect("a file");
+    let mut packages: Vec<&str> = Vec::new();
+    for (name, _, definition) in without_a_package() {
+        let (package, short) = name.split_once('/').expect("a package");
+        let source = folder.join("msg").join(package);
+        std::fs::create_dir_all(&source).expect("a folder");
+        std::fs::write(source.join(format!("{short}.msg")), definition).expect("a file");
+        if !packages.contains(&package) {
+            packages.push(package);
+        }
     }
-    let generator = |arguments: &[&str]| {
-        let mut command = Command::new(PYTHON);
-        command.args(["/usr/lib/genpy/genmsg_py.py", "-p", "baxter_core_msgs", "-o"]);
-        command.arg(package.join("msg")).args(arguments);
-        command
-    };
-    let own = format!("-Ibaxter_core_msgs:{}", source.display());
-    let mut includes = vec![own];
-    for known in ["std_msgs", "geometry_msgs", "sensor_msgs"] {
-        includes.push(format!("-I{known}:/usr/share/{known}/msg"));
-    }
-    let mut first = generator(&[]);
-    first.args(&includes).args(&files);
-    for mut command in [first, generator(&["--initpy"])] {
-        let ended = crate::run(&mut command, "", 60.0);
-        assert_eq!(ended.code, Some(0), "{ended:?}");
-    }
-    for (name, md5, _) in of_baxter() {
-        let short = name.rsplit('/').next().expect("a name");
-        let file = package.join(format!("msg/_{short}.py"));
+    let own = packages.iter().map(|package| (*package, folder.join("msg").join(package)));
+    let known = ["std_msgs", "geometry_msgs", "sensor_msgs"];
+    let known = known.map(|package| (package, PathBuf::from(format!("/usr/share/{package}/msg"))));
+    let includes = own.chain(known).map(|(package, at)| format!("-I{package}:{}", at.display()));
+    let includes: Vec<String> = includes.collect();
+    packages.iter().for_each(|package| generate_package(folder, package, &includes));
+    for (name, md5, _) in without_a_package() {
+        let (package, short) = name.split_once('/').expect("a package");
+        let file = folder.join(format!("gen/{package}/msg/_{short}.py"));
         let text = std::fs::read_to_string(file).expect("a generated file");
         assert!(text.contains(&format!("_md5sum = \"{md5}\"")), "{name}: another checksum");
+    }
+}
+
+fn generate_package(folder: &Path, name: &str, includes: &[String]) {
+    let (source, package) = (folder.join("msg").join(name), folder.join("gen").join(name));
+    std::fs::create_dir_all(package.join("msg")).expect("a folder");
+    std::fs::write(package.join("__init__.py"), "").expect("a file");
+    let generator = || {
+        let mut command = Command::new(PYTHON);
+        command.args(["/usr/lib/genpy/genmsg_py.py", "-p", name, "-o"]).arg(package.join("msg"));
+        command
+    };
+    let files = std::fs::read_dir(source).expect("a folder");
+    let mut classes = generator();
+    classes.args(includes).args(files.map(|file| file.expect("a file").path()));
+    let mut module = generator();
+    module.arg("--initpy");
+    for mut command in [classes, module] {
+        let ended = crate::run(&mut command, "", 60.0);
+        assert_eq!(ended.code, Some(0), "{ended:?}");
     }
 }

@@ -226,7 +226,7 @@ impl Drop for NoDescriptors {
     }
 }
 
-/// Watches the joints that the arm reports a hundred times a second.
+/// Watches the joints that a busy arm reports a hundred times a second.
 #[derive(Debug)]
 pub struct JointWatch {
     joints: Reader<JointStates>,

@@ -97,14 +97,15 @@ impl ArmNode {
         (stands && !self.state.waits_for_person).then_some(Purpose::Aim(aim))
     }
 
-    /// Returns whether the arm must rest first: no plan was found from elsewhere, or the object is still
-    /// with the person, who puts it back by hand once the arm is at rest.
+    /// Returns whether the arm must rest first: no plan was found from elsewhere, it leaves what a user
+    /// may still hold between its fingers, or the object is still with the person, who puts it back by
+    /// hand once the arm is at rest.
     fn comes_after_rest(&self, goal: Purpose) -> bool {
         let object = self.object_of(goal);
         let with_person = object.is_some_and(|object| self.state.gone.contains(&object));
         let restocked =
             self.config.arm.restock && with_person && object != self.state.to_put_back();
-        self.plan_failures.from_rest == Some(goal) || restocked
+        self.plan_failures.from_rest == Some(goal) || self.state.offered.is_some() || restocked
     }
 
     fn object_of(&self, purpose: Purpose) -> Option<ObjectId> {
@@ -194,7 +195,7 @@ impl ArmNode {
                 let Some(pick) = self.state.open_pick().copied() else { return };
                 let name = self.name(pick.object);
                 tracing::error!(name, task = ?pick.task, %refusal, "no way with the object");
-                let holds = pick.phase == PickPhase::Holding;
+                let holds = pick.phase >= PickPhase::Holding;
                 let outcome =
                     if holds { PickOutcome::Interrupted } else { PickOutcome::Unreachable };
                 self.end(outcome, now, fx);

@@ -47,7 +47,7 @@ struct Tally {
 }
 
 /// One object and task per pick, no step back, and in each interaction at most one grasp that lifts to
-/// fetch, one delivery, and one object put back.
+/// fetch and is not called off, one delivery, and one object put back.
 pub(crate) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
     let mut tallies: BTreeMap<u64, Tally> = BTreeMap::new();
     let mut before: Option<Pick> = None;
@@ -88,6 +88,13 @@ fn step(
     let lifts = pick.phase == PickPhase::Holding && phase_before != Some(PickPhase::Holding);
     if lifts && pick.task == Task::Fetch {
         tally.lifted += 1;
+    }
+    let returned = phase_before == Some(PickPhase::Returning);
+    if returned && pick.outcome == PickOutcome::Delivered {
+        return Err(format!("{name} was delivered though it was called off"));
+    }
+    if pick.phase == PickPhase::Returning && !returned {
+        tally.lifted = tally.lifted.saturating_sub(1);
     }
     if pick.phase == PickPhase::Done && phase_before != Some(PickPhase::Done) {
         tally.delivered += u32::from(pick.outcome == PickOutcome::Delivered);
@@ -138,7 +145,7 @@ mod tests {
 
     #[test]
     fn arm_advances_a_pick_and_completes_it_once() {
-        use PickPhase::{Accepted, Closing, Done, Holding, Moving};
+        use PickPhase::{Accepted, Closing, Done, Holding, Moving, Returning};
         let phases = [Accepted, Moving, Closing, Closing, Holding, Holding, Done, Done];
         let picks: Vec<Pick> = phases.map(|phase| pick(3, 1, phase)).to_vec();
         assert_eq!(check(&picks), Ok(()));
@@ -147,7 +154,13 @@ mod tests {
         assert_eq!(check(&and_back), Ok(()));
         let twice = [and_back, vec![put_back(3, Holding), put_back(3, Done)]].concat();
         assert!(check(&twice).is_err());
+        let called_off = [Holding, Returning, Returning].map(|phase| pick(3, 1, phase));
+        let cancelled = Pick { outcome: PickOutcome::Cancelled, ..pick(3, 1, Done) };
+        let other = [Holding, Done].map(|phase| pick(3, 2, phase));
+        assert_eq!(check(&[&called_off[..], &[cancelled], &other].concat()), Ok(()));
         let wrong = [
+            vec![pick(3, 1, Returning), pick(3, 1, Holding)],
+            vec![pick(3, 1, Holding), pick(3, 1, Returning), pick(3, 1, Done)],
             vec![pick(3, 1, Moving), pick(3, 1, Accepted)],
             vec![pick(3, 1, Done), pick(3, 2, Done)],
             vec![pick(3, 1, Holding), pick(3, 2, Holding)],

@@ -44,7 +44,7 @@ use messages::{
 use orders::StandingAct;
 use plan::Planning;
 use preflight::ArmSetup;
-use publish::{Facts, Publisher};
+use publish::{Activity, Facts, Publisher};
 use scene::{ObjectId, Scene};
 use service::stop_socket::{Caller, StopState};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
@@ -191,7 +191,7 @@ impl Node for ArmNode {
     }
 
     fn deadline(&self) -> Option<Time> {
-        let due = self.publisher.deadline(self.unsynced);
+        let due = self.publisher.deadline(self.activity(), self.unsynced);
         if self.urgent || self.driver.is_fresh() {
             return Some(Time(0));
         }
@@ -320,6 +320,13 @@ impl ArmNode {
         }
     }
 
+    fn activity(&self) -> Activity {
+        let is_busy = !self.executor.is_standing()
+            || self.state.open_pick().is_some()
+            || self.planning.requested().is_some();
+        if is_busy { Activity::Busy } else { Activity::AtRest }
+    }
+
     fn publish(&mut self, now: Time, fx: &mut Fx) {
         let measured = self.driver.measured();
         let aims = self.aimed.is_some() && self.aimed == self.act.aim;
@@ -331,7 +338,7 @@ impl ArmNode {
             aimed: aims.then_some(self.act.id),
             inhibit: self.driver.inhibit(),
         };
-        self.publisher.publish_joints(facts.measured, now, fx);
+        self.publisher.publish_joints(facts.measured, self.activity(), now, fx);
         // What tells of a record waits until it is durable.
         if self.unsynced {
             return;

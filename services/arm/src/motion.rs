@@ -2,15 +2,21 @@
 
 use crate::driver::Fault;
 use crate::executor::{Progress, Purpose};
-use crate::state::Cause;
+use crate::publish::Activity;
+use crate::state::{Cause, Offered};
 use crate::{ArmNode, Fx};
 use manipulation::Limb;
-use messages::{MotionPhase, PickOutcome, PickPhase};
+use messages::pick::Pick;
+use messages::{MotionPhase, PickOutcome, PickPhase, Task};
+use scene::ObjectId;
 use service::{Span, Time};
 
 /// Longest time step of a motion. A process that was suspended resumes
 /// from the same point, as a robot does whose controller was silent.
 const STRETCH_MAX: Span = Span::from_ms(50);
+/// Distance from where objects are handed over within which a user may hold one out between the
+/// fingers, metres.
+const OFFERED_M: f64 = 0.05;
 /// Interval between journal records of moving joints.
 const PROGRESS_EVERY: Span = Span::from_ms(200);
 
@@ -52,7 +58,7 @@ impl ArmNode {
         if self.unsynced {
             return;
         }
-        if self.publisher.due_joints(&self.driver.measured(), now).is_some() {
+        if self.publisher.due_joints(&self.driver.measured(), Activity::Busy, now).is_some() {
             self.urgent = true;
             return;
         }
@@ -125,13 +131,16 @@ impl ArmNode {
         }
     }
 
-    fn enter(&mut self, phase: PickPhase, limb: Limb, now: Time, fx: &mut Fx) {
+    pub(crate) fn enter(&mut self, phase: PickPhase, limb: Limb, now: Time, fx: &mut Fx) {
         let Some(pick) = &mut self.state.pick else { return };
         if pick.phase < phase {
             pick.phase = phase;
         }
         tracing::info!(id = ?pick.id, ?phase, %limb, "pick phase");
         self.state.limb = Some(limb);
+        if phase == PickPhase::Moving {
+            self.state.offered = None;
+        }
         self.urgent = true;
         self.record(Cause::Phase, now, fx);
     }
@@ -139,12 +148,26 @@ impl ArmNode {
     /// Ends the open pick.
     pub(crate) fn end(&mut self, outcome: PickOutcome, now: Time, fx: &mut Fx) {
         let Some(pick) = &mut self.state.pick else { return };
-        (pick.phase, pick.outcome) = (PickPhase::Done, outcome);
+        let was = std::mem::replace(pick, Pick { phase: PickPhase::Done, outcome, ..*pick });
         tracing::info!(id = ?pick.id, object = pick.object.0, ?outcome, "pick ended");
         let asks_for_person = [PickOutcome::Interrupted, PickOutcome::Blocked];
         self.state.waits_for_person = asks_for_person.contains(&outcome);
+        if was.task == Task::PutBack && outcome != PickOutcome::PutBack {
+            self.state.offered = self.put_between_fingers(was.object);
+        }
         self.urgent = true;
         self.record(Cause::Ended, now, fx);
+    }
+
+    /// Returns the object that was to be taken from the user, where it is between the fingers already:
+    /// `None` if the gripper is elsewhere.
+    fn put_between_fingers(&self, object: ObjectId) -> Option<Offered> {
+        let (held, measured) = (self.state.handed_over(object)?, self.driver.measured());
+        let offered = self.world.offered(held, &measured);
+        let setup = &self.config.setup;
+        let gripper = setup.robot.arm(held.limb).chain.forward(&measured.posture.joints[held.limb]);
+        let tip = gripper.translation.vector;
+        setup.plan.is_hand_over(held.limb, &tip, OFFERED_M).then_some(offered)
     }
 
     fn ended(&mut self, kind: MotionPhase, purpose: Option<Purpose>, now: Time, fx: &mut Fx) {
@@ -168,12 +191,18 @@ impl ArmNode {
     /// Handles fingers that have opened where the object was to be let go.
     fn let_go(&mut self, now: Time, fx: &mut Fx) {
         let held = self.state.held.take();
+        let is_called_off =
+            self.state.open_pick().is_some_and(|pick| pick.phase == PickPhase::Returning);
         let outcome = match self.state.to_put_back() {
             Some(object) => {
                 self.state.handed_over.retain(|other| other.object != object);
                 PickOutcome::PutBack
             }
+            // It stands in its place again.
+            None if is_called_off => PickOutcome::Cancelled,
             None => {
+                let measured = self.driver.measured();
+                self.state.offered = held.map(|held| self.world.offered(&held, &measured));
                 self.state.gone.extend(held.map(|held| held.object));
                 held.into_iter().for_each(|held| self.state.remember(held));
                 PickOutcome::Delivered
@@ -191,6 +220,9 @@ impl ArmNode {
     /// Handles the arm at rest: with restocking, people have put the objects back, except one that
     /// the arm is to put back.
     pub(crate) fn rest(&mut self, now: Time, fx: &mut Fx) {
+        if self.limb_away().is_none() {
+            self.state.offered = None;
+        }
         if self.restocks() && self.limb_away().is_none() {
             let given_back = self.state.to_put_back();
             self.state.gone.retain(|gone| Some(*gone) == given_back);

@@ -41,7 +41,7 @@ impl ArmNode {
     /// Returns the grippers, left first, that hold nothing a calibration would drop.
     fn may_calibrate(&self) -> [bool; 2] {
         let phase = self.state.open_pick().map(|pick| pick.phase);
-        let grasps = matches!(phase, Some(PickPhase::Closing | PickPhase::Holding));
+        let grasps = phase.is_some_and(|phase| phase >= PickPhase::Closing);
         let mut may_calibrate = [true; 2];
         for limb in self.config.setup.robot.limbs() {
             let held = self.state.held.is_some_and(|held| held.limb == *limb);

@@ -1,5 +1,6 @@
 //! Orders to the arm: acts of the policy, and the motion stop.
 
+use crate::program::Planner;
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
 use messages::pick::{Order, Pick, judge};
@@ -85,13 +86,18 @@ impl ArmNode {
         }
     }
 
-    /// Cancels the pick, unless the gripper already closes on the object: then it is carried out.
+    /// Cancels the pick. An object that the gripper holds goes back to its place first. Where the fingers
+    /// still close on it, this follows with the next of the repeated orders.
     fn cancel(&mut self, id: PickId, object: ObjectId, now: Time, fx: &mut Fx) {
         match judge(self.state.pick.as_ref(), id, object, None) {
             Order::Known => {
                 let phase = self.state.open_pick().map(|pick| pick.phase);
-                if matches!(phase, Some(PickPhase::Accepted | PickPhase::Moving)) {
-                    self.end(PickOutcome::Cancelled, now, fx);
+                match phase {
+                    Some(PickPhase::Accepted | PickPhase::Moving) => {
+                        self.end(PickOutcome::Cancelled, now, fx);
+                    }
+                    Some(PickPhase::Holding) => self.turn_back(now, fx),
+                    _ => {}
                 }
             }
             // The order itself has not arrived yet. It must be ignored when it does.
@@ -103,6 +109,21 @@ impl ArmNode {
             }
             Order::Busy | Order::Obsolete | Order::Conflict => {}
         }
+    }
+
+    /// Carries the held object back to its place, unless the gripper is where it hands it over: the user
+    /// may have it already. One that is put back goes there anyway.
+    fn turn_back(&mut self, now: Time, fx: &mut Fx) {
+        let (Some(pick), Some(limb)) = (self.state.open_pick().copied(), self.state.limb) else {
+            return;
+        };
+        let measured = self.driver.measured();
+        let planner = Planner::new(&self.config, &self.world, &self.state, &measured);
+        if pick.ends_at_place() || planner.is_at_goal(&pick, limb) {
+            return;
+        }
+        self.executor.halt();
+        self.enter(PickPhase::Returning, limb, now, fx);
     }
 
     fn take_on(

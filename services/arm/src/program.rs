@@ -10,7 +10,7 @@ use dialogue::Rng;
 use manipulation::{
     ArmShape, Cuboid, Joints, Limb, MotionLimits, Phase, PlanError, PlanSettings, Robot, Stage,
     Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_put_back, plan_put_down,
-    plan_retreat, plan_return,
+    plan_retreat, plan_return, plan_withdrawal,
 };
 use messages::pick::Pick;
 use messages::{MotionPhase, PickId, PickPhase, Task};
@@ -108,11 +108,9 @@ impl Planner<'_> {
         let in_gripper = from_array(&held.in_gripper);
         let others = self.world.obstacles(self.state, None);
         let (robot, limb, arms) = (self.robot, held.limb, &self.measured.posture.joints);
-        let plan = self.with_reduced_margin(|settings| match pick.task {
-            Task::Fetch => plan_delivery(robot, object, &in_gripper, limb, arms, &others, settings),
-            Task::PutBack => {
-                plan_put_down(robot, object, &in_gripper, limb, arms, &others, settings)
-            }
+        let plan = self.with_reduced_margin(|settings| {
+            let carry = if pick.ends_at_place() { plan_put_down } else { plan_delivery };
+            carry(robot, object, &in_gripper, limb, arms, &others, settings)
         })?;
         let steps = plan.stages().iter().map(|stage| self.step(stage)).collect();
         Ok(Program { purpose: Purpose::Pick(pick.id), limb, steps })
@@ -147,7 +145,7 @@ impl Planner<'_> {
         let held = self.state.handed_over(pick.object).ok_or(Refusal::NotHandedOver)?;
         let (limb, in_gripper) = (held.limb, from_array(&held.in_gripper));
         self.refuse_other(limb)?;
-        let start = self.start(None, 0.0)?;
+        let start = self.start(Some(pick.object), 0.0)?;
         let plan = self.with_reduced_margin(|settings| {
             let Start { arms, obstacles, .. } = &start;
             plan_put_back(self.robot, object, &in_gripper, limb, arms, obstacles, settings)
@@ -206,9 +204,9 @@ impl Planner<'_> {
     pub(crate) fn is_at_goal(&self, pick: &Pick, limb: Limb) -> bool {
         let within_m = AT_GOAL_M + REACH_M * self.measured.accuracy_rad;
         let tip = self.tip(limb).vector;
-        match pick.task {
-            Task::Fetch => self.settings.is_hand_over(limb, &tip, within_m),
-            Task::PutBack => {
+        match pick.ends_at_place() {
+            false => self.settings.is_hand_over(limb, &tip, within_m),
+            true => {
                 let held = self.state.held.as_ref().filter(|held| held.limb == limb);
                 let goal = held
                     .zip(self.world.place(pick.object))
@@ -280,14 +278,16 @@ impl Planner<'_> {
     /// Returns the start of a plan: with a limb that is away from rest within its joint limits, clear of
     /// every object, and `rise_m` higher than it is. It may stand among them, stopped or killed on its
     /// way down, or where a person moved it; what it then touches it leaves as it came, straight up
-    /// with open fingers.
+    /// with open fingers. So it does where a user may hold something between the fingers, but back along
+    /// them.
     fn start(&self, fetched: Option<ObjectId>, rise_m: f64) -> Result<Start, Refusal> {
         let mut arms = self.measured.posture.joints;
         let mut steps = VecDeque::new();
         let limbs = self.robot.limbs().iter().copied();
         let away = limbs.into_iter().find(|limb| !self.measured.is_at_rest(self.robot, *limb));
-        let others = self.world.obstacles(self.state, fetched);
+        let mut others = self.world.obstacles(self.state, fetched);
         let Some(limb) = away else { return Ok(Start { steps, arms, obstacles: others }) };
+        others.extend(self.offered(fetched));
         let holds = self.state.held.is_some();
         let step =
             |motion, fingers| Step { kind: MotionPhase::Clear, phase: None, motion, fingers };
@@ -298,12 +298,13 @@ impl Planner<'_> {
             arms[limb] = retreat.end();
             steps.push_back(step(retreat, Fingers::Stay));
         }
-        if let Some(up) = self.up(limb, &arms[limb], rise_m) {
+        let withdrawal = self.withdrawal(limb, &arms[limb]).filter(|_| rise_m == 0.0);
+        if let Some(leave) = withdrawal.or_else(|| self.up(limb, &arms[limb], rise_m)) {
             let opening = self.opening(limb, &arms[limb]);
             let fingers = if holds { Fingers::Stay } else { opening.fingers };
-            arms[limb] = up.end();
+            arms[limb] = leave.end();
             steps.extend((!holds && opening.motion.duration_s() > 0.0).then_some(opening));
-            steps.push_back(step(up, fingers));
+            steps.push_back(step(leave, fingers));
         }
         // An object that it still touches cannot be an obstacle.
         let obstacles = self.without_touched(limb, &arms[limb], others);
@@ -314,6 +315,23 @@ impl Planner<'_> {
         let shape = ArmShape::at(self.robot.arm(limb), q);
         others.retain(|cuboid| !touches(&shape, cuboid));
         others
+    }
+
+    /// Back along the fingers from what a user may hold between them.
+    fn withdrawal(&self, limb: Limb, q: &Joints) -> Option<Trajectory> {
+        let offered =
+            self.state.offered.filter(|it| it.limb == limb && self.state.held.is_none())?;
+        let object = self.world.place(offered.object)?;
+        let gripper = self.robot.arm(limb).chain.forward(q);
+        let in_gripper = gripper.inverse() * from_array(&offered.pose);
+        plan_withdrawal(self.robot, object, &in_gripper, (limb, q), self.settings)
+    }
+
+    /// Returns the box around what a user may hold, unless that is to be taken.
+    fn offered(&self, taken: Option<ObjectId>) -> Option<Cuboid> {
+        let offered = self.state.offered.filter(|it| Some(it.object) != taken)?;
+        let object = self.world.place(offered.object)?;
+        Some(object.cuboid_at(&from_array(&offered.pose)))
     }
 
     /// Straight up from the objects that the limb touches, and at least by `rise_m`, as far as the

@@ -13,6 +13,8 @@ use service::{Span, Time};
 
 /// Interval of an unchanged status.
 const STATUS_EVERY: Span = Span::from_ms(250);
+/// Shortest interval of the joint states of an arm at rest, which repeat themselves.
+const REST_EVERY: Span = Span::from_ms(50);
 /// Interval of the world view while the arm moves, and while it stands.
 const WORLD_EVERY: (Span, Span) = (Span::from_ms(100), Span::from_ms(1_000));
 
@@ -23,9 +25,12 @@ pub(crate) struct Publisher {
     grippers: [Gripper; 2],
     /// Simulated seconds per second.
     time_scale: f64,
-    /// Period of a model's joint states, and when they are due; sensors have their own.
+    /// Period of a model's joint states while it is busy, and when they were due last; sensors have
+    /// their own.
     joints_every: Span,
-    joints_due: Time,
+    joints_were_due: Time,
+    /// Whether the joint states published last are those of an arm at rest.
+    shows_rest: bool,
     /// Sensor time of the joints published last.
     joints_at: Time,
     world_sent: Option<Time>,
@@ -43,6 +48,15 @@ pub(crate) struct Facts<'a> {
     pub(crate) inhibit: MotionInhibit,
 }
 
+/// Whether the arm has something to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Activity {
+    /// It moves, plans, or has an open pick.
+    Busy,
+    /// It stands until the next order.
+    AtRest,
+}
+
 impl Publisher {
     pub(crate) fn new(arm: &config::Arm, robot: &Robot) -> Self {
         Self {
@@ -50,7 +64,8 @@ impl Publisher {
             grippers: Limb::BOTH.map(|limb| robot.arm(limb).gripper),
             time_scale: arm.time_scale,
             joints_every: Span::from_s(1.0 / arm.joint_rate_hz),
-            joints_due: Time(0),
+            joints_were_due: Time(0),
+            shows_rest: false,
             joints_at: Time(0),
             world_sent: None,
             status_due: Time(0),
@@ -60,31 +75,52 @@ impl Publisher {
 
     /// Returns the next publication time of a standing arm, of its joints alone where the rest waits for
     /// the disk. A moving one is stepped more often anyway.
-    pub(crate) fn deadline(&self, only_joints: bool) -> Time {
+    pub(crate) fn deadline(&self, activity: Activity, only_joints: bool) -> Time {
+        let joints_due = self.joints_due(activity);
         if only_joints {
-            return self.joints_due;
+            return joints_due;
         }
         let world = self.world_sent.map_or(Time(0), |sent| sent + WORLD_EVERY.1);
-        self.joints_due.min(self.status_due).min(world)
+        joints_due.min(self.status_due).min(world)
+    }
+
+    /// Returns when a model's joint states are due. At rest they are rarer, once the rest itself has been
+    /// published.
+    fn joints_due(&self, activity: Activity) -> Time {
+        let rests = activity == Activity::AtRest && self.shows_rest;
+        let every = if rests { self.joints_every.max(REST_EVERY) } else { self.joints_every };
+        self.joints_were_due + every
     }
 
     /// Returns the time of the joint states that are due: a model's periodically, those of sensors when
     /// there are new ones.
-    pub(crate) fn due_joints(&self, measured: &Measured, now: Time) -> Option<Time> {
+    pub(crate) fn due_joints(
+        &self,
+        measured: &Measured,
+        activity: Activity,
+        now: Time,
+    ) -> Option<Time> {
         match measured.at {
-            Source::Model => (now >= self.joints_due).then_some(now),
+            Source::Model => (now >= self.joints_due(activity)).then_some(now),
             Source::Sensors(at) => (at > self.joints_at).then_some(at),
             Source::Memory => None,
         }
     }
 
     /// Publishes the joint states when they are due: measurements, which wait for no record.
-    pub(crate) fn publish_joints(&mut self, measured: &Measured, now: Time, fx: &mut Fx) {
-        let at = self.due_joints(measured, now);
-        if now >= self.joints_due {
+    pub(crate) fn publish_joints(
+        &mut self,
+        measured: &Measured,
+        activity: Activity,
+        now: Time,
+        fx: &mut Fx,
+    ) {
+        let at = self.due_joints(measured, activity, now);
+        let due = self.joints_due(activity);
+        if now >= due {
             // A late one is not caught up with.
-            let next = self.joints_due + self.joints_every;
-            self.joints_due = if next > now { next } else { now + self.joints_every };
+            self.joints_were_due = if due + self.joints_every > now { due } else { now };
+            self.shows_rest = activity == Activity::AtRest;
         }
         if let Some(at) = at {
             self.joints_at = at;

@@ -30,9 +30,9 @@ pub fn next(phase: PickPhase, holding: Option<bool>, at_goal: bool) -> Next {
     match (phase, holding) {
         (PickPhase::Closing, Some(true)) => Next::Carry,
         (PickPhase::Closing, None) => Next::Interrupt,
-        (PickPhase::Holding, _) if at_goal => Next::Release,
-        (PickPhase::Holding, Some(false)) => Next::Interrupt,
-        (PickPhase::Holding, _) => Next::Carry,
+        (PickPhase::Holding | PickPhase::Returning, _) if at_goal => Next::Release,
+        (PickPhase::Holding | PickPhase::Returning, Some(false)) => Next::Interrupt,
+        (PickPhase::Holding | PickPhase::Returning, _) => Next::Carry,
         _ => Next::Take,
     }
 }
@@ -70,6 +70,7 @@ pub fn other_scene(state: &ArmState, scene: &Scene) -> Option<ArmState> {
     let mut next = ArmState { scene_key: scene.key(), held: None, ..state.clone() };
     next.gone.clear();
     next.handed_over.clear();
+    next.offered = None;
     next.waits_for_person = false;
     next.pick =
         state.pick.map(|pick| Pick { outcome: outcome(&pick), phase: PickPhase::Done, ..pick });
@@ -80,7 +81,7 @@ pub fn other_scene(state: &ArmState, scene: &Scene) -> Option<ArmState> {
 fn outcome(pick: &Pick) -> PickOutcome {
     match pick.phase {
         PickPhase::Done => pick.outcome,
-        PickPhase::Closing | PickPhase::Holding => PickOutcome::Interrupted,
+        PickPhase::Closing | PickPhase::Holding | PickPhase::Returning => PickOutcome::Interrupted,
         _ => PickOutcome::Cancelled,
     }
 }
@@ -92,7 +93,7 @@ mod tests {
     #[test]
     fn recovery_takes_before_a_grasp_carries_after_it_and_leaves_the_unknown_to_a_person() {
         use Next::{Carry, Interrupt, Release, Take};
-        use PickPhase::{Accepted, Closing, Holding, Moving};
+        use PickPhase::{Accepted, Closing, Holding, Moving, Returning};
         for (phase, at_goal, expected) in [
             // With the gripper's sensor empty, holding and unknown.
             (Accepted, false, [Take, Take, Take]),
@@ -101,6 +102,8 @@ mod tests {
             (Closing, true, [Take, Carry, Interrupt]),
             (Holding, false, [Interrupt, Carry, Carry]),
             (Holding, true, [Release, Release, Release]),
+            (Returning, false, [Interrupt, Carry, Carry]),
+            (Returning, true, [Release, Release, Release]),
         ] {
             let found = [Some(false), Some(true), None].map(|own| next(phase, own, at_goal));
             assert_eq!(found, expected, "{phase:?} at the goal: {at_goal}");

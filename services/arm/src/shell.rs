@@ -28,7 +28,7 @@ pub struct ArmProgram;
 
 impl Program for ArmProgram {
     const SERVICE: Service = Service::Arm;
-    const RECORD: Option<&'static str> = Some("arm/3");
+    const RECORD: Option<&'static str> = Some("arm/4");
     const ABOUT: &'static str =
         "fetches objects, puts them back, points at them, and stops on request";
     type Node = ArmNode;

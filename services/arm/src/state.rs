@@ -24,13 +24,16 @@ pub struct ArmState {
     pub limb: Option<Limb>,
     /// Missed grasps in the latest pick.
     pub misses: u32,
-    /// Object in the gripper. Only while the pick is `Holding`, or was interrupted then.
+    /// Object in the gripper. Only while the pick is `Holding` or `Returning`, or was interrupted then.
     pub held: Option<Held>,
     /// Objects that a person has taken and not put back, in order.
     pub gone: Vec<ObjectId>,
     /// The objects handed over last as they were held, the latest last: so they are taken again to be
     /// put back.
     pub handed_over: Vec<Held>,
+    /// What a user may still hold where the gripper let go of it, or came for it, until that limb is at
+    /// rest.
+    pub offered: Option<Offered>,
     /// True if the motion stop is latched.
     pub stopped: bool,
     /// Time at which the latest applied motion order was given.
@@ -58,6 +61,17 @@ pub struct Held {
     pub limb: Limb,
     /// Pose of the object in frame `<limb>_gripper`: x, y, z in metres, quaternion x, y, z, w.
     pub in_gripper: [f64; 7],
+}
+
+/// An object that a user may hold out, with open fingers around it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Offered {
+    /// The object.
+    pub object: ObjectId,
+    /// Limb of the gripper.
+    pub limb: Limb,
+    /// Pose of the object in frame `base`: x, y, z in metres, quaternion x, y, z, w.
+    pub pose: [f64; 7],
 }
 
 /// Reason for a record.
@@ -125,6 +139,7 @@ impl ArmState {
             held: None,
             gone: Vec::new(),
             handed_over: Vec::new(),
+            offered: None,
             stopped: false,
             obeyed: Time(0),
             waits_for_person: false,
@@ -156,6 +171,7 @@ impl ArmState {
         (self.held, self.misses) == (other.held, other.misses)
             && self.gone == other.gone
             && self.handed_over == other.handed_over
+            && self.offered == other.offered
     }
 
     /// Returns the pick in progress.

@@ -1,7 +1,7 @@
 //! Places of the objects: where they stood, in a gripper, or taken.
 
 use crate::driver::Measured;
-use crate::state::{ArmState, Held};
+use crate::state::{ArmState, Held, Offered};
 use manipulation::{Cuboid, Limb, ObjectPose, Robot};
 use messages::{TableView, WorldView};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
@@ -142,6 +142,13 @@ impl World {
         let gripper = self.robot.arm(limb).chain.forward(&measured.posture.joints[limb]);
         let in_gripper = gripper.inverse() * self.place(object)?.isometry();
         Some(Held { object, limb, in_gripper: to_array(&in_gripper) })
+    }
+
+    /// Returns `held` where its gripper is now, as what a user may hold there.
+    pub(crate) fn offered(&self, held: &Held, measured: &Measured) -> Offered {
+        let Held { object, limb, in_gripper } = *held;
+        let gripper = self.robot.arm(limb).chain.forward(&measured.posture.joints[limb]);
+        Offered { object, limb, pose: to_array(&(gripper * from_array(&in_gripper))) }
     }
 
     /// Returns the world view for clients.

@@ -41,7 +41,12 @@ impl Assembly {
             }
             DrillKind::ReleaseEstop => self.pressed = false,
             DrillKind::Fail => (self.error, self.enabled) = (true, false),
-            DrillKind::Silence | DrillKind::Miss | DrillKind::Obstruct => {}
+            // These are of the robot's surroundings.
+            DrillKind::Silence
+            | DrillKind::Miss
+            | DrillKind::Obstruct
+            | DrillKind::Put
+            | DrillKind::Take => {}
         }
     }
 

@@ -15,6 +15,7 @@ pub mod servo;
 pub mod shell;
 
 use messages::robot::{Drill, Order, Report};
+use perception::{CameraSettings, Sighting};
 use robot::{Body, Robot};
 use scene::Scene;
 use service::{Effects, Event, Node, NodeError, Span, Time};
@@ -28,7 +29,16 @@ pub enum In<'a> {
     Drill(Drill),
 }
 
-type Fx = Effects<Report<'static>, Body>;
+/// Outputs of the robot.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Out {
+    /// What the robot measures.
+    Report(Report<'static>),
+    /// What the camera above the table sees.
+    Sighting(Box<Sighting>),
+}
+
+type Fx = Effects<Out, Body>;
 
 /// Configuration of the robot.
 #[derive(Clone, Debug)]
@@ -41,6 +51,8 @@ pub struct Config {
     pub grasp_error_m: f64,
     /// True if users put back the objects that they were handed once the robot rests.
     pub restock: bool,
+    /// The camera above the table, if there is one.
+    pub camera: Option<CameraSettings>,
     /// Scene around it.
     pub scene: Scene,
 }
@@ -66,7 +78,7 @@ pub struct BaxterNode {
 impl Node for BaxterNode {
     type Config = Config;
     type In<'a> = In<'a>;
-    type Out = Report<'static>;
+    type Out = Out;
     type Record = Body;
 
     fn recover(config: Config, mut records: Vec<Body>) -> Result<Self, NodeError> {
@@ -110,7 +122,10 @@ impl BaxterNode {
             return self.remember(now, fx);
         }
         self.published = true;
-        self.robot.reports(self.beat, now).into_iter().for_each(|report| fx.publish(report));
+        let reports = self.robot.reports(self.beat, now).into_iter().map(Out::Report);
+        reports.for_each(|report| fx.publish(report));
+        let looks = self.robot.look(now).into_iter();
+        looks.for_each(|look| fx.publish(Out::Sighting(Box::new(look))));
         self.beat += 1;
         self.next = self.next + BEAT;
         if self.next <= now {

@@ -2,7 +2,8 @@
 
 use manipulation::gripper::{self, Gripper};
 use manipulation::{Limb, ObjectPose};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use perception::Standing;
 use scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -14,40 +15,77 @@ const HANDED_OVER_M: f64 = 0.05;
 /// Distance from where it was handed over within which a person gives an object back, metres.
 const GIVEN_BACK_M: f64 = 0.05;
 
+/// A place on the table: centre in `base`, metres, and rotation about the vertical, radians.
+pub type Place = [f64; 4];
+
 /// Location of one object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Whereabouts {
-    /// It stands: centre in `base`, metres.
-    Stands([f64; 3]),
-    /// In a gripper, left 0 or right 1.
-    Held(u8),
-    /// A person has it.
-    Gone,
+    /// It stands there.
+    Stands(Place),
+    /// In a gripper.
+    Held {
+        /// Left 0 or right 1.
+        limb: u8,
+        /// Where it was grasped.
+        from: Place,
+        /// Its pose in the frame of the gripper's tip, see [`to_array`].
+        in_gripper: [f64; 7],
+    },
+    /// A person was handed it; it stood there before.
+    Handed(Place),
+    /// It is not on the table.
+    Away,
 }
 
 /// The objects.
 #[derive(Clone, Debug)]
 pub struct ObjectWorld {
-    /// Initial positions; none for an object without one.
-    places: Vec<Option<ObjectPose>>,
+    /// Shapes and initial positions; none for an object without one, which is never there.
+    shapes: Vec<Option<ObjectPose>>,
     /// Locations of the objects.
     pub now: Vec<Whereabouts>,
-    /// Where the object that was handed over last was let go, metres: a person gives it back there.
-    /// None for the others.
-    pub handed_over: Vec<Option<[f64; 3]>>,
+    /// The object that was handed over last; none for the others.
+    pub handed_over: Vec<Option<HandedOver>>,
+}
+
+/// How an object was handed over: a person gives it back in the same way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HandedOver {
+    /// Where the gripper's tip was, metres.
+    xyz: [f64; 3],
+    /// Pose of the object in the frame of the tip, see [`to_array`].
+    in_gripper: [f64; 7],
+}
+
+impl HandedOver {
+    fn is_at(&self, tip: &Isometry3<f64>) -> bool {
+        (tip.translation.vector - nalgebra::Vector3::from(self.xyz)).norm() < GIVEN_BACK_M
+    }
 }
 
 impl ObjectWorld {
     /// Returns the scene's objects in their places.
     pub fn new(scene: &Scene) -> Self {
-        let places: Vec<_> =
+        let shapes: Vec<_> =
             scene.objects().iter().map(|o| o.placement.as_ref().map(preflight::pose)).collect();
-        let stands = |place: &Option<ObjectPose>| match place {
-            Some(place) => Whereabouts::Stands(place.xyz_m),
-            None => Whereabouts::Gone,
+        let stands = |shape: &Option<ObjectPose>| match shape {
+            Some(ObjectPose { xyz_m: [x, y, z], yaw_rad, .. }) => {
+                Whereabouts::Stands([*x, *y, *z, *yaw_rad])
+            }
+            None => Whereabouts::Away,
         };
-        let handed_over = vec![None; places.len()];
-        Self { now: places.iter().map(stands).collect(), handed_over, places }
+        let handed_over = vec![None; shapes.len()];
+        Self { now: shapes.iter().map(stands).collect(), handed_over, shapes }
+    }
+
+    /// Returns the objects on the table.
+    pub fn standing(&self) -> Vec<Standing> {
+        let stands = |(object, now): (usize, &Whereabouts)| match *now {
+            Whereabouts::Stands([x, y, z, yaw]) => Some(Standing { object, xyz: [x, y, z], yaw }),
+            _ => None,
+        };
+        self.now.iter().enumerate().filter_map(stands).collect()
     }
 
     /// Returns the object between the `fingers` of a gripper that are `opening_m` apart at `tip`, with its width: one
@@ -59,16 +97,14 @@ impl ObjectWorld {
         opening_m: f64,
         offset_m: f64,
     ) -> Option<(usize, f64)> {
-        let standing = self.places.iter().zip(&self.now).enumerate();
-        let stands = standing.into_iter().find_map(|(i, (place, now))| {
-            let Whereabouts::Stands(xyz_m) = *now else { return None };
-            let object = ObjectPose { xyz_m, ..(*place)? };
-            let at = object.grasps(fingers).ok()?.into_iter().any(|grasp| {
+        let stands = self.standing().into_iter().find_map(|Standing { object, xyz, yaw }| {
+            let shape = at(&self.shapes[object]?, [xyz[0], xyz[1], xyz[2], yaw]);
+            let caught = shape.grasps(fingers).ok()?.into_iter().any(|grasp| {
                 let beside = (grasp.gripper.inverse() * tip).translation.vector;
                 let along = beside.x.abs() < BESIDE_M[0] && beside.z.abs() < BESIDE_M[1];
-                along && gripper::catches(opening_m, object.grasp_width_m, beside.y + offset_m)
+                along && gripper::catches(opening_m, shape.grasp_width_m, beside.y + offset_m)
             });
-            at.then_some((i, object.grasp_width_m))
+            caught.then_some((object, shape.grasp_width_m))
         });
         stands.or_else(|| self.given_back(tip, opening_m, offset_m))
     }
@@ -80,52 +116,109 @@ impl ObjectWorld {
         opening_m: f64,
         offset_m: f64,
     ) -> Option<(usize, f64)> {
-        let is_there = |place: &[f64; 3]| {
-            (tip.translation.vector - nalgebra::Vector3::from(*place)).norm() < GIVEN_BACK_M
-        };
-        let i = self.handed_over.iter().position(|place| place.as_ref().is_some_and(is_there))?;
-        let width_m = self.places[i]?.grasp_width_m;
-        let is_held = matches!(self.now[i], Whereabouts::Held(_));
+        let is_there = |it: &Option<HandedOver>| it.is_some_and(|it| it.is_at(tip));
+        let i = self.handed_over.iter().position(is_there)?;
+        let width_m = self.shapes[i]?.grasp_width_m;
+        let is_held = matches!(self.now[i], Whereabouts::Held { .. });
         (!is_held && gripper::catches(opening_m, width_m, offset_m)).then_some((i, width_m))
     }
 
-    /// A limb has taken hold of the object.
-    pub fn take(&mut self, object: usize, limb: Limb) {
-        self.now[object] = Whereabouts::Held(limb as u8);
+    /// A limb with its gripper at `tip` has taken hold of the object.
+    pub fn take(&mut self, object: usize, limb: Limb, tip: &Isometry3<f64>) {
+        let (Some(shape), Some(from)) = (self.shapes[object], self.place(object)) else { return };
+        let in_gripper = match self.handed_over[object].filter(|it| it.is_at(tip)) {
+            Some(given_back) => given_back.in_gripper,
+            None => to_array(&(tip.inverse() * at(&shape, from).isometry())),
+        };
+        self.now[object] = Whereabouts::Held { limb: limb as u8, from, in_gripper };
     }
 
     /// A limb with its gripper at `tip` lets go: a person takes what is held up, and what is not
-    /// stands below the gripper.
+    /// stands where the gripper has brought it.
     pub fn let_go(&mut self, limb: Limb, tip: &Isometry3<f64>) {
         let Some(object) = self.held(limb) else { return };
-        let Some(place) = self.places[object] else { return };
-        let is_held_up = tip.translation.z > place.top_z_m() + HANDED_OVER_M;
-        self.now[object] =
-            if is_held_up { Whereabouts::Gone } else { Whereabouts::Stands(place.xyz_m) };
+        let Whereabouts::Held { from, in_gripper, .. } = self.now[object] else { return };
+        let Some(shape) = self.shapes[object] else { return };
+        let is_held_up = tip.translation.z > at(&shape, from).top_z_m() + HANDED_OVER_M;
+        self.handed_over[object] = None;
         if is_held_up {
             // A person holds out what was handed over last.
             self.handed_over.fill(None);
+            let xyz = tip.translation.vector.into();
+            self.handed_over[object] = Some(HandedOver { xyz, in_gripper });
+            self.now[object] = Whereabouts::Handed(from);
+        } else {
+            let here = tip * from_array(&in_gripper);
+            let (place, yaw) = (here.translation, here.rotation.euler_angles().2);
+            self.now[object] = Whereabouts::Stands([place.x, place.y, from[2], yaw]);
         }
-        self.handed_over[object] = is_held_up.then(|| tip.translation.vector.into());
     }
 
     /// Users put back the objects that they were handed.
     pub fn restock(&mut self) {
-        for (now, place) in self.now.iter_mut().zip(&self.places) {
-            if let (Whereabouts::Gone, Some(place)) = (*now, place) {
-                *now = Whereabouts::Stands(place.xyz_m);
+        for now in &mut self.now {
+            if let Whereabouts::Handed(place) = *now {
+                *now = Whereabouts::Stands(place);
             }
         }
     }
 
+    /// A person puts the object there.
+    ///
+    /// # Errors
+    /// Why it cannot be put there.
+    pub fn put(&mut self, object: usize, place: Place) -> Result<(), &'static str> {
+        self.move_by_hand(object, Whereabouts::Stands(place))
+    }
+
+    /// A person takes the object off the table.
+    ///
+    /// # Errors
+    /// Why it cannot be taken.
+    pub fn remove(&mut self, object: usize) -> Result<(), &'static str> {
+        self.move_by_hand(object, Whereabouts::Away)
+    }
+
+    fn move_by_hand(&mut self, object: usize, to: Whereabouts) -> Result<(), &'static str> {
+        match self.now.get(object) {
+            None => return Err("the scene has no such object"),
+            Some(Whereabouts::Held { .. }) => return Err("it is in a gripper"),
+            Some(_) if self.shapes[object].is_none() => return Err("it has no size and place"),
+            Some(_) => {}
+        }
+        self.now[object] = to;
+        self.handed_over[object] = None;
+        Ok(())
+    }
+
     /// Returns the object that a limb holds.
     pub fn held(&self, limb: Limb) -> Option<usize> {
-        self.now.iter().position(|now| *now == Whereabouts::Held(limb as u8))
+        let holds = |now: &Whereabouts| matches!(now, Whereabouts::Held { limb: by, .. } if *by == limb as u8);
+        self.now.iter().position(holds)
     }
+
+    /// Returns where an object stands, or stood before it was grasped.
+    fn place(&self, object: usize) -> Option<Place> {
+        match self.now[object] {
+            Whereabouts::Stands(place) | Whereabouts::Handed(place) => Some(place),
+            Whereabouts::Held { from, .. } => Some(from),
+            Whereabouts::Away => None,
+        }
+    }
+}
+
+/// The object in another place.
+fn at(shape: &ObjectPose, [x, y, z, yaw_rad]: Place) -> ObjectPose {
+    ObjectPose { xyz_m: [x, y, z], yaw_rad, ..*shape }
 }
 
 /// Position and quaternion of a pose: x, y, z, x, y, z, w.
 pub fn to_array(pose: &Isometry3<f64>) -> [f64; 7] {
     let (p, r) = (pose.translation, pose.rotation);
     [p.x, p.y, p.z, r.i, r.j, r.k, r.w]
+}
+
+fn from_array([x, y, z, i, j, k, w]: &[f64; 7]) -> Isometry3<f64> {
+    let rotation = UnitQuaternion::from_quaternion(Quaternion::new(*w, *i, *j, *k));
+    Isometry3::from_parts(Translation3::new(*x, *y, *z), rotation)
 }

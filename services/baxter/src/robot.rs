@@ -2,7 +2,7 @@
 
 use crate::assembly::Assembly;
 use crate::fingers::{Event, Fingers};
-use crate::object_world::{ObjectWorld, Whereabouts};
+use crate::object_world::{HandedOver, ObjectWorld, Whereabouts};
 use crate::servo::{Servo, Target};
 use crate::{Config, In, publish};
 use dialogue::Rng;
@@ -11,6 +11,7 @@ use manipulation::{Joints, Limb};
 use messages::robot::{
     Drill, DrillKind, JointCommand, JointMode, JointTrajectoryPoint, Order, Report,
 };
+use perception::{Camera, Sighting};
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 use std::collections::VecDeque;
@@ -35,8 +36,8 @@ pub struct Body {
     pub assembly: Assembly,
     /// Locations of the objects, in the scene's order.
     pub objects: Vec<Whereabouts>,
-    /// Where the one that was handed over last was let go, metres; none for the others.
-    pub handed_over: Vec<Option<[f64; 3]>>,
+    /// The one that was handed over last; none for the others.
+    pub handed_over: Vec<Option<HandedOver>>,
     /// Number of closings of the fingers.
     pub closings: u64,
 }
@@ -52,6 +53,7 @@ pub struct Robot {
     /// No joint states before.
     pub(crate) silent_until: Time,
     objects: ObjectWorld,
+    camera: Option<Camera>,
     closings: u64,
     /// Number of coming grasps that fail.
     misses: u64,
@@ -87,6 +89,7 @@ impl Robot {
             random: Rng::new(config.simulated.seed),
             silent_until: Time(0),
             objects,
+            camera: config.camera.map(Camera::new),
             closings: body.closings,
             misses: 0,
             obstructed_until: Time(0),
@@ -218,7 +221,7 @@ impl Robot {
             Event::Holds => {
                 if let Some((object, _)) = self.objects.between(&tip, &gripper, gripper.open_m, 0.0)
                 {
-                    self.objects.take(object, limb);
+                    self.objects.take(object, limb, &tip);
                 }
             }
             Event::LetsGo => self.objects.let_go(limb, &tip),
@@ -246,8 +249,33 @@ impl Robot {
             DrillKind::Silence => self.silent_until = until,
             DrillKind::Obstruct => self.obstructed_until = until,
             DrillKind::Miss => self.misses = drill.amount.max(0.0) as u64,
+            DrillKind::Put | DrillKind::Take => self.change_by_hand(drill),
             _ => self.assembly.drill(kind),
         }
+    }
+
+    /// A person puts an object somewhere, or takes it away.
+    fn change_by_hand(&mut self, drill: &Drill) {
+        let object = usize::from(drill.object);
+        let changed = match drill.kind.get() {
+            _ if drill.scene_key != self.config.scene.key() => Err("it is of another scene"),
+            DrillKind::Put => self.objects.put(object, drill.place),
+            _ => self.objects.remove(object),
+        };
+        if let Err(why) = changed {
+            tracing::warn!(object, why, "the object stays where it is");
+        }
+    }
+
+    /// Returns what the camera reports at this moment, if there is a camera.
+    pub fn look(&mut self, now: Time) -> Vec<Sighting> {
+        let Some(camera) = &mut self.camera else { return Vec::new() };
+        let tip = |limb: &Limb| {
+            let chain = &self.config.robot.arm(*limb).chain;
+            chain.forward(&self.servos[*limb].q).translation.vector.into()
+        };
+        let grippers: Vec<[f64; 3]> = self.config.robot.limbs().iter().map(tip).collect();
+        camera.look(&self.config.scene, &self.objects.standing(), &grippers, now)
     }
 
     pub(crate) fn gripper(&self, limb: Limb) -> Gripper {

@@ -1,12 +1,12 @@
 //! The simulated robot's topics and configuration.
 
-use crate::{BaxterNode, Config, In};
+use crate::{BaxterNode, Config, In, Out};
 use config::Settings;
-use messages::Service;
-use messages::robot::{Drill, Report};
-use messages::topics::robot;
+use messages::robot::Drill;
+use messages::topics::{self, robot};
+use messages::{Service, Sighting};
 use preflight::ArmSetup;
-use service::bus::{PortError, Reader};
+use service::bus::{EncodedWriter, PortError, Reader};
 use service::exit::{Exit, Failure};
 use service::lifecycle::Environment;
 use service::robot_topics::RobotSide;
@@ -18,11 +18,13 @@ pub struct BaxterProgram;
 
 impl Program for BaxterProgram {
     const SERVICE: Service = Service::Robot;
-    const RECORD: Option<&'static str> = Some("baxter/2");
+    const RECORD: Option<&'static str> = Some("baxter/3");
     const ABOUT: &'static str = "a simulated Baxter behind the robot's own topics\n\n\
-         whichone-baxter DRILL [AMOUNT] has something happen to the one in $WHICHONE_GROUP:\n  \
+         whichone-baxter DRILL has something happen to the one in $WHICHONE_GROUP:\n  \
          enable, disable, reset, press-estop, release-estop, fail,\n  \
-         silence SECONDS, miss GRASPS, obstruct SECONDS";
+         silence SECONDS, miss GRASPS, obstruct SECONDS,\n  \
+         put OBJECT X Y [Z [YAW]] (a person puts an object there, metres and radians; on the table without Z),\n  \
+         take OBJECT (a person takes it away)";
     type Node = BaxterNode;
     type Shell = BaxterShell;
 
@@ -35,6 +37,7 @@ impl Program for BaxterProgram {
             simulated: arm.simulated,
             grasp_error_m: arm.grasp.error_m,
             restock: arm.restock,
+            camera: arm.simulated.camera,
             scene: settings.scene.clone(),
         })
     }
@@ -45,12 +48,16 @@ impl Program for BaxterProgram {
 pub struct BaxterShell {
     topics: RobotSide,
     drills: Reader<Drill>,
+    /// Where there is a camera.
+    sightings: Option<EncodedWriter<Sighting>>,
 }
 
 impl Shell<BaxterNode> for BaxterShell {
     fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
         let bus = context.bus;
-        Ok(Self { topics: RobotSide::open(bus)?, drills: bus.reader(&robot::DRILL)? })
+        let camera = context.settings.arm.simulated.camera;
+        let sightings = camera.map(|_| bus.encoded_writer(&topics::SIGHTING)).transpose()?;
+        Ok(Self { topics: RobotSide::open(bus)?, drills: bus.reader(&robot::DRILL)?, sightings })
     }
 
     fn drain(&mut self, take: &mut dyn FnMut(In<'_>)) -> Result<(), PortError> {
@@ -58,7 +65,10 @@ impl Shell<BaxterNode> for BaxterShell {
         self.topics.drain(|order| take(In::Order(order)))
     }
 
-    fn publish(&mut self, output: Report<'static>) -> Result<(), PortError> {
-        self.topics.send(&output)
+    fn publish(&mut self, output: Out) -> Result<(), PortError> {
+        match output {
+            Out::Report(report) => self.topics.send(&report),
+            Out::Sighting(look) => self.sightings.as_ref().map_or(Ok(()), |it| it.send(&look)),
+        }
     }
 }

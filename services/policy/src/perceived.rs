@@ -98,7 +98,10 @@ impl PolicyNode {
     /// Notes which object the arm grasps or carries.
     pub(crate) fn note_handling(&mut self, status: &ArmStatus) {
         let Some(perceived) = &mut self.perceived else { return };
-        let handles = matches!(status.phase.get(), PickPhase::Closing | PickPhase::Holding);
+        let handles = matches!(
+            status.phase.get(),
+            PickPhase::Closing | PickPhase::Holding | PickPhase::Returning
+        );
         let object = u16::try_from(status.object).ok().map(ObjectId);
         perceived.hiding.handled = object.filter(|_| handles);
     }

@@ -108,7 +108,8 @@ mod tests {
     use super::*;
 
     fn ros1(master: Option<&str>, host: Option<&str>) -> config::Ros1 {
-        config::Ros1 { master: master.map(str::to_owned), host: host.map(str::to_owned) }
+        let [master, host] = [master, host].map(|text| text.map(str::to_owned));
+        config::Ros1 { master, host, objects: config::Ros1Objects::default() }
     }
 
     #[test]

@@ -6,12 +6,12 @@ use crate::node::{Node, Topics};
 use crate::publication::Publication;
 use crate::subscription::{Sink, Subscription};
 use crate::wire::{Message, RosTime, Unreadable};
-use crate::{convert, guarded, types as ros};
+use crate::{convert, detectors, guarded, types as ros};
 use config::Settings;
 use messages::robot::{Order, Report};
-use messages::topics::robot;
-use messages::{Service, Topic};
-use service::bus::PortError;
+use messages::topics::{self, robot};
+use messages::{Service, Sighting, Topic};
+use service::bus::{EncodedWriter, PortError};
 use service::exit::{Exit, Failure};
 use service::lifecycle::Environment;
 use service::robot_topics::RobotSide;
@@ -54,6 +54,8 @@ pub enum Out {
     Report(Report<'static>),
     /// To the robot, with the time when the arm sent it.
     Order(Order<'static>, Time),
+    /// Objects, to the group.
+    Sighting(Box<Sighting>),
 }
 
 /// The bridge as a reducer: everything is passed on, nothing is decided.
@@ -104,6 +106,7 @@ impl Program for Ros1Program {
 #[derive(Debug)]
 struct Waiting {
     reports: Mutex<Vec<Report<'static>>>,
+    sightings: Mutex<Vec<Sighting>>,
     wake: DeviceSender<In>,
 }
 
@@ -123,12 +126,23 @@ impl Waiting {
         let _ = self.wake.offer(In::Arrived);
         Ok(())
     }
+
+    /// Hands over a sighting in place of the one before of its source.
+    fn put_sighting(&self, sighting: Sighting) {
+        let mut sightings = guarded(&self.sightings);
+        match sightings.iter_mut().find(|old| old.source == sighting.source) {
+            Some(old) => *old = sighting,
+            None => sightings.push(sighting),
+        }
+        let _ = self.wake.offer(In::Arrived);
+    }
 }
 
 /// The bridge's topics on both sides; pairs are left and right.
 #[derive(Debug)]
 pub struct BridgeShell {
     topics: RobotSide,
+    sightings: EncodedWriter<Sighting>,
     waiting: Arc<Waiting>,
     robot: ToRobot,
     _node: Node,
@@ -251,11 +265,17 @@ impl Shell<Bridge> for BridgeShell {
         let address = Address::new(&context.settings.arm.ros1, |name| std::env::var(name).ok());
         let address = address.map_err(|error| Failure::new(Exit::Config, error))?;
         let wake = context.devices.clone();
-        let waiting = Arc::new(Waiting { reports: Mutex::default(), wake: wake.clone() });
+        let (reports, sightings) = (Mutex::default(), Mutex::default());
+        let waiting = Arc::new(Waiting { reports, sightings, wake: wake.clone() });
+        let seen = Arc::clone(&waiting);
+        let take: detectors::Take = Arc::new(move |sighting| seen.put_sighting(sighting));
+        let mut subscribed = subscriptions(&waiting);
+        subscribed.extend(detectors::subscriptions(context.settings, &take));
         let to_robot = ToRobot::new();
-        let topics = Topics { published: to_robot.all(), subscribed: subscriptions(&waiting) };
+        let topics = Topics { published: to_robot.all(), subscribed };
         Ok(Self {
             topics: RobotSide::open(context.bus)?,
+            sightings: context.bus.encoded_writer(&topics::SIGHTING)?,
             waiting,
             robot: to_robot,
             _node: Node::start(address, topics, move |reason| {
@@ -268,12 +288,21 @@ impl Shell<Bridge> for BridgeShell {
     fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
         let reports = std::mem::take(&mut *guarded(&self.waiting.reports));
         reports.into_iter().for_each(|report| take(In::Pass(Out::Report(report))));
+        let sightings = std::mem::take(&mut *guarded(&self.waiting.sightings));
+        sightings.into_iter().for_each(|it| take(In::Pass(Out::Sighting(Box::new(it)))));
         self.topics.newest(|order, made| take(In::Pass(Out::Order(order, made))))
     }
 
     fn publish(&mut self, output: Out) -> Result<(), PortError> {
         match output {
             Out::Report(report) => self.topics.send(&report),
+            Out::Sighting(sighting) => {
+                // The next look replaces it; the robot must not suffer from it.
+                if let Err(error) = self.sightings.send(&sighting) {
+                    tracing::debug!(%error, "a sighting is dropped");
+                }
+                Ok(())
+            }
             Out::Order(order, made) => {
                 if let Err(error) = self.robot.send(&order, made) {
                     tracing::error!(%error, "a command is not sent to the robot");

@@ -11,8 +11,8 @@ use crate::wire::Message;
 
 /// Largest header, bytes; that of a publisher contains the whole definition.
 const HEADER_BYTES_MAX: u32 = 64 << 10;
-/// Largest message, bytes. Those of the bridge's topics have some hundred.
-const MESSAGE_BYTES_MAX: u32 = 1 << 20;
+/// Largest message, bytes. Those of the robot have some hundred, detections may carry point clouds.
+const MESSAGE_BYTES_MAX: u32 = 64 << 20;
 /// Time after which a silent peer that has lost its power or its cable is noticed.
 const DEAD_AFTER: Duration = Duration::from_secs(5);
 

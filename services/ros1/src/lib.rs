@@ -2,13 +2,14 @@
 //! and without asynchronous code, which goes on through restarts of robot, master and network.
 //!
 //! [`node`] registers at the master, [`subscription`] and [`publication`] hold the connections,
-//! [`convert`] copies fields, and [`bridge`] is the service.
+//! [`convert`] copies fields, [`detectors`] reads objects, and [`bridge`] is the service.
 
 pub mod address;
 pub mod bridge;
 pub mod clock;
 pub mod connection;
 pub mod convert;
+pub mod detectors;
 pub mod node;
 pub mod publication;
 pub mod subscription;

@@ -143,7 +143,7 @@ impl Subscription {
                 publishers.values().filter_map(|p| p.connected.as_deref()).collect();
             let (topic, nodes) = (&self.topic.name, names.join(", "));
             if names.len() > 1 {
-                let help = "stop all but the robot's";
+                let help = "stop all but one";
                 tracing::warn!(
                     topic,
                     nodes,

@@ -2,8 +2,13 @@
 //!
 //! Names, fields, constants and checksums are facts of std_msgs, geometry_msgs, sensor_msgs,
 //! trajectory_msgs and of baxter_common 1.2.0 (BSD-3-Clause, Copyright (c) 2013-2015 Rethink Robotics).
+//! The messages of detectors are in a file of their own.
 
 use crate::wire::{Message, RosDuration, RosTime, message};
+
+mod detectors;
+
+pub use detectors::*;
 
 message! {
     /// Stamp and frame of a message.
@@ -193,8 +198,9 @@ message! {
     }
 }
 
-/// Returns name, checksum and definition of every message that Debian has no package for.
-pub fn of_baxter() -> Vec<(&'static str, &'static str, String)> {
+/// Returns name, checksum and definition of every message that Debian has no package for, nested ones
+/// first.
+pub fn without_a_package() -> Vec<(&'static str, &'static str, String)> {
     fn one<M: Message>() -> (&'static str, &'static str, String) {
         (M::NAME, M::MD5, M::definition())
     }
@@ -205,6 +211,14 @@ pub fn of_baxter() -> Vec<(&'static str, &'static str, String)> {
         one::<EndEffectorState>(),
         one::<EndEffectorCommand>(),
         one::<EndEffectorProperties>(),
+        one::<BoundingBox3D>(),
+        one::<ObjectHypothesisWithPose>(),
+        one::<Detection3D>(),
+        one::<Detection3DArray>(),
+        one::<AprilTagDetection>(),
+        one::<AprilTagDetectionArray>(),
+        one::<AlvarMarker>(),
+        one::<AlvarMarkers>(),
     ]
 }
 

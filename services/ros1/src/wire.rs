@@ -92,7 +92,14 @@ macro_rules! numbers {
         }
     )+};
 }
-numbers!(u8 = "uint8", u32 = "uint32", i32 = "int32", f32 = "float32", f64 = "float64");
+numbers!(
+    u8 = "uint8",
+    u32 = "uint32",
+    i32 = "int32",
+    i64 = "int64",
+    f32 = "float32",
+    f64 = "float64"
+);
 
 impl Field for bool {
     fn ros_type() -> String {
@@ -143,6 +150,53 @@ impl<T: Field> Field for Vec<T> {
 
     fn nested(definitions: &mut Vec<(&'static str, String)>) {
         T::nested(definitions);
+    }
+}
+
+/// A list of bytes that is skipped, e.g. a point cloud: nothing here reads it, and it is large.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Skipped;
+
+impl Field for Skipped {
+    fn ros_type() -> String {
+        "uint8[]".to_owned()
+    }
+
+    fn read(bytes: &mut &[u8]) -> Result<Self, Unreadable> {
+        let length = u32::read(bytes)? as usize;
+        take(bytes, length).map(|_| Self)
+    }
+
+    fn write(&self, bytes: &mut Vec<u8>) {
+        0_u32.write(bytes);
+    }
+}
+
+/// A covariance of position and rotation, row by row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Covariance(pub [f64; 36]);
+
+impl Default for Covariance {
+    fn default() -> Self {
+        Self([0.0; 36])
+    }
+}
+
+impl Field for Covariance {
+    fn ros_type() -> String {
+        "float64[36]".to_owned()
+    }
+
+    fn read(bytes: &mut &[u8]) -> Result<Self, Unreadable> {
+        let mut covariance = Self::default();
+        for value in &mut covariance.0 {
+            *value = f64::read(bytes)?;
+        }
+        Ok(covariance)
+    }
+
+    fn write(&self, bytes: &mut Vec<u8>) {
+        self.0.iter().for_each(|value| value.write(bytes));
     }
 }
 

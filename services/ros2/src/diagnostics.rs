@@ -14,6 +14,12 @@ pub struct Counters {
     pub unreadable: u64,
     /// Messages that found no room on their way out.
     pub dropped: u64,
+    /// Looks of detectors and markers that were passed on to the group.
+    pub sightings: u64,
+    /// Identifiers of detectors that no label has.
+    pub unknown_ids: u64,
+    /// Detections without a usable pose.
+    pub without_pose: u64,
 }
 
 fn value(key: &str, value: impl ToString) -> KeyValue {
@@ -43,6 +49,9 @@ pub fn statuses(group: Result<&GroupStatus, &str>, own: &Counters) -> Vec<Diagno
             value("refused", own.refused),
             value("unreadable", own.unreadable),
             value("dropped", own.dropped),
+            value("sightings", own.sightings),
+            value("unknown_ids", own.unknown_ids),
+            value("without_pose", own.without_pose),
         ],
     });
     all

@@ -9,7 +9,7 @@ use robot_model::{MeasuredJoints, Robot};
 pub struct JointNames(MeasuredJoints);
 
 impl JointNames {
-    /// Finds them.
+    /// Finds the joints of a robot with one limb or two.
     pub fn new(robot: &Robot) -> Self {
         Self(MeasuredJoints::new(robot, &JOINT_STATE_NAMES))
     }
@@ -43,28 +43,68 @@ impl JointNames {
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
+    use ::diagnostics::TextFile;
     use robot_model::JointKind;
 
-    #[test]
-    fn every_moving_joint_of_the_description_has_a_state() {
-        let robot = Robot::baxter();
+    /// Joint states in which each entry of the message is its number.
+    fn numbered(robot: &Robot) -> JointState {
         let mut states = JointStates { gripper_percent: [0.0, 100.0], ..JointStates::default() };
         states.position = std::array::from_fn(|entry| entry as f64);
-        let state = JointNames::new(robot).convert(&states, Time { sec: 7, nanosec: 8 });
-        assert_eq!(state.header.stamp, Time { sec: 7, nanosec: 8 });
+        JointNames::new(robot).convert(&states, Time { sec: 7, nanosec: 8 })
+    }
+
+    /// Every joint that moves by itself has one state, and no other.
+    fn assert_complete(robot: &Robot, state: &JointState) {
         for joint in robot.joints() {
             let moves = joint.kind != JointKind::Fixed && joint.mimic.is_none();
             let count = state.name.iter().filter(|name| **name == joint.name).count();
-            let is_known = JOINT_STATE_NAMES.contains(&joint.name.as_str());
-            assert!(count == usize::from(moves) || (is_known && count == 1), "{}", joint.name);
+            assert_eq!(count, usize::from(moves), "{}: {:?}", joint.name, state.name);
         }
         let lengths = [state.position.len(), state.velocity.len(), state.effort.len()];
         assert_eq!(lengths, [state.name.len(); 3]);
-        let position =
-            |name: &str| state.position[state.name.iter().position(|known| known == name).unwrap()];
+    }
+
+    fn position(state: &JointState, name: &str) -> f64 {
+        state.position[state.name.iter().position(|known| known == name).unwrap()]
+    }
+
+    #[test]
+    fn every_moving_joint_of_both_limbs_has_a_state() {
+        let robot = Robot::baxter();
+        let state = numbered(robot);
+        assert_eq!(state.header.stamp, Time { sec: 7, nanosec: 8 });
+        assert_complete(robot, &state);
         let entry = JOINT_STATE_NAMES.iter().position(|name| *name == "right_w1").unwrap();
-        assert_eq!(position("right_w1"), entry as f64);
+        assert_eq!(position(&state, "right_w1"), entry as f64);
         let fingers: Vec<_> = state.name.iter().filter(|name| name.contains("finger")).collect();
         assert!(fingers.len() >= 2, "{:?}", state.name);
+    }
+
+    #[test]
+    fn joints_of_a_single_arm_have_the_names_of_its_description() {
+        let urdf = include_str!("../../../config/robots/ur5e.urdf");
+        let robot = Robot::read(&TextFile::new("ur5e.urdf", urdf), None).unwrap();
+        let state = numbered(&robot);
+        assert_complete(&robot, &state);
+        let arm = ["shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3"];
+        for (joint, own) in arm.iter().zip(["s0", "s1", "e0", "e1", "w0", "w1"]) {
+            let entry = JOINT_STATE_NAMES.iter().position(|name| *name == format!("left_{own}"));
+            assert_eq!(
+                position(&state, &format!("{joint}_joint")),
+                entry.unwrap() as f64,
+                "{joint}"
+            );
+        }
+    }
+
+    #[test]
+    fn single_arm_may_be_named_like_one_of_two() {
+        let urdf = include_str!("../../../config/robots/ur5e.urdf");
+        let urdf = urdf.replace("arm_gripper", "right_gripper").replace("elbow_joint", "right_e0");
+        let robot = Robot::read(&TextFile::new("right.urdf", urdf), None).unwrap();
+        let state = numbered(&robot);
+        assert_complete(&robot, &state);
+        let entry = JOINT_STATE_NAMES.iter().position(|name| *name == "left_e0").unwrap();
+        assert_eq!(position(&state, "right_e0"), entry as f64);
     }
 }

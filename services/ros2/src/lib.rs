@@ -1,9 +1,11 @@
 //! The group as a ROS 2 node: joint states, objects and dialogue as topics of standard types, words and
-//! orders in.
+//! orders in, objects of detectors in.
 //!
-//! The crate is [`types`], the conversions to them, [`hear`] and [`orders`], all without a DDS
+//! The crate is [`types`], the conversions to and from them, [`hear`] and [`orders`], all without a DDS
 //! implementation. The node itself comes with the feature `dds`.
 
+pub mod clock;
+pub mod detectors;
 pub mod diagnostics;
 pub mod hear;
 pub mod joints;

@@ -1,10 +1,12 @@
-//! The objects as markers, with the belief as colour, and as frames.
+//! The objects as markers, with the belief as colour, and as frames. Where they come from perception, they are
+//! those of the table, where they are estimated to be.
 
 use crate::types::{
     Color, Header, Marker, MarkerArray, Pose, TfMessage, Time, TransformStamped, Vector3,
 };
 use messages::WorldView;
-use scene::Scene;
+use scene::{ObjectId, Scene};
+use service::view::LatestTopics;
 
 /// Frame of the objects: the robot's base.
 pub const BASE: &str = "base";
@@ -27,6 +29,11 @@ fn placed<'a>(scene: &Scene, world: &'a WorldView) -> impl Iterator<Item = (usiz
     poses.filter_map(|(at, pose)| Some((at, Pose::from((*pose)?))))
 }
 
+/// The world's objects in the order of the scene that `latest` shows.
+pub fn located(latest: &LatestTopics, world: &WorldView) -> WorldView {
+    latest.table().map_or_else(|| world.clone(), |table| table.world(world))
+}
+
 /// All markers: a box and a text for each object that is there. `belief` is in the scene's order; where
 /// it is shorter the probability is 0. The array removes those before, so the latest one is whole.
 pub fn markers(scene: &Scene, world: &WorldView, belief: &[f64]) -> MarkerArray {
@@ -41,7 +48,8 @@ pub fn markers(scene: &Scene, world: &WorldView, belief: &[f64]) -> MarkerArray 
         let marker = |ns: &str, kind| Marker {
             header: header(),
             ns: ns.to_owned(),
-            id: at as i32,
+            // Never reused, also where objects come and go.
+            id: scene.number(ObjectId::from(at)).0.into(),
             kind,
             action: Marker::ADD,
             pose,
@@ -100,6 +108,35 @@ mod tests {
         let texts: Vec<_> = texts.map(|marker| marker.text.as_str()).collect();
         assert_eq!(texts[1], "white2 100 %");
         assert_eq!(texts[2], "metal 0 %");
+    }
+
+    #[test]
+    fn markers_of_perceived_objects_have_their_numbers_and_places() {
+        let seen = |number: u16, class: &str| scene::Perceived {
+            number: ObjectId(number),
+            name: format!("{class}-{number}"),
+            classes: vec![(class.to_owned(), 1.0)],
+            attributes: Vec::new(),
+            xyz: [0.7, 0.1, -0.1],
+            yaw: 0.0,
+            seen_by: Vec::new(),
+            taken: false,
+        };
+        let table = scene().with_objects(&[seen(6, "white"), seen(9, "clear")]);
+        let pose = Some([0.65, 0.25, -0.12, 0.0, 0.0, 0.0, 1.0]);
+        let world = WorldView { objects: vec![None, pose], ..WorldView::default() };
+        let MarkerArray { markers } = markers(&table, &world, &[0.0, 1.0]);
+        assert_eq!(markers.len(), 3, "number 6 is not there any more");
+        assert_eq!([markers[1].id, markers[2].id], [9, 9]);
+        assert_eq!(markers[1].pose.position, Vector3 { x: 0.65, y: 0.25, z: -0.12 });
+        assert_eq!(
+            markers[1].scale,
+            Vector3 { x: 0.18, y: 0.18, z: 0.07 },
+            "the size of its class"
+        );
+        assert_eq!(markers[2].text, "clear-9 100 %");
+        let TfMessage { transforms } = frames(&table, &world, Time::default());
+        assert_eq!(transforms[0].child_frame_id, "object/clear-9");
     }
 
     #[test]

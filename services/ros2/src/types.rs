@@ -3,6 +3,10 @@
 use serde::{Deserialize, Serialize};
 use std::time::Duration as Elapsed;
 
+mod detectors;
+
+pub use detectors::*;
+
 /// `builtin_interfaces/Time`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Time {

@@ -50,9 +50,7 @@ pub struct SpeechNode {
 
 /// Settings of the reducer.
 pub struct Config {
-    /// Finds the stop word.
-    pub reader: language::Reader,
-    /// Judges when utterances in progress end.
+    /// Judges when utterances in progress end, and finds the stop word.
     pub endpointing: Endpointing,
     /// Longest utterance, bytes.
     pub utterance_bytes_max: usize,

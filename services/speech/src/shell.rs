@@ -18,7 +18,7 @@ use crate::{
 };
 use config::Settings;
 use crossbeam_channel::Receiver;
-use language::{CompletenessJudge, Language, Reader as TextReader};
+use language::CompletenessJudge;
 use messages::{
     Activity, AppliedMark, ArmStatus, AudioChunk, EarState, Hearing, Injection, MotionCommand,
     Partial, Presented, Receipt, RobotAct, Service, Utterance, topics,
@@ -47,11 +47,7 @@ impl Program for SpeechProgram {
     type Shell = SpeechShell;
 
     fn config(_: &Environment, settings: &Settings) -> Result<Config, Failure> {
-        // The stop word is a matter of safety: it is found by the careful reading, whichever reading
-        // the dialogue uses.
-        let reader = TextReader::new(&settings.scene, Language::Careful);
         Ok(Config {
-            reader,
             endpointing: Endpointing {
                 judge: CompletenessJudge::new(&settings.scene),
                 complete: settings.speech.complete_pause,

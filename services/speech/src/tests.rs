@@ -14,7 +14,7 @@ use crate::{
     Config, Endpointing, Hypothesis, In, Out, PlaybackEvent, PlaybackRequest, PlaybackState,
     Recognised, RecognisedSegment, SpeechNode,
 };
-use language::{CompletenessJudge, Language, Reader};
+use language::CompletenessJudge;
 use messages::{
     ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, MessageRef, MotionOrder,
     PresentationState, Receipt, RequestKey, RobotAct, Sound, Source, Utterance, WireCode,
@@ -40,7 +40,6 @@ impl Speech {
     }
 
     fn before_mark() -> Self {
-        let reader = Reader::new(&testing::bowls(), Language::Careful);
         let ms = std::time::Duration::from_millis;
         let endpointing = Endpointing {
             judge: CompletenessJudge::new(&testing::bowls()),
@@ -48,7 +47,7 @@ impl Speech {
             closing: ms(500),
             open: ms(900),
         };
-        let config = Config { reader, endpointing, utterance_bytes_max: 4000, gestures: false };
+        let config = Config { endpointing, utterance_bytes_max: 4000, gestures: false };
         let node = SpeechNode::recover(config, Vec::new()).unwrap();
         Self { node, now: Time(0), records: Vec::new() }
     }

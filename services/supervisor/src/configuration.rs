@@ -131,7 +131,8 @@ fn beside(name: &str) -> String {
     path.unwrap_or(program)
 }
 
-/// Returns the text of everything that a service reads: its own section, and the scene, which all read.
+/// Returns the text of everything that a service reads: its own section, and the scene and where its objects
+/// come from, which all read.
 /// Speech rejects utterances that the dialogue would not understand, so it reads that section too. A
 /// service that is not built in may read all of them. Decisions depend on the robot's durations.
 fn fingerprint(name: &str, settings: &Settings) -> String {
@@ -148,5 +149,6 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
     };
     let texts = sections.iter().map(|&section| settings.section_text(section));
     let durations = decides.then(|| settings.durations_text());
-    texts.chain([settings.scene_file().text.clone()]).chain(durations).collect()
+    let texts = texts.chain([settings.scene_file().text.clone()]);
+    texts.chain(durations).chain([settings.perception_text()]).collect()
 }

@@ -72,7 +72,7 @@ fn arm_plot_prints_the_stages_as_json() {
     let output = run(&["--scene", "markers"]);
     let stages = output["stages"].as_array().unwrap();
     let names: Vec<_> = stages.iter().map(|stage| stage["phase"].as_str().unwrap()).collect();
-    assert_eq!(names, ["approach", "close", "lift", "hand_over", "release", "return"]);
+    assert_eq!(names, ["approach", "close", "lift", "hand_over", "release", "raise", "return"]);
     let seconds: f64 = stages.iter().map(|stage| stage["seconds"].as_f64().unwrap()).sum();
     assert!((seconds - output["seconds"].as_f64().unwrap()).abs() < 1e-9);
     assert_eq!(run(&["--object", "white"])["limb"], "right");

@@ -1,6 +1,10 @@
 //! `arm.toml`: driver, limb and motion of the arm.
 
-use diagnostics::Fields;
+use ::dialogue::time::Span;
+use diagnostics::{Fields, Report, Table};
+use perception::CameraSettings;
+
+use crate::detectors::{self, Ros1Objects};
 
 /// The arm.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,13 +62,15 @@ pub struct Grasps {
     pub error_m: f64,
 }
 
-/// Addresses of the bridge to a Baxter's ROS 1 topics; those that are absent come from the environment.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// The bridge to a Baxter's ROS 1 topics. Addresses that are absent come from the environment.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ros1 {
     /// The robot's ROS master: `HOST`, `HOST:PORT` or a URI.
     pub master: Option<String>,
     /// Name or address under which the robot reaches this machine.
     pub host: Option<String>,
+    /// Objects from detectors.
+    pub objects: Ros1Objects,
 }
 
 /// Tolerances of a Baxter. The defaults are those of the robot's own trajectory server, except for the
@@ -100,6 +106,8 @@ pub struct Simulated {
     pub seed: u64,
     /// The motors are enabled at start.
     pub enabled: bool,
+    /// A camera that reports the objects on its table, where they come from perception.
+    pub camera: Option<CameraSettings>,
 }
 
 /// The driver of the joints.
@@ -149,17 +157,60 @@ fn baxter(f: &mut Fields<'_>) -> Baxter {
 }
 
 fn simulated(f: &mut Fields<'_>) -> Simulated {
+    let seed = f.whole("seed", 0..=u64::from(u32::MAX));
     Simulated {
         lag_s: f.number("lag_s", 0.002..=1.0),
         noise_rad: f.number("noise_rad", 0.0..=0.01),
         loss: f.number("loss", 0.0..=0.9),
-        seed: f.whole("seed", 0..=u64::from(u32::MAX)),
+        seed,
         enabled: f.flag("enabled"),
+        camera: f.table("camera", |f| camera(f, seed)),
     }
 }
 
+fn camera(f: &mut Fields<'_>, seed: u64) -> Option<CameraSettings> {
+    let is_enabled = f.flag("enabled");
+    let camera = CameraSettings {
+        rate_hz: f.number("rate_hz", 0.5..=30.0),
+        noise_m: f.number("noise_m", 0.0..=0.05),
+        misses: f.number("misses", 0.0..=0.9),
+        delay: Span::from_s(f.number("delay_s", 0.0..=1.0)),
+        sure: (f.number("sure_min", 0.0..=1.0), f.number("sure_max", 0.0..=1.0)),
+        hidden_m: f.number("hidden_m", 0.0..=1.0),
+        seed,
+    };
+    let (least, most) = camera.sure;
+    if least > most && !f.is_wrong("sure_min") && !f.is_wrong("sure_max") {
+        let what = format!("is {least}, more than sure_max");
+        f.problem("sure_min", &what, "raise sure_max or lower sure_min");
+    }
+    is_enabled.then_some(camera)
+}
+
+/// Reports a camera whose reports would have no effect.
+pub(crate) fn check_camera(arm: &Arm, perceives: bool, tree: &Table, report: &mut Report) {
+    let (what, help) = match arm.driver {
+        _ if arm.simulated.camera.is_none() => return,
+        Driver::Kinematic => (
+            "is true, but the driver is kinematic",
+            "start with `--profile camera`, or write driver = \"baxter\"",
+        ),
+        Driver::Baxter if !perceives => (
+            "is true, but the objects are those of the scene file",
+            "start with `--profile camera`, or write group.perception.enabled = true",
+        ),
+        Driver::Baxter => return,
+    };
+    let path = ["arm", "simulated", "camera", "enabled"];
+    report.add(tree.source_of(&path).diagnostic(&path.map(str::to_owned), what, help));
+}
+
 fn ros1(f: &mut Fields<'_>) -> Ros1 {
-    Ros1 { master: f.optional_text("master"), host: f.optional_text("host") }
+    Ros1 {
+        master: f.optional_text("master"),
+        host: f.optional_text("host"),
+        objects: f.table("objects", detectors::ros1),
+    }
 }
 
 fn motion(f: &mut Fields<'_>) -> Motion {

@@ -11,6 +11,7 @@
 
 mod arm;
 mod console;
+mod detectors;
 mod dialogue;
 mod files;
 mod group;
@@ -35,6 +36,7 @@ use scene::Scene;
 
 pub use crate::arm::{Arm, Baxter, Driver, Grasps, Motion, Ros1, Simulated};
 pub use crate::console::{Access, Camera, Console};
+pub use crate::detectors::{Labels, Ros1Objects, Ros2Objects};
 pub use crate::dialogue::{CostsFrom, Dialogue, Gesture};
 pub use crate::files::{RobotFiles, read_file};
 pub use crate::group::{Group, Log, Perception, Recorder, RestartLimits};
@@ -91,6 +93,11 @@ impl Settings {
     /// section.
     pub fn section_text(&self, section: Section) -> String {
         self.resolved.section_text(section)
+    }
+
+    /// The settings of perception as TOML.
+    pub fn perception_text(&self) -> String {
+        self.resolved.perception_text()
     }
 
     /// The scene file.

@@ -8,7 +8,9 @@ use toml::Value;
 
 use crate::files::{FILE_BYTES_MAX, Files, names, one_of, read_text};
 use crate::resolved::{self, Resolved, Section};
-use crate::{Settings, arm, console, dialogue, group, ros2, services, snapshot, speech, study};
+use crate::{
+    Settings, arm, console, detectors, dialogue, group, ros2, services, snapshot, speech, study,
+};
 
 pub(crate) fn load(
     dir: &Path,
@@ -57,11 +59,16 @@ pub(crate) fn check(
     let console = fields.table("console", console::read);
     let ros2 = fields.table("ros2", ros2::read);
     fields.finish();
+    arm::check_camera(&arm, group.perception.enabled, &tree, &mut report);
     let Files { scene: file, robot } = files;
     let read = file.as_ref().map(|file| Scene::from_toml(&file.label, &file.text));
     let scene = read.and_then(|read| read.map_err(|found| report.extend(found)).ok());
     if let Some(scene) = &scene {
         dialogue::check_person(scene, &dialogue.gesture, &tree, &mut report);
+        let perceives = group.perception.enabled;
+        let mut check = detectors::Check { scene, perceives, tree: &tree, report: &mut report };
+        check.ros1(&arm.ros1.objects);
+        check.ros2(&ros2.objects);
     }
     let settings = file.zip(scene).zip(robot).map(|((file, scene), robot)| {
         // Other problems would be reported again as missing durations.

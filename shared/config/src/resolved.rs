@@ -100,6 +100,12 @@ impl Resolved {
         text
     }
 
+    pub(crate) fn perception_text(&self) -> String {
+        let group = self.tree.get(Section::Group.name()).and_then(Node::as_table);
+        let perception = group.and_then(|group| group.get("perception")).and_then(Node::as_table);
+        perception.map(to_toml).unwrap_or_default()
+    }
+
     pub(crate) fn origins(&self) -> Vec<Origin> {
         let mut origins = Vec::new();
         collect(&self.tree, &mut Vec::new(), &mut origins);

@@ -4,8 +4,10 @@ use std::net::Ipv4Addr;
 
 use diagnostics::Fields;
 
+use crate::detectors::{self, Ros2Objects, is_name};
+
 /// The ROS 2 node.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ros2 {
     /// DDS domain.
     pub domain_id: u16,
@@ -17,6 +19,8 @@ pub struct Ros2 {
     pub services: ServiceMapping,
     /// Networks on which the node is announced.
     pub network: Network,
+    /// Objects from detectors.
+    pub objects: Ros2Objects,
 }
 
 /// Mapping of services to DDS topics. It differs between middlewares.
@@ -51,6 +55,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Ros2 {
             &[("enhanced", ServiceMapping::Enhanced), ("cyclone", ServiceMapping::Cyclone)],
         ),
         network: network(f),
+        objects: f.table("objects", detectors::ros2),
     }
 }
 
@@ -72,13 +77,6 @@ fn node(f: &mut Fields<'_>) -> String {
         f.problem("node", what, "use letters, digits and _, e.g. \"whichone\"");
     }
     text
-}
-
-/// A name of ROS without slashes. Two underscores side by side are reserved.
-fn is_name(text: &str) -> bool {
-    let begins = text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-    let is_plain = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
-    begins && is_plain && !text.contains("__") && text.len() <= 64
 }
 
 fn network(f: &mut Fields<'_>) -> Network {

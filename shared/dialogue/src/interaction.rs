@@ -18,7 +18,8 @@ pub enum ActKind {
     Say,
     /// Picks an object and says so.
     Pick,
-    /// Calls a pick, or putting back, off, unless the object is already grasped.
+    /// Calls a pick off: an object that is grasped already goes back to its place, unless the gripper is
+    /// where it hands it over. Calls putting back off, unless the object is already grasped.
     Cancel,
     /// Puts the object that was handed over back in its place and says so.
     PutBack,
@@ -67,6 +68,8 @@ pub enum PickPhase {
     Closing,
     /// The object is held: lifted and carried to the user, or carried to its place and put down.
     Holding,
+    /// Called off while it is held: the object is carried back to its place and put down.
+    Returning,
     /// Over; see the outcome.
     Done,
 }

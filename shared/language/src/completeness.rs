@@ -4,7 +4,6 @@
 
 use scene::{Intent, Question, Reading, Response, Role, Scene, WordId};
 
-use crate::lexicon::Lexicon;
 use crate::normalise::normalise;
 use crate::reader::{Language, Reader};
 use crate::tagger::{Tag, tag};
@@ -28,7 +27,6 @@ pub enum Completeness {
 #[derive(Clone, Debug)]
 pub struct CompletenessJudge {
     reader: Reader,
-    lexicon: Lexicon,
     objects: Vec<Box<[WordId]>>,
     attributes: Vec<Box<[WordId]>>,
 }
@@ -42,7 +40,6 @@ impl CompletenessJudge {
         Self {
             // Whichever reading the dialogue uses, this one knows most of what people say.
             reader: Reader::new(scene, Language::Careful),
-            lexicon: Lexicon::new(scene),
             objects: objects.map(|i| scene.vocabulary(i).collect()).collect(),
             attributes: scene.attributes().iter().map(values).collect(),
         }
@@ -57,7 +54,7 @@ impl CompletenessJudge {
     pub fn judge(&self, text: &str, question: Question) -> Completeness {
         let normal = normalise(text);
         let tokens = Tokens::of(&normal);
-        let tags = tag(&self.lexicon, &tokens.words);
+        let tags = tag(self.reader.lexicon(), &tokens.words);
         let spoken = match tags.iter().rposition(|tag| !tag.is(Class::Courtesy)) {
             // "please" alone, or nothing yet.
             None => return Completeness::Unclear,

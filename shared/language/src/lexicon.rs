@@ -2,6 +2,7 @@
 //! attributes, and the classes of the dialogue. Where two would match, the longer phrase wins; of two
 //! equally long ones the scene's.
 
+use std::cell::LazyCell;
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 
@@ -228,7 +229,9 @@ impl Lexicon {
         let values = || scene.attributes().iter().flat_map(|attribute| &attribute.values);
         let spoken: Vec<Vec<String>> =
             values().map(|value| words(&format!("{} {}", value.name, value.spoken))).collect();
-        let classed: HashSet<&str> = vocabulary::phrases().map(|(_, phrase)| phrase).collect();
+        // Few scenes have names of several parts.
+        let classed: LazyCell<HashSet<&str>> =
+            LazyCell::new(|| vocabulary::phrases().map(|(_, phrase)| phrase).collect());
         for value in values().filter(|value| value.role() != Role::Place) {
             let name = words(&value.name);
             let parts = name.iter().enumerate().filter(|_| name.len() > 1);
@@ -237,8 +240,8 @@ impl Lexicon {
                 let is_last = at + 1 == name.len();
                 let is_own = part.len() > 2
                     && owners == 1
-                    && !classed.contains(&**part)
-                    && (is_last || !self.lookalikes.is_common(part));
+                    && (is_last || !self.lookalikes.is_common(part))
+                    && !classed.contains(&**part);
                 let place = self.values.iter().position(|it| it.word == value.word);
                 if let Some(place) = place.filter(|_| is_own) {
                     self.add_inflected(vec![part.clone()], false, Meaning::Value(place));

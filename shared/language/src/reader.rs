@@ -58,6 +58,11 @@ impl Reader {
         self.language
     }
 
+    /// The words that it knows.
+    pub(crate) fn lexicon(&self) -> &Lexicon {
+        &self.lexicon
+    }
+
     /// Returns the best reading of an utterance that followed `last_question`. Any text is an
     /// utterance; only its first [`TEXT_CHARS_MAX`](crate::TEXT_CHARS_MAX) characters are read.
     pub fn read(&self, text: &str, last_question: Question) -> Reading {

@@ -1,11 +1,13 @@
 //! Figures of whole plans on this machine: every bowl at every place of its scene, time to plan and to
 //! execute picks and pointing, and the outcomes on random tables.
-//! `cargo run --release -p manipulation --example tables [TABLES] [SEED]`.
+//! `cargo run --release -p manipulation --example tables [--robot baxter|ur5e] [TABLES] [SEED]`;
+//! without `--robot` all of it for both.
 #![expect(clippy::print_stdout, reason = "printing figures is what this example is for")]
 
 #[path = "../tests/plans/support/mod.rs"]
 mod support;
 
+use std::process::ExitCode;
 use std::time::Instant;
 
 use manipulation::{Cuboid, ObjectPose, Robot, plan_pick, plan_point};
@@ -13,18 +15,56 @@ use support::checker::Checker;
 use support::scenes;
 use support::tables::{Bench, Tally, all_but, settings, try_table};
 
-fn main() {
-    let mut arguments = std::env::args().skip(1).map(|n| n.parse::<u64>().ok());
-    let count = arguments.next().flatten().unwrap_or(1000);
-    let seed = arguments.next().flatten().unwrap_or(1);
-    println!("scene object: pick (planned in), pointing (planned in)");
-    ["bowls", "markers", "tools"].into_iter().for_each(scene);
-    println!("\nbowl: seconds of its pick at the places of");
-    bowls_at_places();
-    println!("\n{count} random tables, seed {seed}");
-    random_tables(&Robot::baxter().clone(), &Bench::baxter(), count, seed);
-    println!("\n{count} random tables of the UR5e, seed {seed}");
-    random_tables(&support::ur5e(), &Bench::ur5e(), count, seed);
+/// Robots whose random tables are asked for, number of tables, and their seed.
+struct Request {
+    baxter: bool,
+    ur5e: bool,
+    tables: u64,
+    seed: u64,
+}
+
+impl Request {
+    fn read(mut arguments: impl Iterator<Item = String>) -> Option<Self> {
+        let mut request = Self { baxter: true, ur5e: true, tables: 1000, seed: 1 };
+        let mut numbers = Vec::new();
+        while let Some(argument) = arguments.next() {
+            if argument != "--robot" {
+                numbers.push(argument.parse().ok()?);
+                continue;
+            }
+            let name = arguments.next()?;
+            (request.baxter, request.ur5e) = (name == "baxter", name == "ur5e");
+            (request.baxter || request.ur5e).then_some(())?;
+        }
+        match numbers[..] {
+            [] => {}
+            [tables] => request.tables = tables,
+            [tables, seed] => (request.tables, request.seed) = (tables, seed),
+            _ => return None,
+        }
+        Some(request)
+    }
+}
+
+fn main() -> ExitCode {
+    let Some(request) = Request::read(std::env::args().skip(1)) else {
+        println!("expected [--robot baxter|ur5e] [TABLES] [SEED]");
+        return ExitCode::from(64);
+    };
+    let Request { baxter, ur5e, tables, seed } = request;
+    if baxter && ur5e {
+        println!("scene object: pick (planned in), pointing (planned in)");
+        ["bowls", "markers", "tools"].into_iter().for_each(scene);
+        println!("\nbowl: seconds of its pick at the places of");
+        bowls_at_places();
+    }
+    if baxter {
+        random_tables(Robot::baxter(), &Bench::baxter(), tables, seed);
+    }
+    if ur5e {
+        random_tables(&support::ur5e(), &Bench::ur5e(), tables, seed);
+    }
+    ExitCode::SUCCESS
 }
 
 fn scene(scene: &str) {
@@ -83,6 +123,7 @@ fn bowls_at_places() {
 }
 
 fn random_tables(robot: &Robot, bench: &Bench, count: u64, seed: u64) {
+    println!("\n{}: {count} random tables, seed {seed}", robot.description().name());
     let threads = std::thread::available_parallelism().map_or(1, usize::from) as u64;
     let mut tally = Tally::default();
     std::thread::scope(|scope| {
@@ -101,14 +142,23 @@ fn random_tables(robot: &Robot, bench: &Bench, count: u64, seed: u64) {
         };
         let workers: Vec<_> = (0..threads).map(|k| scope.spawn(share(k))).collect();
         for worker in workers {
-            tally.add(worker.join().unwrap_or_default());
+            tally.add(worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
         }
     });
+    print(&mut tally, robot.limbs().len());
+}
+
+fn print(tally: &mut Tally, arms: usize) {
     let Tally { objects, picked, too_wide, refused_alone, refused_among, .. } = &tally;
-    println!("{objects} objects: {picked} picked, {too_wide} too wide for the gripper,");
-    println!("{refused_alone} refused even alone on the table, {refused_among} among the others,");
-    println!("{} refused but possible otherwise", tally.possible_otherwise);
-    println!("{} of the picks by the arm of the object's side", tally.by_the_nearer_arm);
+    println!("{objects} objects: {picked} picked, {} refused:", objects - picked);
+    println!("  {too_wide} cannot be grasped, {refused_alone} even alone on the table,");
+    println!("  {refused_among} among the others, {} possible otherwise", tally.possible_otherwise);
+    let reasons: Vec<String> =
+        tally.reasons.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
+    println!("  for: {}", reasons.join(", "));
+    if arms == 2 {
+        println!("{} of the picks by the arm of the object's side", tally.by_the_nearer_arm);
+    }
     println!("planned in, ms: {}", spread(&mut tally.plan_ms));
     println!("refused in, ms: {}", spread(&mut tally.refuse_ms));
     println!("a pick takes, s: {}", spread(&mut tally.duration_s));

@@ -38,6 +38,7 @@ pub use kinematics::limits::{MotionLimits, PositionLimits};
 pub use planning::{
     Grasp, GraspError, OUTSIDE_MAX_RAD, ObjectPose, PlanError, PlanSettings, check_reachable,
     plan_delivery, plan_pick, plan_point, plan_put_back, plan_put_down, plan_retreat, plan_return,
+    plan_withdrawal,
 };
 pub use robot::{Arm, Robot, Unsuitable};
 pub use trajectory::{

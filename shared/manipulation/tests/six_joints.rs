@@ -1,7 +1,7 @@
 //! Robots with one limb and six joints: the shipped UR5e, and an industrial arm with a spherical wrist.
 #![allow(clippy::unwrap_used, reason = "a test ends at what it does not expect")]
 
-use manipulation::{Chain, Joints, Limb, Robot, TOLERANCE_M, TOLERANCE_RAD};
+use manipulation::{ArmShape, Chain, Joints, Limb, Robot, TOLERANCE_M, TOLERANCE_RAD};
 use robot_model::Robot as Description;
 
 #[path = "../src/random.rs"]
@@ -131,4 +131,15 @@ fn shipped_arm_has_the_published_dimensions() {
     assert_eq!(arm.joint_names.len(), 6);
     assert!((arm.gripper.open_m - 0.05).abs() < 1e-9 && arm.gripper.closed_m() == 0.0);
     assert!(arm.via_postures.len() == 4, "{:?}", arm.via_postures);
+}
+
+/// Its second joint moves the upper arm, which reaches the pedestal where it hangs over the edge.
+#[test]
+fn upper_arm_must_not_touch_the_pedestal() {
+    let robot = ur5e();
+    let arm = robot.arm(Limb::Only);
+    let hanging = [0.0, 0.9, -1.9, 0.0, 0.0, 0.0, 0.0];
+    let gap = ArmShape::at(arm, &hanging).to_trunk(0.0);
+    assert_eq!((gap.link, gap.other), ("upper", "base"), "{gap:?}");
+    assert!(!ArmShape::at(arm, &arm.neutral).to_trunk(0.01).is_some());
 }

@@ -19,6 +19,14 @@ pub struct Pick {
     pub outcome: PickOutcome,
 }
 
+impl Pick {
+    /// Returns whether the object is let go in its place: it is to be put back, or was called off while
+    /// it was held.
+    pub fn ends_at_place(&self) -> bool {
+        self.task == Task::PutBack || self.phase == PickPhase::Returning
+    }
+}
+
 /// Treatment of an ordered pick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {

@@ -27,6 +27,8 @@ pub struct Topic {
     pub readers: &'static [Service],
     /// Writers at a time; above 1 only where clients write.
     pub writers_max: usize,
+    /// Readers at a time. The memory of a writer has room for what all of them may hold.
+    pub readers_max: usize,
     /// Unread messages that a reader holds; the oldest gives way.
     pub buffer: usize,
     /// Unread messages that the recorder holds, if more: it looks ten times a second.
@@ -50,6 +52,9 @@ impl Topic {
 
 /// Readers of one topic at a time: services, clients, consoles, recorders.
 pub const READERS_MAX: usize = 24;
+/// Readers of a topic with large messages between services: its reader, one that replaces it, consoles,
+/// recorders.
+pub const SERVICES_MAX: usize = 8;
 /// Clients that write at a time.
 pub const CLIENTS_MAX: usize = 16;
 /// Processes that have a topic open at a time.
@@ -69,6 +74,7 @@ const fn topic<T: Schema>(name: &'static str, writer: Option<Service>) -> Topic 
         writer,
         readers: &[],
         writers_max: 1,
+        readers_max: READERS_MAX,
         buffer: 1,
         recorded: 8,
         history: 1,
@@ -79,6 +85,7 @@ const fn topic<T: Schema>(name: &'static str, writer: Option<Service>) -> Topic 
 pub const INJECTION: Topic = Topic {
     readers: &[Service::Speech, Service::Recorder],
     writers_max: CLIENTS_MAX,
+    readers_max: SERVICES_MAX,
     buffer: WINDOW,
     history: 0,
     ..topic::<Injection>("speech/inject", None)
@@ -87,6 +94,7 @@ pub const INJECTION: Topic = Topic {
 pub const AUDIO: Topic = Topic {
     readers: &[Service::Speech],
     writers_max: CLIENTS_MAX,
+    readers_max: SERVICES_MAX,
     buffer: 4 * WINDOW,
     history: 0,
     ..topic::<AudioChunk>("speech/audio", None)
@@ -100,6 +108,7 @@ pub const RECEIPT: Topic = Topic {
 /// Speech to grounding.
 pub const UTTERANCE: Topic = Topic {
     readers: &[Service::Grounding],
+    readers_max: SERVICES_MAX,
     buffer: WINDOW,
     history: WINDOW,
     ..topic::<Utterance>("speech/utterance", Some(Service::Speech))
@@ -122,6 +131,7 @@ pub const PARTIAL: Topic =
 /// Grounding to policy.
 pub const OBSERVATION: Topic = Topic {
     readers: &[Service::Policy],
+    readers_max: SERVICES_MAX,
     buffer: WINDOW,
     history: WINDOW,
     ..topic::<Observation>("grounding/observation", Some(Service::Grounding))
@@ -140,6 +150,7 @@ pub const ACT: Topic = Topic {
 pub const SIGHTING: Topic = Topic {
     readers: &[Service::Policy, Service::Recorder],
     writers_max: CLIENTS_MAX,
+    readers_max: SERVICES_MAX,
     buffer: WINDOW,
     history: 0,
     ..topic::<Sighting>("scene/sightings", None)
@@ -156,7 +167,7 @@ pub const STATUS: Topic = Topic {
     readers: &[Service::Policy, Service::Speech, Service::Console],
     ..topic::<ArmStatus>("arm/status", Some(Service::Arm))
 };
-/// Arm to clients, 100 Hz, and to the ROS 2 node, which passes them on.
+/// Arm to clients, 100 Hz while it is busy, and to the ROS 2 node, which passes them on.
 pub const JOINTS: Topic = Topic {
     readers: &[Service::Ros2],
     buffer: WINDOW,

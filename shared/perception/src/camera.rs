@@ -1,12 +1,16 @@
-//! A simulated camera over simulated objects: with noise, misses, delay, and values that it mistakes.
+//! A simulated camera over simulated objects: with noise, misses, delay, and values that it mistakes. Both
+//! the simulated Baxter and the simulation of the whole group have this one.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 
 use dialogue::Rng;
 use dialogue::time::{Span, Time};
-use scene::{Role, Scene};
+use scene::{Role, Scene, StableHash};
 
 use crate::{Change, Detection, Look, Sighting};
+
+/// Name under which the camera reports.
+const SOURCE: &str = "simulated camera";
 
 /// Settings of a simulated camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,23 +51,13 @@ pub struct Camera {
     settings: CameraSettings,
     rng: Rng,
     next: Time,
-    /// What it takes each object for: it errs alike whenever it sees the object.
-    taken_for: BTreeMap<usize, Values>,
     pending: VecDeque<(Time, Sighting)>,
-    looks: u64,
 }
 
 impl Camera {
-    /// A camera of that name.
+    /// Returns a camera that has not looked yet.
     pub fn new(settings: CameraSettings) -> Self {
-        Self {
-            rng: Rng::new(settings.seed),
-            settings,
-            next: Time(0),
-            taken_for: BTreeMap::new(),
-            pending: VecDeque::new(),
-            looks: 0,
-        }
+        Self { rng: Rng::new(settings.seed), settings, next: Time(0), pending: VecDeque::new() }
     }
 
     /// Looks at the objects where a look is due, and returns the reports that are there by now.
@@ -113,42 +107,38 @@ impl Camera {
                 variances: [variance, variance, variance, 0.0],
             });
         }
-        self.looks += 1;
         let look = Look { at_ns: now.ns(), whole: true, seen };
         Sighting {
-            key: (self.settings.seed << 32) ^ self.looks,
-            source: "camera".to_owned(),
+            key: now.ns(),
+            source: SOURCE.to_owned(),
             frame: "base".to_owned(),
             change: Change::Look(look),
         }
     }
 
     /// The qualities of an object as the camera sees them: each with a probability with which it is the
-    /// true one.
-    fn taken_for(&mut self, file: &Scene, object: usize) -> Values {
-        if let Some(known) = self.taken_for.get(&object) {
-            return known.clone();
-        }
+    /// true one. It errs alike whenever it sees the object, also after a restart.
+    fn taken_for(&self, file: &Scene, object: usize) -> Values {
+        let object = &file.objects()[object];
+        let mut seed = StableHash::default();
+        seed.text(&object.name);
+        let mut rng = Rng::new(self.settings.seed ^ seed.value());
         let (least, most) = self.settings.sure;
-        let rng = &mut self.rng;
-        let own = file.attributes().iter().zip(&file.objects()[object].values);
-        let seen: Values = own
-            .filter_map(|(attribute, value)| {
-                let truth = value.map(|v| v.index())?;
-                let names = &attribute.values;
-                if names.len() < 2 || names[truth].role() != Role::Quality {
-                    return None;
-                }
-                let sure = least + (most - least) * rng.uniform();
-                let other = (truth + 1 + rng.below(names.len() - 1)) % names.len();
-                let shown = if rng.uniform() < sure { truth } else { other };
-                let rest = (1.0 - sure) / (names.len() - 1) as f64;
-                let chance = |v: usize| if v == shown { sure } else { rest };
-                let values = names.iter().enumerate().map(|(v, it)| (it.name.clone(), chance(v)));
-                Some((attribute.name.clone(), values.collect()))
-            })
-            .collect();
-        self.taken_for.insert(object, seen.clone());
-        seen
+        let own = file.attributes().iter().zip(&object.values);
+        own.filter_map(|(attribute, value)| {
+            let truth = value.map(|v| v.index())?;
+            let names = &attribute.values;
+            if names.len() < 2 || names[truth].role() != Role::Quality {
+                return None;
+            }
+            let sure = least + (most - least) * rng.uniform();
+            let other = (truth + 1 + rng.below(names.len() - 1)) % names.len();
+            let shown = if rng.uniform() < sure { truth } else { other };
+            let rest = (1.0 - sure) / (names.len() - 1) as f64;
+            let chance = |v: usize| if v == shown { sure } else { rest };
+            let values = names.iter().enumerate().map(|(v, it)| (it.name.clone(), chance(v)));
+            Some((attribute.name.clone(), values.collect()))
+        })
+        .collect()
     }
 }

@@ -4,7 +4,9 @@
 //! radians, times those of the machine's monotonic clock.
 
 mod camera;
+mod detector;
 mod estimate;
+mod rotation;
 mod sighting;
 mod tracker;
 
@@ -12,6 +14,7 @@ mod tracker;
 mod tests;
 
 pub use camera::{Camera, CameraSettings, Standing};
+pub use detector::{Detector, Hypothesis, Label, Pose, Reported, Unused, UnusedCounts};
 pub use estimate::Estimate;
 pub use sighting::{Change, Detection, Frame, Look, Refusal, Sighting};
 pub use tracker::{Hiding, Live, Settings, Tracker};

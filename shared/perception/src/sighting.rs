@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::rotation::Rotation;
+
 /// A report of a source.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sighting {
@@ -121,15 +123,9 @@ impl Frame {
     /// Returns a place in this frame in frame `base`. Objects stand upright, so of the rotation the part
     /// about the vertical counts for their yaw.
     pub fn to_base(&self, xyz: [f64; 3], yaw: f64) -> ([f64; 3], f64) {
-        let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.map(f64::sin_cos);
-        let rows = [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ];
-        let turn = |p: [f64; 3]| rows.map(|row| row.iter().zip(p).map(|(a, b)| a * b).sum::<f64>());
-        let moved = turn(xyz);
-        let along = turn([yaw.cos(), yaw.sin(), 0.0]);
+        let to_base = Rotation::from_rpy(self.rpy);
+        let moved = to_base.turn(xyz);
+        let along = to_base.turn([yaw.cos(), yaw.sin(), 0.0]);
         let place = std::array::from_fn(|axis| moved[axis] + self.xyz[axis]);
         (place, along[1].atan2(along[0]))
     }

@@ -105,6 +105,21 @@ fn what_the_arm_hides_is_not_missed_and_neither_is_what_no_look_could_show() {
     assert_eq!(it.numbers(), [6]);
 }
 
+/// Looks that were taken while the policy restarted arrive after it.
+#[test]
+fn an_object_that_was_moved_during_a_restart_keeps_its_number() {
+    let mut it = Scenery::new();
+    it.looks(3, &[seen("white", 0.7, 0.1)]);
+    let (objects, next) = (it.tracker.objects(), it.tracker.next());
+    let table = Table { next, objects, ..Table::default() };
+    let restart = it.now + Span::from_ms(500);
+    it.tracker = Tracker::new(settings(), &table, &it.file, restart);
+    it.looks(3, &[seen("white", 0.5, -0.3)]);
+    assert!(it.now < restart);
+    assert_eq!(it.numbers(), [6]);
+    assert_eq!(it.tracker.objects()[0].xyz, [0.5, -0.3, -0.1]);
+}
+
 #[test]
 fn a_small_motion_is_estimated_and_not_reported_and_a_larger_one_is() {
     let mut it = Scenery::new();

@@ -81,7 +81,8 @@ impl Tracker {
                 ..Detection::default()
             }),
             track: None,
-            seen: now,
+            // Looks that waited during a restart are older than it.
+            seen: now - settings.age_max,
             missed: Span(0),
             misses: 0,
         };

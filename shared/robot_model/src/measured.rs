@@ -4,7 +4,10 @@ use crate::{JointKind, Robot};
 
 /// Order of a limb's joints from the shoulder on, by the ends of their names.
 const LIMB_JOINTS: [&str; 7] = ["s0", "s1", "e0", "e1", "w0", "w1", "w2"];
+/// Limbs by the beginnings of those names. The limb of a one-armed robot has the place of the first one.
 const LIMBS: [&str; 2] = ["left", "right"];
+/// End of the name of the link at a limb's end.
+const GRIPPER: &str = "_gripper";
 
 /// The joints of a description, and where their values are among those measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +20,7 @@ pub struct MeasuredJoints {
 /// A sliding joint of a gripper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finger {
-    /// Its limb: 0 left, 1 right.
+    /// Its limb: 0 left or only, 1 right.
     pub limb: usize,
     /// Name of the joint.
     pub name: String,
@@ -35,26 +38,22 @@ impl Finger {
 }
 
 impl MeasuredJoints {
-    /// Finds the joints of `entries`: by their own name, else by limb and order (`left_s0` is the first
-    /// movable joint of the left limb).
+    /// Finds the joints of `entries` on a robot with one limb or two: those of a limb by limb and order
+    /// (`left_s0` is the first movable joint of the left limb), others by their own name. The limb of a
+    /// one-armed robot has the place of the left one.
     pub fn new(robot: &Robot, entries: &[&str]) -> Self {
-        let limbs = LIMBS.map(|limb| {
-            let chain = robot.chain(&format!("{limb}_gripper")).ok();
-            chain.map(|chain| chain.movable().map(|joint| joint.name.clone()).collect::<Vec<_>>())
-        });
-        let name = |entry: &&str| {
-            let of_chain = || {
-                let (limb, joint) = entry.split_once('_')?;
-                let limb = LIMBS.iter().position(|known| *known == limb)?;
-                let at = LIMB_JOINTS.iter().position(|known| *known == joint)?;
-                limbs[limb].as_ref()?.get(at).cloned()
-            };
-            let movable =
-                |name: &&str| robot.joint(name).is_some_and(|joint| joint.kind != JointKind::Fixed);
-            Some(*entry).filter(movable).map(str::to_owned).or_else(of_chain)
+        let grippers = grippers(robot);
+        let limbs = grippers.each_ref().map(|link| joints(robot, link.as_deref()));
+        let name = |entry: &&str| match place(entry) {
+            Some((limb, joint)) => limbs[limb].get(joint).cloned(),
+            None => {
+                let moves = robot.joint(entry).is_some_and(|it| it.kind != JointKind::Fixed);
+                moves.then(|| (*entry).to_owned())
+            }
         };
-        let fingers = (0..LIMBS.len()).flat_map(|limb| fingers(robot, limb)).collect();
-        Self { names: entries.iter().map(name).collect(), fingers }
+        let fingers = grippers.iter().enumerate();
+        let fingers = fingers.flat_map(|(limb, link)| fingers_of(robot, limb, link.as_deref()));
+        Self { names: entries.iter().map(name).collect(), fingers: fingers.collect() }
     }
 
     /// The joint of each entry; none where the robot has no such joint.
@@ -68,10 +67,32 @@ impl MeasuredJoints {
     }
 }
 
-/// The sliding joints that a limb's gripper carries. Those that mimic another follow it by their
-/// description.
-fn fingers(robot: &Robot, limb: usize) -> Vec<Finger> {
-    let Ok(chain) = robot.chain(&format!("{}_gripper", LIMBS[limb])) else { return Vec::new() };
+/// Returns the links at the ends of the limbs: of both, or of the only one.
+fn grippers(robot: &Robot) -> [Option<String>; 2] {
+    let all: Vec<_> = robot.links().iter().filter(|link| link.name.ends_with(GRIPPER)).collect();
+    match all.as_slice() {
+        [only] => [Some(only.name.clone()), None],
+        _ => LIMBS.map(|limb| Some(format!("{limb}{GRIPPER}"))),
+    }
+}
+
+/// Returns the place of a limb's joint: the limb, and the joint from the shoulder on.
+fn place(entry: &str) -> Option<(usize, usize)> {
+    let (limb, joint) = entry.split_once('_')?;
+    let limb = LIMBS.iter().position(|known| *known == limb)?;
+    Some((limb, LIMB_JOINTS.iter().position(|known| *known == joint)?))
+}
+
+/// Returns the names of the joints that move a link, the first of the robot's first.
+fn joints(robot: &Robot, link: Option<&str>) -> Vec<String> {
+    let chain = link.and_then(|link| robot.chain(link).ok());
+    chain.iter().flat_map(|it| it.movable()).map(|joint| joint.name.clone()).collect()
+}
+
+/// Returns the sliding joints that the gripper of a limb carries. Those that mimic another follow it by
+/// their description.
+fn fingers_of(robot: &Robot, limb: usize, link: Option<&str>) -> Vec<Finger> {
+    let Some(chain) = link.and_then(|link| robot.chain(link).ok()) else { return Vec::new() };
     // From the last joint of the arm on: where the gripper's link is beside its fingers, too.
     let Some(hand) = chain.movable().next_back().map(|joint| joint.child) else {
         return Vec::new();

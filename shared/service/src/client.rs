@@ -98,28 +98,21 @@ impl Client {
         &self.bus
     }
 
-    /// Submits `sound`, with the start and end of the utterance (0: its arrival), to the speech
-    /// service and returns its receipts: one for text, one for every utterance in a sound file.
+    /// Opens the topics by which [`deliver`] submits utterances.
     ///
     /// # Errors
-    /// No answer within `patience`, or before `standstill` returns why there will be none.
-    pub fn inject(
-        &self,
-        sound: Sound,
-        said: (Time, Time),
-        patience: Span,
-        standstill: impl FnMut() -> Option<String>,
-    ) -> Result<Vec<Receipt>, ClientError> {
-        let receipts = self.bus.reader::<Receipt>(&topics::RECEIPT)?;
-        let writer = self.bus.encoded_writer::<Injection>(&topics::INJECTION)?;
-        deliver(&writer, &receipts, sound, said, patience, standstill)
+    /// They cannot be opened.
+    pub fn submissions(&self) -> Result<(EncodedWriter<Injection>, Reader<Receipt>), BusError> {
+        let receipts = self.bus.reader(&topics::RECEIPT)?;
+        Ok((self.bus.encoded_writer(&topics::INJECTION)?, receipts))
     }
 }
 
-/// As [`Client::inject`], with open topics.
+/// Submits `sound`, with the start and end of the utterance (0: its arrival), to the speech service and
+/// returns its receipts: one for text, one for every utterance in a sound file.
 ///
 /// # Errors
-/// As [`Client::inject`].
+/// No answer within `patience`, or before `standstill` returns why there will be none.
 pub fn deliver(
     writer: &EncodedWriter<Injection>,
     receipts: &Reader<Receipt>,
@@ -156,6 +149,14 @@ pub fn own_id() -> ClientId {
 /// Returns the key of a new request of `client`.
 pub fn request_key(client: ClientId) -> RequestKey {
     RequestKey::new(client, random_key().client().0)
+}
+
+/// Returns a number at random, the key of a sighting.
+pub fn random_number() -> u64 {
+    let RequestKey(key) = random_key();
+    let mut number = [0; 8];
+    number.copy_from_slice(&key[..8]);
+    u64::from_le_bytes(number)
 }
 
 /// Returns a unique key.

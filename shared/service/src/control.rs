@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::status::GroupStatus;
 
-pub use client::{CallError, call};
+pub use client::{Asked, CallError, ask, call};
 
 mod client;
 

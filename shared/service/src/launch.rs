@@ -21,7 +21,7 @@ use crate::control::{CallError, Reply, Request, call};
 use crate::log_file;
 
 /// Interval at which a starting supervisor is polled.
-const ASK_EVERY: Duration = Duration::from_millis(5);
+const ASK_EVERY: Duration = Duration::from_millis(1);
 
 /// Timeout for the answer of a listening supervisor.
 const ANSWER_PATIENCE: Duration = Duration::from_secs(2);

@@ -1,89 +1,51 @@
-//! Cost of rejecting poses, of forward kinematics, and of collision checks.
+//! Cost of forward kinematics and of collision checks.
 
-use super::targets::postures;
-use super::{arm, numbers, rows, seven, thread_s, timed};
+use super::python::Measured;
+use super::subject::{BAXTER, Subject};
+use super::{POSTURES, numbers, rows, seven, thread_s, timed};
 use crate::report::Report;
 use manipulation::{Clearance, Cuboid, Joints, Limb, Robot};
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
-/// Times that each pose is asked for; the fastest counts.
-const REPEATS: usize = 5;
-/// Postures of one sample, and samples.
-const POSTURES: usize = 1000;
+/// Samples of forward kinematics.
 const SAMPLES: usize = 200;
 /// The table of the reference.
 const TABLE: Cuboid = Cuboid::aligned([0.9, 0.0, -0.2], [0.6, 1.4, 0.04]);
 
-pub(super) fn measure(report: &mut Report, python: &super::python::Measured) {
-    refusal(report);
-    forward(report, python);
-    clearance(report);
-}
-
-/// Poses that no posture reaches, and whether none is called so that can be reached.
-fn refusal(report: &mut Report) {
-    let (mut refused, mut solvable, mut found) = (Vec::new(), 0, 0);
-    for limb in Limb::BOTH {
-        let chain = &arm(limb).chain;
-        for row in rows(&format!("ik_targets_{limb}.csv")) {
-            let n = numbers(&row[1..]);
-            let rotation = UnitQuaternion::new_normalize(Quaternion::new(n[6], n[3], n[4], n[5]));
-            let pose = Isometry3::from_parts(Translation3::new(n[0], n[1], n[2]), rotation);
-            let answers: Vec<(bool, f64)> =
-                (0..REPEATS).map(|_| timed(|| chain.inverse(&pose, None).is_ok())).collect();
-            let fastest = answers.iter().map(|(_, micros)| *micros).fold(f64::INFINITY, f64::min);
-            let ok = answers.iter().all(|(ok, _)| *ok);
-            if n[7] == 1.0 {
-                solvable += 1;
-                found += usize::from(ok);
-            }
-            if !ok {
-                refused.push(fastest);
-            }
-        }
-    }
-    let note = format!(
-        "uniform poses and poses over a table; of {solvable} that a long search reached, {found} \
-         are reached"
-    );
-    report.add("refusal of a pose out of reach", "µs", &refused, &note);
-}
-
-/// Forward kinematics and Jacobian.
-fn forward(report: &mut Report, python: &super::python::Measured) {
-    let postures = postures(Limb::Left, POSTURES);
-    let chain = &arm(Limb::Left).chain;
+/// Forward kinematics and Jacobian of the first limb.
+pub(super) fn forward(report: &mut Report, subject: &Subject, python: &Measured) {
+    let limb = subject.limbs()[0];
+    let postures = subject.postures(limb, POSTURES);
+    let chain = &subject.arm(limb).chain;
     let pose_of = |q: &Joints| chain.tool_frame(q).origin.x;
     let jacobian = |q: &Joints| std::hint::black_box(chain.tool_and_jacobian(q)).0.origin.x;
-    let (pose, both) = ("forward kinematics", "forward kinematics and Jacobian");
+    let pose = format!("forward kinematics of {}", subject.name);
+    let both = format!("forward kinematics and Jacobian of {}", subject.name);
+    let note = format!("base to gripper, {} joints", chain.joints());
     #[cfg(feature = "peers")]
     {
-        let peer = super::k_crate::chain(Limb::Left);
-        let theirs = nanos(&postures, |q| super::k_crate::forward(&peer, q));
-        report.add(&format!("k 0.32: {pose}"), "ns", &theirs, "left arm");
-        let theirs = nanos(&postures, |q| super::k_crate::jacobian(&peer, q));
-        report.add(&format!("k 0.32: {both}"), "ns", &theirs, "left arm");
+        let peer = super::k_crate::chain(subject, limb);
+        let theirs = nanos(&postures, |q| super::k_crate::forward(&peer, subject.moving(limb, q)));
+        report.add(&format!("k 0.32: {pose}"), "ns", &theirs, &note);
+        let theirs = nanos(&postures, |q| super::k_crate::jacobian(&peer, subject.moving(limb, q)));
+        report.add(&format!("k 0.32: {both}"), "ns", &theirs, &note);
     }
     let mut peer = "k 0.32";
     for theirs in &python.forward {
         peer = "Pinocchio 4.1";
-        let place = |q: &Joints| chain.tool_frame(q).origin;
         let apart = postures.iter().zip(&theirs.places).map(|(q, theirs)| {
-            let [x, y, z] = *theirs;
-            (place(q) - nalgebra::vector![x, y, z]).norm()
+            (chain.tool_frame(q).origin - nalgebra::Vector3::from(*theirs)).norm()
         });
-        let note = format!(
-            "all frames of the left arm, less the same call from Python for no joints; \
-             grippers within {:.0e} m of ours",
+        let less = format!(
+            "{note}, less the same calls from Python for no joints; grippers within {:.0e} m of ours",
             apart.fold(0.0, f64::max)
         );
-        report.add(&format!("{peer}: {pose}"), "ns", &theirs.pose_ns, &note);
-        report.add(&format!("{peer}: {both}"), "ns", &theirs.jacobian_ns, "gripper, left arm");
+        report.add(&format!("{peer}: {pose}"), "ns", &theirs.pose_ns, &less);
+        report.add(&format!("{peer}: {both}"), "ns", &theirs.jacobian_ns, &less);
     }
     let (ours, beside) = (nanos(&postures, pose_of), format!("{peer}: {pose}"));
-    report.add_beside(pose, "ns", &ours, &beside, "base to gripper, left arm");
+    report.add_beside(&pose, "ns", &ours, &beside, &note);
     let (ours, beside) = (nanos(&postures, jacobian), format!("{peer}: {both}"));
-    report.add_beside(both, "ns", &ours, &beside, "left arm");
+    report.add_beside(&both, "ns", &ours, &beside, &note);
 }
 
 /// Nanoseconds of one call, a sample for each pass over the postures.
@@ -100,7 +62,7 @@ fn nanos(postures: &[Joints], mut call: impl FnMut(&Joints) -> f64) -> Vec<f64> 
 }
 
 /// The check of both arms against themselves, each other, the trunk and a table.
-fn clearance(report: &mut Report) {
+pub(super) fn clearance(report: &mut Report) {
     let robot = Robot::baxter();
     let (mut worst, mut verdicts, mut count) = (0.0_f64, 0, 0);
     for row in rows("clearance_reference.csv") {
@@ -113,7 +75,7 @@ fn clearance(report: &mut Report) {
         verdicts += usize::from((found.robot().distance_m < 0.0) == (n[21] == 1.0));
         count += 1;
     }
-    let [left, right] = [Limb::Left, Limb::Right].map(|limb| postures(limb, 2000));
+    let [left, right] = Limb::BOTH.map(|limb| BAXTER.postures(limb, 2000));
     let micros: Vec<f64> = left
         .iter()
         .zip(right.iter().rev())

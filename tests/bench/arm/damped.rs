@@ -2,10 +2,10 @@
 //! up. Its forward kinematics are this project's own, so what differs is the method.
 
 use super::inverse::Solver;
-use super::targets::posture;
-use super::{BUDGET_S, arm, thread_s};
+use super::subject::Subject;
+use super::{BUDGET_S, thread_s};
 use dialogue::Rng;
-use manipulation::{Joints, Limb};
+use manipulation::{Arm, Joints, Limb};
 use nalgebra::{Isometry3, Matrix6, Vector6};
 
 /// Distance and angle at which it stops.
@@ -13,9 +13,13 @@ const TOLERANCE: f64 = 1e-5;
 /// Steps from one posture.
 const STEPS: usize = 60;
 
-pub(super) struct Damped(pub(super) Rng);
+pub(super) struct Damped<'a> {
+    pub(super) subject: &'a Subject,
+    /// Of its restarts.
+    pub(super) rng: Rng,
+}
 
-impl Solver for Damped {
+impl Solver for Damped<'_> {
     fn name(&self) -> String {
         "damped least squares with restarts, 5 ms (baseline)".to_owned()
     }
@@ -24,21 +28,20 @@ impl Solver for Damped {
         let started = thread_s();
         let mut q = *seed;
         loop {
-            if let Some(found) = descend(limb, pose, q) {
+            if let Some(found) = descend(self.subject.arm(limb), pose, q) {
                 return Some(found);
             }
             if thread_s() - started > BUDGET_S {
                 return None;
             }
-            q = posture(limb, &mut self.0);
+            q = self.subject.posture(limb, &mut self.rng);
         }
     }
 }
 
 /// Steps `Jᵀ (J Jᵀ + λ² I)⁻¹ e` with λ² in proportion to |e|² (Sugihara 2011), held within the
 /// limits.
-fn descend(limb: Limb, pose: &Isometry3<f64>, mut q: Joints) -> Option<Joints> {
-    let arm = arm(limb);
+fn descend(arm: &Arm, pose: &Isometry3<f64>, mut q: Joints) -> Option<Joints> {
     for _ in 0..STEPS {
         let (tool, jacobian) = arm.chain.tool_and_jacobian(&q);
         let linear = pose.translation.vector - tool.origin;

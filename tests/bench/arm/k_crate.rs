@@ -1,13 +1,12 @@
 //! The crate `k`, which is on an older version of our linear algebra.
 
 use super::inverse::Solver;
-use super::targets::posture;
+use super::subject::{Subject, joints_of};
 use super::{BUDGET_S, thread_s};
 use dialogue::Rng;
 use k::prelude::*;
 use manipulation::{Joints, Limb};
 use nalgebra::Isometry3;
-use robot_model::Robot;
 use std::io::Write;
 
 type Serial = k::SerialChain<f64>;
@@ -19,31 +18,32 @@ const MULTIPLIER: f64 = 0.5;
 const STEPS: usize = 100;
 
 /// One call, and calls from random postures until time is up.
-pub(super) fn solvers() -> [Peer; 2] {
-    [Peer::new(false), Peer::new(true)]
+pub(super) fn solvers(subject: &'static Subject) -> [Peer; 2] {
+    [Peer::new(subject, false), Peer::new(subject, true)]
 }
 
 pub(super) struct Peer {
-    arms: [Serial; 2],
+    subject: &'static Subject,
+    /// In the order of the robot's limbs.
+    arms: Vec<Serial>,
     solver: k::JacobianIkSolver<f64>,
     restarts: Option<Rng>,
 }
 
-/// A limb's chain from `base` to `<limb>_gripper`. It gets a robot of this limb alone: in a larger
+/// A limb's chain from `base` to its gripper. It gets a robot of this limb alone: in a larger
 /// one each joint that moves costs it a walk over all that hangs on it.
-pub(super) fn chain(limb: Limb) -> Serial {
+pub(super) fn chain(subject: &Subject, limb: Limb) -> Serial {
     let file = tempfile::Builder::new().suffix(".urdf").tempfile();
     let mut file = file.expect("a temporary file");
-    file.write_all(description(limb).as_bytes()).expect("room for a description");
+    file.write_all(description(subject, limb).as_bytes()).expect("room for a description");
     let robot = k::Chain::<f64>::from_urdf_file(file.path()).expect("a description that k reads");
-    let tip = robot.find_link(&format!("{limb}_gripper")).expect("a gripper");
+    let tip = robot.find_link(&subject.tip(limb)).expect("a gripper");
     k::SerialChain::from_end(tip)
 }
 
-/// The links and joints from `base` to `<limb>_gripper`.
-fn description(limb: Limb) -> String {
-    let robot = Robot::baxter();
-    let chain = robot.chain(&format!("{limb}_gripper")).expect("a gripper");
+/// The links and joints from `base` to its gripper.
+fn description(subject: &Subject, limb: Limb) -> String {
+    let (robot, chain) = (subject.description(), subject.chain(limb));
     let mut text = String::from("<robot name=\"arm\">");
     for link in chain.links() {
         text += &format!("<link name=\"{}\"/>", link.name);
@@ -77,9 +77,10 @@ fn description(limb: Limb) -> String {
 }
 
 impl Peer {
-    fn new(restarting: bool) -> Self {
+    fn new(subject: &'static Subject, restarting: bool) -> Self {
         Self {
-            arms: Limb::BOTH.map(chain),
+            subject,
+            arms: subject.limbs().iter().map(|limb| chain(subject, *limb)).collect(),
             solver: k::JacobianIkSolver::new(TOLERANCE, TOLERANCE, MULTIPLIER, STEPS),
             restarts: restarting.then(|| Rng::new(13)),
         }
@@ -95,20 +96,20 @@ impl Solver for Peer {
     }
 
     fn solve(&mut self, limb: Limb, pose: &Isometry3<f64>, seed: &Joints) -> Option<Joints> {
-        let arm = &self.arms[usize::from(limb == Limb::Right)];
+        let arm = &self.arms[limb.index()];
         let pose = theirs(pose);
         let started = thread_s();
         let mut from = *seed;
         loop {
-            arm.set_joint_positions_clamped(&from);
+            arm.set_joint_positions_clamped(self.subject.moving(limb, &from));
             if self.solver.solve(arm, &pose).is_ok() {
-                return arm.joint_positions().try_into().ok();
+                return joints_of(&arm.joint_positions());
             }
             let random = self.restarts.as_mut()?;
             if thread_s() - started > BUDGET_S {
                 return None;
             }
-            from = posture(limb, random);
+            from = self.subject.posture(limb, random);
         }
     }
 }
@@ -123,13 +124,13 @@ fn theirs(pose: &Isometry3<f64>) -> k::Isometry3<f64> {
 }
 
 /// Forward kinematics: the tip's x.
-pub(super) fn forward(arm: &Serial, q: &Joints) -> f64 {
+pub(super) fn forward(arm: &Serial, q: &[f64]) -> f64 {
     arm.set_joint_positions_unchecked(q);
     arm.end_transform().translation.x
 }
 
 /// Forward kinematics and Jacobian: one of its numbers.
-pub(super) fn jacobian(arm: &Serial, q: &Joints) -> f64 {
+pub(super) fn jacobian(arm: &Serial, q: &[f64]) -> f64 {
     arm.set_joint_positions_unchecked(q);
     k::jacobian(arm)[(0, 0)]
 }

@@ -11,20 +11,31 @@ mod inverse;
 mod k_crate;
 mod motion;
 mod python;
+mod refusal;
+mod subject;
 mod targets;
 
 use crate::report::Report;
-use manipulation::{Arm, Limb, Robot};
 use std::sync::LazyLock;
+use subject::{BAXTER, Subject, UR5E};
 
 pub(crate) fn measure(report: &mut Report, quick: bool) {
     let effort = if quick { Effort::QUICK } else { Effort::FULL };
-    let targets = targets::reachable(effort.own);
-    let python = python::measure(&targets, effort);
-    inverse::measure(report, &targets, &python, effort);
-    inverse::measure_nearest(report, &targets, &python, effort);
-    checks::measure(report, &python);
+    kinematics(report, &BAXTER, effort);
+    kinematics(report, &UR5E, effort);
+    refusal::reference(report);
+    checks::clearance(report);
     motion::measure(report);
+}
+
+fn kinematics(report: &mut Report, subject: &'static Subject, effort: Effort) {
+    let targets = targets::reachable(subject, effort.own);
+    let anywhere = targets::anywhere(&targets, effort.peers);
+    let python = python::measure(subject, &targets[..effort.peers], &anywhere, effort);
+    inverse::measure(report, subject, &targets, &python, effort);
+    inverse::measure_nearest(report, subject, &targets, &python, effort);
+    refusal::measure(report, subject, &anywhere, &python);
+    checks::forward(report, subject, &python);
 }
 
 /// Number of targets by kind of solver: slow ones get the first targets only.
@@ -45,9 +56,8 @@ impl Effort {
 /// of elapsed time those that look at a clock of their own.
 const BUDGET_S: f64 = 5e-3;
 
-fn arm(limb: Limb) -> &'static Arm {
-    Robot::baxter().arm(limb)
-}
+/// Postures of one sample of forward kinematics.
+const POSTURES: usize = 1000;
 
 /// Seconds of processor that this thread has used: what else runs on the machine counts little.
 pub(crate) fn thread_s() -> f64 {

@@ -1,8 +1,8 @@
 //! Duration of motions against the shortest known, and the cost of planning them.
 
-use super::{arm, fixture, mean, numbers, rows, seven, timed};
+use super::{fixture, mean, numbers, rows, seven, timed};
 use crate::report::Report;
-use manipulation::{Joints, Limb, MotionLimits, Path, PositionLimits, State, Trajectory};
+use manipulation::{Joints, Limb, MotionLimits, Path, PositionLimits, Robot, State, Trajectory};
 
 /// Grid intervals: as the services time a path, and finer.
 const INTERVALS: [usize; 2] = [manipulation::INTERVALS_MIN, 4000];
@@ -29,7 +29,7 @@ fn row(what: String, ratios: &[f64], micros: &[f64]) -> Vec<String> {
 }
 
 fn splines() -> Vec<Vec<String>> {
-    let full = arm(Limb::Left).limits;
+    let full = Robot::baxter().arm(Limb::Left).limits;
     let limits = MotionLimits { jerk: [f64::INFINITY; 7], ..full };
     let reference: serde_json::Value =
         serde_json::from_str(&fixture("topp_reference.json")).unwrap_or_default();
@@ -59,7 +59,7 @@ fn splines() -> Vec<Vec<String>> {
 
 /// Moves from any state to rest, position limits aside as in the reference.
 fn moves() -> Vec<String> {
-    let full = arm(Limb::Left).limits;
+    let full = Robot::baxter().arm(Limb::Left).limits;
     let limits = MotionLimits { position: PositionLimits([(-9.0, 9.0); 7]), ..full };
     let (ratios, micros): (Vec<f64>, Vec<f64>) = rows("jerk_limited_reference.csv")
         .iter()

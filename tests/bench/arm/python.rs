@@ -3,21 +3,24 @@
 //! Each call is timed in Python, so it holds a few microseconds of the way there and back.
 
 use super::inverse::{Outcome, Seed};
-use super::targets::{Rule, Target, middle, postures};
+use super::subject::{Subject, joints_of};
+use super::targets::{Rule, Target};
 use super::{BUDGET_S, Effort};
-use manipulation::{Joints, Limb};
+use manipulation::Limb;
+use nalgebra::Isometry3;
 use serde::Deserialize;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-/// The program; its packages are installed by `scripts/bench`.
+/// The program, and its arguments: one process each, so that none takes another with it.
 const SCRIPT: &str = include_str!("peers.py");
-/// The interpreter that has them.
+const PEERS: [&str; 4] = ["optik", "trac_ik", "ikpy", "pinocchio"];
+/// The interpreter that has their packages; `scripts/bench` installs them.
 const VARIABLE: &str = "WHICHONE_PEERS_PYTHON";
 
-/// The peers' answer.
-#[derive(Debug, Deserialize)]
+/// The peers' answers.
+#[derive(Debug, Default)]
 pub(super) struct Measured {
     runs: Vec<Run>,
     /// Peers that were left out, with the reason.
@@ -26,10 +29,17 @@ pub(super) struct Measured {
     pub(super) forward: Vec<Forward>,
 }
 
-/// Forward kinematics of the left arm in [`postures`].
+/// The answer of one peer.
+#[derive(Debug, Deserialize)]
+struct Reply {
+    runs: Vec<Run>,
+    forward: Vec<Forward>,
+}
+
+/// Forward kinematics of the first limb in [`Subject::postures`].
 #[derive(Debug, Deserialize)]
 pub(super) struct Forward {
-    /// Poses of all frames, nanoseconds.
+    /// The pose of the gripper, nanoseconds.
     pub(super) pose_ns: Vec<f64>,
     /// The Jacobian of the gripper, with the kinematics that it needs, nanoseconds.
     pub(super) jacobian_ns: Vec<f64>,
@@ -37,95 +47,155 @@ pub(super) struct Forward {
     pub(super) places: Vec<[f64; 3]>,
 }
 
-/// Postures of its forward kinematics, and samples.
-const POSTURES: usize = 1000;
+/// Samples of its forward kinematics.
 const SAMPLES: usize = 20;
+
+/// Which poses were asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Kind {
+    Reachable,
+    Anywhere,
+}
 
 #[derive(Debug, Deserialize)]
 struct Run {
     name: String,
+    kind: Kind,
+    seed: Seed,
     /// True if it looked for the posture nearest to the seed.
     nearest: bool,
-    random_seed: bool,
-    answers: Vec<Option<Joints>>,
+    answers: Vec<Option<Vec<f64>>>,
     /// Of processor, and elapsed.
     micros: Vec<[f64; 2]>,
 }
 
 impl Measured {
     /// The judged outcomes of one kind of search from one kind of seed.
-    pub(super) fn outcomes(&self, targets: &[Target], nearest: bool, seed: Seed) -> Vec<Outcome> {
-        let asked =
-            |run: &&Run| run.nearest == nearest && run.random_seed == (seed == Seed::Random);
-        self.runs
-            .iter()
-            .filter(asked)
-            .map(|run| {
-                let answers = run.answers.iter().copied().zip(run.micros.iter().copied());
-                Outcome::of(run.name.clone(), targets, seed, answers, Rule::PEER)
-            })
-            .collect()
+    pub(super) fn outcomes(
+        &self,
+        subject: &Subject,
+        targets: &[Target],
+        kind: Kind,
+        nearest: bool,
+        seed: Seed,
+    ) -> Vec<Outcome> {
+        let asked = |run: &&Run| run.kind == kind && run.nearest == nearest && run.seed == seed;
+        let outcome = |run: &Run| {
+            let answers = run.answers.iter().map(|q| q.as_deref().and_then(joints_of));
+            let answers = answers.zip(run.micros.iter().copied());
+            Outcome::of(run.name.clone(), subject, targets, seed, answers, Rule::PEER)
+        };
+        self.runs.iter().filter(asked).map(outcome).collect()
     }
 }
 
-pub(super) fn measure(targets: &[Target], effort: Effort) -> Measured {
+/// Has every peer answer the poses that are in reach and those of which some are not.
+pub(super) fn measure(
+    subject: &Subject,
+    reachable: &[Target],
+    anywhere: &[Target],
+    effort: Effort,
+) -> Measured {
     let python = std::env::var(VARIABLE).unwrap_or_else(|_| "python3".to_owned());
-    call(&python, &question(&targets[..effort.peers], effort)).unwrap_or_else(|error| Measured {
-        runs: Vec::new(),
-        forward: Vec::new(),
-        left_out: vec![format!("Solvers in Python are left out: {error}.")],
-    })
+    let question = question(subject, reachable, anywhere, effort);
+    let mut measured = Measured::default();
+    for peer in PEERS {
+        match call(&python, peer, &question) {
+            Ok(reply) => {
+                measured.runs.extend(reply.runs);
+                measured.forward.extend(reply.forward);
+            }
+            Err(error) => measured.left_out.push(format!("Without {peer}: {error}.")),
+        }
+    }
+    measured
 }
 
-fn question(targets: &[Target], effort: Effort) -> String {
-    let matrix = |pose: &nalgebra::Isometry3<f64>| -> Vec<Vec<f64>> {
-        let matrix = pose.to_homogeneous();
-        matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+fn question(
+    subject: &Subject,
+    reachable: &[Target],
+    anywhere: &[Target],
+    effort: Effort,
+) -> String {
+    let first = subject.limbs()[0];
+    let postures = subject.postures(first, super::POSTURES);
+    let postures: Vec<_> = postures.iter().map(|q| subject.moving(first, q)).collect();
+    let asked = |targets: &[Target]| -> Vec<Value> {
+        targets.iter().map(|target| asked(subject, target)).collect()
     };
-    let robot = robot_model::Robot::baxter();
-    let poses = robot.poses(|_| 0.0);
-    let mount = |limb: Limb| {
-        robot.link_index(&format!("{limb}_arm_mount")).map(|link| matrix(&poses[link]))
-    };
-    let all: Vec<_> = targets
-        .iter()
-        .map(|target| {
-            json!({
-                "limb": target.limb.name(),
-                "pose": matrix(&target.pose),
-                "xyz": target.pose.translation.vector.as_slice(),
-                "xyzw": target.pose.rotation.coords.as_slice(),
-                "middle": middle(target.limb),
-                "random": target.seed,
-            })
-        })
-        .collect();
     json!({
-        "urdf": format!("{}/fixtures/baxter/baxter.urdf", env!("CARGO_MANIFEST_DIR")),
-        "mounts": { "left": mount(Limb::Left), "right": mount(Limb::Right) },
+        "urdf": subject.urdf,
+        "base": subject.description().root().name,
+        "limbs": limbs(subject),
         "budget_s": BUDGET_S,
         "slow": effort.slow,
-        "targets": all,
-        "postures": postures(Limb::Left, POSTURES),
-        "samples": SAMPLES,
+        "targets": { "reachable": asked(reachable), "anywhere": asked(anywhere) },
+        "forward": { "limb": first.name(), "postures": postures, "samples": SAMPLES },
     })
     .to_string()
 }
 
-fn call(python: &str, question: &str) -> Result<Measured, String> {
+/// The links at the ends of each limb: where its first joint is mounted, what its last joint moves, and
+/// the gripper; with their poses.
+fn limbs(subject: &Subject) -> Map<String, Value> {
+    let description = subject.description();
+    let poses = description.poses(|_| 0.0);
+    let ends = |limb: &Limb| {
+        let chain = subject.chain(*limb);
+        let (mut joints, tip) = (chain.movable(), subject.tip(*limb));
+        let mount = joints.next().map_or(0, |joint| joint.parent);
+        let last = joints.next_back().map_or(0, |joint| joint.child);
+        let tool = description.link_index(&tip).map(|tip| poses[last].inv_mul(&poses[tip]));
+        let ends = json!({
+            "tip": tip,
+            "mount": description.links()[mount].name,
+            "mount_pose": matrix(&poses[mount]),
+            "last": description.links()[last].name,
+            "tip_on_last": tool.map(|pose| matrix(&pose)),
+        });
+        (limb.name().to_owned(), ends)
+    };
+    subject.limbs().iter().map(ends).collect()
+}
+
+fn asked(subject: &Subject, target: &Target) -> Value {
+    let Target { limb, pose, seed } = target;
+    json!({
+        "limb": limb.name(),
+        "pose": matrix(pose),
+        "xyz": pose.translation.vector.as_slice(),
+        "xyzw": pose.rotation.coords.as_slice(),
+        "middle": subject.moving(*limb, &subject.middle(*limb)),
+        "random": subject.moving(*limb, seed),
+    })
+}
+
+fn matrix(pose: &Isometry3<f64>) -> Vec<Vec<f64>> {
+    let matrix = pose.to_homogeneous();
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+}
+
+/// Runs one peer; an error is the last line that it wrote.
+fn call(python: &str, peer: &str, question: &str) -> Result<Reply, String> {
     let mut child = Command::new(python)
-        .args(["-c", SCRIPT])
+        .args(["-c", SCRIPT, peer])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
-        .stderr(Stdio::null())
+        .stderr(Stdio::piped())
         .spawn()
         .map_err(|error| format!("{python} does not start ({error})"))?;
-    if let Some(mut stdin) = child.stdin.take() {
-        stdin.write_all(question.as_bytes()).map_err(|error| error.to_string())?;
-    }
+    let written = child.stdin.take().map_or(Ok(()), |mut to| to.write_all(question.as_bytes()));
     let output = child.wait_with_output().map_err(|error| error.to_string())?;
     // Solvers write to standard output, too: the reply is the last line.
-    let text = String::from_utf8_lossy(&output.stdout);
-    let last = text.lines().last().unwrap_or_default();
-    serde_json::from_str(last).map_err(|_| format!("{python} ended with {}", output.status))
+    let last = |bytes: &[u8]| {
+        let text = String::from_utf8_lossy(bytes);
+        text.lines().rfind(|line| !line.trim().is_empty()).unwrap_or_default().to_owned()
+    };
+    match (output.status.success(), written) {
+        (true, Ok(())) => {
+            serde_json::from_str(&last(&output.stdout)).map_err(|error| error.to_string())
+        }
+        _ => Err(format!("{} ({python}: {})", last(&output.stderr), output.status)),
+    }
 }

@@ -1,12 +1,12 @@
 //! Poses to reach, where the solvers begin, and validity of their answers.
 
-use super::arm;
+use super::subject::Subject;
 use dialogue::Rng;
 use manipulation::{Joints, Limb};
-use nalgebra::Isometry3;
-use robot_model::{Robot, SerialChain};
+use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
+use robot_model::SerialChain;
 
-/// A pose of `<limb>_gripper` in `base`.
+/// A pose of a limb's gripper in `base`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target {
     pub(super) limb: Limb,
@@ -15,40 +15,40 @@ pub(super) struct Target {
     pub(super) seed: Joints,
 }
 
-/// The middle of the limits: the other posture to begin from.
-pub(super) fn middle(limb: Limb) -> Joints {
-    arm(limb).limits.position.middle()
-}
-
-/// The limbs' chains by the description, left first.
-fn chains() -> [SerialChain<'static>; 2] {
-    Limb::BOTH.map(|limb| {
-        let tip = format!("{limb}_gripper");
-        Robot::baxter().chain(&tip).unwrap_or_else(|error| panic!("{error}"))
-    })
-}
-
-/// Forward kinematics of random postures, so that there is an answer; left and right in turn.
-pub(super) fn reachable(count: usize) -> Vec<Target> {
-    let (mut rng, chains) = (Rng::new(2026), chains());
-    (0..count)
-        .map(|i| {
-            let limb = Limb::BOTH[i % 2];
-            let pose = chains[i % 2].forward(&posture(limb, &mut rng));
-            Target { limb, pose, seed: posture(limb, &mut rng) }
+/// Forward kinematics of random postures, so that there is an answer; the limbs in turn.
+pub(super) fn reachable(subject: &Subject, count: usize) -> Vec<Target> {
+    let mut rng = Rng::new(2026);
+    let chains: Vec<_> = subject.limbs().iter().map(|limb| subject.chain(*limb)).collect();
+    let limbs = subject.limbs().iter().zip(&chains).cycle().take(count);
+    limbs
+        .map(|(&limb, chain)| {
+            let q = subject.posture(limb, &mut rng);
+            let pose = chain.forward(subject.moving(limb, &q));
+            Target { limb, pose, seed: subject.posture(limb, &mut rng) }
         })
         .collect()
 }
 
-/// Postures of one limb.
-pub(super) fn postures(limb: Limb, count: usize) -> Vec<Joints> {
-    let mut rng = Rng::new(7);
-    (0..count).map(|_| posture(limb, &mut rng)).collect()
+/// Poses uniform in the box round the reachable ones, turned anyhow: some are out of reach.
+pub(super) fn anywhere(reachable: &[Target], count: usize) -> Vec<Target> {
+    let mut rng = Rng::new(404);
+    let boxes = [Limb::Left, Limb::Right, Limb::Only].map(|limb| bounds(reachable, limb));
+    let pose = |target: &Target| {
+        let (low, high) = boxes[target.limb as usize];
+        let place = Vector3::from_fn(|i, _| rng.between((low[i], high[i])));
+        let turn = Quaternion::new(rng.normal(), rng.normal(), rng.normal(), rng.normal());
+        let pose = Isometry3::from_parts(place.into(), UnitQuaternion::new_normalize(turn));
+        Target { pose, ..*target }
+    };
+    reachable[..count].iter().map(pose).collect()
 }
 
-/// A posture uniform within the limits.
-pub(super) fn posture(limb: Limb, rng: &mut Rng) -> Joints {
-    arm(limb).limits.position.0.map(|ends| rng.between(ends))
+/// The least and the greatest coordinates of a limb's targets, metres.
+fn bounds(targets: &[Target], limb: Limb) -> (Vector3<f64>, Vector3<f64>) {
+    let places = targets.iter().filter(|target| target.limb == limb);
+    let places = places.map(|target| target.pose.translation.vector);
+    let none = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+    places.fold(none, |(low, high), place| (low.inf(&place), high.sup(&place)))
 }
 
 /// Tolerances of an answer.
@@ -70,19 +70,24 @@ impl Rule {
 }
 
 /// Judges by the description's own chains.
-pub(super) struct Judge([SerialChain<'static>; 2]);
+pub(super) struct Judge<'a> {
+    subject: &'a Subject,
+    chains: Vec<(Limb, SerialChain<'a>)>,
+}
 
-impl Judge {
-    pub(super) fn new() -> Self {
-        Self(chains())
+impl<'a> Judge<'a> {
+    pub(super) fn new(subject: &'a Subject) -> Self {
+        let chains = subject.limbs().iter().map(|limb| (*limb, subject.chain(*limb))).collect();
+        Self { subject, chains }
     }
 
     pub(super) fn accepts(&self, target: &Target, q: &Joints, rule: Rule) -> bool {
         let Target { limb, pose, .. } = target;
-        let reached = self.0[usize::from(*limb == Limb::Right)].forward(q);
+        let Some((_, chain)) = self.chains.iter().find(|(of, _)| of == limb) else { return false };
+        let reached = chain.forward(self.subject.moving(*limb, q));
         let distance = (reached.translation.vector - pose.translation.vector).norm();
         let angle = reached.rotation.angle_to(&pose.rotation);
-        let limits = &arm(*limb).limits.position.0;
+        let limits = &self.subject.arm(*limb).limits.position.0;
         let kept = q
             .iter()
             .zip(limits)

@@ -18,6 +18,8 @@ const ACTIONS: [(&str, Actions); 5] = [
     ("present, pointing alone", POINTING),
 ];
 
+/// Costs of a wrong pick; 100 is the default.
+const WRONG: [f64; 4] = [50.0, 100.0, 200.0, 500.0];
 /// Random scenes, objects and attributes, larger than what is known to the last digit.
 const LARGER: [(usize, usize); 3] = [(12, 4), (20, 5), (50, 5)];
 /// Dialogues on larger scenes that are less probable than this are cut short: their beliefs are
@@ -33,8 +35,7 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
         for (shown, actions) in ACTIONS {
             for (preset, costs) in Costs::PRESETS {
                 let problem = DecisionProblem::new(&model, costs, actions);
-                let mut row = [scene, shown, preset].map(str::to_owned).to_vec();
-                row.push(best(&problem));
+                let mut row = vec![format!("{scene}, {shown}, {preset}"), best(&problem)];
                 row.extend(registry::names().map(|name| value(&problem, name, effort.cut)));
                 rows.push(row);
             }
@@ -46,9 +47,38 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
          sparse-sampling is followed for one set of draws.",
         effort.cut
     );
-    let heads = ["scene", "questions", "costs", "best policy"];
-    report.table("Exact values", note, heads.into_iter().chain(registry::names()), rows);
+    let heads = ["scene, questions, costs", "best policy"];
+    report.exact_table("Exact values", note, heads.into_iter().chain(registry::names()), rows);
+    wrong_picks(report, effort);
     larger(report, effort);
+}
+
+/// How certain the robot makes itself before a pick, by what a wrong one costs.
+fn wrong_picks(report: &mut Report, effort: Effort) {
+    let model = Model::new(&configured("bowls"), Params::default());
+    let cells = |wrong: f64, actions| {
+        let problem = DecisionProblem::new(&model, Costs { wrong, ..Costs::SECONDS }, actions);
+        let belief = Belief::uniform(model.objects());
+        let found = evaluate(&mut Optimal::default(), &problem, &belief, effort.cut);
+        let success = format!("{:.2} %", 100.0 * found.success);
+        [format!("{:.2}", found.value), success, format!("{:.2}", found.questions)]
+    };
+    let row = |wrong: f64| {
+        let cells = [YES_NO, OPEN].map(|actions| cells(wrong, actions)).concat();
+        std::iter::once(wrong.to_string()).chain(cells).collect()
+    };
+    let heads = [
+        "`costs.wrong`",
+        "yes/no: value",
+        "success",
+        "questions",
+        "open too: value",
+        "success with open",
+        "questions with open",
+    ];
+    let note = "Six bowls in another room, the policy of `optimal` from the uniform belief.";
+    let rows = WRONG.map(row).to_vec();
+    report.exact_table("Costs of a wrong pick", note, heads, rows);
 }
 
 fn larger(report: &mut Report, effort: Effort) {
@@ -57,8 +87,8 @@ fn larger(report: &mut Report, effort: Effort) {
         let model = random(objects, attributes);
         for (shown, actions) in [("yes/no", YES_NO), ("open too", OPEN)] {
             let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
-            let mut row = vec![format!("{objects} × {attributes}"), shown.to_owned()];
-            row.push(best(&problem));
+            let name = format!("{objects} × {attributes}, {shown}");
+            let mut row = vec![name, best(&problem)];
             row.extend(registry::names().map(|name| {
                 let awaited = first_s(&problem, name) * DECISIONS_LARGER <= effort.budget_s;
                 if awaited { value(&problem, name, CUT_LARGER) } else { "–".to_owned() }
@@ -71,8 +101,13 @@ fn larger(report: &mut Report, effort: Effort) {
          {CUT_LARGER:e} end with a pick at once, which takes up to a tenth or so from every \
          column. A dash: its decisions would take longer than this table is worth.",
     );
-    let heads = ["objects × attributes", "questions", "best policy"];
-    report.table("Values on larger scenes", note, heads.into_iter().chain(registry::names()), rows);
+    let heads = ["objects × attributes, questions", "best policy"];
+    report.exact_table(
+        "Values on larger scenes",
+        note,
+        heads.into_iter().chain(registry::names()),
+        rows,
+    );
 }
 
 /// Certified bounds on the best policy's value.

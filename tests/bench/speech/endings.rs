@@ -115,7 +115,7 @@ pub(super) fn measure(report: &mut Report, voices: &Voices, quick: bool) {
         "after the voice's end, ms, p50",
         "p95",
         "complete: p50",
-        "p95",
+        "complete: p95",
         "meaning right",
         "decodings per utterance",
     ];

@@ -38,7 +38,7 @@ pub use attribution::{Count, study};
 pub use client::Client;
 pub use faults::{Fault, Faults};
 pub use host::{Crash, Host};
-pub use perceived::{Perceived, converse, perceive};
+pub use perceived::{Tally, at_best, converse, perceive};
 pub use table::{Happening, TableTop};
 pub use user::{Channel, GroupUser};
 

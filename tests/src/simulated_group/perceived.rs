@@ -3,23 +3,26 @@
 use config::Settings;
 use dialogue::Rng;
 use messages::Outcome;
-use perception::CameraSettings;
-use scene::ObjectId;
+use perception::{Camera, CameraSettings, Change, Detection, Standing};
+use scene::{ObjectId, Perceived};
 use service::{Span, Time};
 
-use super::table::{FORGIVEN_M, Happening, TableTop};
+use super::table::{FORGIVEN_M, Happening, TableTop, fits_best};
 use super::{Faults, GroupUser, SimulatedGroup};
 use crate::settings;
 
 /// Results of many dialogues.
 #[derive(Clone, Debug, Default)]
-pub struct Perceived {
+pub struct Tally {
     /// Dialogues.
     pub dialogues: u64,
     /// Those in which something appeared, moved or vanished.
     pub eventful: u64,
     /// Those in which the wanted object was delivered.
     pub right: u64,
+    /// Those in which the wanted object fits best once all values of it are known: what answers without
+    /// pointing can achieve at best, but for luck.
+    pub at_best: u64,
     /// Closings of the fingers at a place that was off by more than a grasp forgives.
     pub beside: u64,
     /// Interactions with more than one delivery.
@@ -49,7 +52,7 @@ fn camera(seed: u64) -> CameraSettings {
 
 /// Holds dialogues about the shipped bowls under a simulated camera, half of them with something that
 /// appears, moves or vanishes meanwhile. `mode` is `remote` or `present`: whether the robot may point.
-pub fn perceive(mode: &str, dialogues: u64, seed: u64, faults: fn(u64) -> Faults) -> Perceived {
+pub fn perceive(mode: &str, dialogues: u64, seed: u64, faults: fn(u64) -> Faults) -> Tally {
     let certain = settings(&[("dialogue.mode", mode)]);
     // A camera follows what happens at the arm's own speed alone.
     let perceiving = settings(&[
@@ -57,7 +60,7 @@ pub fn perceive(mode: &str, dialogues: u64, seed: u64, faults: fn(u64) -> Faults
         ("group.perception.enabled", "true"),
         ("arm.time_scale", "1.0"),
     ]);
-    let mut found = Perceived::default();
+    let mut found = Tally::default();
     for number in 0..dialogues {
         let seed = seed.wrapping_mul(1_000_003).wrapping_add(number);
         let mut rng = Rng::new(seed);
@@ -69,6 +72,45 @@ pub fn perceive(mode: &str, dialogues: u64, seed: u64, faults: fn(u64) -> Faults
         found.add(&group, happening, plain, seed);
     }
     found
+}
+
+/// Returns the share of `draws` of the camera's errors in which the wanted one of the shipped bowls is the likeliest once
+/// all values of it are known.
+pub fn at_best(draws: u64, seed: u64) -> f64 {
+    let file = settings(&[]).scene;
+    let places = file.objects().iter().enumerate();
+    let standing: Vec<Standing> = places
+        .filter_map(|(object, it)| {
+            it.placement.map(|it| Standing { object, xyz: it.xyz, yaw: it.yaw })
+        })
+        .collect();
+    let is_best = |number: &u64| {
+        let seed = seed.wrapping_mul(1_000_003).wrapping_add(*number);
+        let wanted = ObjectId::from(Rng::new(seed).below(standing.len()));
+        let mut camera =
+            Camera::new(CameraSettings { misses: 0.0, delay: Span(0), ..camera(seed) });
+        let looks = camera.look(&file, &standing, &[], Time(1));
+        let Some(Change::Look(look)) = looks.into_iter().next().map(|it| it.change) else {
+            return false;
+        };
+        let seen: Vec<Perceived> = (100..).zip(look.seen).map(perceived).collect();
+        fits_best(&file, &seen, wanted)
+    };
+    (0..draws).filter(is_best).count() as f64 / draws as f64
+}
+
+/// The object of a detection.
+fn perceived((number, seen): (u16, Detection)) -> Perceived {
+    Perceived {
+        number: ObjectId(number),
+        name: number.to_string(),
+        classes: seen.classes,
+        attributes: seen.attributes,
+        xyz: seen.xyz,
+        yaw: seen.yaw,
+        seen_by: Vec::new(),
+        taken: false,
+    }
 }
 
 fn draw(rng: &mut Rng, wanted: usize) -> Happening {
@@ -99,7 +141,7 @@ pub fn converse(
     group
 }
 
-impl Perceived {
+impl Tally {
     fn add(
         &mut self,
         group: &SimulatedGroup,
@@ -115,6 +157,8 @@ impl Perceived {
         let delivered = matches!(group.outcome(), Some((Outcome::Delivered, _)));
         let right = delivered && grasps.last().is_some_and(|(object, _)| *object == wanted);
         self.right += u64::from(right);
+        let table = group.table.as_ref().zip(group.user.wanted());
+        self.at_best += u64::from(table.is_some_and(|(table, wanted)| table.fits_best(wanted)));
         let beside = grasps.iter().filter(|(_, m)| *m > FORGIVEN_M).count() as u64;
         self.beside += beside;
         self.twice += u64::from(grasps.iter().filter(|(object, _)| object.is_some()).count() > 1);

@@ -1,8 +1,8 @@
 //! Objects on a simulated table under a simulated camera, while people put, move and take them.
 
-use messages::{PickPhase, Sighting, TableView, WorldView};
+use messages::{PickOutcome, PickPhase, Sighting, TableView, WorldView};
 use perception::{Camera, CameraSettings, Standing};
-use scene::{ObjectId, Question, Scene};
+use scene::{Object, ObjectId, Perceived, Question, Scene};
 use service::{Span, Time};
 
 /// Distance from a gripper within which nobody moves an object, metres.
@@ -37,6 +37,8 @@ pub struct TableTop {
     table: TableView,
     world: WorldView,
     closing: bool,
+    /// What the arm has grasped, and where it stood.
+    grasped: Option<(usize, [f64; 3])>,
     /// Each closing of the fingers: the object that was there, and how far from where the arm took it
     /// to be, metres.
     pub grasps: Vec<(Option<usize>, f64)>,
@@ -45,7 +47,7 @@ pub struct TableTop {
 impl TableTop {
     /// The objects of the scene file in their places, and what happens at that time.
     pub fn new(file: &Scene, camera: CameraSettings, happening: (Happening, Time)) -> Self {
-        let place = |object: &scene::Object| object.placement.map(|placement| placement.xyz);
+        let place = |object: &Object| object.placement.map(|placement| placement.xyz);
         let mut places: Vec<_> = file.objects().iter().map(place).collect();
         if let Happening::Appears(object) = happening.0 {
             places[object] = None;
@@ -58,6 +60,7 @@ impl TableTop {
             table: TableView::default(),
             world: WorldView::default(),
             closing: false,
+            grasped: None,
             grasps: Vec::new(),
         }
     }
@@ -126,10 +129,18 @@ impl TableTop {
             let there = self.nearest(&believed);
             self.grasps.push(there.map_or((None, f64::INFINITY), |(i, m)| (Some(i), m)));
             if let Some((object, _)) = there {
-                self.places[object] = None;
+                self.grasped = self.places[object].take().map(|xyz| (object, xyz));
             }
         }
-        self.closing &= matches!(phase, PickPhase::Closing | PickPhase::Holding);
+        self.closing &=
+            matches!(phase, PickPhase::Closing | PickPhase::Holding | PickPhase::Returning);
+        // What was called off while it was held is back in its place.
+        if phase == PickPhase::Done
+            && let Some((object, xyz)) = self.grasped.take()
+            && status.outcome.get() == PickOutcome::Cancelled
+        {
+            self.places[object] = Some(xyz);
+        }
     }
 
     /// Where the arm takes the object to be.
@@ -137,6 +148,12 @@ impl TableTop {
         let place = self.world.numbers.iter().position(|known| *known == number)?;
         let [x, y, z, ..] = self.world.objects.get(place).copied().flatten()?;
         Some([x, y, z])
+    }
+
+    /// Returns whether the wanted object fits best once all values of it are known.
+    pub(super) fn fits_best(&self, wanted: ObjectId) -> bool {
+        let known: Vec<_> = self.table.objects.iter().map(|object| object.known.clone()).collect();
+        fits_best(&self.file, &known, wanted)
     }
 
     fn nearest(&self, xyz: &[f64; 3]) -> Option<(usize, f64)> {
@@ -153,6 +170,23 @@ impl TableTop {
         let there = place.and_then(|place| self.nearest(&place));
         there.map_or(Question::None, |(object, _)| Question::Point(object.into()))
     }
+}
+
+/// Returns whether, of the objects as they were perceived, the wanted one is the likeliest to have all its values.
+pub(super) fn fits_best(file: &Scene, known: &[Perceived], wanted: ObjectId) -> bool {
+    let scene = file.with_objects(known);
+    let Object { name, values, .. } = file.object(wanted);
+    let fit = |object: &Object| -> f64 {
+        let each = values.iter().zip(&object.values).zip(&object.chances);
+        each.map(|((value, own), chances)| match (value, chances) {
+            (Some(value), Some(chances)) => chances[value.index()],
+            _ => f64::from(u8::from(value == own)),
+        })
+        .product()
+    };
+    let fits = scene.objects().iter().map(fit).zip(known);
+    let best = fits.max_by(|a, b| a.0.total_cmp(&b.0));
+    best.is_some_and(|(_, best)| best.class() == Some(name.as_str()))
 }
 
 /// Horizontal distance, metres.

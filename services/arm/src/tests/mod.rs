@@ -1,8 +1,10 @@
 //! The arm in a simulated process on a robot that outlives it.
 
+mod called_off;
 mod fetch;
 mod full_disk;
 mod grasp;
+mod hand_over;
 mod kills;
 mod one_arm;
 mod orders;

@@ -44,15 +44,6 @@ fn pick_cancelled_before_closing_leaves_the_object() {
 }
 
 #[test]
-fn pick_cancelled_too_late_is_delivered() {
-    for phase in [PickPhase::Closing, PickPhase::Holding] {
-        let mut machine = Machine::picking(config_at(5.0), 4, phase);
-        machine.act(cancel(1, 4));
-        machine.delivers(1, 4);
-    }
-}
-
-#[test]
 fn pick_cancelled_before_its_order_never_starts() {
     let mut machine = Machine::new(config_at(20.0));
     machine.act(cancel(1, 4));

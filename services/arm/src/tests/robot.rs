@@ -26,6 +26,8 @@ struct Body {
     only_picks: bool,
     /// True if the gripper can feel.
     feels: bool,
+    /// True if what was held is lost.
+    dropped: bool,
     /// Number of coming grasps that fail.
     misses: u32,
     /// True if the fingers were commanded to close.
@@ -46,6 +48,7 @@ impl Robot {
             durable: state.pick,
             only_picks: false,
             feels: true,
+            dropped: false,
             misses: 0,
             closing: false,
             grasps: 0,
@@ -64,6 +67,11 @@ impl Robot {
 
     pub(super) fn lose_feeling(&self) {
         self.0.borrow_mut().feels = false;
+    }
+
+    /// What the grippers hold falls out of them.
+    pub(super) fn drop_object(&self) {
+        self.0.borrow_mut().dropped = true;
     }
 
     /// The next grasps find nothing.
@@ -118,7 +126,7 @@ impl ArmDriver for Robot {
             measured.velocity = [[0.0; 7]; 2];
         }
         for holding in &mut measured.holding {
-            *holding = holding.filter(|_| body.feels);
+            *holding = holding.filter(|_| body.feels).map(|holds| holds && !body.dropped);
         }
         measured
     }

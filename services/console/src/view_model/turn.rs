@@ -96,8 +96,8 @@ pub(super) fn turn(latest: &Latest, group: Option<&GroupStatus>) -> Turn {
 }
 
 fn is_fetching(arm: &ArmStatus) -> bool {
-    use PickPhase::{Accepted, Closing, Holding, Moving};
-    [Accepted, Moving, Closing, Holding].iter().any(|phase| arm.phase == *phase)
+    use PickPhase::{Accepted, Closing, Holding, Moving, Returning};
+    [Accepted, Moving, Closing, Holding, Returning].iter().any(|phase| arm.phase == *phase)
 }
 
 #[cfg(test)]

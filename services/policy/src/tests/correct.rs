@@ -107,8 +107,9 @@ fn a_late_no_to_the_question_before_denies_nothing() {
     assert_eq!(after.act, state.act);
 }
 
+/// The fingers had begun to open.
 #[test]
-fn what_the_arm_holds_already_is_handed_over() {
+fn what_has_arrived_already_is_handed_over() {
     let mut manager = manager();
     let (state, pick, object) = fetching(&mut manager);
     let denied = reply(&mut manager, &state, answer(Response::No));

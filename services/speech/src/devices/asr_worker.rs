@@ -69,21 +69,21 @@ impl AsrWorker {
     /// Its events are the state of the recogniser, interim results and results.
     pub(crate) fn start(settings: &Settings, work: &Path) -> (Self, Receiver<In<'static>>) {
         let (scene, speech) = (settings.scene.clone(), &settings.speech);
-        let gate = Gate::new(&scene, speech.accept_score_min as f32);
+        let score_min = speech.accept_score_min as f32;
         let backend = Backend::of(speech, work);
         let model = speech.whisper_model.clone();
         let open = move || {
+            let gate = Gate::new(&scene, score_min);
             let (first, unpronounceable) =
                 backend.open(&scene).map_err(|error| error.to_string())?;
             let second = model.map(|model| SecondOpinion::start(model, scene));
-            Ok(Opened { first, second, unpronounceable })
+            Ok(Opened { first, second, unpronounceable, gate })
         };
-        Self::with(open, gate, Limits::of(speech))
+        Self::with(open, Limits::of(speech))
     }
 
     fn with(
         open: impl FnOnce() -> Result<Opened, String> + Send + 'static,
-        gate: Gate,
         limits: Limits,
     ) -> (Self, Receiver<In<'static>>) {
         let (hints, hinted) = bounded(HINTS_MAX);
@@ -96,7 +96,7 @@ impl AsrWorker {
             // Without a receiver of its events the worker has no more to do.
             let publish = |state| drop(events.send(In::RecogniserState(state)));
             publish(EarState::Loading);
-            let recognisers = open().map(|opened| opened.ready(gate)).inspect_err(|reason| {
+            let recognisers = open().map(Opened::ready).inspect_err(|reason| {
                 tracing::warn!(reason, "speech cannot be recognised; typed text works");
             });
             publish(if recognisers.is_ok() { EarState::Ready } else { EarState::Off });
@@ -148,12 +148,13 @@ struct Opened {
     first: Box<dyn Recogniser>,
     second: Option<SecondOpinion>,
     unpronounceable: Vec<String>,
+    gate: Gate,
 }
 
 impl Opened {
     /// Returns the recognisers after a warning of what is missing.
-    fn ready(self, gate: Gate) -> Ensemble {
-        let Self { first, second, unpronounceable } = self;
+    fn ready(self) -> Ensemble {
+        let Self { first, second, unpronounceable, gate } = self;
         if !unpronounceable.is_empty() {
             tracing::warn!(?unpronounceable, "words of the scene that cannot be recognised");
         }

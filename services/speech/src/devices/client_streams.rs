@@ -25,7 +25,7 @@ pub(crate) const STREAMS_MAX: usize = 8;
 const CHUNKS_MAX: usize = 160;
 /// Longest gap that is filled with silence within an utterance, samples: half a second.
 const GAP_MAX: u64 = 8_000;
-/// Polling interval for paused streams.
+/// Polling interval for paused streams, and for events that wait.
 const POLL_EVERY: Duration = Duration::from_millis(250);
 /// A stream without chunks for this long has paused: its utterance ends.
 const PAUSE: Duration = Duration::from_secs(1);
@@ -83,7 +83,9 @@ struct OpenStream {
 impl Streams {
     fn run(mut self, chunks: &Receiver<Box<AudioChunk>>) {
         loop {
-            match chunks.recv_timeout(POLL_EVERY) {
+            let is_idle = self.open.is_empty() && self.queue.is_empty();
+            let pause = if is_idle { Duration::MAX } else { POLL_EVERY };
+            match chunks.recv_timeout(pause) {
                 Ok(chunk) => self.take(&chunk, clock::now()),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use messages::Service;
-use service::control::{Reply, Request, call};
+use service::control::{self, CallError, Reply, Request};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::status::{GroupStatus, ServiceState};
@@ -23,13 +23,28 @@ pub(super) const AFTER_SPEECH: &[Service] = &[Service::Grounding, Service::Polic
 /// the services.
 pub(super) struct Availability(Option<Box<GroupStatus>>);
 
+/// The question about them, which the supervisor answers while its asker does something else.
+pub(super) struct Asked(Result<control::Asked, CallError>);
+
+impl Asked {
+    /// Waits for the answer.
+    pub(super) fn answer(self) -> Availability {
+        match self.0.and_then(control::Asked::reply) {
+            Ok(Reply::Status(status)) => Availability(Some(status)),
+            _ => Availability(None),
+        }
+    }
+}
+
 impl Availability {
     /// Asks the supervisor.
+    pub(super) fn ask(paths: &GroupPaths) -> Asked {
+        Asked(control::ask(&paths.control_socket(), &Request::Status, STATUS_PATIENCE))
+    }
+
+    /// Asks the supervisor and waits for its answer.
     pub(super) fn now(paths: &GroupPaths) -> Self {
-        match call(&paths.control_socket(), &Request::Status, STATUS_PATIENCE) {
-            Ok(Reply::Status(status)) => Self(Some(status)),
-            _ => Self(None),
-        }
+        Self::ask(paths).answer()
     }
 
     /// Fails where the service does nothing for now.

@@ -9,7 +9,7 @@ use messages::{Change, Detection, Look, Sighting, TableView, topics};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
 use service::bus::{EncodedReader, EncodedWriter};
-use service::client::{Client, Polling, random_key};
+use service::client::{Client, Polling, random_number};
 use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -88,7 +88,7 @@ impl TableTopics {
     /// Sends a change under one key until it is answered. Returns the object's number.
     fn change(&mut self, change: Change, patience: Duration) -> Result<u16, Failure> {
         let (source, frame) = ("hand".to_owned(), "base".to_owned());
-        let sighting = Sighting { key: key(), source, frame, change };
+        let sighting = Sighting { key: random_number(), source, frame, change };
         let (until, mut polling) = (Instant::now() + patience, Polling::default());
         let mut sent: Option<Instant> = None;
         while Instant::now() < until {
@@ -263,13 +263,7 @@ fn sighting(line: &str, now: Time) -> Result<Sighting, String> {
     let at_ns = (now - Span::from_s(line.age_s)).ns();
     let look = Look { at_ns, whole: line.whole, seen: seen.collect() };
     let (source, frame) = (line.source, line.frame);
-    Ok(Sighting { key: key(), source, frame, change: Change::Look(look) })
-}
-
-fn key() -> u64 {
-    let mut key = [0; 8];
-    key.copy_from_slice(&random_key().0[..8]);
-    u64::from_le_bytes(key)
+    Ok(Sighting { key: random_number(), source, frame, change: Change::Look(look) })
 }
 
 #[cfg(test)]

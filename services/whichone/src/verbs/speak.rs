@@ -6,7 +6,7 @@ use messages::{
     GateVerdict, Hypothesis, Receipt, ReceiptStatus, SecondState, Service, Sound, Source, WireError,
 };
 use serde::Serialize;
-use service::client::Client;
+use service::client::{Client, deliver};
 use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -91,12 +91,15 @@ fn give_said(
     timeout: Duration,
     out: &mut Output<'_>,
 ) -> Outcome {
-    let services = Availability::now(paths);
-    services.require(Service::Speech)?;
+    let services = Availability::ask(paths);
     let client = Client::join(paths)?;
+    let (injections, receipts) = client.submissions()?;
+    let services = services.answer();
+    services.require(Service::Speech)?;
     let mut lookout = Lookout::with_shortages();
     let standstill = || lookout.news(paths);
-    let receipts = client.inject(sound, said, Span::from_s(timeout.as_secs_f64()), standstill)?;
+    let patience = Span::from_s(timeout.as_secs_f64());
+    let receipts = deliver(&injections, &receipts, sound, said, patience, standstill)?;
     print_all(&services, &receipts, out)
 }
 

@@ -7,7 +7,7 @@ use service::console_link;
 use service::control::{CallError, Request};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
-use service::launch::{self, Options};
+use service::launch::{self, LaunchError, Options};
 use service::status::GroupStatus;
 
 use super::{operate, paths};
@@ -32,13 +32,15 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
     let options = options(paths, &args.config, args.fresh)?;
     let name = paths.name();
     if !args.detach {
+        // Its problems are printed without the supervisor's log around them.
+        paths::settings(&args.config)?;
         note(format_args!("group {name} starts; Ctrl-C or `whichone down` stops it"));
         out.flush()?;
         return Err(launch::foreground(&launch::program(), &options, paths).into());
     }
     let ready = match args.wait {
-        None => start(paths, &options, None)?,
-        Some(WaitFor::Ready) => start(paths, &options, Some(args.timeout))?,
+        None => start(paths, &options, &args.config, None)?,
+        Some(WaitFor::Ready) => start(paths, &options, &args.config, Some(args.timeout))?,
     };
     let status = operate::status_of(paths)?;
     if out.is_json() {
@@ -56,7 +58,7 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
 /// Starts a detached group with everything ready, for a verb that needs one.
 pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<(), Failure> {
     let options = options(paths, config, false)?;
-    start(paths, &options, Some(Duration::from_secs(30))).map(drop)
+    start(paths, &options, config, Some(Duration::from_secs(30))).map(drop)
 }
 
 /// Returns true if a supervisor answers for the group.
@@ -79,10 +81,8 @@ fn refuse_twice(paths: &GroupPaths) -> Result<(), Failure> {
     Err(Failure::new(Exit::NotReached, format!("{what}; another --group may run beside it")))
 }
 
-/// Returns the supervisor's options. It checks the configuration itself; here it is checked
-/// first so that problems are printed without its log around them.
+/// Returns the supervisor's options.
 fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Options, Failure> {
-    paths::settings(config)?;
     Ok(Options {
         group: paths.name().clone(),
         config: paths::config_folder(config)?,
@@ -94,11 +94,24 @@ fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Optio
 
 /// Starts a detached supervisor and waits until it listens, and until every service is ready
 /// if requested. Returns the supervisor's message.
-fn start(paths: &GroupPaths, options: &Options, wait: Option<Duration>) -> Result<String, Failure> {
+fn start(
+    paths: &GroupPaths,
+    options: &Options,
+    config: &ConfigArgs,
+    wait: Option<Duration>,
+) -> Result<String, Failure> {
     let mut launched = launch::detached(&launch::program(), options, paths)?;
-    launched.wait_listening(EARLIER_SERVICES)?;
+    launched.wait_listening(EARLIER_SERVICES).map_err(|error| why(error, config))?;
     let Some(timeout) = wait else { return Ok("services are starting".to_owned()) };
     Ok(launch::wait_ready(paths, timeout)?)
+}
+
+/// Returns why a supervisor has ended. It checks the configuration, whose problems are printed here
+/// without its log around them; a check of our own before its start would only take time.
+fn why(error: LaunchError, config: &ConfigArgs) -> Failure {
+    let refused = error.exit() == Exit::Config;
+    let problems = refused.then(|| paths::settings(config).err()).flatten();
+    problems.unwrap_or_else(|| error.into())
 }
 
 #[cfg(test)]

@@ -204,7 +204,7 @@ pub(super) fn order_again(state: &mut State, at: Time) {
     state.act.id = state.act.id.next();
 }
 
-/// Orders the arm to leave the object that it was sent for, unless it already holds it.
+/// Orders the arm to leave the object that it was sent for, or to put it back if it already holds it.
 pub(super) fn call_off(state: &mut State, content: Content, at: Time) {
     let pick = state.open.as_ref().and_then(|open| open.pick);
     say_with(state, ActKind::Cancel, content, at);

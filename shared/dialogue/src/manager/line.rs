@@ -174,4 +174,6 @@ pub enum Content {
     NotHere,
     /// None of the scene's objects is left.
     SceneReplaced,
+    /// Putting back is called off at the user's request.
+    Keeping,
 }

@@ -241,7 +241,7 @@ impl Manager {
         }
         if state.act.kind == ActKind::PutBack {
             let pick = state.to_put_back();
-            say_with(state, ActKind::Cancel, Content::CallingOff, at);
+            say_with(state, ActKind::Cancel, Content::Keeping, at);
             state.act.pick = pick;
             state.note_putting_back(state.last_prompt);
         }

@@ -11,9 +11,6 @@ mod shape;
 #[cfg(test)]
 mod tests;
 
-/// Links that are fewer joints than this from the body cannot help being near it.
-const FIRST_LOOSE: usize = 2;
-
 /// The smallest distance between two groups of shapes, and which they are; or, where nothing is
 /// nearer than what was asked about, that distance and no names.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,14 +117,15 @@ impl<'a> ArmShape<'a> {
     /// Gap to torso, pedestal and head, if it is below `within_m`.
     pub fn to_trunk(&self, within_m: f64) -> Gap {
         let mut gap = Gap::none(within_m);
-        for (name, cuboid) in &self.arm.body.cuboids {
-            gap = gap.min(self.to_cuboid_from(FIRST_LOOSE, name, cuboid, gap.distance_m));
+        let (body, loose) = (&self.arm.body, &self.arm.loose);
+        for ((name, cuboid), loose) in body.cuboids.iter().zip(&loose.cuboids) {
+            gap = gap.min(self.some_to_cuboid(loose.iter().copied(), name, cuboid, gap.distance_m));
         }
-        for (name, capsule) in &self.arm.body.capsules {
+        for ((name, capsule), loose) in body.capsules.iter().zip(&loose.capsules) {
             let round = Ball::round_capsule(capsule);
-            for (i, own) in self.moved_by(FIRST_LOOSE) {
+            for &i in loose {
                 if self.balls[i].may_be_nearer(&round, gap.distance_m) {
-                    gap = gap.min(self.gap(own.to_capsule(capsule), i, name));
+                    gap = gap.min(self.gap(self.capsules[i].to_capsule(capsule), i, name));
                 }
             }
         }
@@ -136,30 +134,24 @@ impl<'a> ArmShape<'a> {
 
     /// Gap between the whole arm and a box of the surroundings, if it is below `within_m`.
     pub fn to_cuboid(&self, name: &'static str, cuboid: &Cuboid, within_m: f64) -> Gap {
-        self.to_cuboid_from(0, name, cuboid, within_m)
+        self.some_to_cuboid(0..self.capsules.len(), name, cuboid, within_m)
     }
 
-    fn to_cuboid_from(
+    fn some_to_cuboid(
         &self,
-        first: usize,
+        enclosures: impl Iterator<Item = usize>,
         name: &'static str,
         cuboid: &Cuboid,
         within_m: f64,
     ) -> Gap {
         let round = Ball::round_cuboid(cuboid);
         let mut gap = Gap::none(within_m);
-        for (i, own) in self.moved_by(first) {
+        for i in enclosures {
             if self.balls[i].may_be_nearer(&round, gap.distance_m) {
-                gap = gap.min(self.gap(own.to_cuboid(cuboid), i, name));
+                gap = gap.min(self.gap(self.capsules[i].to_cuboid(cuboid), i, name));
             }
         }
         gap
-    }
-
-    /// Returns the capsules that joint `first` and those after it move, with their numbers.
-    fn moved_by(&self, first: usize) -> impl Iterator<Item = (usize, &Capsule)> {
-        let moved = move |i: &usize| self.arm.enclosures[*i].joint >= first;
-        (0..self.capsules.len()).filter(moved).map(move |i| (i, &self.capsules[i]))
     }
 
     fn gap(&self, distance_m: f64, capsule: usize, other: &'static str) -> Gap {

@@ -1,6 +1,6 @@
 //! Limits of the joints: positions, velocities, accelerations and jerks.
 
-use crate::kinematics::limb::{JOINTS, Joints};
+use crate::kinematics::limb::Joints;
 
 /// The closed interval of positions of each joint, radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,11 +43,11 @@ impl PositionLimits {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Name, position and limits of the first joint of `q` outside its limits.
-    pub fn first_violation(&self, q: &Joints) -> Option<(&'static str, f64, (f64, f64))> {
+    /// Number (0 at the shoulder), position and limits of the first joint of `q` outside its limits.
+    pub fn first_violation(&self, q: &Joints) -> Option<(usize, f64, (f64, f64))> {
         (0..7)
             .find(|&i| !(self.0[i].0 <= q[i] && q[i] <= self.0[i].1))
-            .map(|i| (JOINTS[i], q[i], self.0[i]))
+            .map(|i| (i, q[i], self.0[i]))
     }
 
     /// Returns the excess of joint `i` at `q` over its limits, radians; 0 within.
@@ -112,7 +112,6 @@ impl MotionLimits {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::samples::full;
 
     #[test]
@@ -126,7 +125,7 @@ mod tests {
             let mut q = upper;
             q[j] = q[j].next_up();
             assert!(!limits.within(&q) && limits.margin_rad(&q) < 0.0);
-            assert_eq!(limits.first_violation(&q).unwrap().0, JOINTS[j]);
+            assert_eq!(limits.first_violation(&q).unwrap().0, j);
             assert_eq!(limits.clamp(&q), upper);
         }
         assert_eq!(limits.first_violation(&upper), None);

@@ -1,13 +1,14 @@
-//! The second half of a pick: lift, hand over, release, return; and the way home alone.
+//! The second half of a pick: lift, hand over, release, withdraw, return; and the way home alone.
 
 use nalgebra::{Isometry3, Translation3};
 
 use super::error::PlanError;
-use super::fetch::{ABOVE, Carry, HAND_OVER, HOME};
+use super::fetch::{ABOVE, Carry, HAND_OVER, HOME, WITHDRAWAL};
 use super::pick::planning_scene;
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::collision::Cuboid;
 use crate::gripper;
+use crate::kinematics::chain::{Chain, LineError};
 use crate::kinematics::limb::{Joints, Limb};
 use crate::planning::grasp::ObjectPose;
 use crate::robot::Robot;
@@ -19,11 +20,25 @@ pub(crate) const CORNER: usize = 6;
 /// Seconds that the fingers rest after they closed or opened.
 const SETTLE_S: f64 = 0.2;
 
+/// Distance by which the fingers withdraw beyond the top of what they have handed over, metres: clear
+/// of it and of the hand that holds it. Further up the motion may turn away.
+const WITHDRAWN_M: f64 = 0.06;
+
+/// Rounding of the corners of a withdrawal from where the arm stands, radians of joint distance.
+const BLEND_RAD: f64 = 0.15;
+
+/// A gripper whose tip is this far beside an object has nothing of it between its fingers, metres.
+const BESIDE_M: f64 = 0.03;
+
+/// Shares of that distance that are tried, the longest first: the arm may be near the end of its reach.
+const WITHDRAWN_SHARES: [f64; 3] = [1.0, 0.75, 0.5];
+
 /// The enclosing capsules end this far below the fingertips, and a little, metres.
 pub(crate) const BELOW_TIP_M: f64 = 0.005;
 
 /// Plans the rest of a pick for an arm that already holds `object`, given as it stood, at
-/// `object_in_gripper`: lift it if the gripper is still over its place, hand over, release, return.
+/// `object_in_gripper`: lift it if the gripper is still over its place, hand over, release, withdraw,
+/// return.
 ///
 /// # Errors
 /// [`PlanError`] if the hand over cannot be reached from here.
@@ -46,8 +61,9 @@ pub fn plan_delivery(
         line,
     })?;
     let width_m = scene.arm.gripper.closed_on(object.grasp_width_m);
-    let stages = deliver(&scene, &carrying, lift, width_m, Search::Yes)?;
-    Ok(Timeline::new(limb, stages))
+    let held = (object, object_in_gripper, width_m);
+    let stages = deliver(&scene, &carrying, lift, held, Search::Yes)?;
+    Ok(Timeline::new(scene.limb, stages))
 }
 
 /// Returns the rise left before the gripper may leave the object's place, metres; 0 elsewhere.
@@ -87,16 +103,54 @@ pub fn plan_return(
         motion: scene.motion(HOME, &way)?,
         width_m: (scene.open_m(), scene.open_m()),
     };
-    Ok(Timeline::new(limb, vec![stage]))
+    Ok(Timeline::new(scene.limb, vec![stage]))
 }
 
-/// Lift, hand over, release and return, from the low end of `lift`: `carrying` the object, and
-/// without it from the hand over on.
+/// Plans to withdraw an open gripper from an object that a person may be holding out between its
+/// fingers, given by its pose in the gripper: back along the fingers until their tips are clear of it.
+/// `None` where they are, or the limb cannot go that way.
+pub fn plan_withdrawal(
+    robot: &Robot,
+    object: &ObjectPose,
+    object_in_gripper: &Isometry3<f64>,
+    (limb, q): (Limb, &Joints),
+    settings: &PlanSettings,
+) -> Option<Trajectory> {
+    let (arm, tip) = (robot.arm(limb), object_in_gripper.inverse().translation);
+    let [x, y, _] = object.size_m;
+    let depth_m = depth_m(object, object_in_gripper);
+    if tip.x.hypot(tip.y) > 0.5 * x.hypot(y) + BESIDE_M || depth_m < -0.5 * WITHDRAWN_M {
+        return None;
+    }
+    let line = withdrawal(&arm.chain, q, depth_m).ok()?;
+    Trajectory::through(&line, BLEND_RAD, &arm.limits.at_speed_ratio(settings.speed_ratio)).ok()
+}
+
+/// Returns how far below the top of the object the fingertips are.
+fn depth_m(object: &ObjectPose, in_gripper: &Isometry3<f64>) -> f64 {
+    let tip = in_gripper.inverse().translation;
+    0.5 * object.size_m[2] - tip.z
+}
+
+/// Returns the straight joint path back along the fingers, from `depth_m` below the top of an object.
+fn withdrawal(chain: &Chain, from: &Joints, depth_m: f64) -> Result<Vec<Joints>, LineError> {
+    let gripper = chain.forward(from);
+    let back = |share: f64| {
+        let back_m = depth_m + share * WITHDRAWN_M;
+        chain.line(from, &(gripper * Translation3::new(0.0, 0.0, -back_m)))
+    };
+    let [longest, shorter @ ..] = WITHDRAWN_SHARES;
+    back(longest).or_else(|error| shorter.into_iter().find_map(|it| back(it).ok()).ok_or(error))
+}
+
+/// Lift, hand over, release, withdraw and return, from the low end of `lift`: `carrying` the object,
+/// and without it from the hand over on, with the user holding it there. It is given with its pose in
+/// the gripper and the width between the fingers that hold it.
 pub(crate) fn deliver(
     scene: &PlanningScene<'_>,
     carrying: &PlanningScene<'_>,
     lift: Vec<Joints>,
-    width_m: f64,
+    (object, in_gripper, width_m): (&ObjectPose, &Isometry3<f64>, f64),
     search: Search,
 ) -> Result<Vec<Stage>, PlanError> {
     let above = lift[lift.len() - 1];
@@ -108,14 +162,38 @@ pub(crate) fn deliver(
     let whole = carrying.motion(HAND_OVER, &waypoints)?;
     let (lift, hand_over) = whole.split(whole.time_nearest(&above));
     let open_m = scene.open_m();
-    let home = scene.motion(HOME, &home(scene, carry.end(), search)?)?;
+    let (withdraw, home) = withdraw(scene, carry.end(), (object, in_gripper), search)?;
     let closed = (width_m, width_m);
     Ok(vec![
         Stage { phase: Phase::Lift, motion: lift, width_m: closed },
         Stage { phase: Phase::HandOver, motion: hand_over, width_m: closed },
         fingers(scene, Phase::Release, carry.end(), (width_m, open_m)),
+        Stage { phase: Phase::Raise, motion: withdraw, width_m: (open_m, open_m) },
         Stage { phase: Phase::Return, motion: home, width_m: (open_m, open_m) },
     ])
+}
+
+/// Back along the fingers, and from there to the neutral posture without a stop between.
+fn withdraw(
+    scene: &PlanningScene<'_>,
+    from: &Joints,
+    (object, in_gripper): (&ObjectPose, &Isometry3<f64>),
+    search: Search,
+) -> Result<(Trajectory, Trajectory), PlanError> {
+    let limb = scene.limb;
+    let with_user = object.cuboid_at(&(scene.chain.forward(from) * in_gripper));
+    let around_it = scene.with_obstacle(("object that was handed over", with_user));
+    let back = withdrawal(scene.chain, from, depth_m(object, in_gripper));
+    let back = back.map_err(|line| PlanError::Line { at: WITHDRAWAL, limb, line })?;
+    let top = back[back.len() - 1];
+    let mut waypoints = back[..back.len().saturating_sub(CORNER).max(1)].to_vec();
+    waypoints.extend(home(&around_it, &top, search)?);
+    let whole = scene.motion(HOME, &waypoints)?;
+    let (withdraw, home) = whole.split(whole.time_nearest(&top));
+    match around_it.blocked_during(&home) {
+        None => Ok((withdraw, home)),
+        Some(gap) => Err(PlanError::Blocked { at: HOME, limb, gap }),
+    }
 }
 
 /// Returns the joint path to the neutral posture; straight up first if the direct one is blocked.

@@ -34,6 +34,7 @@ pub(crate) const ABOVE: &str = "the place above the object";
 pub(crate) const GRASP: &str = "the grasp";
 pub(crate) const LIFT: &str = "the lift";
 pub(crate) const HAND_OVER: &str = "the hand over";
+pub(crate) const WITHDRAWAL: &str = "clear of what was handed over";
 pub(crate) const HOME: &str = "the neutral posture";
 
 impl PlanSettings {
@@ -99,12 +100,9 @@ impl Carry {
                 }
             };
             for (_, end) in ends.into_iter().take(ENDS) {
-                match scene.blocked(&end) {
-                    Some(gap) => error = Some(PlanError::Blocked { at: HAND_OVER, limb, gap }),
-                    None => match scene.way(from, &end, search) {
-                        Some(waypoints) => return Ok(Self { waypoints, straight: false }),
-                        None => error = Some(scene.no_path(HAND_OVER, from, &end)),
-                    },
+                match way_to_end(scene, from, &end, search) {
+                    Ok(waypoints) => return Ok(Self { waypoints, straight: false }),
+                    Err(blocked) => error = Some(blocked),
                 }
             }
             tried.push(turn);
@@ -125,6 +123,19 @@ impl Carry {
 fn turn_of(k: usize) -> f64 {
     let side = if k % 2 == 1 { 1.0 } else { -1.0 };
     side * k.div_ceil(2) as f64 * 2.0 * PI / TURNS as f64
+}
+
+/// Returns the way through joint space to a posture at the hand over.
+fn way_to_end(
+    scene: &PlanningScene<'_>,
+    from: &Joints,
+    end: &Joints,
+    search: Search,
+) -> Result<Vec<Joints>, PlanError> {
+    if let Some(gap) = scene.blocked(end) {
+        return Err(PlanError::Blocked { at: HAND_OVER, limb: scene.limb, gap });
+    }
+    scene.way(from, end, search).ok_or_else(|| scene.no_path(HAND_OVER, from, end))
 }
 
 fn straight(

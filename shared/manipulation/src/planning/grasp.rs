@@ -143,6 +143,12 @@ impl ObjectPose {
         Cuboid { centre: self.xyz_m, size: self.size_m, yaw: self.yaw_rad }
     }
 
+    /// Returns the upright box around it where it stands at `pose` instead.
+    pub fn cuboid_at(&self, pose: &Isometry3<f64>) -> Cuboid {
+        let (along, at) = (pose.rotation * Vector3::x(), pose.translation);
+        Cuboid { centre: [at.x, at.y, at.z], size: self.size_m, yaw: along.y.atan2(along.x) }
+    }
+
     /// Every grasp from straight above: across each side that the fingers span, or, where a hollow
     /// object is wider than the gripper, on its rim.
     ///

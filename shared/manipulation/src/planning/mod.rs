@@ -14,7 +14,7 @@ mod put_back;
 mod retreat;
 mod static_obstacles;
 
-pub use deliver::{plan_delivery, plan_return};
+pub use deliver::{plan_delivery, plan_return, plan_withdrawal};
 pub use error::PlanError;
 pub use grasp::{Grasp, GraspError, ObjectPose};
 pub use pick::{check_reachable, plan_pick};

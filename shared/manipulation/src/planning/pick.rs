@@ -135,12 +135,7 @@ fn planning_scenes<'a>(
     others: &[Cuboid],
     settings: &'a PlanSettings,
 ) -> Result<Vec<PlanningScene<'a>>, PlanError> {
-    let mut limbs: Vec<Limb> = robot
-        .limbs()
-        .iter()
-        .copied()
-        .filter(|side| limb.is_none_or(|limb| limb == *side))
-        .collect();
+    let mut limbs = robot.limbs_of(limb);
     // The arm on the object's own side first.
     limbs.sort_by(|a, b| (b.side() * object.xyz_m[1]).total_cmp(&(a.side() * object.xyz_m[1])));
     limbs
@@ -173,7 +168,9 @@ impl Choice<'_> {
         let width_m = scene.arm.gripper.closed_on(self.grasp.width_m);
         let lift: Vec<Joints> = descent.iter().rev().copied().collect();
         let at_grasp = lift[0];
-        let delivery = deliver(scene, &carrying, lift, width_m, search);
+        let in_gripper = self.grasp.gripper.inverse() * object.isometry();
+        let held = (object, &in_gripper, width_m);
+        let delivery = deliver(scene, &carrying, lift, held, search);
         let delivery = delivery.map_err(|error| (6, error))?;
         // To above the grasp and straight down in one motion, with no stop between.
         let waypoints = [&way[..], &descent[CORNER.min(descent.len() - 1)..]].concat();

@@ -95,10 +95,11 @@ impl<'a> PlanningScene<'a> {
         (place_m, lowest_z_m): ([f64; 3], f64),
         settings: &'a PlanSettings,
     ) -> Result<Self, PlanError> {
-        refuse_outside(robot.arm(limb).chain.limits(), &arms[limb])?;
+        let arm = robot.arm(limb);
+        let limb = arm.limb;
+        refuse_outside(arm.chain.limits(), &arms[limb])?;
         let mut surroundings = static_obstacles::table(settings.table_z_m, place_m, lowest_z_m);
         surroundings.extend(static_obstacles::objects(others, settings.table_z_m));
-        let arm = robot.arm(limb);
         Ok(Self {
             limb,
             arm,
@@ -119,6 +120,13 @@ impl<'a> PlanningScene<'a> {
     /// Width to which the gripper opens, metres.
     pub(crate) fn open_m(&self) -> f64 {
         self.arm.gripper.width_m(self.settings.open_percent)
+    }
+
+    /// Returns the same with one more obstacle.
+    pub(crate) fn with_obstacle(&self, obstacle: Obstacle) -> Self {
+        let mut scene = self.clone();
+        scene.surroundings.push(obstacle);
+        scene
     }
 
     /// Adds the board that the object to be fetched stands on, as wide as the hand.
@@ -256,7 +264,7 @@ impl<'a> PlanningScene<'a> {
 
     /// Returns the obstacle too near during a motion. It is checked at intervals of [`CHECK_S`]; what moves
     /// between two checks is never further from one of them than half of its way.
-    fn blocked_during(&self, motion: &Trajectory) -> Option<Gap> {
+    pub(crate) fn blocked_during(&self, motion: &Trajectory) -> Option<Gap> {
         let checks = (motion.duration_s() / CHECK_S).ceil() as usize;
         let at = |k: usize| self.look(&motion.sample(k as f64 * CHECK_S).0);
         let (mut now, mut before_m) = (at(0), 0.0);

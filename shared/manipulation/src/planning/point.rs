@@ -49,9 +49,10 @@ pub fn plan_point(
 ) -> Result<Timeline, PlanError> {
     let mut furthest = Furthest::default();
     let mut choices = Vec::new();
-    let sides = robot.limbs().iter().copied().filter(|side| limb.is_none_or(|limb| limb == *side));
     let place = (target_m, target_m[2] - LOWER_M);
-    let scenes: Vec<_> = sides
+    let scenes: Vec<_> = robot
+        .limbs_of(limb)
+        .into_iter()
         .map(|side| PlanningScene::new(robot, side, arms, others, place, settings))
         .collect::<Result<_, PlanError>>()?;
     for scene in &scenes {

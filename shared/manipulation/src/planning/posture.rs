@@ -28,7 +28,8 @@ const ROOMY_M: f64 = 0.05;
 /// over which it can be avoided takes.
 const ELBOW_S: f64 = 6.0;
 
-/// The joints whose links are the elbow: the upper arm's turn and the elbow's own.
+/// The joints whose links are the elbow. Of seven they are the upper arm's turn and the elbow's own; of six
+/// the elbow's, whose link begins there, and the one behind it.
 const ELBOW: std::ops::RangeInclusive<usize> = 2..=3;
 
 /// Height above the table from which an elbow is not low, metres.

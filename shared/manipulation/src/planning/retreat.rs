@@ -45,6 +45,7 @@ pub fn plan_retreat(
     settings: &PlanSettings,
 ) -> Result<Option<Trajectory>, PlanError> {
     let arm = robot.arm(limb);
+    let limb = arm.limb;
     let (from, limits) = (arms[limb], arm.chain.limits());
     refuse_outside(&widened(limits, |_, bound| bound, OUTSIDE_MAX_RAD), &from)?;
     let within = limits.clamp(&from);

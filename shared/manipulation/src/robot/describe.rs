@@ -7,7 +7,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use robot_model::{Body as Shaped, Joint, JointKind, Limits, Robot as Description, Shape};
 
 use super::fingers::gripper;
-use super::{Arm, Body, Enclosure, Robot, pairs};
+use super::{Arm, Body, Enclosure, Robot, Touch};
 use crate::collision::{ArmShape, Capsule, Cuboid};
 use crate::kinematics::chain::{Axis, Chain, ZeroPosture};
 use crate::kinematics::limb::{Joints, Limb};
@@ -113,11 +113,14 @@ fn arm(
     );
     let chain = Chain::new(&posture(description, &joints, &tip), limits.position);
     let enclosures = enclosures(description, name, &joints, &chain)?;
+    let touch = Touch::new(&chain, &enclosures, may_touch(description, name));
+    let (pairs, loose) = (touch.pairs(), touch.loose(body));
     let mut arm = Arm {
         limb,
         name: name.to_owned(),
         joint_names: joints.iter().map(|joint| joint.name.clone()).collect(),
-        pairs: pairs(&chain, &enclosures, &may_touch(description, name)),
+        pairs,
+        loose,
         gripper: gripper(description, name)?,
         chain,
         limits,

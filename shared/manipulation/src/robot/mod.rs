@@ -49,6 +49,8 @@ pub struct Arm {
     pub(crate) enclosures: Vec<Enclosure>,
     /// Pairs of enclosures that must not touch.
     pub(crate) pairs: Vec<(usize, usize)>,
+    /// Enclosures that must not touch the body.
+    pub(crate) loose: Loose,
     /// Mount of the limb.
     pub(crate) body: Arc<Body>,
 }
@@ -69,6 +71,13 @@ pub(crate) struct Enclosure {
 pub(crate) struct Body {
     pub(crate) cuboids: Vec<(&'static str, Cuboid)>,
     pub(crate) capsules: Vec<(&'static str, Capsule)>,
+}
+
+/// For each shape of the body, the enclosures of an arm that must not touch it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Loose {
+    pub(crate) cuboids: Vec<Vec<usize>>,
+    pub(crate) capsules: Vec<Vec<usize>>,
 }
 
 impl Robot {
@@ -104,6 +113,11 @@ impl Robot {
         &self.arms[limb]
     }
 
+    /// Returns the limbs that are asked for: all of them, or one, see [`Robot::arm`].
+    pub(crate) fn limbs_of(&self, asked: Option<Limb>) -> Vec<Limb> {
+        asked.map_or_else(|| self.limbs().to_vec(), |limb| vec![self.arm(limb).limb])
+    }
+
     /// Both limbs at rest; the only one twice.
     pub fn neutral(&self) -> [Joints; 2] {
         self.arms.each_ref().map(|arm| arm.neutral)
@@ -131,34 +145,74 @@ fn placed(chain: &Chain, enclosures: &[Enclosure], q: &Joints) -> Vec<Capsule> {
     enclosures.iter().map(place).collect()
 }
 
-/// Postures for finding the capsules that always overlap.
+/// Postures for finding the shapes that always overlap.
 const POSTURES: u32 = 60;
 
-/// Returns the pairs of enclosures that must not touch: of links at least two joints apart, unless
-/// the description lets them, or they overlap wherever the arm is: enclosures are wider than what
-/// they enclose.
-fn pairs(
-    chain: &Chain,
-    enclosures: &[Enclosure],
-    may_touch: &[(String, String)],
-) -> Vec<(usize, usize)> {
-    let excused =
-        |a: &str, b: &str| may_touch.iter().any(|(c, d)| (a == c && b == d) || (a == d && b == c));
-    let apart = |(i, j): &(usize, usize)| {
-        let (a, b) = (&enclosures[*i], &enclosures[*j]);
-        b.joint >= a.joint + 2 && !excused(a.link, b.link)
-    };
-    let count = enclosures.len();
-    let all = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
-    let mut wanted: Vec<_> = all.filter(apart).map(|pair| (pair, true)).collect();
-    for k in 0..POSTURES {
-        // Strides without a common period: each joint goes through its whole range.
-        let share =
-            std::array::from_fn(|i| (f64::from(k) * 0.618 * (1.0 + 0.37 * i as f64)).fract());
-        let capsules = placed(chain, enclosures, &chain.limits().at(&share));
-        for ((i, j), always) in &mut wanted {
-            *always &= capsules[*i].to_capsule(&capsules[*j]) < 0.0;
+/// Shapes of one limb, for deciding which of them must not touch what.
+pub(crate) struct Touch<'a> {
+    enclosures: &'a [Enclosure],
+    /// Pairs of links that may touch, without the limb's name.
+    may_touch: Vec<(String, String)>,
+    /// The enclosures in postures that together use the whole range of every joint.
+    placed: Vec<Vec<Capsule>>,
+}
+
+impl<'a> Touch<'a> {
+    pub(crate) fn new(
+        chain: &Chain,
+        enclosures: &'a [Enclosure],
+        may_touch: Vec<(String, String)>,
+    ) -> Self {
+        let at = |k: u32| {
+            // Strides without a common period: each joint goes through its whole range.
+            let share =
+                std::array::from_fn(|i| (f64::from(k) * 0.618 * (1.0 + 0.37 * i as f64)).fract());
+            placed(chain, enclosures, &chain.limits().at(&share))
+        };
+        Self { enclosures, may_touch, placed: (0..POSTURES).map(at).collect() }
+    }
+
+    fn is_excused(&self, a: &str, b: &str) -> bool {
+        self.may_touch.iter().any(|(c, d)| (a == c && b == d) || (a == d && b == c))
+    }
+
+    /// Returns whether shapes overlap wherever the arm is: they are wider than what they enclose.
+    fn always(&self, overlap: impl Fn(&[Capsule]) -> bool) -> bool {
+        self.placed.iter().all(|capsules| overlap(capsules))
+    }
+
+    /// Returns the pairs of enclosures that must not touch: of links at least two joints apart, unless
+    /// the description lets them, or they always overlap.
+    pub(crate) fn pairs(&self) -> Vec<(usize, usize)> {
+        let count = self.enclosures.len();
+        let all = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
+        let apart = |(i, j): &(usize, usize)| {
+            let (a, b) = (&self.enclosures[*i], &self.enclosures[*j]);
+            b.joint >= a.joint + 2
+                && !self.is_excused(a.link, b.link)
+                && !self.always(|capsules| capsules[*i].to_capsule(&capsules[*j]) < 0.0)
+        };
+        all.filter(apart).collect()
+    }
+
+    /// Returns the enclosures that must not touch the body's shapes: of links behind the second joint,
+    /// and those between it and the first, again unless the description lets them or they always overlap.
+    pub(crate) fn loose(&self, body: &Body) -> Loose {
+        let from = |name: &str, overlap: &dyn Fn(&Capsule) -> bool| -> Vec<usize> {
+            let is_loose = |i: &usize| {
+                let Enclosure { joint, link, .. } = self.enclosures[*i];
+                let free = || {
+                    !self.is_excused(link, name) && !self.always(|capsules| overlap(&capsules[*i]))
+                };
+                joint >= 2 || joint == 1 && free()
+            };
+            (0..self.enclosures.len()).filter(is_loose).collect()
+        };
+        let cuboids = body.cuboids.iter();
+        let capsules = body.capsules.iter();
+        Loose {
+            cuboids: cuboids.map(|(n, c)| from(n, &|own| own.to_cuboid(c) < 0.0)).collect(),
+            capsules: capsules.map(|(n, c)| from(n, &|own| own.to_capsule(c) < 0.0)).collect(),
         }
     }
-    wanted.into_iter().filter(|(_, always)| !always).map(|(pair, _)| pair).collect()
 }

@@ -30,12 +30,13 @@ pub struct Trajectory {
 pub enum TrajectoryError {
     /// A posture leaves a joint's limits.
     #[error(
-        "joint {joint} would be at {position_rad:.4} rad, outside its limits {lower_rad:.4} to \
-         {upper_rad:.4} rad"
+        "joint {} from the shoulder would be at {position_rad:.4} rad, outside its limits \
+         {lower_rad:.4} to {upper_rad:.4} rad",
+        joint + 1
     )]
     OutsideLimits {
-        /// The joint without its limb, e.g. `s0`.
-        joint: &'static str,
+        /// Number of the joint, 0 at the shoulder.
+        joint: usize,
         /// Its position, radians.
         position_rad: f64,
         /// Its lower limit, radians.
@@ -44,10 +45,13 @@ pub enum TrajectoryError {
         upper_rad: f64,
     },
     /// A state to begin or end with moves faster than allowed.
-    #[error("joint {joint} would have {what} {value:.3}, and its limit is {limit:.3}")]
+    #[error(
+        "joint {} from the shoulder would have {what} {value:.3}, and its limit is {limit:.3}",
+        joint + 1
+    )]
     TooFast {
-        /// The joint without its limb.
-        joint: &'static str,
+        /// Number of the joint, 0 at the shoulder.
+        joint: usize,
         /// `velocity` (rad/s) or `acceleration` (rad/s²).
         what: &'static str,
         /// Its value.

@@ -8,7 +8,7 @@ use rsruckig::prelude::{
     DataArrayOrVec, InputParameter, Ruckig, RuckigResult, ThrowErrorHandler, Trajectory as Profiles,
 };
 
-use crate::kinematics::limb::{JOINTS, Joints};
+use crate::kinematics::limb::Joints;
 use crate::kinematics::limits::MotionLimits;
 use crate::trajectory::joint_trajectory::TrajectoryError;
 use crate::trajectory::path::{Path, Piece};
@@ -43,8 +43,8 @@ impl State {
             ("acceleration", &self.qdd, &limits.acceleration),
         ] {
             let beyond = |j: &usize| values[*j].is_nan() || values[*j].abs() > most[*j];
-            if let Some(j) = (0..7).find(beyond) {
-                let (joint, value, limit) = (JOINTS[j], values[j], most[j]);
+            if let Some(joint) = (0..7).find(beyond) {
+                let (value, limit) = (values[joint], most[joint]);
                 return Err(TrajectoryError::TooFast { joint, what, value, limit });
             }
         }

@@ -6,8 +6,9 @@ use crate::gripper;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::trajectory::joint_trajectory::Trajectory;
 
-/// The stages of plans. A pick goes from `Approach` to `Return`; pointing is `Aim`, `Hold`, `Return`;
-/// putting back is `Take`, `Close`, `CarryBack`, `Lower`, `Release`, `Raise`, `Return`.
+/// The stages of plans. A pick is `Approach`, `Close`, `Lift`, `HandOver`, `Release`, `Raise`, `Return`;
+/// pointing is `Aim`, `Hold`, `Return`; putting back is `Take`, `Close`, `CarryBack`, `Lower`, `Release`,
+/// `Raise`, `Return`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
@@ -31,7 +32,7 @@ pub enum Phase {
     CarryBack,
     /// Straight down to it.
     Lower,
-    /// Straight up, fingers open.
+    /// Straight up from its place, or back along the fingers from where it was handed over.
     Raise,
     /// Back to the neutral posture.
     Return,

@@ -5,7 +5,8 @@ use manipulation::{
     plan_return,
 };
 
-use super::support::tables::settings;
+use super::support::tables::{Bench, settings};
+use super::support::ur5e;
 use super::{arms_with, marker, robot};
 
 /// Why `object` cannot be picked from neutral arms.
@@ -49,4 +50,17 @@ fn postures_that_no_plan_may_start_in_are_refused() {
     let tucked = arms_with(Limb::Right, tuck.try_into().unwrap());
     let error = plan_return(robot(), Limb::Right, &tucked, &[], &settings()).unwrap_err();
     assert!(error.to_string().contains("present posture"), "{error}");
+}
+
+#[test]
+fn limb_that_a_robot_lacks_stands_for_its_only_one() {
+    let (robot, settings) = (ur5e(), Bench::ur5e().settings);
+    let block = ObjectPose { xyz_m: [0.55, 0.1, 0.02], size_m: [0.04; 3], ..marker() };
+    let neutral = robot.neutral();
+    for limb in [Limb::Left, Limb::Right, Limb::Only].map(Some) {
+        let pick = plan_pick(&robot, &block, limb, &neutral, &[], &settings).unwrap();
+        let point = plan_point(&robot, block.xyz_m, limb, &neutral, &[], &settings).unwrap();
+        assert_eq!((pick.limb(), point.limb()), (Limb::Only, Limb::Only));
+        assert_eq!(check_reachable(&robot, &[block], limb, &settings), [Ok(Limb::Only)]);
+    }
 }

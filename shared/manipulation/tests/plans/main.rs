@@ -68,9 +68,9 @@ fn assert_sound(plan: &Timeline, others: &[Cuboid], what: &str) {
 /// The gripper is at a grasp when it closes, goes straight down before and up after, and lets go
 /// where the person waits.
 fn assert_fetches(plan: &Timeline, object: &ObjectPose, what: &str) {
-    use Phase::{Approach, Close, HandOver, Lift, Release, Return};
+    use Phase::{Approach, Close, HandOver, Lift, Raise, Release, Return};
     let phases: Vec<Phase> = plan.stages().iter().map(|stage| stage.phase).collect();
-    assert_eq!(phases, [Approach, Close, Lift, HandOver, Release, Return], "{what}");
+    assert_eq!(phases, [Approach, Close, Lift, HandOver, Release, Raise, Return], "{what}");
     let span = |phase| plan.span_s(phase).unwrap();
     let (closes_s, closed_s) = span(Close);
     let (lifts_s, lifted_s) = span(Lift);

@@ -15,7 +15,7 @@ pub const JOINT_STATE_NAMES: [&str; JOINT_STATE_LEN] = [
     "torso_t0",
 ];
 
-wire_codes!(PickPhase { Idle = 0, Accepted = 1, Moving = 2, Closing = 3, Holding = 4, Done = 5, });
+wire_codes!(PickPhase { Idle = 0, Accepted = 1, Moving = 2, Closing = 3, Holding = 4, Done = 5, Returning = 6, });
 wire_codes!(PickOutcome {
     Pending = 0,
     Delivered = 1,
@@ -94,7 +94,7 @@ impl ArmStatus {
 }
 
 wire_struct! {
-    /// Joint states at 100 Hz, in the order of [`JOINT_STATE_NAMES`]. Arm to clients.
+    /// Joint states, at 100 Hz while the arm is busy, in the order of [`JOINT_STATE_NAMES`]. Arm to clients.
     JointStates = "JointStates" {
         /// When the joints were so.
         at_ns: u64,

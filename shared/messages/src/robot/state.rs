@@ -59,6 +59,10 @@ wire_enum! {
         Miss = 7,
         /// Something holds a limb for some seconds, so that it cannot follow.
         Obstruct = 8,
+        /// A person puts an object at `place`, wherever it was; not one that is in a gripper.
+        Put = 9,
+        /// A person takes an object off the table.
+        Take = 10,
     }
 }
 
@@ -70,9 +74,15 @@ wire_struct! {
         key: u64,
         /// Seconds or a number, after the kind.
         amount: f64,
+        /// Key of the scene file that `object` is from.
+        scene_key: u64,
+        /// Where the object is put: centre in frame `base`, metres, and yaw, radians.
+        place: [f64; 4],
+        /// Which object of the scene file is put or taken.
+        object: u16,
         /// [`DrillKind`].
         kind: Code<DrillKind>,
         /// Zero.
-        reserved: [u8; 7],
+        reserved: [u8; 5],
     }
 }

@@ -16,7 +16,7 @@ use std::rc::Rc;
 macro_rules! open_topic {
     ($bus:expr, $topic:expr, $payload:ty) => {{
         use iceoryx2::prelude::ServiceName;
-        use messages::topics::{NODES_MAX, READERS_MAX};
+        use messages::topics::NODES_MAX;
         let (bus, topic): (&$crate::bus::Bus, &messages::topics::Topic) = ($bus, $topic);
         let failed = |cause: String| $crate::bus::BusError::ipc(topic.name, cause);
         let name = ServiceName::new(topic.name).map_err(|e| failed(format!("{e:?}")))?;
@@ -27,7 +27,7 @@ macro_rules! open_topic {
             .publish_subscribe::<$payload>()
             .user_header::<messages::Stamp>()
             .max_publishers(topic.writers_max)
-            .max_subscribers(READERS_MAX)
+            .max_subscribers(topic.readers_max)
             .max_nodes(NODES_MAX)
             .subscriber_max_buffer_size(topic.buffer_max())
             .subscriber_max_borrowed_samples(1)

@@ -57,6 +57,15 @@ fn of(group: &str) -> String {
 /// # Errors
 /// No reply, or a refusal; see [`CallError`].
 pub fn call(path: &Path, request: &Request, timeout: Duration) -> Result<Reply, CallError> {
+    ask(path, request, timeout)?.reply()
+}
+
+/// Sends a request to the supervisor at control socket `path`, whose reply is waited for later, at most
+/// `timeout`.
+///
+/// # Errors
+/// It cannot be sent; see [`CallError`].
+pub fn ask(path: &Path, request: &Request, timeout: Duration) -> Result<Asked, CallError> {
     let failed = |error: io::Error| explain(error, path, timeout);
     let mut stream = UnixStream::connect(path).map_err(failed)?;
     stream.set_read_timeout(Some(timeout)).map_err(failed)?;
@@ -64,15 +73,35 @@ pub fn call(path: &Path, request: &Request, timeout: Duration) -> Result<Reply, 
     let mut line = serde_json::to_string(request).map_err(|e| failed(e.into()))?;
     line.push('\n');
     stream.write_all(line.as_bytes()).map_err(failed)?;
-    let mut answer = String::new();
-    BufReader::new(stream).read_line(&mut answer).map_err(failed)?;
-    if !answer.ends_with('\n') {
-        return Err(CallError::Closed(group_of(path)));
-    }
-    match serde_json::from_str(&answer) {
-        Ok(Reply::Refused(refusal)) => Err(CallError::Refused(refusal)),
-        Ok(reply) => Ok(reply),
-        Err(error) => Err(CallError::unintelligible(path, error)),
+    Ok(Asked { stream, path: path.to_owned(), timeout })
+}
+
+/// A request that has been sent.
+#[derive(Debug)]
+pub struct Asked {
+    stream: UnixStream,
+    path: PathBuf,
+    timeout: Duration,
+}
+
+impl Asked {
+    /// Waits for the reply.
+    ///
+    /// # Errors
+    /// No reply, or a refusal; see [`CallError`].
+    pub fn reply(self) -> Result<Reply, CallError> {
+        let Self { stream, path, timeout } = self;
+        let mut answer = String::new();
+        let read = BufReader::new(stream).read_line(&mut answer);
+        read.map_err(|error| explain(error, &path, timeout))?;
+        if !answer.ends_with('\n') {
+            return Err(CallError::Closed(group_of(&path)));
+        }
+        match serde_json::from_str(&answer) {
+            Ok(Reply::Refused(refusal)) => Err(CallError::Refused(refusal)),
+            Ok(reply) => Ok(reply),
+            Err(error) => Err(CallError::unintelligible(&path, error)),
+        }
     }
 }
 

@@ -114,7 +114,8 @@ export function marks(scene, { dialogue, arm, world }) {
   if (pointed >= 0) found.set(pointed, "pointed");
   const underWay = arm?.object && !["idle", "done"].includes(arm.phase);
   const picked = underWay ? place(arm.object) : -1;
-  if (picked >= 0) found.set(picked, arm.phase === "holding" ? "held" : "picking");
+  const holds = ["holding", "returning"].includes(arm?.phase);
+  if (picked >= 0) found.set(picked, holds ? "held" : "picking");
   const held = typeof world?.held === "string" ? place(world.held) : world?.held;
   if (Number.isInteger(held) && held >= 0) found.set(held, "held");
   return found;

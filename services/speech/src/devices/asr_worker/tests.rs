@@ -42,16 +42,20 @@ impl Recogniser for Stub {
 fn worker(
     open: impl FnOnce() -> Result<Opened, String> + Send + 'static,
 ) -> (AsrWorker, Receiver<In<'static>>) {
-    let gate = Gate::new(&bowls(), Gate::THRESHOLD);
     let segmenter = SegmenterOptions::default();
     let limits = Limits { segmenter, longest_s: 10.0, patience: Duration::from_millis(600) };
-    let (worker, events) = AsrWorker::with(open, gate, limits);
+    let (worker, events) = AsrWorker::with(open, limits);
     assert_eq!(next(&events), In::RecogniserState(EarState::Loading));
     (worker, events)
 }
 
-fn alone(stub: Stub) -> Opened {
-    Opened { first: Box::new(stub), second: None, unpronounceable: vec!["qwz".to_owned()] }
+fn gate() -> Gate {
+    Gate::new(&bowls(), Gate::THRESHOLD)
+}
+
+fn alone(stub: impl Recogniser + 'static) -> Opened {
+    let unpronounceable = vec!["qwz".to_owned()];
+    Opened { first: Box::new(stub), second: None, unpronounceable, gate: gate() }
 }
 
 fn ready(fails: bool) -> (AsrWorker, Receiver<In<'static>>) {

@@ -30,6 +30,11 @@ impl EventQueue {
         self.dropped
     }
 
+    /// Returns true if no event waits for room.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
     /// Sends an event as soon as there is room.
     pub(crate) fn send(&mut self, event: In<'static>) {
         self.flush();

@@ -18,6 +18,8 @@ use crate::stream_events::{Began, StreamEvent, next_sound};
 
 /// Timeout of one read.
 const READ_TIMEOUT: Duration = Duration::from_millis(50);
+/// Interval at which a closed microphone offers events that wait for room.
+const RETRY_EVERY: Duration = Duration::from_secs(1);
 const HELP: &str = "help: run `whichone doctor`; set the program in speech.toml, table [microphone], \
     key command; or install alsa-utils";
 /// A program that has delivered samples for this long works: its end does not count as a failure.
@@ -88,7 +90,8 @@ impl Worker {
                 self.check_timeout();
             } else {
                 self.close();
-                match requests.recv_timeout(Duration::from_secs(1)) {
+                let pause = if self.queue.is_empty() { Duration::MAX } else { RETRY_EVERY };
+                match requests.recv_timeout(pause) {
                     Ok(talk) => self.begin(talk),
                     Err(RecvTimeoutError::Timeout) => {}
                     Err(RecvTimeoutError::Disconnected) => return,

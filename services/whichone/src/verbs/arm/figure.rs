@@ -7,12 +7,13 @@ use nalgebra::Vector3;
 use super::Pick;
 
 /// Phases with their names.
-pub(super) const PHASES: [(Phase, &str); 6] = [
+pub(super) const PHASES: [(Phase, &str); 7] = [
     (Phase::Approach, "approach"),
     (Phase::Close, "close"),
     (Phase::Lift, "lift"),
     (Phase::HandOver, "hand over"),
     (Phase::Release, "release"),
+    (Phase::Raise, "withdraw"),
     (Phase::Return, "return"),
 ];
 

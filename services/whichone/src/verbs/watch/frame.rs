@@ -169,11 +169,14 @@ fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
         PickPhase::Accepted if puts_back => format!("is to put {object} back"),
         PickPhase::Moving if puts_back => format!("comes for {object}, {left} to go"),
         PickPhase::Closing if puts_back => format!("takes {object}, {left} to go"),
-        PickPhase::Holding if puts_back => format!("puts {object} back, {left} to go"),
+        PickPhase::Holding | PickPhase::Returning if puts_back => {
+            format!("puts {object} back, {left} to go")
+        }
         PickPhase::Accepted => format!("sets out for {object}"),
         PickPhase::Moving => format!("moves to {object}, {left} to go"),
         PickPhase::Closing => format!("grasps {object}, {left} to go"),
         PickPhase::Holding => format!("brings {object}, {left} to go"),
+        PickPhase::Returning => format!("returns {object} to its place, {left} to go"),
         PickPhase::Done => match arm.outcome.get() {
             PickOutcome::Delivered => format!("has delivered {object}"),
             PickOutcome::PutBack => format!("has put {object} back"),

@@ -22,6 +22,14 @@ use crate::kinematics::limb::Joints;
 const SKEW: f64 = 0.01;
 const OFFSET_M: f64 = 0.002;
 
+/// The same of an arm that the closed form solves by itself.
+const EXACT: f64 = 1e-9;
+
+/// Sine of the fifth joint below which the wrist counts as straight, and distance below which a point
+/// counts as on an axis, metres.
+const STRAIGHT: f64 = 1e-3;
+const ON_AXIS_M: f64 = 1e-3;
+
 /// Length of a projection below which its direction means nothing.
 const SINGULAR: f64 = 1e-7;
 
@@ -38,6 +46,8 @@ pub(crate) struct Six {
     wrist: Vector3<f64>,
     /// `true` for `Elbow`.
     elbow: bool,
+    /// `true` if the arm does not deviate from its family.
+    exact: bool,
 }
 
 /// A posture, and whether it reaches the target. One that does not is stretched towards it.
@@ -51,23 +61,38 @@ impl Six {
     /// Returns the closed form of an arm with six joints, if it belongs to a family.
     pub(crate) fn of(posture: &ZeroPosture) -> Option<Self> {
         let mut axes: [Axis; 6] = posture.axes[..6].try_into().ok()?;
-        let parallel = |a: &Axis, b: &Axis| a.direction.cross(&b.direction).norm() < SKEW;
-        if !parallel(&axes[1], &axes[2]) || axes[0].direction.cross(&axes[1].direction).norm() < 0.1
-        {
+        let skew = |a: &Axis, b: &Axis| a.direction.cross(&b.direction).norm();
+        let parallel = |a: &Axis, b: &Axis| skew(a, b) < SKEW;
+        if !parallel(&axes[1], &axes[2]) || skew(&axes[0], &axes[1]) < 0.1 {
             return None;
         }
         let wrist = meeting(&axes[4], &axes[5])?;
         let elbow = parallel(&axes[1], &axes[3]);
-        let meets_fourth = (axes[3].foot(&wrist) - wrist).norm() < OFFSET_M;
-        if !elbow && (!meets_fourth || parallel(&axes[3], &axes[4])) {
+        let off = |axis: &Axis| (axis.foot(&wrist) - wrist).norm();
+        if !elbow && (off(&axes[3]) > OFFSET_M || parallel(&axes[3], &axes[4])) {
             return None;
         }
+        let fourth = if elbow { skew(&axes[1], &axes[3]) } else { off(&axes[3]) };
+        let deviations = [skew(&axes[1], &axes[2]), off(&axes[4]), off(&axes[5]), fourth];
+        let exact = deviations.iter().all(|deviation| *deviation < EXACT);
         // Exactly parallel from here on, in the sense in which each turns.
         let along = axes[1].direction;
         for axis in axes[2..].iter_mut().take(if elbow { 2 } else { 1 }) {
             axis.direction = along * axis.direction.dot(&along).signum();
         }
-        Some(Self { axes, untool: posture.tool.inverse(), wrist, elbow })
+        Some(Self { axes, untool: posture.tool.inverse(), wrist, elbow, exact })
+    }
+
+    /// Returns whether [`Six::postures`] are all that there are, with `q` one of them: not if the arm
+    /// deviates from its family, nor if some joints can turn against each other, as with a straight wrist.
+    pub(crate) fn is_isolated(&self, q: &Joints) -> bool {
+        let [first, second, third, fourth, fifth, sixth] = &self.axes;
+        let last = turned(fifth, q[4]).rotation * sixth.direction;
+        let corner = if self.elbow { fourth.point } else { self.wrist };
+        let corner = turned(second, q[1]) * turned(third, q[2]) * nalgebra::Point3::from(corner);
+        let off = |axis: &Axis| (axis.foot(&corner.coords) - corner.coords).norm() > ON_AXIS_M;
+        let is_bent = fourth.direction.cross(&last).norm() > STRAIGHT;
+        self.exact && is_bent && off(second) && (self.elbow || off(first))
     }
 
     /// Returns every posture that takes the tool to `target`, each joint from −π to π. Where the last

@@ -17,7 +17,8 @@ const POLISH: usize = 8;
 const STEPS: usize = 40;
 
 /// Error twist below which a target may be in reach though no branch is, metres and radians: with
-/// the wrist straight its joints turn against each other, and limits may leave room elsewhere.
+/// the wrist straight its joints turn against each other, and limits may leave room elsewhere; an arm
+/// that deviates from its family reaches a little further here and there.
 const NEAR_MISS: f64 = 2e-2;
 
 /// Excess of a joint over its limits that rounding explains, radians.
@@ -33,7 +34,7 @@ pub(crate) fn first(goal: &Goal<'_>, arm: &Six) -> Result<IkSolution, Refined> {
     let reached = found.iter().filter(|found| found.reaches);
     let answer =
         reached.filter_map(|found| turned(goal, found, &middle)).find_map(|q| exact(goal, &q));
-    answer.map_or_else(|| near(goal, &found), Ok)
+    answer.map_or_else(|| near(goal, arm, &found), Ok)
 }
 
 /// Returns the posture that reaches the goal at the least joint distance from `seed`.
@@ -53,7 +54,7 @@ pub(crate) fn nearest(
         .filter_map(|q| exact(goal, &q))
         .chain(IkSolution::accept(goal, &refine(goal, seed, POLISH)))
         .min_by(|a, b| distance(&a.q, seed).total_cmp(&distance(&b.q, seed)));
-    best.map_or_else(|| near(goal, &found).map_err(Unreachable::from), Ok)
+    best.map_or_else(|| near(goal, arm, &found).map_err(Unreachable::from), Ok)
 }
 
 /// Returns every posture that reaches the goal, also those that differ by whole turns.
@@ -70,7 +71,7 @@ pub(crate) fn all(goal: &Goal<'_>, arm: &Six) -> Vec<Joints> {
         .filter_map(|q| exact(goal, &q));
     let mut all: Vec<Joints> = exact.flat_map(|answer| at_all_turns(goal, &answer.q)).collect();
     if all.is_empty() {
-        all.extend(near(goal, &found).ok().map(|answer| answer.q));
+        all.extend(near(goal, arm, &found).ok().map(|answer| answer.q));
     }
     all
 }
@@ -118,7 +119,8 @@ fn exact(goal: &Goal<'_>, q: &Joints) -> Option<IkSolution> {
 }
 
 /// Returns a solution refined from postures that nearly fit, or the nearest.
-fn near(goal: &Goal<'_>, found: &[Found]) -> Result<IkSolution, Refined> {
+fn near(goal: &Goal<'_>, arm: &Six, found: &[Found]) -> Result<IkSolution, Refined> {
+    let is_complete = found.iter().all(|found| arm.is_isolated(&found.q));
     let limits = goal.chain.limits();
     let mut best = refine(goal, &limits.middle(), STEPS);
     for found in found {
@@ -132,7 +134,61 @@ fn near(goal: &Goal<'_>, found: &[Found]) -> Result<IkSolution, Refined> {
     }
     match IkSolution::accept(goal, &best) {
         Some(answer) => Ok(answer),
-        None if best.error() < NEAR_MISS => restarts::first(goal),
+        None if !is_complete && best.error() < NEAR_MISS => restarts::first(goal),
         None => Err(best),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+    use robot_model::Robot as Description;
+
+    use super::*;
+    use crate::kinematics::chain::{Chain, Geometry};
+    use crate::samples::Random;
+
+    const UR5E: &str = include_str!("../../../../../config/robots/ur5e.urdf");
+    const SPHERICAL: &str =
+        include_str!("../../../../../tests/fixtures/robots/spherical_wrist.urdf");
+
+    fn chain(urdf: &str, tip: &str) -> Chain {
+        Chain::from_description(&Description::parse(urdf, None).unwrap(), tip).unwrap()
+    }
+
+    /// What the closed form rejects without a search, a search does not reach either: poses a little
+    /// beyond the reach or the limits.
+    #[test]
+    fn narrow_rejections_are_right() {
+        let seed = 5;
+        let mut random = Random::seeded(seed);
+        for chain in [chain(UR5E, "arm_gripper"), chain(SPHERICAL, "flange")] {
+            let Geometry::General(general) = chain.geometry() else { panic!("six joints") };
+            let arm = general.six().expect("a family");
+            let (mut narrow, mut tried) = (0, 0);
+            while narrow < 40 {
+                tried += 1;
+                assert!(tried < 20_000, "seed {seed}: {narrow} narrow misses");
+                let aside = |random: &mut Random| [(); 3].map(|()| random.between(-0.01, 0.01));
+                let q = chain.limits().at(&std::array::from_fn(|_| random.unit()));
+                let q = if tried % 2 == 0 { stretched(q) } else { q };
+                let shift = Translation3::from(aside(&mut random));
+                let turn = UnitQuaternion::from_scaled_axis(aside(&mut random).into());
+                let target =
+                    shift * chain.forward(&q) * Isometry3::from_parts([0.0; 3].into(), turn);
+                let goal = Goal::new(&chain, &target);
+                let Err(nearest) = first(&goal, arm) else { continue };
+                if nearest.error() < NEAR_MISS {
+                    narrow += 1;
+                    let searched = restarts::first(&goal);
+                    assert!(searched.is_err(), "seed {seed}: {q:?} {searched:?}");
+                }
+            }
+        }
+    }
+
+    fn stretched(mut q: Joints) -> Joints {
+        q[2] = 0.0;
+        q
     }
 }

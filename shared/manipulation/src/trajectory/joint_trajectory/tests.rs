@@ -210,7 +210,7 @@ fn trajectory_rejects_states_outside_the_limits() {
     let rest = State::at_rest(&neutral());
     let fast = State { qd: [0.0, 0.0, 1.6, 0.0, 0.0, 0.0, 0.0], ..rest };
     let error = Trajectory::between(&fast, &rest, &full()).unwrap_err();
-    assert!(matches!(error, TrajectoryError::TooFast { joint: "e0", what: "velocity", .. }));
+    assert!(matches!(error, TrajectoryError::TooFast { joint: 2, what: "velocity", .. }));
     let jolted = State { qdd: [f64::NAN; 7], ..rest };
     let error = Trajectory::between(&rest, &jolted, &full()).unwrap_err();
     assert!(matches!(error, TrajectoryError::TooFast { what: "acceleration", .. }), "{error}");
@@ -231,8 +231,11 @@ fn trajectory_rejects_waypoints_outside_the_limits() {
     let mut q = [0.0; 7];
     q[3] = 2.7;
     let error = Trajectory::through(&[[0.0; 7], q], 0.1, &full()).unwrap_err();
-    assert!(matches!(error, TrajectoryError::OutsideLimits { joint: "e1", .. }));
-    assert!(error.to_string().contains("e1") && error.to_string().contains("2.618"));
+    assert!(matches!(error, TrajectoryError::OutsideLimits { joint: 3, .. }));
+    assert!(
+        error.to_string().contains("joint 4 from the shoulder")
+            && error.to_string().contains("2.618")
+    );
 }
 
 #[test]

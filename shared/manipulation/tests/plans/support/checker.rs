@@ -97,7 +97,8 @@ impl<'a> Checker<'a> {
             None
         };
         let still = description.poses(|_| 0.0);
-        let (mut arm, mut joints, mut body) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut arm, mut joints) = (Vec::new(), Vec::new());
+        let (mut body, mut body_links) = (Vec::new(), Vec::new());
         for (index, link) in description.links().iter().enumerate() {
             for shape in &link.collision {
                 let (solid, origin) = Solid::described(&link.name, shape);
@@ -107,7 +108,10 @@ impl<'a> Checker<'a> {
                         arm.push(Part { solid, link: index, origin, wrist });
                         joints.push(joint);
                     }
-                    None => body.push((solid, still[index] * origin)),
+                    None => {
+                        body.push((solid, still[index] * origin));
+                        body_links.push(index);
+                    }
                 }
             }
         }
@@ -119,8 +123,12 @@ impl<'a> Checker<'a> {
         let own_pairs: Vec<_> = own_pairs
             .filter(|(i, j)| joints[*j] >= joints[*i] + 2 && !excused(arm[*i].link, arm[*j].link))
             .collect();
-        let loose = (0..count).filter(|i| joints[*i] >= 2);
-        let body_pairs = loose.flat_map(|i| (0..body.len()).map(move |k| (i, k))).collect();
+        // The first link is mounted on the body; which others touch it, the description says.
+        let loose = (0..count).filter(|i| joints[*i] >= 1);
+        let body_pairs = loose
+            .flat_map(|i| (0..body.len()).map(move |k| (i, k)))
+            .filter(|(i, k)| !excused(arm[*i].link, body_links[*k]))
+            .collect();
         assert!(own_pairs.len() > 10 && !body.is_empty(), "shapes of the description");
         Self { robot, arms: [arm, Vec::new()], body, own_pairs, body_pairs }
     }

@@ -1,6 +1,8 @@
 //! Random tables, and what comes of picking everything on them.
 
-use manipulation::{Cuboid, ObjectPose, PlanError, PlanSettings, Robot, plan_pick};
+use std::collections::BTreeMap;
+
+use manipulation::{Cuboid, GraspError, ObjectPose, PlanError, PlanSettings, Robot, plan_pick};
 
 use super::Random;
 use super::checker::{Checker, broken_limit};
@@ -113,6 +115,7 @@ pub(crate) struct Tally {
     pub(crate) objects: usize,
     pub(crate) picked: usize,
     pub(crate) by_the_nearer_arm: usize,
+    /// Refused because the gripper cannot hold them: too wide or too thin.
     pub(crate) too_wide: usize,
     /// Refused, and refused also where nothing else stands on the table.
     pub(crate) refused_alone: usize,
@@ -120,6 +123,8 @@ pub(crate) struct Tally {
     pub(crate) refused_among: usize,
     /// Refused, but possible from another height, or to another place of handing over.
     pub(crate) possible_otherwise: usize,
+    /// Number of refusals for each reason.
+    pub(crate) reasons: BTreeMap<&'static str, usize>,
     pub(crate) plan_ms: Vec<f64>,
     pub(crate) refuse_ms: Vec<f64>,
     pub(crate) duration_s: Vec<f64>,
@@ -136,6 +141,9 @@ impl Tally {
         self.refused_alone += other.refused_alone;
         self.refused_among += other.refused_among;
         self.possible_otherwise += other.possible_otherwise;
+        for (reason, count) in other.reasons {
+            *self.reasons.entry(reason).or_default() += count;
+        }
         self.plan_ms.extend(other.plan_ms);
         self.refuse_ms.extend(other.refuse_ms);
         self.duration_s.extend(other.duration_s);
@@ -167,14 +175,32 @@ pub(crate) fn try_table(robot: &Robot, bench: &Bench, checker: &Checker<'_>, see
                     tally.violations.push(format!("table {seed} object {i}, {t_s:.2} s: {what}"));
                 }
             }
-            Err(PlanError::Grasp(_)) => tally.too_wide += 1,
-            Err(_) => {
-                tally.refuse_ms.push(ms);
-                refused(robot, bench, object, &others, &mut tally);
+            Err(error) => {
+                *tally.reasons.entry(reason(&error)).or_default() += 1;
+                if let PlanError::Grasp(_) = error {
+                    tally.too_wide += 1;
+                } else {
+                    tally.refuse_ms.push(ms);
+                    refused(robot, bench, object, &others, &mut tally);
+                }
             }
         }
     }
     tally
+}
+
+/// Returns the reason of a refusal, as the planner gives it.
+fn reason(error: &PlanError) -> &'static str {
+    match error {
+        PlanError::Grasp(GraspError::TooWide { .. }) => "too wide for the gripper",
+        PlanError::Grasp(_) => "not to be grasped otherwise",
+        PlanError::Start(_) => "a start outside the limits",
+        PlanError::Unreachable { .. } => "out of reach",
+        PlanError::Line { .. } => "no straight line to the grasp",
+        PlanError::Blocked { .. } => "no room for the arm",
+        PlanError::Stuck { .. } => "a start in collision",
+        PlanError::NoPath { .. } => "no path",
+    }
 }
 
 /// Kind of refusal.

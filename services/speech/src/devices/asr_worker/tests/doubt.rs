@@ -52,8 +52,7 @@ impl Network for Sure {
 fn unsure() -> (AsrWorker, Receiver<In<'static>>, Receiver<usize>, Sender<()>) {
     let ((heard, hears), (go, permission)) = (unbounded(), unbounded());
     let second = SecondOpinion::with(move || Some(Box::new(Sure { heard, permission })));
-    let opened =
-        Opened { first: Box::new(Unsure), second: Some(second), unpronounceable: Vec::new() };
+    let opened = Opened { second: Some(second), ..alone(Unsure) };
     let (worker, events) = worker(move || Ok(opened));
     next(&events);
     (worker, events, hears, go)
@@ -103,8 +102,7 @@ fn both_recognisers_listen_at_once() {
     let (started, first_started) = unbounded();
     let (proceed, first_may) = unbounded();
     let stub = Stub { calls: started, permission: Some(first_may), is_quick: true, fails: false };
-    let opened =
-        Opened { first: Box::new(stub), second: Some(second), unpronounceable: Vec::new() };
+    let opened = Opened { second: Some(second), ..alone(stub) };
     let (worker, events) = worker(move || Ok(opened));
     next(&events);
     worker.decode_early(1, paused(16_000, 512));
