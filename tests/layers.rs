@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::process::Command;
 
-const SERVICES: [&str; 10] = [
+const SERVICES: [&str; 11] = [
     "speech",
     "grounding",
     "policy",
@@ -14,6 +14,7 @@ const SERVICES: [&str; 10] = [
     "ros1",
     "ros2",
     "console",
+    "recorder",
     "supervisor",
     "whichone",
 ];

@@ -34,11 +34,11 @@ pub(crate) fn measure(report: &mut Report) {
 
 /// What a process has used so far.
 #[derive(Clone, Copy, Default)]
-struct Used {
+pub(crate) struct Used {
     /// Processor time by the kernel's own account (user and system), seconds.
-    cpu_s: f64,
+    pub(crate) cpu_s: f64,
     /// How often its threads have gone to sleep.
-    wakes: f64,
+    pub(crate) wakes: f64,
 }
 
 fn used(group: &Group) -> Vec<(String, Used)> {
@@ -46,7 +46,7 @@ fn used(group: &Group) -> Vec<(String, Used)> {
 }
 
 /// Sums up the threads of a process.
-fn of_process(pid: i32) -> Used {
+pub(crate) fn of_process(pid: i32) -> Used {
     let tasks = std::fs::read_dir(format!("/proc/{pid}/task"));
     let tasks = tasks.into_iter().flatten().filter_map(Result::ok).map(|task| task.path());
     let read = |path: std::path::PathBuf| std::fs::read_to_string(path).unwrap_or_default();
@@ -62,11 +62,13 @@ fn of_process(pid: i32) -> Used {
     })
 }
 
-fn pids(group: &Group) -> Vec<(String, i32)> {
+pub(crate) fn pids(group: &Group) -> Vec<(String, i32)> {
     let status = group.status();
     let services = status["services"].as_array().expect("services");
-    let pid = |pid: &Json| pid.as_i64().and_then(|pid| pid.try_into().ok()).expect("a pid");
-    let of = |row: &Json| (row["name"].as_str().expect("a name").to_owned(), pid(&row["pid"]));
-    let supervisor = ("supervisor".to_owned(), pid(&status["supervisor_pid"]));
-    std::iter::once(supervisor).chain(services.iter().map(of)).collect()
+    let pid = |pid: &Json| pid.as_i64().and_then(|pid| pid.try_into().ok());
+    // One that is stopped has no process.
+    let of =
+        |row: &Json| Some((row["name"].as_str().expect("a name").to_owned(), pid(&row["pid"])?));
+    let supervisor = ("supervisor".to_owned(), pid(&status["supervisor_pid"]).expect("a pid"));
+    std::iter::once(supervisor).chain(services.iter().filter_map(of)).collect()
 }

@@ -28,7 +28,7 @@ const STAGES: [&str; 6] = [
 ];
 
 /// When the utterance was given, accepted, sent; read, sent; taken in, and its act sent.
-type Moments = [u64; 7];
+pub(crate) type Moments = [u64; 7];
 
 pub(crate) fn measure(report: &mut Report) {
     let group = Group::up(&["dialogue.turns.questions_max=1000"]);
@@ -59,7 +59,7 @@ pub(crate) fn measure(report: &mut Report) {
     group.down();
 }
 
-struct Taps {
+pub(crate) struct Taps {
     utterances: Reader<Utterance>,
     observations: Reader<Observation>,
     acts: Reader<RobotAct>,
@@ -69,7 +69,7 @@ struct Taps {
 }
 
 impl Taps {
-    fn open(client: &Client) -> Self {
+    pub(crate) fn open(client: &Client) -> Self {
         let bus = client.bus();
         Self {
             utterances: bus.reader(&topics::UTTERANCE).expect("utterances"),
@@ -82,7 +82,7 @@ impl Taps {
     }
 
     /// Says something that changes nothing for good, and collects the moments of its way.
-    fn utter(&mut self, n: usize) -> Moments {
+    pub(crate) fn utter(&mut self, n: usize) -> Moments {
         std::thread::sleep(Duration::from_millis(20));
         let text = if n.is_multiple_of(2) { "the white one" } else { "start over" };
         let mut moments = [clock::now().ns(), 0, 0, 0, 0, 0, 0];

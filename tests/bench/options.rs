@@ -37,6 +37,9 @@ pub(crate) struct Options {
     /// Only the running group: start, recovery, latency through all processes, idle load
     #[arg(long)]
     pub(crate) processes: bool,
+    /// Only the recorder: its cost, and latencies with and without it
+    #[arg(long)]
+    pub(crate) recorder: bool,
     /// Only one interaction of very many utterances: journals, memory, restart
     #[arg(long)]
     pub(crate) long: bool,
@@ -107,10 +110,10 @@ impl Options {
     pub(crate) fn wants_all(&self) -> bool {
         let Self { core, bounds, kinematics, processes, long, joints, orders, stops, ros1, .. } =
             *self;
-        let Self { speech, endings, turns, console, size, spoken, .. } = *self;
+        let Self { speech, endings, turns, console, size, spoken, recorder, .. } = *self;
         let measured =
             core || bounds || kinematics || processes || long || joints || orders || stops || ros1;
-        !(measured || speech || endings || turns || console || size || spoken)
+        !(measured || speech || endings || turns || console || size || spoken || recorder)
     }
 }
 

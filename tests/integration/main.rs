@@ -27,6 +27,7 @@ mod planners;
 mod pointing;
 mod put_back;
 mod python;
+mod recording;
 mod recovery;
 mod reload;
 mod robot;

@@ -143,7 +143,7 @@ class Bus:
         """Sends a copy of the message under this process's stamp."""
         sample = publisher.loan_uninit()
         stamp = sample.user_header().contents
-        stamp.epoch, stamp.incarnation, stamp.reserved = self.epoch, self.incarnation, 0
+        stamp.epoch, stamp.incarnation, stamp.sequence = self.epoch, self.incarnation, 0
         stamp.sent_ns = time.monotonic_ns()
         sample.write_payload(message).send()
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use messages::pick::Pick;
 use messages::{PickId, PickOutcome, PickPhase, Task};
 use service::exit::Failure;
-use service::inspection::{Part, SharedFacts, at, count};
+use service::inspection::{Part, SharedFacts, count};
 
 use crate::state::Record;
 
@@ -26,7 +26,7 @@ pub(crate) fn line(record: &Record) -> String {
             }
     });
     let stopped = if record.state.stopped { ", motion stopped" } else { "" };
-    format!("{}  {:<12}  {pick}{stopped}", at(record.at), format!("{:?}", record.cause))
+    format!("{:<12}  {pick}{stopped}", format!("{:?}", record.cause))
 }
 
 /// The picks taken on, with their objects.

@@ -10,6 +10,7 @@ use messages::{
 use planner::PlannerThread;
 use preflight::ArmSetup;
 use robot::RobotTopics;
+use service::Time;
 use service::bus::{EncodedReader, EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
 use service::inspection::{Part, SharedFacts};
@@ -42,6 +43,10 @@ impl Program for ArmProgram {
             scene: settings.scene.clone(),
             perceives: settings.group.perception.enabled,
         })
+    }
+
+    fn recorded_at(record: &Record) -> Time {
+        record.at
     }
 
     fn describe(_: Option<&Settings>, record: &Record) -> String {

@@ -7,7 +7,7 @@ use dialogue::manager::{Act, Cause, Manager, Record, refold_since};
 use dialogue::{ActKind, Action, Outcome, PickOutcome, rendering};
 use scene::Scene;
 use service::exit::{Exit, Failure};
-use service::inspection::{Part, SharedFacts, at, count};
+use service::inspection::{Part, SharedFacts, count};
 use service::journal_set::NUMBERS_SKIPPED;
 
 /// Renders a record as one line. Without the scene that it is about, the robot's words are left out.
@@ -45,7 +45,7 @@ pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
         format!("interaction {}, best {:.1} %", open.id, best * 100.0)
     });
     let where_ = where_.as_deref().unwrap_or("at rest");
-    format!("{}  {why:<16}  {does}  ({where_}{})", at(record.at), reasons(scene, &state.act))
+    format!("{why:<16}  {does}  ({where_}{})", reasons(scene, &state.act))
 }
 
 /// Why the robot decided so: the value with its bounds, the questions to come, and what else it

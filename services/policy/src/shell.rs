@@ -8,6 +8,7 @@ use messages::{
     Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, Sighting,
     TableView, WorldView, topics,
 };
+use service::Time;
 use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
 use service::inspection::{Part, SharedFacts};
@@ -43,6 +44,10 @@ impl Program for PolicyProgram {
         let perception = &settings.group.perception;
         let tracker = perception.enabled.then(|| perception.tracker.clone());
         Ok(Config { tracker, ..Config::from(manager) })
+    }
+
+    fn recorded_at(record: &Record) -> Time {
+        record.at
     }
 
     fn describe(settings: Option<&Settings>, record: &Record) -> String {

@@ -3,11 +3,20 @@
 use std::collections::HashSet;
 
 use dialogue::Presentation;
+use service::Time;
 use service::exit::Failure;
-use service::inspection::{Part, SharedFacts, at, count};
+use service::inspection::{Part, SharedFacts, count};
 use service::journal_set::NUMBERS_SKIPPED;
 
 use crate::record::Record;
+
+/// When a record was written.
+pub(crate) fn recorded_at(record: &Record) -> Time {
+    match record {
+        Record::Accepted(accepted) => accepted.accepted,
+        Record::Presented(presentation) => presentation.ended.unwrap_or(presentation.began),
+    }
+}
 
 /// Renders a record as one line.
 pub(crate) fn line(record: &Record) -> String {
@@ -16,13 +25,12 @@ pub(crate) fn line(record: &Record) -> String {
             let words = accepted.hypotheses.first().map_or("", |best| best.text.as_str());
             let pointed = accepted.gesture.map(|[x, y, z]| format!(" [points at {x} {y} {z} m]"));
             let pointed = pointed.unwrap_or_default();
-            format!("{}  utterance {}: {words}{pointed}", at(accepted.accepted), accepted.seq)
+            format!("utterance {}: {words}{pointed}", accepted.seq)
         }
         Record::Presented(presentation) => {
-            let Presentation { prompt, number, complete, began, ended, .. } = *presentation;
+            let Presentation { prompt, number, complete, .. } = *presentation;
             let how = if complete { "spoken to its end" } else { "interrupted" };
-            let time = at(ended.unwrap_or(began));
-            format!("{time}  prompt {prompt} {how}, presentation {number}")
+            format!("prompt {prompt} {how}, presentation {number}")
         }
     }
 }

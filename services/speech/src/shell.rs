@@ -23,13 +23,13 @@ use messages::{
     Activity, AppliedMark, ArmStatus, AudioChunk, EarState, Hearing, Injection, MotionCommand,
     Partial, Presented, Receipt, RobotAct, Service, Utterance, topics,
 };
-use service::Span;
 use service::bus::{EncodedReader, PortError, Reader, Writer};
 use service::exit::Failure;
 use service::inspection::{Finding, Part, SharedFacts};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 use service::worker_channel::DeviceSender;
+use service::{Span, Time};
 
 mod microphone;
 mod voice;
@@ -57,6 +57,10 @@ impl Program for SpeechProgram {
             utterance_bytes_max: settings.speech.utterance_bytes_max,
             gestures: settings.dialogue.gesture.enabled,
         })
+    }
+
+    fn recorded_at(record: &Record) -> Time {
+        inspection::recorded_at(record)
     }
 
     fn describe(_: Option<&Settings>, record: &Record) -> String {

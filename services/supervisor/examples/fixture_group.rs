@@ -103,6 +103,7 @@ fn service(service: Service) -> ServiceSpec {
         critical: service.critical,
         start_deadline: Duration::from_millis(service.start_ms),
         watchdog: service.watchdog_ms.map(Duration::from_millis),
+        observer: false,
         stop_deadline: Duration::from_millis(service.stop_ms),
         nice: 0,
         restart: Restart::Always,

@@ -59,6 +59,8 @@ pub struct ServiceSpec {
     pub after: Vec<String>,
     /// True if the whole group stops in order when this service is given up.
     pub critical: bool,
+    /// True if the group is whole without this service.
+    pub observer: bool,
     /// Time from start to `READY=1`.
     pub start_deadline: Duration,
     /// Maximum time between two heartbeats once ready; `None` disables the watchdog.
@@ -111,6 +113,7 @@ fn service(service: &ServiceConfig, settings: &Settings) -> ServiceSpec {
         command: service.command.clone().unwrap_or_else(|| vec![beside(&service.name)]),
         after: service.after.clone(),
         critical: service.critical,
+        observer: service.observer,
         start_deadline: service.start_deadline,
         watchdog: service.watchdog,
         stop_deadline: service.stop_deadline,
@@ -139,6 +142,8 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
         Some(Service::Policy) => (&[Section::Dialogue], true),
         Some(Service::Arm) => (&[Section::Arm], false),
         Some(Service::Console) => (&Section::ALL[1..], false),
+        // Each of its files holds the settings that were in force.
+        Some(Service::Recorder) => (&Section::ALL, true),
         Some(Service::Ros2) => (&[Section::Ros2, Section::Arm], false),
         Some(Service::Robot) | None => (&[Section::Speech, Section::Dialogue, Section::Arm], true),
     };

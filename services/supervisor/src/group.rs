@@ -19,6 +19,7 @@ pub(crate) mod tests;
 pub struct Group {
     machines: Vec<Machine>,
     critical: Vec<bool>,
+    observers: Vec<bool>,
     schedule: Schedule,
     phase: Phase,
 }
@@ -40,6 +41,7 @@ impl Group {
         Ok(Self {
             machines: spec.services.iter().map(machine).collect(),
             critical: spec.services.iter().map(|service| service.critical).collect(),
+            observers: spec.services.iter().map(|service| service.observer).collect(),
             schedule,
             phase: Phase::Stopping,
         })
@@ -97,22 +99,26 @@ impl Group {
         }
     }
 
-    /// Returns true if every service that is wanted up is ready, be it short of a resource or not.
+    /// The services that the group needs to be whole: all but observers.
+    fn needed(&self) -> impl Iterator<Item = &Machine> {
+        let all = self.machines.iter().zip(&self.observers);
+        all.filter(|(_, is_observer)| !**is_observer).map(|(machine, _)| machine)
+    }
+
+    /// Returns true if every needed service that is wanted up is ready, be it short of a resource or not.
     pub fn is_whole(&self) -> bool {
-        self.machines
-            .iter()
+        self.needed()
             .all(|machine| machine.wanted() == Wanted::Down || machine.actual() == Actual::Ready)
     }
 
-    /// Returns true if some service is short of a resource: it runs, and does not do its work.
+    /// Returns true if some needed service is short of a resource: it runs, and does not do its work.
     fn is_short(&self) -> bool {
-        self.machines.iter().any(|machine| machine.state() == ServiceState::Short)
+        self.needed().any(|machine| machine.state() == ServiceState::Short)
     }
 
-    /// Returns true if some service that is wanted up is held.
+    /// Returns true if some needed service that is wanted up is held.
     pub fn is_given_up(&self) -> bool {
-        self.machines
-            .iter()
+        self.needed()
             .any(|machine| machine.wanted() == Wanted::Up && machine.actual() == Actual::Held)
     }
 
@@ -146,6 +152,7 @@ impl Group {
         assert_eq!(spec.services.len(), self.machines.len(), "the set of services is fixed");
         self.schedule = Schedule::new(&spec.services)?;
         self.critical = spec.services.iter().map(|service| service.critical).collect();
+        self.observers = spec.services.iter().map(|service| service.observer).collect();
         for (machine, service) in self.machines.iter_mut().zip(&spec.services) {
             machine.limits = Limits::of(service, spec.restart);
         }

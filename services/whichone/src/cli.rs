@@ -8,18 +8,18 @@ mod arm;
 mod batch;
 mod group;
 mod objects;
+mod record;
 mod study;
 mod talk;
 
 pub use arm::{ArmPlotArgs, ArmVerb};
-pub use batch::{
-    ArmArgs, ExportArgs, Exported, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm,
-};
+pub use batch::{ArmArgs, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm};
 pub use group::{
     CheckArgs, ConfigArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs,
     SwapArgs, UpArgs, WaitFor,
 };
 pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
+pub use record::{ExportVerb, McapArgs, OpenArgs, PomdpArgs, RecordVerb, RecorderArgs};
 pub use study::{ALL as STUDY_ALL, Preset, ReportArgs, StudyArgs, StudyVerb};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalAction, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
@@ -119,6 +119,12 @@ pub enum Verb {
     StopMotion(MotionArgs),
     /// Release the motion stop.
     ResumeMotion(MotionArgs),
+    /// Start or stop the recorder, list its recordings, or open one.
+    Record {
+        /// Action.
+        #[command(subcommand)]
+        what: RecordVerb,
+    },
     /// List, verify or set aside the journals.
     Journal(JournalArgs),
     /// Print a completion script for a shell.
@@ -142,8 +148,12 @@ pub enum Verb {
     Ground(GroundArgs),
     /// Read beliefs, one JSON object per line, and print the robot's next action for each.
     Plan(PlanArgs),
-    /// Print the decision problem of a scene for other programs.
-    Export(ExportArgs),
+    /// Write the decision problem of a scene, recordings or journals for other programs.
+    Export {
+        /// The format.
+        #[command(subcommand)]
+        what: ExportVerb,
+    },
     /// Compare policies with simulated users, or report the results of a study with people.
     ///
     /// With simulated users it prints, per policy and user model, the success rate, the number of

@@ -33,6 +33,7 @@ mod objects;
 mod operate;
 mod paths;
 mod planning;
+mod record;
 mod speak;
 mod status;
 mod study;
@@ -76,6 +77,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::ResumeMotion(args) => {
             motion::motion(&paths()?, MotionOrder::Resume, args.timeout, out)
         }
+        Verb::Record { what } => record::record(&paths()?, what, out),
         Verb::Journal(args) => inspection::journal(&paths()?, &args, out),
         Verb::Completions { shell } => completions(shell, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
@@ -88,7 +90,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Plan(args) => {
             batch::plan(&mut planning::decider(&args)?, batch::open(&args.input)?, out)
         }
-        Verb::Export(args) => export::export(&args, out),
+        Verb::Export { what } => export::export(&what, out),
         Verb::Study(args) => match &args.verb {
             Some(StudyVerb::Report(report)) => study::report(&paths()?, report, out),
             None => study::study(&args, out),

@@ -11,6 +11,7 @@ use crate::files::one_of;
 const EACH: &str = r#"
 after = []
 critical = false
+observer = false
 start_deadline_s = 10.0
 watchdog_s = 3.0
 stop_deadline_s = 5.0
@@ -34,6 +35,8 @@ pub struct ServiceConfig {
     pub after: Vec<String>,
     /// Stop the whole group when this service is held.
     pub critical: bool,
+    /// The group is whole and ready without this service.
+    pub observer: bool,
     /// Time from start to readiness.
     pub start_deadline: Duration,
     /// Maximum time between two heartbeats once ready; `None` without a watchdog.
@@ -93,6 +96,7 @@ fn one(name: &str, f: &mut Fields<'_>) -> ServiceConfig {
         command,
         after: f.texts("after"),
         critical: f.flag("critical"),
+        observer: f.flag("observer"),
         start_deadline: f.seconds("start_deadline_s", 0.1..=3600.0),
         watchdog: (!watchdog.is_zero()).then_some(watchdog),
         stop_deadline: f.seconds("stop_deadline_s", 0.0..=3600.0),

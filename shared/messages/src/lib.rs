@@ -5,6 +5,7 @@
 //! does any IO: that is the runtime's part. Values read from the wire are never trusted: every
 //! accessor that interprets a byte is checked and can fail.
 
+pub mod definition;
 mod fixed;
 pub mod ids;
 pub mod inbox;

@@ -5,6 +5,7 @@
 //! every topic and each open requires it. Schemas are derived: those of structs by [`wire_struct`],
 //! those of postcard payloads from their `Deserialize` implementation.
 
+use crate::definition::{Definition, json_schema};
 use serde_reflection::{Error, Registry};
 use std::borrow::Cow;
 
@@ -33,6 +34,9 @@ pub trait Schema {
 
     /// Returns the size of the struct in bytes, 0 for a postcard payload.
     fn size() -> usize;
+
+    /// Returns its description for programs that do not share this code.
+    fn definition() -> Definition;
 
     /// Returns the key that both sides of a topic must agree on.
     fn key() -> SchemaKey {
@@ -74,6 +78,27 @@ pub(crate) fn payload_fields(types: Result<Registry, Error>) -> Vec<Field> {
     }
 }
 
+/// Returns the description of a payload.
+pub(crate) fn payload_definition(name: &str, types: Result<Registry, Error>) -> Definition {
+    // Types that cannot be traced fail the golden file's test.
+    Definition::JsonSchema(json_schema(name, &types.unwrap_or_default()))
+}
+
+/// Every type in a payload, or why it cannot be traced.
+macro_rules! traced {
+    ($payload:ident [$($enum:ty),*]) => {{
+        let types = || {
+            let config = serde_reflection::TracerConfig::default();
+            let mut tracer = serde_reflection::Tracer::new(config);
+            $(tracer.trace_simple_type::<$enum>()?;)*
+            tracer.trace_simple_type::<$payload>()?;
+            tracer.registry()
+        };
+        types()
+    }};
+}
+pub(crate) use traced;
+
 /// Derives the schemas of postcard payloads from their `Deserialize` implementations. The enums
 /// inside are listed, innermost first; one that is missing makes the golden file's test fail.
 macro_rules! payloads {
@@ -82,14 +107,12 @@ macro_rules! payloads {
             const NAME: &'static str = stringify!($payload);
 
             fn fields() -> Vec<$crate::schema::Field> {
-                let types = || {
-                    let config = serde_reflection::TracerConfig::default();
-                    let mut tracer = serde_reflection::Tracer::new(config);
-                    $(tracer.trace_simple_type::<$enum>()?;)*
-                    tracer.trace_simple_type::<Self>()?;
-                    tracer.registry()
-                };
-                $crate::schema::payload_fields(types())
+                $crate::schema::payload_fields($crate::schema::traced!($payload [$($enum),*]))
+            }
+
+            fn definition() -> $crate::definition::Definition {
+                let types = $crate::schema::traced!($payload [$($enum),*]);
+                $crate::schema::payload_definition(Self::NAME, types)
             }
 
             fn size() -> usize {
@@ -131,6 +154,10 @@ macro_rules! wire_struct {
             fn size() -> usize {
                 std::mem::size_of::<Self>()
             }
+
+            fn definition() -> $crate::definition::Definition {
+                <Self as $crate::wire::WireField>::ros2().definition()
+            }
         }
 
         impl $crate::wire::WireField for $name {
@@ -143,6 +170,13 @@ macro_rules! wire_struct {
 
             fn detail() -> String {
                 <Self as $crate::schema::Schema>::key().to_string()
+            }
+
+            fn ros2() -> $crate::definition::FieldType {
+                $crate::definition::FieldType::message(
+                    $wire,
+                    &[$((stringify!($field), <$ty as $crate::wire::WireField>::ros2()),)+],
+                )
             }
         }
     };

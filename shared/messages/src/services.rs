@@ -17,6 +17,8 @@ pub enum Service {
     Arm,
     /// Serves the web page.
     Console,
+    /// Records every topic; an observer, which the others do without.
+    Recorder,
     /// Simulates a Baxter behind the robot's topics; optional.
     Robot,
     /// Presents the group as a ROS 2 node; optional.
@@ -25,8 +27,8 @@ pub enum Service {
 
 impl Service {
     /// Services of every group, in the order in which they are listed.
-    pub const BUILT_IN: [Self; 5] =
-        [Self::Speech, Self::Grounding, Self::Policy, Self::Arm, Self::Console];
+    pub const BUILT_IN: [Self; 6] =
+        [Self::Speech, Self::Grounding, Self::Policy, Self::Arm, Self::Console, Self::Recorder];
 
     /// Services that a dialogue needs.
     pub const DIALOGUE: [Self; 4] = [Self::Speech, Self::Grounding, Self::Policy, Self::Arm];
@@ -42,6 +44,7 @@ impl Service {
             Self::Policy => "policy",
             Self::Arm => "arm",
             Self::Console => "console",
+            Self::Recorder => "recorder",
             Self::Robot => "baxter",
             Self::Ros2 => "ros2",
         }

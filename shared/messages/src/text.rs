@@ -1,6 +1,7 @@
 //! Text of bounded length inside a fixed layout.
 
 use crate::WireError;
+use crate::definition::FieldType;
 use iceoryx2::prelude::ZeroCopySend;
 
 /// UTF-8 text of at most `N` bytes.
@@ -54,7 +55,13 @@ impl<const N: usize> FixedText<N> {
     }
 }
 
-impl<const N: usize> crate::wire::WireField for FixedText<N> {}
+impl<const N: usize> crate::wire::WireField for FixedText<N> {
+    fn ros2() -> FieldType {
+        let bytes = FieldType::primitive("uint8").array(N);
+        let fields = [("len", FieldType::primitive("uint32")), ("bytes", bytes)];
+        FieldType::message(&format!("Text{N}"), &fields)
+    }
+}
 
 impl<const N: usize> Default for FixedText<N> {
     fn default() -> Self {

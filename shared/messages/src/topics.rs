@@ -4,6 +4,7 @@
 //! the writer until its effect is seen. A reader with a wake-up is notified after each send; clients
 //! poll.
 
+use crate::definition::Definition;
 use crate::schema::{Schema, SchemaKey};
 use crate::*;
 
@@ -18,6 +19,8 @@ pub struct Topic {
     pub payload: &'static str,
     /// Bytes of a message; 0 for a byte slice.
     pub size: fn() -> usize,
+    /// Description of the payload for programs that do not share this code.
+    pub definition: fn() -> Definition,
     /// The writer; clients if none is named.
     pub writer: Option<Service>,
     /// Services that are woken after a send.
@@ -28,6 +31,8 @@ pub struct Topic {
     pub readers_max: usize,
     /// Unread messages that a reader holds; the oldest gives way.
     pub buffer: usize,
+    /// Unread messages that the recorder holds, if more: it looks ten times a second.
+    pub recorded: usize,
     /// Messages that a late reader still gets.
     pub history: usize,
 }
@@ -37,6 +42,11 @@ impl Topic {
     /// services: its writer repeats it, and wakes them when it has changed.
     pub fn is_state(&self) -> bool {
         self.buffer == 1 && !self.readers.is_empty()
+    }
+
+    /// Most unread messages that any reader holds.
+    pub fn buffer_max(&self) -> usize {
+        self.buffer.max(self.recorded)
     }
 }
 
@@ -49,6 +59,8 @@ pub const SERVICES_MAX: usize = 8;
 pub const CLIENTS_MAX: usize = 16;
 /// Processes that have a topic open at a time.
 pub const NODES_MAX: usize = 48;
+/// Unread messages that the recorder holds of a topic with 100 messages a second.
+const RECORDED_FAST: usize = 32;
 /// Utterances that are on their way at a time; the buffers of their topics hold them all.
 pub const WINDOW: usize = 16;
 
@@ -58,18 +70,20 @@ const fn topic<T: Schema>(name: &'static str, writer: Option<Service>) -> Topic 
         schema: T::key,
         payload: T::NAME,
         size: T::size,
+        definition: T::definition,
         writer,
         readers: &[],
         writers_max: 1,
         readers_max: READERS_MAX,
         buffer: 1,
+        recorded: 8,
         history: 1,
     }
 }
 
-/// Clients to speech.
+/// Clients to speech. The recorder is woken, too: a client may end before it looks the next time.
 pub const INJECTION: Topic = Topic {
-    readers: &[Service::Speech],
+    readers: &[Service::Speech, Service::Recorder],
     writers_max: CLIENTS_MAX,
     readers_max: SERVICES_MAX,
     buffer: WINDOW,
@@ -134,7 +148,7 @@ pub const ACT: Topic = Topic {
 };
 /// Cameras and other sources, and clients, to policy.
 pub const SIGHTING: Topic = Topic {
-    readers: &[Service::Policy],
+    readers: &[Service::Policy, Service::Recorder],
     writers_max: CLIENTS_MAX,
     readers_max: SERVICES_MAX,
     buffer: WINDOW,
@@ -157,6 +171,7 @@ pub const STATUS: Topic = Topic {
 pub const JOINTS: Topic = Topic {
     readers: &[Service::Ros2],
     buffer: WINDOW,
+    recorded: RECORDED_FAST,
     ..topic::<JointStates>("arm/joints", Some(Service::Arm))
 };
 /// Arm to clients.
@@ -165,7 +180,7 @@ pub const WORLD: Topic = topic::<WorldView>("arm/world", Some(Service::Arm));
 pub const TRAJECTORY: Topic = topic::<TrajectoryView>("arm/trajectory", Some(Service::Arm));
 /// Speech and clients to arm, past the dialogue.
 pub const MOTION: Topic = Topic {
-    readers: &[Service::Arm],
+    readers: &[Service::Arm, Service::Recorder],
     writers_max: CLIENTS_MAX,
     buffer: 4,
     history: 0,
@@ -178,11 +193,12 @@ pub mod robot {
     use crate::robot::*;
 
     const fn command<T: Schema>(name: &'static str) -> Topic {
-        Topic { buffer: 4, history: 0, ..topic::<T>(name, Some(Service::Arm)) }
+        let topic = topic::<T>(name, Some(Service::Arm));
+        Topic { buffer: 4, recorded: RECORDED_FAST, history: 0, ..topic }
     }
 
     const fn measured<T: Schema>(name: &'static str) -> Topic {
-        topic::<T>(name, Some(Service::Robot))
+        Topic { recorded: RECORDED_FAST, ..topic::<T>(name, Some(Service::Robot)) }
     }
 
     /// The robot is woken: the arm sends other commands before these, and gripper commands again.

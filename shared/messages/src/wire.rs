@@ -1,5 +1,6 @@
 //! Enums as bytes in fixed layouts, and the check of bytes that another process wrote.
 
+use crate::definition::FieldType;
 use scene::{Intent, Reference, Response, Role};
 use std::marker::PhantomData;
 
@@ -117,12 +118,23 @@ pub trait WireField {
     fn detail() -> String {
         String::new()
     }
+
+    /// Returns its type in a ROS 2 message definition.
+    fn ros2() -> FieldType;
 }
 
 macro_rules! plain {
-    ($($number:ty)+) => { $(impl WireField for $number {})+ };
+    ($($number:ty = $ros2:literal)+) => {
+        $(impl WireField for $number {
+            fn ros2() -> FieldType {
+                FieldType::primitive($ros2)
+            }
+        })+
+    };
 }
-plain!(u8 u16 u32 u64 i32 f32 f64);
+plain! {
+    u8 = "uint8" u16 = "uint16" u32 = "uint32" u64 = "uint64" i32 = "int32" f32 = "float32" f64 = "float64"
+}
 
 impl<T: WireField, const N: usize> WireField for [T; N] {
     const CHECKED: bool = T::CHECKED;
@@ -133,6 +145,10 @@ impl<T: WireField, const N: usize> WireField for [T; N] {
 
     fn detail() -> String {
         T::detail()
+    }
+
+    fn ros2() -> FieldType {
+        T::ros2().array(N)
     }
 }
 
@@ -145,6 +161,11 @@ impl<E: WireCode> WireField for Code<E> {
 
     fn detail() -> String {
         E::CODES.iter().map(|(_, name, byte)| format!("{byte}={name} ")).collect()
+    }
+
+    fn ros2() -> FieldType {
+        let constants = E::CODES.iter().map(|(_, name, byte)| (*name, *byte)).collect();
+        FieldType { constants, ..FieldType::primitive("uint8") }
     }
 }
 

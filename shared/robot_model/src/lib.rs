@@ -18,11 +18,13 @@
 
 mod builtin;
 mod kinematics;
+mod measured;
 mod model;
 mod read;
 
 pub use builtin::{BAXTER_SRDF, BAXTER_URDF};
 pub use kinematics::{SerialChain, UnknownLink};
+pub use measured::{Finger, MeasuredJoints};
 pub use model::{
     Body, Inertial, Joint, JointKind, Limits, Link, Mimic, Posture, Rgba, Robot, Shape,
 };

@@ -6,9 +6,10 @@ use iceoryx2::prelude::*;
 use messages::schema::Schema;
 use messages::topics::Topic;
 use messages::{Epoch, Incarnation, Service, Stamp, WireField};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::rc::{Rc, Weak};
 
+mod any;
 mod encoded;
 mod gate;
 mod open;
@@ -22,6 +23,7 @@ mod trigger;
 mod variant;
 mod wake;
 
+pub use any::{AnyMessage, AnyReader};
 pub use encoded::{EncodedReader, EncodedWriter};
 pub use gate::rejected;
 pub use open::Topics;
@@ -226,9 +228,25 @@ impl Bus {
         &self.node
     }
 
-    pub(crate) fn stamp(&self) -> Stamp {
+    fn stamps(&self) -> Stamps {
         let Identity { epoch, incarnation } = self.identity;
-        Stamp { epoch: epoch.0, incarnation: incarnation.0, ..Stamp::default() }
+        Stamps(Cell::new(Stamp { epoch: epoch.0, incarnation: incarnation.0, ..Stamp::default() }))
+    }
+}
+
+/// The stamps of one writer's messages, which it counts: a message that could not be sent is a gap.
+#[derive(Debug)]
+struct Stamps(Cell<Stamp>);
+
+impl Stamps {
+    /// Returns the stamp of a message that is sent now.
+    fn next(&self) -> Stamp {
+        let latest = self.0.get();
+        // 0 would say that the writer does not count.
+        let sequence = latest.sequence.checked_add(1).unwrap_or(1);
+        let stamp = Stamp { sent_ns: crate::clock::now().ns(), sequence, ..latest };
+        self.0.set(stamp);
+        stamp
     }
 }
 

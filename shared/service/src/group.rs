@@ -187,6 +187,11 @@ impl GroupPaths {
         self.root.join("policies")
     }
 
+    /// Recordings of the group's topics.
+    pub fn recordings(&self) -> PathBuf {
+        self.root.join("recordings")
+    }
+
     /// The data of studies with people, where no other folder is set; never deleted.
     pub fn study(&self) -> PathBuf {
         self.root.join("study")

@@ -56,6 +56,19 @@ pub struct Verdict {
     pub shared: Option<SharedFacts>,
 }
 
+/// A record of a journal as `whichone journal --json` prints it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct JournalLine {
+    /// Its number.
+    pub seq: u64,
+    /// When it was written, nanoseconds of the machine's monotonic clock.
+    pub at_ns: u64,
+    /// What it says, in a line.
+    pub text: String,
+    /// The record itself.
+    pub record: serde_json::Value,
+}
+
 /// One aspect of the machine that `whichone doctor` has examined.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Finding {
@@ -233,19 +246,17 @@ fn parts<P: Program>(request: &Request) -> Result<Vec<Part<Record<P>>>, Failure>
 }
 
 fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
-    #[derive(Serialize)]
-    struct Numbered<'a, R> {
-        seq: u64,
-        record: &'a R,
-    }
     let part = Part::<Record<P>>::read(&request.file)?;
     let settings = request.settings().unwrap_or_default();
     for (seq, record) in part.numbered() {
+        let (recorded, text) = (P::recorded_at(record), P::describe(settings.first(), record));
         match request.json {
-            true => json_line(out, &Numbered { seq, record })?,
-            false => {
-                line(out, format_args!("{seq:>6}  {}", P::describe(settings.first(), record)))?
+            true => {
+                let record =
+                    serde_json::to_value(record).map_err(|error| Failure::output(error.into()))?;
+                json_line(out, &JournalLine { seq, at_ns: recorded.ns(), text, record })?;
             }
+            false => line(out, format_args!("{seq:>6}  {}  {text}", at(recorded)))?,
         }
     }
     out.flush().map_err(Failure::output)?;

@@ -17,6 +17,7 @@ pub mod kept_settings;
 pub mod launch;
 pub mod lifecycle;
 pub mod log_file;
+pub mod log_tail;
 pub mod logging;
 pub mod notify;
 pub mod printable;

@@ -56,8 +56,13 @@ pub trait Program: Sized {
         settings: &Settings,
     ) -> Result<<Self::Node as Node>::Config, Failure>;
 
-    /// Renders a journal record as one line for `whichone journal`, with the settings in force if
-    /// they are known.
+    /// Returns when a journal record was written.
+    fn recorded_at(_record: &Record<Self>) -> Time {
+        Time(0)
+    }
+
+    /// Renders a journal record as one line for `whichone journal`, without its time, with the settings in
+    /// force if they are known.
     fn describe(_settings: Option<&Settings>, _record: &Record<Self>) -> String {
         String::new()
     }

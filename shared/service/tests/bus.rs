@@ -9,7 +9,7 @@ use messages::{
     AppliedMark, Epoch, Incarnation, Injection, PolicyView, Presented, RequestKey, Service, Sound,
 };
 use service::Span;
-use service::bus::{Bus, BusError, Identity, Joined, WakeListener};
+use service::bus::{AnyMessage, Bus, BusError, Identity, Joined, WakeListener};
 use service::group::{GroupName, GroupPaths};
 use service::shm_cleanup;
 
@@ -47,7 +47,11 @@ struct OtherMark {
     utterance: u64,
 }
 
-impl messages::WireField for OtherMark {}
+impl messages::WireField for OtherMark {
+    fn ros2() -> messages::definition::FieldType {
+        messages::definition::FieldType::default()
+    }
+}
 
 impl Schema for OtherMark {
     const NAME: &'static str = "AppliedMark";
@@ -58,6 +62,10 @@ impl Schema for OtherMark {
 
     fn size() -> usize {
         8
+    }
+
+    fn definition() -> messages::definition::Definition {
+        messages::definition::Definition::Ros2Msg("uint64 utterance\n".to_owned())
     }
 }
 
@@ -246,6 +254,41 @@ fn service_that_joins_is_woken_when_it_is_connected() {
     policy.connect(woken.take().unwrap());
     assert!(is_woken(&listener));
     assert_eq!(reader.latest().unwrap(), Some(AppliedMark { seq: 7 }));
+}
+
+#[test]
+fn any_reader_takes_every_topic_with_its_bytes_and_sequence_numbers() {
+    let shm = Shm::new();
+    let bus = shm.join(1, 1);
+    let marks = bus.any_reader(&topics::MARK).unwrap();
+    let writer = bus.writer::<AppliedMark>(&topics::MARK).unwrap();
+    // More than other readers of a state hold.
+    let most = topics::MARK.buffer_max() as u64;
+    assert!(most > topics::MARK.buffer as u64);
+    (1..=most + 2).for_each(|seq| writer.send(&AppliedMark { seq }).unwrap());
+    let mut taken = Vec::new();
+    let mut take = |stamp: &messages::Stamp, message: AnyMessage<'_>| {
+        let AnyMessage::Fixed(bytes, message) = message else { panic!("{message:?}") };
+        let mark = message.downcast_ref::<AppliedMark>().unwrap();
+        assert_eq!(bytes, mark.seq.to_le_bytes());
+        taken.push((u64::from(stamp.sequence), mark.seq));
+    };
+    marks.drain(&mut take).unwrap();
+    // The oldest gave way, and the gap shows it.
+    assert_eq!(taken, (3..=most + 2).map(|n| (n, n)).collect::<Vec<_>>());
+
+    let views = bus.any_reader(&topics::VIEW).unwrap();
+    let writer = bus.encoded_writer::<PolicyView>(&topics::VIEW).unwrap();
+    let view = PolicyView { text: "Is it white?".to_owned(), ..PolicyView::default() };
+    writer.send(&view).unwrap();
+    let mut taken = None;
+    views
+        .drain(&mut |stamp, message| {
+            let AnyMessage::Encoded(bytes) = message else { panic!("{message:?}") };
+            taken = Some((stamp.sequence, postcard::from_bytes::<PolicyView>(bytes).unwrap()));
+        })
+        .unwrap();
+    assert_eq!(taken, Some((1, view)));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Topics of a group, with everything that a service sleeps on.
 
 use super::Link;
+use messages::definition::Definition;
 use messages::schema::{Field, Schema};
 use messages::topics::{self, Topic};
 use messages::{ArmStatus, Service};
@@ -149,6 +150,10 @@ impl Schema for Blob<'_> {
 
     fn size() -> usize {
         0
+    }
+
+    fn definition() -> Definition {
+        Definition::JsonSchema(serde_json::json!({ "type": "object" }))
     }
 }
 

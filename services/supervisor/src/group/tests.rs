@@ -24,6 +24,7 @@ pub(crate) fn service(name: &str, after: &[&str]) -> ServiceSpec {
         command: vec!["true".into()],
         after: after.iter().map(|&name| name.into()).collect(),
         critical: false,
+        observer: false,
         start_deadline: Duration::from_secs(10),
         watchdog: Some(Duration::from_secs(3)),
         stop_deadline: Duration::from_secs(5),
@@ -91,6 +92,33 @@ fn group_is_degraded_while_a_running_service_is_short_of_a_resource() {
     assert!(group.is_whole(), "it runs: what waits for it goes on");
     group.on(1, Event::Short(false), NOW);
     assert_eq!(group.state(), GroupState::Ready);
+}
+
+#[test]
+fn observer_neither_delays_nor_degrades_its_group() {
+    let mut services: Vec<_> = CHAIN.iter().map(|(name, after)| service(name, after)).collect();
+    services.push(ServiceSpec { observer: true, ..service("eye", &[]) });
+    let log = Log { level: "info".into(), file_bytes_max: 1 << 20, files_kept: 1 };
+    let mut group = Group::new(&GroupSpec { services, restart: LIMITS, log }).unwrap();
+    group.start(NOW);
+    while let Some((service, effect)) = group.settle(NOW) {
+        assert_eq!(effect, Effect::Spawn);
+        if service < CHAIN.len() {
+            group.on(service, Event::Ready, NOW);
+        }
+    }
+    assert_eq!(group.state(), GroupState::Ready, "the observer is not ready yet");
+    group.on(3, Event::Ready, NOW);
+    group.on(3, Event::Short(true), NOW);
+    assert_eq!(group.state(), GroupState::Ready);
+    for _ in 0..LIMITS.exits_max {
+        group.on(3, CRASH, NOW);
+        settle(&mut group);
+    }
+    assert!(!group.is_given_up() && group.state() == GroupState::Ready);
+    group.on(1, CRASH, NOW);
+    settle(&mut group);
+    assert_eq!(group.state(), GroupState::Degraded, "the others count as before");
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
 use dialogue::{Announce, Costs, Mode};
 use language::Language;
 
@@ -70,29 +70,6 @@ pub struct PlanArgs {
     /// The lines.
     #[command(flatten)]
     pub input: InputArgs,
-}
-
-/// Arguments of `export`.
-#[derive(Debug, Args)]
-pub struct ExportArgs {
-    /// The format.
-    #[arg(value_enum)]
-    pub what: Exported,
-    /// The scene: a TOML or JSON file, or the name of a scene of the configuration.
-    pub scene: PathBuf,
-    /// The problem.
-    #[command(flatten)]
-    pub problem: ProblemArgs,
-    /// Write to this file instead of standard output.
-    #[arg(long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-}
-
-/// What can be exported.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Exported {
-    /// The decision problem of the planners in Cassandra's text format, which public solvers read.
-    Pomdp,
 }
 
 /// Arguments of `fk` and `ik`.

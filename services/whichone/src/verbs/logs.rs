@@ -9,15 +9,12 @@ use std::time::Duration;
 use serde::Serialize;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
+use service::log_tail::LogFile;
 use service::printable::one_line;
 
 use crate::Outcome;
 use crate::cli::LogsArgs;
 use crate::output::{Ink, Output};
-
-use file::LogFile;
-
-mod file;
 
 /// Interval at which logs are polled for new lines.
 const LOOK_EVERY: Duration = Duration::from_millis(200);

@@ -1,6 +1,7 @@
 //! Sound that clients stream to the robot.
 
 use crate::RequestKey;
+use crate::definition::FieldType;
 use crate::schema::wire_struct;
 use iceoryx2::prelude::ZeroCopySend;
 
@@ -13,7 +14,11 @@ pub const CHUNK_SAMPLES_MAX: usize = 1_600;
 #[type_name("Pcm")]
 pub struct Pcm<const N: usize>(pub [i16; N]);
 
-impl<const N: usize> crate::wire::WireField for Pcm<N> {}
+impl<const N: usize> crate::wire::WireField for Pcm<N> {
+    fn ros2() -> FieldType {
+        FieldType::primitive("int16").array(N)
+    }
+}
 
 impl<const N: usize> Default for Pcm<N> {
     fn default() -> Self {

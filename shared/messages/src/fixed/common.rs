@@ -17,8 +17,9 @@ wire_struct! {
         sent_ns: u64,
         /// Incarnation of the sender; 0 for a client.
         incarnation: u32,
-        /// Zero.
-        reserved: u32,
+        /// Number of the message among those of its writer in this topic, from 1; 0 where the sender does not
+        /// count. A reader sees from a gap how many it has lost.
+        sequence: u32,
     }
 }
 

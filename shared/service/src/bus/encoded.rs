@@ -6,7 +6,7 @@ use super::ports::subscribe;
 use super::renewed::Renewed;
 use super::segment_error::{self, SegmentError};
 use super::sender::Sender;
-use super::{Bus, BusError, Connect, Ipc, PortError, create};
+use super::{Bus, BusError, Connect, Ipc, PortError, Stamps, create};
 use iceoryx2::port::{ReceiveError, publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};
 use iceoryx2::sample::Sample;
@@ -47,13 +47,13 @@ impl Bus {
         })?;
         let sender = Sender::open(self, name, publisher, notifiers(self, topic)?);
         let is_view = topic.writer.is_some();
-        let (topic, stamp) = (topic.name, self.stamp());
+        let (topic, stamps) = (topic.name, self.stamps());
         Ok(EncodedWriter {
             topic,
             is_view,
             is_short: Cell::new(false),
             sender,
-            stamp,
+            stamps,
             _payload: PhantomData,
         })
     }
@@ -63,11 +63,19 @@ impl Bus {
     /// # Errors
     /// As [`Bus::writer`].
     pub fn encoded_reader<T: Schema>(&self, topic: &Topic) -> Result<EncodedReader<T>, BusError> {
+        self.buffered_encoded_reader(topic, topic.buffer)
+    }
+
+    pub(super) fn buffered_encoded_reader<T: Schema>(
+        &self,
+        topic: &Topic,
+        buffer: usize,
+    ) -> Result<EncodedReader<T>, BusError> {
         let service = open_topic!(self, topic, [u8])?;
-        let subscriber = subscribe(service, topic)?;
+        let subscriber = subscribe(service, topic, buffer)?;
         self.greet(topic);
         let gate = Gate::new(self, topic);
-        let (buffer, topic) = (topic.buffer, topic.name);
+        let topic = topic.name;
         Ok(EncodedReader { topic, buffer, subscriber, gate, _payload: PhantomData })
     }
 }
@@ -81,7 +89,7 @@ pub struct EncodedWriter<T: Schema> {
     /// The last payload was dropped for want of shared memory.
     is_short: Cell<bool>,
     sender: Rc<Sender<Publisher<Ipc, [u8], Stamp>>>,
-    stamp: Stamp,
+    stamps: Stamps,
     _payload: PhantomData<T>,
 }
 
@@ -108,7 +116,7 @@ impl<T: Schema> EncodedWriter<T> {
                 Err(error) => return self.unsent(format!("{error:?}")).map(|()| false),
             };
             self.is_short.set(false);
-            *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
+            *sample.user_header_mut() = self.stamps.next();
             let unwritten = Unwritten(sample.payload_mut());
             let encoded = postcard::serialize_with_flavor(payload, unwritten);
             encoded.map_err(|e| failed(e.to_string()))?;
@@ -191,6 +199,13 @@ impl<T: Schema> EncodedReader<T> {
         &self,
         mut decode: impl FnMut(&[u8]) -> postcard::Result<R>,
     ) -> Result<Option<R>, PortError> {
+        self.take_stamped(|bytes, _| decode(bytes))
+    }
+
+    pub(super) fn take_stamped<R>(
+        &self,
+        mut decode: impl FnMut(&[u8], &Stamp) -> postcard::Result<R>,
+    ) -> Result<Option<R>, PortError> {
         self.subscriber.with(|subscriber| {
             loop {
                 let received = subscriber.receive();
@@ -200,7 +215,7 @@ impl<T: Schema> EncodedReader<T> {
                 if !self.gate.admits(sample.user_header()) {
                     continue;
                 }
-                match decode(sample.payload()) {
+                match decode(sample.payload(), sample.user_header()) {
                     Ok(payload) => return Ok(Some(payload)),
                     Err(error) => reject(self.topic, &error),
                 }

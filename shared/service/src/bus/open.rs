@@ -29,7 +29,7 @@ macro_rules! open_topic {
             .max_publishers(topic.writers_max)
             .max_subscribers(topic.readers_max)
             .max_nodes(NODES_MAX)
-            .subscriber_max_buffer_size(topic.buffer)
+            .subscriber_max_buffer_size(topic.buffer_max())
             .subscriber_max_borrowed_samples(1)
             .history_size(topic.history)
             .enable_safe_overflow(true)
@@ -38,6 +38,32 @@ macro_rules! open_topic {
     }};
 }
 pub(super) use open_topic;
+
+/// Does something with the payload's type of a topic that has a fixed layout, which is found by its name;
+/// something else with the topics that have none.
+macro_rules! of_type {
+    ($topic:expr, $T:ident => $fixed:expr, else $encoded:expr) => {
+        $crate::bus::open::of_type!(@ $topic, $T => $fixed, else $encoded,
+            messages::Receipt, messages::Utterance, messages::Presented, messages::Activity,
+            messages::Hearing, messages::Partial, messages::AudioChunk, messages::Observation,
+            messages::AppliedMark, messages::RobotAct, messages::ArmStatus, messages::JointStates,
+            messages::MotionCommand, messages::robot::JointState, messages::robot::AssemblyState,
+            messages::robot::JointCommand, messages::robot::JointTrajectoryPoint,
+            messages::robot::SpeedRatio, messages::robot::EndpointState,
+            messages::robot::EndEffectorCommand, messages::robot::EndEffectorState,
+            messages::robot::EndEffectorProperties, messages::robot::Drill)
+    };
+    (@ $topic:expr, $T:ident => $fixed:expr, else $encoded:expr, $($payload:ty),+) => {
+        match $topic.payload {
+            $(name if name == <$payload as messages::schema::Schema>::NAME => {
+                type $T = $payload;
+                $fixed
+            })+
+            _ => $encoded,
+        }
+    };
+}
+pub(super) use of_type;
 
 pub(super) fn schema_attribute(topic: &Topic) -> Result<AttributeVerifier, String> {
     let key = AttributeKey::new(b"schema").map_err(|e| format!("{e:?}"))?;
@@ -85,42 +111,9 @@ impl Topics {
 
 /// Holds a topic open without reading or writing it; its type is found by its payload's name.
 fn keep(bus: &Bus, topic: &Topic) -> Result<Box<dyn std::fmt::Debug>, BusError> {
-    use messages::{robot, schema::Schema};
-    macro_rules! by_name {
-        ($($payload:ty),+) => {
-            match topic.payload {
-                $(name if name == <$payload as Schema>::NAME => {
-                    Box::new(open_topic!(bus, topic, $payload)?)
-                })+
-                _ => Box::new(open_topic!(bus, topic, [u8])?),
-            }
-        };
-    }
-    Ok(by_name!(
-        messages::Receipt,
-        messages::Utterance,
-        messages::Presented,
-        messages::Activity,
-        messages::Hearing,
-        messages::Partial,
-        messages::AudioChunk,
-        messages::Observation,
-        messages::AppliedMark,
-        messages::RobotAct,
-        messages::ArmStatus,
-        messages::JointStates,
-        messages::MotionCommand,
-        robot::JointState,
-        robot::AssemblyState,
-        robot::JointCommand,
-        robot::JointTrajectoryPoint,
-        robot::SpeedRatio,
-        robot::EndpointState,
-        robot::EndEffectorCommand,
-        robot::EndEffectorState,
-        robot::EndEffectorProperties,
-        robot::Drill
-    ))
+    Ok(of_type!(topic,
+        T => Box::new(open_topic!(bus, topic, T)?),
+        else Box::new(open_topic!(bus, topic, [u8])?)))
 }
 
 /// The notifiers of a topic's readers.

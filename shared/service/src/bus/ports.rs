@@ -7,7 +7,7 @@ use super::gate::{Gate, reject};
 use super::open::{notifiers, open_topic};
 use super::renewed::Renewed;
 use super::sender::Sender;
-use super::{Bus, BusError, Connect, Ipc, PortError, WireMessage, create};
+use super::{Bus, BusError, Connect, Ipc, PortError, Stamps, WireMessage, create};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::{BackpressureStrategy, IceoryxSend};
 use iceoryx2::sample_mut::SampleMut;
@@ -40,7 +40,7 @@ impl Bus {
         })?;
         let sender = Sender::open(self, name, publisher, notifiers(self, topic)?);
         let latest = topic.is_state().then(Cell::default);
-        Ok(Writer { topic: name, sender, stamp: self.stamp(), latest })
+        Ok(Writer { topic: name, sender, stamps: self.stamps(), latest })
     }
 
     /// Reads a fixed-layout topic.
@@ -48,19 +48,28 @@ impl Bus {
     /// # Errors
     /// As [`Bus::writer`].
     pub fn reader<T: WireMessage>(&self, topic: &Topic) -> Result<Reader<T>, BusError> {
+        self.buffered_reader(topic, topic.buffer)
+    }
+
+    pub(super) fn buffered_reader<T: WireMessage>(
+        &self,
+        topic: &Topic,
+        buffer: usize,
+    ) -> Result<Reader<T>, BusError> {
         let service = open_topic!(self, topic, T)?;
-        let subscriber = subscribe(service, topic)?;
+        let subscriber = subscribe(service, topic, buffer)?;
         self.greet(topic);
         Ok(Reader { topic: topic.name, subscriber, gate: Gate::new(self, topic) })
     }
 }
 
-/// Creates the reading port of a topic, whatever its payload.
+/// Creates the reading port of a topic, whatever its payload, which holds at most `buffer` unread messages.
 pub(super) fn subscribe<P: IceoryxSend + Debug + ?Sized + 'static>(
     service: PortFactory<Ipc, P, Stamp>,
     topic: &Topic,
+    buffer: usize,
 ) -> Result<Renewed<Subscriber<Ipc, P, Stamp>>, BusError> {
-    let (name, buffer, history) = (topic.name, topic.buffer, topic.history);
+    let (name, history) = (topic.name, topic.history);
     Renewed::new(name, move |failing| {
         create(name, || {
             service
@@ -81,7 +90,7 @@ type Slot<T> = SampleMutUninit<Ipc, MaybeUninit<T>, Stamp>;
 pub struct Writer<T: WireMessage> {
     topic: &'static str,
     sender: Rc<Sender<Publisher<Ipc, T, Stamp>>>,
-    stamp: Stamp,
+    stamps: Stamps,
     /// The message sent last, where the topic is a state that is repeated.
     latest: Option<Cell<Option<T>>>,
 }
@@ -119,7 +128,7 @@ impl<T: WireMessage> Writer<T> {
         let state = self.sender.with(|publisher| {
             let loan = publisher.loan_uninit();
             let mut slot = loan.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
-            *slot.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
+            *slot.user_header_mut() = self.stamps.next();
             let sample = fill(slot);
             let state = self.latest.as_ref().map(|_| *sample.payload());
             let sent = sample.send();
@@ -155,7 +164,10 @@ impl<T: WireMessage> Reader<T> {
         self.take_stamped(|message, _| read(message))
     }
 
-    fn take_stamped<R>(&self, read: impl FnOnce(&T, &Stamp) -> R) -> Result<Option<R>, PortError> {
+    pub(super) fn take_stamped<R>(
+        &self,
+        read: impl FnOnce(&T, &Stamp) -> R,
+    ) -> Result<Option<R>, PortError> {
         self.subscriber.with(|subscriber| {
             loop {
                 let received = subscriber.receive();

@@ -1,4 +1,4 @@
-//! `export`: a decision problem for other programs.
+//! `export pomdp`: a decision problem for other programs.
 
 use std::path::Path;
 
@@ -6,14 +6,13 @@ use dialogue::export::Pomdp;
 use serde_json::json;
 use service::exit::{Exit, Failure};
 
-use super::planning;
+use super::super::planning;
 use crate::Outcome;
-use crate::cli::{ExportArgs, Exported};
+use crate::cli::PomdpArgs;
 use crate::output::Output;
 
 /// Prints the problem or writes it to the given file.
-pub(super) fn export(args: &ExportArgs, out: &mut Output<'_>) -> Outcome {
-    let Exported::Pomdp = args.what;
+pub(super) fn export(args: &PomdpArgs, out: &mut Output<'_>) -> Outcome {
     let found = planning::of_scene(&args.scene, &args.problem)?;
     let comment = comment(found.scene.name());
     let exported =

@@ -12,7 +12,7 @@ const NEW_BYTES_MAX: u64 = 4 << 20;
 
 /// A log and how far it has been read.
 #[derive(Debug)]
-pub(super) struct LogFile {
+pub struct LogFile {
     service: String,
     path: PathBuf,
     /// Inode of the file that has been read; another file of that name is read from its beginning.
@@ -23,20 +23,26 @@ pub(super) struct LogFile {
 }
 
 impl LogFile {
-    pub(super) fn new(service: &str, path: PathBuf) -> Self {
+    /// A log that has not been read yet.
+    pub fn new(service: &str, path: PathBuf) -> Self {
         Self { service: service.to_owned(), path, inode: 0, at: 0, begun: Vec::new() }
     }
 
-    pub(super) fn service(&self) -> &str {
+    /// The service whose log it is.
+    pub fn service(&self) -> &str {
         &self.service
     }
 
-    pub(super) fn path(&self) -> &Path {
+    /// The file.
+    pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// The last lines, `count` at most; [`LogFile::new_lines`] continues after them.
-    pub(super) fn last_lines(&mut self, count: usize) -> io::Result<Vec<String>> {
+    ///
+    /// # Errors
+    /// The file cannot be read; there are no lines where it does not exist.
+    pub fn last_lines(&mut self, count: usize) -> io::Result<Vec<String>> {
         let Some(mut file) = open(&self.path)? else { return Ok(Vec::new()) };
         let metadata = file.metadata()?;
         let from = metadata.len().saturating_sub(TAIL_BYTES_MAX);
@@ -49,7 +55,10 @@ impl LogFile {
 
     /// The lines that have been completed since the last look. A log that was put aside or emptied
     /// meanwhile is read from its beginning.
-    pub(super) fn new_lines(&mut self) -> io::Result<Vec<String>> {
+    ///
+    /// # Errors
+    /// As [`LogFile::last_lines`].
+    pub fn new_lines(&mut self) -> io::Result<Vec<String>> {
         let Some(mut file) = open(&self.path)? else { return Ok(Vec::new()) };
         let metadata = file.metadata()?;
         if metadata.ino() != self.inode || metadata.len() < self.at {

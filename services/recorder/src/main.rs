@@ -1,0 +1,7 @@
+//! The recorder.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    recorder::run()
+}

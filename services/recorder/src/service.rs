@@ -1,0 +1,271 @@
+//! The recorder as a service of the group.
+
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::SystemTime;
+
+use config::{SNAPSHOT_FILE, Settings};
+use messages::topics::{self, Topic};
+use messages::{Service, Stamp};
+use recording::channels::{CDR_HEADER, ChannelId, group_topics};
+use recording::clock::WallClock;
+use recording::file::Attached;
+use recording::list::{entries, unfinished};
+use recording::picture::{Painter, Shown};
+use recording::ring::{Ring, TEND_EVERY, free_space};
+use recording::{payload, recover};
+use service::bus::{AnyMessage, AnyReader, PortError, WakeListener};
+use service::client::Client;
+use service::exit::{Exit, Failure};
+use service::folders::make_private;
+use service::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
+use service::{Span, Time, clock, service_loop};
+
+/// Interval between two looks at all topics. Their buffers hold three times as much.
+const LOOK_EVERY: Span = Span::from_ms(100);
+/// Seconds before the end of the newest recording from which on a message may not be in it.
+const UNFLUSHED_S: f64 = 1.0;
+
+/// Runs the service until it is shut down.
+pub fn run() -> ExitCode {
+    let about = "records every topic into MCAP files (docs/recording.md)";
+    service_loop::program(Service::Recorder.name(), about, serve)
+}
+
+fn serve(arguments: Vec<String>) -> Result<(), Failure> {
+    let environment = Environment::read(arguments)?;
+    let lifecycle = Lifecycle::begin(&environment.paths)?;
+    let settings = Settings::load_snapshot(&environment.paths.run())?;
+    let mut recorder = Recorder::open(&environment, &settings)?;
+    drive(lifecycle, &mut recorder)
+}
+
+/// A topic that is recorded.
+struct Source {
+    topic: &'static Topic,
+    channel: ChannelId,
+    reader: Box<dyn AnyReader>,
+    /// Messages that were sent before are in an earlier recording.
+    since: Time,
+}
+
+struct Recorder {
+    /// Keeps the readers' shared memory open.
+    _client: Client,
+    wake_listener: WakeListener,
+    sources: Vec<Source>,
+    ring: Ring,
+    painter: Painter,
+    next_look: Time,
+    next_tend: Time,
+    /// The last failure to read a topic, so that it is logged once.
+    failure: Option<String>,
+    /// A message with its CDR header.
+    buffer: Vec<u8>,
+    is_ending: bool,
+}
+
+impl Recorder {
+    fn open(environment: &Environment, settings: &Settings) -> Result<Self, Failure> {
+        let paths = &environment.paths;
+        let folder = paths.recordings();
+        make_private(&folder).map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
+        let began = clock::now();
+        let (since, torn) = (newest(&folder, began), unfinished(&folder));
+        let client = Client::of_service(environment, Service::Recorder.name())?;
+        let wake_listener = client.bus().wake_listener(Service::Recorder)?;
+        let mut sources = Vec::new();
+        for (place, topic) in group_topics().enumerate() {
+            let is_sound = topic.name == topics::AUDIO.name;
+            if is_sound && !settings.group.recorder.sound {
+                continue;
+            }
+            let reader = client.bus().any_reader(topic)?;
+            // Of a state the latest message counts, however old it is.
+            let since = if topic.history > 1 { since } else { Time(0) };
+            sources.push(Source { topic, channel: ChannelId::of_topic(place), reader, since });
+        }
+        let files = settings.robot_files();
+        let robot = robot_model::Robot::read(&files.urdf, files.srdf.as_ref());
+        let robot = robot.map_err(|found| Failure::new(Exit::Config, found.to_string()))?;
+        let attached = attached(environment, settings);
+        let limits = settings.group.recorder.clone();
+        let ring = Ring::new(folder, limits, attached, Box::new(free_space));
+        let mut recorder = Self {
+            _client: client,
+            wake_listener,
+            sources,
+            ring,
+            painter: Painter::new(settings, &robot, paths.log()),
+            next_look: began,
+            next_tend: began,
+            failure: None,
+            buffer: Vec::new(),
+            is_ending: false,
+        };
+        recorder.tend(began);
+        // Beside the recording, as it may take a while. A failure leaves them unfinished.
+        let recovery = move || recover::recover_all(&torn);
+        let spawned = std::thread::Builder::new().name("recover".into()).spawn(recovery);
+        if let Err(error) = spawned {
+            tracing::warn!(%error, "unfinished recordings are not completed");
+        }
+        Ok(recorder)
+    }
+
+    /// Takes what has arrived on all topics.
+    fn look(&mut self, now: Time) {
+        let Some(clock) = self.ring.clock() else { return self.skip() };
+        let Self { sources, ring, painter, buffer, .. } = self;
+        let mut failure = None;
+        for Source { topic, channel, reader, since } in sources.iter() {
+            let taken = reader.drain(&mut |stamp, message| {
+                let sent = sent(stamp, now);
+                if sent < *since {
+                    return;
+                }
+                let at_ns = clock.wall_ns(sent);
+                let mut write =
+                    |data: &[u8]| ring.write(*channel, stamp.sequence, at_ns, data, now);
+                match message {
+                    AnyMessage::Fixed(bytes, _) => {
+                        buffer.clear();
+                        buffer.extend(CDR_HEADER);
+                        buffer.extend(bytes);
+                        write(buffer);
+                    }
+                    AnyMessage::Encoded(bytes) => match payload::to_json(topic, bytes) {
+                        Ok(json) => write(&json),
+                        // Those whom it is for reject it, and say so.
+                        Err(error) => tracing::debug!(%error, "not recorded"),
+                    },
+                }
+                painter
+                    .on_message(topic, (sent, clock), message, &mut |shown| show(ring, shown, now));
+            });
+            failure = failure.or(taken.err());
+        }
+        painter.show_scene(now, clock, &mut |shown| show(ring, shown, now));
+        self.judge(failure);
+    }
+
+    /// Drops what has arrived: nothing is recorded.
+    fn skip(&mut self) {
+        let drop_all = |source: &Source| source.reader.drain(&mut |_, _| {}).err();
+        let failure = self.sources.iter().filter_map(drop_all).next();
+        self.judge(failure);
+    }
+
+    /// A topic that cannot be read is tried again with the next look.
+    fn judge(&mut self, failure: Option<PortError>) {
+        let failure = failure.map(|error| error.to_string());
+        if let Some(error) = failure.as_ref().filter(|_| self.failure.is_none()) {
+            tracing::warn!(error, "a topic cannot be read; trying again");
+        }
+        self.failure = failure;
+    }
+
+    fn tend(&mut self, now: Time) {
+        let Self { ring, painter, .. } = self;
+        if let Some(clock) = ring.clock() {
+            painter.show_logs(now, clock, &mut |shown| show(ring, shown, now));
+        }
+        let is_new = ring.tend(now, WallClock::read());
+        if let Some(clock) = ring.clock().filter(|_| is_new) {
+            painter.begin(now, clock, &mut |shown| show(ring, shown, now));
+        }
+        self.next_tend = now + TEND_EVERY;
+    }
+}
+
+fn show(ring: &mut Ring, (picture, at_ns, data): Shown, now: Time) {
+    ring.write(picture.into(), 0, at_ns, &data, now);
+}
+
+/// When a message was sent, unless its sender gives an impossible time.
+fn sent(stamp: &Stamp, now: Time) -> Time {
+    match Time(stamp.sent_ns) {
+        Time(0) => now,
+        sent if sent > now => now,
+        sent => sent,
+    }
+}
+
+/// The moment up to which an earlier recording has the messages: a second before its last flush, so that
+/// some may be in both and none is lost.
+fn newest(folder: &Path, now: Time) -> Time {
+    let written = entries(folder).pop().and_then(|file| file.path.metadata().ok()?.modified().ok());
+    let age = written.and_then(|at| SystemTime::now().duration_since(at).ok());
+    let age = age.map(|age| Span::from_s(age.as_secs_f64() + UNFLUSHED_S));
+    age.map_or(Time(0), |age| Time(now.ns().saturating_sub(age.0)))
+}
+
+fn attached(environment: &Environment, settings: &Settings) -> Attached {
+    let robot = settings.robot_files();
+    let srdf = robot.srdf.iter().map(|file| ("robot.srdf", "application/xml", file.text.clone()));
+    let files = [
+        (SNAPSHOT_FILE, "application/toml", settings.snapshot()),
+        ("scene.toml", "application/toml", settings.scene_file().text.clone()),
+        ("robot.urdf", "application/xml", robot.urdf.text.clone()),
+    ];
+    let files = files.into_iter().chain(srdf);
+    let group = [
+        ("group", environment.paths.name().to_string()),
+        ("epoch", environment.epoch.to_string()),
+        ("scene", settings.scene.name().to_owned()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+    ];
+    Attached {
+        files: files.map(|(name, media, text)| (name.to_owned(), media, text)).collect(),
+        group: group
+            .map(|(key, value)| (key.to_owned(), value))
+            .into_iter()
+            .collect::<BTreeMap<_, _>>(),
+    }
+}
+
+impl Cycle for Recorder {
+    fn listener(&self) -> &WakeListener {
+        &self.wake_listener
+    }
+
+    fn wake(&self, _now: Time) -> (Sources<'_>, Time) {
+        ([None; 3], self.next_look)
+    }
+
+    fn shut_down(&mut self) {
+        self.is_ending = true;
+    }
+
+    fn pass(&mut self, ready: Ready) -> Result<ControlFlow<()>, Failure> {
+        if ready.by_wake {
+            // It writes no topic that those who join could have missed.
+            self.wake_listener.take();
+        }
+        let now = clock::now();
+        // Clients wake it: what they sent is gone when they end.
+        if now >= self.next_look || ready.by_wake || self.is_ending {
+            self.look(now);
+            self.next_look = now + LOOK_EVERY;
+            // At the end, too: what was logged in the last second.
+            if now >= self.next_tend || self.is_ending {
+                self.tend(now);
+            }
+        }
+        if self.is_ending {
+            self.ring.finish(now);
+            return Ok(ControlFlow::Break(()));
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    fn health(&mut self, _now: Time) -> Health {
+        Health::Working(None)
+    }
+
+    fn shortage(&self) -> Option<&str> {
+        self.ring.paused()
+    }
+}

@@ -1,0 +1,54 @@
+//! Recordings of a group: MCAP files that robotics tools open.
+//!
+//! [`channels`] lists what a file can hold: every topic of the group with the schema of its messages, and the
+//! [`picture`] of the group in schemas that viewers draw. [`file`] writes one file, [`ring`] a ring of them
+//! in bounded space, [`recover`] completes what a killed writer has left, and [`list`] reads them.
+//!
+//! Times in a file are wall-clock times. The messages themselves keep the machine's monotonic clock; the
+//! offset between both is constant within a file and part of its metadata.
+
+pub mod channels;
+pub mod clock;
+pub mod file;
+pub mod foxglove;
+pub mod journals;
+pub mod list;
+mod log_lines;
+pub mod payload;
+pub mod picture;
+pub mod recover;
+pub mod ring;
+
+/// End of the name of a complete recording.
+pub const EXTENSION: &str = "mcap";
+/// End of the name of a recording that is being written, or whose writer was killed.
+pub const UNFINISHED: &str = "mcap.part";
+
+/// A recording cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// An error of the operating system.
+    #[error("{0}: {1}")]
+    Io(std::path::PathBuf, std::io::Error),
+    /// The file is not MCAP, or is damaged.
+    #[error("{0}: {1}")]
+    Mcap(std::path::PathBuf, mcap::McapError),
+    /// A payload that is not what its topic says.
+    #[error("topic {0}: {1}")]
+    Payload(String, String),
+}
+
+impl RecordingError {
+    pub(crate) fn io(path: &std::path::Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |error| Self::Io(path, error)
+    }
+
+    pub(crate) fn mcap(path: &std::path::Path) -> impl FnOnce(mcap::McapError) -> Self + use<> {
+        let path = path.to_owned();
+        move |error| match error {
+            mcap::McapError::Io(error) => Self::Io(path, error),
+            error => Self::Mcap(path, error),
+        }
+    }
+}

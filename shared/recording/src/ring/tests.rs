@@ -1,0 +1,169 @@
+use std::cell::Cell;
+use std::rc::Rc;
+use std::time::Duration;
+
+use mcap::records::Record;
+
+use super::*;
+use crate::channels::Picture;
+use crate::list::unfinished;
+use crate::recover::{each_record, recover_all};
+
+const MIB: u64 = 1 << 20;
+const HOUR: u64 = 3600;
+
+fn limits() -> config::Recorder {
+    config::Recorder {
+        bytes_max: 8 * MIB,
+        age_max: Duration::from_secs(24 * HOUR),
+        file_max: Duration::from_secs(600),
+        free_min: 100 * MIB,
+        sound: false,
+    }
+}
+
+fn at(s: u64) -> Time {
+    Time(s * 1_000_000_000)
+}
+
+/// The wall clock is two days ahead of the monotonic one.
+fn clock() -> WallClock {
+    WallClock { offset_ns: 2 * 86_400 * 1_000_000_000 }
+}
+
+/// A ring whose free space is what the cell holds.
+fn ring(folder: &Path, limits: config::Recorder) -> (Ring, Rc<Cell<u64>>) {
+    let free = Rc::new(Cell::new(1000 * MIB));
+    let asked = Rc::clone(&free);
+    let attached = Attached {
+        files: vec![("settings.toml".to_owned(), "application/toml", "x".repeat(10_000))],
+        ..Attached::default()
+    };
+    (Ring::new(folder.to_owned(), limits, attached, Box::new(move |_| Ok(asked.get()))), free)
+}
+
+fn write(ring: &mut Ring, sequence: u64) {
+    let (id, now) = (ChannelId::from(Picture::Log), at(sequence));
+    // Noise, so that it does not compress.
+    let mut state = sequence.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let data: Vec<u8> = std::iter::repeat_with(|| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        state as u8
+    })
+    .take(300)
+    .collect();
+    ring.write(id, sequence as u32, clock().wall_ns(now), &data, now);
+}
+
+/// Sequence numbers in the files of a folder, oldest file first.
+fn sequences(folder: &Path) -> Vec<Vec<u32>> {
+    let read = |entry: Entry| {
+        let mut found = Vec::new();
+        each_record(&entry.path, |record| {
+            if let Record::Message { header, .. } = record {
+                found.push(header.sequence);
+            }
+            Ok(())
+        })
+        .unwrap();
+        found
+    };
+    entries(folder).into_iter().map(read).collect()
+}
+
+#[test]
+fn a_week_stays_in_bounds_and_has_no_gap_at_a_change_of_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut ring, _) = ring(folder.path(), limits());
+    let (week, step) = (7 * 24 * HOUR, 10_u64);
+    let mut most = 0;
+    for s in (0..week).step_by(step as usize) {
+        ring.tend(at(s), clock());
+        write(&mut ring, s);
+        if s % 500 == 0 {
+            most = most.max(entries(folder.path()).iter().map(|entry| entry.bytes).sum());
+        }
+    }
+    ring.finish(at(week));
+    assert!(ring.paused().is_none());
+    assert!((4 * MIB..=8 * MIB).contains(&most), "{most} bytes at most");
+    let files = sequences(folder.path());
+    let all: Vec<u32> = files.iter().flatten().copied().collect();
+    let kept = all.len() as u64;
+    // A day of files of ten minutes, each message once and none missing.
+    assert!((24 * HOUR / step..=25 * HOUR / step).contains(&kept), "{kept} messages");
+    assert!((144..=150).contains(&files.len()), "{} files", files.len());
+    let expected: Vec<u32> = (0..week).step_by(step as usize).map(|s| s as u32).collect();
+    assert_eq!(all, expected[expected.len() - all.len()..]);
+    assert!(files.iter().skip(1).all(|file| file.len() as u64 == 600 / step));
+}
+
+#[test]
+fn size_bounds_the_ring_where_age_does_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut ring, _) =
+        ring(folder.path(), config::Recorder { age_max: Duration::MAX, ..limits() });
+    for s in 0..60_000 {
+        ring.tend(at(s), clock());
+        write(&mut ring, s);
+        if s % 100 == 0 {
+            let bytes: u64 = entries(folder.path()).iter().map(|entry| entry.bytes).sum();
+            assert!(bytes <= 8 * MIB, "{bytes} after {s} s");
+        }
+    }
+    ring.finish(at(60_000));
+    let all: Vec<u32> = sequences(folder.path()).concat();
+    assert!(all.len() > 10_000 && all.windows(2).all(|pair| pair[1] == pair[0] + 1));
+    assert_eq!(all.last(), Some(&59_999));
+}
+
+#[test]
+fn nearly_full_disk_pauses_the_recording_until_there_is_space() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut ring, free) = ring(folder.path(), limits());
+    assert!(ring.tend(at(0), clock()));
+    write(&mut ring, 0);
+    free.set(99 * MIB);
+    assert!(!ring.tend(at(1), clock()));
+    assert!(ring.current().is_none(), "the file is complete");
+    let why = ring.paused().unwrap();
+    assert!(why.contains("99 MiB free") && why.contains("free_min_mib is 100"), "{why}");
+    write(&mut ring, 1);
+    // A little more than the minimum would make it pause again at once.
+    free.set(110 * MIB);
+    assert!(!ring.tend(at(2), clock()));
+    free.set(200 * MIB);
+    assert!(ring.tend(at(3), clock()) && ring.paused().is_none());
+    write(&mut ring, 3);
+    ring.finish(at(4));
+    assert_eq!(sequences(folder.path()), [[0], [3]]);
+}
+
+#[test]
+fn failure_to_write_is_tried_again_later() {
+    let folder = tempfile::tempdir().unwrap();
+    let gone = folder.path().join("gone");
+    let (mut ring, _) = ring(&gone, limits());
+    assert!(!ring.tend(at(0), clock()));
+    assert!(ring.paused().unwrap().contains("No such file"), "{:?}", ring.paused());
+    fs::create_dir(&gone).unwrap();
+    assert!(!ring.tend(at(1), clock()), "not at once");
+    assert!(ring.tend(at(10), clock()) && ring.paused().is_none());
+}
+
+#[test]
+fn new_file_begins_when_the_wall_clock_is_set() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut ring, _) = ring(folder.path(), limits());
+    assert!(ring.tend(at(0), clock()));
+    assert!(!ring.tend(at(1), clock()));
+    let set = WallClock { offset_ns: clock().offset_ns + 5_000_000_000 };
+    assert!(ring.tend(at(2), set));
+    assert_eq!(ring.clock(), Some(set));
+    write(&mut ring, 2);
+    drop(ring);
+    recover_all(&unfinished(folder.path()));
+    assert_eq!(entries(folder.path()).len(), 2);
+}
