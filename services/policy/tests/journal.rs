@@ -92,7 +92,7 @@ fn dialogue() -> Vec<Record> {
 fn an_intact_journal_is_listed_and_verified() {
     let lab = Lab::with(&dialogue());
     lab.check(&[], 0, "utterance 2");
-    lab.check(&["--json"], 0, "\"seq\":2,\"record\":{");
+    lab.check(&["--json"], 0, "\"seq\":2,\"at_ns\":2000000000,");
     lab.check(&["--verify"], 0, "2 states reproduced bit for bit from the one before");
     lab.check(&["--verify", "--json"], 0, "{\"ok\":true,\"records\":2,");
 }

@@ -74,7 +74,7 @@ fn copy_scenes(to: &Path) {
 fn services() -> String {
     let fixture = fixture("fixture_service").display().to_string();
     let service = |name| format!("[services.{name}]\ncommand = [{fixture:?}, \"ready\"]\n");
-    ["speech", "grounding", "policy", "arm", "console"].map(service).concat()
+    ["speech", "grounding", "policy", "arm", "console", "recorder"].map(service).concat()
 }
 
 /// The session of a process, from the sixth field of its `stat`. Not `getsid`, whose wrapper
@@ -93,7 +93,7 @@ fn detached_group_starts_and_stops() {
     assert_eq!(status.state, GroupState::Ready);
     assert_eq!(status.scene, "bowls");
     let names: Vec<&str> = status.services.iter().map(|service| service.name.as_str()).collect();
-    assert_eq!(names, ["speech", "grounding", "policy", "arm", "console"]);
+    assert_eq!(names, ["speech", "grounding", "policy", "arm", "console", "recorder"]);
     assert_eq!(session_of(status.supervisor_pid), status.supervisor_pid, "a session of its own");
     let settings = home.paths.run().join(config::SNAPSHOT_FILE);
     assert!(settings.exists());
@@ -128,7 +128,7 @@ fn reload_restarts_services_that_read_changed_settings() {
     assert_eq!(reload(), Reply::Reloaded { restarted: vec![] });
     home.write("arm.toml", "time_scale = 7.0\n");
     // The console shows the robot that arm.toml names.
-    let readers = ["arm", "console"].map(str::to_owned).to_vec();
+    let readers = ["arm", "console", "recorder"].map(str::to_owned).to_vec();
     assert_eq!(reload(), Reply::Reloaded { restarted: readers });
     home.write("group.toml", &format!("scene = \"tools\"\n{}", services()));
     let all = ["speech", "grounding", "policy", "arm", "console"].map(str::to_owned).to_vec();

@@ -51,7 +51,7 @@ fn defaults_are_as_documented() {
     let Settings { group, dialogue, speech, arm, .. } = Folder::new(&[]).load(None, &[]).unwrap();
     let names: Vec<_> = group.services.iter().map(|service| service.name.as_str()).collect();
     assert_eq!(names, Service::BUILT_IN.map(Service::name));
-    let [speech_service, grounding, _, arm_service, _] = &group.services[..] else {
+    let [speech_service, grounding, _, arm_service, _, _] = &group.services[..] else {
         unreachable!()
     };
     assert_eq!(grounding.watchdog, Some(Duration::from_secs(3)));
@@ -130,11 +130,14 @@ fn services_can_be_added_and_keep_their_order() {
     assert_eq!(read.group, settings.group);
     let services = settings.group.services;
     let names: Vec<_> = services.iter().map(|service| service.name.as_str()).collect();
-    assert_eq!(names, ["speech", "grounding", "policy", "arm", "console", "zoom", "camera"]);
+    assert_eq!(
+        names,
+        ["speech", "grounding", "policy", "arm", "console", "recorder", "zoom", "camera"]
+    );
     assert_eq!(services[1].command, Some(vec!["python3".into(), "grounding.py".into()]));
-    assert_eq!(services[5].after, ["arm", "camera"]);
-    assert_eq!(services[5].watchdog, Some(Duration::from_secs(3)));
-    assert_eq!((services[6].restart, services[6].nice), (Restart::Never, -3));
+    assert_eq!(services[6].after, ["arm", "camera"]);
+    assert_eq!(services[6].watchdog, Some(Duration::from_secs(3)));
+    assert_eq!((services[7].restart, services[7].nice), (Restart::Never, -3));
 }
 
 #[test]
