@@ -131,7 +131,8 @@ fn reload_restarts_services_that_read_changed_settings() {
     let readers = ["arm", "console", "recorder"].map(str::to_owned).to_vec();
     assert_eq!(reload(), Reply::Reloaded { restarted: readers });
     home.write("group.toml", &format!("scene = \"tools\"\n{}", services()));
-    let all = ["speech", "grounding", "policy", "arm", "console"].map(str::to_owned).to_vec();
+    let all =
+        ["speech", "grounding", "policy", "arm", "console", "recorder"].map(str::to_owned).to_vec();
     assert_eq!(reload(), Reply::Reloaded { restarted: all });
     home.write("group.toml", "scene = \"nowhere\"\n");
     let Err(CallError::Refused(refusal)) = call() else { panic!("not refused") };
