@@ -16,6 +16,8 @@ const SECONDS: [f64; 5] = [1.0, 5.0, 15.0, 30.0, 60.0];
 /// them; the next attempt may look at twice as many.
 const FIRST: usize = 1_000;
 const EASIER: usize = 20;
+/// Attempts with the same bounds, after which more beliefs are not tried.
+const ALIKE: usize = 3;
 /// Most beliefs of the search: each takes one to four kilobytes.
 const SEARCHED_MAX: usize = 100_000;
 /// Dialogues less probable than this are cut short in the value of `lookahead`.
@@ -66,7 +68,7 @@ fn attempts(problem: &DecisionProblem<'_>, limit_s: f64) -> Vec<Attempt> {
     for doubled in 0.. {
         let searched = FIRST << doubled;
         let before_s = attempts.last().map_or(0.0, |attempt| attempt.processor_s);
-        if attempts.len() > 1 && before_s * 2.0 > limit_s {
+        if attempts.len() > 1 && before_s * 2.0 > limit_s || is_exhausted(&attempts) {
             break;
         }
         attempts.push(attempt(problem, searched));
@@ -74,8 +76,17 @@ fn attempts(problem: &DecisionProblem<'_>, limit_s: f64) -> Vec<Attempt> {
     attempts
 }
 
+/// Returns whether the easier problem is solved and the search has all the memory that it may have.
+fn is_exhausted(attempts: &[Attempt]) -> bool {
+    let Some(alike) = attempts.last_chunk::<ALIKE>() else { return false };
+    let bounds = |attempt: &Attempt| (attempt.lower, attempt.upper);
+    alike.iter().all(|attempt| bounds(attempt) == bounds(&alike[0]))
+}
+
 fn attempt(problem: &DecisionProblem<'_>, beliefs: usize) -> Attempt {
     let mut planner = Optimal::default();
+    // No gap is close enough: what is measured is how far the bounds can be tightened.
+    planner.tolerance = 0.0;
     planner.beliefs_max = beliefs.min(SEARCHED_MAX);
     planner.certify_max = beliefs * EASIER;
     let belief = Belief::uniform(problem.model.objects());
