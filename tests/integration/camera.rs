@@ -10,8 +10,6 @@ const ROBOT: &[&str] = &[
     "arm.driver=baxter",
     "arm.time_scale=1.0",
     "arm.restock=false",
-    // An unoptimised search over objects in doubt takes its time on a busy machine.
-    "group.services.policy.watchdog_s=30.0",
 ];
 const CAMERA: &str = "arm.simulated.camera.enabled=true";
 /// Places in which no other bowl stands, as words.

@@ -8,6 +8,7 @@ mod batch;
 mod camera;
 mod config;
 mod console;
+mod console_access;
 mod console_study;
 mod console_voice;
 mod dialogues;

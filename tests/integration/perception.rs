@@ -54,6 +54,35 @@ fn perceived_objects_appear_move_and_vanish_in_a_dialogue() {
 }
 
 #[test]
+fn answer_as_waits_until_something_is_on_the_table() {
+    let group = Group::up(PERCEPTION);
+    let none = group.call(&["await", "pick", "--answer-as", "white-6", "--timeout", "1"]);
+    assert_eq!(none.code, Some(1), "{none:?}");
+    assert!(none.stdout.starts_with("no object is known to be on the table within"), "{none:?}");
+    let outcome = std::thread::scope(|scope| {
+        let user = scope.spawn(|| group.await_pick(Some("white-6")));
+        assert_eq!(add(&group, "white", ["0.7", "0.2"]), "white-6");
+        add(&group, "metal", ["0.7", "-0.2"]);
+        group.say("get me the bowl");
+        user.join().unwrap()
+    });
+    assert_delivered(&group, &outcome, "white-6");
+    let unknown = group.call(&["await", "pick", "--answer-as", "grey", "--timeout", "50"]);
+    assert_eq!(unknown.code, Some(64), "{unknown:?}");
+    assert!(unknown.stderr.contains("expected an object of the scene ("), "{unknown:?}");
+    assert!(unknown.stderr.contains("metal-7"), "{unknown:?}");
+    group.must(&["hold", "policy"]);
+    wait_for("the hold", 10.0, || (group.service("policy")["actual"] == "held").then_some(()));
+    for verb in [&["await", "pick", "--answer-as", "white-6"][..], &["objects"]] {
+        let refused = group.call(verb);
+        assert_eq!(refused.code, Some(1), "{refused:?}");
+        let why = "error: policy is held by the operator; help: whichone release policy\n";
+        assert_eq!(refused.stderr, why);
+    }
+    group.down();
+}
+
+#[test]
 fn objects_of_a_feed_appear_after_a_few_looks() {
     let group = Group::up(PERCEPTION);
     let seen = json!({ "classes": { "white": 0.9, "metal": 0.1 }, "xyz": [0.7, 0.1, -0.12] });

@@ -3,6 +3,7 @@
 use rustix::process::{Pid, Signal, kill_process};
 use service::shm_cleanup;
 use std::fs::File;
+use std::process::Stdio;
 use whichone_tests::{Group, wait_for};
 
 #[test]
@@ -70,6 +71,23 @@ fn hold_keeps_a_service_down_until_release() {
     group.must(&["release", "policy"]);
     wait_for("the release", 10.0, || (group.service("speech")["actual"] == "ready").then_some(()));
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
+    group.down();
+}
+
+#[test]
+fn listening_to_a_stream_ends_with_the_reason_once_speech_is_held() {
+    let group = Group::up(&[]);
+    let mut listen = group.command(&["listen", "-"]);
+    let mut listen = listen.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    group.must(&["hold", "speech"]);
+    // The stream itself does not end.
+    let _sound = listen.stdin.take();
+    wait_for("the end of listening", 20.0, || listen.try_wait().unwrap());
+    let ended = listen.wait_with_output().unwrap();
+    assert_eq!(ended.status.code(), Some(1));
+    let why = "error: speech is held by the operator; help: whichone release speech\n";
+    assert_eq!(String::from_utf8_lossy(&ended.stderr), why);
+    group.must(&["release", "speech"]);
     group.down();
 }
 

@@ -134,10 +134,7 @@ impl Shell<PolicyNode> for PolicyShell {
         if let Some(world) = table.world.latest()? {
             take(In::World(Box::new(world)));
         }
-        while let Some(sighting) = table.sightings.take()? {
-            take(In::Sighting(Box::new(sighting)));
-        }
-        Ok(())
+        table.sightings.drain_in_turn(|sighting| take(In::Sighting(Box::new(sighting))))
     }
 
     fn publish(&mut self, output: Out) -> Result<(), PortError> {

@@ -1,9 +1,11 @@
 //! The end of an utterance by its meaning: how long a pause ends what was said so far.
 
+use std::ops::Deref;
+use std::sync::LazyLock;
 use std::time::Duration;
 
 use language::{Completeness, CompletenessJudge};
-use scene::Question;
+use scene::{Question, Scene};
 
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::Closing;
@@ -12,13 +14,35 @@ use crate::{Hypothesis, RecognisedSegment};
 /// Pauses that end utterances, by what was said.
 pub struct Endpointing {
     /// Judges the words.
-    pub judge: CompletenessJudge,
+    pub judge: PreparedJudge,
     /// The pause that ends a complete utterance.
     pub complete: Duration,
     /// The pause that ends an utterance of which nothing else is known.
     pub closing: Duration,
     /// The pause that ends an utterance whose last words lead on.
     pub open: Duration,
+}
+
+/// A judge of words that is prepared when it is first needed: while a user speaks there is time for the several
+/// milliseconds that it takes, during a start there is not.
+pub struct PreparedJudge(LazyLock<CompletenessJudge, Prepare>);
+
+type Prepare = Box<dyn FnOnce() -> CompletenessJudge + Send>;
+
+impl PreparedJudge {
+    /// The judge of words about a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let scene = scene.clone();
+        Self(LazyLock::new(Box::new(move || CompletenessJudge::new(&scene))))
+    }
+}
+
+impl Deref for PreparedJudge {
+    type Target = CompletenessJudge;
+
+    fn deref(&self) -> &CompletenessJudge {
+        &self.0
+    }
 }
 
 /// Share of a hypothesis from which on it counts.

@@ -29,7 +29,7 @@ use stream_events::StreamEvent;
 use utterance_intake::UtteranceIntake;
 
 pub use devices::microphone::MicrophoneStatus;
-pub use endpointing::{EarlyDecoding, Endpointing};
+pub use endpointing::{EarlyDecoding, Endpointing, PreparedJudge};
 pub use io::{
     In, Out, PlaybackEvent, PlaybackRequest, PlaybackState, Recognised, RecognisedSegment,
     RecognitionInput,

@@ -13,12 +13,11 @@ use crate::devices::voice::Voice;
 use crate::record::Record;
 use crate::stream_events::StreamEvent;
 use crate::{
-    Config, Endpointing, In, Out, PlaybackRequest, Recognised, RecognitionInput, SpeechNode,
-    doctor, inspection,
+    Config, Endpointing, In, Out, PlaybackRequest, PreparedJudge, Recognised, RecognitionInput,
+    SpeechNode, doctor, inspection,
 };
 use config::Settings;
 use crossbeam_channel::Receiver;
-use language::CompletenessJudge;
 use messages::{
     Activity, AppliedMark, ArmStatus, AudioChunk, EarState, Hearing, Injection, MotionCommand,
     Partial, Presented, Receipt, RobotAct, Service, Utterance, topics,
@@ -49,7 +48,7 @@ impl Program for SpeechProgram {
     fn config(_: &Environment, settings: &Settings) -> Result<Config, Failure> {
         Ok(Config {
             endpointing: Endpointing {
-                judge: CompletenessJudge::new(&settings.scene),
+                judge: PreparedJudge::new(&settings.scene),
                 complete: settings.speech.complete_pause,
                 closing: settings.speech.closing_pause,
                 open: settings.speech.open_pause,

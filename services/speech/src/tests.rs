@@ -12,9 +12,8 @@ use crate::record::Record;
 use crate::stream_events::{Began, LIVE_FROM, StreamEvent};
 use crate::{
     Config, Endpointing, Hypothesis, In, Out, PlaybackEvent, PlaybackRequest, PlaybackState,
-    Recognised, RecognisedSegment, SpeechNode,
+    PreparedJudge, Recognised, RecognisedSegment, SpeechNode,
 };
-use language::CompletenessJudge;
 use messages::{
     ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, MessageRef, MotionOrder,
     PresentationState, Receipt, RequestKey, RobotAct, Sound, Source, Utterance, WireCode,
@@ -42,7 +41,7 @@ impl Speech {
     fn before_mark() -> Self {
         let ms = std::time::Duration::from_millis;
         let endpointing = Endpointing {
-            judge: CompletenessJudge::new(&testing::bowls()),
+            judge: PreparedJudge::new(&testing::bowls()),
             complete: ms(120),
             closing: ms(500),
             open: ms(900),

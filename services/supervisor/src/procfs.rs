@@ -1,7 +1,8 @@
 //! Processes as `/proc` lists them.
 
 use std::ffi::OsStr;
-use std::fs;
+use std::fs::{self, File};
+use std::io::Read;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
@@ -10,6 +11,9 @@ use rustix::process::Pid;
 /// Clock ticks per second in `/proc`. Fixed by the kernel's interface at 100 on every architecture
 /// that Rust's standard library is shipped for.
 const TICKS_PER_S: f64 = 100.0;
+
+/// Longest `stat` line: some fifty numbers of up to twenty digits, and a name.
+const STAT_BYTES_MAX: usize = 2048;
 
 /// One process, from its `stat` line.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +42,11 @@ pub(crate) fn processes() -> Vec<Process> {
 
 /// One process, if it exists.
 pub(crate) fn process(pid: Pid) -> Option<Process> {
-    parse_stat(&fs::read_to_string(format!("/proc/{pid}/stat")).ok()?)
+    // The kernel hands out the whole line at once; there may be many processes to ask for.
+    let mut line = [0; STAT_BYTES_MAX];
+    let mut file = File::open(format!("/proc/{pid}/stat")).ok()?;
+    let length = file.read(&mut line).ok()?;
+    parse_stat(&String::from_utf8_lossy(&line[..length]))
 }
 
 /// Resident memory of a process, KiB.

@@ -212,14 +212,16 @@ impl Supervisor {
     fn reap(&mut self, service: usize) {
         self.listen(service, self.now());
         let failure = self.group.machine(service).failure();
-        self.note_left_behind(service);
+        let has_left_behind = self.note_left_behind(service);
         let ended_at = self.now();
         let Some(exit) = self.services[service].reap(failure, ended_at) else { return };
         if let Some(admin) = &self.admin {
             admin.clean_dead();
             admin.make_way();
         }
-        self.clear_orphans();
+        if has_left_behind {
+            self.clear_orphans();
+        }
         self.give(service, Event::Exited(exit), self.now());
         self.report_rest(service);
     }

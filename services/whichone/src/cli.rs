@@ -1,7 +1,11 @@
 //! The command surface: every verb, its arguments and their help.
 
-use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+
+use clap::error::{ContextKind, ContextValue};
+use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
+use diagnostics::nearest;
 use service::group::{ENV_GROUP, GroupName};
 
 mod arm;
@@ -54,6 +58,59 @@ pub struct Cli {
     /// The verb.
     #[command(subcommand)]
     pub verb: Verb,
+}
+
+/// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
+const WITHOUT_GROUP: [&str; 9] =
+    ["check", "completions", "belief", "ground", "plan", "export", "arm", "fk", "ik"];
+
+impl Cli {
+    /// Returns the definition of the command line, from which help and completions are made.
+    pub fn definition() -> Command {
+        let command = Self::command();
+        let group = command.get_arguments().find(|argument| argument.get_id() == "group");
+        let listed = group.expect("an argument of every verb").clone();
+        command.mut_subcommands(|verb| match verb.get_name() {
+            // The results of a study with people are a group's.
+            "study" => verb
+                .arg(listed.clone().hide(true))
+                .mut_subcommands(|report| report.arg(listed.clone())),
+            name if WITHOUT_GROUP.contains(&name) => verb.arg(listed.clone().hide(true)),
+            _ => verb,
+        })
+    }
+
+    /// Parses a command line, program name first.
+    ///
+    /// # Errors
+    /// A usage error, or a request for help or the version.
+    pub fn parse_line(line: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
+        let line: Vec<OsString> = line.into_iter().collect();
+        let mut definition = Self::definition();
+        let matches = definition.try_get_matches_from_mut(&line);
+        let matches = matches.map_err(|error| with_nearest_verb(error, &line, &definition))?;
+        Self::from_arg_matches(&matches).map_err(|error| error.format(&mut definition))
+    }
+}
+
+/// Suggests the verb that differs least from an unknown one: clap's own measure prefers `swap` to `say` for `sya`.
+fn with_nearest_verb(
+    mut error: clap::Error,
+    line: &[OsString],
+    definition: &Command,
+) -> clap::Error {
+    let is_verb =
+        |word: &OsString| definition.get_subcommands().any(|verb| verb.get_name() == word);
+    let Some(ContextValue::String(wrong)) = error.get(ContextKind::InvalidSubcommand) else {
+        return error;
+    };
+    let verbs = definition.get_subcommands().map(Command::get_name);
+    // An unknown action of a known verb is none of these.
+    if let Some(nearest) = nearest(wrong, verbs).filter(|_| !line.iter().any(is_verb)) {
+        let nearest = ContextValue::Strings(vec![nearest.to_owned()]);
+        error.insert(ContextKind::SuggestedSubcommand, nearest);
+    }
+    error
 }
 
 const EXIT_CODES: &str = "\

@@ -6,7 +6,6 @@
 
 use std::ffi::OsString;
 
-use clap::Parser;
 use service::exit::{Exit, Failure};
 
 use crate::cli::Cli;
@@ -25,7 +24,7 @@ pub type Outcome = Result<Exit, Failure>;
 
 /// Runs the command line `arguments`, program name first, and returns the exit code of the process.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
-    let cli = match Cli::try_parse_from(arguments) {
+    let cli = match Cli::parse_line(arguments) {
         Ok(cli) => cli,
         Err(error) => {
             // Nothing to do if the output is closed.

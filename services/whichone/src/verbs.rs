@@ -1,16 +1,15 @@
 //! The verbs, a file each or a family a file.
 
-use clap::CommandFactory;
 use clap_complete::{Shell, generate};
 use messages::MotionOrder;
 use service::control::Request;
 use service::group::GroupPaths;
 
 use crate::Outcome;
-use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, StudyVerb, Verb};
+use crate::batch;
+use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, ConfigArgs, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;
 use crate::output::Output;
-use crate::{batch, scene_file};
 use service::exit::{Exit, Failure};
 
 mod arm;
@@ -83,7 +82,8 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
         Verb::Belief(args) => batch::belief(batch::open(&args)?, out),
         Verb::Ground(args) => {
-            let scene = scene_file::load(&args.scene)?;
+            let config = ConfigArgs { config: args.config, ..ConfigArgs::default() };
+            let scene = planning::load_scene(&args.scene, &config)?;
             let grounder = batch::Grounder::new(scene, args.language);
             batch::ground(&grounder, batch::open(&args.input)?, out)
         }
@@ -107,7 +107,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
 /// Prints the script that completes command lines in a shell.
 fn completions(shell: Shell, out: &mut Output<'_>) -> Outcome {
     let mut script = Vec::new();
-    generate(shell, &mut Cli::command(), "whichone", &mut script);
+    generate(shell, &mut Cli::definition(), "whichone", &mut script);
     out.text(&String::from_utf8_lossy(&script))?;
     Ok(Exit::Ok)
 }

@@ -48,6 +48,10 @@ fn wrong_calls_exit_64_and_help_0() {
     home.check("await supper", 64, "pick");
     home.check("status --group No", 64, "a-z");
     home.check("up --set scene", 64, "KEY=VALUE");
+    home.check("up --wait ready", 64, "--detach");
+    home.check("sya hello", 64, "similar subcommand exists: 'say'");
+    home.check("record strat", 64, "'start'");
+    home.check("objects ad", 64, "'add'");
     home.check("say --timeout soon hello", 64, "seconds");
     home.check("--help", 0, "whichone");
     home.check("ik --help", 0, "--limb");
@@ -105,6 +109,21 @@ fn batch_tools_read_standard_input_or_a_file() {
     assert!(read.stdout.starts_with(&piped.stdout));
     home.check("fk --limb left --input nowhere", 74, "nowhere");
     home.check("ground --scene nowhere.toml", 74, "nowhere.toml");
+}
+
+#[test]
+fn scene_of_a_batch_tool_is_a_file_or_a_name_in_the_configuration() {
+    let home = Home::new();
+    let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+    let config = config.display();
+    let written = std::fs::write(home.0.path().join("belief"), "{\"id\":1,\"belief\":[0.5,0.5]}\n");
+    written.unwrap();
+    let ground = "ground --input belief --scene";
+    home.check(&format!("{ground} bowls --config {config}"), 1, "\"line\":1");
+    home.check(&format!("{ground} {config}/scenes/bowls.toml"), 1, "\"line\":1");
+    home.check(&format!("{ground} nothing --config {config}"), 78, "name of a scene in");
+    let plan = "plan --input belief --scene markers --config";
+    home.check(&format!("{plan} {config}"), 0, "\"action\"");
 }
 
 #[test]

@@ -3,12 +3,11 @@
 
 use std::path::Path;
 
-use clap::CommandFactory;
 use whichone::cli::Cli;
 
 /// The help of every verb, one below the other.
 fn surface() -> String {
-    let mut command = Cli::command().color(clap::ColorChoice::Never);
+    let mut command = Cli::definition().color(clap::ColorChoice::Never);
     command.build();
     let mut text = format!("$ whichone --help\n{}", command.clone().render_long_help());
     for verb in command.get_subcommands_mut() {
@@ -38,7 +37,7 @@ fn command_surface_matches_the_golden_file() {
 
 #[test]
 fn every_verb_and_every_argument_has_help() {
-    let mut command = Cli::command();
+    let mut command = Cli::definition();
     command.build();
     for verb in command.get_subcommands() {
         assert!(verb.get_about().is_some(), "{}", verb.get_name());
@@ -52,6 +51,34 @@ fn every_verb_and_every_argument_has_help() {
 }
 
 #[test]
+fn group_is_listed_where_it_means_something_and_accepted_everywhere() {
+    let help = |words: &[&str]| {
+        let mut command = Cli::definition();
+        command.build();
+        let verb = words.iter().fold(&mut command, |command, word| {
+            command.find_subcommand_mut(word).unwrap_or_else(|| panic!("{words:?}"))
+        });
+        verb.render_long_help().to_string()
+    };
+    for (words, is_listed) in [
+        (&["say"][..], true),
+        (&["study", "report"], true),
+        (&["study"], false),
+        (&["export", "pomdp"], false),
+        (&["ground"], false),
+        (&["arm", "plot"], false),
+    ] {
+        assert_eq!(help(words).contains("--group"), is_listed, "{words:?}");
+    }
+    for line in
+        ["study report --group lab", "ground --scene x --group lab", "--group lab ground --scene x"]
+    {
+        let line = ["whichone"].into_iter().chain(line.split(' ')).map(Into::into);
+        assert_eq!(Cli::parse_line(line).unwrap().group.as_str(), "lab");
+    }
+}
+
+#[test]
 fn clap_definition_is_consistent() {
-    Cli::command().debug_assert();
+    Cli::definition().debug_assert();
 }

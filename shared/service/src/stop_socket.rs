@@ -219,7 +219,8 @@ impl StopClient {
 /// Gives an order and waits until the arm has carried it out: latched, at rest and durable, or
 /// released. A stop that cannot become durable is returned as such.
 ///
-/// `note` is called once, while there is still time, with the reason for which the answer is late.
+/// While there is still time, `keep_trying` is asked between repetitions with the reason for which the answer
+/// is late; the reason is the error where it returns false. It must not wait.
 ///
 /// # Errors
 /// Not confirmed within `patience`, which no error exceeds; see [`StopError`].
@@ -227,12 +228,11 @@ pub fn give(
     paths: &GroupPaths,
     order: MotionOrder,
     patience: Span,
-    note: &mut dyn FnMut(&StopError),
+    keep_trying: &mut dyn FnMut(&StopError) -> bool,
 ) -> Result<StopState, StopError> {
     let client = StopClient::open(paths).map_err(|error| StopError::Socket(error.to_string()))?;
     let given = clock::now();
     let mut progress = Progress::new(order, given, patience);
-    let mut noted = false;
     loop {
         let absent = match client.send(order, given) {
             Err(StopError::Absent) if !paths.run().is_dir() => {
@@ -249,9 +249,10 @@ pub fn give(
         if let Some(result) = progress.result(absent, now) {
             return result;
         }
-        if let Some(trouble) = progress.trouble(absent, now).filter(|_| !noted) {
-            noted = true;
-            note(&trouble);
+        if let Some(trouble) = progress.trouble(absent, now)
+            && !keep_trying(&trouble)
+        {
+            return Err(trouble);
         }
     }
 }

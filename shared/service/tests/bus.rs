@@ -214,6 +214,25 @@ fn writers_are_read_in_turn_and_one_that_keeps_sending_does_not_hold_the_reader(
     assert!(left > 0, "what arrived meanwhile comes next");
 }
 
+/// A service whose pass took longer than the interval of some topic's messages never ended that pass, and was
+/// killed for a missed heartbeat.
+#[test]
+fn writer_that_sends_as_fast_as_it_is_read_does_not_hold_the_reader() {
+    let shm = Shm::new();
+    let [policy, speech] = [(); 2].map(|()| shm.join(1, 1));
+    let reader = speech.reader::<AppliedMark>(&topics::MARK).unwrap();
+    let writer = policy.writer::<AppliedMark>(&topics::MARK).unwrap();
+    writer.send(&AppliedMark { seq: 1 }).unwrap();
+    let mut read = Vec::new();
+    let drained = reader.drain(|mark| {
+        assert!(read.len() < 1_000, "the reader is held");
+        read.push(mark.seq);
+        writer.send(&AppliedMark { seq: mark.seq + 1 }).unwrap();
+    });
+    assert_eq!((drained, read), (Ok(()), vec![1]));
+    assert_eq!(reader.latest().unwrap(), Some(AppliedMark { seq: 2 }), "it comes next");
+}
+
 /// Returns whether a wake-up waits.
 fn is_woken(listener: &WakeListener) -> bool {
     listener.sleep(&[], Span(0)).by_wake

@@ -1,6 +1,6 @@
 //! Time per decision of every planner, from six bowls to very large scenes.
 
-use super::scenes::{OPEN, YES_NO, beliefs, configured, random};
+use super::scenes::{OPEN, YES_NO, beliefs, configured, in_doubt, random};
 use super::{Effort, micros};
 use crate::report::{Report, percentile};
 use dialogue::{Actions, Costs, DecisionProblem, Model, Params, Step, registry};
@@ -18,6 +18,7 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
         let model = Model::new(&configured(name), Params::default());
         Place { name: shown, size: model.objects() * model.attributes(), model, actions }
     };
+    let doubtful = Model::new(&in_doubt(&configured("bowls")), Params::default());
     let large = |name, objects, attributes| Place {
         name,
         size: objects * attributes,
@@ -28,6 +29,7 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
         small("markers", "2 markers", YES_NO),
         small("bowls", "6 bowls, yes/no", YES_NO),
         small("bowls", "6 bowls, open too", OPEN),
+        Place { name: "6 bowls in doubt", size: 30, model: doubtful, actions: OPEN },
         large("1,000 × 10", 1_000, 10),
         large("10,000 × 20", 10_000, 20),
     ];

@@ -1,7 +1,7 @@
 //! Scenes to measure on: those of the configuration, and random ones of any size.
 
 use dialogue::{Actions, Belief, DecisionProblem, Mode, Model, ModelUser, Params, Rng};
-use scene::Scene;
+use scene::{Attribute, ObjectId, Perceived, Scene};
 use serde_json::{Map, Value, json};
 
 /// Values of an attribute in random scenes.
@@ -20,6 +20,31 @@ pub(crate) fn configured(name: &str) -> Scene {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../config/scenes");
     let text = std::fs::read_to_string(format!("{root}/{name}.toml")).expect("a scene");
     Scene::from_toml(name, &text).expect("a scene that holds")
+}
+
+/// The objects of a scene as a camera reports them: every value is in doubt, more or less.
+pub(super) fn in_doubt(scene: &Scene) -> Scene {
+    let chances = |(k, attribute): (usize, &Attribute), i: usize| {
+        let (own, others) = (scene.objects()[i].values[k], attribute.values.len() - 1);
+        let sure = 0.6 + 0.05 * ((i + k) % 7) as f64;
+        let of = |v: usize| match own == Some(v.into()) {
+            true => sure,
+            false => (1.0 - sure) / others as f64,
+        };
+        let values = attribute.values.iter().enumerate();
+        (attribute.name.clone(), values.map(|(v, value)| (value.name.clone(), of(v))).collect())
+    };
+    let perceived = scene.objects().iter().enumerate().map(|(i, object)| Perceived {
+        number: ObjectId::from(scene.objects().len() + i),
+        name: object.name.clone(),
+        classes: vec![(object.name.clone(), 1.0)],
+        attributes: scene.attributes().iter().enumerate().map(|it| chances(it, i)).collect(),
+        xyz: [0.0; 3],
+        yaw: 0.0,
+        seen_by: Vec::new(),
+        taken: false,
+    });
+    scene.with_objects(&perceived.collect::<Vec<_>>())
 }
 
 /// A model of objects with random values.

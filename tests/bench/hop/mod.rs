@@ -6,10 +6,11 @@ mod peers;
 mod topics;
 
 use crate::report::{Report, percentile};
+use messages::Observation;
 use peers::{Datagrams, Parked, Streams};
 use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
 use std::time::Instant;
-use topics::{Bytes, Fixed, Group};
+use topics::{Bytes, Fixed, Group, Large};
 
 /// Rounds of each transport, there and back.
 const ROUNDS: usize = 20_000;
@@ -55,6 +56,9 @@ pub(crate) fn measure(report: &mut Report) {
     let group = Group::new();
     let topic = named("64 B", "through a topic");
     add(report, &topic, exchange(group.pair(Fixed::open)), Some(&peer));
+    let whole = format!("an observation ({:.1} kB)", size_of::<Observation>() as f64 / 1e3);
+    let large = exchange(group.pair(Large::open));
+    add(report, &named(&whole, "through a topic"), large, Some(&topic));
     for (size, bytes) in SIZES {
         let peer = named(size, "in a datagram with postcard");
         let message = || (0, vec![200_u8; bytes]);

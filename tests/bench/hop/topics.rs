@@ -4,7 +4,7 @@ use super::Link;
 use messages::definition::Definition;
 use messages::schema::{Field, Schema};
 use messages::topics::{self, Topic};
-use messages::{ArmStatus, Service};
+use messages::{ArmStatus, Observation, Service};
 use rustix::event::{EventfdFlags, eventfd};
 use serde::{Deserialize, Serialize};
 use service::Span;
@@ -23,6 +23,10 @@ const SERVICES: [Service; 2] = [Service::Speech, Service::Policy];
 const FIXED: [Topic; 2] = [
     Topic { name: "bench/ping", buffer: 4, readers: &[Service::Policy], ..topics::STATUS },
     Topic { name: "bench/pong", buffer: 4, readers: &[Service::Speech], ..topics::STATUS },
+];
+const LARGE: [Topic; 2] = [
+    Topic { name: "bench/ping/large", readers: &[Service::Policy], ..topics::OBSERVATION },
+    Topic { name: "bench/pong/large", readers: &[Service::Speech], ..topics::OBSERVATION },
 ];
 const ENCODED: [Topic; 2] = [
     Topic { name: "bench/ping/bytes", schema: Blob::key, payload: Blob::NAME, ..FIXED[0] },
@@ -121,6 +125,39 @@ impl Link for Fixed {
     fn receive(&mut self) -> u64 {
         let read =
             |message: &ArmStatus| (message.interaction, std::ptr::from_ref(message) as usize);
+        let Self { reader, place, sleep, .. } = self;
+        let (number, address) = sleep.until(|| reader.take(read).expect("a topic"));
+        place.check(address);
+        number
+    }
+}
+
+/// The largest messages of fixed size but one, copied into their place by the writer, as a reducer's outputs are.
+pub(super) struct Large {
+    reader: Reader<Observation>,
+    writer: Writer<Observation>,
+    message: Box<Observation>,
+    place: Place,
+    sleep: Sleep,
+}
+
+impl Large {
+    pub(super) fn open(group: &Group, side: usize) -> Self {
+        let sleep = Sleep::open(group, side);
+        let reader = sleep.bus.reader(&LARGE[1 - side]).expect("a reader");
+        let writer = sleep.bus.writer(&LARGE[side]).expect("a writer");
+        Self { reader, writer, message: Box::default(), place: Place::default(), sleep }
+    }
+}
+
+impl Link for Large {
+    fn send(&mut self, number: u64) {
+        self.message.seq = number;
+        self.writer.send(&self.message).expect("a topic that can be written");
+    }
+
+    fn receive(&mut self) -> u64 {
+        let read = |message: &Observation| (message.seq, std::ptr::from_ref(message) as usize);
         let Self { reader, place, sleep, .. } = self;
         let (number, address) = sleep.until(|| reader.take(read).expect("a topic"));
         place.check(address);

@@ -14,8 +14,8 @@ use ::speech::devices::recogniser::{
 use ::speech::devices::stream::{Closings, SpeechSegment, Stream};
 use ::speech::devices::vad::SegmenterOptions;
 use ::speech::stream_events::{Began, LIVE_FROM, StreamEvent};
-use ::speech::{EarlyDecoding, Endpointing, RecognisedSegment};
-use language::{Completeness, CompletenessJudge, Language, Reader};
+use ::speech::{EarlyDecoding, Endpointing, PreparedJudge, RecognisedSegment};
+use language::{Completeness, Language, Reader};
 use messages::{RequestKey, Source};
 use scene::{Question, Reading, Scene};
 use service::{Span, Time};
@@ -174,12 +174,7 @@ impl<'a> Room<'a> {
             recogniser: PocketSphinx::open(scene, &options).map_err(|error| error.to_string())?,
             gate: Gate::new(scene, Gate::THRESHOLD),
             reader: Reader::new(scene, Language::Careful),
-            endpointing: Endpointing {
-                judge: CompletenessJudge::new(scene),
-                complete,
-                closing,
-                open,
-            },
+            endpointing: Endpointing { judge: PreparedJudge::new(scene), complete, closing, open },
             rule,
             decodings: 0,
             _work: work,

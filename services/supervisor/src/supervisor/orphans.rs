@@ -19,12 +19,15 @@ const ORPHANS_REPORTED_MAX: usize = 100;
 
 impl Supervisor {
     /// Records the other processes in the process group of a service that has ended; they are killed when
-    /// the service is reaped.
-    pub(super) fn note_left_behind(&mut self, service: usize) {
-        let Some(running) = &self.services[service].running else { return };
+    /// the service is reaped. Returns whether any process may have to be cleared away after that: what the
+    /// service started and did not end is a child of this process now, or a descendant of one.
+    pub(super) fn note_left_behind(&mut self, service: usize) -> bool {
+        let Some(running) = &self.services[service].running else { return true };
         let leader = running.child.pid();
         let group = leader.as_raw_nonzero().get();
-        let left: Vec<Process> = procfs::processes()
+        let all = procfs::processes();
+        let has_orphans = all.iter().any(|process| self.is_orphan(process));
+        let left: Vec<Process> = all
             .into_iter()
             .filter(|process| process.group == group && process.pid != leader)
             .filter(|process| !process.is_zombie)
@@ -34,6 +37,7 @@ impl Supervisor {
         // reported again meanwhile.
         self.condemned.extend(left.iter().map(|process| process.pid));
         self.report_orphans(&left, &name);
+        has_orphans || !left.is_empty()
     }
 
     /// Reaps orphaned children, and kills those that no running incarnation has
@@ -79,14 +83,13 @@ impl Supervisor {
 
     /// Children of this process that are not the process of a service.
     fn orphans(&self) -> Vec<Process> {
-        let me = getpid().as_raw_nonzero().get();
-        let leaders: Vec<Pid> = self
-            .services
-            .iter()
-            .filter_map(|service| Some(service.running.as_ref()?.child.pid()))
-            .collect();
-        let all = procfs::processes().into_iter();
-        all.filter(|process| process.parent == me && !leaders.contains(&process.pid)).collect()
+        procfs::processes().into_iter().filter(|process| self.is_orphan(process)).collect()
+    }
+
+    fn is_orphan(&self, process: &Process) -> bool {
+        let mut running = self.services.iter().filter_map(|service| service.running.as_ref());
+        process.parent == getpid().as_raw_nonzero().get()
+            && !running.any(|running| running.child.pid() == process.pid)
     }
 
     /// Returns true if a running incarnation started the process: some programs

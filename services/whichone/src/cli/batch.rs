@@ -20,9 +20,12 @@ pub struct InputArgs {
 /// Arguments of `ground`.
 #[derive(Debug, Args)]
 pub struct GroundArgs {
-    /// The scene, TOML or JSON.
+    /// The scene: a TOML or JSON file, or the name of a scene of the configuration.
     #[arg(long, value_name = "FILE")]
     pub scene: PathBuf,
+    /// Folder of the configuration [default: ./config, else `config` beside the program].
+    #[arg(long, value_name = "DIR", env = "WHICHONE_CONFIG", hide_env_values = true)]
+    pub config: Option<PathBuf>,
     /// Interpretation of utterances.
     #[arg(long, value_parser = one_of(LANGUAGES), default_value = "careful")]
     pub language: Language,
@@ -58,7 +61,7 @@ pub struct ProblemArgs {
 /// Arguments of `plan`.
 #[derive(Debug, Args)]
 pub struct PlanArgs {
-    /// The scene, TOML or JSON.
+    /// The scene: a TOML or JSON file, or the name of a scene of the configuration.
     #[arg(long, value_name = "FILE")]
     pub scene: PathBuf,
     /// The planner [default: the configuration's].

@@ -38,7 +38,7 @@ pub struct UpArgs {
     #[arg(long, short)]
     pub detach: bool,
     /// With --detach: return only in this state.
-    #[arg(long, value_name = "WHAT")]
+    #[arg(long, value_name = "WHAT", requires = "detach")]
     pub wait: Option<WaitFor>,
     /// Timeout, seconds.
     #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]

@@ -78,6 +78,7 @@ impl Availability {
 #[derive(Debug)]
 pub(super) struct Lookout {
     due: Instant,
+    services: &'static [Service],
     /// Whether a shortage counts, which may pass by itself.
     shortages: bool,
     /// What was reported last.
@@ -87,7 +88,13 @@ pub(super) struct Lookout {
 impl Lookout {
     /// For one who waits until a shortage has passed.
     pub(super) fn new() -> Self {
-        Self { due: Instant::now() + FIRST_LOOK, shortages: false, reported: None }
+        let due = Instant::now() + FIRST_LOOK;
+        Self { due, services: &Service::DIALOGUE, shortages: false, reported: None }
+    }
+
+    /// For one who waits for these services alone, until a shortage has passed.
+    pub(super) fn of(services: &'static [Service]) -> Self {
+        Self { services, ..Self::new() }
     }
 
     /// For one who wants to know of shortages too.
@@ -102,7 +109,7 @@ impl Lookout {
         }
         self.due = Instant::now() + LOOK_EVERY;
         let counts = |state| self.shortages || state != ServiceState::Short;
-        let why = Availability::now(paths).first_missing(&Service::DIALOGUE, counts);
+        let why = Availability::now(paths).first_missing(self.services, counts);
         let is_news = why != self.reported;
         self.reported.clone_from(&why);
         why.filter(|_| is_news)

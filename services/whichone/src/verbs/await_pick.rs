@@ -25,14 +25,8 @@ mod waiting;
 pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<'_>) -> Outcome {
     let started = Instant::now();
     let mut conversation = Conversation::join(paths)?;
-    let wanted = args.answer_as.as_deref();
-    if wanted.is_some() {
-        // Objects from perception are known with the first look.
-        conversation.first_look()?;
-    }
-    let may_be_absent = conversation.may_be_absent();
-    let user = wanted.map(|name| TruthfulUser::new(conversation.scene(), name, may_be_absent));
-    let mut user = user.transpose().map_err(|what| Failure::new(Exit::Usage, what))?;
+    let mut wanted = args.answer_as.as_deref();
+    let mut user = None;
     let mut waiting = Waiting::new(reported_before(paths));
     let mut lookout = Lookout::new();
     loop {
@@ -40,6 +34,11 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
         if let Some(ended) = waiting.look(conversation.latest()) {
             remember(paths, ended.interaction.0)?;
             return report(&ended, out);
+        }
+        if let Some(name) = wanted.take_if(|_| conversation.knows_objects()) {
+            let may_be_absent = conversation.may_be_absent();
+            let joined = TruthfulUser::new(conversation.scene(), name, may_be_absent);
+            user = Some(joined.map_err(|what| Failure::new(Exit::Usage, what))?);
         }
         let answer = |user: &mut TruthfulUser| {
             user.look(conversation.scene());
@@ -106,7 +105,11 @@ fn report_timeout(conversation: &Conversation, started: Instant, out: &mut Outpu
         }))?;
     } else {
         let after = words::time(seconds);
-        out.line(format_args!("no interaction has ended within {after}; see: whichone watch"))?;
+        let what = match conversation.knows_objects() {
+            true => "no interaction has ended",
+            false => "no object is known to be on the table",
+        };
+        out.line(format_args!("{what} within {after}; see: whichone watch"))?;
     }
     Ok(Exit::NotReached)
 }

@@ -102,8 +102,12 @@ impl<'a, 'b> Chat<'a, 'b> {
         let noun = scene.noun();
         let objects: Vec<String> =
             (0..scene.objects().len()).map(|i| scene.describe(i.into())).take(12).collect();
+        let Some(first) = objects.first() else {
+            note("Nothing is known to be on the table yet; quit ends.");
+            return Ok(());
+        };
         note(format_args!("There are: {}.", objects.join(", ")));
-        note(format_args!("Ask for a {noun}, e.g. \"get me the {}\"; quit ends.", objects[0]));
+        note(format_args!("Ask for a {noun}, e.g. \"get me the {first}\"; quit ends."));
         Ok(())
     }
 

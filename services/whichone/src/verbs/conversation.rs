@@ -87,6 +87,11 @@ impl Conversation {
         &self.scene
     }
 
+    /// Returns false as long as nothing is known to be on the table, where the objects come from perception.
+    pub(super) fn knows_objects(&self) -> bool {
+        !self.scene.objects().is_empty()
+    }
+
     /// Returns true if the robot considers that the wanted object is not here.
     pub(super) fn may_be_absent(&self) -> bool {
         self.may_be_absent
@@ -137,7 +142,7 @@ impl Conversation {
     /// Latches or releases the motion stop.
     pub(super) fn motion(&self, order: messages::MotionOrder) -> Result<(), Failure> {
         let patience = Span::from_ms(5_000);
-        Ok(stop_socket::give(&self.paths, order, patience, &mut |_| {}).map(drop)?)
+        Ok(stop_socket::give(&self.paths, order, patience, &mut |_| true).map(drop)?)
     }
 
     /// Processes all messages since the last poll. Returns the receipts among them,

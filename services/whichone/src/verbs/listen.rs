@@ -14,7 +14,7 @@ use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
-use super::availability::Availability;
+use super::availability::{Availability, Lookout};
 use super::speak;
 use crate::Outcome;
 use crate::cli::ListenArgs;
@@ -58,7 +58,9 @@ fn stream(paths: &GroupPaths, args: &ListenArgs, blocks: Blocks, out: &mut Outpu
     let flags = if args.echo_free { AudioChunk::ECHO_FREE } else { 0 };
     let mut stream = AudioStream::open(&client, flags)?;
     let (mut times, mut printed) = (SampleClock::default(), Printed::default());
+    let mut lookout = Lookout::of(&[Service::Speech]);
     loop {
+        require_speech(&mut lookout, paths)?;
         match blocks.recv_timeout(POLL_EVERY) {
             Ok(Ok(samples)) => {
                 let taken = times.read(samples.len(), clock::now());
@@ -72,6 +74,7 @@ fn stream(paths: &GroupPaths, args: &ListenArgs, blocks: Blocks, out: &mut Outpu
     }
     let (until, mut ended) = (Instant::now() + args.timeout, None::<Instant>);
     while !stream.is_over() {
+        require_speech(&mut lookout, paths)?;
         if Instant::now() >= until {
             let what =
                 format!("no answer within {} s; see: whichone status", args.timeout.as_secs());
@@ -85,6 +88,14 @@ fn stream(paths: &GroupPaths, args: &ListenArgs, blocks: Blocks, out: &mut Outpu
         printed.print(&stream.receipts()?, out)?;
     }
     printed.outcome()
+}
+
+/// Fails once the speech service does nothing until a person acts: nothing more is recognised.
+fn require_speech(lookout: &mut Lookout, paths: &GroupPaths) -> Result<(), Failure> {
+    match lookout.news(paths) {
+        Some(why) => Err(Failure::new(Exit::NotReached, why)),
+        None => Ok(()),
+    }
 }
 
 /// Printed receipts of a stream.

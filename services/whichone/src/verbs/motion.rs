@@ -1,5 +1,7 @@
 //! `stop-motion` and `resume-motion`.
 
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
 use std::time::Duration;
 
 use messages::{MotionInhibit, MotionOrder, Service};
@@ -12,6 +14,9 @@ use service::stop_socket::{self, StopError, StopState};
 use super::availability::Availability;
 use crate::Outcome;
 use crate::output::{Output, note};
+
+/// The service that carries out the orders.
+const ARM: &[Service] = &[Service::Arm];
 
 /// State of the motion stop.
 #[derive(Serialize)]
@@ -29,9 +34,8 @@ pub(super) fn motion(
     out: &mut Output<'_>,
 ) -> Outcome {
     let patience = Span::from_s(timeout.as_secs_f64());
-    let state = stop_socket::give(paths, order, patience, &mut |trouble| {
-        note(format!("{trouble}; trying again"));
-    });
+    let mut pending = Pending { paths, why: None };
+    let state = stop_socket::give(paths, order, patience, &mut |late| pending.keep_trying(late));
     let state = state.map_err(|error| with_reason(error, paths))?;
     if order == MotionOrder::Stop {
         believe(&state)?;
@@ -53,10 +57,34 @@ pub(super) fn motion(
     Ok(Exit::Ok)
 }
 
+/// An order that the arm has not answered.
+struct Pending<'a> {
+    paths: &'a GroupPaths,
+    /// Receives why the arm's service does not run, or an end where it soon will.
+    why: Option<Receiver<String>>,
+}
+
+impl Pending<'_> {
+    /// Notifies the user once; returns false as soon as the supervisor says that the service stays away.
+    /// It is asked on a thread of its own: one that hangs must not delay the order's repetitions.
+    fn keep_trying(&mut self, late: &StopError) -> bool {
+        let why = self.why.get_or_insert_with(|| {
+            note(format!("{late}; trying again"));
+            let (sender, why) = channel();
+            let paths = self.paths.clone();
+            thread::spawn(move || {
+                Availability::now(&paths).first_missing(ARM, |_| true).map(|why| sender.send(why))
+            });
+            why
+        });
+        *late != StopError::Absent || why.try_recv().is_err()
+    }
+}
+
 /// Adds why the arm's service does not run, where the supervisor says so at once.
 fn with_reason(error: StopError, paths: &GroupPaths) -> Failure {
     let reason = match error {
-        StopError::Absent => Availability::now(paths).first_missing(&[Service::Arm], |_| true),
+        StopError::Absent => Availability::now(paths).first_missing(ARM, |_| true),
         _ => None,
     };
     let reason = reason.map_or(String::new(), |reason| format!(" ({reason})"));

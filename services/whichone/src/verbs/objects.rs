@@ -5,7 +5,7 @@ use std::io::BufRead;
 use std::time::{Duration, Instant};
 
 use config::Settings;
-use messages::{Change, Detection, Look, Sighting, TableView, topics};
+use messages::{Change, Detection, Look, Service, Sighting, TableView, topics};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
 use service::bus::{EncodedReader, EncodedWriter};
@@ -16,6 +16,7 @@ use service::group::GroupPaths;
 use service::view::quiet;
 use service::{Span, Time};
 
+use super::availability::Availability;
 use crate::Outcome;
 use crate::cli::{ObjectsArgs, ObjectsVerb};
 use crate::output::Output;
@@ -38,6 +39,7 @@ pub(super) fn objects(paths: &GroupPaths, args: &ObjectsArgs, out: &mut Output<'
     if !settings.group.perception.enabled {
         return Err(Failure::new(Exit::Usage, perception::Refusal::Off.to_string()));
     }
+    Availability::now(paths).require(Service::Policy)?;
     let mut table = TableTopics {
         sightings: client.bus().encoded_writer(&topics::SIGHTING)?,
         tables: client.bus().encoded_reader(&topics::OBJECTS)?,

@@ -23,8 +23,7 @@ pub(super) fn planner_of(problem: &Problem) -> &str {
 
 /// The planner and its problem.
 pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Failure> {
-    let scene = scene_file::load(&args.scene)?;
-    let problem = problem(scene, &args.problem)?;
+    let problem = of_scene(&args.scene, &args.problem)?;
     let planner = registry::planner(args.planner.as_deref().unwrap_or(planner_of(&problem)))
         .map_err(|error| Failure::new(Exit::Config, error.to_string()))?;
     Ok(Decider { problem, planner })
@@ -32,7 +31,12 @@ pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Failure> {
 
 /// The problem of a scene given by its file or by its name in the configuration.
 pub(super) fn of_scene(scene: &Path, args: &ProblemArgs) -> Result<Problem, Failure> {
-    problem(scene_file::load(&scene_path(scene, &args.config)?)?, args)
+    problem(load_scene(scene, &args.config)?, args)
+}
+
+/// Reads a scene given by its file or by its name in the configuration.
+pub(super) fn load_scene(named: &Path, args: &ConfigArgs) -> Result<Scene, Failure> {
+    scene_file::load(&scene_path(named, args)?)
 }
 
 /// Builds the problem from the command line, else the configuration, else, if none is named or

@@ -56,9 +56,11 @@ fn certify(
     searched.min(upper).max(lower)
 }
 
-/// Beliefs that are looked at with that much work, counted in classes looked at times attributes.
+/// Beliefs that are looked at with that much work, counted in classes looked at times attributes, and in blocks
+/// weighed where values are in doubt.
 pub(super) fn affordable(reduced: &Reduced, work: usize) -> usize {
-    work / (reduced.classes() * (reduced.partitions.len() + 2))
+    let attributes: usize = reduced.partitions.iter().map(|partition| partition.work()).sum();
+    work / (2 * reduced.classes() + attributes)
 }
 
 /// Dialogues less probable than this do not count towards the expected number of questions.
@@ -80,4 +82,24 @@ fn questions_left(search: &Search<'_>, reduced: &Reduced, node: usize, reached: 
         .filter(|(.., reached)| *reached > UNLIKELY)
         .map(|(p, next, reached)| p * questions_left(search, reduced, *next, reached));
     branch.price.times + after.sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{bowls, perceived};
+    use crate::{Actions, Costs, Model, Params, Rng};
+
+    /// A decision about objects in doubt took seconds: each of its beliefs is far more work.
+    #[test]
+    fn beliefs_about_values_in_doubt_count_as_more_work() {
+        let affordable = |scene: &scene::Scene| {
+            let model = Model::new(scene, Params::default());
+            let problem = DecisionProblem::new(&model, Costs::SECONDS, Actions::default());
+            affordable(&Reduced::new(&problem, &Belief::uniform(6)), 1_000_000)
+        };
+        let (seed, certain) = (5, affordable(&bowls()));
+        let doubtful = affordable(&perceived(&mut Rng::new(seed), &bowls()));
+        assert!(5 * doubtful < certain, "seed {seed}: {doubtful} beliefs, {certain} without doubt");
+    }
 }

@@ -16,8 +16,9 @@ pub(crate) struct Partition {
     pub(crate) values: Vec<Option<ValueId>>,
     /// The block of what is not here.
     pub(crate) unknown: Option<Unknown>,
-    /// The blocks of classes whose value is in doubt.
-    pub(crate) doubtful: Vec<Doubtful>,
+    /// For every block of classes whose value is in doubt the probability of each block's value; empty where
+    /// there is no such block.
+    pub(crate) doubtful: Vec<Option<Vec<f64>>>,
     /// How "is its k v?" is answered, per block.
     pub(crate) yes_no: Channels,
     /// How "what is its k?" is answered.
@@ -30,14 +31,6 @@ pub(crate) struct Unknown {
     pub(crate) block: u16,
     /// Probability of yes, given an answer.
     pub(crate) yes: f64,
-}
-
-/// A block of classes whose value is in doubt.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Doubtful {
-    block: u16,
-    /// Probability of each block's value.
-    chances: Vec<f64>,
 }
 
 impl Unknown {
@@ -88,13 +81,16 @@ impl Partition {
                 values.push(Some(ValueId::from(v)));
             }
         }
-        let doubtful: Vec<Doubtful> = (entries.iter().enumerate())
-            .filter_map(|(block, entry)| {
+        let mut doubtful: Vec<Option<Vec<f64>>> = (entries.iter())
+            .map(|entry| {
                 let chances = in_doubt(entry)?;
                 let of = |value: &Option<ValueId>| value.map_or(0.0, |v| chances[v.index()]);
-                Some(Doubtful { block: block as u16, chances: values.iter().map(of).collect() })
+                Some(values.iter().map(of).collect())
             })
             .collect();
+        if doubtful.iter().all(Option::is_none) {
+            doubtful.clear();
+        }
         if values.len() < 2 {
             return None;
         }
@@ -119,10 +115,24 @@ impl Partition {
     /// Probability that classes in a block have the value of another one: neither 0 nor 1 where it is
     /// in doubt.
     pub(super) fn chance(&self, block: u16, of: u16) -> f64 {
-        match self.doubtful.iter().find(|doubtful| doubtful.block == block) {
-            Some(doubtful) => doubtful.chances[usize::from(of)],
+        match self.chances(block) {
+            Some(chances) => chances[usize::from(of)],
             None => f64::from(u8::from(block == of)),
         }
+    }
+
+    /// Probability of each block's value about classes in a block, if it is in doubt.
+    fn chances(&self, block: u16) -> Option<&[f64]> {
+        self.doubtful.get(usize::from(block))?.as_deref()
+    }
+
+    /// Number of blocks and classes that are weighed to judge every question about the attribute: the classes are
+    /// summed into blocks once, and where a value is in doubt every answer weighs every block.
+    pub(crate) fn work(&self) -> usize {
+        let (values, blocks) = (self.named().count(), self.values.len());
+        // Yes and no to each value, each value by its name, and another one.
+        let answers = if self.doubtful.is_empty() { 0 } else { 3 * values + 1 };
+        self.blocks.len() + answers * blocks
     }
 
     /// Probability of yes, or no, to "is it in the block `asked`?" about classes in `block`; `is` and `not`
@@ -152,16 +162,17 @@ impl Partition {
 
     /// Whether the value of classes in that block is in doubt.
     pub(super) fn is_in_doubt(&self, block: u16) -> bool {
-        self.doubtful.iter().any(|doubtful| doubtful.block == block)
+        self.chances(block).is_some()
     }
 
     /// Tells apart questions about the same blocks that are answered differently about classes in doubt.
     pub(super) fn doubt_code(&self, asked: u16) -> u64 {
-        let code = |doubtful: &Doubtful| {
-            let place = (u64::from(doubtful.block) + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            doubtful.chances[usize::from(asked)].to_bits().wrapping_mul(place)
+        let code = |(place, chances): (u64, &Vec<f64>)| {
+            let place = place.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            chances[usize::from(asked)].to_bits().wrapping_mul(place)
         };
-        self.doubtful.iter().fold(0, |all, doubtful| all ^ code(doubtful))
+        let doubtful = (1..).zip(&self.doubtful).filter_map(|(n, it)| Some((n, it.as_ref()?)));
+        doubtful.fold(0, |all, doubtful| all ^ code(doubtful))
     }
 
     /// The blocks that have a value.
@@ -194,7 +205,7 @@ impl Partition {
     /// Equal for partitions whose open questions have the same answers for every class.
     pub(super) fn identity(&self) -> (Vec<u16>, Vec<u16>, [u64; 3], Vec<u64>) {
         let answers = [self.open.other, self.open.lacking, self.open.absent_other];
-        let doubts = self.doubtful.iter().flat_map(|it| it.chances.iter().map(|it| it.to_bits()));
+        let doubts = self.doubtful.iter().flatten().flatten().map(|chance| chance.to_bits());
         let answers = answers.map(f64::to_bits);
         (self.blocks.clone(), self.named().collect(), answers, doubts.collect())
     }

@@ -34,50 +34,25 @@ impl Bus {
     /// As [`Bus::writer`].
     pub fn any_reader(&self, topic: &Topic) -> Result<Box<dyn AnyReader>, BusError> {
         let buffer = topic.buffer_max();
-        let most = buffer * topic.writers_max;
         Ok(of_type!(topic,
-        T => Box::new(Bounded { reader: self.buffered_reader::<T>(topic, buffer)?, most }),
+        T => Box::new(self.buffered_reader::<T>(topic, buffer)?),
         // The type matters only to those who decode.
-        else Box::new(Bounded {
-            reader: self.buffered_encoded_reader::<PolicyView>(topic, buffer)?,
-            most,
-        })))
+        else Box::new(self.buffered_encoded_reader::<PolicyView>(topic, buffer)?)))
     }
 }
 
-/// A reader, and how many messages it hands over at once.
-#[derive(Debug)]
-struct Bounded<R> {
-    reader: R,
-    most: usize,
-}
-
-impl<T: WireMessage> AnyReader for Bounded<Reader<T>> {
+impl<T: WireMessage> AnyReader for Reader<T> {
     fn drain(&self, take: &mut dyn FnMut(&Stamp, AnyMessage<'_>)) -> Result<(), PortError> {
-        for _ in 0..self.most {
-            let taken = self.reader.take_stamped(|message, stamp| {
-                take(stamp, AnyMessage::Fixed(bytes(message), message));
-            })?;
-            if taken.is_none() {
-                break;
-            }
-        }
-        Ok(())
+        self.drain_stamped(|message, stamp| take(stamp, AnyMessage::Fixed(bytes(message), message)))
     }
 }
 
-impl<T: Schema + Debug> AnyReader for Bounded<EncodedReader<T>> {
+impl<T: Schema + Debug> AnyReader for EncodedReader<T> {
     fn drain(&self, take: &mut dyn FnMut(&Stamp, AnyMessage<'_>)) -> Result<(), PortError> {
-        for _ in 0..self.most {
-            let taken = self.reader.take_stamped(|payload, stamp| {
-                take(stamp, AnyMessage::Encoded(payload));
-                Ok(())
-            })?;
-            if taken.is_none() {
-                break;
-            }
-        }
-        Ok(())
+        self.drain_stamped(|payload, stamp| {
+            take(stamp, AnyMessage::Encoded(payload));
+            Ok(())
+        })
     }
 }
 

@@ -75,8 +75,8 @@ impl Bus {
         let subscriber = subscribe(service, topic, buffer)?;
         self.greet(topic);
         let gate = Gate::new(self, topic);
-        let topic = topic.name;
-        Ok(EncodedReader { topic, buffer, subscriber, gate, _payload: PhantomData })
+        let (topic, pending_max) = (topic.name, buffer * topic.writers_max);
+        Ok(EncodedReader { topic, buffer, pending_max, subscriber, gate, _payload: PhantomData })
     }
 }
 
@@ -183,6 +183,8 @@ pub struct EncodedReader<T: Schema> {
     topic: &'static str,
     /// Unread payloads of each writer that are kept.
     buffer: usize,
+    /// Payloads that may be pending at a time.
+    pending_max: usize,
     subscriber: Renewed<Subscriber<Ipc, [u8], Stamp>>,
     gate: Gate,
     _payload: PhantomData<T>,
@@ -200,6 +202,20 @@ impl<T: Schema> EncodedReader<T> {
         mut decode: impl FnMut(&[u8]) -> postcard::Result<R>,
     ) -> Result<Option<R>, PortError> {
         self.take_stamped(|bytes, _| decode(bytes))
+    }
+
+    /// As [`EncodedReader::take_with`] for everything that is pending, with who sent each payload and when. It ends
+    /// even where a writer sends as fast as it is read.
+    pub(super) fn drain_stamped(
+        &self,
+        mut decode: impl FnMut(&[u8], &Stamp) -> postcard::Result<()>,
+    ) -> Result<(), PortError> {
+        for _ in 0..self.pending_max {
+            if self.take_stamped(&mut decode)?.is_none() {
+                break;
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn take_stamped<R>(
@@ -274,9 +290,7 @@ impl<T: Schema + DeserializeOwned> EncodedReader<T> {
     /// As [`EncodedReader::take`].
     pub fn latest(&self) -> Result<Option<T>, PortError> {
         let mut latest = None;
-        while let Some(payload) = self.take()? {
-            latest = Some(payload);
-        }
+        self.drain_stamped(|bytes, _| postcard::from_bytes(bytes).map(|it| latest = Some(it)))?;
         Ok(latest)
     }
 }

@@ -59,7 +59,8 @@ impl Bus {
         let service = open_topic!(self, topic, T)?;
         let subscriber = subscribe(service, topic, buffer)?;
         self.greet(topic);
-        Ok(Reader { topic: topic.name, subscriber, gate: Gate::new(self, topic) })
+        let pending_max = buffer * topic.writers_max;
+        Ok(Reader { topic: topic.name, pending_max, subscriber, gate: Gate::new(self, topic) })
     }
 }
 
@@ -151,6 +152,8 @@ impl<T: WireMessage> Writer<T> {
 #[derive(Debug)]
 pub struct Reader<T: WireMessage> {
     topic: &'static str,
+    /// Messages that may be pending at a time.
+    pending_max: usize,
     subscriber: Renewed<Subscriber<Ipc, T, Stamp>>,
     gate: Gate,
 }
@@ -187,13 +190,13 @@ impl<T: WireMessage> Reader<T> {
         })
     }
 
-    /// Returns every pending message, in order.
+    /// Returns every pending message, in order. It ends even where a writer sends as fast as it is read: what
+    /// arrives meanwhile wakes the reader again.
     ///
     /// # Errors
     /// As [`Reader::take`].
     pub fn drain(&self, mut read: impl FnMut(&T)) -> Result<(), PortError> {
-        while self.take(&mut read)?.is_some() {}
-        Ok(())
+        self.drain_stamped(|message, _| read(message))
     }
 
     /// As [`Reader::drain`], with who sent each message and when.
@@ -201,7 +204,11 @@ impl<T: WireMessage> Reader<T> {
     /// # Errors
     /// As [`Reader::take`].
     pub fn drain_stamped(&self, mut read: impl FnMut(&T, &Stamp)) -> Result<(), PortError> {
-        while self.take_stamped(&mut read)?.is_some() {}
+        for _ in 0..self.pending_max {
+            if self.take_stamped(&mut read)?.is_none() {
+                break;
+            }
+        }
         Ok(())
     }
 

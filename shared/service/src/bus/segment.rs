@@ -34,7 +34,7 @@ use rustix::fs::{FallocateFlags, Stat, fallocate, fstat, lstat};
 use rustix::io::Errno;
 use rustix::process::geteuid;
 use std::fmt::{self, Debug};
-use std::fs::Metadata;
+use std::fs::{DirEntry, Metadata};
 use std::marker::PhantomData;
 use std::mem::{MaybeUninit, size_of};
 use std::os::fd::BorrowedFd;
@@ -366,9 +366,15 @@ impl<T: Content> NamedConceptMgmt for Segment<T> {
     fn list_cfg(config: &Configuration<T>) -> Result<Vec<FileName>, NamedConceptListError> {
         let own = geteuid().as_raw();
         let is_own = |file: &Metadata| file.is_file() && file.uid() == own;
+        // By name first: other groups' segments, of which there may be many, are not looked at.
+        let (prefix, suffix) = (config.get_prefix().as_bytes(), config.get_suffix().as_bytes());
+        let is_named = |entry: &DirEntry| {
+            let name = entry.file_name();
+            name.as_bytes().starts_with(prefix) && name.as_bytes().ends_with(suffix)
+        };
         let entries = std::fs::read_dir(SHM).map_err(|_| NamedConceptListError::InternalError)?;
-        let entries =
-            entries.flatten().filter(|entry| entry.metadata().is_ok_and(|file| is_own(&file)));
+        let entries = entries.flatten().filter(is_named);
+        let entries = entries.filter(|entry| entry.metadata().is_ok_and(|file| is_own(&file)));
         let names = entries.filter_map(|entry| FileName::new(entry.file_name().as_bytes()).ok());
         Ok(names.filter_map(|name| config.extract_name_from_file(&name)).collect())
     }

@@ -12,7 +12,6 @@ use super::{paths, planning};
 use crate::Outcome;
 use crate::cli::ArmPlotArgs;
 use crate::output::Output;
-use crate::scene_file;
 
 mod figure;
 
@@ -43,7 +42,7 @@ pub(super) fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
     let settings = paths::settings(&args.config)?;
     let scene = match &args.scene {
         None => settings.scene.clone(),
-        Some(named) => scene_file::load(&planning::scene_path(named, &args.config)?)?,
+        Some(named) => planning::load_scene(named, &args.config)?,
     };
     let setup = ArmSetup::new(&settings)?;
     let robot = &setup.robot;

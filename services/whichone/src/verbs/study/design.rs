@@ -100,12 +100,12 @@ fn listed(names: &[String], all: &[&str]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::Parser;
+    use crate::cli::{Cli, Verb};
 
     fn args(words: &[&str]) -> StudyArgs {
         let words = [&["whichone", "study", "--scene", "x.toml"], words].concat();
-        match crate::cli::Cli::try_parse_from(words).unwrap().verb {
-            crate::cli::Verb::Study(args) => args,
+        match Cli::parse_line(words.into_iter().map(Into::into)).unwrap().verb {
+            Verb::Study(args) => args,
             other => panic!("{other:?}"),
         }
     }
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn preset_fills_in_missing_arguments() {
         let words = ["whichone", "study", "--preset", "paper-remote", "--users", "human"];
-        let crate::cli::Verb::Study(args) = crate::cli::Cli::try_parse_from(words).unwrap().verb
+        let Verb::Study(args) = Cli::parse_line(words.into_iter().map(Into::into)).unwrap().verb
         else {
             panic!()
         };

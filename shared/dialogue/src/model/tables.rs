@@ -1,0 +1,145 @@
+//! Columns, words and smoothing of a scene, from which the equations are evaluated.
+
+use scene::{AttributeId, Scene, ValueId, WordId};
+
+use super::Model;
+use crate::Confusion;
+
+/// What the models of one scene share.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tables {
+    pub(super) confusion: Confusion,
+    pub(super) columns: Vec<Column>,
+    pub(super) words: Vec<Word>,
+    /// Of words that may have been something else.
+    pub(super) smoothing: Smoothing,
+    /// Of words that are certain.
+    pub(super) certain: Smoothing,
+}
+
+/// Eq. (5) for one `α`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Smoothing {
+    pub(super) alpha: f64,
+    pub(super) vocabulary: Vocabulary,
+}
+
+/// `ln(|V_D| + α|V|)` per hypothesis: the denominator of eq. (5).
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Vocabulary {
+    /// The smallest.
+    pub(super) least: f64,
+    /// How far each is above the smallest.
+    pub(super) above: Vec<f64>,
+}
+
+/// One attribute: the value of every hypothesis, and the word of every value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Column {
+    pub(super) values: Vec<u16>,
+    /// Probabilities of the values of hypotheses whose value is in doubt, by entry from
+    /// [`Model::DOUBTFUL`] on.
+    pub(super) doubtful: Vec<Vec<f64>>,
+    pub(super) words: Vec<WordId>,
+    /// Per value: whether some hypotheses have it and others do not.
+    pub(super) splits: Vec<bool>,
+}
+
+/// What a word stands for, and whether hearing it says anything.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Word {
+    pub(super) meanings: Vec<(AttributeId, ValueId)>,
+    /// Whether eq. (5) differs between hypotheses.
+    pub(super) splits: bool,
+}
+
+impl Tables {
+    /// Adds a hypothesis that has no words and of which no value is known.
+    pub(super) fn add_unknown(&mut self) {
+        self.columns.iter_mut().for_each(|column| column.values.push(Model::UNKNOWN));
+        let words = self.words.len() as f64;
+        for Smoothing { alpha, vocabulary } in [&mut self.smoothing, &mut self.certain] {
+            let known = vocabulary.above.iter().map(|log| log + vocabulary.least);
+            *vocabulary = Vocabulary::new(known.chain([(*alpha * words).ln()]).collect());
+        }
+        self.find_what_splits();
+    }
+
+    /// `|V_D|` of every object.
+    pub(super) fn vocabulary_lengths(&self, objects: usize) -> Vec<usize> {
+        // A value in doubt is one of the object's words, whichever it is.
+        let in_doubt = |i: usize| -> usize {
+            let doubtful =
+                |column: &&Column| (Model::DOUBTFUL..Model::UNKNOWN).contains(&column.values[i]);
+            self.columns.iter().filter(doubtful).count()
+        };
+        let has = |i: usize, word: &&Word| {
+            word.meanings.iter().any(|(k, v)| self.columns[k.index()].values[i] == v.0)
+        };
+        let certain = |i: usize| self.words.iter().filter(|word| has(i, word)).count();
+        (0..objects).map(|i| certain(i) + in_doubt(i)).collect()
+    }
+
+    /// Notes which words and values tell hypotheses apart.
+    pub(super) fn find_what_splits(&mut self) {
+        for column in &mut self.columns {
+            let unsure = column.values.len() > 1
+                && (!column.doubtful.is_empty() || column.values.contains(&Model::UNKNOWN));
+            let mut count = vec![0; column.words.len()];
+            for &value in column.values.iter().filter(|value| **value < Model::DOUBTFUL) {
+                count[usize::from(value)] += 1;
+            }
+            let some = |n: usize| n > 0 && n < column.values.len();
+            column.splits = count.into_iter().map(|n| unsure || some(n)).collect();
+        }
+        let above = &self.smoothing.vocabulary.above;
+        let hypotheses = above.len();
+        let vocabulary = above.iter().any(|above| *above > 0.0);
+        for word in &mut self.words {
+            let has = |i: usize| {
+                (word.meanings.iter()).any(|(k, v)| self.columns[k.index()].values[i] == v.0)
+            };
+            let doubtful =
+                |(k, _): &(AttributeId, ValueId)| !self.columns[k.index()].doubtful.is_empty();
+            word.splits = vocabulary
+                || word.meanings.iter().any(doubtful)
+                || (1..hypotheses).any(|i| has(i) != has(0));
+        }
+    }
+}
+
+impl Smoothing {
+    /// `lengths` are `|V_D|` of the objects, `words` is `|V|`.
+    pub(super) fn new(alpha: f64, lengths: impl Iterator<Item = usize>, words: usize) -> Self {
+        let smoothing = alpha * words as f64;
+        let log = lengths.map(|length| (length as f64 + smoothing).ln());
+        Self { alpha, vocabulary: Vocabulary::new(log.collect()) }
+    }
+}
+
+impl Vocabulary {
+    pub(super) fn new(log: Vec<f64>) -> Self {
+        let least = log.iter().copied().fold(f64::INFINITY, f64::min);
+        Self { least, above: log.iter().map(|log| log - least).collect() }
+    }
+}
+
+impl Column {
+    pub(super) fn of(scene: &Scene, k: AttributeId) -> Self {
+        let mut doubtful: Vec<Vec<f64>> = Vec::new();
+        let mut entry = |object: &scene::Object| match object.chances.get(k.index()) {
+            Some(Some(chances)) => {
+                let known = doubtful.iter().position(|known| known == chances);
+                let place = known.unwrap_or_else(|| {
+                    doubtful.push(chances.clone());
+                    doubtful.len() - 1
+                });
+                Model::DOUBTFUL + place as u16
+            }
+            _ => object.values[k.index()].map_or(Model::LACKS, |v| v.0),
+        };
+        let values = scene.objects().iter().map(&mut entry).collect();
+        let words = scene.attributes()[k.index()].values.iter().map(|value| value.word).collect();
+        Self { values, doubtful, words, splits: Vec::new() }
+    }
+}

@@ -1,0 +1,191 @@
+//! Who gets to the console, and that it stays reachable.
+
+use std::io::Write;
+use std::net::{TcpListener, TcpStream};
+use std::os::unix::fs::MetadataExt;
+
+use rustix::process::{Pid, Resource, Rlimit, prlimit};
+use serde_json::{Value as Json, json};
+use whichone_tests::Group;
+use whichone_tests::console::{Console, Page, Visitor, http};
+
+fn ok(done: &Json) -> bool {
+    assert!(done["ok"].as_bool().is_some(), "{done}");
+    done["ok"] == true
+}
+
+#[test]
+fn foreign_origins_are_refused() {
+    let group = Group::up(&[]);
+    let place = group.console();
+    let foreign = |name, value: &str| Visitor {
+        headers: vec![(name, value.to_owned())],
+        ..Visitor::operator(1)
+    };
+    for origin in ["http://evil.example", "null", "http://127.0.0.1:1"] {
+        let refused = Page::connect(&place, &foreign("origin", origin)).unwrap_err();
+        assert!(refused.contains("403"), "{refused}");
+    }
+    // A name of another site's that leads to this machine; its page has no session here.
+    let without = place.without_token();
+    assert_eq!(http(&without, "GET", "/api/state", &["Host: evil.example"], "").0, 401);
+    let (_, head, _) = http(&place, "GET", "/", &[], "");
+    assert!(head.to_lowercase().contains("content-security-policy: default-src 'self'"), "{head}");
+    group.down();
+}
+
+#[test]
+fn page_is_for_those_with_the_token() {
+    let group = Group::up(&[]);
+    let owner = group.console();
+    let place = owner.without_token();
+    let html = "Accept: text/html";
+    for path in ["/api/state", "/metrics", "/robot.urdf", "/study/export.json", "/ws"] {
+        assert_eq!(http(&place, "GET", path, &[], "").0, 401, "{path}");
+    }
+    let (status, head, _) = http(&place, "GET", "/", &[html], "");
+    assert!(status == 303 && head.contains("/login"), "{head}");
+    assert_eq!(http(&place, "GET", "/login", &[html], "").0, 200);
+    assert_eq!(http(&place, "GET", "/healthz", &[], "").0, 200);
+    assert!(Page::connect(&place, &Visitor::operator(1)).unwrap_err().contains("401"));
+    let token = owner.token.clone().expect("a token");
+    let own = format!("Origin: http://{place}");
+    let wrong = http(&place, "POST", "/login", &[&own], "token=guess");
+    assert!(wrong.1.contains("/login?wrong") && !wrong.1.to_lowercase().contains("set-cookie"));
+    let form = format!("token={token}");
+    assert_eq!(http(&place, "POST", "/login", &[], &form).0, 403);
+    for link in
+        [("GET", format!("/?{form}&lang=de"), String::new()), ("POST", "/login".to_owned(), form)]
+    {
+        let (method, path, body) = link;
+        let (status, head, _) = http(&place, method, &path, &[&own], &body);
+        assert_eq!(status, 303, "{head}");
+        assert!(!head.contains(&token), "neither cookie nor address is the token: {head}");
+        let lower = head.to_lowercase();
+        let (_, cookie) = lower.split_once("set-cookie: ").unwrap_or_else(|| panic!("{head}"));
+        let cookie = cookie.split(';').next().unwrap().to_owned();
+        let visitor = Visitor { headers: vec![("cookie", cookie)], ..Visitor::operator(1) };
+        drop(Page::open(&place, &visitor).unwrap());
+    }
+    assert_eq!(http(&owner, "GET", "/api/state", &[], "").0, 200);
+    let link = group.must(&["console"]).stdout;
+    assert_eq!(link.trim(), format!("http://{place}/?token={token}"));
+    group.down();
+}
+
+#[test]
+fn token_is_private_and_can_be_renewed() {
+    let group = Group::up(&[]);
+    let before = group.console();
+    let token = before.token.clone().expect("a token");
+    let file = service::console_link::token_file(group.paths());
+    assert_eq!(std::fs::metadata(&file).unwrap().mode() & 0o777, 0o600);
+    let log = group.paths().log_file("supervisor");
+    assert_eq!(std::fs::metadata(log).unwrap().mode() & 0o777, 0o600);
+    // Not even in the arguments of a process, which every user can read.
+    for process in std::fs::read_dir("/proc").unwrap() {
+        let arguments = process.unwrap().path().join("cmdline");
+        let arguments = std::fs::read(arguments).unwrap_or_default();
+        assert!(!String::from_utf8_lossy(&arguments).contains(&token));
+    }
+    let renewed = group.must(&["console", "--renew", "--json"]).json();
+    assert_ne!(renewed["token"], token.as_str());
+    assert_eq!(http(&before, "GET", "/api/state", &[], "").0, 401);
+    assert_eq!(http(&group.console(), "GET", "/api/state", &[], "").0, 200);
+    // A word of the owner's own outlives the logins before the restart that makes it count.
+    std::fs::write(&file, "my-own-word-123\n").unwrap();
+    let running =
+        Console { token: renewed["token"].as_str().map(str::to_owned), ..group.console() };
+    let own = format!("Origin: http://{running}");
+    let form = format!("token={}", running.token.as_deref().unwrap());
+    assert_eq!(http(&running.without_token(), "POST", "/login", &[&own], &form).0, 303);
+    group.must(&["restart", "console"]);
+    assert_eq!(group.console().token.as_deref(), Some("my-own-word-123"));
+    assert_eq!(http(&group.console(), "GET", "/api/state", &[], "").0, 200);
+    group.down();
+}
+
+#[test]
+fn page_is_open_where_the_configuration_says_so() {
+    let group = Group::up(&["console.access=open"]);
+    let anyone = group.console().without_token();
+    assert_eq!(http(&anyone, "GET", "/api/state", &[], "").0, 200);
+    assert_eq!(http(&anyone, "GET", "/api/state", &["Host: evil.example"], "").0, 421);
+    drop(Page::open(&anyone, &Visitor::operator(1)).unwrap());
+    let log = std::fs::read_to_string(group.paths().log_file("console")).unwrap();
+    assert!(log.contains("every user of this machine can operate the robot"), "{log}");
+    group.down();
+}
+
+#[test]
+fn port_in_use_is_avoided() {
+    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port();
+    let listen = format!("console.listen=127.0.0.1:{port}");
+    let group = Group::up(&[&listen]);
+    let place = group.console();
+    assert!(!place.place.ends_with(&format!(":{port}")), "{place}");
+    let log = std::fs::read_to_string(group.paths().log_file("console")).unwrap();
+    assert!(log.contains("another one is used"), "{log}");
+    assert_eq!(group.status()["console"], format!("http://{place}/"));
+    group.down();
+}
+
+#[test]
+fn operator_gets_in_beside_any_number_of_viewers() {
+    let group = Group::up(&[]);
+    let place = group.console();
+    let viewer = |n| Visitor { role: "viewer", ..Visitor::operator(n) };
+    let mut open: Vec<Page> = (1..=31).map(|n| group.page(&viewer(n))).collect();
+    for n in 32..=40 {
+        let refused = Page::open(&place, &viewer(n)).unwrap_err();
+        assert!(refused.contains("1013") && refused.contains("viewers_max"), "{refused}");
+    }
+    let mut operator = group.page(&Visitor::operator(100));
+    assert!(ok(&operator.ask("say", &json!({ "text": "get me the bowl" }))));
+    // Also where idle pages that may operate hold every place.
+    let mut next = group.page(&Visitor::operator(101));
+    let code =
+        open[0].until("the end of the page that was idle for longest", |p| p.closed.clone()).0;
+    assert_eq!(code, 4002);
+    assert!(ok(&next.ask("stop", &Json::Null)));
+    drop((open, operator, next));
+    group.down();
+}
+
+/// At 256 descriptors, 400 visitors who begin a request and never end it.
+#[test]
+fn page_loads_among_half_open_connections() {
+    const DESCRIPTORS: u64 = 256;
+    let group = Group::up(&[]);
+    let supervisor = group.status()["supervisor_pid"].as_u64().unwrap();
+    let limit = Rlimit { current: Some(DESCRIPTORS), maximum: Some(DESCRIPTORS) };
+    let pid = Pid::from_raw(i32::try_from(supervisor).unwrap());
+    prlimit(pid, Resource::Nofile, limit).unwrap();
+    group.must(&["restart", "console"]);
+    let place = group.console();
+    let begin = |_| {
+        let mut stream = TcpStream::connect(&place.place).unwrap();
+        stream.write_all(b"GET / HTTP/1.1\r\n").unwrap();
+        stream
+    };
+    let mut crowd: Vec<TcpStream> = (0..400).map(begin).collect();
+    let mut page = group.page(&Visitor::operator(1));
+    for n in 2..6 {
+        // Those who were shut out come back; the others send one more line.
+        for stream in &mut crowd {
+            if stream.write_all(b"X-More: please wait\r\n").is_err() {
+                *stream = begin(0);
+            }
+        }
+        let (status, _, body) = http(&place, "GET", "/", &["Accept: text/html"], "");
+        assert!(status == 200 && body.contains("</html>"), "{status}");
+        drop(Page::open(&place, &Visitor { role: "viewer", ..Visitor::operator(n) }).unwrap());
+        assert!(ok(&page.ask("stop", &Json::Null)), "an open page works on");
+    }
+    let console = group.pid("console").as_raw_nonzero();
+    let used = std::fs::read_dir(format!("/proc/{console}/fd")).unwrap().count();
+    assert!(used < DESCRIPTORS as usize, "{used}");
+    drop((crowd, page));
+    group.down();
+}
