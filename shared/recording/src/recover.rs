@@ -89,6 +89,10 @@ fn copy(from: &[PathBuf], to: &Path) -> Result<(u64, bool), RecordingError> {
     Ok((messages, was_torn))
 }
 
+/// Longest record that is read, bytes: a damaged length is not an allocation. The longest that is written is
+/// a chunk, or an attachment.
+const RECORD_BYTES_MAX: usize = 64 << 20;
+
 /// End of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
@@ -105,8 +109,10 @@ pub(crate) fn each_record(
 ) -> Result<End, RecordingError> {
     let file = File::open(path).map_err(RecordingError::io(path))?;
     let mut file = BufReader::new(file);
-    let read_options =
-        LinearReaderOptions::default().with_skip_end_magic(true).with_validate_chunk_crcs(true);
+    let read_options = LinearReaderOptions::default()
+        .with_skip_end_magic(true)
+        .with_validate_chunk_crcs(true)
+        .with_record_length_limit(RECORD_BYTES_MAX);
     let mut reader = LinearReader::new_with_options(read_options);
     let mut has_begun = false;
     while let Some(event) = reader.next_event() {
