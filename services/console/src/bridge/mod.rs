@@ -28,6 +28,7 @@ use service::{Span, Time};
 use crate::hub::command::{Command, Motion, Verb, typed};
 use crate::hub::outbound::{Interim, Joints, PageMessage};
 use crate::hub::{Hub, ViewerId};
+use crate::live::feed::Feed;
 use crate::server::App;
 use crate::server::routes::sound_file;
 use crate::study::Study;
@@ -56,6 +57,7 @@ pub struct Bridge {
     model: ViewModel,
     voice: Voice,
     study: Option<Study>,
+    feed: Feed,
     submissions: Submissions,
     motions: Motions,
     lines: LineStore,
@@ -128,6 +130,7 @@ impl Bridge {
             model: ViewModel::new(scene, transcript, history),
             voice: Voice::default(),
             study,
+            feed: Feed::new(settings, paths.log()),
             submissions: Submissions::default(),
             motions: Motions::open(paths).map_err(failed)?,
             lines,
@@ -150,6 +153,8 @@ impl Bridge {
         self.carry_out(inbox, now);
         self.advance(now);
         self.show(now);
+        let App { live, hub, .. } = &*self.app;
+        self.feed.pass(self.client.bus(), live, &hub.metrics, now.at);
     }
 
     /// Returns whether something waits for an answer, so that the next pass should come soon.
@@ -264,8 +269,9 @@ impl Bridge {
             Some(why) => Err(why),
             None => Ok(words),
         });
-        let submitted =
-            words.and_then(|words| self.submissions.add(Some((viewer, id)), words, now.at));
+        let accepted = self.model.accepted();
+        let submitted = words
+            .and_then(|words| self.submissions.add(Some((viewer, id)), words, accepted, now.at));
         if let Err(why) = submitted {
             self.hub().answer(viewer, id, Err(why));
         }
@@ -280,7 +286,7 @@ impl Bridge {
         let Some(study) = &mut self.study else { return };
         events.iter().for_each(|event| study.on_event(event, &self.model, now));
         if let Some(words) = study.pass(&self.model, now)
-            && let Err(why) = self.submissions.add(None, words, now.at)
+            && let Err(why) = self.submissions.add(None, words, self.model.accepted(), now.at)
         {
             tracing::warn!(why, "the study's words are not submitted");
         }

@@ -80,15 +80,24 @@ impl Access {
         bearer.is_some_and(|said| same(said, &guard.token)) || guard.has_session(headers, now_s)
     }
 
+    /// Returns whether this is the token. Without one, any word is.
+    pub fn is_token(&self, said: &str) -> bool {
+        self.0.as_ref().is_none_or(|guard| same(said, &guard.token))
+    }
+
     /// Returns whether the request comes from a page of this console: its origin is its host.
     pub fn is_own(headers: &HeaderMap) -> bool {
-        let (Some(origin), Some(host)) =
-            (text(headers, &header::ORIGIN), text(headers, &header::HOST))
+        let (Some(origin), Some(host)) = (Self::origin(headers), text(headers, &header::HOST))
         else {
             return false;
         };
         let place = origin.strip_prefix("http://").or(origin.strip_prefix("https://"));
         place.is_some_and(|place| place.eq_ignore_ascii_case(host))
+    }
+
+    /// Returns the origin of the page that makes the request.
+    pub fn origin(headers: &HeaderMap) -> Option<&str> {
+        text(headers, &header::ORIGIN)
     }
 
     /// Begins a session for a browser that shows the token; returns its cookie.

@@ -12,6 +12,12 @@ pub struct Metrics {
     pub dropped: Counter,
     pub frames: Counter,
     pub bytes: Counter,
+    /// Live views that are open.
+    pub live_viewers: Gauge,
+    /// Messages that were read for live views.
+    pub live_messages: Counter,
+    /// Messages that live views lost because they did not read them in time.
+    pub live_lost: Counter,
     /// Seconds from the end of an utterance to the first sound of the answer.
     pub latency: Histogram,
     /// Seconds that the main loop takes for one pass.
@@ -25,6 +31,9 @@ impl Default for Metrics {
             dropped: Counter::default(),
             frames: Counter::default(),
             bytes: Counter::default(),
+            live_viewers: Gauge::default(),
+            live_messages: Counter::default(),
+            live_lost: Counter::default(),
             latency: Histogram::new(exponential_buckets(0.01, 2.0, 12)),
             pass: Histogram::new(exponential_buckets(0.000_01, 4.0, 10)),
         }
