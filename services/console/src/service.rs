@@ -25,6 +25,7 @@ use crate::hub::command::{Command, Motion};
 use crate::hub::outbound::{CameraSettings, PageSettings, VoiceSettings};
 use crate::hub::{Channels, Hub};
 use crate::live::Live;
+use crate::metrics::Metrics;
 use crate::server::connections::Limits;
 use crate::server::web::Web;
 use crate::server::{Access, App};
@@ -82,7 +83,7 @@ impl Console {
         let limits = limits(settings.console.viewers_max);
         let session = random_secret().map_err(failed("session"))?;
         let app = Arc::new(App {
-            hub: Hub::new(channels, limits.viewers, handover),
+            hub: Hub::new(channels, limits.viewers, handover, Metrics::new(paths.recordings())),
             live: Live::new(settings, paths.name().as_str(), &session),
             access: access(settings, paths)?,
             group: paths.name().to_string(),

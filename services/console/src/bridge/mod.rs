@@ -29,6 +29,7 @@ use crate::hub::command::{Command, Motion, Verb, typed};
 use crate::hub::outbound::{Interim, Joints, PageMessage};
 use crate::hub::{Hub, ViewerId};
 use crate::live::feed::Feed;
+use crate::metrics::Tally;
 use crate::server::App;
 use crate::server::routes::sound_file;
 use crate::study::Study;
@@ -58,6 +59,7 @@ pub struct Bridge {
     voice: Voice,
     study: Option<Study>,
     feed: Feed,
+    tally: Tally,
     submissions: Submissions,
     motions: Motions,
     lines: LineStore,
@@ -131,6 +133,7 @@ impl Bridge {
             voice: Voice::default(),
             study,
             feed: Feed::new(settings, paths.log()),
+            tally: Tally::new(clock::now()),
             submissions: Submissions::default(),
             motions: Motions::open(paths).map_err(failed)?,
             lines,
@@ -176,7 +179,9 @@ impl Bridge {
 
     /// Takes in what has arrived, causes before effects as far as one pass can order them.
     fn take_in(&mut self, now: Now) {
-        let Self { topics, model, .. } = self;
+        let Self { topics, model, tally, .. } = self;
+        let app = Arc::clone(&self.app);
+        let metrics = &app.hub.metrics.dialogue;
         let (observations, acts) = (drain(&topics.observations), drain(&topics.acts));
         let mut arrived = topics.latest.take();
         if let Some(scene) = arrived.scene.take() {
@@ -187,6 +192,7 @@ impl Bridge {
             let later = [Service::Grounding, Service::Policy, Service::Arm];
             self.submissions.on_receipt(receipt, || model.unavailable(&later), &self.app.hub);
             model.on_receipt(receipt, now);
+            tally.on_receipt(receipt, metrics);
         }
         let table = topics.latest.table();
         for observation in &observations {
@@ -202,8 +208,12 @@ impl Bridge {
             let sound = self.voice_dir.as_deref().and_then(|folder| sound_file(folder, &line));
             model.on_presented(presented, sound.is_some_and(|file| file.is_file()), now);
         }
-        arrived.hearing.into_iter().for_each(|hearing| model.on_hearing(hearing));
+        if let Some(hearing) = arrived.hearing {
+            tally.on_hearing(&hearing, metrics);
+            model.on_hearing(hearing);
+        }
         for (status, _) in arrived.statuses {
+            tally.on_arm(&status, metrics);
             model.on_arm(status, now);
         }
         let world = quiet(topics.worlds.latest());
@@ -219,6 +229,7 @@ impl Bridge {
             self.app.hub.board.partial(&key, message.to_text());
         }
         if let Some(view) = arrived.view {
+            tally.on_view(&view, metrics);
             model.on_view(view, now);
             self.follow_scene();
         }
@@ -245,8 +256,14 @@ impl Bridge {
                     }
                 }
                 Command::Left(viewer) => self.voice.left(viewer),
-                Command::Group(Ok(group)) => self.model.on_group(*group, now),
-                Command::Group(Err(why)) => tracing::debug!(why, "no status from the supervisor"),
+                Command::Group(Ok(group)) => {
+                    self.hub().metrics.set_group(Some(&group));
+                    self.model.on_group(*group, now);
+                }
+                Command::Group(Err(why)) => {
+                    self.hub().metrics.set_group(None);
+                    tracing::debug!(why, "no status from the supervisor");
+                }
             }
         }
     }

@@ -93,11 +93,11 @@ fn is_of_own_participant(verb: &Verb) -> bool {
 }
 
 impl Hub {
-    pub fn new(channels: Channels, viewers_max: usize, handover: Span) -> Self {
+    pub fn new(channels: Channels, viewers_max: usize, handover: Span, metrics: Metrics) -> Self {
         let control = Control { viewers: Viewers::default(), lease: Lease::new(handover) };
         let hub = Self {
             board: Board::default(),
-            metrics: Metrics::default(),
+            metrics,
             channels,
             control: Mutex::new(control),
             viewers_max,

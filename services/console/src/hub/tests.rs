@@ -16,7 +16,11 @@ pub(crate) fn hub() -> Page {
     let (to_motions, motions) = worker_channel::channel().unwrap();
     let (restarts, _) = crossbeam_channel::bounded(1);
     let channels = Channels { commands: to_commands, motions: to_motions, restarts };
-    Page { hub: Hub::new(channels, 3, Span::from_ms(1_000)), commands, motions }
+    Page {
+        hub: Hub::new(channels, 3, Span::from_ms(1_000), Metrics::new("/nowhere".into())),
+        commands,
+        motions,
+    }
 }
 
 pub(crate) fn received(frames: &mut mpsc::Receiver<OutboundFrame>) -> Json {

@@ -105,7 +105,11 @@ pub(super) async fn history(State(app): State<Arc<App>>) -> Response<Body> {
 
 pub(super) async fn metrics(State(app): State<Arc<App>>) -> Response<Body> {
     let kind = "application/openmetrics-text; version=1.0.0; charset=utf-8";
-    ([(header::CONTENT_TYPE, kind)], app.hub.metrics.text()).into_response()
+    // It looks at a folder.
+    match tokio::task::spawn_blocking(move || app.hub.metrics.text()).await {
+        Ok(text) => ([(header::CONTENT_TYPE, kind)], text).into_response(),
+        Err(_) => StatusCode::INTERNAL_SERVER_ERROR.into_response(),
+    }
 }
 
 pub(super) async fn health(State(app): State<Arc<App>>) -> Response<Body> {
