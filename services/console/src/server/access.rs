@@ -252,6 +252,8 @@ mod tests {
     fn token_is_a_bearer_or_begins_a_session() {
         let (_folder, file) = guarded();
         let access = by_token(&file);
+        assert!(access.is_token(TOKEN) && !access.is_token("correct-hors"));
+        assert!(!access.is_token("") && Access::open().is_token(""));
         let bearer = |token: &str| headers(&[("authorization", &format!("Bearer {token}"))]);
         assert!(access.is_known(&bearer(TOKEN), 0));
         assert!(!access.is_known(&bearer("correct-hors"), 0));

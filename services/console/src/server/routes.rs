@@ -53,24 +53,8 @@ pub(super) async fn foxglove(
     upgrade: WebSocketUpgrade,
 ) -> Response<Body> {
     let query = uri.query().unwrap_or_default();
-    let token = form_field(query, "token");
-    if !app.access.is_known(&headers, unix_s()) {
-        if !token.as_deref().is_some_and(|token| app.access.is_token(token)) {
-            if token.is_some() {
-                tokio::time::sleep(PAUSE).await;
-            }
-            let why = "token required; help: add ?token=TOKEN to the address; `whichone console` \
-                       prints the token in a link\n";
-            return (StatusCode::UNAUTHORIZED, why).into_response();
-        }
-    }
-    let origin = Access::origin(&headers);
-    if !Access::is_own(&headers) && !origin.is_some_and(|origin| app.live.admits(origin)) {
-        let found = origin.unwrap_or("none");
-        let why = format!(
-            "expected the origin of the console or one of console.foxglove_origins, found {found}\n"
-        );
-        return (StatusCode::FORBIDDEN, why).into_response();
+    if let Err((status, why)) = admitted(&app, &headers, query).await {
+        return (status, why).into_response();
     }
     connection.prove();
     let role = match form_field(query, "role").as_deref() {
@@ -91,6 +75,29 @@ pub(super) async fn foxglove(
         .max_message_size(FRAME_BYTES_MAX)
         .max_frame_size(FRAME_BYTES_MAX)
         .on_upgrade(move |socket| live::serve(socket, connection, app, role))
+}
+
+/// Checks that a viewer shows the token or a session, and comes from an origin that may connect.
+async fn admitted(app: &App, headers: &HeaderMap, query: &str) -> Result<(), (StatusCode, String)> {
+    let token = form_field(query, "token");
+    let is_right = token.as_deref().is_some_and(|token| app.access.is_token(token));
+    if !is_right && !app.access.is_known(headers, unix_s()) {
+        if token.is_some() {
+            tokio::time::sleep(PAUSE).await;
+        }
+        let why = "token required; help: add ?token=TOKEN to the address; `whichone console` prints \
+                   the token in a link\n";
+        return Err((StatusCode::UNAUTHORIZED, why.to_owned()));
+    }
+    let origin = Access::origin(headers);
+    if Access::is_own(headers) || origin.is_some_and(|origin| app.live.admits(origin)) {
+        return Ok(());
+    }
+    let found = origin.unwrap_or("none");
+    let why = format!(
+        "expected the origin of the console or one of console.foxglove_origins, found {found}\n"
+    );
+    Err((StatusCode::FORBIDDEN, why))
 }
 
 pub(super) async fn state(State(app): State<Arc<App>>) -> Response<Body> {
