@@ -57,7 +57,7 @@ physics_python() { python_with physics mujoco==4.0.0 numpy==2.4.6 iceoryx2==0.10
 # For recordings: the libraries that read them.
 recording_python() {
     python_with recording mcap==1.6.0 mcap-ros2-support==0.6.0 mcap-protobuf-support==0.6.0 \
-        jsonschema==4.26.0 foxglove-sdk==0.30.3
+        jsonschema==4.26.0 foxglove-sdk==0.30.3 websockets==17.4 prometheus-client==0.26.0
 }
 
 # For the ROS 2 node: Cyclone DDS, and ROS 2 Jazzy, whose packages are for Python 3.11 alone.

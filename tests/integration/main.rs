@@ -21,6 +21,8 @@ mod hearing;
 mod isolation;
 mod journal_format;
 mod journal_loss;
+mod live;
+mod metrics;
 mod own_voice;
 mod perception;
 mod physics;

@@ -4,7 +4,8 @@
 //! folds what arrives into a [`view_model`] and carries out the commands of viewers. The [`server`] is
 //! a small asynchronous runtime that serves pages and sockets. Between them is the [`hub`]: the bridge
 //! puts the newest text of each section on a board, from which every viewer takes what it has not seen
-//! yet; a slow viewer skips versions, and no queue grows.
+//! yet; a slow viewer skips versions, and no queue grows. The [`live`] view is for viewers of robotics: every
+//! message of every topic, of which a slow viewer loses the oldest. The [`metrics`] are for Prometheus.
 
 #![allow(
     unreachable_pub,
@@ -14,6 +15,8 @@
 
 mod bridge;
 mod hub;
+mod live;
+mod metrics;
 mod server;
 mod service;
 mod study;

@@ -12,7 +12,7 @@ use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use service::bus::WakeListener;
 use service::client::Client;
 use service::clock;
-use service::console_link;
+use service::console_link::{self, random_secret};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
@@ -24,6 +24,8 @@ use crate::bridge::{self, Bridge, Inbox};
 use crate::hub::command::{Command, Motion};
 use crate::hub::outbound::{CameraSettings, PageSettings, VoiceSettings};
 use crate::hub::{Channels, Hub};
+use crate::live::Live;
+use crate::metrics::Metrics;
 use crate::server::connections::Limits;
 use crate::server::web::Web;
 use crate::server::{Access, App};
@@ -79,8 +81,10 @@ impl Console {
         let handover = Span::from_s(settings.console.handover.as_secs_f64());
         let channels = Channels { commands: commands.clone(), motions, restarts };
         let limits = limits(settings.console.viewers_max);
+        let session = random_secret().map_err(failed("session"))?;
         let app = Arc::new(App {
-            hub: Hub::new(channels, limits.viewers, handover),
+            hub: Hub::new(channels, limits.viewers, handover, Metrics::new(paths.recordings())),
+            live: Live::new(settings, paths.name().as_str(), &session),
             access: access(settings, paths)?,
             group: paths.name().to_string(),
             settings: page_settings(settings, study.is_some()),

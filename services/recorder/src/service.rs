@@ -7,16 +7,14 @@ use std::process::ExitCode;
 use std::time::SystemTime;
 
 use config::{SNAPSHOT_FILE, Settings};
-use messages::topics::{self, Topic};
-use messages::{Service, Stamp};
-use recording::channels::{CDR_HEADER, ChannelId, group_topics};
+use messages::Service;
 use recording::clock::WallClock;
 use recording::file::Attached;
+use recording::group_reader::{GroupReader, OpenError};
 use recording::list::{entries, unfinished};
-use recording::picture::{Painter, Shown};
+use recording::recover;
 use recording::ring::{Ring, TEND_EVERY, free_space};
-use recording::{payload, recover};
-use service::bus::{AnyMessage, AnyReader, PortError, WakeListener};
+use service::bus::WakeListener;
 use service::client::Client;
 use service::exit::{Exit, Failure};
 use service::folders::make_private;
@@ -42,28 +40,14 @@ fn serve(arguments: Vec<String>) -> Result<(), Failure> {
     drive(lifecycle, &mut recorder)
 }
 
-/// A topic that is recorded.
-struct Source {
-    topic: &'static Topic,
-    channel: ChannelId,
-    reader: Box<dyn AnyReader>,
-    /// Messages that were sent before are in an earlier recording.
-    since: Time,
-}
-
 struct Recorder {
     /// Keeps the readers' shared memory open.
     _client: Client,
     wake_listener: WakeListener,
-    sources: Vec<Source>,
+    reader: GroupReader,
     ring: Ring,
-    painter: Painter,
     next_look: Time,
     next_tend: Time,
-    /// The last failure to read a topic, so that it is logged once.
-    failure: Option<String>,
-    /// A message with its CDR header.
-    buffer: Vec<u8>,
     is_ending: bool,
 }
 
@@ -76,33 +60,21 @@ impl Recorder {
         let (since, torn) = (newest(&folder, began), unfinished(&folder));
         let client = Client::of_service(environment, Service::Recorder.name())?;
         let wake_listener = client.bus().wake_listener(Service::Recorder)?;
-        let mut sources = Vec::new();
-        for (place, topic) in group_topics().enumerate() {
-            let is_sound = topic.name == topics::AUDIO.name;
-            if is_sound && !settings.group.recorder.sound {
-                continue;
-            }
-            let reader = client.bus().any_reader(topic)?;
-            // Of a state the latest message counts, however old it is.
-            let since = if topic.history > 1 { since } else { Time(0) };
-            sources.push(Source { topic, channel: ChannelId::of_topic(place), reader, since });
-        }
-        let files = settings.robot_files();
-        let robot = robot_model::Robot::read(&files.urdf, files.srdf.as_ref());
-        let robot = robot.map_err(|found| Failure::new(Exit::Config, found.to_string()))?;
+        let reader = GroupReader::open(client.bus(), settings, paths.log(), since);
+        let reader = reader.map_err(|error| match error {
+            OpenError::Bus(error) => error.into(),
+            OpenError::Robot(found) => Failure::new(Exit::Config, found),
+        })?;
         let attached = attached(environment, settings);
         let limits = settings.group.recorder.clone();
         let ring = Ring::new(folder, limits, attached, Box::new(free_space));
         let mut recorder = Self {
             _client: client,
             wake_listener,
-            sources,
+            reader,
             ring,
-            painter: Painter::new(settings, &robot, paths.log()),
             next_look: began,
             next_tend: began,
-            failure: None,
-            buffer: Vec::new(),
             is_ending: false,
         };
         recorder.tend(began);
@@ -115,81 +87,25 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Takes what has arrived on all topics.
+    /// Takes what has arrived on all topics; it is dropped while nothing is recorded.
     fn look(&mut self, now: Time) {
-        let Some(clock) = self.ring.clock() else { return self.skip() };
-        let Self { sources, ring, painter, buffer, .. } = self;
-        let mut failure = None;
-        for Source { topic, channel, reader, since } in sources.iter() {
-            let taken = reader.drain(&mut |stamp, message| {
-                let sent = sent(stamp, now);
-                if sent < *since {
-                    return;
-                }
-                let at_ns = clock.wall_ns(sent);
-                let mut write =
-                    |data: &[u8]| ring.write(*channel, stamp.sequence, at_ns, data, now);
-                match message {
-                    AnyMessage::Fixed(bytes, _) => {
-                        buffer.clear();
-                        buffer.extend(CDR_HEADER);
-                        buffer.extend(bytes);
-                        write(buffer);
-                    }
-                    AnyMessage::Encoded(bytes) => match payload::to_json(topic, bytes) {
-                        Ok(json) => write(&json),
-                        // Those whom it is for reject it, and say so.
-                        Err(error) => tracing::debug!(%error, "not recorded"),
-                    },
-                }
-                painter
-                    .on_message(topic, (sent, clock), message, &mut |shown| show(ring, shown, now));
-            });
-            failure = failure.or(taken.err());
+        let Self { reader, ring, .. } = self;
+        match ring.clock() {
+            Some(clock) => reader.look(now, clock, &mut |sample| ring.write(sample, now)),
+            None => reader.skip(),
         }
-        painter.show_scene(now, clock, &mut |shown| show(ring, shown, now));
-        self.judge(failure);
-    }
-
-    /// Drops what has arrived: nothing is recorded.
-    fn skip(&mut self) {
-        let drop_all = |source: &Source| source.reader.drain(&mut |_, _| {}).err();
-        let failure = self.sources.iter().filter_map(drop_all).next();
-        self.judge(failure);
-    }
-
-    /// A topic that cannot be read is tried again with the next look.
-    fn judge(&mut self, failure: Option<PortError>) {
-        let failure = failure.map(|error| error.to_string());
-        if let Some(error) = failure.as_ref().filter(|_| self.failure.is_none()) {
-            tracing::warn!(error, "a topic cannot be read; trying again");
-        }
-        self.failure = failure;
     }
 
     fn tend(&mut self, now: Time) {
-        let Self { ring, painter, .. } = self;
+        let Self { ring, reader, .. } = self;
         if let Some(clock) = ring.clock() {
-            painter.show_logs(now, clock, &mut |shown| show(ring, shown, now));
+            reader.show_logs(now, clock, &mut |sample| ring.write(sample, now));
         }
         let is_new = ring.tend(now, WallClock::read());
         if let Some(clock) = ring.clock().filter(|_| is_new) {
-            painter.begin(now, clock, &mut |shown| show(ring, shown, now));
+            reader.begin(now, clock, &mut |sample| ring.write(sample, now));
         }
         self.next_tend = now + TEND_EVERY;
-    }
-}
-
-fn show(ring: &mut Ring, (picture, at_ns, data): Shown, now: Time) {
-    ring.write(picture.into(), 0, at_ns, &data, now);
-}
-
-/// When a message was sent, unless its sender gives an impossible time.
-fn sent(stamp: &Stamp, now: Time) -> Time {
-    match Time(stamp.sent_ns) {
-        Time(0) => now,
-        sent if sent > now => now,
-        sent => sent,
     }
 }
 

@@ -150,5 +150,9 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
     let texts = sections.iter().map(|&section| settings.section_text(section));
     let durations = decides.then(|| settings.durations_text());
     let texts = texts.chain([settings.scene_file().text.clone()]);
+    // The live view has sound where recordings have.
+    let sound =
+        (name == Service::Console.name()).then(|| settings.group.recorder.sound.to_string());
+    let texts = texts.chain(sound);
     texts.chain(durations).chain([settings.perception_text()]).collect()
 }

@@ -40,6 +40,12 @@ pub(crate) enum Notification {
     Shortage(Option<String>),
     /// `X_REJECTED=n`: messages of others that it has rejected so far.
     Rejected(u64),
+    /// `X_LOST=n`: messages that it has lost so far because it did not read them in time.
+    Lost(u64),
+    /// `X_SYNCS=n`: syncs of its journal so far.
+    Syncs(u64),
+    /// `X_SYNC_US=n`: time that these syncs took.
+    SyncTime(Duration),
 }
 
 /// The socket of one incarnation; its file goes with it.
@@ -106,6 +112,9 @@ fn line(line: &str) -> Option<Notification> {
         "X_VERSION" => Notification::Version(text(value)),
         "X_SHORTAGE" => Notification::Shortage(Some(text(value)).filter(|text| !text.is_empty())),
         "X_REJECTED" => Notification::Rejected(number()?),
+        "X_LOST" => Notification::Lost(number()?),
+        "X_SYNCS" => Notification::Syncs(number()?),
+        "X_SYNC_US" => Notification::SyncTime(Duration::from_micros(number()?)),
         _ => return None,
     })
 }
@@ -133,10 +142,13 @@ mod tests {
             ]
         );
         assert_eq!(
-            parse(b"X_SHORTAGE=disk\nX_REJECTED=3\nX_SHORTAGE="),
+            parse(b"X_SHORTAGE=disk\nX_REJECTED=3\nX_LOST=4\nX_SYNCS=5\nX_SYNC_US=6\nX_SHORTAGE="),
             [
                 Notification::Shortage(Some("disk".into())),
                 Notification::Rejected(3),
+                Notification::Lost(4),
+                Notification::Syncs(5),
+                Notification::SyncTime(Duration::from_micros(6)),
                 Notification::Shortage(None),
             ]
         );

@@ -54,6 +54,9 @@ pub(crate) struct Running {
     /// The resource that it says it is short of.
     pub(crate) shortage: Option<String>,
     pub(crate) rejected: u64,
+    pub(crate) lost: u64,
+    /// Syncs of its journal, and the time that they took.
+    pub(crate) syncs: (u64, Duration),
     pub(crate) killed: bool,
 }
 
@@ -151,6 +154,8 @@ impl Service {
             says: None,
             shortage: None,
             rejected: 0,
+            lost: 0,
+            syncs: (0, Duration::ZERO),
             killed: false,
         })
     }
@@ -225,6 +230,9 @@ impl Service {
                 Notification::Version(version) => running.version = Some(version),
                 Notification::Status(text) => running.says = Some(text),
                 Notification::Rejected(count) => running.rejected = count,
+                Notification::Lost(count) => running.lost = count,
+                Notification::Syncs(count) => running.syncs.0 = count,
+                Notification::SyncTime(time) => running.syncs.1 = time,
                 Notification::Shortage(shortage) => {
                     if running.shortage != shortage {
                         let (service, incarnation) = (&self.spec.name, running.incarnation);

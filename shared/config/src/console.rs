@@ -27,6 +27,8 @@ pub struct Console {
     pub handover: Duration,
     /// Language of the page, e.g. `en`.
     pub language: String,
+    /// Origins, besides the console's own, whose pages may open the live view.
+    pub foxglove_origins: Vec<String>,
     /// A camera whose picture the page shows.
     pub camera: Option<Camera>,
 }
@@ -55,8 +57,32 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Console {
         viewers_max: usize::from(f.whole::<u16>("viewers_max", 2..=200)),
         handover: f.seconds("handover_s", 1.0..=300.0),
         language: language(f),
+        foxglove_origins: foxglove_origins(f),
         camera: camera(f),
     }
+}
+
+fn foxglove_origins(f: &mut Fields<'_>) -> Vec<String> {
+    let origins = f.texts("foxglove_origins");
+    for origin in &origins {
+        // `null` is the origin of pages that do not say where they come from; a star is a misunderstanding.
+        let is_plain = |b: u8| b.is_ascii_alphanumeric() || b".-:[]".contains(&b);
+        let is_origin = origin.split_once("://").is_some_and(|(scheme, host)| {
+            !scheme.is_empty()
+                && scheme.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'-')
+                && (!host.is_empty() || scheme == "file")
+                && host.bytes().all(is_plain)
+        });
+        if !is_origin {
+            let what = format!("`{origin}` is not the origin of a page");
+            f.problem(
+                "foxglove_origins",
+                what,
+                "write scheme, host and port, e.g. \"https://app.foxglove.dev\"",
+            );
+        }
+    }
+    origins
 }
 
 fn camera(f: &mut Fields<'_>) -> Option<Camera> {

@@ -52,9 +52,9 @@ impl Topic {
 
 /// Readers of one topic at a time: services, clients, consoles, recorders.
 pub const READERS_MAX: usize = 24;
-/// Readers of a topic with large messages between services: its reader, one that replaces it, consoles,
-/// recorders.
-pub const SERVICES_MAX: usize = 8;
+/// Readers of a topic with large messages between services: its reader, the console with its live view, the
+/// recorder, each also while it is replaced, and two tools.
+pub const SERVICES_MAX: usize = 10;
 /// Clients that write at a time.
 pub const CLIENTS_MAX: usize = 16;
 /// Processes that have a topic open at a time.

@@ -17,6 +17,8 @@ pub struct Channel {
     pub schema_encoding: &'static str,
     /// The schema.
     pub definition: String,
+    /// Whether the latest message stands until the next one: a viewer that joins needs it.
+    pub is_state: bool,
 }
 
 /// Encoding of the messages of a channel.
@@ -83,6 +85,7 @@ impl Picture {
                     schema: "std_msgs/msg/String".to_owned(),
                     schema_encoding: ROS2MSG,
                     definition: "string data\n".to_owned(),
+                    is_state: true,
                 };
             }
             Self::Joints => ("JointStates", traced::<JointStates>()),
@@ -96,6 +99,7 @@ impl Picture {
             schema: format!("foxglove.{schema}"),
             schema_encoding: JSONSCHEMA,
             definition: json_schema(schema, &definition).to_string(),
+            is_state: matches!(self, Self::Joints | Self::Scene | Self::Frames),
         }
     }
 }
@@ -115,6 +119,12 @@ impl ChannelId {
     /// The channel of a topic, by its place in [`topics`](group_topics).
     pub fn of_topic(place: usize) -> Self {
         Self(place)
+    }
+
+    /// Returns whether it carries sound, which is shown only where `recorder.sound` allows it.
+    pub fn is_sound(self) -> bool {
+        let topic = group_topics().nth(self.0);
+        topic.map_or(self == Picture::Sound.into(), |topic| topic.name == topics::AUDIO.name)
     }
 }
 
@@ -142,7 +152,14 @@ fn of_topic(topic: &Topic) -> Channel {
             (JSONSCHEMA, format!("whichone.{}", topic.payload), schema.to_string())
         }
     };
-    Channel { topic: format!("/{}", topic.name), schema, schema_encoding, definition }
+    let is_state = topic.history == 1;
+    Channel { topic: format!("/{}", topic.name), schema, schema_encoding, definition, is_state }
+}
+
+/// The channels of a recording or live view, with or without sound.
+pub fn shown(sound: bool) -> impl Iterator<Item = (ChannelId, Channel)> {
+    let numbered = all().into_iter().enumerate().map(|(n, channel)| (ChannelId(n), channel));
+    numbered.filter(move |(id, _)| sound || !id.is_sound())
 }
 
 #[cfg(test)]

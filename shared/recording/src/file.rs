@@ -150,7 +150,7 @@ impl Recording {
     }
 
     fn add(&mut self, id: ChannelId, channel: &Channel) -> Result<u16, RecordingError> {
-        let Channel { topic, schema, schema_encoding, definition } = channel;
+        let Channel { topic, schema, schema_encoding, definition, .. } = channel;
         let Self { writer, path, channels, .. } = self;
         let schema = writer.add_schema(schema, schema_encoding, definition.as_bytes());
         let number = schema.and_then(|schema| {

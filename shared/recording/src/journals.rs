@@ -41,7 +41,7 @@ pub fn write(entries: &[Entry], to: &Path) -> Result<(), RecordingError> {
         if let Some(id) = known.get(&channel.topic) {
             return Ok(*id);
         }
-        let Channel { topic, schema, schema_encoding, definition } = channel;
+        let Channel { topic, schema, schema_encoding, definition, .. } = channel;
         let schema = writer.add_schema(schema, schema_encoding, definition.as_bytes())?;
         let encoding = message_encoding(schema_encoding);
         let id = writer.add_channel(schema, topic, encoding, &BTreeMap::new())?;
@@ -81,6 +81,7 @@ fn of_journal(service: &str) -> Channel {
         schema: format!("whichone.{service}.Record"),
         schema_encoding: JSONSCHEMA,
         definition: json!({ "type": "object", "properties": properties }).to_string(),
+        is_state: false,
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! [`channels`] lists what a file can hold: every topic of the group with the schema of its messages, and the
 //! [`picture`] of the group in schemas that viewers draw. [`file`] writes one file, [`ring`] a ring of them
-//! in bounded space, [`recover`] completes what a killed writer has left, and [`list`] reads them.
+//! in bounded space, [`recover`] completes what a killed writer has left, and [`list`] reads them. [`group_reader`]
+//! reads the messages of all channels from a running group, for a recorder and for a live view.
 //!
 //! Times in a file are wall-clock times. The messages themselves keep the machine's monotonic clock; the
 //! offset between both is constant within a file and part of its metadata.
@@ -11,6 +12,7 @@ pub mod channels;
 pub mod clock;
 pub mod file;
 pub mod foxglove;
+pub mod group_reader;
 pub mod journals;
 pub mod list;
 mod log_lines;

@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use service::{Span, Time};
 
 use crate::RecordingError;
-use crate::channels::{self, Channel, ChannelId};
+use crate::channels::{self, Channel};
 use crate::clock::WallClock;
 use crate::file::{Attached, Recording};
+use crate::group_reader::Sample;
 use crate::list::{Entry, entries};
 
 /// Interval of [`Ring::tend`]; a writer that is killed loses as much at most.
@@ -76,11 +77,11 @@ impl Ring {
         self.current.as_ref().map(Recording::clock)
     }
 
-    /// Adds a message that was sent at `at_ns`, nanoseconds since 1970. It is dropped while nothing is
-    /// recorded.
-    pub fn write(&mut self, id: ChannelId, sequence: u32, at_ns: u64, data: &[u8], now: Time) {
+    /// Adds a message. It is dropped while nothing is recorded.
+    pub fn write(&mut self, sample: Sample<'_>, now: Time) {
         let Some(recording) = &mut self.current else { return };
-        let channel = (id, &self.channels[id.0]);
+        let Sample { channel, sequence, at_ns, data } = sample;
+        let channel = (channel, &self.channels[channel.0]);
         if let Err(error) = recording.write(channel, sequence, at_ns, data) {
             self.on_failure(&error, now);
         }

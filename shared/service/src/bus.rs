@@ -23,7 +23,7 @@ mod trigger;
 mod variant;
 mod wake;
 
-pub use any::{AnyMessage, AnyReader};
+pub use any::{AnyMessage, AnyReader, lost};
 pub use encoded::{EncodedReader, EncodedWriter};
 pub use gate::rejected;
 pub use open::Topics;

@@ -20,6 +20,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use crate::Effects;
 use crate::exit::{Exit, Failure};
 use crate::storage;
+use crate::sync_time;
 use crate::worker_channel::{self, DeviceReceiver, DeviceSender};
 
 /// Interval at which a failed write is tried again.
@@ -301,7 +302,8 @@ impl<R, S: Store<R>> Writer<R, S> {
         if self.appended == self.durable {
             return Ok(true);
         }
-        match self.store.sync(self.vital) {
+        let Self { store, vital, .. } = self;
+        match sync_time::measure(|| store.sync(*vital)) {
             Ok(()) => {
                 (self.durable, self.vital) = (self.appended, false);
                 self.report_durable();

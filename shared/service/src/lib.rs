@@ -29,6 +29,7 @@ pub mod status;
 pub mod stop_socket;
 pub mod storage;
 pub mod submission;
+mod sync_time;
 pub mod view;
 pub mod worker_channel;
 

@@ -8,7 +8,7 @@ use crate::bus::{self, WakeListener, Woken};
 use crate::exit::{Exit, Failure};
 use crate::group::{self, GroupName, GroupPaths};
 use crate::notify::Notifier;
-use crate::{Span, Time, clock};
+use crate::{Span, Time, clock, sync_time};
 use messages::{Epoch, Incarnation};
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::fs::{FlockOperation, flock};
@@ -176,9 +176,12 @@ impl Lifecycle {
         self.last_beat = Some(now);
         self.shortage = shortage.replace('\n', " ");
         let age_ms = pending_since.map_or(0, |since| now.since(since).0 / 1_000_000);
-        let (shortage, rejected) = (&self.shortage, bus::rejected());
+        let (shortage, rejected, lost) = (&self.shortage, bus::rejected(), bus::lost());
+        let (syncs, sync_us) = sync_time::total();
+        let sync_us = sync_us.as_micros();
         self.notifier.beat(&format!(
-            "WATCHDOG=1\nX_INPUT_AGE_MS={age_ms}\nX_SHORTAGE={shortage}\nX_REJECTED={rejected}"
+            "WATCHDOG=1\nX_INPUT_AGE_MS={age_ms}\nX_SHORTAGE={shortage}\nX_REJECTED={rejected}\n\
+             X_LOST={lost}\nX_SYNCS={syncs}\nX_SYNC_US={sync_us}"
         ));
     }
 

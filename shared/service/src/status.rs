@@ -71,6 +71,16 @@ pub struct ServiceStatus {
     /// Messages of other processes that it has rejected as impossible since its start.
     #[serde(default)]
     pub rejected: u64,
+    /// Messages that it has lost since its start because it did not read them in time. Only readers of every
+    /// message count them: the recorder, and the console for live views.
+    #[serde(default)]
+    pub lost: u64,
+    /// Syncs of its journal since its start.
+    #[serde(default)]
+    pub journal_syncs: u64,
+    /// Time that these syncs took, seconds.
+    #[serde(default)]
+    pub journal_sync_s: f64,
     /// The command that has replaced the configured one.
     pub swapped: Option<Vec<String>>,
     /// End of the previous incarnation.

@@ -3,7 +3,8 @@
 use std::path::{Component, Path};
 
 use ::console::inputs::{
-    Do, Message, PcmFrame, Verb, form_field, hello, message, read_command, sound_file,
+    Do, Message, PcmFrame, Request, Verb, form_field, hello, message, read_binary, read_command,
+    read_text, say, sound_file,
 };
 use service::Time;
 
@@ -14,14 +15,16 @@ const NOW: Time = Time(1_000_000_000_000);
 
 pub(super) fn run(input: &[u8]) {
     let mut input = Input(input);
-    let kind = input.byte() % 5;
+    let kind = input.byte() % 7;
     let text = String::from_utf8_lossy(input.0);
     match kind {
         0 => greeted(&text),
         1 => said(&text),
         2 => sounded(input.0),
         3 => drop(form_field(&text, "token")),
-        _ => contained(&text),
+        4 => contained(&text),
+        5 => drop(read_text(&text)),
+        _ => called(input.0),
     }
 }
 
@@ -61,6 +64,18 @@ fn sounded(bytes: &[u8]) {
     }
 }
 
+/// A message of a live viewer: what it calls for is words, or nothing.
+fn called(bytes: &[u8]) {
+    match read_binary(bytes) {
+        Ok(Request::Call(call)) => match say::read(&call.request) {
+            Ok(words) => assert!(!words.text.trim().is_empty() && words.alternatives.is_empty()),
+            Err(why) => assert!(!why.is_empty()),
+        },
+        Ok(other) => panic!("{other:?}"),
+        Err(why) => assert!(!why.is_empty()),
+    }
+}
+
 /// Checks that no name leads out of the folder.
 fn contained(name: &str) {
     let folder = Path::new("/folder");
@@ -95,5 +110,16 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
     seeds.push(chosen(2, sound));
     seeds.push(chosen(3, "a=b&token=p%26a+b%25%C3%A9"));
     seeds.push(chosen(4, "line-12-1.wav"));
+    for text in [
+        r#"{"op":"subscribe","subscriptions":[{"id":0,"channelId":3}]}"#,
+        r#"{"op":"unsubscribe","subscriptionIds":[0]}"#,
+        r#"{"op":"getParameters","parameterNames":["/scene"],"id":"x"}"#,
+        r#"{"op":"setParameters","parameters":[{"name":"/scene","value":1}],"id":"x"}"#,
+    ] {
+        seeds.push(chosen(5, text));
+    }
+    let mut call = vec![2, 1, 0, 0, 0, 9, 0, 0, 0, 4, 0, 0, 0];
+    call.extend(br#"json{"text":"the clear bowl","key":"one"}"#);
+    seeds.push(chosen(6, call));
     seeds
 }

@@ -28,6 +28,8 @@ use service::{Span, Time};
 use crate::hub::command::{Command, Motion, Verb, typed};
 use crate::hub::outbound::{Interim, Joints, PageMessage};
 use crate::hub::{Hub, ViewerId};
+use crate::live::feed::Feed;
+use crate::metrics::Tally;
 use crate::server::App;
 use crate::server::routes::sound_file;
 use crate::study::Study;
@@ -56,6 +58,8 @@ pub struct Bridge {
     model: ViewModel,
     voice: Voice,
     study: Option<Study>,
+    feed: Feed,
+    tally: Tally,
     submissions: Submissions,
     motions: Motions,
     lines: LineStore,
@@ -128,6 +132,8 @@ impl Bridge {
             model: ViewModel::new(scene, transcript, history),
             voice: Voice::default(),
             study,
+            feed: Feed::new(settings, paths.log()),
+            tally: Tally::new(clock::now()),
             submissions: Submissions::default(),
             motions: Motions::open(paths).map_err(failed)?,
             lines,
@@ -150,6 +156,8 @@ impl Bridge {
         self.carry_out(inbox, now);
         self.advance(now);
         self.show(now);
+        let App { live, hub, .. } = &*self.app;
+        self.feed.pass(self.client.bus(), live, &hub.metrics, now.at);
     }
 
     /// Returns whether something waits for an answer, so that the next pass should come soon.
@@ -171,7 +179,9 @@ impl Bridge {
 
     /// Takes in what has arrived, causes before effects as far as one pass can order them.
     fn take_in(&mut self, now: Now) {
-        let Self { topics, model, .. } = self;
+        let Self { topics, model, tally, .. } = self;
+        let app = Arc::clone(&self.app);
+        let metrics = &app.hub.metrics.dialogue;
         let (observations, acts) = (drain(&topics.observations), drain(&topics.acts));
         let mut arrived = topics.latest.take();
         if let Some(scene) = arrived.scene.take() {
@@ -182,6 +192,7 @@ impl Bridge {
             let later = [Service::Grounding, Service::Policy, Service::Arm];
             self.submissions.on_receipt(receipt, || model.unavailable(&later), &self.app.hub);
             model.on_receipt(receipt, now);
+            tally.on_receipt(receipt, metrics);
         }
         let table = topics.latest.table();
         for observation in &observations {
@@ -197,8 +208,12 @@ impl Bridge {
             let sound = self.voice_dir.as_deref().and_then(|folder| sound_file(folder, &line));
             model.on_presented(presented, sound.is_some_and(|file| file.is_file()), now);
         }
-        arrived.hearing.into_iter().for_each(|hearing| model.on_hearing(hearing));
+        if let Some(hearing) = arrived.hearing {
+            tally.on_hearing(&hearing, metrics);
+            model.on_hearing(hearing);
+        }
         for (status, _) in arrived.statuses {
+            tally.on_arm(&status, metrics);
             model.on_arm(status, now);
         }
         let world = quiet(topics.worlds.latest());
@@ -214,6 +229,7 @@ impl Bridge {
             self.app.hub.board.partial(&key, message.to_text());
         }
         if let Some(view) = arrived.view {
+            tally.on_view(&view, metrics);
             model.on_view(view, now);
             self.follow_scene();
         }
@@ -240,8 +256,14 @@ impl Bridge {
                     }
                 }
                 Command::Left(viewer) => self.voice.left(viewer),
-                Command::Group(Ok(group)) => self.model.on_group(*group, now),
-                Command::Group(Err(why)) => tracing::debug!(why, "no status from the supervisor"),
+                Command::Group(Ok(group)) => {
+                    self.hub().metrics.set_group(Some(&group));
+                    self.model.on_group(*group, now);
+                }
+                Command::Group(Err(why)) => {
+                    self.hub().metrics.set_group(None);
+                    tracing::debug!(why, "no status from the supervisor");
+                }
             }
         }
     }
@@ -264,8 +286,9 @@ impl Bridge {
             Some(why) => Err(why),
             None => Ok(words),
         });
-        let submitted =
-            words.and_then(|words| self.submissions.add(Some((viewer, id)), words, now.at));
+        let accepted = self.model.accepted();
+        let submitted = words
+            .and_then(|words| self.submissions.add(Some((viewer, id)), words, accepted, now.at));
         if let Err(why) = submitted {
             self.hub().answer(viewer, id, Err(why));
         }
@@ -280,7 +303,7 @@ impl Bridge {
         let Some(study) = &mut self.study else { return };
         events.iter().for_each(|event| study.on_event(event, &self.model, now));
         if let Some(words) = study.pass(&self.model, now)
-            && let Err(why) = self.submissions.add(None, words, now.at)
+            && let Err(why) = self.submissions.add(None, words, self.model.accepted(), now.at)
         {
             tracing::warn!(why, "the study's words are not submitted");
         }

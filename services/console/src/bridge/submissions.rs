@@ -1,6 +1,6 @@
 //! Utterances of viewers and of the study on their way to the robot.
 
-use messages::{ClientId, Hypothesis, Injection, Receipt, ReceiptStatus, Sound};
+use messages::{ClientId, Hypothesis, Injection, Receipt, ReceiptStatus, RequestKey, Sound};
 use service::bus::EncodedWriter;
 use service::client::own_id;
 use service::submission::Submission;
@@ -21,23 +21,36 @@ fn client_of(viewer: Option<ViewerId>) -> ClientId {
     ClientId(own_id().0.wrapping_add(viewer.map_or(0, |viewer| viewer.0)))
 }
 
-/// Utterances without a receipt, each with the viewer and command that wait for it.
+/// Utterances without a receipt.
 #[derive(Debug, Default)]
-pub(super) struct Submissions(Vec<(Option<(ViewerId, u64)>, Submission)>);
+pub(super) struct Submissions(Vec<Waiting>);
+
+/// An utterance without a receipt.
+#[derive(Debug)]
+struct Waiting {
+    /// The viewer and command that wait for it.
+    viewer: Option<(ViewerId, u64)>,
+    submission: Submission,
+    /// Highest utterance that had been accepted before it was submitted.
+    accepted: u64,
+}
 
 impl Submissions {
+    /// Adds an utterance of a viewer, before which utterances up to `accepted` were accepted.
     pub(super) fn add(
         &mut self,
         viewer: Option<(ViewerId, u64)>,
         words: Words,
+        accepted: u64,
         now: Time,
     ) -> Result<(), String> {
         let client = client_of(viewer.map(|(viewer, _)| viewer));
-        let own = self.0.iter().filter(|(_, submission)| submission.key().client() == client);
+        let client = words.key.map_or(client, RequestKey::client);
+        let own = self.0.iter().filter(|it| it.submission.key().client() == client);
         if own.count() >= WORDS_MAX.0 || self.0.len() >= WORDS_MAX.1 {
             return Err("too many utterances at a time; help: wait a moment".to_owned());
         }
-        let Words { text, alternatives, spoken, began, ended, seen } = words;
+        let Words { text, alternatives, spoken, began, ended, seen, key } = words;
         let sound = if spoken {
             let other =
                 |(text, weight): (String, f64)| Hypothesis { weight, ..Hypothesis::certain(text) };
@@ -49,7 +62,11 @@ impl Submissions {
         };
         let said = (began.unwrap_or(now), ended.unwrap_or(Time(0)));
         let submission = Submission::new(sound, said, now, PATIENCE).after(seen);
-        self.0.push((viewer, submission.of(client)));
+        let submission = match key {
+            Some(key) => submission.under(key),
+            None => submission.of(client),
+        };
+        self.0.push(Waiting { viewer, submission, accepted });
         Ok(())
     }
 
@@ -59,12 +76,12 @@ impl Submissions {
 
     /// Sends what is due and gives up what has expired.
     pub(super) fn pass(&mut self, writer: &EncodedWriter<Injection>, hub: &Hub, now: Time) {
-        for (_, submission) in &mut self.0 {
+        for Waiting { submission, .. } in &mut self.0 {
             if let Some(Err(error)) = submission.due(now).map(|request| writer.send(request)) {
                 tracing::debug!(%error, "utterance not sent yet");
             }
         }
-        for (viewer, _) in self.0.extract_if(.., |(_, submission)| submission.is_expired(now)) {
+        for Waiting { viewer, .. } in self.0.extract_if(.., |it| it.submission.is_expired(now)) {
             if let Some((viewer, id)) = viewer {
                 let why = "the speech service does not answer; help: see the list of services";
                 hub.answer(viewer, id, Err(why.to_owned()));
@@ -81,12 +98,14 @@ impl Submissions {
         hub: &Hub,
     ) {
         let key = receipt.request();
-        let Some(at) = self.0.iter().position(|(_, waiting)| waiting.key() == key) else { return };
-        let Some((viewer, id)) = self.0.swap_remove(at).0 else { return };
+        let Some(at) = self.0.iter().position(|it| it.submission.key() == key) else { return };
+        let Waiting { viewer, accepted, .. } = self.0.swap_remove(at);
+        let Some((viewer, id)) = viewer else { return };
         let note = receipt.note.as_str().unwrap_or_default();
         let answer = match receipt.status.get() {
             ReceiptStatus::Accepted => {
-                Ok(Some(Answer::Accepted { seq: receipt.seq, waits_for: hindrance() }))
+                let (seq, waits_for) = (receipt.seq, hindrance());
+                Ok(Some(Answer::Accepted { seq, waits_for, known: seq <= accepted }))
             }
             ReceiptStatus::NotForMe => Err(format!("heard, but not taken for a request: {note}")),
             _ => Err(note.to_owned()),

@@ -1,6 +1,6 @@
 //! Commands of viewers to the main loop.
 
-use messages::PromptId;
+use messages::{PromptId, RequestKey};
 use serde_json::Value as Json;
 use service::Time;
 use service::status::GroupStatus;
@@ -42,6 +42,8 @@ pub struct Words {
     pub ended: Option<Time>,
     /// The robot's latest prompt that the page had shown before; 0 where that is not known.
     pub seen: PromptId,
+    /// Key of the request, the same for each repetition of it; none where nothing repeats it.
+    pub key: Option<RequestKey>,
 }
 
 pub fn typed(text: &str) -> Words {
@@ -53,6 +55,7 @@ pub fn typed(text: &str) -> Words {
         began: None,
         ended: None,
         seen: PromptId(0),
+        key: None,
     }
 }
 

@@ -18,11 +18,11 @@ use service::worker_channel::DeviceSender;
 use service::{Span, Time};
 use tokio::sync::{mpsc, watch};
 
-use crate::server::metrics::Metrics;
+use crate::metrics::Metrics;
 use board::Board;
 use command::{Command, Motion, Verb};
 use lease::{Lease, Taken};
-use outbound::{Answer, Done, PageMessage};
+use outbound::{Answer, PageMessage};
 pub use service::view::ms;
 use viewers::Viewers;
 pub use viewers::{OutboundFrame, Role};
@@ -93,11 +93,11 @@ fn is_of_own_participant(verb: &Verb) -> bool {
 }
 
 impl Hub {
-    pub fn new(channels: Channels, viewers_max: usize, handover: Span) -> Self {
+    pub fn new(channels: Channels, viewers_max: usize, handover: Span, metrics: Metrics) -> Self {
         let control = Control { viewers: Viewers::default(), lease: Lease::new(handover) };
         let hub = Self {
             board: Board::default(),
-            metrics: Metrics::default(),
+            metrics,
             channels,
             control: Mutex::new(control),
             viewers_max,
@@ -170,25 +170,23 @@ impl Hub {
         }
     }
 
-    /// Sends a message to one viewer; one that does not read is disconnected.
+    /// Sends a message to one page.
     pub fn send(&self, viewer: ViewerId, message: &PageMessage<'_>) {
+        self.send_frame(viewer, OutboundFrame::Text(message.to_text()));
+    }
+
+    /// Sends a frame to one viewer; one that does not read is disconnected.
+    fn send_frame(&self, viewer: ViewerId, frame: OutboundFrame) {
         let mut control = self.control();
         let Some(there) = control.viewers.get(viewer) else { return };
-        if let Err(mpsc::error::TrySendError::Full(_)) =
-            there.queue.try_send(OutboundFrame::Text(message.to_text()))
-        {
+        if let Err(mpsc::error::TrySendError::Full(_)) = there.queue.try_send(frame) {
             tracing::warn!(%viewer, "disconnected: it does not read its answers");
             control.viewers.remove(viewer);
         }
     }
 
     pub fn answer(&self, viewer: ViewerId, id: u64, outcome: Result<Option<Answer>, String>) {
-        let (answer, error) = match &outcome {
-            Ok(answer) => (answer.clone(), None),
-            Err(error) => (None, Some(error.as_str())),
-        };
-        let done = Done { id, ok: outcome.is_ok(), error, answer };
-        self.send(viewer, &PageMessage::Done(done));
+        self.send_frame(viewer, OutboundFrame::Answer(id, outcome));
     }
 
     /// Reports to a viewer that a message of its made no sense.

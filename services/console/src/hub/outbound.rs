@@ -68,6 +68,15 @@ pub struct Done<'a> {
     pub answer: Option<Answer>,
 }
 
+impl<'a> Done<'a> {
+    /// Makes the answer to the command `id`.
+    pub fn new(id: u64, outcome: &'a Result<Option<Answer>, String>) -> Self {
+        let error = outcome.as_ref().err().map(String::as_str);
+        let answer = outcome.as_ref().ok().cloned().flatten();
+        Self { id, ok: outcome.is_ok(), error, answer }
+    }
+}
+
 /// The result of a command.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
@@ -77,6 +86,9 @@ pub enum Answer {
         /// Why nothing follows yet: a service does nothing for now.
         #[serde(skip_serializing_if = "Option::is_none")]
         waits_for: Option<String>,
+        /// Whether an earlier request with the same key had been accepted.
+        #[serde(skip)]
+        known: bool,
     },
     Motion {
         stopped: bool,
@@ -244,7 +256,11 @@ mod tests {
                         "utterances": null }),
             ),
             (
-                PageMessage::Done(done(Some(Answer::Accepted { seq: 7, waits_for: None }))),
+                PageMessage::Done(done(Some(Answer::Accepted {
+                    seq: 7,
+                    waits_for: None,
+                    known: false,
+                }))),
                 json!({ "t": "done", "id": 9, "ok": true, "seq": 7 }),
             ),
             (PageMessage::Done(done(None)), json!({ "t": "done", "id": 9, "ok": true })),

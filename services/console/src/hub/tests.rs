@@ -1,5 +1,6 @@
 //! The hub: control, answers and full queues.
 
+use super::outbound::Done;
 use super::*;
 use serde_json::{Value as Json, json};
 use service::worker_channel::{self, DeviceReceiver};
@@ -15,12 +16,20 @@ pub(crate) fn hub() -> Page {
     let (to_motions, motions) = worker_channel::channel().unwrap();
     let (restarts, _) = crossbeam_channel::bounded(1);
     let channels = Channels { commands: to_commands, motions: to_motions, restarts };
-    Page { hub: Hub::new(channels, 3, Span::from_ms(1_000)), commands, motions }
+    Page {
+        hub: Hub::new(channels, 3, Span::from_ms(1_000), Metrics::new("/nowhere".into())),
+        commands,
+        motions,
+    }
 }
 
 pub(crate) fn received(frames: &mut mpsc::Receiver<OutboundFrame>) -> Json {
     match frames.try_recv().unwrap() {
         OutboundFrame::Text(frame) => serde_json::from_str(&frame).unwrap(),
+        OutboundFrame::Answer(id, outcome) => {
+            let done = PageMessage::Done(Done::new(id, &outcome));
+            serde_json::from_str(&done.to_text()).unwrap()
+        }
         other => panic!("{other:?}"),
     }
 }
@@ -38,7 +47,7 @@ fn hub_obeys_the_operator_but_lets_every_viewer_stop() {
     assert!(commands.take().is_none() && motions.take().is_none());
     hub.motion(other, 4, true).unwrap();
     assert!(motions.take().is_some_and(|motion| motion.stop && motion.viewer == other));
-    hub.answer(one, 9, Ok(Some(Answer::Accepted { seq: 7, waits_for: None })));
+    hub.answer(one, 9, Ok(Some(Answer::Accepted { seq: 7, waits_for: None, known: false })));
     assert_eq!(received(&mut to_one), json!({ "t": "done", "id": 9, "ok": true, "seq": 7 }));
 }
 

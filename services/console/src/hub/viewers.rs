@@ -6,11 +6,14 @@ use service::Time;
 use tokio::sync::mpsc;
 
 use super::ViewerId;
+use super::outbound::Answer;
 
 /// A frame for one viewer alone.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum OutboundFrame {
     Text(String),
+    /// The outcome of the command of this number.
+    Answer(u64, Result<Option<Answer>, String>),
     /// The same page is open elsewhere; this one ends.
     Replaced,
     /// Too many pages are open, and an operator comes; this one ends.

@@ -80,15 +80,24 @@ impl Access {
         bearer.is_some_and(|said| same(said, &guard.token)) || guard.has_session(headers, now_s)
     }
 
+    /// Returns whether this is the token. Without one, any word is.
+    pub fn is_token(&self, said: &str) -> bool {
+        self.0.as_ref().is_none_or(|guard| same(said, &guard.token))
+    }
+
     /// Returns whether the request comes from a page of this console: its origin is its host.
     pub fn is_own(headers: &HeaderMap) -> bool {
-        let (Some(origin), Some(host)) =
-            (text(headers, &header::ORIGIN), text(headers, &header::HOST))
+        let (Some(origin), Some(host)) = (Self::origin(headers), text(headers, &header::HOST))
         else {
             return false;
         };
         let place = origin.strip_prefix("http://").or(origin.strip_prefix("https://"));
         place.is_some_and(|place| place.eq_ignore_ascii_case(host))
+    }
+
+    /// Returns the origin of the page that makes the request.
+    pub fn origin(headers: &HeaderMap) -> Option<&str> {
+        text(headers, &header::ORIGIN)
     }
 
     /// Begins a session for a browser that shows the token; returns its cookie.
@@ -243,6 +252,8 @@ mod tests {
     fn token_is_a_bearer_or_begins_a_session() {
         let (_folder, file) = guarded();
         let access = by_token(&file);
+        assert!(access.is_token(TOKEN) && !access.is_token("correct-hors"));
+        assert!(!access.is_token("") && Access::open().is_token(""));
         let bearer = |token: &str| headers(&[("authorization", &format!("Bearer {token}"))]);
         assert!(access.is_known(&bearer(TOKEN), 0));
         assert!(!access.is_known(&bearer("correct-hors"), 0));

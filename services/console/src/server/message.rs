@@ -143,11 +143,11 @@ fn words(json: &Json, now: Time) -> Result<Words, String> {
         seen => seen.as_u64().ok_or("seen: expected the number of a prompt")?,
     };
     let seen = PromptId(seen);
-    Ok(Words { text, alternatives: alternatives(json)?, spoken, began, ended, seen })
+    Ok(Words { text, alternatives: alternatives(json)?, spoken, began, ended, seen, key: None })
 }
 
 /// Returns the words of an utterance, on one line.
-fn spoken_text(text: &str) -> Result<String, String> {
+pub(crate) fn spoken_text(text: &str) -> Result<String, String> {
     let text = plain(text);
     match text.chars().count() {
         0 => Err("text: expected words, found none".to_owned()),

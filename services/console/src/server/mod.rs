@@ -4,9 +4,8 @@ mod access;
 mod assets;
 pub mod connections;
 pub mod message;
-pub mod metrics;
 pub mod routes;
-mod socket;
+pub(crate) mod socket;
 pub mod web;
 
 use std::path::PathBuf;
@@ -24,6 +23,7 @@ use axum::routing::get;
 
 use crate::hub::Hub;
 use crate::hub::outbound::PageSettings;
+use crate::live::Live;
 pub use access::Access;
 use connections::{Gate, Of};
 
@@ -34,6 +34,7 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(250);
 #[derive(Debug)]
 pub struct App {
     pub hub: Hub,
+    pub live: Live,
     pub access: Access,
     pub group: String,
     pub settings: PageSettings,
@@ -81,7 +82,8 @@ fn router(app: Arc<App>) -> Router {
         .merge(crate::study::routes())
         .fallback(routes::asset)
         .layer(middleware::from_fn_with_state(Arc::clone(&app), admit))
-        // The routes below are open without the token.
+        // The routes below are open without the token, or check it themselves.
+        .route("/foxglove", get(routes::foxglove))
         .route("/healthz", get(routes::health))
         .route("/login", get(routes::asset).post(routes::login))
         .layer(middleware::from_fn_with_state(Arc::clone(&app), address))

@@ -15,6 +15,8 @@ use service::clock;
 use super::connections::Of;
 use super::message::FRAME_BYTES_MAX;
 use super::{Access, App, assets, socket as sockets, unix_s};
+use crate::hub::Role;
+use crate::live::{self, protocol::SUBPROTOCOL};
 
 /// Longest silence of a healthy main loop.
 const WELL: Span = Span::from_ms(3_000);
@@ -41,6 +43,63 @@ pub(super) async fn socket(
         .on_upgrade(move |socket| sockets::serve(socket, connection, app))
 }
 
+/// The live view. Its viewers cannot follow the redirect by which a page's link with the token becomes a
+/// session, so that the token may be in the address itself.
+pub(super) async fn foxglove(
+    State(app): State<Arc<App>>,
+    ConnectInfo(Of(connection)): ConnectInfo<Of>,
+    headers: HeaderMap,
+    uri: Uri,
+    upgrade: WebSocketUpgrade,
+) -> Response<Body> {
+    let query = uri.query().unwrap_or_default();
+    if let Err((status, why)) = admitted(&app, &headers, query).await {
+        return (status, why).into_response();
+    }
+    connection.prove();
+    let role = match form_field(query, "role").as_deref() {
+        Some("operator") => Role::Operator,
+        Some("viewer") | None => Role::Viewer,
+        Some(other) => {
+            let why = format!("role: `{other}` is not one of operator, viewer\n");
+            return (StatusCode::BAD_REQUEST, why).into_response();
+        }
+    };
+    let upgrade = upgrade.protocols([SUBPROTOCOL]);
+    if upgrade.selected_protocol().is_none() {
+        let why =
+            format!("expected the subprotocol {SUBPROTOCOL}; help: use a viewer that speaks it\n");
+        return (StatusCode::BAD_REQUEST, why).into_response();
+    }
+    upgrade
+        .max_message_size(FRAME_BYTES_MAX)
+        .max_frame_size(FRAME_BYTES_MAX)
+        .on_upgrade(move |socket| live::serve(socket, connection, app, role))
+}
+
+/// Checks that a viewer shows the token or a session, and comes from an origin that may connect.
+async fn admitted(app: &App, headers: &HeaderMap, query: &str) -> Result<(), (StatusCode, String)> {
+    let token = form_field(query, "token");
+    let is_right = token.as_deref().is_some_and(|token| app.access.is_token(token));
+    if !is_right && !app.access.is_known(headers, unix_s()) {
+        if token.is_some() {
+            tokio::time::sleep(PAUSE).await;
+        }
+        let why = "token required; help: add ?token=TOKEN to the address; `whichone console` prints \
+                   the token in a link\n";
+        return Err((StatusCode::UNAUTHORIZED, why.to_owned()));
+    }
+    let origin = Access::origin(headers);
+    if Access::is_own(headers) || origin.is_some_and(|origin| app.live.admits(origin)) {
+        return Ok(());
+    }
+    let found = origin.unwrap_or("none");
+    let why = format!(
+        "expected the origin of the console or one of console.foxglove_origins, found {found}\n"
+    );
+    Err((StatusCode::FORBIDDEN, why))
+}
+
 pub(super) async fn state(State(app): State<Arc<App>>) -> Response<Body> {
     let json = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
     (json, app.hub.board.all()).into_response()
@@ -53,7 +112,11 @@ pub(super) async fn history(State(app): State<Arc<App>>) -> Response<Body> {
 
 pub(super) async fn metrics(State(app): State<Arc<App>>) -> Response<Body> {
     let kind = "application/openmetrics-text; version=1.0.0; charset=utf-8";
-    ([(header::CONTENT_TYPE, kind)], app.hub.metrics.text()).into_response()
+    // It looks at a folder.
+    match tokio::task::spawn_blocking(move || app.hub.metrics.text()).await {
+        Ok(text) => ([(header::CONTENT_TYPE, kind)], text).into_response(),
+        Err(_) => StatusCode::INTERNAL_SERVER_ERROR.into_response(),
+    }
 }
 
 pub(super) async fn health(State(app): State<Arc<App>>) -> Response<Body> {

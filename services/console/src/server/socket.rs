@@ -14,7 +14,7 @@ use super::App;
 use super::connections::Connection;
 use super::message::{self, Do, Hello, Message, PROTOCOL};
 use crate::hub::board::Cursor;
-use crate::hub::outbound::{PageMessage, Welcome};
+use crate::hub::outbound::{Done, PageMessage, Welcome};
 use crate::hub::{Hub, OutboundFrame, ViewerId, ms};
 use crate::voice::PcmFrame;
 
@@ -32,9 +32,9 @@ const REPLACED: u16 = 4001;
 /// Close code of a page that gave way to an operator.
 const GAVE_WAY: u16 = 4002;
 /// Interval between pings to a page.
-const PROBE_EVERY: Duration = Duration::from_secs(20);
+pub(crate) const PROBE_EVERY: Duration = Duration::from_secs(20);
 
-type Out = SplitSink<WebSocket, Frame>;
+pub(crate) type Out = SplitSink<WebSocket, Frame>;
 type In = SplitStream<WebSocket>;
 
 /// Serves one page until it goes, does not read, or the console ends.
@@ -57,29 +57,36 @@ pub(super) async fn serve(socket: WebSocket, connection: Arc<Connection>, app: A
     };
     app.hub.leave(viewer, clock::now());
     tracing::info!(%viewer, "a page has disconnected: {ended}");
-    let (code, reason) = match ended {
-        Ended::Console => (close_code::AWAY, "the console ends"),
-        Ended::Slow => {
-            app.hub.metrics.dropped.inc();
-            (close_code::POLICY, "the page did not read for 10 s")
-        }
-        Ended::Replaced => (REPLACED, "the same page is open somewhere else"),
-        Ended::GaveWay => {
-            (GAVE_WAY, "too many pages are open; this one was idle for the longest time")
-        }
-        Ended::Page => (close_code::NORMAL, ""),
-    };
+    if matches!(ended, Ended::Slow) {
+        app.hub.metrics.dropped.inc();
+    }
+    let (code, reason) = ended.close_frame();
     close(&mut out, code, reason).await;
 }
 
 /// The reason for the end of a socket.
 #[derive(Clone, Copy, Debug)]
-enum Ended {
+pub(crate) enum Ended {
     Page,
     Replaced,
     GaveWay,
     Slow,
     Console,
+}
+
+impl Ended {
+    /// Returns the code and reason with which the socket is closed.
+    pub(crate) fn close_frame(self) -> (u16, &'static str) {
+        match self {
+            Self::Console => (close_code::AWAY, "the console ends"),
+            Self::Slow => (close_code::POLICY, "the page did not read for 10 s"),
+            Self::Replaced => (REPLACED, "the same page is open somewhere else"),
+            Self::GaveWay => {
+                (GAVE_WAY, "too many pages are open; this one was idle for the longest time")
+            }
+            Self::Page => (close_code::NORMAL, ""),
+        }
+    }
 }
 
 impl std::fmt::Display for Ended {
@@ -108,7 +115,7 @@ async fn refuse(out: &mut Out, code: u16, why: &str) {
     close(out, code, why).await;
 }
 
-async fn close(out: &mut Out, code: u16, reason: &str) {
+pub(crate) async fn close(out: &mut Out, code: u16, reason: &str) {
     // A reason may have 123 bytes.
     let end = (0..=reason.len().min(120)).rev().find(|end| reason.is_char_boundary(*end));
     let reason = reason[..end.unwrap_or(0)].to_owned();
@@ -142,6 +149,10 @@ async fn write(
             _ = ending.wait_for(|ending| *ending) => return Ended::Console,
             frame = outbound.recv() => match frame {
                 Some(OutboundFrame::Text(frame)) => frames.push(Frame::Text(frame.into())),
+                Some(OutboundFrame::Answer(id, outcome)) => {
+                    let done = PageMessage::Done(Done::new(id, &outcome));
+                    frames.push(Frame::Text(done.to_text().into()));
+                }
                 Some(OutboundFrame::Replaced) => return Ended::Replaced,
                 Some(OutboundFrame::GaveWay) => return Ended::GaveWay,
                 None => return Ended::Slow,
@@ -151,9 +162,10 @@ async fn write(
     }
 }
 
-async fn send(out: &mut Out, frame: Frame, hub: &Hub) -> Result<(), Ended> {
+pub(crate) async fn send(out: &mut Out, frame: Frame, hub: &Hub) -> Result<(), Ended> {
     let bytes = match &frame {
         Frame::Text(text) => text.len(),
+        Frame::Binary(bytes) => bytes.len(),
         _ => 0,
     };
     match timeout(READ_PATIENCE, out.send(frame)).await {
@@ -180,22 +192,39 @@ fn welcome(viewer: ViewerId, app: &App) -> String {
     PageMessage::Welcome(welcome).to_text()
 }
 
-async fn read(into: &mut In, viewer: ViewerId, hub: &Hub) -> Ended {
-    let mut pace = Instant::now();
-    loop {
+/// The pace at which frames of one socket are read.
+#[derive(Debug)]
+pub(crate) struct Pace(Instant);
+
+impl Default for Pace {
+    fn default() -> Self {
+        Self(Instant::now())
+    }
+}
+
+impl Pace {
+    /// Reads the next frame; none once the socket is closed, broken or silent for too long.
+    pub(crate) async fn next(&mut self, into: &mut In) -> Option<Frame> {
         // One that sends faster waits, and fills its own connection only.
-        pace = pace.max(Instant::now() - FRAME_EVERY * FRAMES_AT_ONCE) + FRAME_EVERY;
-        sleep_until(pace).await;
-        match timeout(SILENCE_MAX, into.next()).await {
-            Ok(Some(Ok(Frame::Text(text)))) => text_frame(&text, viewer, hub),
-            Ok(Some(Ok(Frame::Binary(bytes)))) => {
+        self.0 = self.0.max(Instant::now() - FRAME_EVERY * FRAMES_AT_ONCE) + FRAME_EVERY;
+        sleep_until(self.0).await;
+        timeout(SILENCE_MAX, into.next()).await.ok()??.ok()
+    }
+}
+
+async fn read(into: &mut In, viewer: ViewerId, hub: &Hub) -> Ended {
+    let mut pace = Pace::default();
+    loop {
+        match pace.next(into).await {
+            Some(Frame::Text(text)) => text_frame(&text, viewer, hub),
+            Some(Frame::Binary(bytes)) => {
                 let taken = PcmFrame::read(&bytes).and_then(|frame| hub.sound(viewer, frame));
                 if let Err(why) = taken {
                     hub.error(viewer, &why);
                 }
             }
-            Ok(Some(Ok(Frame::Ping(_) | Frame::Pong(_)))) => {}
-            Ok(Some(Ok(Frame::Close(_)) | Err(_)) | None) | Err(_) => return Ended::Page,
+            Some(Frame::Ping(_) | Frame::Pong(_)) => {}
+            Some(Frame::Close(_)) | None => return Ended::Page,
         }
     }
 }

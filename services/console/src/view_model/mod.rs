@@ -128,6 +128,12 @@ impl ViewModel {
         &self.latest
     }
 
+    /// Returns the highest utterance that is known to be accepted.
+    pub fn accepted(&self) -> u64 {
+        let applied = self.latest.view.as_ref().map_or(0, |view| view.applied);
+        self.latest.accepted.max(applied)
+    }
+
     pub fn group(&self) -> Option<&GroupStatus> {
         self.group.as_ref()
     }

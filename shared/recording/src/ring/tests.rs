@@ -5,7 +5,7 @@ use std::time::Duration;
 use mcap::records::Record;
 
 use super::*;
-use crate::channels::Picture;
+use crate::channels::{ChannelId, Picture};
 use crate::list::unfinished;
 use crate::recover::{each_record, recover_all};
 
@@ -54,7 +54,8 @@ fn write(ring: &mut Ring, sequence: u64) {
     })
     .take(300)
     .collect();
-    ring.write(id, sequence as u32, clock().wall_ns(now), &data, now);
+    let at_ns = clock().wall_ns(now);
+    ring.write(Sample { channel: id, sequence: sequence as u32, at_ns, data: &data }, now);
 }
 
 /// Sequence numbers in the files of a folder, oldest file first.

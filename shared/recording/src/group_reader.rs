@@ -1,0 +1,165 @@
+//! Everything that a recording or a live view shows: readers of every topic, and the picture.
+
+use std::path::PathBuf;
+
+use config::Settings;
+use messages::Stamp;
+use messages::topics::Topic;
+use robot_model::Robot;
+use service::Time;
+use service::bus::{AnyMessage, AnyReader, Bus, BusError, PortError};
+
+use crate::channels::{CDR_HEADER, ChannelId, group_topics};
+use crate::clock::WallClock;
+use crate::payload;
+use crate::picture::{Painter, Shown};
+
+/// A message of a channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<'a> {
+    /// The channel.
+    pub channel: ChannelId,
+    /// Number of the message among those of its writer; 0 where there is none.
+    pub sequence: u32,
+    /// When it was sent, nanoseconds since 1970.
+    pub at_ns: u64,
+    /// The message in the encoding of the channel.
+    pub data: &'a [u8],
+}
+
+/// The topics cannot be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// A topic cannot be read.
+    #[error(transparent)]
+    Bus(#[from] BusError),
+    /// The robot's description is invalid.
+    #[error("{0}")]
+    Robot(String),
+}
+
+/// A topic and its reader.
+#[derive(Debug)]
+struct Source {
+    topic: &'static Topic,
+    channel: ChannelId,
+    reader: Box<dyn AnyReader>,
+    /// Messages that were sent before are left out.
+    since: Time,
+}
+
+/// Readers of every topic of a group, and the painter of its picture.
+#[derive(Debug)]
+pub struct GroupReader {
+    topics: Vec<Source>,
+    painter: Painter,
+    /// The latest failure to read a topic, so that it is logged once.
+    failure: Option<String>,
+    /// A message with its CDR header.
+    buffer: Vec<u8>,
+}
+
+impl GroupReader {
+    /// Opens the channels of [`channels::shown`](crate::channels::shown). Of topics that keep more than their latest message, those
+    /// sent before `since` are left out. The services' logs are in `log_folder`.
+    ///
+    /// # Errors
+    /// A topic cannot be read, or the robot's description is invalid.
+    pub fn open(
+        bus: &Bus,
+        settings: &Settings,
+        log_folder: PathBuf,
+        since: Time,
+    ) -> Result<Self, OpenError> {
+        let files = settings.robot_files();
+        let robot = Robot::read(&files.urdf, files.srdf.as_ref());
+        let robot = robot.map_err(|found| OpenError::Robot(found.to_string()))?;
+        let mut topics = Vec::new();
+        for (place, topic) in group_topics().enumerate() {
+            let channel = ChannelId::of_topic(place);
+            if channel.is_sound() && !settings.group.recorder.sound {
+                continue;
+            }
+            let reader = bus.any_reader(topic)?;
+            // Of a state the latest message counts, however old it is.
+            let since = if topic.history > 1 { since } else { Time(0) };
+            topics.push(Source { topic, channel, reader, since });
+        }
+        let painter = Painter::new(settings, &robot, log_folder);
+        Ok(Self { topics, painter, failure: None, buffer: Vec::new() })
+    }
+
+    /// Shows everything that is known to one who begins to look at `now`.
+    pub fn begin(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) {
+        self.painter.begin(now, clock, &mut |shown| picture(&shown, show));
+    }
+
+    /// Takes what has arrived on all topics.
+    pub fn look(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) {
+        let Self { topics, painter, buffer, .. } = self;
+        let mut failure = None;
+        for Source { topic, channel, reader, since } in topics.iter() {
+            let taken = reader.drain(&mut |stamp, message| {
+                let sent = sent(stamp, now);
+                if sent < *since {
+                    return;
+                }
+                let (channel, sequence) = (*channel, stamp.sequence);
+                let at_ns = clock.wall_ns(sent);
+                let mut show_data = |data: &[u8]| show(Sample { channel, sequence, at_ns, data });
+                match message {
+                    AnyMessage::Fixed(bytes, _) => {
+                        buffer.clear();
+                        buffer.extend(CDR_HEADER);
+                        buffer.extend(bytes);
+                        show_data(buffer);
+                    }
+                    AnyMessage::Encoded(bytes) => match payload::to_json(topic, bytes) {
+                        Ok(json) => show_data(&json),
+                        // Those whom it is for reject it, and say so.
+                        Err(error) => tracing::debug!(%error, "not shown"),
+                    },
+                }
+                let mut show_picture = |shown| picture(&shown, show);
+                painter.on_message(topic, (sent, clock), message, &mut show_picture);
+            });
+            failure = failure.or(taken.err());
+        }
+        painter.show_scene(now, clock, &mut |shown| picture(&shown, show));
+        self.judge(failure);
+    }
+
+    /// Shows the lines that were added to the services' logs.
+    pub fn show_logs(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) {
+        self.painter.show_logs(now, clock, &mut |shown| picture(&shown, show));
+    }
+
+    /// Drops what has arrived on all topics.
+    pub fn skip(&mut self) {
+        let drop_all = |source: &Source| source.reader.drain(&mut |_, _| {}).err();
+        let failure = self.topics.iter().filter_map(drop_all).next();
+        self.judge(failure);
+    }
+
+    /// A topic that cannot be read is tried again with the next look.
+    fn judge(&mut self, failure: Option<PortError>) {
+        let failure = failure.map(|error| error.to_string());
+        if let Some(error) = failure.as_ref().filter(|_| self.failure.is_none()) {
+            tracing::warn!(error, "a topic cannot be read; trying again");
+        }
+        self.failure = failure;
+    }
+}
+
+fn picture((picture, at_ns, data): &Shown, show: &mut dyn FnMut(Sample<'_>)) {
+    show(Sample { channel: (*picture).into(), sequence: 0, at_ns: *at_ns, data });
+}
+
+/// When a message was sent, unless its sender gives an impossible time.
+fn sent(stamp: &Stamp, now: Time) -> Time {
+    match Time(stamp.sent_ns) {
+        Time(0) => now,
+        sent if sent > now => now,
+        sent => sent,
+    }
+}
