@@ -13,10 +13,12 @@
 )]
 
 mod bridge;
+mod history;
 mod hub;
 mod server;
 mod service;
 mod study;
+mod understood;
 mod view_model;
 mod voice;
 

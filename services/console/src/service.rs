@@ -21,6 +21,7 @@ use service::worker_channel;
 use service::{Span, Time};
 
 use crate::bridge::{self, Bridge, Inbox};
+use crate::history::History;
 use crate::hub::command::{Command, Motion};
 use crate::hub::outbound::{CameraSettings, PageSettings, VoiceSettings};
 use crate::hub::{Channels, Hub};
@@ -79,7 +80,9 @@ impl Console {
         let handover = Span::from_s(settings.console.handover.as_secs_f64());
         let channels = Channels { commands: commands.clone(), motions, restarts };
         let limits = limits(settings.console.viewers_max);
+        let history = History::start(paths).map_err(failed("history's thread"))?;
         let app = Arc::new(App {
+            history,
             hub: Hub::new(channels, limits.viewers, handover),
             access: access(settings, paths)?,
             group: paths.name().to_string(),

@@ -22,6 +22,7 @@ use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Redirect};
 use axum::routing::get;
 
+use crate::history::History;
 use crate::hub::Hub;
 use crate::hub::outbound::PageSettings;
 pub use access::Access;
@@ -34,6 +35,7 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(250);
 #[derive(Debug)]
 pub struct App {
     pub hub: Hub,
+    pub history: Arc<History>,
     pub access: Access,
     pub group: String,
     pub settings: PageSettings,
@@ -75,6 +77,7 @@ fn router(app: Arc<App>) -> Router {
         .route("/ws", get(routes::socket))
         .route("/api/state", get(routes::state))
         .route("/api/history", get(routes::history))
+        .route("/api/history/{interaction}", get(routes::interaction))
         .route("/metrics", get(routes::metrics))
         .route("/robot.urdf", get(routes::urdf))
         .route("/voice/{line}", get(routes::voice))
