@@ -20,6 +20,7 @@ mod hearing;
 mod isolation;
 mod journal_format;
 mod journal_loss;
+mod journals;
 mod own_voice;
 mod perception;
 mod physics;

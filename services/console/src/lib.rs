@@ -20,6 +20,7 @@ mod service;
 mod study;
 mod understood;
 mod view_model;
+mod viewer;
 mod voice;
 
 pub mod inputs;

@@ -29,6 +29,7 @@ use crate::server::connections::Limits;
 use crate::server::web::Web;
 use crate::server::{Access, App};
 use crate::study::{self, Study};
+use crate::viewer;
 
 /// Longest sleep with and without viewers. Prompts, acts and phases of the arm wake the console; it polls
 /// the other topics.
@@ -36,8 +37,14 @@ const LOOK_EVERY: (Span, Span) = (Span::from_ms(10), Span::from_ms(250));
 /// Most restarts that wait for the supervisor.
 const RESTARTS_MAX: usize = 8;
 
-/// Runs the service until it is shut down.
+/// Runs the service until it is shut down; with the arguments `view FILE`, the page for a shared interaction.
 pub fn run() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [verb, file] = &arguments[..]
+        && verb == "view"
+    {
+        return viewer::view(file.as_ref());
+    }
     let about = "serves the page from which a user talks to the robot and sees what it believes";
     service_loop::program(Service::Console.name(), about, serve)
 }

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use messages::{PickPhase, Task};
 use service::journal_record::{
-    AcceptedRecord, ArmRecord, EndedRecord, JournalLine, JournalRecord, Named, PolicyCause,
-    PolicyRecord, SpeechRecord,
+    AcceptedRecord, ArmCause, ArmRecord, EndedRecord, JournalLine, JournalRecord, Named,
+    PickRecord, PolicyCause, PolicyRecord, SpeechRecord,
 };
 
 use super::interaction::{End, Event, Heard, Interaction, Labelled, Moment, Thought};
@@ -145,26 +146,16 @@ impl Assembler {
     }
 
     fn on_arm(&mut self, at: At, record: ArmRecord) {
-        use service::journal_record::ArmCause::{
-            Blocked, Ended, Missed, Motion, Ordered, Phase, Rested,
-        };
         let ArmRecord { cause, pick, .. } = record;
-        let is_shown =
-            matches!(cause, Ordered | Phase | Missed | Ended | Motion { .. } | Rested | Blocked);
-        let Some(mut pick) = pick.filter(|_| is_shown) else { return };
+        let Some(mut pick) = pick.filter(|pick| is_shown(cause, pick)) else { return };
         let Some(begun) = self.recent.get_mut(&pick.interaction) else { return };
         // The arm knows perceived objects by their numbers; the policy has named the order's object.
         if let Some(name) = begun.interaction.ordered(pick.attempt) {
             pick.object = name;
         }
-        let of_attempt = |moment: &&Moment| match &moment.event {
-            Event::Arm { pick: known, .. } => known.attempt == pick.attempt,
-            _ => false,
-        };
-        let last = begun.interaction.moments.iter().rev().find(of_attempt);
-        let is_known = |last: &Moment| matches!(&last.event, Event::Arm { cause: Rested, .. });
-        // At rest once more, or another record of the same step after a restart.
-        if last.is_some_and(is_known) {
+        let is_rest = |moment: &Moment| matches!(&moment.event, Event::Arm { cause: ArmCause::Rested, pick: known } if known.attempt == pick.attempt);
+        // At rest once more: nothing has happened.
+        if cause == ArmCause::Rested && begun.interaction.moments.iter().any(is_rest) {
             return;
         }
         begun.add(at, Event::Arm { cause, pick }, None);
@@ -183,6 +174,19 @@ impl Assembler {
             questions: ended.questions,
             duration_s: ended.duration_s,
         });
+    }
+}
+
+/// Returns whether a step of the arm is part of the interaction of its pick. That the fetch has ended is known
+/// from the policy; the limbs also come to rest before they set out.
+fn is_shown(cause: ArmCause, pick: &PickRecord) -> bool {
+    let is_done = pick.phase == PickPhase::Done;
+    match cause {
+        ArmCause::Ordered | ArmCause::Phase | ArmCause::Missed | ArmCause::Blocked => true,
+        ArmCause::Motion { .. } => !is_done,
+        ArmCause::Ended => pick.task == Task::PutBack,
+        ArmCause::Rested => is_done,
+        ArmCause::Snapshot | ArmCause::SceneChanged | ArmCause::Moved | ArmCause::Shutdown => false,
     }
 }
 

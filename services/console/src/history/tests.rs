@@ -111,7 +111,9 @@ fn dialogue() -> [Vec<JournalLine>; 3] {
     ];
     let arm = vec![
         arm(1, 14.1, "ordered", "accepted", "pending"),
-        arm(2, 14.2, "phase", "moving", "pending"),
+        // Back from the pick before.
+        arm(2, 14.2, "rested", "accepted", "pending"),
+        arm(2, 14.3, "phase", "moving", "pending"),
         arm(3, 19.0, "ended", "done", "delivered"),
         arm(4, 21.0, "rested", "done", "delivered"),
         arm(5, 29.0, "rested", "done", "delivered"),
@@ -148,7 +150,7 @@ fn interaction_has_words_readings_beliefs_decisions_and_the_arm() {
     assert_eq!(labels, ["white bowl", "white bowl 2"], "told apart");
     let moments: Vec<_> = one.moments.iter().map(|it| (it.after_ms, &it.event)).collect();
     let times: Vec<u64> = moments.iter().map(|(after_ms, _)| *after_ms).collect();
-    assert_eq!(times, [100, 4_000, 4_100, 4_200, 9_000, 9_000, 11_000], "at rest once");
+    assert_eq!(times, [100, 4_000, 4_100, 4_300, 9_000, 11_000], "at rest once");
     let Event::Heard(answer) = moments[1].1 else { panic!("{moments:?}") };
     assert_eq!((answer.text.as_str(), answer.confidence), ("no", Some(0.9)));
     assert_eq!((answer.readings[0].text.as_str(), answer.readings[0].weight), ("no", 0.75));

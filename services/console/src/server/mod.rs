@@ -27,6 +27,7 @@ use crate::hub::Hub;
 use crate::hub::outbound::PageSettings;
 pub use access::Access;
 use connections::{Gate, Of};
+pub use routes::page_asset;
 
 /// Interval of the server's progress reports.
 const PROGRESS_EVERY: Duration = Duration::from_millis(250);
@@ -145,7 +146,7 @@ async fn address(State(app): State<Arc<App>>, request: Request, next: Next) -> R
 
 /// Adds security headers to an answer to a request that was addressed to `host`: no foreign scripts, no
 /// framing, and no foreign pictures but those of the camera's origin.
-fn secure(headers: &mut HeaderMap, host: Option<&str>, camera: Option<&str>) {
+pub fn secure(headers: &mut HeaderMap, host: Option<&str>, camera: Option<&str>) {
     // `'self'` covers sockets of the same host in newer browsers only.
     let plain =
         |host: &&str| host.bytes().all(|b| b.is_ascii_alphanumeric() || b".-:[]".contains(&b));

@@ -129,9 +129,14 @@ pub(super) async fn asset(method: Method, uri: Uri, headers: HeaderMap) -> Respo
     if method != Method::GET && method != Method::HEAD {
         return StatusCode::METHOD_NOT_ALLOWED.into_response();
     }
-    match assets::find(uri.path()) {
-        Some(asset) => asset.respond(&headers),
-        None => missing(&headers),
+    page_asset(uri.path(), &headers)
+}
+
+/// Returns the response to a request for a file of the page.
+pub fn page_asset(path: &str, headers: &HeaderMap) -> Response<Body> {
+    match assets::find(path) {
+        Some(asset) => asset.respond(headers),
+        None => missing(headers),
     }
 }
 
