@@ -1,6 +1,7 @@
 //! A page for one shared interaction, without a group: `whichone-console view FILE`.
 
 use std::fs;
+use std::io::{self, Write};
 use std::net::Ipv4Addr;
 use std::path::Path;
 use std::process::ExitCode;
@@ -27,7 +28,8 @@ pub fn view(file: &Path) -> ExitCode {
     match serve(file) {
         Ok(()) => Exit::Ok.code(),
         Err(failure) => {
-            eprintln!("error: {failure}");
+            // A closed standard error is the caller's choice.
+            let _ = writeln!(io::stderr(), "error: {failure}");
             failure.exit.code()
         }
     }
@@ -36,13 +38,14 @@ pub fn view(file: &Path) -> ExitCode {
 fn serve(file: &Path) -> Result<(), Failure> {
     let shared =
         Arc::new(Shared { text: read(file)?, path: format!("/shared/{}.json", secret()?) });
-    let failed = |error: std::io::Error| Failure::new(Exit::NotReached, error.to_string());
+    let failed = |error: io::Error| Failure::new(Exit::NotReached, error.to_string());
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     runtime.map_err(failed)?.block_on(async {
         let listener =
             tokio::net::TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
-        println!("http://{address}/history?shared={}", shared.path);
+        let link = format!("http://{address}/history?shared={}", shared.path);
+        writeln!(io::stdout(), "{link}").map_err(Failure::output)?;
         let router = Router::new().fallback(get(answer)).with_state(Arc::clone(&shared));
         axum::serve(listener, router.layer(middleware::from_fn(guard))).await.map_err(failed)
     })
