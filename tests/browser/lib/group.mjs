@@ -29,7 +29,7 @@ export class Group {
     return group;
   }
 
-  /** Stops the group and starts it anew with its journals. @param {string[]} [settings] */
+  /** Stops the group and starts it again with its journals. @param {string[]} [settings] */
   async again(settings = []) {
     await this.must("down");
     await this.#start(settings);

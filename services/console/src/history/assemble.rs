@@ -210,7 +210,7 @@ impl Begun {
         moments.insert(place, Moment { after_ms, event, thought });
     }
 
-    /// Time since the first words. The monotonic clock starts anew with the machine, the wall clock goes on.
+    /// Time since the first words. The monotonic clock restarts with the machine, the wall clock does not.
     fn after_ms(&self, at: At) -> u64 {
         let by_wall = at.unix_ms.zip(self.interaction.unix_ms);
         let by_wall = by_wall.map(|(now, began)| now.saturating_sub(began));

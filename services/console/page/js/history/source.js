@@ -41,7 +41,7 @@ export class Source {
   async #older() {
     const last = this.list.at(-1)?.interaction ?? null;
     const { interactions, total, oldest } = await this.#page(last);
-    // The list may have begun anew meanwhile.
+    // The list may have been replaced meanwhile.
     if ((this.list.at(-1)?.interaction ?? null) !== last) return;
     this.list = [...this.list, ...interactions];
     this.total = interactions.length === 0 ? this.list.length : total;
