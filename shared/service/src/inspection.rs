@@ -228,16 +228,26 @@ fn show<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failu
 
 /// Reads the journal with its older parts, oldest first.
 fn parts<P: Program>(request: &Request) -> Result<Vec<Part<Record<P>>>, Failure> {
+    older(request).chain([request.file.clone()]).map(|file| Part::read(&file)).collect()
+}
+
+/// Older files of the journal, oldest first.
+fn older(request: &Request) -> impl Iterator<Item = PathBuf> {
     let older = (1..=journal::KEPT).rev().map(|n| log_file::numbered(&request.file, n));
-    let files = older.filter(|file| file.is_file()).chain([request.file.clone()]);
-    files.map(|file| Part::read(&file)).collect()
+    older.filter(|file| file.is_file())
+}
+
+/// Reads an older file to be listed; one that cannot be read is named and left out.
+fn readable<P: Program>(file: &Path) -> Option<Part<Record<P>>> {
+    let read = Part::read(file);
+    read.inspect_err(|error| drop(writeln!(io::stderr(), "left out: {error}"))).ok()
 }
 
 /// Prints the newest file, or the records from a number on.
 fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
     let mut shown = vec![Part::<Record<P>>::read(&request.file)?];
     if request.since.is_some_and(|since| since < shown[0].first_seq()) {
-        shown = parts::<P>(request)?;
+        shown.splice(0..0, older(request).filter_map(|file| readable::<P>(&file)));
     }
     let settings = request.settings().unwrap_or_default();
     let times = WallTimes::of(&request.file);
