@@ -78,6 +78,9 @@ async function dialogue() {
   await take(page, "console-stopped");
   await group.must("resume-motion");
   await until("the hand-over", async () => (await group.state()).dialogue.last);
+  await page.getByRole("button", { name: t("history.show") }).click();
+  await page.locator(".story-one").nth(1).click();
+  await take(page, "console-history");
   await page.context().close();
   await phone.context().close();
 }

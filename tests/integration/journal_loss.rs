@@ -28,7 +28,10 @@ fn assert_refused(group: &mut Group, service: &str, why: &str) {
 /// What the arm has delivered, as its journal tells.
 fn deliveries(group: &Group) -> usize {
     let listing = group.must(&["journal", "arm"]).stdout;
-    listing.lines().filter(|line| line.contains("Ended") && line.contains("delivered")).count()
+    listing
+        .lines()
+        .filter(|line| line.contains("pick ended: ") && line.contains("delivered"))
+        .count()
 }
 
 #[test]

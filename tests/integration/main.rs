@@ -21,6 +21,7 @@ mod hearing;
 mod isolation;
 mod journal_format;
 mod journal_loss;
+mod journals;
 mod live;
 mod metrics;
 mod own_voice;

@@ -102,15 +102,16 @@ fn recorded_dialogue_is_read_by_the_libraries_of_others() {
         of.iter().filter_map(|it| it[key].as_u64()).filter(|number| *number > 0).collect()
     };
     let accepted = journal(&group, "speech");
-    let accepted: Vec<Value> =
-        accepted.iter().map(|line| line["record"]["Accepted"].clone()).collect();
-    assert_eq!(numbers(messages("/speech/receipt"), "seq"), numbers(&accepted, "seq"));
-    let acts: Vec<Value> = journal(&group, "policy")
+    let accepted: Vec<Value> = accepted
         .iter()
-        .map(|line| line["record"]["state"]["act"].clone())
+        .map(|line| line["record"].clone())
+        .filter(|record| record["type"] == "accepted")
         .collect();
+    assert_eq!(numbers(messages("/speech/receipt"), "seq"), numbers(&accepted, "utterance"));
+    let acts: Vec<Value> =
+        journal(&group, "policy").iter().map(|line| line["record"]["decision"].clone()).collect();
     let recorded = numbers(messages("/policy/act"), "act");
-    let journaled = numbers(&acts, "id");
+    let journaled = numbers(&acts, "act");
     assert!(!recorded.is_empty());
     assert_eq!(recorded, journaled, "every act, and no other");
     let delivered =
@@ -123,11 +124,11 @@ fn recorded_dialogue_is_read_by_the_libraries_of_others() {
         messages("/policy/view").iter().filter_map(|view| numbers(&view["belief"])).collect();
     let mut compared = 0;
     for line in journal(&group, "policy") {
-        let posterior = &line["record"]["state"]["open"]["posterior"]["Object"];
-        // The journal holds natural logarithms, up to a constant.
-        let Some(logs) = numbers(posterior) else { continue };
-        let whole: f64 = logs.iter().map(|log| log.exp()).sum();
-        let belief: Vec<f64> = logs.iter().map(|log| log.exp() / whole).collect();
+        let belief = line["record"]["belief"].as_object().unwrap();
+        if belief.is_empty() {
+            continue;
+        }
+        let belief: Vec<f64> = belief.values().filter_map(Value::as_f64).collect();
         let is_equal = |other: &Vec<f64>| {
             let pairs = belief.iter().zip(other);
             other.len() == belief.len() && pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9)

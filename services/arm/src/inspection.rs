@@ -3,30 +3,68 @@
 use std::collections::BTreeMap;
 
 use messages::pick::Pick;
-use messages::{PickId, PickOutcome, PickPhase, Task};
+use messages::{MotionOrder, PickId, PickOutcome, PickPhase, Task};
+use scene::{Scene, count};
 use service::exit::Failure;
-use service::inspection::{Part, SharedFacts, count};
+use service::inspection::{Part, SharedFacts};
 
-use crate::state::Record;
+use crate::journal_record::name;
+use crate::state::{Cause, Record};
 
-/// Renders a record as one line.
-pub(crate) fn line(record: &Record) -> String {
-    let pick = record.state.pick.as_ref().map_or("no pick".to_owned(), |pick| {
+/// Renders a record as one line; without its scene, objects have numbers.
+pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
+    let state = &record.state;
+    let pick = state.pick.as_ref().map_or("no pick yet".to_owned(), |pick| {
         let PickId { interaction, attempt } = pick.id;
-        let object = pick.object.index();
+        let object = name(scene, pick.object);
         let what = match pick.task {
-            Task::Fetch => "pick",
-            Task::PutBack => "putting back",
+            Task::Fetch => format!("pick {interaction}.{attempt} of {object}"),
+            Task::PutBack => format!("putting back {object} ({interaction}.{attempt})"),
         };
-        format!("{what} {interaction}.{attempt} of object {object}: {:?}", pick.phase)
-            .to_lowercase()
-            + &match pick.outcome {
-                PickOutcome::Pending => String::new(),
-                outcome => format!(", {outcome:?}").to_lowercase(),
-            }
+        format!("{what}: {}", progress(pick))
     });
-    let stopped = if record.state.stopped { ", motion stopped" } else { "" };
-    format!("{:<12}  {pick}{stopped}", format!("{:?}", record.cause))
+    let held =
+        state.held.as_ref().map(|held| format!(", {} in the gripper", name(scene, held.object)));
+    let is_said = record.cause == Cause::Motion(MotionOrder::Stop);
+    let stopped = if state.stopped && !is_said { ", motion stop latched" } else { "" };
+    format!("{}: {pick}{}{stopped}", cause(record.cause), held.unwrap_or_default())
+}
+
+fn cause(cause: Cause) -> &'static str {
+    match cause {
+        Cause::Snapshot => "state at the start of the file",
+        Cause::SceneChanged => "scene changed",
+        Cause::Ordered => "order received",
+        Cause::Phase => "next phase",
+        Cause::Missed => "grasp missed",
+        Cause::Ended => "pick ended",
+        Cause::Motion(MotionOrder::Stop) => "motion stop latched",
+        Cause::Motion(MotionOrder::Resume) => "motion stop released",
+        Cause::Moved => "moved",
+        Cause::Rested => "at rest",
+        Cause::Blocked => "blocked",
+        Cause::Shutdown => "shut down",
+    }
+}
+
+fn progress(pick: &Pick) -> &'static str {
+    match (pick.phase, pick.outcome) {
+        (PickPhase::Idle, _) => "idle",
+        (PickPhase::Accepted, _) => "accepted",
+        (PickPhase::Moving, _) => "moving to it",
+        (PickPhase::Closing, _) => "closing the gripper",
+        (PickPhase::Holding, _) => "holding it",
+        (PickPhase::Returning, _) => "returning it to its place",
+        (PickPhase::Done, PickOutcome::Pending) => "done",
+        (PickPhase::Done, PickOutcome::Delivered) => "delivered",
+        (PickPhase::Done, PickOutcome::Unreachable) => "unreachable",
+        (PickPhase::Done, PickOutcome::Interrupted) => "interrupted",
+        (PickPhase::Done, PickOutcome::Cancelled) => "cancelled",
+        (PickPhase::Done, PickOutcome::Missed) => "missed",
+        (PickPhase::Done, PickOutcome::Blocked) => "blocked",
+        (PickPhase::Done, PickOutcome::PutBack) => "put back",
+        (PickPhase::Done, PickOutcome::Vanished) => "no longer there",
+    }
 }
 
 /// The picks taken on, with their objects.
@@ -59,7 +97,7 @@ pub(crate) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
         }
     }
     let delivered: u32 = tallies.values().map(|tally| tally.delivered).sum();
-    let delivered = count(delivered.into(), "interaction");
+    let delivered = count(delivered, "interaction");
     Ok(vec![format!("delivered in {delivered}, at most once each")])
 }
 
@@ -102,10 +140,13 @@ fn step(
     }
     match tally {
         Tally { lifted: 0..=1, delivered: 0..=1, put_back: 0..=1 } => Ok(()),
-        Tally { lifted, delivered, put_back } => Err(format!(
-            "interaction {interaction} lifted {lifted} times, delivered {delivered} times and put \
-             back {put_back} times"
-        )),
+        Tally { lifted, delivered, put_back } => {
+            let times = |number: &u32| count(*number, "time");
+            let (lifted, delivered, put_back) = (times(lifted), times(delivered), times(put_back));
+            Err(format!(
+                "interaction {interaction} lifted {lifted}, delivered {delivered} and put back {put_back}"
+            ))
+        }
     }
 }
 

@@ -12,6 +12,7 @@ mod driver;
 mod executor;
 mod goal;
 mod inspection;
+mod journal_record;
 mod motion;
 mod motion_inhibit;
 mod orders;

@@ -1,7 +1,7 @@
 //! The arm's topics and configuration.
 
 use crate::state::Record;
-use crate::{ArmNode, Config, In, Out, inspection};
+use crate::{ArmNode, Config, In, Out, inspection, journal_record};
 use config::{Driver, Settings};
 use messages::Service;
 use messages::{
@@ -14,6 +14,7 @@ use service::Time;
 use service::bus::{EncodedReader, EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
 use service::inspection::{Part, SharedFacts};
+use service::journal_record::JournalRecord;
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 use service::stop_socket::StopListener;
@@ -49,8 +50,13 @@ impl Program for ArmProgram {
         record.at
     }
 
-    fn describe(_: Option<&Settings>, record: &Record) -> String {
-        inspection::line(record)
+    fn describe(settings: &[Settings], record: &Record) -> String {
+        inspection::line(journal_record::scene(settings, record), record)
+    }
+
+    fn explain(settings: &[Settings], record: &Record) -> Option<JournalRecord> {
+        let scene = journal_record::scene(settings, record);
+        Some(JournalRecord::Arm(Box::new(journal_record::explain(scene, record))))
     }
 
     fn verify(_: &[Settings], parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {

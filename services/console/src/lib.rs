@@ -14,13 +14,16 @@
 )]
 
 mod bridge;
+mod history;
 mod hub;
 mod live;
 mod metrics;
 mod server;
 mod service;
 mod study;
+mod understood;
 mod view_model;
+mod viewer;
 mod voice;
 
 pub mod inputs;

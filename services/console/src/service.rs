@@ -21,6 +21,7 @@ use service::worker_channel;
 use service::{Span, Time};
 
 use crate::bridge::{self, Bridge, Inbox};
+use crate::history::History;
 use crate::hub::command::{Command, Motion};
 use crate::hub::outbound::{CameraSettings, PageSettings, VoiceSettings};
 use crate::hub::{Channels, Hub};
@@ -30,6 +31,7 @@ use crate::server::connections::Limits;
 use crate::server::web::Web;
 use crate::server::{Access, App};
 use crate::study::{self, Study};
+use crate::viewer;
 
 /// Longest sleep with and without viewers. Prompts, acts and phases of the arm wake the console; it polls
 /// the other topics.
@@ -37,8 +39,14 @@ const LOOK_EVERY: (Span, Span) = (Span::from_ms(10), Span::from_ms(250));
 /// Most restarts that wait for the supervisor.
 const RESTARTS_MAX: usize = 8;
 
-/// Runs the service until it is shut down.
+/// Runs the service until it is shut down; with the arguments `view FILE`, the page for a shared interaction.
 pub fn run() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [verb, file] = &arguments[..]
+        && verb == "view"
+    {
+        return viewer::view(file.as_ref());
+    }
     let about = "serves the page from which a user talks to the robot and sees what it believes";
     service_loop::program(Service::Console.name(), about, serve)
 }
@@ -81,8 +89,10 @@ impl Console {
         let handover = Span::from_s(settings.console.handover.as_secs_f64());
         let channels = Channels { commands: commands.clone(), motions, restarts };
         let limits = limits(settings.console.viewers_max);
+        let history = History::start(paths).map_err(failed("history's thread"))?;
         let session = random_secret().map_err(failed("session"))?;
         let app = Arc::new(App {
+            history,
             hub: Hub::new(channels, limits.viewers, handover, Metrics::new(paths.recordings())),
             live: Live::new(settings, paths.name().as_str(), &session),
             access: access(settings, paths)?,

@@ -5,84 +5,90 @@ use std::collections::BTreeMap;
 use config::Settings;
 use dialogue::manager::{Act, Cause, Manager, Record, refold_since};
 use dialogue::{ActKind, Action, Outcome, PickOutcome, rendering};
-use scene::Scene;
+use scene::{Scene, count};
 use service::exit::{Exit, Failure};
-use service::inspection::{Part, SharedFacts, count};
+use service::inspection::{Part, SharedFacts};
 use service::journal_set::NUMBERS_SKIPPED;
 
 /// Renders a record as one line. Without the scene that it is about, the robot's words are left out.
 pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
     let Record { cause, state, .. } = record;
-    let table = scene.zip(state.table.as_ref());
-    let table = table.map(|(scene, table)| scene.with_objects(&table.objects));
-    // Numbers of another scene have no words here.
-    let scene = table.as_ref().or(scene);
-    let scene = scene.filter(|scene| scene.key() == state.scene_key);
-    let why = match cause {
-        Cause::Snapshot => "started over".to_owned(),
+    let open = state.open.as_ref().map(|open| {
+        let belief = open.belief();
+        let best = belief.most_likely();
+        let known = scene.and_then(|scene| scene.objects().get(best.index()));
+        let name = known.map_or("likeliest object", |object| object.name.as_str());
+        let percent = belief.probability(best) * 100.0;
+        format!("interaction {}: {name} {percent:.1} %", open.id)
+    });
+    let open = open.as_deref().unwrap_or("no open interaction");
+    let (why, does) = (why(cause), does(scene, &state.act));
+    format!("{why} → {does} ({open}{})", reasons(scene, &state.act))
+}
+
+fn why(cause: &Cause) -> String {
+    match cause {
+        Cause::Snapshot => "state at the start of the file".to_owned(),
         Cause::Utterance(heard) => format!("utterance {}", heard.seq),
         Cause::Silence => "silence".to_owned(),
-        Cause::Quiet => "quiet".to_owned(),
+        Cause::Quiet => "the user has finished".to_owned(),
         Cause::PickEnded { pick, outcome } => {
-            format!("pick {}.{} {outcome:?}", pick.interaction, pick.attempt).to_lowercase()
+            let outcome = format!("{outcome:?}").to_lowercase();
+            format!("pick {}.{} ended: {outcome}", pick.interaction, pick.attempt)
         }
-        Cause::Reconfigured => "reconfigured".to_owned(),
-        Cause::Objects(table) => format!("table {} of {}", table.version, table.objects.len()),
-        Cause::MotionStop(true) => "stopped".to_owned(),
-        Cause::MotionStop(false) => "released".to_owned(),
-        Cause::SetAside(over) => format!("set aside, {over} over"),
-    };
-    let does = match state.act.kind {
+        Cause::Reconfigured => "started with other settings".to_owned(),
+        Cause::Objects(table) => {
+            let objects = count(table.objects.len(), "object");
+            format!("change {} of the table: {objects}", table.version)
+        }
+        Cause::MotionStop(true) => "motion stop latched".to_owned(),
+        Cause::MotionStop(false) => "motion stop released".to_owned(),
+        Cause::SetAside(over) => format!("journal set aside, numbers up to {over} are over"),
+    }
+}
+
+fn does(scene: Option<&Scene>, act: &Act) -> String {
+    let text = scene.map(|scene| rendering::text(scene, act)).filter(|text| !text.is_empty());
+    let text = text.map(|text| format!(" \"{text}\"")).unwrap_or_default();
+    match act.kind {
         ActKind::Wait => "wait".to_owned(),
-        kind => {
-            let text = scene.map(|scene| rendering::text(scene, &state.act));
-            format!("{kind:?}: {}", text.unwrap_or_default())
-        }
-    };
-    let where_ = state.open.as_ref().map(|open| {
-        let belief = open.belief();
-        let best = belief.probability(belief.most_likely());
-        format!("interaction {}, best {:.1} %", open.id, best * 100.0)
-    });
-    let where_ = where_.as_deref().unwrap_or("at rest");
-    format!("{why:<16}  {does}  ({where_}{})", reasons(scene, &state.act))
+        ActKind::Ask => format!("ask{text}"),
+        ActKind::Say => format!("say{text}"),
+        ActKind::Pick => format!("pick{text}"),
+        ActKind::Cancel => format!("call off the pick{text}"),
+        ActKind::PutBack => format!("put back{text}"),
+    }
 }
 
 /// Why the robot decided so: the value with its bounds, the questions to come, and what else it
-/// weighed. A mere remark has no reasons.
+/// weighed, in seconds. A mere remark has no reasons.
 fn reasons(scene: Option<&Scene>, act: &Act) -> String {
     if act.value == 0.0 && act.alternatives.is_empty() {
         return String::new();
     }
-    let bounds = act.bounds.map(|(low, high)| format!(", best {low:.2} to {high:.2}"));
-    let value = format!("value {:.2}{}", act.value, bounds.unwrap_or_default());
+    let bounds = act.bounds.map(|(low, high)| format!(", optimum {low:.2} to {high:.2} s"));
+    let value = format!("value {:.2} s{}", act.value, bounds.unwrap_or_default());
     let other = |(action, value): &(Action, f64)| {
         let action = scene.map_or(format!("{action:?}"), |scene| rendering::action(scene, *action));
-        format!("{action} {value:.2}")
+        format!("{action} {value:.2} s")
     };
     let others: Vec<String> = act.alternatives.iter().map(other).collect();
-    let before = if others.is_empty() { "" } else { ", before " };
+    let instead = if others.is_empty() { "" } else { "; alternatives: " };
     let questions = act.expected_questions;
-    format!("; {value}, {questions:.1} questions to come{before}{}", others.join(", "))
+    format!("; {value}; {questions:.1} further questions expected{instead}{}", others.join(", "))
 }
 
 /// Every utterance applied once and in order, every belief a distribution, no interaction with two
-/// deliveries, and every state the one that follows, bit for bit.
+/// deliveries, and every state the one that follows, bit for bit, under the settings of its time.
 pub(crate) fn verify(
     settings: &[Settings],
     parts: &[Part<Record>],
 ) -> Result<Vec<String>, Failure> {
-    let newest = parts.last().and_then(|part| part.records().last());
-    let settings_key = newest.map_or(0, |record| record.state.settings_key);
-    let known = settings.iter().find(|settings| settings.makes_key(settings_key));
-    // Where there are none of that key, the newest are taken to be those at the journal's end.
-    let Some(settings) = known.or(settings.first()) else {
+    if settings.is_empty() {
         let what =
             "no settings are kept beside the journal; help: start the group with `whichone up`";
         return Err(Failure::new(Exit::Config, what));
-    };
-    let manager = settings.manager_of_key(settings_key);
-    let mut manager = manager.map_err(|e| Failure::new(Exit::Config, e.to_string()))?;
+    }
     let mut delivered: BTreeMap<u64, u32> = BTreeMap::new();
     let mut applied = None;
     for part in parts {
@@ -90,17 +96,27 @@ pub(crate) fn verify(
             step(record, &mut applied, &mut delivered).map_err(|what| part.broken(seq, what))?;
         }
     }
-    let total: usize = parts.iter().map(|part| part.records().len()).sum();
-    let refolded: usize =
-        parts.iter().map(|part| fold(&mut manager, part, settings_key)).sum::<Result<_, _>>()?;
+    let mut managers = Managers::new(settings, parts);
+    let mut refolded = 0;
+    let mut skipped = 0;
+    for part in parts {
+        let (of_part, left_out) = fold(&mut managers, part)?;
+        (refolded, skipped) = (refolded + of_part, skipped + left_out);
+    }
+    let under = match managers.used() {
+        0 | 1 => String::new(),
+        many => format!(" under {many} settings"),
+    };
+    let states = count(refolded, "state");
     let mut facts = vec![
         format!("{} applied once and in order", count(since_set_aside(applied), "utterance")),
-        format!("delivered in {}, at most once each", count(delivered.len() as u64, "interaction")),
-        format!("{} reproduced bit for bit from the one before", count(refolded as u64, "state")),
+        format!("delivered in {}, at most once each", count(delivered.len(), "interaction")),
+        format!("{states} reproduced bit for bit from the one before{under}"),
     ];
-    if refolded < total {
-        let skipped = count((total - refolded) as u64, "earlier state");
-        facts.push(format!("{skipped} of other settings skipped"));
+    if skipped > 0 {
+        let states = count(skipped, "earlier state");
+        facts
+            .push(format!("{states} not reproduced: the settings of that time are no longer kept"));
     }
     Ok(facts)
 }
@@ -178,22 +194,72 @@ fn step(
     }
     *applied = Some(now);
     if let Cause::PickEnded { pick, outcome: PickOutcome::Delivered } = record.cause {
-        let count = delivered.entry(pick.interaction.0).or_default();
-        *count += 1;
-        if *count > 1 {
-            return Err(format!("interaction {} delivered {count} times", pick.interaction));
+        let times = delivered.entry(pick.interaction.0).or_default();
+        *times += 1;
+        if *times > 1 {
+            let times = count(*times, "time");
+            return Err(format!("interaction {} delivered {times}", pick.interaction));
         }
     }
     Ok(())
 }
 
-/// Refolds the records that were decided under the settings with that key; how many those are.
-fn fold(manager: &mut Manager, part: &Part<Record>, settings_key: u64) -> Result<usize, Failure> {
-    refold_since(manager, part.records(), settings_key).map_err(|mismatch| {
-        let seq = part.first_seq() + mismatch.index as u64;
-        let what = format!("the state does not follow from the one before it: {}", mismatch.part);
-        part.broken(seq, format!("{what} differs (with these settings)"))
-    })
+/// Dialogue managers by the key of their settings.
+struct Managers<'a> {
+    settings: &'a [Settings],
+    /// Key of the newest state.
+    newest: u64,
+    /// Those that were needed; none where the settings are no longer kept.
+    known: BTreeMap<u64, Option<Manager>>,
+}
+
+impl<'a> Managers<'a> {
+    fn new(settings: &'a [Settings], parts: &[Part<Record>]) -> Self {
+        let newest = parts.last().and_then(|part| part.records().last());
+        let newest = newest.map_or(0, |record| record.state.settings_key);
+        Self { settings, newest, known: BTreeMap::new() }
+    }
+
+    /// Returns the manager that decided under these settings.
+    fn of_key(&mut self, key: u64) -> Result<Option<&mut Manager>, Failure> {
+        if !self.known.contains_key(&key) {
+            let fitting = self.settings.iter().find(|settings| settings.makes_key(key));
+            // Where there are none of that key, the newest are taken to be those at the journal's end.
+            let newest = self.settings.first().filter(|_| key == self.newest);
+            let manager = fitting.or(newest).map(|settings| settings.manager_of_key(key));
+            let manager = manager.transpose();
+            let manager = manager.map_err(|e| Failure::new(Exit::Config, e.to_string()))?;
+            self.known.insert(key, manager);
+        }
+        Ok(self.known.get_mut(&key).and_then(Option::as_mut))
+    }
+
+    /// Number of settings under which states were reproduced.
+    fn used(&self) -> usize {
+        self.known.values().flatten().count()
+    }
+}
+
+/// Refolds the records of a file under the settings of their time. Returns how many those are, and how
+/// many are left out because their settings are no longer kept.
+fn fold(managers: &mut Managers<'_>, part: &Part<Record>) -> Result<(usize, usize), Failure> {
+    let (mut refolded, mut skipped, mut end) = (0, 0, 0);
+    let is_same = |a: &Record, b: &Record| a.state.settings_key == b.state.settings_key;
+    for run in part.records().chunk_by(is_same) {
+        end += run.len();
+        let key = run[0].state.settings_key;
+        let Some(manager) = managers.of_key(key)? else {
+            skipped += run.len();
+            continue;
+        };
+        refolded += refold_since(manager, &part.records()[..end], key).map_err(|mismatch| {
+            let seq = part.first_seq() + mismatch.index as u64;
+            let what =
+                format!("the state does not follow from the one before it: {}", mismatch.part);
+            part.broken(seq, format!("{what} differs (with the settings of that time)"))
+        })?;
+    }
+    Ok((refolded, skipped))
 }
 
 #[cfg(test)]

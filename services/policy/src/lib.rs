@@ -5,6 +5,7 @@
 //! anything that follows from it can be seen.
 
 mod inspection;
+mod journal_record;
 mod perceived;
 mod policy_cache;
 pub mod shell;

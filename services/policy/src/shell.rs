@@ -1,6 +1,6 @@
 //! The policy's topics and configuration.
 
-use crate::{Config, In, Out, PolicyNode, inspection, policy_cache};
+use crate::{Config, In, Out, PolicyNode, inspection, journal_record, policy_cache};
 use config::{ManagerError, Settings};
 use dialogue::manager::Record;
 use messages::Service;
@@ -12,6 +12,7 @@ use service::Time;
 use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
 use service::inspection::{Part, SharedFacts};
+use service::journal_record::JournalRecord;
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 
@@ -50,8 +51,15 @@ impl Program for PolicyProgram {
         record.at
     }
 
-    fn describe(settings: Option<&Settings>, record: &Record) -> String {
-        inspection::line(settings.map(|settings| &settings.scene), record)
+    fn describe(settings: &[Settings], record: &Record) -> String {
+        let scene = journal_record::scene(settings, record);
+        inspection::line(scene.as_deref(), record)
+    }
+
+    fn explain(settings: &[Settings], record: &Record) -> Option<JournalRecord> {
+        let scene = journal_record::scene(settings, record);
+        let record = journal_record::explain(scene.as_deref(), record);
+        Some(JournalRecord::Policy(Box::new(record)))
     }
 
     fn verify(settings: &[Settings], parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {

@@ -1,14 +1,15 @@
 //! Inspection of the policy's journal by its own program, on intact and manipulated journals.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 use config::Settings;
 use dialogue::manager::{Cause, Record, State, Utterance};
-use dialogue::{Belief, Posterior, Presentation};
+use dialogue::{Belief, PickOutcome, Posterior, Presentation};
 use journal::{Header, Journal};
 use messages::{Interpretation, PromptId, UtteranceSeq};
 use scene::{Reading, Response};
+use serde_json::Value;
 use service::Time;
 
 /// A journal and a snapshot of the shipped settings in a temporary folder.
@@ -37,11 +38,15 @@ impl Lab {
         self.0.path().join("policy.journal")
     }
 
-    #[track_caller]
-    fn check(&self, arguments: &[&str], code: i32, part: &str) {
+    fn run(&self, arguments: &[&str]) -> Output {
         let mut command = Command::new(env!("CARGO_BIN_EXE_whichone-policy"));
         command.arg("journal").arg(self.file()).arg("--settings").arg(self.0.path());
-        let output = command.args(arguments).output().expect("a process");
+        command.args(arguments).output().expect("a process")
+    }
+
+    #[track_caller]
+    fn check(&self, arguments: &[&str], code: i32, part: &str) {
+        let output = self.run(arguments);
         let text = [output.stdout, output.stderr].concat();
         let text = String::from_utf8_lossy(&text);
         assert_eq!(output.status.code(), Some(code), "{text}");
@@ -88,11 +93,93 @@ fn dialogue() -> Vec<Record> {
     records
 }
 
+/// As [`dialogue`], and one record of each other cause.
+fn every_cause() -> Vec<Record> {
+    let mut records = dialogue();
+    let mut manager = shipped().manager().expect("its planner");
+    let mut state = records[1].state.clone();
+    let mut add = |cause: Cause| {
+        let at = Time(10_000_000_000 + state.act.id.0 * 1_000_000_000);
+        manager.step(&mut state, &cause, at);
+        records.push(Record { cause, at, state: state.clone() });
+        state.last_order
+    };
+    for cause in [Cause::Silence, Cause::MotionStop(true), Cause::MotionStop(false)] {
+        add(cause);
+    }
+    let about = |word| Reading {
+        base: vec![shipped().scene.word_named(word).expect("a word of the bowls")],
+        ..Reading::default()
+    };
+    let reading = Reading { excluded: vec![about("white").base], ..about("clear") };
+    let interpretations = vec![Interpretation { weight: 1.0, answers: None, reading }];
+    let heard = Utterance {
+        seq: UtteranceSeq(3),
+        onset: Time(20_000_000_000),
+        end: Time(21_000_000_000),
+        accepted: Time(21_000_000_000),
+        interpretations,
+        gesture: Some([0.5, 0.25, 0.0]),
+        ..Utterance::default()
+    };
+    let pick = add(Cause::Utterance(heard));
+    add(Cause::Quiet);
+    add(Cause::PickEnded { pick, outcome: PickOutcome::Delivered });
+    add(Cause::Reconfigured);
+    add(Cause::SetAside(1_000_000_000));
+    add(Cause::Snapshot);
+    records
+}
+
+/// Numbers to six digits: the last ones depend on the machine's library of functions.
+fn rounded(value: &mut Value) {
+    match value {
+        Value::Number(number) if number.is_f64() => {
+            let number = number.as_f64().expect("a number");
+            *value = format!("{number:.6}").parse::<f64>().expect("a number").into();
+        }
+        Value::Array(all) => all.iter_mut().for_each(rounded),
+        Value::Object(all) => all.values_mut().for_each(rounded),
+        _ => {}
+    }
+}
+
+/// Programs read it. `WHICHONE_BLESS=1` rewrites the golden file.
+#[test]
+fn records_for_programs_match_the_golden_file() {
+    const GOLDEN: &str =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/journal_policy.jsonl");
+    let lab = Lab::with(&every_cause());
+    let clock = "{\"seq\":1,\"wall_minus_monotonic_ns\":1700000000000000000}\n";
+    std::fs::write(lab.0.path().join("policy.clock"), clock).expect("a disk");
+    let output = lab.run(&["--json"]);
+    assert!(output.status.success(), "{output:?}");
+    let lines = String::from_utf8(output.stdout).expect("text");
+    let lines = lines.lines().map(|line| {
+        let mut line: Value = serde_json::from_str(line).expect("JSON");
+        rounded(&mut line);
+        format!("{line}\n")
+    });
+    let found: String = lines.collect();
+    if std::env::var_os("WHICHONE_BLESS").is_some() {
+        std::fs::write(GOLDEN, &found).expect("a disk");
+    }
+    let golden = std::fs::read_to_string(GOLDEN).unwrap_or_default();
+    assert_eq!(found, golden, "if the change is intended, run this test with WHICHONE_BLESS=1");
+}
+
 #[test]
 fn an_intact_journal_is_listed_and_verified() {
     let lab = Lab::with(&dialogue());
-    lab.check(&[], 0, "utterance 2");
-    lab.check(&["--json"], 0, "\"seq\":2,\"at_ns\":2000000000,");
+    lab.check(&[], 0, "utterance 2 → ");
+    lab.check(
+        &["--json"],
+        0,
+        "\"record\":{\"service\":\"policy\",\"cause\":{\"type\":\"utterance\",",
+    );
+    let since = lab.run(&["--since", "2"]);
+    let since = String::from_utf8(since.stdout).expect("text");
+    assert!(since.contains("utterance 2") && !since.contains("utterance 1"), "{since}");
     lab.check(&["--verify"], 0, "2 states reproduced bit for bit from the one before");
     lab.check(&["--verify", "--json"], 0, "{\"ok\":true,\"records\":2,");
 }

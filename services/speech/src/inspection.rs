@@ -3,9 +3,11 @@
 use std::collections::HashSet;
 
 use dialogue::Presentation;
+use messages::Source;
+use scene::count;
 use service::Time;
 use service::exit::Failure;
-use service::inspection::{Part, SharedFacts, count};
+use service::inspection::{Part, SharedFacts};
 use service::journal_set::NUMBERS_SKIPPED;
 
 use crate::record::Record;
@@ -22,16 +24,29 @@ pub(crate) fn recorded_at(record: &Record) -> Time {
 pub(crate) fn line(record: &Record) -> String {
     match record {
         Record::Accepted(accepted) => {
-            let words = accepted.hypotheses.first().map_or("", |best| best.text.as_str());
-            let pointed = accepted.gesture.map(|[x, y, z]| format!(" [points at {x} {y} {z} m]"));
-            let pointed = pointed.unwrap_or_default();
-            format!("utterance {}: {words}{pointed}", accepted.seq)
+            let words = accepted.hypotheses.first().map(|best| format!("\"{}\"", best.text));
+            let pointed = accepted
+                .gesture
+                .map(|[x, y, z]| format!("pointing at x {x:.3} m, y {y:.3} m, z {z:.3} m"));
+            let said: Vec<String> = words.into_iter().chain(pointed).collect();
+            let source = source(accepted.source);
+            format!("utterance {} accepted {source}: {}", accepted.seq, said.join(", "))
         }
         Record::Presented(presentation) => {
             let Presentation { prompt, number, complete, .. } = *presentation;
             let how = if complete { "spoken to its end" } else { "interrupted" };
-            format!("prompt {prompt} {how}, presentation {number}")
+            format!("line {prompt} {how} (presentation {number})")
         }
+    }
+}
+
+fn source(source: Source) -> &'static str {
+    match source {
+        Source::Text => "as text",
+        Source::Wav => "from a file",
+        Source::Microphone => "from the microphone",
+        Source::Browser => "from a browser's recogniser",
+        Source::Gesture => "as a gesture",
     }
 }
 

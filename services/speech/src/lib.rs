@@ -10,6 +10,7 @@ mod doctor;
 mod endpointing;
 mod inspection;
 mod io;
+mod journal_record;
 mod pending_sounds;
 mod prompt_player;
 pub mod record;

@@ -10,6 +10,7 @@ use crate::devices::microphone::Microphone;
 use crate::devices::stream::{Closings, PlaybackMask};
 use crate::devices::vad::SegmenterOptions;
 use crate::devices::voice::Voice;
+use crate::journal_record;
 use crate::record::Record;
 use crate::stream_events::StreamEvent;
 use crate::{
@@ -25,6 +26,7 @@ use messages::{
 use service::bus::{EncodedReader, PortError, Reader, Writer};
 use service::exit::Failure;
 use service::inspection::{Finding, Part, SharedFacts};
+use service::journal_record::JournalRecord;
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 use service::worker_channel::DeviceSender;
@@ -62,8 +64,12 @@ impl Program for SpeechProgram {
         inspection::recorded_at(record)
     }
 
-    fn describe(_: Option<&Settings>, record: &Record) -> String {
+    fn describe(_: &[Settings], record: &Record) -> String {
         inspection::line(record)
+    }
+
+    fn explain(settings: &[Settings], record: &Record) -> Option<JournalRecord> {
+        Some(JournalRecord::Speech(Box::new(journal_record::explain(settings, record))))
     }
 
     fn verify(_: &[Settings], parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {

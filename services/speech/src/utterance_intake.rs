@@ -196,7 +196,7 @@ impl UtteranceIntake {
         for ClosedStream { key, utterances, lost } in self.pending.take_closed() {
             let note = match lost {
                 0 => String::new(),
-                lost => format!("{lost} samples lost in transit"),
+                lost => format!("{} lost in transit", scene::count(lost, "sample")),
             };
             self.report(Origin::closed(key, utterances).rejection(ReceiptStatus::Over, &note), fx);
         }

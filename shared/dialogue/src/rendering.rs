@@ -1,6 +1,7 @@
 //! English of the robot's lines and actions. Nothing else in the dialogue produces text.
 
 mod foreseen;
+mod readings;
 mod remarks;
 
 use scene::{ObjectId, Question, Role, Scene, UnknownWord};
@@ -9,6 +10,7 @@ use crate::manager::{Act, Content, Preface};
 use crate::{ActKind, Action, PickOutcome};
 
 pub use foreseen::foreseen;
+pub use readings::reading;
 
 /// Returns the text of an act's line; empty where nothing is said.
 pub fn text(scene: &Scene, act: &Act) -> String {

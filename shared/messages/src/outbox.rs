@@ -15,7 +15,7 @@ pub struct Outbox<T> {
 
 /// Too many messages wait; the newest was not taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{waiting} utterances are still waiting to be understood; say it again in a moment")]
+#[error("{} not understood yet; say it again in a moment", scene::count(*waiting, "utterance"))]
 pub struct Full {
     /// Number of waiting messages.
     pub waiting: usize,

@@ -26,7 +26,7 @@ mod tests;
 pub use ids::{AttributeId, ObjectId, ValueId, WordId};
 pub use model::{Attribute, Form, Object, Placement, Role, Scene, Value};
 pub use perceived::{Perceived, likeliest};
-pub use plural::plural;
+pub use plural::{count, plural};
 pub use question::Question;
 pub use question_json::{QuestionError, question_from_json, question_to_json, reading_to_json};
 pub use reading::{Doubt, Intent, Reading, Reference, Response, UnknownWord};

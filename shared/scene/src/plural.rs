@@ -1,5 +1,7 @@
 //! Plurals of English nouns.
 
+use std::fmt::Display;
+
 /// Nouns whose plural follows no rule; of those without a second form it is the same.
 const IRREGULAR: &[(&str, &str)] = &[
     ("man", "men"),
@@ -48,6 +50,11 @@ pub fn plural(noun: &str) -> String {
     format!("{lead}{}", of_word(word))
 }
 
+/// Returns a number with its noun, e.g. `1 question`, `2 questions`, `0 boxes`.
+pub fn count<N: Display + PartialEq + From<u8>>(number: N, noun: &str) -> String {
+    if number == N::from(1) { format!("1 {noun}") } else { format!("{number} {}", plural(noun)) }
+}
+
 fn of_word(word: &str) -> String {
     if let Some((_, plural)) = IRREGULAR.iter().find(|(one, _)| *one == word) {
         return (*plural).to_owned();
@@ -63,7 +70,7 @@ fn of_word(word: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::plural;
+    use super::{count, plural};
 
     #[test]
     fn plurals_are_english() {
@@ -87,5 +94,13 @@ mod tests {
         ] {
             assert_eq!(plural(one), many);
         }
+    }
+
+    #[test]
+    fn counts_agree_with_their_nouns() {
+        let counts = [count(0_u64, "record"), count(1_u32, "box"), count(2_usize, "box")];
+        assert_eq!(counts, ["0 records", "1 box", "2 boxes"]);
+        assert_eq!(count(3_u64, "participant with data"), "3 participants with data");
+        assert_eq!((count(1.0, "run"), count(2.0, "entry")), ("1 run".into(), "2 entries".into()));
     }
 }

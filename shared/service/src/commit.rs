@@ -10,7 +10,7 @@
 use std::collections::VecDeque;
 use std::io;
 use std::os::fd::BorrowedFd;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, unbounded};
@@ -19,6 +19,7 @@ use serde::{Serialize, de::DeserializeOwned};
 
 use crate::Effects;
 use crate::exit::{Exit, Failure};
+use crate::journal_clock::JournalClock;
 use crate::storage;
 use crate::sync_time;
 use crate::worker_channel::{self, DeviceReceiver, DeviceSender};
@@ -39,6 +40,8 @@ pub(crate) trait Store<R>: Send + 'static {
     fn sync(&mut self, vital: bool) -> Result<(), SyncError>;
     fn rotate(&mut self, snapshot: &[R]) -> Result<(), RotateError>;
     fn bytes(&self) -> u64;
+    /// Number of the next record.
+    fn next_seq(&self) -> u64;
 }
 
 impl<R: Serialize + DeserializeOwned + 'static> Store<R> for Journal<R> {
@@ -56,6 +59,10 @@ impl<R: Serialize + DeserializeOwned + 'static> Store<R> for Journal<R> {
 
     fn bytes(&self) -> u64 {
         Self::bytes(self)
+    }
+
+    fn next_seq(&self) -> u64 {
+        Self::next_seq(self)
     }
 }
 
@@ -93,18 +100,18 @@ pub(crate) struct Commit<Out, Record> {
 }
 
 impl<Out, Record: Send + 'static> Commit<Out, Record> {
-    /// Starts the thread of `store`, which lies in `folder`; a service without a journal needs none.
+    /// Starts the thread of `store`, which lies at `file`; a service without a journal needs none.
     ///
     /// # Errors
     /// No descriptor or no thread is left.
-    pub(crate) fn start<S: Store<Record>>(store: Option<S>, folder: PathBuf) -> io::Result<Self> {
+    pub(crate) fn start<S: Store<Record>>(store: Option<S>, file: &Path) -> io::Result<Self> {
         let (reporter, reports) = worker_channel::channel()?;
         let bytes = store.as_ref().map_or(0, Store::bytes);
         let jobs = match store {
             None => None,
             Some(store) => {
                 let (sender, jobs) = unbounded();
-                let writer = Writer::new(store, jobs, reporter, folder);
+                let writer = Writer::new(store, jobs, reporter, file);
                 std::thread::Builder::new().name("journal".into()).spawn(|| writer.run())?;
                 Some(sender)
             }
@@ -225,6 +232,7 @@ struct Writer<R, S> {
     jobs: Receiver<Job<R>>,
     reports: DeviceSender<Report>,
     folder: PathBuf,
+    clock: JournalClock,
     /// Jobs that the store has not been given yet.
     backlog: VecDeque<Job<R>>,
     /// Passes that the store has been given, and those of them that are durable.
@@ -235,14 +243,18 @@ struct Writer<R, S> {
 }
 
 impl<R, S: Store<R>> Writer<R, S> {
-    fn new(
-        store: S,
-        jobs: Receiver<Job<R>>,
-        reports: DeviceSender<Report>,
-        folder: PathBuf,
-    ) -> Self {
-        let backlog = VecDeque::new();
-        Self { store, jobs, reports, folder, backlog, appended: 0, durable: 0, vital: false }
+    fn new(store: S, jobs: Receiver<Job<R>>, reports: DeviceSender<Report>, file: &Path) -> Self {
+        Self {
+            store,
+            jobs,
+            reports,
+            folder: file.parent().unwrap_or(file).to_owned(),
+            clock: JournalClock::of(file),
+            backlog: VecDeque::new(),
+            appended: 0,
+            durable: 0,
+            vital: false,
+        }
     }
 
     /// Works until the service ends or the journal fails.
@@ -302,9 +314,11 @@ impl<R, S: Store<R>> Writer<R, S> {
         if self.appended == self.durable {
             return Ok(true);
         }
+        let first = self.store.next_seq();
         let Self { store, vital, .. } = self;
         match sync_time::measure(|| store.sync(*vital)) {
             Ok(()) => {
+                self.clock.note(first);
                 (self.durable, self.vital) = (self.appended, false);
                 self.report_durable();
                 Ok(true)
@@ -319,8 +333,10 @@ impl<R, S: Store<R>> Writer<R, S> {
     }
 
     fn rotate(&mut self, snapshot: &[R]) -> Result<(), Failure> {
+        let first = self.store.next_seq();
         match self.store.rotate(snapshot) {
             Ok(()) => {
+                self.clock.note(first);
                 tracing::info!(records = snapshot.len(), "journal rotated with a snapshot");
                 self.report_durable();
                 Ok(())

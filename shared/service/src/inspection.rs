@@ -8,10 +8,13 @@ use std::path::{Path, PathBuf};
 
 use config::Settings;
 use journal::{Ending, JournalOpenError, Reading};
+use scene::count;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::exit::{Exit, Failure};
+use crate::journal_clock::WallTimes;
+use crate::journal_record::JournalLine;
 use crate::log_file;
 use crate::printable::{one_line, printable_json};
 use crate::service_loop::{Program, Record};
@@ -54,19 +57,6 @@ pub struct Verdict {
     /// For the other journals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shared: Option<SharedFacts>,
-}
-
-/// A record of a journal as `whichone journal --json` prints it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct JournalLine {
-    /// Its number.
-    pub seq: u64,
-    /// When it was written, nanoseconds of the machine's monotonic clock.
-    pub at_ns: u64,
-    /// What it says, in a line.
-    pub text: String,
-    /// The record itself.
-    pub record: serde_json::Value,
 }
 
 /// One aspect of the machine that `whichone doctor` has examined.
@@ -150,11 +140,6 @@ impl<R: DeserializeOwned> Part<R> {
     }
 }
 
-/// A count with its noun, e.g. `1 record`, `2 records`.
-pub fn count(number: u64, noun: &str) -> String {
-    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
-}
-
 /// A time of the machine's monotonic clock, seconds, as a column of a listing.
 pub fn at(time: crate::Time) -> String {
     format!("{:>12.3} s", time.ns() as f64 / 1e9)
@@ -191,6 +176,8 @@ struct Request {
     /// Print what the journal says about the others, unverified.
     facts: bool,
     json: bool,
+    /// First record to be printed, from an older file if need be.
+    since: Option<u64>,
 }
 
 impl Request {
@@ -202,6 +189,7 @@ impl Request {
                 "--verify" => request.verify = true,
                 "--facts" => request.facts = true,
                 "--json" => request.json = true,
+                "--since" => request.since = words.next().and_then(|word| word.parse().ok()),
                 "--settings" => request.settings.extend(words.next().map(PathBuf::from)),
                 file => request.file = file.into(),
             }
@@ -240,27 +228,43 @@ fn show<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failu
 
 /// Reads the journal with its older parts, oldest first.
 fn parts<P: Program>(request: &Request) -> Result<Vec<Part<Record<P>>>, Failure> {
-    let older = (1..=journal::KEPT).rev().map(|n| log_file::numbered(&request.file, n));
-    let files = older.filter(|file| file.is_file()).chain([request.file.clone()]);
-    files.map(|file| Part::read(&file)).collect()
+    older(request).chain([request.file.clone()]).map(|file| Part::read(&file)).collect()
 }
 
+/// Older files of the journal, oldest first.
+fn older(request: &Request) -> impl Iterator<Item = PathBuf> {
+    let older = (1..=journal::KEPT).rev().map(|n| log_file::numbered(&request.file, n));
+    older.filter(|file| file.is_file())
+}
+
+/// Reads an older file to be listed; one that cannot be read is named and left out.
+fn readable<P: Program>(file: &Path) -> Option<Part<Record<P>>> {
+    let read = Part::read(file);
+    read.inspect_err(|error| drop(writeln!(io::stderr(), "left out: {error}"))).ok()
+}
+
+/// Prints the newest file, or the records from a number on.
 fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
-    let part = Part::<Record<P>>::read(&request.file)?;
+    let mut shown = vec![Part::<Record<P>>::read(&request.file)?];
+    if request.since.is_some_and(|since| since < shown[0].first_seq()) {
+        shown.splice(0..0, older(request).filter_map(|file| readable::<P>(&file)));
+    }
     let settings = request.settings().unwrap_or_default();
-    for (seq, record) in part.numbered() {
-        let (recorded, text) = (P::recorded_at(record), P::describe(settings.first(), record));
-        match request.json {
-            true => {
-                let record =
-                    serde_json::to_value(record).map_err(|error| Failure::output(error.into()))?;
-                json_line(out, &JournalLine { seq, at_ns: recorded.ns(), text, record })?;
-            }
-            false => line(out, format_args!("{seq:>6}  {}  {text}", at(recorded)))?,
+    let times = WallTimes::of(&request.file);
+    for (seq, record) in shown.iter().flat_map(Part::numbered) {
+        if request.since.is_some_and(|since| seq < since) {
+            continue;
+        }
+        let (recorded, text) = (P::recorded_at(record), P::describe(&settings, record));
+        if !request.json {
+            line(out, format_args!("{seq:>6}  {}  {text}", at(recorded)))?;
+        } else if let Some(record) = P::explain(&settings, record) {
+            let (at_ns, unix_ms) = (recorded.ns(), times.unix_ms(seq, recorded));
+            json_line(out, &JournalLine { seq, at_ns, unix_ms, text, record })?;
         }
     }
     out.flush().map_err(Failure::output)?;
-    check_ending(&part)
+    shown.last().map_or(Ok(()), check_ending)
 }
 
 /// Checks the end of a journal: an interrupted write was never acknowledged; other damage is an error.
@@ -268,7 +272,8 @@ fn check_ending<R>(part: &Part<R>) -> Result<(), Failure> {
     match part.reading.ending {
         Ending::Whole => Ok(()),
         Ending::Torn { bytes, .. } => {
-            let _ = writeln!(io::stderr(), "ignored {bytes} bytes of an unfinished write");
+            let bytes = count(bytes, "byte");
+            let _ = writeln!(io::stderr(), "ignored {bytes} of an unfinished write");
             Ok(())
         }
         Ending::Corrupt { at, seq, .. } => {

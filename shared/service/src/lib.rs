@@ -12,6 +12,8 @@ pub mod exit;
 pub mod folders;
 pub mod group;
 pub mod inspection;
+mod journal_clock;
+pub mod journal_record;
 pub mod journal_set;
 pub mod kept_settings;
 pub mod launch;

@@ -10,6 +10,7 @@ use crate::clock;
 use crate::commit::Commit;
 use crate::exit::{Exit, Failure};
 use crate::inspection::{self, Finding, Part, SharedFacts};
+use crate::journal_record::JournalRecord;
 use crate::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
 use crate::logging;
 use crate::notify::Notifier;
@@ -61,10 +62,16 @@ pub trait Program: Sized {
         Time(0)
     }
 
-    /// Renders a journal record as one line for `whichone journal`, without its time, with the settings in
-    /// force if they are known.
-    fn describe(_settings: Option<&Settings>, _record: &Record<Self>) -> String {
+    /// Renders a journal record as one line for `whichone journal`, without its time, with the settings
+    /// that were in force, newest first.
+    fn describe(_settings: &[Settings], _record: &Record<Self>) -> String {
         String::new()
+    }
+
+    /// Returns a journal record as `whichone journal --json` prints it, with the settings that were in
+    /// force, newest first; none for a stateless service.
+    fn explain(_settings: &[Settings], _record: &Record<Self>) -> Option<JournalRecord> {
+        None
     }
 
     /// Checks the invariants of the journal, oldest part first, with the settings that were in force,
@@ -196,7 +203,8 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
     let (journal, records, set_aside) = open_journal::<P>(&environment)?;
     let node = P::Node::recover(config, records)?;
     let failed = |e: std::io::Error| Failure::new(Exit::NotReached, e.to_string());
-    let commit = Commit::start(journal, environment.paths.journal()).map_err(failed)?;
+    let file = environment.paths.journal_file(P::SERVICE.name());
+    let commit = Commit::start(journal, &file).map_err(failed)?;
     let identity = Identity { epoch: environment.epoch, incarnation: environment.incarnation };
     let (devices, inbox) = worker_channel::channel().map_err(failed)?;
     let (bus, shell, wake_listener) = open_topics::<P>(&environment, identity, &settings, devices)?;

@@ -25,13 +25,24 @@ export class Group {
     const home = await mkdtemp(join(tmpdir(), "wb"));
     const own = `b${process.pid}-${home.slice(-6).toLowerCase()}`;
     const group = new Group(home, name ?? own);
+    await group.#start(settings);
+    return group;
+  }
+
+  /** Stops the group and starts it again with its journals. @param {string[]} [settings] */
+  async again(settings = []) {
+    await this.must("down");
+    await this.#start(settings);
+  }
+
+  async #start(settings) {
     const up = ["up", "--detach", "--wait", "ready", "--timeout", "40", "--profile", "ci"];
     // A busy machine's browser may take its time to answer.
     const patient = ["dialogue.turns.response_window_s=20.0", ...settings];
     const sets = patient.flatMap((setting) => ["--set", setting]);
-    await group.must(...up, "--config", join(ROOT, "config"), ...sets);
-    const { console: url, token } = await group.json("console");
-    return Object.assign(group, { url, token });
+    await this.must(...up, "--config", join(ROOT, "config"), ...sets);
+    const { console: url, token } = await this.json("console");
+    Object.assign(this, { url, token });
   }
 
   /** The link to a page of the console with which its owner gets in. @param {string} [path] */

@@ -66,7 +66,7 @@ describe("the tables", () => {
     );
     assert.deepEqual(missing, []);
     const marks = /data-t(?:-\w+)?="([^"]+)"/g;
-    for (const page of ["index.html", "login.html", "404.html"]) {
+    for (const page of ["index.html", "login.html", "404.html", "history.html"]) {
       for (const [, key] of read(page).matchAll(marks))
         assert.ok(key in english, `${page}: ${key}`);
     }

@@ -120,7 +120,11 @@ fn inspected<P: Program>(input: &mut Input<'_>) {
         let part = Part::<Record<P>>::read(&path);
         fs::remove_file(&path).expect("it was there");
         let Ok(part) = part else { return };
-        part.records().iter().for_each(|record| drop(P::describe(Some(&SETTINGS), record)));
+        let settings = std::slice::from_ref(&*SETTINGS);
+        for record in part.records() {
+            drop((P::describe(settings, record), P::explain(settings, record)));
+            drop((P::describe(&[], record), P::explain(&[], record)));
+        }
         let parts = [part];
         let _ = P::verify(std::slice::from_ref(&SETTINGS), &parts);
         let _ = P::shared_facts(&parts);

@@ -1,6 +1,7 @@
 // @ts-check
 
 import { keepDelivery } from "./delivery.js";
+import { linked } from "./history/address.js";
 import { keptLanguage, tabStorage } from "./kept.js";
 import { sessionId } from "./link/session.js";
 import { connect } from "./link.js";
@@ -55,7 +56,7 @@ mountTranscript(at("transcript"), context);
 mountSay(at("say"), context);
 mountControl(at("control"), context);
 mountTools(at("tools"), context);
-at("tools").prepend(toolButton("history", t("history.show"), "history", openHistory));
+at("tools").prepend(toolButton("history", t("history.show"), "history", () => openHistory()));
 mountTabs(at("tabs"), at("page"), context);
 mountHealth(at("health"), context);
 store.subscribe("welcome", ({ group }) => {
@@ -73,14 +74,22 @@ function afterPaint(f) {
   requestAnimationFrame(() => setTimeout(() => idle(f, { timeout: 1_000 }), 0));
 }
 
-/** @type {Promise<() => void>|null} */
+/** @type {Promise<(interaction?: number) => void>|null} */
 let history = null;
+afterPaint(openLinked);
+addEventListener("hashchange", () => history ?? openLinked());
 
-/** Opens the history, which is loaded when it is wanted first. */
-async function openHistory() {
+/** Opens the interaction that the address names: `#history=12`. */
+function openLinked() {
+  const interaction = linked(location.hash);
+  if (interaction !== null) openHistory(interaction);
+}
+
+/** Opens the history, which is loaded when it is wanted first. @param {number} [interaction] */
+async function openHistory(interaction) {
   try {
     history ??= import("./history/index.js").then((part) => part.mountHistory(context));
-    (await history)();
+    (await history)(interaction);
   } catch {
     history = null;
     notify(t("history.unavailable"));

@@ -1,4 +1,4 @@
-//! Lines on disk, for the console's next incarnation: the transcript and the history.
+//! The transcript's lines on disk, for the console's next incarnation.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -13,8 +13,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use config::Settings;
 use messages::{
-    Injection, JointStates, Observation, Partial, RobotAct, Service, TrajectoryView, WorldView,
-    topics,
+    Injection, InteractionId, JointStates, Observation, Outcome, Partial, RobotAct, Service,
+    TrajectoryView, WorldView, topics,
 };
 use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, Reader};
 use service::client::Client;
@@ -33,7 +33,7 @@ use crate::metrics::Tally;
 use crate::server::App;
 use crate::server::routes::sound_file;
 use crate::study::Study;
-use crate::view_model::{History, Now, Transcript, ViewModel};
+use crate::view_model::{Now, Transcript, ViewModel};
 use crate::voice::Voice;
 use line_store::LineStore;
 use motion::Motions;
@@ -63,7 +63,8 @@ pub struct Bridge {
     submissions: Submissions,
     motions: Motions,
     lines: LineStore,
-    past: LineStore,
+    /// The interaction that ended last, and how: so much is known to be in the history.
+    ended: Option<(InteractionId, Outcome)>,
     voice_dir: Option<PathBuf>,
     /// The joints that were sent last, and when.
     joints: Option<(JointStates, Time)>,
@@ -123,13 +124,11 @@ impl Bridge {
             false => settings.scene.clone(),
         };
         let lines = LineStore::in_folder(&paths.run(), "console.lines");
-        let past = LineStore::in_folder(&paths.run(), "console.history");
         let transcript = Transcript::after(lines.read(), now().unix_ms);
-        let history = History::after(past.read());
         Ok(Self {
             topics: Topics::open(bus, settings)?,
             injections: bus.encoded_writer(&topics::INJECTION)?,
-            model: ViewModel::new(scene, transcript, history),
+            model: ViewModel::new(scene, transcript),
             voice: Voice::default(),
             study,
             feed: Feed::new(settings, paths.log()),
@@ -137,7 +136,7 @@ impl Bridge {
             submissions: Submissions::default(),
             motions: Motions::open(paths).map_err(failed)?,
             lines,
-            past,
+            ended: None,
             voice_dir: app.voice_dir.clone(),
             paths: paths.clone(),
             app,
@@ -325,13 +324,12 @@ impl Bridge {
             self.hub().board.line(line.id, &line.to_text());
         }
         self.lines.write(self.model.transcript().lines(), now.at);
-        for past in self.model.history().take_changed() {
-            self.past.mark_changed();
-            // Every interaction can be written.
-            let text = serde_json::to_string(&past).unwrap_or_default();
-            self.hub().board.past(past.interaction, &text);
+        let last = self.model.latest().view.as_ref().and_then(|view| view.last.as_ref());
+        let ended = last.map(|last| (last.interaction, last.outcome));
+        if ended != self.ended {
+            self.ended = ended;
+            self.app.history.on_end();
         }
-        self.past.write(self.model.history().past(), now.at);
         for [.., total_ms] in self.model.latency().take_news() {
             self.hub().metrics.latency.observe(total_ms / 1e3);
         }

@@ -5,8 +5,6 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use tokio::sync::watch;
 
-use crate::view_model::history::PAST_MAX;
-
 /// Most lines of the transcript.
 pub const LINES_MAX: usize = 200;
 /// Most interim texts at a time.
@@ -26,8 +24,6 @@ struct State {
     joints: Option<Item>,
     partials: VecDeque<(String, Item)>,
     lines: VecDeque<(u64, Item)>,
-    /// Interactions by number; pages fetch them.
-    past: VecDeque<(u64, Arc<str>)>,
 }
 
 #[derive(Clone, Debug)]
@@ -111,27 +107,6 @@ impl Board {
         self.publish(&mut state);
     }
 
-    /// Adds an interaction to the history, or replaces the one of that number.
-    pub fn past(&self, interaction: u64, text: &str) {
-        let mut state = self.state();
-        match state.past.iter_mut().find(|(known, _)| *known == interaction) {
-            Some((_, before)) => *before = text.into(),
-            None => {
-                if state.past.len() == PAST_MAX {
-                    state.past.pop_front();
-                }
-                state.past.push_back((interaction, text.into()));
-            }
-        }
-    }
-
-    /// Returns the history as a JSON array, oldest first.
-    pub fn history(&self) -> String {
-        let state = self.state();
-        let past: Vec<&str> = state.past.iter().map(|(_, text)| &**text).collect();
-        format!("[{}]", past.join(","))
-    }
-
     /// Returns the number of the first line, 0 for none.
     pub fn first_line(&self) -> u64 {
         self.state().lines.front().map_or(0, |(id, _)| *id)
@@ -213,18 +188,6 @@ mod tests {
         assert_eq!(board.news(&mut cursor), [r#"{"t":"lines","lines":[299,300]}"#]);
         board.line(299, "0");
         assert_eq!(board.news(&mut cursor), [r#"{"t":"lines","lines":[0]}"#]);
-    }
-
-    #[test]
-    fn board_keeps_the_latest_interactions() {
-        let board = Board::default();
-        assert_eq!(board.history(), "[]");
-        board.past(1, "1");
-        board.past(2, "2");
-        board.past(1, "3");
-        assert_eq!(board.history(), "[3,2]");
-        (3..100).for_each(|n| board.past(n, "0"));
-        assert_eq!(board.history().matches('0').count(), PAST_MAX);
     }
 
     #[test]

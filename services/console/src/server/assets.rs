@@ -23,6 +23,7 @@ pub(super) fn find(path: &str) -> Option<&'static Asset> {
         "study" => "study.html",
         "results" => "results.html",
         "audience" => "audience.html",
+        "history" => "history.html",
         "login" => "login.html",
         other => other,
     };

@@ -21,11 +21,13 @@ use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Redirect};
 use axum::routing::get;
 
+use crate::history::History;
 use crate::hub::Hub;
 use crate::hub::outbound::PageSettings;
 use crate::live::Live;
 pub use access::Access;
 use connections::{Gate, Of};
+pub use routes::page_asset;
 
 /// Interval of the server's progress reports.
 const PROGRESS_EVERY: Duration = Duration::from_millis(250);
@@ -35,6 +37,7 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(250);
 pub struct App {
     pub hub: Hub,
     pub live: Live,
+    pub history: Arc<History>,
     pub access: Access,
     pub group: String,
     pub settings: PageSettings,
@@ -76,6 +79,7 @@ fn router(app: Arc<App>) -> Router {
         .route("/ws", get(routes::socket))
         .route("/api/state", get(routes::state))
         .route("/api/history", get(routes::history))
+        .route("/api/history/{interaction}", get(routes::interaction))
         .route("/metrics", get(routes::metrics))
         .route("/robot.urdf", get(routes::urdf))
         .route("/voice/{line}", get(routes::voice))
@@ -144,7 +148,7 @@ async fn address(State(app): State<Arc<App>>, request: Request, next: Next) -> R
 
 /// Adds security headers to an answer to a request that was addressed to `host`: no foreign scripts, no
 /// framing, and no foreign pictures but those of the camera's origin.
-fn secure(headers: &mut HeaderMap, host: Option<&str>, camera: Option<&str>) {
+pub fn secure(headers: &mut HeaderMap, host: Option<&str>, camera: Option<&str>) {
     // `'self'` covers sockets of the same host in newer browsers only.
     let plain =
         |host: &&str| host.bytes().all(|b| b.is_ascii_alphanumeric() || b".-:[]".contains(&b));

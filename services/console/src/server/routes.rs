@@ -9,12 +9,15 @@ use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{ConnectInfo, Path, State};
 use axum::http::{HeaderMap, Method, Response, StatusCode, Uri, header};
 use axum::response::{AppendHeaders, IntoResponse, Redirect};
+use serde::Serialize;
 use service::Span;
 use service::clock;
+use tokio::task::JoinHandle;
 
 use super::connections::Of;
 use super::message::FRAME_BYTES_MAX;
 use super::{Access, App, assets, socket as sockets, unix_s};
+use crate::history::PAGE_MAX;
 use crate::hub::Role;
 use crate::live::{self, protocol::SUBPROTOCOL};
 
@@ -105,9 +108,34 @@ pub(super) async fn state(State(app): State<Arc<App>>) -> Response<Body> {
     (json, app.hub.board.all()).into_response()
 }
 
-pub(super) async fn history(State(app): State<Arc<App>>) -> Response<Body> {
+/// A part of the list of past interactions: `limit` of those before `before`, newest first.
+pub(super) async fn history(State(app): State<Arc<App>>, uri: Uri) -> Response<Body> {
+    let number = |name| form_field(uri.query()?, name)?.parse::<u64>().ok();
+    let before = number("before").unwrap_or(u64::MAX);
+    let limit =
+        number("limit").map_or(PAGE_MAX, |limit| usize::try_from(limit).unwrap_or(PAGE_MAX));
+    let history = Arc::clone(&app.history);
+    as_json(tokio::task::spawn_blocking(move || Some(history.page(before, limit)))).await
+}
+
+/// One interaction with everything that happened in it.
+pub(super) async fn interaction(
+    State(app): State<Arc<App>>,
+    Path(interaction): Path<u64>,
+) -> Response<Body> {
+    let history = Arc::clone(&app.history);
+    as_json(tokio::task::spawn_blocking(move || history.interaction(interaction))).await
+}
+
+/// The result of a blocking task as JSON, 404 where there is none.
+async fn as_json<T: Serialize>(found: JoinHandle<Option<T>>) -> Response<Body> {
     let json = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
-    (json, app.hub.board.history()).into_response()
+    let found = found.await.map(|found| found.map(|found| serde_json::to_string(&found)));
+    match found {
+        Ok(Some(Ok(text))) => (json, text).into_response(),
+        Ok(None) => (StatusCode::NOT_FOUND, "interaction not found\n").into_response(),
+        _ => (StatusCode::INTERNAL_SERVER_ERROR, "the history cannot be read\n").into_response(),
+    }
 }
 
 pub(super) async fn metrics(State(app): State<Arc<App>>) -> Response<Body> {
@@ -164,9 +192,14 @@ pub(super) async fn asset(method: Method, uri: Uri, headers: HeaderMap) -> Respo
     if method != Method::GET && method != Method::HEAD {
         return StatusCode::METHOD_NOT_ALLOWED.into_response();
     }
-    match assets::find(uri.path()) {
-        Some(asset) => asset.respond(&headers),
-        None => missing(&headers),
+    page_asset(uri.path(), &headers)
+}
+
+/// Returns the response to a request for a file of the page.
+pub fn page_asset(path: &str, headers: &HeaderMap) -> Response<Body> {
+    match assets::find(path) {
+        Some(asset) => asset.respond(headers),
+        None => missing(headers),
     }
 }
 

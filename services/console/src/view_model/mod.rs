@@ -4,16 +4,14 @@
 //! restarted repeats its latest); folding one twice changes nothing.
 
 mod examples;
-pub mod history;
 mod latency;
-mod line;
+pub mod line;
 mod listed;
 mod prompts;
 mod sections;
 mod services;
 mod transcript;
 mod turn;
-mod understood;
 
 #[cfg(test)]
 mod tests;
@@ -30,11 +28,11 @@ use service::status::{GroupStatus, ServiceStatus};
 use service::view::{ArmView, DialogueView, HearingView, Latest};
 use service::{Span, Time};
 
-pub use history::History;
 pub use latency::Latency;
 pub use transcript::Transcript;
 use turn::Turn;
 
+use crate::understood;
 use listed::Labels;
 use sections::{SceneSection, SpeakingSection, TrajectorySection, TurnSection, WorldSection};
 pub(crate) use services::missing;
@@ -84,7 +82,6 @@ pub struct ViewModel {
     prompts: prompts::Prompts,
     readings: VecDeque<understood::Readings>,
     transcript: Transcript,
-    history: History,
     latency: Latency,
     /// The turn, and when its state began.
     turn: Option<(Turn, Time)>,
@@ -95,8 +92,8 @@ pub struct ViewModel {
 }
 
 impl ViewModel {
-    /// Makes the view model of a dialogue about `scene`, continuing a transcript and a history.
-    pub fn new(scene: Scene, transcript: Transcript, history: History) -> Self {
+    /// Makes the view model of a dialogue about `scene`, continuing a transcript.
+    pub fn new(scene: Scene, transcript: Transcript) -> Self {
         Self {
             labels: Labels::new(&scene),
             standing: scene.placed().collect(),
@@ -111,7 +108,6 @@ impl ViewModel {
             prompts: prompts::Prompts::default(),
             readings: VecDeque::new(),
             transcript,
-            history,
             latency: Latency::default(),
             turn: None,
             events: Vec::new(),
@@ -150,10 +146,6 @@ impl ViewModel {
         &mut self.transcript
     }
 
-    pub fn history(&mut self) -> &mut History {
-        &mut self.history
-    }
-
     pub fn latency(&mut self) -> &mut Latency {
         &mut self.latency
     }
@@ -174,9 +166,6 @@ impl ViewModel {
         self.is_changed = true;
         if let Some(ended) = &view.last {
             self.transcript.on_end(&self.scene, &self.labels, ended, now);
-        }
-        if view.scene_key == self.scene.key() {
-            self.history.on_view(&view, |i| self.labels.unique(&self.scene, i, "").to_owned(), now);
         }
         self.latest.view = Some(view);
         self.attribute();
@@ -207,7 +196,6 @@ impl ViewModel {
     pub fn on_receipt(&mut self, receipt: &Receipt, now: Now) {
         self.is_changed = true;
         self.latency.on_receipt(receipt);
-        self.history.on_receipt(receipt);
         self.latest.on_receipt(receipt);
         if self.transcript.on_receipt(receipt, now) && receipt.seq > 0 {
             self.events.push(DialogueEvent::Heard(Box::new(*receipt)));
@@ -233,7 +221,9 @@ impl ViewModel {
         let attributed = &view.attributed;
         let readings = self.readings.iter().find(|known| known.seq == attributed.utterance);
         if let Some(readings) = readings {
-            let understood = readings.attribute(attributed, &self.prompts);
+            let understood = readings.attribute(attributed, |prompt, presentation| {
+                self.prompts.find(prompt, presentation).map(|prompt| prompt.text.clone())
+            });
             self.transcript.on_understood(attributed.utterance.0, understood);
         }
     }

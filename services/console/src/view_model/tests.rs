@@ -20,7 +20,7 @@ fn scene() -> Scene {
 }
 
 fn model() -> ViewModel {
-    ViewModel::new(scene(), Transcript::after(Vec::new(), 1_000), History::default())
+    ViewModel::new(scene(), Transcript::after(Vec::new(), 1_000))
 }
 
 fn now(s: u64) -> Now {
@@ -206,8 +206,7 @@ fn transcript_continues_its_predecessor() {
     let mut model = model();
     model.on_receipt(&receipt(1, ReceiptStatus::Accepted, "get me the bowl"), now(1));
     let kept: Vec<Line> = model.transcript().lines().cloned().collect();
-    let mut again =
-        ViewModel::new(scene(), Transcript::after(kept.clone(), 9_000), History::default());
+    let mut again = ViewModel::new(scene(), Transcript::after(kept.clone(), 9_000));
     again.on_receipt(&receipt(1, ReceiptStatus::Accepted, "get me the bowl"), now(1));
     again.on_receipt(&receipt(2, ReceiptStatus::Accepted, "the white one"), now(2));
     let ids: Vec<u64> = again.transcript().lines().map(|line| line.id).collect();

@@ -157,8 +157,8 @@ impl Transcript {
             }
             Outcome::NotHere => "The robot concluded that the object is not here".to_owned(),
         };
-        let s = if ended.questions == 1 { "" } else { "s" };
-        let text = format!("{what} ({} question{s}, {:.1} s)", ended.questions, ended.seconds);
+        let questions = scene::count(ended.questions, "question");
+        let text = format!("{what} ({questions}, {:.1} s)", ended.seconds);
         let line = self.blank(Speaker::System, &text, now);
         self.push(Line { outcome: Some(ended.outcome), note: Some(note), ..line });
     }

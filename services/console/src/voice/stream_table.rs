@@ -52,7 +52,8 @@ impl StreamTable {
             return Ok(FrameKind::Ignore);
         };
         if gap > GAP_MAX {
-            return Err(format!("{gap} samples of a stream are missing; help: begin a new stream"));
+            let gap = scene::count(gap, "sample");
+            return Err(format!("a stream lacks {gap}; help: begin a new stream"));
         }
         entry.next = next;
         Ok(FrameKind::Next(gap))

@@ -76,8 +76,8 @@ impl Decider {
     fn answer(&mut self, line: Line) -> Result<Json, String> {
         let objects = self.problem.scene.objects().len();
         if line.belief.len() != objects {
-            let given = line.belief.len();
-            return Err(format!("belief: {given} probabilities for {objects} objects"));
+            let given = scene::count(line.belief.len(), "probability");
+            return Err(format!("belief: {given} for {}", scene::count(objects, "object")));
         }
         let belief = Belief::from_probabilities(&line.belief).map_err(|e| e.to_string())?;
         let started = Instant::now();

@@ -95,6 +95,9 @@ pub struct ConsoleArgs {
     /// Replace the token first: every browser has to log in again.
     #[arg(long)]
     pub renew: bool,
+    /// Serve a page for an interaction that was saved from the history, until Ctrl-C; no group is needed.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["open", "renew"])]
+    pub view: Option<PathBuf>,
 }
 
 /// Arguments of `logs`.

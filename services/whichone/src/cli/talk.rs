@@ -147,6 +147,12 @@ pub struct JournalArgs {
     /// together, nothing was applied that was not accepted, and the arm took on what was ordered.
     #[arg(long)]
     pub verify: bool,
+    /// First record to list; older files of the journal are read as far as needed.
+    ///
+    /// Without it the newest file is listed. A journal continues in a new file from 1 MiB on, and four
+    /// older files are kept.
+    #[arg(long, value_name = "RECORD", conflicts_with = "verify", requires = "service")]
+    pub since: Option<u64>,
 }
 
 /// Change of the journals.

@@ -89,7 +89,7 @@ pub(super) fn sentence(ended: &Ended) -> String {
         How::NotHere => "concluded that it is not here",
     };
     let object = ended.name.as_ref().map(|name| format!(" {name}")).unwrap_or_default();
-    let questions = words::count(ended.questions.into(), "question");
+    let questions = scene::count(ended.questions, "question");
     format!("{what}{object} after {questions} and {}", words::time(ended.seconds))
 }
 

@@ -6,7 +6,7 @@ use scene::Scene;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
-use super::{paths, words};
+use super::paths;
 use crate::Outcome;
 use crate::cli::CheckArgs;
 use crate::output::{Ink, Output, note, table};
@@ -46,14 +46,14 @@ fn refused(problems: &Diagnostics, out: &mut Output<'_>) -> Outcome {
         out.json(&json!({ "ok": false, "problems": problems }))?;
     } else {
         note(problems);
-        note(words::count(problems.iter().count() as u64, "problem"));
+        note(scene::count(problems.iter().count(), "problem"));
     }
     Ok(Exit::Config)
 }
 
 fn summary(settings: &Settings) -> Vec<String> {
     let Settings { group, dialogue, speech, arm, scene, .. } = settings;
-    let objects = words::count(scene.objects().len() as u64, "object");
+    let objects = scene::count(scene.objects().len(), "object");
     let attributes: Vec<&str> = scene.attributes().iter().map(|a| a.name.as_str()).collect();
     let params = dialogue.params;
     let asks = [

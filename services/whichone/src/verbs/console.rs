@@ -9,6 +9,7 @@ use service::control::Request;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
+use super::inspection::{command, failed};
 use super::operate;
 use crate::Outcome;
 use crate::cli::ConsoleArgs;
@@ -26,6 +27,11 @@ struct Printed {
 
 /// Prints the link, or opens it.
 pub(super) fn console(paths: &GroupPaths, args: &ConsoleArgs, out: &mut Output<'_>) -> Outcome {
+    if let Some(file) = &args.view {
+        let mut viewer = command("console", "view");
+        let status = viewer.arg(file).status().map_err(|error| failed(&viewer, &error))?;
+        return Ok(Exit::of_process(status.code()));
+    }
     if args.renew {
         renew(paths)?;
     }
@@ -89,7 +95,7 @@ mod tests {
     #[test]
     fn link_needs_a_page_that_is_served() {
         let (_home, paths) = super::super::lab();
-        let args = ConsoleArgs { open: false, renew: false };
+        let args = ConsoleArgs { open: false, renew: false, view: None };
         let error = console(&paths, &args, &mut Output::standard(false)).unwrap_err();
         assert!(error.to_string().contains("whichone start console"), "{error}");
     }

@@ -14,7 +14,7 @@ use service::group::{GroupName, GroupPaths};
 use service::inspection::{Condition, Finding};
 use service::shm_cleanup;
 
-use super::{inspection, leftovers, paths as locations, up, words};
+use super::{inspection, leftovers, paths as locations, up};
 use crate::Outcome;
 use crate::cli::ConfigArgs;
 use crate::output::{Ink, Output, Style};
@@ -144,9 +144,7 @@ fn left_behind(paths: &GroupPaths) -> Finding {
     };
     let dead: Vec<&str> = groups.iter().filter(dead).map(|group| group.name().as_str()).collect();
     match dead.as_slice() {
-        [] => {
-            Finding::good(WHAT, format!("none of {}", words::count(groups.len() as u64, "group")))
-        }
+        [] => Finding::good(WHAT, format!("none of {}", scene::count(groups.len(), "group"))),
         [first, ..] => {
             let help = format!("help: remove them with `whichone down --group {first}`");
             Finding::poor(WHAT, format!("of killed groups: {}; {help}", dead.join(", ")))

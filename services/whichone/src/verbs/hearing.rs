@@ -51,8 +51,8 @@ pub(super) fn line(hearing: &Hearing, style: Style) -> String {
             style.paint(Ink::Green, "muted while the robot speaks".to_owned())
         }
         MicrophoneState::Broken => {
-            let restarts = hearing.restarts;
-            style.paint(Ink::Red, format!("not working ({why}; {restarts} attempts)"))
+            let attempts = scene::count(hearing.restarts, "attempt");
+            style.paint(Ink::Red, format!("not working ({why}; {attempts})"))
         }
     };
     let mut line = format!("microphone {microphone}");
@@ -67,7 +67,7 @@ pub(super) fn line(hearing: &Hearing, style: Style) -> String {
         line += &format!("; {text}");
     }
     if hearing.dropped > 0 {
-        line += &format!("; {} utterances lost", hearing.dropped);
+        line += &format!("; {} lost", scene::count(hearing.dropped, "utterance"));
     }
     line
 }

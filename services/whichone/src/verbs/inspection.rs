@@ -10,7 +10,7 @@ use messages::Service;
 use serde_json::json;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
-use service::inspection::{Verdict, count};
+use service::inspection::Verdict;
 use service::journal_set::{self, JournalSet};
 use service::{kept_settings, launch};
 
@@ -34,6 +34,9 @@ pub(super) fn journal(paths: &GroupPaths, args: &JournalArgs, out: &mut Output<'
             let mut command = journal_command(paths, service);
             command.args(args.verify.then_some("--verify"));
             command.args(out.is_json().then_some("--json"));
+            if let Some(since) = args.since {
+                command.args(["--since", &since.to_string()]);
+            }
             let status = command.status().map_err(|error| failed(&command, &error))?;
             Ok(Exit::of_process(status.code()))
         }
@@ -96,7 +99,7 @@ fn verify_all(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
             )?;
             continue;
         }
-        out.line(format_args!("{}: {} verified", service.name(), count(records, "record")))?;
+        out.line(format_args!("{}: {} verified", service.name(), scene::count(records, "record")))?;
         facts.iter().try_for_each(|fact| out.line(format_args!("  {fact}")))?;
     }
     if !out.is_json() {

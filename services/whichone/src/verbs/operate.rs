@@ -127,7 +127,7 @@ fn not_running(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) -> O
     match removed.len() as u64 {
         0 => out.line(format_args!("group {name} is not running"))?,
         files => {
-            let files = words::count(files, "file");
+            let files = scene::count(files, "file");
             out.line(format_args!("group {name} is not running; {files} of it removed"))?;
         }
     }

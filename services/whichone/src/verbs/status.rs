@@ -100,7 +100,7 @@ fn head(status: &GroupStatus, style: Style) -> String {
         head += &format!(" with profile {profile}");
     }
     if status.orphans_killed > 0 {
-        let orphans = words::count(status.orphans_killed.into(), "orphan");
+        let orphans = scene::count(status.orphans_killed, "orphan");
         head += &format!(", {orphans} killed");
     }
     head
@@ -129,7 +129,7 @@ fn remarks(service: &ServiceStatus) -> String {
         .as_ref()
         .map(|exit| format!("last ended {} ago with {}", words::time(exit.age_s), exit.text));
     let rejected = (service.rejected > 0)
-        .then(|| format!("{} rejected", words::count(service.rejected, "message")));
+        .then(|| format!("{} rejected", scene::count(service.rejected, "message")));
     let help = service.help().map(|help| format!("help: {help}"));
     let remarks = [service.why.clone(), service.says.clone(), swapped, rejected, exit, help];
     remarks.into_iter().flatten().collect::<Vec<_>>().join("; ")

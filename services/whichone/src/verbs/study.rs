@@ -61,7 +61,9 @@ fn conduct(args: &StudyArgs, setup: &Setup, rows: &[Row]) -> Vec<Tally> {
     let seconds = began.elapsed().as_secs_f64();
     let done = args.interactions.get() as f64 * rows.len() as f64;
     note(format_args!(
-        "{done} interactions in {seconds:.1} s on {threads} threads, {:.0} a second",
+        "{} in {seconds:.1} s on {}, {:.0} a second",
+        scene::count(done, "interaction"),
+        scene::count(threads, "thread"),
         done / seconds.max(1e-9)
     ));
     tallies

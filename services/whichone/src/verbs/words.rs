@@ -35,11 +35,6 @@ pub(super) fn hindrance(hindrance: MotionInhibit) -> Option<&'static str> {
     }
 }
 
-/// A count with its noun, e.g. `1 question`, `2 questions`.
-pub(super) fn count(number: u64, noun: &str) -> String {
-    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
-}
-
 /// Renders the value of a decision and the bounds of the best one, e.g. `value 33.97, best
 /// 33.97 to 33.98`.
 pub(super) fn value(value: f64, bounds: Option<(f64, f64)>) -> String {
@@ -77,9 +72,5 @@ mod tests {
     #[test]
     fn amounts_have_units() {
         assert_eq!((memory(3482), memory(2 << 20)), ("3.4 MiB".into(), "2.0 GiB".into()));
-        assert_eq!(
-            (count(1, "question"), count(0, "question")),
-            ("1 question".into(), "0 questions".into())
-        );
     }
 }

@@ -76,12 +76,16 @@ impl Store<u32> for Disk {
     fn bytes(&self) -> u64 {
         self.get(|state| state.bytes)
     }
+
+    fn next_seq(&self) -> u64 {
+        1
+    }
 }
 
 type Outputs = Vec<&'static str>;
 
 fn start(disk: &Disk) -> Commit<&'static str, u32> {
-    Commit::start(Some(disk.clone()), "/nowhere".into()).unwrap()
+    Commit::start(Some(disk.clone()), Path::new("/nowhere/fixture.journal")).unwrap()
 }
 
 fn pass(
@@ -211,7 +215,8 @@ fn long_journal_is_rotated_when_all_is_durable_and_a_failure_is_tried_again_late
 
 #[test]
 fn stateless_service_publishes_at_once() {
-    let mut commit = Commit::<&str, u32>::start(None::<Disk>, "/nowhere".into()).unwrap();
+    let mut commit =
+        Commit::<&str, u32>::start(None::<Disk>, Path::new("/nowhere/fixture.journal")).unwrap();
     assert_eq!(pass(&mut commit, &[], &["seen"]), ["seen"]);
     assert!(commit.is_settled() && !commit.is_behind() && !commit.wants_snapshot());
 }

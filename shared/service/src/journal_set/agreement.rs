@@ -10,7 +10,7 @@ use messages::Service;
 use super::JournalSet;
 use crate::exit::{Exit, Failure};
 use crate::group::GroupPaths;
-use crate::inspection::{SharedFacts, Verdict, count};
+use crate::inspection::{SharedFacts, Verdict};
 use crate::launch::program_of;
 
 /// A journal that lacks what another one rests on.
@@ -61,7 +61,7 @@ pub fn agree(set: &JournalSet, [speech, policy, arm]: [SharedFacts; 3]) -> Resul
         );
         return Err(Behind { what, behind: Service::Arm });
     }
-    let picks = count(known.len() as u64, "pick");
+    let picks = scene::count(known.len(), "pick");
     Ok(format!("nothing applied that was not accepted, {picks} as ordered, epoch {}", set.epoch))
 }
 

@@ -23,7 +23,7 @@ pub struct DialogueView<'a> {
     /// Kind of the decision in force.
     pub decision: ActKind,
     /// The question in force; none where it is of another scene.
-    pub question: Option<QuestionView<'a>>,
+    pub question: Option<QuestionView<&'a str>>,
     /// Prompt of the robot's latest line, 0 for none.
     pub prompt: u64,
     /// The robot's latest line.
@@ -58,53 +58,53 @@ pub struct UserView {
 }
 
 /// A question, in the scene's names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
-pub enum QuestionView<'a> {
+pub enum QuestionView<Name> {
     /// No question.
     None,
     /// "Is it this one?"
     Point {
         /// The object's name.
-        object: &'a str,
+        object: Name,
     },
     /// "Is it white?"
     Attr {
         /// The attribute's name.
-        attribute: &'a str,
+        attribute: Name,
         /// The value's name.
-        value: &'a str,
+        value: Name,
     },
     /// "What colour is it?"
     Which {
         /// The attribute's name.
-        attribute: &'a str,
+        attribute: Name,
     },
 }
 
 /// An action, in the scene's names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
-pub enum ActionView<'a> {
+pub enum ActionView<Name> {
     /// Do nothing for a turn.
     Wait,
     /// Fetch an object.
     Pick {
         /// The object's name.
-        object: &'a str,
+        object: Name,
     },
     /// Conclude that the wanted object is not here.
     NotHere,
     /// Ask a question.
     #[serde(untagged)]
-    Ask(QuestionView<'a>),
+    Ask(QuestionView<Name>),
 }
 
 /// An action that the planner has weighed.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct AlternativeView<'a> {
     /// The action.
-    pub action: ActionView<'a>,
+    pub action: ActionView<&'a str>,
     /// Its expected discounted return.
     pub value: f64,
 }
@@ -184,13 +184,13 @@ impl<'a> DeliveryView<'a> {
     }
 }
 
-impl<'a> ActionView<'a> {
+impl<'a, Name: From<&'a str>> ActionView<Name> {
     /// Names an action's parts.
     pub fn new(scene: &'a Scene, action: Action) -> Self {
         match action {
             Action::Wait => Self::Wait,
             Action::Pick(object) => match scene.objects().get(object.index()) {
-                Some(object) => Self::Pick { object: &object.name },
+                Some(object) => Self::Pick { object: object.name.as_str().into() },
                 None => Self::NotHere,
             },
             Action::Ask(question) => {
@@ -200,22 +200,24 @@ impl<'a> ActionView<'a> {
     }
 }
 
-impl<'a> QuestionView<'a> {
+impl<'a, Name: From<&'a str>> QuestionView<Name> {
     /// Names a question's parts; none where it is not of this scene.
     pub fn new(scene: &'a Scene, question: Question) -> Option<Self> {
         scene.contains(question).then(|| match question {
             Question::None => Self::None,
-            Question::Point(object) => Self::Point { object: &scene.object(object).name },
+            Question::Point(object) => {
+                Self::Point { object: scene.object(object).name.as_str().into() }
+            }
             Question::Attribute(attribute, value) => {
                 let attribute = &scene.attributes()[attribute.index()];
                 Self::Attr {
-                    attribute: &attribute.name,
-                    value: &attribute.values[value.index()].name,
+                    attribute: attribute.name.as_str().into(),
+                    value: attribute.values[value.index()].name.as_str().into(),
                 }
             }
-            Question::Which(attribute) => {
-                Self::Which { attribute: &scene.attributes()[attribute.index()].name }
-            }
+            Question::Which(attribute) => Self::Which {
+                attribute: scene.attributes()[attribute.index()].name.as_str().into(),
+            },
         })
     }
 }

@@ -1,95 +1,186 @@
 // @ts-check
 /**
- * @typedef {object} Step
- * @property {number} after_ms since the interaction began
- * @property {{seq: number, text: string}[]} heard
- * @property {number[]} belief in the order of the interaction's objects
- * @property {number} absent
- * @property {string} decision
- * @property {string} text the robot's line
+ * What the server has of an interaction; see docs/console.md.
+ * @typedef {object} Moment
+ * @property {number} after_ms since the first words
+ * @property {any} event its `type`, and what belongs to it
+ * @property {{belief: number[], absent: number, decision: any}|null} thought none where it changed neither
  *
- * @typedef {object} Past
+ * @typedef {object} End
+ * @property {string} outcome
+ * @property {{name: string, label: string}|null} object
+ * @property {number} questions
+ * @property {number} duration_s
+ *
+ * @typedef {object} Interaction
  * @property {number} interaction
- * @property {number} unix_ms
- * @property {string[]} objects short descriptions
- * @property {Step[]} steps
- * @property {{outcome: string, object: string|null, questions: number, seconds: number}|null} end
+ * @property {number|null} unix_ms
+ * @property {boolean} whole
+ * @property {{name: string, label: string}[]} objects
+ * @property {Moment[]} moments
+ * @property {number} left_out
+ * @property {End|null} end
  *
- * @typedef {object} Place in the history
- * @property {number} interaction 0: nowhere
- * @property {number} step from 0; the end is one beyond the last
+ * @typedef {object} Summary
+ * @property {number} interaction
+ * @property {number|null} unix_ms
+ * @property {string} text
+ * @property {End|null} end
  */
-
-/** Nowhere: before anything was chosen. @type {Place} */
-export const NOWHERE = { interaction: 0, step: 0 };
-
-/** Number of places in an interaction: its steps, and its end. @param {Past} past */
-export const placesIn = (past) => past.steps.length + (past.end ? 1 : 0);
 
 /**
- * A place that exists: the nearest to the one that was, or the beginning of the newest interaction.
- * @param {Past[]} history oldest first
- * @param {Place} at
- * @returns {Place}
+ * A place in an interaction: a moment, or its end.
+ * @typedef {object} Step
+ * @property {number} after_ms
+ * @property {any} event of type `end` for the end
+ * @property {any} thought the latest up to here, null before the first
+ * @property {number[]|null} before the belief one step earlier
+ * @property {string} line what the robot said here, if anything
  */
-export function settle(history, at) {
-  const past = history.find(({ interaction }) => interaction === at.interaction);
-  if (past) return { ...at, step: Math.max(0, Math.min(at.step, placesIn(past) - 1)) };
-  const newest = history.at(-1);
-  return newest ? { interaction: newest.interaction, step: 0 } : NOWHERE;
+
+/**
+ * The places of an interaction in the order of time.
+ * @param {Interaction} past
+ * @returns {Step[]}
+ */
+export function stepsOf(past) {
+  /** @type {Step[]} */
+  const steps = [];
+  let thought = null;
+  let said = "";
+  for (const moment of past.moments) {
+    const before = thought?.belief ?? null;
+    thought = moment.thought ?? thought;
+    const { prompt, presentation, text } = moment.thought?.decision ?? {};
+    const line = text ? `${prompt}.${presentation} ${text}` : said;
+    const isNew = line !== said;
+    said = line;
+    steps.push({ ...moment, thought, before, line: isNew ? text : "" });
+  }
+  if (past.end) {
+    // The policy's last step ended it; the arm returns to rest afterwards.
+    const last = past.moments.findLastIndex((moment) => moment.thought !== null);
+    const place = last < 0 ? steps.length : last + 1;
+    const after_ms = steps[place - 1]?.after_ms ?? past.end.duration_s * 1_000;
+    const event = { type: "end", ...past.end };
+    steps.splice(place, 0, { after_ms, event, thought, before: thought?.belief ?? null, line: "" });
+  }
+  return steps;
 }
 
 /**
- * Goes forwards or backwards by one step, over the borders of interactions.
- * @param {Past[]} history
- * @param {Place} at
- * @param {1|-1} by
- * @returns {Place} the same where there is none
+ * The place after a move, within the interaction.
+ * @param {number} count of its places
+ * @param {number} at
+ * @param {number} by
  */
-export function step(history, at, by) {
-  const n = history.findIndex(({ interaction }) => interaction === at.interaction);
-  if (n < 0) return settle(history, at);
-  const next = at.step + by;
-  if (next >= 0 && next < placesIn(history[n])) return { ...at, step: next };
-  const other = history[n + by];
-  if (!other || placesIn(other) === 0) return at;
-  return { interaction: other.interaction, step: by > 0 ? 0 : placesIn(other) - 1 };
+export const move = (count, at, by) => Math.max(0, Math.min(count - 1, at + by));
+
+/**
+ * Words for what happened: a key of the strings with its arguments.
+ * @param {any} event
+ * @param {Interaction} past
+ * @returns {{key: string, args: Record<string, any>}}
+ */
+export function eventWords(event, past) {
+  const label = (name) => past.objects.find((object) => object.name === name)?.label ?? name;
+  if (event.type === "end") return endWords(event);
+  if (event.type === "pick_ended") {
+    return { key: `history.pick.${event.outcome}`, args: {} };
+  }
+  if (event.type !== "arm") return { key: `history.event.${event.type}`, args: {} };
+  const { cause, pick } = event;
+  const args = { object: label(pick.object) };
+  if (cause.type === "motion") return { key: `history.arm.${cause.order}`, args };
+  if (["missed", "rested", "blocked"].includes(cause.type)) {
+    return { key: `history.arm.${cause.type}`, args };
+  }
+  if (pick.phase === "done") return { key: `history.pick.${pick.outcome}`, args };
+  const task = pick.task === "put_back" ? "put_back." : "";
+  return { key: `history.arm.${task}${pick.phase}`, args };
 }
 
 /**
- * Goes to the beginning of the next or the previous interaction.
- * @param {Past[]} history
- * @param {Place} at
- * @param {1|-1} by
- * @returns {Place}
+ * Words for the end of an interaction, or that there is none yet.
+ * @param {End|null} end
  */
-export function leap(history, at, by) {
-  const n = history.findIndex(({ interaction }) => interaction === at.interaction);
-  const other = history[n + by];
-  return n >= 0 && other ? { interaction: other.interaction, step: 0 } : settle(history, at);
+export function endWords(end) {
+  if (!end) return { key: "history.open", args: {} };
+  return { key: `history.${end.outcome}`, args: { object: end.object?.label ?? "" } };
 }
 
-/** What each key does. @type {Record<string, (history: Past[], at: Place) => Place>} */
-export const KEYS = {
-  ArrowLeft: (history, at) => step(history, at, -1),
-  ArrowRight: (history, at) => step(history, at, 1),
-  ArrowUp: (history, at) => leap(history, at, 1),
-  ArrowDown: (history, at) => leap(history, at, -1),
-  Home: (_, at) => ({ ...at, step: 0 }),
-  End: (history, at) => settle(history, { ...at, step: Number.MAX_SAFE_INTEGER }),
-};
+/** Who acted: its drawing and its colour. @param {any} event */
+export function actorOf(event) {
+  if (event.type === "heard") return "person";
+  if (event.type === "arm" || event.type === "pick_ended") return "arm";
+  return event.type === "end" ? "end" : "system";
+}
 
 /**
- * What is shown of a place.
- * @param {Past[]} history
- * @param {Place} at
- * @returns {{past: Past, step: Step|null, isEnd: boolean, before: number[]|null}|null} `step`: at the
- *   end that of the last decision; `before`: the belief one step earlier
+ * A decision as the reasons are drawn from.
+ * @param {any} decision
  */
-export function shownAt(history, at) {
-  const past = history.find(({ interaction }) => interaction === at.interaction);
-  if (!past) return null;
-  const isEnd = at.step >= past.steps.length;
-  const k = Math.min(at.step, past.steps.length - 1);
-  return { past, step: past.steps[k] ?? null, isEnd, before: past.steps[k - 1]?.belief ?? null };
+export function reasonsOf(decision) {
+  return {
+    decision: decision.type,
+    question: decision.question,
+    value: decision.value_s,
+    bounds: decision.bounds_s,
+    expected_questions: decision.expected_questions,
+    alternatives: decision.alternatives.map(({ action, value_s }) => ({ action, value: value_s })),
+  };
+}
+
+/** What a shared file is marked with. */
+export const FORMAT = "whichone.interaction/1";
+
+/**
+ * The text of a file with one interaction.
+ * @param {Interaction} past
+ * @param {{group: string, version: string}} from
+ */
+export function fileOf(past, { group, version }) {
+  return `${JSON.stringify({ format: FORMAT, group, version, ...past }, null, 1)}\n`;
+}
+
+/**
+ * The interaction in a file that was shared.
+ * @param {string} text
+ * @returns {Interaction|null} null: it is another file
+ */
+export function interactionOf(text) {
+  try {
+    const file = JSON.parse(text);
+    const isWhole =
+      file.format === FORMAT &&
+      Number.isSafeInteger(file.interaction) &&
+      isListOf(file.objects, ({ name, label }) => isText(name) && isText(label)) &&
+      isListOf(file.moments, isMoment) &&
+      (file.end === null || (isText(file.end?.outcome) && isNumber(file.end.duration_s)));
+    return isWhole ? file : null;
+  } catch {
+    return null;
+  }
+}
+
+const isText = (value) => typeof value === "string";
+const isNumber = (value) => Number.isFinite(value);
+const isListOf = (value, fits) => Array.isArray(value) && value.every(fits);
+
+function isMoment({ after_ms, event, thought }) {
+  const isKnown =
+    thought === null || (isListOf(thought?.belief, isNumber) && isDecision(thought.decision));
+  const heard =
+    event?.type !== "heard" || (isListOf(event.readings, isShare) && isText(event.text));
+  const answers =
+    event?.type !== "heard" || isListOf(event.answers, ({ share }) => isNumber(share));
+  const arm = event?.type !== "arm" || (isText(event.pick?.phase) && isText(event.cause?.type));
+  return isNumber(after_ms) && isText(event?.type) && isKnown && heard && answers && arm;
+}
+
+const isShare = ({ text, weight }) => isText(text) && isNumber(weight);
+
+function isDecision(decision) {
+  const fits = ({ action, value_s }) => isText(action?.type) && isNumber(value_s);
+  return isText(decision?.type) && isListOf(decision.alternatives, fits);
 }

@@ -11,7 +11,7 @@ use recording::list::entries;
 use recording::recover::merge;
 use serde_json::json;
 use service::exit::{Exit, Failure};
-use service::inspection::{JournalLine, count};
+use service::journal_record::JournalLine;
 
 use super::super::inspection::{command, failed};
 use super::super::record::failure;
@@ -44,7 +44,7 @@ pub(super) fn export(args: &McapArgs, out: &mut Output<'_>) -> Outcome {
         true => out.json(&json!({ "file": to, "messages": messages }))?,
         false => {
             let noun = if journals.is_empty() { "message" } else { "record" };
-            out.line(format_args!("{}: {}", to.display(), count(messages, noun)))?;
+            out.line(format_args!("{}: {}", to.display(), scene::count(messages, noun)))?;
         }
     }
     Ok(Exit::Ok)
@@ -81,8 +81,8 @@ fn journals_in(source: &Path) -> Vec<(Service, PathBuf)> {
     Service::JOURNALED.into_iter().filter_map(of).collect()
 }
 
-/// The records of a journal. Their times are those of the monotonic clock; the last record was written
-/// when the file last changed, which gives the others' wall time.
+/// The records of a journal. Where their wall time is not known, the last record was written when the file
+/// last changed, which gives that of the others.
 fn records_of(service: Service, file: &Path) -> Result<Vec<Entry>, Failure> {
     let mut program: Command = command(service.name(), "journal");
     program.arg(file).arg("--json").stderr(Stdio::inherit());
@@ -104,12 +104,15 @@ fn records_of(service: Service, file: &Path) -> Result<Vec<Entry>, Failure> {
     let changed = changed.map_err(|error| Failure::file(file, &error))?;
     let changed_ns = changed.duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos() as u64;
     let offset_ns = changed_ns.saturating_sub(lines.last().map_or(0, |line| line.at_ns));
-    let entry = |line: JournalLine| Entry {
-        service: service.name().to_owned(),
-        seq: line.seq,
-        at_ns: line.at_ns + offset_ns,
-        text: line.text,
-        record: line.record,
+    let entry = |line: JournalLine| {
+        let known_ns = line.unix_ms.map(|ms| ms * 1_000_000);
+        Some(Entry {
+            service: service.name().to_owned(),
+            seq: line.seq,
+            at_ns: known_ns.unwrap_or(line.at_ns + offset_ns),
+            text: line.text,
+            record: serde_json::to_value(line.record).ok()?,
+        })
     };
-    Ok(lines.into_iter().map(entry).collect())
+    Ok(lines.into_iter().filter_map(entry).collect())
 }

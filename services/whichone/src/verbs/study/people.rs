@@ -11,7 +11,7 @@ use super::write;
 use crate::Outcome;
 use crate::cli::ReportArgs;
 use crate::output::{Output, note, table};
-use crate::verbs::{paths, words};
+use crate::verbs::paths;
 
 /// Reads the data and prints the results.
 pub(crate) fn report(paths: &GroupPaths, args: &ReportArgs, out: &mut Output<'_>) -> Outcome {
@@ -81,7 +81,7 @@ fn lines(report: &Report) -> Vec<String> {
         format!("interactions that count: {}", report.all.interactions()),
     ];
     if report.faults > 0 {
-        let faults = words::count(report.faults, "interaction");
+        let faults = scene::count(report.faults, "interaction");
         lines.push(format!("{faults} spoilt and repeated"));
     }
     if report.scenes.len() > 1 {

@@ -81,7 +81,7 @@ fn dialogue(scene: &Scene, view: &PolicyView, style: Style, columns: usize) -> V
     let mut lines = vec![match view.interaction {
         0 => "nothing is asked for".to_owned(),
         id => {
-            let asked = words::count(view.questions.into(), "question");
+            let asked = scene::count(view.questions, "question");
             format!("interaction {id}: {asked} asked, {:.1} to come", view.expected_questions)
         }
     }];

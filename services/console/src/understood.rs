@@ -1,0 +1,105 @@
+//! The meaning of an utterance in words, weighted by the policy's attribution.
+
+use dialogue::{Attributed, rendering};
+use messages::{Observation, UtteranceSeq};
+use scene::Scene;
+use service::journal_record::InterpretationRecord;
+
+use crate::view_model::line::{Answered, Meaning};
+
+/// Most meanings and questions that are shown.
+const SHOWN_MAX: usize = 4;
+/// Less probable ones are not shown.
+const WEIGHT_MIN: f64 = 0.01;
+
+/// The readings of an utterance before its attribution is known.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Readings {
+    pub(crate) seq: UtteranceSeq,
+    readings: Vec<WeightedReading>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct WeightedReading {
+    text: String,
+    /// Probability among the readings that answer the same question.
+    weight: f64,
+    /// Prompt and presentation of that question.
+    answers: Option<(u64, u32)>,
+}
+
+/// The displayed view of an utterance.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Understood {
+    pub(crate) meanings: Vec<Meaning>,
+    pub(crate) answers: Vec<Answered>,
+}
+
+/// Reads an observation; none if it is of another scene or invalid.
+pub(crate) fn read(scene: &Scene, observation: &Observation) -> Option<Readings> {
+    if observation.scene_key != scene.key() {
+        return None;
+    }
+    let interpretations = observation.interpretations(scene.words().len()).ok()?;
+    let asked = observation.asked().ok()?;
+    let readings = interpretations.iter().map(|interpretation| WeightedReading {
+        text: rendering::reading(scene, &interpretation.reading),
+        weight: interpretation.weight,
+        answers: (interpretation.answers)
+            .and_then(|at| asked.get(at))
+            .map(|asked| (asked.prompt, asked.presentation)),
+    });
+    let seq = UtteranceSeq(observation.seq);
+    Some(Readings { seq, readings: readings.collect() })
+}
+
+impl Readings {
+    /// The readings of an utterance in the policy's journal.
+    pub(crate) fn of_records(utterance: u64, interpretations: &[InterpretationRecord]) -> Self {
+        let readings = interpretations.iter().map(|one| WeightedReading {
+            text: one.text.clone(),
+            weight: one.weight,
+            answers: one.answers.map(|answered| (answered.prompt, answered.presentation)),
+        });
+        Self { seq: UtteranceSeq(utterance), readings: readings.collect() }
+    }
+
+    /// Weights the readings by the shares of the questions that they answer, as the belief does.
+    /// `line` returns the words of a presentation of a question.
+    pub(crate) fn attribute(
+        &self,
+        attributed: &Attributed,
+        line: impl Fn(u64, u32) -> Option<String>,
+    ) -> Understood {
+        let share = |answers: Option<(u64, u32)>| match answers {
+            None => attributed.none,
+            Some(key) => (attributed.questions.iter())
+                .find(|question| (question.prompt.0, question.presentation) == key)
+                .map_or(0.0, |question| question.share),
+        };
+        let mut meanings: Vec<Meaning> = Vec::new();
+        for reading in &self.readings {
+            let weight = reading.weight * share(reading.answers);
+            match meanings.iter_mut().find(|known| known.text == reading.text) {
+                Some(known) => known.weight += weight,
+                None => meanings.push(Meaning { text: reading.text.clone(), weight }),
+            }
+        }
+        meanings.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+        meanings.retain(|meaning| meaning.weight >= WEIGHT_MIN);
+        meanings.truncate(SHOWN_MAX);
+        meanings.iter_mut().for_each(|meaning| meaning.weight = rounded(meaning.weight));
+        let mut shares = attributed.questions.clone();
+        shares.sort_by(|a, b| b.share.total_cmp(&a.share));
+        let answers = shares.iter().filter(|question| question.share >= WEIGHT_MIN);
+        let answers = answers.filter_map(|question| {
+            let text = line(question.prompt.0, question.presentation)?;
+            Some(Answered { question: text, share: rounded(question.share) })
+        });
+        Understood { meanings, answers: answers.take(SHOWN_MAX).collect() }
+    }
+}
+
+fn rounded(weight: f64) -> f64 {
+    (weight * 1e3).round() / 1e3
+}

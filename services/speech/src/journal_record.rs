@@ -1,0 +1,154 @@
+//! The speech service's journal records for programs.
+
+use config::Settings;
+use dialogue::Presentation;
+use service::journal_record::{AcceptedRecord, PresentationRecord, SpeechRecord};
+use service::view::QuestionView;
+
+use crate::record::{Accepted, Record};
+
+/// Translates a record; questions of an unknown scene are left out.
+pub(crate) fn explain(settings: &[Settings], record: &Record) -> SpeechRecord {
+    match record {
+        Record::Accepted(accepted) => SpeechRecord::Accepted(accepted_record(settings, accepted)),
+        Record::Presented(put) => SpeechRecord::Presented(presentation(settings, put)),
+    }
+}
+
+fn accepted_record(settings: &[Settings], accepted: &Accepted) -> AcceptedRecord {
+    let best = accepted.hypotheses.first();
+    let total: f64 = accepted.hypotheses.iter().map(|one| one.weight).sum();
+    AcceptedRecord {
+        utterance: accepted.seq.0,
+        text: best.map(|best| best.text.clone()).unwrap_or_default(),
+        confidence: best.map_or(1.0, |best| best.weight / total),
+        hypotheses: accepted.hypotheses.clone(),
+        source: accepted.source,
+        gesture_m: accepted.gesture,
+        asked: accepted.asked.iter().map(|put| presentation(settings, put)).collect(),
+        onset_ns: accepted.onset.ns(),
+        end_ns: accepted.end.ns(),
+        snr_db: Some(accepted.snr_db).filter(|snr_db| *snr_db != 0.0),
+        segment: accepted.segment.0,
+        segments: accepted.segment.1,
+        key: accepted.key.0.iter().map(|byte| format!("{byte:02x}")).collect(),
+    }
+}
+
+fn presentation(settings: &[Settings], put: &Presentation) -> PresentationRecord {
+    let mut scenes = settings.iter().map(|settings| &settings.scene);
+    let scene = scenes.find(|scene| scene.key() == put.scene);
+    PresentationRecord {
+        prompt: put.prompt.0,
+        presentation: put.number,
+        question: scene.and_then(|scene| QuestionView::new(scene, put.question)),
+        began_ns: put.began.ns(),
+        ended_ns: put.ended.map(|ended| ended.ns()),
+        complete: put.complete,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use messages::{Hypothesis, PromptId, RequestKey, Source, UtteranceSeq};
+    use scene::{AttributeId, Question, ValueId};
+    use service::Time;
+    use service::journal_record::{JournalLine, JournalRecord};
+
+    use super::*;
+    use crate::inspection;
+
+    const GOLDEN: &str =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/journal_speech.jsonl");
+
+    fn settings() -> Settings {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config");
+        Settings::load(folder.as_ref(), None, &[]).unwrap()
+    }
+
+    fn records(scene: u64) -> Vec<Record> {
+        let second = 1_000_000_000;
+        let typed = Accepted {
+            seq: UtteranceSeq(1),
+            key: RequestKey([0xab; 16]),
+            segment: (0, 1),
+            hypotheses: vec![Hypothesis::certain("get me the white bowl")],
+            gesture: None,
+            source: Source::Text,
+            asked: Vec::new(),
+            onset: Time(second),
+            end: Time(second),
+            snr_db: 0.0,
+            accepted: Time(second),
+        };
+        let put = Presentation {
+            prompt: PromptId(1),
+            number: 1,
+            question: Question::Attribute(AttributeId(0), ValueId(0)),
+            scene,
+            began: Time(2 * second),
+            ended: Some(Time(3 * second)),
+            complete: true,
+        };
+        let word = |text: &str, weight| Hypothesis {
+            text: text.to_owned(),
+            weight,
+            word_confidence: vec![0.5],
+        };
+        let spoken = Accepted {
+            seq: UtteranceSeq(2),
+            hypotheses: vec![word("yes", 3.0), word("yet", 1.0)],
+            source: Source::Microphone,
+            asked: vec![put],
+            onset: Time(3 * second + second / 2),
+            end: Time(4 * second),
+            snr_db: 18.5,
+            accepted: Time(4 * second),
+            ..typed.clone()
+        };
+        let pointed = Accepted {
+            seq: UtteranceSeq(3),
+            hypotheses: Vec::new(),
+            source: Source::Gesture,
+            gesture: Some([0.5, 0.25, 0.0]),
+            ..typed.clone()
+        };
+        let cut_short = Presentation { prompt: PromptId(2), complete: false, ..put };
+        vec![
+            Record::Accepted(typed),
+            Record::Presented(put),
+            Record::Accepted(spoken),
+            Record::Presented(cut_short),
+            Record::Accepted(pointed),
+        ]
+    }
+
+    /// Programs read it. `WHICHONE_BLESS=1` rewrites the golden file.
+    #[test]
+    fn records_for_programs_match_the_golden_file() {
+        let settings = [settings()];
+        let mut found = String::new();
+        for (n, record) in records(settings[0].scene.key()).iter().enumerate() {
+            let at_ns = inspection::recorded_at(record).ns();
+            let line = JournalLine {
+                seq: n as u64 + 1,
+                at_ns,
+                unix_ms: Some(1_700_000_000_000 + at_ns / 1_000_000),
+                text: inspection::line(record),
+                record: JournalRecord::Speech(Box::new(explain(&settings, record))),
+            };
+            found += &(serde_json::to_string(&line).unwrap() + "\n");
+        }
+        if std::env::var_os("WHICHONE_BLESS").is_some() {
+            std::fs::write(GOLDEN, &found).unwrap();
+        }
+        let golden = std::fs::read_to_string(GOLDEN).unwrap_or_default();
+        assert_eq!(found, golden, "if the change is intended, run this test with WHICHONE_BLESS=1");
+    }
+
+    #[test]
+    fn question_of_an_unknown_scene_is_left_out() {
+        let explained = explain(&[], &records(7)[1]);
+        assert!(matches!(explained, SpeechRecord::Presented(put) if put.question.is_none()));
+    }
+}

@@ -1,0 +1,62 @@
+use messages::{Hypothesis, Source};
+use serde::{Deserialize, Serialize};
+
+use crate::view::QuestionView;
+
+/// A record of the speech service.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum SpeechRecord {
+    /// An utterance was accepted.
+    Accepted(AcceptedRecord),
+    /// A line of the robot was spoken, to its end or until it was interrupted.
+    Presented(PresentationRecord),
+}
+
+/// An accepted utterance.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AcceptedRecord {
+    /// Its number.
+    pub utterance: u64,
+    /// The words as they were most likely said; empty for a gesture without words.
+    pub text: String,
+    /// Probability of these words among the hypotheses.
+    pub confidence: f64,
+    /// Every hypothesis, most likely first.
+    pub hypotheses: Vec<Hypothesis>,
+    /// Where it came from.
+    pub source: Source,
+    /// The point that was pointed at, metres, frame `base`.
+    pub gesture_m: Option<[f64; 3]>,
+    /// The latest questions whose sound had begun by then, newest first.
+    pub asked: Vec<PresentationRecord>,
+    /// When the speech began.
+    pub onset_ns: u64,
+    /// When the speech ended.
+    pub end_ns: u64,
+    /// Signal-to-noise ratio, decibels; none for text.
+    pub snr_db: Option<f32>,
+    /// Which part of the client's sound it is, from 0, and how many there are.
+    pub segment: u32,
+    /// Number of parts of the client's sound; 0 while that is not known.
+    pub segments: u32,
+    /// The client's key of the request, hexadecimal.
+    pub key: String,
+}
+
+/// One presentation of a line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PresentationRecord {
+    /// Number of the line.
+    pub prompt: u64,
+    /// Which presentation of it, from 1.
+    pub presentation: u32,
+    /// The question; none where its scene is no longer known.
+    pub question: Option<QuestionView<String>>,
+    /// When its sound began.
+    pub began_ns: u64,
+    /// When its sound ended; none while it lasts.
+    pub ended_ns: Option<u64>,
+    /// Whether it was said to its end.
+    pub complete: bool,
+}
