@@ -93,7 +93,7 @@ fn detached_group_starts_and_stops() {
     assert_eq!(status.state, GroupState::Ready);
     assert_eq!(status.scene, "bowls");
     let names: Vec<&str> = status.services.iter().map(|service| service.name.as_str()).collect();
-    assert_eq!(names, ["speech", "grounding", "policy", "arm", "console"]);
+    assert_eq!(names, ["speech", "grounding", "policy", "arm", "console", "recorder"]);
     assert_eq!(session_of(status.supervisor_pid), status.supervisor_pid, "a session of its own");
     let settings = home.paths.run().join(config::SNAPSHOT_FILE);
     assert!(settings.exists());
