@@ -13,6 +13,8 @@ use crate::understood::Readings;
 
 /// Utterances and lines of the robot that are remembered.
 const REMEMBERED_MAX: usize = 256;
+/// Interactions in memory.
+const RECENT_MAX: usize = 4096;
 /// Moments of an interaction.
 const MOMENTS_MAX: usize = 400;
 /// Objects of a large scene that a moment adds.
@@ -112,6 +114,10 @@ impl Assembler {
             end: None,
         };
         self.recent.insert(number, Begun { opened_ns, interaction });
+        // Without a disk that takes the settled ones.
+        if self.recent.len() > RECENT_MAX {
+            self.recent.pop_first();
+        }
     }
 
     fn add_thought(&mut self, of: u64, at: At, record: &PolicyRecord) {
