@@ -10,6 +10,7 @@ use crate::state::Posture;
 use manipulation::{Joints, Limb, Robot};
 use messages::MotionInhibit;
 use messages::robot::{Order, Report};
+use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 
 /// A robot or its model. The executor commands it a hundred times a second and trusts its sensors, so
@@ -80,7 +81,7 @@ pub trait ArmDriver {
 }
 
 /// Measurements of both limbs, left first.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Joints and fingers.
     pub posture: Posture,
@@ -97,7 +98,7 @@ pub struct Measured {
 }
 
 /// Source of a measurement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Source {
     /// A model: always up to date.
     Model,

@@ -46,6 +46,7 @@ use plan::Planning;
 use preflight::ArmSetup;
 use publish::{Activity, Facts, Publisher};
 use scene::{ObjectId, Scene};
+use serde::{Deserialize, Serialize};
 use service::stop_socket::{Caller, StopState};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use state::{ArmState, Cause, Record};
@@ -54,7 +55,7 @@ use trajectory_view::MotionView;
 use world::World;
 
 /// Inputs of the arm.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum In<'a> {
     /// Act of the policy.
     Act(MessageRef<'a, RobotAct>),
@@ -71,7 +72,7 @@ pub enum In<'a> {
 }
 
 /// Outputs of the arm.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Out {
     /// Progress of a pick and the object aimed at, to policy and speech.
     Status(ArmStatus),
@@ -172,7 +173,7 @@ impl Node for ArmNode {
             Event::Message(In::Act(act)) => self.on_act(&act, now, fx),
             Event::Message(In::Robot(report)) => self.driver.on_report(&report, now),
             Event::Message(In::Planned(planned)) => {
-                self.urgent |= self.planning.on_planned(*planned);
+                self.urgent |= self.planning.on_planned(*planned, &self.config);
             }
             Event::Message(In::Table(table)) => self.lay(&table),
             Event::Tick => self.tick(now, fx),

@@ -1,23 +1,22 @@
 //! Listing and verification of the policy's journal.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use config::Settings;
-use dialogue::manager::{Act, Cause, Manager, Record, refold_since};
+use dialogue::manager::{Act, Cause, Manager, Record, State, refold_since};
 use dialogue::{ActKind, Action, Outcome, PickOutcome, rendering};
 use scene::Scene;
 use service::exit::{Exit, Failure};
+use service::flight::Decision;
 use service::inspection::{Part, SharedFacts, count};
 use service::journal_set::NUMBERS_SKIPPED;
 
 /// Renders a record as one line. Without the scene that it is about, the robot's words are left out.
 pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
     let Record { cause, state, .. } = record;
-    let table = scene.zip(state.table.as_ref());
-    let table = table.map(|(scene, table)| scene.with_objects(&table.objects));
-    // Numbers of another scene have no words here.
-    let scene = table.as_ref().or(scene);
-    let scene = scene.filter(|scene| scene.key() == state.scene_key);
+    let scene = scene.and_then(|scene| scene_of(scene, state));
+    let scene = scene.as_deref();
     let why = match cause {
         Cause::Snapshot => "started over".to_owned(),
         Cause::Utterance(heard) => format!("utterance {}", heard.seq),
@@ -32,13 +31,7 @@ pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
         Cause::MotionStop(false) => "released".to_owned(),
         Cause::SetAside(over) => format!("set aside, {over} over"),
     };
-    let does = match state.act.kind {
-        ActKind::Wait => "wait".to_owned(),
-        kind => {
-            let text = scene.map(|scene| rendering::text(scene, &state.act));
-            format!("{kind:?}: {}", text.unwrap_or_default())
-        }
-    };
+    let does = does(scene, &state.act);
     let where_ = state.open.as_ref().map(|open| {
         let belief = open.belief();
         let best = belief.probability(belief.most_likely());
@@ -46,6 +39,32 @@ pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
     });
     let where_ = where_.as_deref().unwrap_or("at rest");
     format!("{why:<16}  {does}  ({where_}{})", reasons(scene, &state.act))
+}
+
+/// Returns the scene that a state is about: none where that is another one, whose numbers have no words here.
+fn scene_of<'a>(scene: &'a Scene, state: &State) -> Option<Cow<'a, Scene>> {
+    let table = state.table.as_ref().map(|table| scene.with_objects(&table.objects));
+    let scene = table.map_or(Cow::Borrowed(scene), Cow::Owned);
+    (scene.key() == state.scene_key).then_some(scene)
+}
+
+fn does(scene: Option<&Scene>, act: &Act) -> String {
+    match act.kind {
+        ActKind::Wait => "wait".to_owned(),
+        kind => {
+            let text = scene.map(|scene| rendering::text(scene, act));
+            format!("{kind:?}: {}", text.unwrap_or_default())
+        }
+    }
+}
+
+/// The decision of a record, for replays to compare.
+pub(crate) fn decision(scene: &Scene, Record { state, .. }: &Record) -> Decision {
+    let interaction = state.open.as_ref().map_or(0, |open| open.id.0);
+    let what = does(scene_of(scene, state).as_deref(), &state.act);
+    // A mere remark has no value.
+    let value = Some(state.act.value).filter(|value| *value != 0.0);
+    Decision { interaction, what, value }
 }
 
 /// Why the robot decided so: the value with its bounds, the questions to come, and what else it
@@ -198,7 +217,7 @@ fn fold(manager: &mut Manager, part: &Part<Record>, settings_key: u64) -> Result
 
 #[cfg(test)]
 mod tests {
-    use dialogue::manager::{State, Utterance};
+    use dialogue::manager::Utterance;
     use messages::{InteractionId, PickId, UtteranceSeq};
 
     use super::*;

@@ -22,6 +22,7 @@ use messages::{
     Presented, RobotAct, Sighting, Source, TableView, WorldView,
 };
 use perceived::Perceived;
+use serde::{Deserialize, Serialize};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 
 /// Interval at which the standing decision is sent again.
@@ -30,7 +31,7 @@ const RESEND_EVERY: Span = Span::from_ms(250);
 const OUTAGE: Span = Span::from_ms(1_000);
 
 /// Input of the policy.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum In<'a> {
     /// From grounding.
     Observation(MessageRef<'a, Observation>),
@@ -47,7 +48,7 @@ pub enum In<'a> {
 }
 
 /// Output of the policy.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Out {
     /// To speech: the utterances applied.
     Mark(AppliedMark),

@@ -11,6 +11,7 @@ use messages::{
 use service::Time;
 use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
+use service::flight::Decision;
 use service::inspection::{Part, SharedFacts};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
@@ -52,6 +53,10 @@ impl Program for PolicyProgram {
 
     fn describe(settings: Option<&Settings>, record: &Record) -> String {
         inspection::line(settings.map(|settings| &settings.scene), record)
+    }
+
+    fn decision(settings: &Settings, record: &Record) -> Option<Decision> {
+        Some(inspection::decision(&settings.scene, record))
     }
 
     fn verify(settings: &[Settings], parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {

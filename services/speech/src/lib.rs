@@ -15,6 +15,7 @@ mod prompt_player;
 pub mod record;
 pub mod shell;
 pub mod stream_events;
+mod unrecorded_sound;
 mod utterance_content;
 mod utterance_intake;
 
