@@ -151,9 +151,14 @@ impl<R: DeserializeOwned> Part<R> {
     }
 }
 
-/// A count with its noun, e.g. `1 record`, `2 records`.
+/// A count with its noun, e.g. `1 record`, `2 records`, `3 passes`.
 pub fn count(number: u64, noun: &str) -> String {
-    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+    let ending = match noun.ends_with('s') {
+        _ if number == 1 => "",
+        true => "es",
+        false => "s",
+    };
+    format!("{number} {noun}{ending}")
 }
 
 /// A time of the machine's monotonic clock, seconds, as a column of a listing.

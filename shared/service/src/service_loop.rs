@@ -241,18 +241,7 @@ fn start_tap<P: Program>(
         return Tap::default();
     }
     let wall = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    let head = Head {
-        service: P::SERVICE.name().to_owned(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        record: P::RECORD.map(str::to_owned),
-        group: environment.paths.name().to_string(),
-        epoch: environment.epoch.0,
-        incarnation: environment.incarnation.0,
-        arguments: environment.arguments.clone(),
-        started: clock::now(),
-        started_wall_ns: wall.as_nanos() as u64,
-        settings: settings.snapshot(),
-    };
+    let head = Head::of::<P>(environment, settings, clock::now(), wall.as_nanos() as u64);
     let ring = Ring { folder: environment.paths.flights(), bytes_max, free_min };
     Tap::start(ring, &head, records)
 }

@@ -9,8 +9,8 @@
 //! stream  Head | records of the journal at the start | Entry*               (postcard)
 //! ```
 //!
-//! A frame holds whole passes. It is written as soon as the pass is over and is never synced: what a killed
-//! process has done is in the file, what a machine without power has done may not be.
+//! A frame holds a pass, or a few without an event. It is written as soon as the pass is over and is never
+//! synced: what a killed process has done is in the file, what a machine without power has done may not be.
 
 mod difference;
 mod reader;
@@ -22,16 +22,19 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use config::Settings;
 use serde::{Deserialize, Serialize};
 
 use crate::Time;
 use crate::exit::{Exit, Failure};
+use crate::lifecycle::Environment;
+use crate::service_loop::Program;
 
 pub use difference::first_difference;
 pub use reader::{Direction, Line, head, lines};
 pub use replay::{Changed, Decision, Difference, Report, replay};
 pub use tap::Tap;
-pub use writer::Ring;
+pub use writer::{Ring, pack};
 
 /// First bytes of a file.
 const MAGIC: &[u8; 8] = b"WOFLIGHT";
@@ -42,7 +45,7 @@ const FRAME_HEAD: usize = 8;
 /// Most deflated bytes of one frame.
 const FRAME_BYTES_MAX: usize = 64 << 20;
 /// End of a file's name.
-const EXTENSION: &str = "flight";
+pub const EXTENSION: &str = "flight";
 
 /// Circumstances of a flight.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -67,6 +70,29 @@ pub struct Head {
     pub started_wall_ns: u64,
     /// The snapshot of the settings in force.
     pub settings: String,
+}
+
+impl Head {
+    /// The circumstances of a program's start at `started`, which is `started_wall_ns` after 1970.
+    pub fn of<P: Program>(
+        environment: &Environment,
+        settings: &Settings,
+        started: Time,
+        started_wall_ns: u64,
+    ) -> Self {
+        Self {
+            service: P::SERVICE.name().to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            record: P::RECORD.map(str::to_owned),
+            group: environment.paths.name().to_string(),
+            epoch: environment.epoch.0,
+            incarnation: environment.incarnation.0,
+            arguments: environment.arguments.clone(),
+            started,
+            started_wall_ns,
+            settings: settings.snapshot(),
+        }
+    }
 }
 
 /// One step of a flight.

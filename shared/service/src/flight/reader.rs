@@ -72,6 +72,15 @@ impl Flight {
         found.ok_or_else(|| foreign(&path, "it ends before its first frame"))
     }
 
+    /// Returns the whole stream.
+    pub(super) fn content(mut self) -> Result<Vec<u8>, Failure> {
+        let mut content = Vec::new();
+        while self.next_frame()? {
+            content.extend_from_slice(&self.frame);
+        }
+        Ok(content)
+    }
+
     /// Reads the next frame. Returns whether there is a whole one.
     fn next_frame(&mut self) -> Result<bool, Failure> {
         let mut head = [0; FRAME_HEAD];

@@ -8,13 +8,13 @@ use std::path::{Path, PathBuf};
 use crossbeam_channel::Receiver;
 use flate2::{Compress, Compression, FlushCompress};
 
+use super::reader::Flight;
 use super::{FORMAT, FRAME_HEAD, Head, MAGIC, file_name, is_of};
+use crate::exit::Failure;
 use crate::storage;
 
 /// Growth between two looks at the space, bytes.
 const LOOK_EVERY_BYTES: u64 = 1 << 20;
-/// Most bytes of passes in one frame.
-const BATCH_BYTES_MAX: usize = 1 << 20;
 
 /// The space of one service's flights.
 #[derive(Clone, Debug)]
@@ -66,6 +66,47 @@ impl Ring {
     }
 }
 
+/// Writes a flight anew in as little space as possible: one frame.
+///
+/// # Errors
+/// The file is no flight, or cannot be written.
+pub fn pack(path: &Path) -> Result<(), Failure> {
+    let content = Flight::open(path)?.content()?;
+    let (mut frame, mut compress) = (Vec::new(), Compress::new(Compression::best(), false));
+    let sealed = seal(&mut compress, &content, &mut frame);
+    let bytes = sealed.map(|()| [&start()[..], &frame].concat());
+    let written = bytes.and_then(|bytes| journal::replace_file(path, bytes));
+    written.map_err(|error| Failure::file(path, &error))
+}
+
+/// First bytes of a file.
+fn start() -> Vec<u8> {
+    [&MAGIC[..], &FORMAT.to_le_bytes()].concat()
+}
+
+/// Makes a frame of a part of the stream.
+fn seal(compress: &mut Compress, part: &[u8], frame: &mut Vec<u8>) -> io::Result<()> {
+    frame.clear();
+    frame.resize(FRAME_HEAD, 0);
+    let begin = compress.total_in();
+    loop {
+        let done = (compress.total_in() - begin) as usize;
+        frame.reserve(64 + (part.len() - done) / 2);
+        compress
+            .compress_vec(&part[done..], frame, FlushCompress::Sync)
+            .map_err(io::Error::other)?;
+        let is_consumed = (compress.total_in() - begin) as usize == part.len();
+        if is_consumed && frame.len() < frame.capacity() {
+            break;
+        }
+    }
+    let content = &frame[FRAME_HEAD..];
+    let (len, crc) = (content.len() as u32, crc32c::crc32c(content));
+    frame[..4].copy_from_slice(&len.to_le_bytes());
+    frame[4..FRAME_HEAD].copy_from_slice(&crc.to_le_bytes());
+    Ok(())
+}
+
 /// Writes one flight.
 pub(super) struct Writer {
     ring: Ring,
@@ -89,8 +130,8 @@ impl Writer {
         ring.make_room(&head.service, &path, 0)?;
         let mut options = OpenOptions::new();
         let mut file = options.write(true).create_new(true).mode(0o600).open(&path)?;
-        file.write_all(&[&MAGIC[..], &FORMAT.to_le_bytes()].concat())?;
-        let bytes = (MAGIC.len() + FORMAT.to_le_bytes().len()) as u64;
+        file.write_all(&start())?;
+        let bytes = start().len() as u64;
         Ok(Self {
             ring,
             service: head.service.clone(),
@@ -105,13 +146,8 @@ impl Writer {
 
     /// Writes what comes until the flight ends or cannot be written any further.
     pub(super) fn run(mut self, passes: &Receiver<Vec<u8>>) {
-        while let Ok(mut batch) = passes.recv() {
-            while batch.len() < BATCH_BYTES_MAX
-                && let Ok(pass) = passes.try_recv()
-            {
-                batch.extend(pass);
-            }
-            if let Err(error) = self.write(&batch) {
+        while let Ok(pass) = passes.recv() {
+            if let Err(error) = self.write(&pass) {
                 let file = self.path.display();
                 tracing::warn!(%file, %error, "the recording of this start ends; the service continues");
                 return;
@@ -119,37 +155,14 @@ impl Writer {
         }
     }
 
-    fn write(&mut self, batch: &[u8]) -> io::Result<()> {
-        self.seal(batch)?;
+    fn write(&mut self, pass: &[u8]) -> io::Result<()> {
+        seal(&mut self.compress, pass, &mut self.frame)?;
         self.file.write_all(&self.frame)?;
         self.bytes += self.frame.len() as u64;
         if self.bytes - self.looked_at >= LOOK_EVERY_BYTES {
             self.looked_at = self.bytes;
             self.ring.make_room(&self.service, &self.path, self.bytes)?;
         }
-        Ok(())
-    }
-
-    /// Makes a frame of the passes.
-    fn seal(&mut self, batch: &[u8]) -> io::Result<()> {
-        self.frame.clear();
-        self.frame.resize(FRAME_HEAD, 0);
-        let begin = self.compress.total_in();
-        loop {
-            let done = (self.compress.total_in() - begin) as usize;
-            self.frame.reserve(64 + (batch.len() - done) / 2);
-            self.compress
-                .compress_vec(&batch[done..], &mut self.frame, FlushCompress::Sync)
-                .map_err(io::Error::other)?;
-            let is_consumed = (self.compress.total_in() - begin) as usize == batch.len();
-            if is_consumed && self.frame.len() < self.frame.capacity() {
-                break;
-            }
-        }
-        let content = &self.frame[FRAME_HEAD..];
-        let (len, crc) = (content.len() as u32, crc32c::crc32c(content));
-        self.frame[..4].copy_from_slice(&len.to_le_bytes());
-        self.frame[4..FRAME_HEAD].copy_from_slice(&crc.to_le_bytes());
         Ok(())
     }
 }
