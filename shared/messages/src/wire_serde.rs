@@ -100,7 +100,9 @@ impl<T: WireSerde, const N: usize> WireSerde for [T; N] {
             false => self.iter().rposition(|element| !element.is_zero()).map_or(0, |last| last + 1),
         };
         let mut sequence = serializer.serialize_seq(Some(used))?;
-        self[..used].iter().try_for_each(|element| sequence.serialize_element(&Element(element)))?;
+        self[..used]
+            .iter()
+            .try_for_each(|element| sequence.serialize_element(&Element(element)))?;
         sequence.end()
     }
 

@@ -173,7 +173,10 @@ mod tests {
         let found = summary(&to).unwrap();
         let topics: Vec<_> =
             found.topics.iter().map(|(name, count)| (name.as_str(), *count)).collect();
-        assert_eq!(topics, [("/flight/arm/out", 1), ("/journal/policy", 1), ("/journal/speech", 2), ("/log", 3)]);
+        assert_eq!(
+            topics,
+            [("/flight/arm/out", 1), ("/journal/policy", 1), ("/journal/speech", 2), ("/log", 3)]
+        );
         assert_eq!(found.span_ns, (1_001, 1_003));
         assert!(Writer::create(&to).is_err(), "an existing file is never replaced");
     }

@@ -79,7 +79,11 @@ fn run(
     Ok(report.ok_or(Exit::of_process(output.status.code())))
 }
 
-fn show(report: &Report, changes: &[(String, String)], out: &mut Output<'_>) -> Result<(), Failure> {
+fn show(
+    report: &Report,
+    changes: &[(String, String)],
+    out: &mut Output<'_>,
+) -> Result<(), Failure> {
     let name = report.file.file_name().unwrap_or_default().display();
     if report.torn {
         note(format_args!("{name}: its end is unfinished; everything before it is replayed"));

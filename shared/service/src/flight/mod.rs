@@ -18,6 +18,10 @@ mod replay;
 mod tap;
 mod writer;
 
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+mod tests;
+
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -136,7 +140,8 @@ fn file_name(service: &str, started_wall_ns: u64) -> String {
 
 /// Returns whether `path` is named as a flight of `service`.
 fn is_of(path: &Path, service: &str) -> bool {
-    let number = path.file_stem().and_then(|stem| stem.to_str()?.strip_prefix(service)?.strip_prefix('-'));
+    let number =
+        path.file_stem().and_then(|stem| stem.to_str()?.strip_prefix(service)?.strip_prefix('-'));
     let is_flight = path.extension().is_some_and(|extension| extension == EXTENSION);
     is_flight && number.is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
 }

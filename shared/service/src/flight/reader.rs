@@ -87,9 +87,8 @@ impl Flight {
         let read = read_up_to(&mut self.file, &mut head)
             .map_err(|error| Failure::file(&self.path, &error))?;
         self.is_torn = read > 0;
-        let [len, crc] = [0, 4].map(|at| {
-            u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]])
-        });
+        let [len, crc] = [0, 4]
+            .map(|at| u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]));
         if read < FRAME_HEAD || len as usize > FRAME_BYTES_MAX {
             return Ok(false);
         }
@@ -109,8 +108,11 @@ impl Flight {
         let begin = self.inflate.total_in();
         loop {
             let done = (self.inflate.total_in() - begin) as usize;
-            let result =
-                self.inflate.decompress_vec(&content[done..], &mut self.frame, FlushDecompress::Sync);
+            let result = self.inflate.decompress_vec(
+                &content[done..],
+                &mut self.frame,
+                FlushDecompress::Sync,
+            );
             if result.is_err() {
                 return false;
             }
@@ -147,7 +149,8 @@ pub fn head(path: &Path) -> Result<Head, Failure> {
 pub(super) fn open<P: Program>(path: &Path) -> Result<(Flight, Head, Vec<Record<P>>), Failure> {
     let mut flight = Flight::open(path)?;
     let head: Head = flight.first()?;
-    let (own, found) = ((P::SERVICE.name(), P::RECORD), (head.service.as_str(), head.record.as_deref()));
+    let (own, found) =
+        ((P::SERVICE.name(), P::RECORD), (head.service.as_str(), head.record.as_deref()));
     if own != found {
         let what = format!("expected a flight of {own:?}, found one of {found:?}");
         return Err(foreign(path, what));

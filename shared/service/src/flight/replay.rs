@@ -104,7 +104,8 @@ pub struct Changed {
 pub fn replay<P: Program>(file: &Path, changes: &[(String, String)]) -> Result<Report, Failure> {
     let (flight, head, records) = reader::open::<P>(file)?;
     if let Some((key, _)) = changes.iter().find(|(key, _)| FIXED.contains(&key.as_str())) {
-        let what = format!("--what-if {key}: a flight is about the scene and the robot that it holds");
+        let what =
+            format!("--what-if {key}: a flight is about the scene and the robot that it holds");
         return Err(Failure::new(Exit::Usage, format!("{what}; help: change another setting")));
     }
     let label = file.display().to_string();
@@ -225,7 +226,13 @@ impl<P: Program> Run<P> {
                 differs = true;
                 let (pass, at_ns) = (self.report.passes, self.now.ns());
                 let after_s = self.now.since(self.started).s();
-                self.report.decisions.push(Changed { pass, at_ns, after_s, recorded: a, recomputed: b });
+                self.report.decisions.push(Changed {
+                    pass,
+                    at_ns,
+                    after_s,
+                    recorded: a,
+                    recomputed: b,
+                });
             }
         }
         self.report.other_passes += u64::from(!differs);
