@@ -38,8 +38,9 @@ const DIALOGUES: [(&str, fn() -> SimulatedGroup); 6] = [
     ("camera", || {
         let settings = settings(&[("group.perception.enabled", "true"), ("arm.time_scale", "1.0")]);
         let nothing = (Happening::Nothing, Time(0));
-        let group = before_camera(&settings, 5, nothing, Faults::none(), 3);
-        SimulatedGroup { arm: None, ..group }
+        let mut group = before_camera(&settings, 5, nothing, Faults::none(), 3);
+        group.arm = None;
+        group
     }),
 ];
 
