@@ -82,7 +82,7 @@ fn changed_output_is_reported_with_its_field_and_what_came_before() {
 fn flights() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let group = SimulatedGroup::new(settings(&[]), GroupUser::typing(3), Faults::none());
-    group.recorded(folder.path()).run();
+    group.recorded(folder.path(), u64::MAX).run();
     folder
 }
 

@@ -56,7 +56,7 @@ fn corpus() -> PathBuf {
 fn record(name: &str, dialogue: fn() -> SimulatedGroup) {
     let folder = corpus().join(name);
     let _ = fs::remove_dir_all(&folder);
-    let mut group = dialogue().recorded(&folder);
+    let mut group = dialogue().recorded(&folder, u64::MAX);
     group.run();
     drop(group);
     for file in list(&folder).expect("flights") {

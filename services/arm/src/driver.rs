@@ -6,7 +6,8 @@ mod kinematic;
 pub use baxter::BaxterDriver;
 pub use kinematic::KinematicArm;
 
-use crate::state::Posture;
+use crate::Config;
+use crate::state::{ArmState, Posture};
 use manipulation::{Joints, Limb, Robot};
 use messages::MotionInhibit;
 use messages::robot::{Order, Report};
@@ -78,6 +79,24 @@ pub trait ArmDriver {
     fn beat(&self) -> Option<Span> {
         None
     }
+
+    /// Returns the driver's state, for [`ArmDriver::resume`]; `None` where it has no description.
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        None
+    }
+
+    /// Takes over the state of another driver. Returns `None` if it is none of this driver.
+    fn resume(&mut self, _checkpoint: &[u8]) -> Option<()> {
+        None
+    }
+}
+
+/// Returns the configured driver of an arm in this state.
+pub(crate) fn configured(config: &Config, state: &ArmState) -> Box<dyn ArmDriver> {
+    match config.arm.driver {
+        config::Driver::Kinematic => Box::new(KinematicArm::at(state, &config.setup.robot)),
+        config::Driver::Baxter => Box::new(BaxterDriver::new(config, state)),
+    }
 }
 
 /// Measurements of both limbs, left first.
@@ -122,7 +141,7 @@ impl Measured {
 }
 
 /// Set point of a limb.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Command {
     /// The limb.
     pub limb: Limb,
@@ -139,7 +158,7 @@ pub struct Command {
 }
 
 /// Command to the fingers, which move at their own speed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fingers {
     /// Stay as they are.
     Stay,

@@ -8,6 +8,7 @@
 //! and a halt wait for no disk. Motions are planned elsewhere ([`PlanRequest`]), so nothing waits for a
 //! plan but the motion itself.
 
+mod checkpoint;
 mod driver;
 mod executor;
 mod goal;
@@ -151,12 +152,7 @@ impl Node for ArmNode {
 
     fn recover(config: Config, records: Vec<Record>) -> Result<Self, NodeError> {
         let state = recover::state(&config, records)?;
-        let driver = match config.arm.driver {
-            config::Driver::Kinematic => {
-                Box::new(KinematicArm::at(&state, &config.setup.robot)) as Box<dyn ArmDriver>
-            }
-            config::Driver::Baxter => Box::new(BaxterDriver::new(&config, &state)),
-        };
+        let driver = driver::configured(&config, &state);
         Ok(Self::with_driver(config, state, driver))
     }
 
@@ -203,6 +199,14 @@ impl Node for ArmNode {
 
     fn pending_since(&self) -> Option<Time> {
         self.planning.requested()
+    }
+
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        self.whole_state()
+    }
+
+    fn resume(config: Config, checkpoint: &[u8]) -> Result<Self, NodeError> {
+        Self::with_whole_state(config, checkpoint)
     }
 
     fn snapshot(&self) -> Option<Vec<Record>> {

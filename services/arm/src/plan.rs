@@ -149,6 +149,21 @@ impl Planning {
         }
     }
 
+    /// Returns whether nothing is planned, and no plan waits.
+    pub(crate) fn is_idle(&self) -> bool {
+        matches!(self.stage, Stage::Idle)
+    }
+
+    /// Returns the number of the latest request.
+    pub(crate) fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Counts requests from that number on.
+    pub(crate) fn go_on_from(&mut self, number: u64) {
+        self.number = number;
+    }
+
     /// Gives up the plan.
     pub(crate) fn cancel(&mut self) {
         self.stage = Stage::Idle;

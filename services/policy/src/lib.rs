@@ -4,6 +4,7 @@
 //! observations strictly in order, each exactly once, advances the state, and has it journaled before
 //! anything that follows from it can be seen.
 
+mod checkpoint;
 mod inspection;
 mod perceived;
 mod policy_cache;
@@ -154,6 +155,14 @@ impl Node for PolicyNode {
 
     fn pending_since(&self) -> Option<Time> {
         self.waiting_since
+    }
+
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        self.whole_state()
+    }
+
+    fn resume(config: Config, checkpoint: &[u8]) -> Result<Self, NodeError> {
+        Self::with_whole_state(config, checkpoint)
     }
 
     fn snapshot(&self) -> Option<Vec<Record>> {

@@ -110,6 +110,19 @@ impl Node for SpeechNode {
         self.intake.accepted.pending_since()
     }
 
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        let Self { intake, player, next_send } = self;
+        postcard::to_stdvec(&(intake.whole_state(), player, next_send)).ok()
+    }
+
+    fn resume(config: Config, checkpoint: &[u8]) -> Result<Self, NodeError> {
+        let (state, player, next_send) =
+            postcard::from_bytes(checkpoint).map_err(|_| NodeError::foreign_checkpoint())?;
+        let mut intake = UtteranceIntake::new(config);
+        intake.take_over(state);
+        Ok(Self { intake, player, next_send })
+    }
+
     fn snapshot(&self) -> Option<Vec<Record>> {
         let accepted = self.intake.accepted.snapshot().map(Record::Accepted);
         Some(accepted.chain(self.player.snapshot().map(Record::Presented)).collect())

@@ -84,6 +84,20 @@ pub trait Node: Sized + 'static {
     fn snapshot(&self) -> Option<Vec<Self::Record>> {
         None
     }
+
+    /// Returns the whole state, so that a flight can begin here; `None` where what is in progress, or the
+    /// kind of node, does not permit that.
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        None
+    }
+
+    /// Restores the node from [`Node::checkpoint`]: from here on it does what that node does.
+    ///
+    /// # Errors
+    /// The checkpoint is not of this configuration and this build.
+    fn resume(_config: Self::Config, _checkpoint: &[u8]) -> Result<Self, NodeError> {
+        Err(NodeError::foreign_checkpoint())
+    }
 }
 
 /// Effects of one or more events, in the order in which they were stated.
@@ -187,4 +201,12 @@ pub struct NodeError {
     pub what: String,
     /// Advice to the operator.
     pub help: String,
+}
+
+impl NodeError {
+    /// A checkpoint that this build cannot resume from.
+    pub fn foreign_checkpoint() -> Self {
+        let what = "the checkpoint is not of this build and configuration".to_owned();
+        Self { what, help: "replay the flight with the build that recorded it".to_owned() }
+    }
 }

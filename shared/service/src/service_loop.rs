@@ -240,10 +240,14 @@ fn start_tap<P: Program>(
     if !enabled || !P::RECORDS_FLIGHTS {
         return Tap::default();
     }
-    let wall = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    let head = Head::of::<P>(environment, settings, clock::now(), wall.as_nanos() as u64);
+    let head = Head::of::<P>(environment, settings, clock::now(), wall_ns());
     let ring = Ring { folder: environment.paths.flights(), bytes_max, free_min };
     Tap::start(ring, &head, records)
+}
+
+/// Returns the wall time, nanoseconds since 1970.
+fn wall_ns() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos() as u64
 }
 
 /// Gives the node an event, and records it.
@@ -330,7 +334,7 @@ impl<P: Program> Cycle for Loop<P> {
         }
         self.port_error = self.take_in(is_urgent).err();
         self.commit()?;
-        self.tap.end_pass();
+        self.end_recorded_pass();
         self.judge_ports()?;
         // What waits for a full disk was never acknowledged, and is given up as by a kill.
         let is_done = self.commit.is_settled() || self.commit.is_short();
@@ -355,6 +359,17 @@ impl<P: Program> Cycle for Loop<P> {
 impl<P: Program> Loop<P> {
     fn feed(&mut self, event: Event<In<P>>) {
         feed(&mut self.node, &mut self.tap, event, &mut self.effects);
+    }
+
+    /// Ends a pass of the flight, which continues in another file where that one is long.
+    fn end_recorded_pass(&mut self) {
+        self.tap.end_pass();
+        if self.tap.wants_checkpoint()
+            && self.effects.is_empty()
+            && let Some(checkpoint) = self.node.checkpoint()
+        {
+            self.tap.go_on(&checkpoint, clock::now(), wall_ns());
+        }
     }
 
     /// Returns whether new inputs are taken, beside urgent ones.

@@ -39,8 +39,9 @@ type Record<N> = dyn Fn(&Path, &[<N as Node>::Record], Time) -> Tap;
 pub struct Host<N: Node> {
     config: Box<dyn Fn() -> N::Config>,
     record: Box<Record<N>>,
-    /// Folder of the flights, if they are recorded.
-    flights: Option<PathBuf>,
+    /// Folder of the flights, if they are recorded, and how many passes each file holds.
+    flights: Option<(PathBuf, u64)>,
+    passes: u64,
     tap: Tap,
     node: Option<N>,
     disk: Disk<N::Record>,
@@ -62,6 +63,7 @@ where
             config: configured::<P>(settings),
             record: recorded::<P>(settings),
             flights: None,
+            passes: 0,
             tap: Tap::default(),
             node: None,
             disk: Disk::new(P::RECORD.unwrap_or("none")),
@@ -81,8 +83,9 @@ where
         }
         self.incarnation += 1;
         let records = self.disk.open();
-        if let Some(folder) = &self.flights {
+        if let Some((folder, _)) = &self.flights {
             self.tap = (self.record)(folder, &records, now);
+            self.passes = 0;
         }
         let node = N::recover((self.config)(), records);
         self.node = Some(node.unwrap_or_else(|e| panic!("recovery: {e}")));
@@ -97,9 +100,22 @@ where
         self.record = recorded::<P>(settings);
     }
 
-    /// Records a flight of each further start in a folder.
-    pub fn record(&mut self, folder: &Path) {
-        self.flights = Some(folder.to_owned());
+    /// Records flights of all further starts in a folder: another one after so many passes, once the node
+    /// can be described.
+    pub fn record(&mut self, folder: &Path, passes: u64) {
+        self.flights = Some((folder.to_owned(), passes));
+    }
+
+    fn go_on_recording(&mut self, now: Time) {
+        self.passes += 1;
+        let longest = self.flights.as_ref().map_or(u64::MAX, |(_, passes)| *passes);
+        if self.passes >= longest
+            && let Some(checkpoint) = self.node.as_ref().and_then(Node::checkpoint)
+        {
+            self.passes = 0;
+            // A moment later than the start, which names a file too.
+            self.tap.go_on(&checkpoint, now, now.ns() + 1_000_000);
+        }
     }
 
     /// Kills the process.
@@ -185,6 +201,7 @@ where
             return visible;
         }
         visible.extend(self.commit(crash, faults));
+        self.go_on_recording(now);
         visible
     }
 

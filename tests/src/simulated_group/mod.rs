@@ -163,13 +163,13 @@ impl SimulatedGroup {
         Self { table: Some(table), request_s: 1.5, ..self }
     }
 
-    /// Records the flights of all services in a folder.
+    /// Records the flights of all services in a folder: another one after so many passes.
     #[must_use]
-    pub fn recorded(mut self, folder: &Path) -> Self {
-        self.speech.record(folder);
-        self.grounding.record(folder);
-        self.policy.record(folder);
-        self.arm.iter_mut().for_each(|arm| arm.record(folder));
+    pub fn recorded(mut self, folder: &Path, passes: u64) -> Self {
+        self.speech.record(folder, passes);
+        self.grounding.record(folder, passes);
+        self.policy.record(folder, passes);
+        self.arm.iter_mut().for_each(|arm| arm.record(folder, passes));
         self
     }
 

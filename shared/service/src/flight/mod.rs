@@ -1,12 +1,13 @@
 //! Flight recorder: what a reducer was given and what it stated, so that another build, or the same one on a
 //! desk, can be given the same and has to state the same (docs/replay.md).
 //!
-//! A flight is one start of a service: one file, which can be replayed by itself. Little-endian:
+//! A flight is one start of a service, or a part of it: one file, which can be replayed by itself, because it
+//! begins with the journal or with a checkpoint of the reducer. Little-endian:
 //!
 //! ```text
 //! file    magic 8 | format u32 | frame*
 //! frame   len u32 | crc32c u32 | deflated bytes, one stream through all frames, flushed at each end
-//! stream  Head | records of the journal at the start | Entry*               (postcard)
+//! stream  Head | Beginning | Entry*                                        (postcard)
 //! ```
 //!
 //! A frame holds a pass, or a few without an event. It is written as soon as the pass is over and is never
@@ -68,7 +69,7 @@ pub struct Head {
     pub incarnation: u32,
     /// Arguments of the program.
     pub arguments: Vec<String>,
-    /// Time of the start, monotonic clock.
+    /// Time of the start, or of the checkpoint that the flight begins with; monotonic clock.
     pub started: Time,
     /// The same, nanoseconds since 1970.
     pub started_wall_ns: u64,
@@ -97,6 +98,15 @@ impl Head {
             settings: settings.snapshot(),
         }
     }
+}
+
+/// What a node was made from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Beginning<R, B> {
+    /// The records of its journal.
+    Journal(R),
+    /// A checkpoint: the service had been started before.
+    Checkpoint(B),
 }
 
 /// One step of a flight.

@@ -8,7 +8,7 @@ use flate2::{Decompress, FlushDecompress};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::{Entry, FORMAT, FRAME_BYTES_MAX, FRAME_HEAD, Head, MAGIC, STATED, foreign};
+use super::{Beginning, Entry, FORMAT, FRAME_BYTES_MAX, FRAME_HEAD, Head, MAGIC, STATED, foreign};
 use crate::exit::Failure;
 use crate::service_loop::{Program, Record};
 use crate::{Effects, Event, Node, Time};
@@ -145,8 +145,11 @@ pub fn head(path: &Path) -> Result<Head, Failure> {
     Flight::open(path)?.first()
 }
 
-/// What a flight of a program begins with: the circumstances, and the journal's records at the start.
-pub(super) fn open<P: Program>(path: &Path) -> Result<(Flight, Head, Vec<Record<P>>), Failure> {
+/// What the node of a program was made from.
+pub(super) type BeginningOf<P> = Beginning<Vec<Record<P>>, Vec<u8>>;
+
+/// What a flight of a program begins with.
+pub(super) fn open<P: Program>(path: &Path) -> Result<(Flight, Head, BeginningOf<P>), Failure> {
     let mut flight = Flight::open(path)?;
     let head: Head = flight.first()?;
     let (own, found) =
@@ -155,8 +158,8 @@ pub(super) fn open<P: Program>(path: &Path) -> Result<(Flight, Head, Vec<Record<
         let what = format!("expected a flight of {own:?}, found one of {found:?}");
         return Err(foreign(path, what));
     }
-    let records = flight.first()?;
-    Ok((flight, head, records))
+    let beginning = flight.first()?;
+    Ok((flight, head, beginning))
 }
 
 /// A step of a flight.

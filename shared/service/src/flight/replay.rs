@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::difference::first_difference;
 use super::reader::{self, Flight, Step};
-use super::{Entry, Head};
+use super::{Beginning, Entry, Head};
 use crate::exit::{Exit, Failure};
 use crate::lifecycle::Environment;
 use crate::service_loop::{Program, Record};
@@ -102,7 +102,7 @@ pub struct Changed {
 /// # Errors
 /// The file cannot be read or is of another build; a setting that does not exist or cannot be changed.
 pub fn replay<P: Program>(file: &Path, changes: &[(String, String)]) -> Result<Report, Failure> {
-    let (flight, head, records) = reader::open::<P>(file)?;
+    let (flight, head, beginning) = reader::open::<P>(file)?;
     if let Some((key, _)) = changes.iter().find(|(key, _)| FIXED.contains(&key.as_str())) {
         let what =
             format!("--what-if {key}: a flight is about the scene and the robot that it holds");
@@ -112,7 +112,11 @@ pub fn replay<P: Program>(file: &Path, changes: &[(String, String)]) -> Result<R
     let recorded = Settings::from_snapshot(&label, &head.settings, &[])?;
     let settings = Settings::from_snapshot(&label, &head.settings, changes)?;
     let environment = Environment { arguments: head.arguments.clone(), ..Environment::nowhere() };
-    let node = P::Node::recover(P::config(&environment, &settings)?, records)?;
+    let config = P::config(&environment, &settings)?;
+    let node = match beginning {
+        Beginning::Journal(records) => P::Node::recover(config, records)?,
+        Beginning::Checkpoint(checkpoint) => P::Node::resume(config, &checkpoint)?,
+    };
     let run = Run::<P> {
         report: report(file, &head),
         started: head.started,

@@ -52,6 +52,16 @@ impl Node for Sum {
     fn deadline(&self) -> Option<Time> {
         None
     }
+
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        postcard::to_stdvec(&(self.sum, self.durable)).ok()
+    }
+
+    fn resume((): (), checkpoint: &[u8]) -> Result<Self, NodeError> {
+        let (sum, durable) =
+            postcard::from_bytes(checkpoint).map_err(|_| NodeError::foreign_checkpoint())?;
+        Ok(Self { sum, durable })
+    }
 }
 
 struct NoShell;
@@ -140,6 +150,42 @@ fn reducer_is_replayed_from_its_journal_on_with_what_was_durable() {
 }
 
 #[test]
+fn long_flight_goes_on_in_another_file_that_begins_with_the_state() {
+    let folder = tempfile::tempdir().unwrap();
+    let small = Ring { bytes_max: 2 << 20, ..ring(folder.path()) };
+    let mut tap = start(small, 1_000_000, &[]);
+    let mut node = Sum::recover((), Vec::new()).unwrap();
+    let mut files = 1;
+    for i in 0..400_000_u64 {
+        let number = 14 + (i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33) as u32;
+        let (event, mut effects) = (Event::Message(number), Effects::default());
+        let now = Time(1_000 + i);
+        tap.event(&event, now);
+        node.on(event, now, &mut effects);
+        tap.stated(&effects);
+        tap.end_pass();
+        if tap.wants_checkpoint() {
+            files += 1;
+            tap.go_on(&node.checkpoint().unwrap(), now, files * 1_000_000);
+        }
+        assert!(tap.is_on());
+        if files > 8 {
+            break;
+        }
+        wait_for_writer(&tap);
+    }
+    drop(tap);
+    assert!(files > 8, "{files}");
+    assert!(sizes(&folder).iter().sum::<u64>() <= 2 << 20, "{:?}", sizes(&folder));
+    let flights = list(folder.path()).unwrap();
+    assert!((2..9).contains(&flights.len()), "{flights:?}");
+    for file in &flights {
+        let report = replayed(file);
+        assert!(report.difference.is_none() && report.passes > 0, "{report:?}");
+    }
+}
+
+#[test]
 fn event_at_which_the_reducer_panics_is_in_the_flight() {
     let folder = tempfile::tempdir().unwrap();
     let report = replayed(&record(folder.path(), &[1, 2, UNLUCKY, 3]));
@@ -155,6 +201,13 @@ fn noise(seed: u64, count: usize) -> Vec<u64> {
     (0..count).map(|_| random.below(usize::MAX) as u64).collect()
 }
 
+/// A real loop has pauses, in which the writer catches up.
+fn wait_for_writer(tap: &Tap) {
+    while tap.waiting() > 100 {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+}
+
 /// Gives the tap passes of 64 KiB until the recording ends, or `passes`.
 fn fill(tap: &mut Tap, passes: u64) {
     for pass in 0..passes {
@@ -165,8 +218,7 @@ fn fill(tap: &mut Tap, passes: u64) {
         if !tap.is_on() {
             return;
         }
-        // As a real loop, which waits for its next event.
-        std::thread::sleep(std::time::Duration::from_millis(1));
+        wait_for_writer(tap);
     }
 }
 

@@ -4,6 +4,8 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crossbeam_channel::Receiver;
 use flate2::{Compress, Compression, FlushCompress};
@@ -13,6 +15,8 @@ use super::{FORMAT, FRAME_HEAD, Head, MAGIC, file_name, is_of};
 use crate::exit::Failure;
 use crate::storage;
 
+/// Share of the space of all flights at which another file may begin.
+const FILES_MIN: u64 = 8;
 /// Growth between two looks at the space, bytes.
 const LOOK_EVERY_BYTES: u64 = 1 << 20;
 
@@ -28,6 +32,16 @@ pub struct Ring {
 }
 
 impl Ring {
+    /// Creates the file of a flight that starts at this time.
+    fn new_file(&self, service: &str, started_wall_ns: u64) -> io::Result<(PathBuf, File)> {
+        let path = self.folder.join(file_name(service, started_wall_ns));
+        self.make_room(service, &path, 0)?;
+        let mut options = OpenOptions::new();
+        let mut file = options.write(true).create_new(true).mode(0o600).open(&path)?;
+        file.write_all(&start())?;
+        Ok((path, file))
+    }
+
     /// Deletes the oldest flights of `service` but `current`, which has `bytes`, until there is space for it
     /// to grow.
     ///
@@ -107,10 +121,20 @@ fn seal(compress: &mut Compress, part: &[u8], frame: &mut Vec<u8>) -> io::Result
     Ok(())
 }
 
-/// Writes one flight.
+/// Work for the writer, in order.
+#[derive(Debug)]
+pub(super) enum Job {
+    /// A part of the stream.
+    Pass(Vec<u8>),
+    /// Another file, which begins at this time, nanoseconds since 1970.
+    Begin(u64),
+}
+
+/// Writes the flights of one start.
 pub(super) struct Writer {
     ring: Ring,
     service: String,
+    is_long: Arc<AtomicBool>,
     path: PathBuf,
     file: File,
     bytes: u64,
@@ -124,17 +148,14 @@ impl Writer {
     ///
     /// # Errors
     /// It cannot be created, or there is no space for it.
-    pub(super) fn create(ring: Ring, head: &Head) -> io::Result<Self> {
+    pub(super) fn create(ring: Ring, head: &Head, is_long: Arc<AtomicBool>) -> io::Result<Self> {
         crate::folders::make_private(&ring.folder).map_err(io::Error::other)?;
-        let path = ring.folder.join(file_name(&head.service, head.started_wall_ns));
-        ring.make_room(&head.service, &path, 0)?;
-        let mut options = OpenOptions::new();
-        let mut file = options.write(true).create_new(true).mode(0o600).open(&path)?;
-        file.write_all(&start())?;
+        let (path, file) = ring.new_file(&head.service, head.started_wall_ns)?;
         let bytes = start().len() as u64;
         Ok(Self {
             ring,
             service: head.service.clone(),
+            is_long,
             path,
             file,
             bytes,
@@ -145,9 +166,13 @@ impl Writer {
     }
 
     /// Writes what comes until the flight ends or cannot be written any further.
-    pub(super) fn run(mut self, passes: &Receiver<Vec<u8>>) {
-        while let Ok(pass) = passes.recv() {
-            if let Err(error) = self.write(&pass) {
+    pub(super) fn run(mut self, jobs: &Receiver<Job>) {
+        while let Ok(job) = jobs.recv() {
+            let done = match job {
+                Job::Pass(pass) => self.write(&pass),
+                Job::Begin(wall_ns) => self.begin(wall_ns),
+            };
+            if let Err(error) = done {
                 let file = self.path.display();
                 tracing::warn!(%file, %error, "the recording of this start ends; the service continues");
                 return;
@@ -155,10 +180,21 @@ impl Writer {
         }
     }
 
+    /// Continues in another file.
+    fn begin(&mut self, wall_ns: u64) -> io::Result<()> {
+        (self.path, self.file) = self.ring.new_file(&self.service, wall_ns)?;
+        (self.bytes, self.looked_at) = (start().len() as u64, 0);
+        self.compress.reset();
+        Ok(())
+    }
+
     fn write(&mut self, pass: &[u8]) -> io::Result<()> {
         seal(&mut self.compress, pass, &mut self.frame)?;
         self.file.write_all(&self.frame)?;
         self.bytes += self.frame.len() as u64;
+        if self.bytes >= self.ring.bytes_max / FILES_MIN {
+            self.is_long.store(true, Ordering::Relaxed);
+        }
         if self.bytes - self.looked_at >= LOOK_EVERY_BYTES {
             self.looked_at = self.bytes;
             self.ring.make_room(&self.service, &self.path, self.bytes)?;
