@@ -169,7 +169,7 @@ pub enum Fingers {
 }
 
 /// The object that a model of the fingers closes on; real fingers sense it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Grip {
     /// Width of the object, metres.
     pub object_m: f64,

@@ -112,14 +112,14 @@ impl Node for SpeechNode {
 
     fn checkpoint(&self) -> Option<Vec<u8>> {
         let Self { intake, player, next_send } = self;
-        postcard::to_stdvec(&(intake.whole_state(), player, next_send)).ok()
+        postcard::to_stdvec(&(intake.checkpoint()?, player, next_send)).ok()
     }
 
     fn resume(config: Config, checkpoint: &[u8]) -> Result<Self, NodeError> {
-        let (state, player, next_send) =
-            postcard::from_bytes(checkpoint).map_err(|_| NodeError::foreign_checkpoint())?;
-        let mut intake = UtteranceIntake::new(config);
-        intake.take_over(state);
+        let foreign = NodeError::foreign_checkpoint;
+        let parts: Result<(Vec<u8>, _, _), _> = postcard::from_bytes(checkpoint);
+        let (intake, player, next_send) = parts.map_err(|_| foreign())?;
+        let intake = UtteranceIntake::resume(config, &intake).ok_or_else(foreign)?;
         Ok(Self { intake, player, next_send })
     }
 

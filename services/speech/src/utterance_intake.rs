@@ -25,7 +25,6 @@ use messages::{
 };
 use origin::Origin;
 use scene::Question;
-use serde::Serialize;
 use service::{Span, Time};
 use std::ops::RangeInclusive;
 use waiting_requests::{Request, SHARE, WaitingRequests};
@@ -48,31 +47,21 @@ pub(crate) struct UtteranceIntake {
     early: EarlyDecoding,
 }
 
-/// Everything but the configuration.
-pub(crate) type WholeState = (
-    AcceptedUtterances,
-    WaitingRequests,
-    Receipts,
-    PendingSounds,
-    HearingStatus,
-    u64,
-    EarlyDecoding,
-);
-
 impl UtteranceIntake {
-    /// Returns the state, for flights that begin in the middle of a start.
-    pub(crate) fn whole_state(&self) -> impl Serialize {
+    /// Returns everything but the configuration, for flights that begin in the middle of a start.
+    pub(crate) fn checkpoint(&self) -> Option<Vec<u8>> {
         let Self { config: _, accepted, waiting, receipts, pending, status, last_partial, early } =
             self;
-        (accepted, waiting, receipts, pending, status, last_partial, early)
+        let requests = (accepted, waiting, receipts);
+        postcard::to_stdvec(&(requests, pending, status, last_partial, early)).ok()
     }
 
-    /// Takes over the state of another intake.
-    pub(crate) fn take_over(&mut self, state: WholeState) {
-        let (accepted, waiting, receipts, pending, status, last_partial, early) = state;
-        (self.accepted, self.waiting, self.receipts) = (accepted, waiting, receipts);
-        (self.pending, self.status, self.last_partial, self.early) =
-            (pending, status, last_partial, early);
+    /// Returns the intake of a checkpoint.
+    pub(crate) fn resume(config: Config, checkpoint: &[u8]) -> Option<Self> {
+        let (requests, pending, status, last_partial, early) =
+            postcard::from_bytes(checkpoint).ok()?;
+        let (accepted, waiting, receipts) = requests;
+        Some(Self { config, accepted, waiting, receipts, pending, status, last_partial, early })
     }
 
     pub(crate) fn new(config: Config) -> Self {

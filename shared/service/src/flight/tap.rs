@@ -35,7 +35,8 @@ impl Tap {
     /// Starts to record into a new file of `ring`. `records` are those that the node was recovered from.
     /// Where that fails, the service does without a recording.
     pub fn start<R: Serialize>(ring: Ring, head: &Head, records: &[R]) -> Self {
-        let mut tap = Self { head: Some(head.clone()), ..Self::default() };
+        let mut tap = Self::default();
+        tap.head = Some(head.clone());
         let (jobs, waiting) = bounded(WAITING_MAX);
         let is_long = Arc::clone(&tap.is_long);
         let started = Writer::create(ring, head, is_long).and_then(|writer| {
