@@ -39,7 +39,7 @@ pub use difference::first_difference;
 pub use reader::{Direction, Line, head, lines};
 pub use replay::{Changed, Decision, Difference, Report, replay};
 pub use tap::Tap;
-pub use writer::{Ring, pack};
+pub use writer::{Ring, file_of, pack};
 
 /// First bytes of a file.
 const MAGIC: &[u8; 8] = b"WOFLIGHT";
@@ -47,7 +47,7 @@ const MAGIC: &[u8; 8] = b"WOFLIGHT";
 const FORMAT: u32 = 1;
 /// Bytes before a frame's content: length and checksum.
 const FRAME_HEAD: usize = 8;
-/// Most deflated bytes of one frame.
+/// Most bytes of one frame, deflated and inflated.
 const FRAME_BYTES_MAX: usize = 64 << 20;
 /// End of a file's name.
 pub const EXTENSION: &str = "flight";

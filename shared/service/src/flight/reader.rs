@@ -113,7 +113,7 @@ impl Flight {
                 &mut self.frame,
                 FlushDecompress::Sync,
             );
-            if result.is_err() {
+            if result.is_err() || self.frame.len() > FRAME_BYTES_MAX {
                 return false;
             }
             let is_consumed = (self.inflate.total_in() - begin) as usize == content.len();

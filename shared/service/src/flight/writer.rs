@@ -85,12 +85,19 @@ impl Ring {
 /// # Errors
 /// The file is no flight, or cannot be written.
 pub fn pack(path: &Path) -> Result<(), Failure> {
-    let content = Flight::open(path)?.content()?;
-    let (mut frame, mut compress) = (Vec::new(), Compress::new(Compression::best(), false));
-    let sealed = seal(&mut compress, &content, &mut frame);
-    let bytes = sealed.map(|()| [&start()[..], &frame].concat());
+    let bytes = file_of(&Flight::open(path)?.content()?);
     let written = bytes.and_then(|bytes| journal::replace_file(path, bytes));
     written.map_err(|error| Failure::file(path, &error))
+}
+
+/// Returns the file of a stream, as one frame.
+///
+/// # Errors
+/// The stream cannot be compressed.
+pub fn file_of(stream: &[u8]) -> io::Result<Vec<u8>> {
+    let (mut frame, mut compress) = (Vec::new(), Compress::new(Compression::best(), false));
+    seal(&mut compress, stream, &mut frame)?;
+    Ok([&start()[..], &frame].concat())
 }
 
 /// First bytes of a file.
