@@ -125,7 +125,8 @@ fn torn_flight_replays_up_to_its_last_whole_frame() {
     assert!(!whole.torn && whole.passes > 20, "{whole:?}");
     let bytes = fs::read(&file).unwrap();
     let mut passes = whole.passes;
-    for len in [bytes.len() - 1, bytes.len() * 3 / 4, bytes.len() / 2] {
+    // The settings, in the first frame, are most of it.
+    for len in [bytes.len() - 1, bytes.len() - 300, bytes.len() - 1_000] {
         fs::write(&file, &bytes[..len]).unwrap();
         let torn = replayed(&file, &[]);
         assert_eq!(torn.difference, None);
@@ -135,7 +136,7 @@ fn torn_flight_replays_up_to_its_last_whole_frame() {
     assert!(passes < whole.passes && passes > 0, "{passes}");
     // What follows a damaged frame cannot be read.
     let mut damaged = bytes.clone();
-    damaged[bytes.len() * 3 / 4] ^= 0x10;
+    damaged[bytes.len() - 500] ^= 0x10;
     fs::write(&file, &damaged).unwrap();
     let damaged = replayed(&file, &[]);
     assert!(damaged.torn && damaged.difference.is_none(), "{damaged:?}");

@@ -29,7 +29,11 @@ fn check(seed: u64, group: SimulatedGroup, passes: u64) {
     match passes {
         u64::MAX => assert_eq!([of("speech"), of("policy")], starts, "seed {seed}"),
         // The arm can be described at rest only, and a dialogue is short.
-        _ => assert!(of("speech").min(of("policy")) > 5 && of("arm") > 1, "seed {seed}"),
+        _ => {
+            let counts = [of("speech"), of("policy"), of("arm")];
+            let files: Vec<_> = reports.iter().map(|it| (it.file.file_name(), it.passes)).collect();
+            assert!(counts.iter().all(|count| *count > 3), "seed {seed}: {counts:?} {files:?}");
+        }
     }
     let passes: u64 = reports.iter().map(|report| report.passes).sum();
     assert!(passes > 100, "seed {seed}: {passes} passes");

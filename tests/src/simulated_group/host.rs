@@ -42,6 +42,7 @@ pub struct Host<N: Node> {
     /// Folder of the flights, if they are recorded, and how many passes each file holds.
     flights: Option<(PathBuf, u64)>,
     passes: u64,
+    files: u64,
     tap: Tap,
     node: Option<N>,
     disk: Disk<N::Record>,
@@ -64,6 +65,7 @@ where
             record: recorded::<P>(settings),
             flights: None,
             passes: 0,
+            files: 0,
             tap: Tap::default(),
             node: None,
             disk: Disk::new(P::RECORD.unwrap_or("none")),
@@ -113,8 +115,9 @@ where
             && let Some(checkpoint) = self.node.as_ref().and_then(Node::checkpoint)
         {
             self.passes = 0;
-            // A moment later than the start, which names a file too.
-            self.tap.go_on(&checkpoint, now, now.ns() + 1_000_000);
+            // Files are named by milliseconds, and several passes may be at one time.
+            self.files += 1;
+            self.tap.go_on(&checkpoint, now, now.ns() + self.files * 1_000_000);
         }
     }
 
