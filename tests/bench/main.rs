@@ -5,7 +5,7 @@
 //! steadily joint states come, how soon the arm accepts an order, how soon joint
 //! states of a robot behind ROS 1 are answered by commands, how much of spoken sentences is understood, how turns are taken in
 //! simulated time, what many open pages cost the console, what thousands of objects
-//! cost the group, what the recorder costs, how dialogues by voice end, and how soon
+//! cost the group, what the recorder and the flight recorder cost, how dialogues by voice end, and how soon
 //! the arm stops while something is short.
 //!
 //! Machines are noisy: each figure stands beside a peer that was measured in the same run, and no
@@ -15,6 +15,7 @@ mod arm;
 mod console;
 mod core;
 mod documents;
+mod flight;
 mod hop;
 mod idle;
 mod jitter;
@@ -86,6 +87,9 @@ fn measure(options: &Options, report: &mut Report) {
     }
     if all || options.recorder {
         recorder::measure(report, options.quick);
+    }
+    if all || options.flight {
+        flight::measure(report, options.quick);
     }
     if all || options.long {
         long::measure(report, options);

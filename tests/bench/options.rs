@@ -40,6 +40,9 @@ pub(crate) struct Options {
     /// Only the recorder: its cost, and latencies with and without it
     #[arg(long)]
     pub(crate) recorder: bool,
+    /// Only the flight recorder: its cost, latencies with and without it, and the size of flights
+    #[arg(long)]
+    pub(crate) flight: bool,
     /// Only one interaction of very many utterances: journals, memory, restart
     #[arg(long)]
     pub(crate) long: bool,
@@ -110,10 +113,10 @@ impl Options {
     pub(crate) fn wants_all(&self) -> bool {
         let Self { core, bounds, kinematics, processes, long, joints, orders, stops, ros1, .. } =
             *self;
-        let Self { speech, endings, turns, console, size, spoken, recorder, .. } = *self;
+        let Self { speech, endings, turns, console, size, spoken, recorder, flight, .. } = *self;
         let measured =
             core || bounds || kinematics || processes || long || joints || orders || stops || ros1;
-        !(measured || speech || endings || turns || console || size || spoken || recorder)
+        !(measured || speech || endings || turns || console || size || spoken || recorder || flight)
     }
 }
 

@@ -34,6 +34,7 @@ mod python;
 mod recording;
 mod recovery;
 mod reload;
+mod replay;
 mod robot;
 mod ros1;
 mod ros2;

@@ -6,10 +6,12 @@ mod kinematic;
 pub use baxter::BaxterDriver;
 pub use kinematic::KinematicArm;
 
-use crate::state::Posture;
+use crate::Config;
+use crate::state::{ArmState, Posture};
 use manipulation::{Joints, Limb, Robot};
 use messages::MotionInhibit;
 use messages::robot::{Order, Report};
+use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 
 /// A robot or its model. The executor commands it a hundred times a second and trusts its sensors, so
@@ -77,10 +79,28 @@ pub trait ArmDriver {
     fn beat(&self) -> Option<Span> {
         None
     }
+
+    /// Returns the driver's state, for [`ArmDriver::resume`]; `None` where it has no description.
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        None
+    }
+
+    /// Takes over the state of another driver. Returns `None` if it is none of this driver.
+    fn resume(&mut self, _checkpoint: &[u8]) -> Option<()> {
+        None
+    }
+}
+
+/// Returns the configured driver of an arm in this state.
+pub(crate) fn configured(config: &Config, state: &ArmState) -> Box<dyn ArmDriver> {
+    match config.arm.driver {
+        config::Driver::Kinematic => Box::new(KinematicArm::at(state, &config.setup.robot)),
+        config::Driver::Baxter => Box::new(BaxterDriver::new(config, state)),
+    }
 }
 
 /// Measurements of both limbs, left first.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Joints and fingers.
     pub posture: Posture,
@@ -97,7 +117,7 @@ pub struct Measured {
 }
 
 /// Source of a measurement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Source {
     /// A model: always up to date.
     Model,
@@ -121,7 +141,7 @@ impl Measured {
 }
 
 /// Set point of a limb.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Command {
     /// The limb.
     pub limb: Limb,
@@ -138,7 +158,7 @@ pub struct Command {
 }
 
 /// Command to the fingers, which move at their own speed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Fingers {
     /// Stay as they are.
     Stay,
@@ -149,7 +169,7 @@ pub enum Fingers {
 }
 
 /// The object that a model of the fingers closes on; real fingers sense it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Grip {
     /// Width of the object, metres.
     pub object_m: f64,

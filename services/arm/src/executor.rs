@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 const FLOWS_RAD_S: f64 = 1e-6;
 
 /// Purpose of a program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum Purpose {
     /// Fetch the ordered object, or put it back.
     Pick(PickId),

@@ -16,7 +16,7 @@ use service::{Span, Time};
 const RETRY_EVERY: Span = Span::from_ms(5_000);
 
 /// Goals for which planning failed.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct PlanFailures {
     /// Not possible from the arm's posture; to be retried from rest.
     from_rest: Option<Purpose>,

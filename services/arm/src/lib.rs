@@ -8,6 +8,7 @@
 //! and a halt wait for no disk. Motions are planned elsewhere ([`PlanRequest`]), so nothing waits for a
 //! plan but the motion itself.
 
+mod checkpoint;
 mod driver;
 mod executor;
 mod goal;
@@ -47,6 +48,7 @@ use plan::Planning;
 use preflight::ArmSetup;
 use publish::{Activity, Facts, Publisher};
 use scene::{ObjectId, Scene};
+use serde::{Deserialize, Serialize};
 use service::stop_socket::{Caller, StopState};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use state::{ArmState, Cause, Record};
@@ -55,7 +57,7 @@ use trajectory_view::MotionView;
 use world::World;
 
 /// Inputs of the arm.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum In<'a> {
     /// Act of the policy.
     Act(MessageRef<'a, RobotAct>),
@@ -72,7 +74,7 @@ pub enum In<'a> {
 }
 
 /// Outputs of the arm.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Out {
     /// Progress of a pick and the object aimed at, to policy and speech.
     Status(ArmStatus),
@@ -151,12 +153,7 @@ impl Node for ArmNode {
 
     fn recover(config: Config, records: Vec<Record>) -> Result<Self, NodeError> {
         let state = recover::state(&config, records)?;
-        let driver = match config.arm.driver {
-            config::Driver::Kinematic => {
-                Box::new(KinematicArm::at(&state, &config.setup.robot)) as Box<dyn ArmDriver>
-            }
-            config::Driver::Baxter => Box::new(BaxterDriver::new(&config, &state)),
-        };
+        let driver = driver::configured(&config, &state);
         Ok(Self::with_driver(config, state, driver))
     }
 
@@ -173,7 +170,7 @@ impl Node for ArmNode {
             Event::Message(In::Act(act)) => self.on_act(&act, now, fx),
             Event::Message(In::Robot(report)) => self.driver.on_report(&report, now),
             Event::Message(In::Planned(planned)) => {
-                self.urgent |= self.planning.on_planned(*planned);
+                self.urgent |= self.planning.on_planned(*planned, &self.config);
             }
             Event::Message(In::Table(table)) => self.lay(&table),
             Event::Tick => self.tick(now, fx),
@@ -203,6 +200,14 @@ impl Node for ArmNode {
 
     fn pending_since(&self) -> Option<Time> {
         self.planning.requested()
+    }
+
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        self.whole_state()
+    }
+
+    fn resume(config: Config, checkpoint: &[u8]) -> Result<Self, NodeError> {
+        Self::with_whole_state(config, checkpoint)
     }
 
     fn snapshot(&self) -> Option<Vec<Record>> {

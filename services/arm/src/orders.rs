@@ -11,7 +11,7 @@ use scene::{ObjectId, Question};
 use service::Time;
 
 /// The relevant part of the policy's latest act.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct StandingAct {
     pub(crate) id: ActId,
     /// Object that a pointing question asks about.

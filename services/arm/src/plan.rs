@@ -1,5 +1,8 @@
 //! Planning apart from the reducer: a request states all that a plan depends on, and its result comes
 //! back as an input. The service solves requests on a thread of its own, a simulation in its only one.
+//!
+//! A flight holds neither the world of a request nor the plan: both follow from what the node was given
+//! before, and a node that is given a result without its plan makes the plan itself.
 
 use crate::driver::Measured;
 use crate::executor::Program;
@@ -10,6 +13,7 @@ use crate::{ArmNode, Config, Fx, Out};
 use manipulation::Limb;
 use messages::pick::Pick;
 use scene::ObjectId;
+use serde::{Deserialize, Serialize};
 use service::Time;
 use std::sync::Arc;
 
@@ -17,7 +21,7 @@ use std::sync::Arc;
 const WIDTH_M: f64 = 0.002;
 
 /// A motion that the arm wants.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Motion {
     /// Take the object of a pick and bring it to where it is let go.
     Take(Pick),
@@ -41,20 +45,26 @@ pub(crate) struct Basis {
 }
 
 /// A motion to be planned.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanRequest {
     /// Number in this run of the service.
     number: u64,
-    config: Arc<Config>,
-    basis: Basis,
+    motion: Motion,
+    state: ArmState,
+    measured: Measured,
+    /// None in a request that was read from a flight.
+    #[serde(skip)]
+    around: Option<(Arc<Config>, Arc<World>)>,
 }
 
-/// A request with its result.
-#[derive(Clone, Debug, PartialEq)]
+/// Result of a request.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Planned {
+    /// Number of the request.
     number: u64,
-    basis: Basis,
-    program: Result<Program, Refusal>,
+    /// None in a result that was read from a flight.
+    #[serde(skip)]
+    program: Option<Result<Program, Refusal>>,
 }
 
 /// Planning of the wanted motion. At most one request counts; the results of earlier ones are dropped.
@@ -70,10 +80,21 @@ enum Stage {
     #[default]
     Idle,
     Requested(Box<Basis>, Time),
-    Done(Box<Planned>),
+    Done(Box<Basis>, Result<Program, Refusal>),
 }
 
 impl Basis {
+    fn solve(&self, config: &Config) -> Result<Program, Refusal> {
+        let planner = Planner::new(config, &self.world, &self.state, &self.measured);
+        match &self.motion {
+            Motion::Take(pick) => planner.take(pick),
+            Motion::Carry(pick, held) => planner.carry(pick, held),
+            Motion::Release(pick, held) => Ok(planner.release(pick.id, held)),
+            Motion::Aim(object) => planner.aim(*object),
+            Motion::Rest(limb) => planner.rest(*limb),
+        }
+    }
+
     /// Returns whether a plan that rests on these facts can be carried out on the present ones: the same
     /// motion among the same objects, and the arm where it was.
     fn fits(&self, present: &Self) -> bool {
@@ -100,28 +121,47 @@ impl Measured {
 impl PlanRequest {
     /// Plans the motion. Equal requests have equal results.
     pub fn solve(self) -> Planned {
-        let Self { number, config, basis } = self;
-        let planner = Planner::new(&config, &basis.world, &basis.state, &basis.measured);
-        let program = match &basis.motion {
-            Motion::Take(pick) => planner.take(pick),
-            Motion::Carry(pick, held) => planner.carry(pick, held),
-            Motion::Release(pick, held) => Ok(planner.release(pick.id, held)),
-            Motion::Aim(object) => planner.aim(*object),
-            Motion::Rest(limb) => planner.rest(*limb),
-        };
-        Planned { number, basis, program }
+        let Self { number, motion, state, measured, around } = self;
+        let program = around.map(|(config, world)| {
+            let basis = Basis { motion, state, measured, world };
+            basis.solve(&config)
+        });
+        Planned { number, program }
     }
 }
 
 impl Planning {
     /// Takes the result of the latest request. Returns whether it is one.
-    pub(crate) fn on_planned(&mut self, planned: Planned) -> bool {
-        let is_awaited =
-            matches!(self.stage, Stage::Requested(..)) && planned.number == self.number;
-        if is_awaited {
-            self.stage = Stage::Done(Box::new(planned));
+    pub(crate) fn on_planned(&mut self, planned: Planned, config: &Config) -> bool {
+        if planned.number != self.number {
+            return false;
         }
-        is_awaited
+        match std::mem::take(&mut self.stage) {
+            Stage::Requested(basis, _) => {
+                let program = planned.program.unwrap_or_else(|| basis.solve(config));
+                self.stage = Stage::Done(basis, program);
+                true
+            }
+            other => {
+                self.stage = other;
+                false
+            }
+        }
+    }
+
+    /// Returns whether nothing is planned, and no plan waits.
+    pub(crate) fn is_idle(&self) -> bool {
+        matches!(self.stage, Stage::Idle)
+    }
+
+    /// Returns the number of the latest request.
+    pub(crate) fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Counts requests from that number on.
+    pub(crate) fn go_on_from(&mut self, number: u64) {
+        self.number = number;
     }
 
     /// Gives up the plan.
@@ -133,7 +173,7 @@ impl Planning {
     pub(crate) fn requested(&self) -> Option<Time> {
         match self.stage {
             Stage::Requested(_, at) => Some(at),
-            Stage::Idle | Stage::Done(_) => None,
+            Stage::Idle | Stage::Done(..) => None,
         }
     }
 }
@@ -150,25 +190,27 @@ impl ArmNode {
         let (state, measured) = (self.state.clone(), self.driver.measured());
         let basis = Basis { motion, state, measured, world: Arc::clone(&self.world) };
         match std::mem::take(&mut self.planning.stage) {
-            Stage::Done(planned) if planned.basis.fits(&basis) => {
+            Stage::Done(planned, program) if planned.fits(&basis) => {
                 // Later estimates are compared with those that it rests on.
-                self.planned_world = planned.basis.world;
-                return Some(planned.program);
+                self.planned_world = planned.world;
+                return Some(program);
             }
             Stage::Requested(requested, at) if requested.fits(&basis) => {
                 self.planning.stage = Stage::Requested(requested, at);
                 return None;
             }
             // What it rested on has changed.
-            Stage::Done(_) | Stage::Requested(..) | Stage::Idle => {}
+            Stage::Done(..) | Stage::Requested(..) | Stage::Idle => {}
         }
         self.planning.number += 1;
-        self.planning.stage = Stage::Requested(Box::new(basis.clone()), now);
         fx.publish(Out::Plan(Box::new(PlanRequest {
             number: self.planning.number,
-            config: Arc::clone(&self.config),
-            basis,
+            motion: basis.motion,
+            state: basis.state.clone(),
+            measured: basis.measured,
+            around: Some((Arc::clone(&self.config), Arc::clone(&basis.world))),
         })));
+        self.planning.stage = Stage::Requested(Box::new(basis), now);
         None
     }
 }

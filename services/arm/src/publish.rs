@@ -9,6 +9,7 @@ use manipulation::gripper::Gripper;
 use manipulation::{JOINTS, Limb, Robot};
 use messages::WireCode;
 use messages::{ActId, ArmStatus, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates, MotionInhibit};
+use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 
 /// Interval of an unchanged status.
@@ -25,9 +26,15 @@ pub(crate) struct Publisher {
     grippers: [Gripper; 2],
     /// Simulated seconds per second.
     time_scale: f64,
-    /// Period of a model's joint states while it is busy, and when they were due last; sensors have
-    /// their own.
+    /// Period of a model's joint states while it is busy; sensors have their own.
     joints_every: Span,
+    pub(crate) published: Published,
+}
+
+/// What was published last, and when the next is due.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Published {
+    /// When a model's joint states were due last.
     joints_were_due: Time,
     /// Whether the joint states published last are those of an arm at rest.
     shows_rest: bool,
@@ -64,12 +71,14 @@ impl Publisher {
             grippers: Limb::BOTH.map(|limb| robot.arm(limb).gripper),
             time_scale: arm.time_scale,
             joints_every: Span::from_s(1.0 / arm.joint_rate_hz),
-            joints_were_due: Time(0),
-            shows_rest: false,
-            joints_at: Time(0),
-            world_sent: None,
-            status_due: Time(0),
-            status: ArmStatus::default(),
+            published: Published {
+                joints_were_due: Time(0),
+                shows_rest: false,
+                joints_at: Time(0),
+                world_sent: None,
+                status_due: Time(0),
+                status: ArmStatus::default(),
+            },
         }
     }
 
@@ -80,16 +89,16 @@ impl Publisher {
         if only_joints {
             return joints_due;
         }
-        let world = self.world_sent.map_or(Time(0), |sent| sent + WORLD_EVERY.1);
-        joints_due.min(self.status_due).min(world)
+        let world = self.published.world_sent.map_or(Time(0), |sent| sent + WORLD_EVERY.1);
+        joints_due.min(self.published.status_due).min(world)
     }
 
     /// Returns when a model's joint states are due. At rest they are rarer, once the rest itself has been
     /// published.
     fn joints_due(&self, activity: Activity) -> Time {
-        let rests = activity == Activity::AtRest && self.shows_rest;
+        let rests = activity == Activity::AtRest && self.published.shows_rest;
         let every = if rests { self.joints_every.max(REST_EVERY) } else { self.joints_every };
-        self.joints_were_due + every
+        self.published.joints_were_due + every
     }
 
     /// Returns the time of the joint states that are due: a model's periodically, those of sensors when
@@ -102,7 +111,7 @@ impl Publisher {
     ) -> Option<Time> {
         match measured.at {
             Source::Model => (now >= self.joints_due(activity)).then_some(now),
-            Source::Sensors(at) => (at > self.joints_at).then_some(at),
+            Source::Sensors(at) => (at > self.published.joints_at).then_some(at),
             Source::Memory => None,
         }
     }
@@ -119,11 +128,11 @@ impl Publisher {
         let due = self.joints_due(activity);
         if now >= due {
             // A late one is not caught up with.
-            self.joints_were_due = if due + self.joints_every > now { due } else { now };
-            self.shows_rest = activity == Activity::AtRest;
+            self.published.joints_were_due = if due + self.joints_every > now { due } else { now };
+            self.published.shows_rest = activity == Activity::AtRest;
         }
         if let Some(at) = at {
-            self.joints_at = at;
+            self.published.joints_at = at;
             fx.publish_urgent(Out::Joints(Box::new(self.joint_states(measured, at))));
         }
     }
@@ -132,7 +141,7 @@ impl Publisher {
     pub(crate) fn tick(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
         let (moving, standing) = WORLD_EVERY;
         let world_every = if facts.executor.is_standing() { standing } else { moving };
-        if self.world_sent.is_none_or(|sent| now >= sent + world_every) {
+        if self.published.world_sent.is_none_or(|sent| now >= sent + world_every) {
             self.send_world(facts, now, fx);
         }
         self.publish_status(facts, now, fx);
@@ -141,19 +150,20 @@ impl Publisher {
     /// Publishes the status when changed or due, and the world when the held object has changed.
     pub(crate) fn publish_status(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
         let status = self.status(facts);
-        let changed = ArmStatus { remaining_s: self.status.remaining_s, ..status } != self.status;
-        if changed && status.phase != self.status.phase {
+        let changed = ArmStatus { remaining_s: self.published.status.remaining_s, ..status }
+            != self.published.status;
+        if changed && status.phase != self.published.status.phase {
             self.send_world(facts, now, fx);
         }
-        if changed || now >= self.status_due {
-            self.status = status;
-            self.status_due = now + STATUS_EVERY;
+        if changed || now >= self.published.status_due {
+            self.published.status = status;
+            self.published.status_due = now + STATUS_EVERY;
             fx.publish(Out::Status(status));
         }
     }
 
     fn send_world(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
-        self.world_sent = Some(now);
+        self.published.world_sent = Some(now);
         let view = facts.world.view(facts.state, facts.measured, now);
         fx.publish(Out::World(Box::new(view)));
     }

@@ -13,7 +13,7 @@ const PHASE_POINTS_MAX: usize = 48;
 const STILL_RAD: f64 = 1e-9;
 
 /// Trajectory of the current motion, and what of it was published.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct MotionView {
     view: TrajectoryView,
     /// Duration of the whole, seconds of real time.

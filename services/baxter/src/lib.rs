@@ -18,10 +18,11 @@ use messages::robot::{Drill, Order, Report};
 use perception::{CameraSettings, Sighting};
 use robot::{Body, Robot};
 use scene::Scene;
+use serde::{Deserialize, Serialize};
 use service::{Effects, Event, Node, NodeError, Span, Time};
 
 /// Inputs of the robot.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum In<'a> {
     /// An order of the arm.
     Order(Order<'a>),
@@ -30,7 +31,7 @@ pub enum In<'a> {
 }
 
 /// Outputs of the robot.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Out {
     /// What the robot measures.
     Report(Report<'static>),

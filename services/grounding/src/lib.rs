@@ -61,6 +61,14 @@ impl Node for GroundingNode {
     fn deadline(&self) -> Option<Time> {
         None
     }
+
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        Some(Vec::new())
+    }
+
+    fn resume(config: Config, _checkpoint: &[u8]) -> Result<Self, NodeError> {
+        Self::recover(config, Vec::new())
+    }
 }
 
 impl GroundingNode {

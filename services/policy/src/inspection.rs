@@ -7,6 +7,7 @@ use dialogue::manager::{Act, Cause, Manager, Record, refold_since};
 use dialogue::{ActKind, Action, Outcome, PickOutcome, rendering};
 use scene::{Scene, count};
 use service::exit::{Exit, Failure};
+use service::flight::Decision;
 use service::inspection::{Part, SharedFacts};
 use service::journal_set::NUMBERS_SKIPPED;
 
@@ -58,6 +59,15 @@ fn does(scene: Option<&Scene>, act: &Act) -> String {
         ActKind::Cancel => format!("call off the pick{text}"),
         ActKind::PutBack => format!("put back{text}"),
     }
+}
+
+/// The decision of a record, for replays to compare.
+pub(crate) fn decision(scene: Option<&Scene>, Record { state, .. }: &Record) -> Decision {
+    let interaction = state.open.as_ref().map_or(0, |open| open.id.0);
+    let what = does(scene, &state.act);
+    // A mere remark has no value.
+    let value = Some(state.act.value).filter(|value| *value != 0.0);
+    Decision { interaction, what, value }
 }
 
 /// Why the robot decided so: the value with its bounds, the questions to come, and what else it

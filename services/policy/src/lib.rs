@@ -4,6 +4,7 @@
 //! observations strictly in order, each exactly once, advances the state, and has it journaled before
 //! anything that follows from it can be seen.
 
+mod checkpoint;
 mod inspection;
 mod journal_record;
 mod perceived;
@@ -23,6 +24,7 @@ use messages::{
     Presented, RobotAct, Sighting, Source, TableView, WorldView,
 };
 use perceived::Perceived;
+use serde::{Deserialize, Serialize};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 
 /// Interval at which the standing decision is sent again.
@@ -31,7 +33,7 @@ const RESEND_EVERY: Span = Span::from_ms(250);
 const OUTAGE: Span = Span::from_ms(1_000);
 
 /// Input of the policy.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum In<'a> {
     /// From grounding.
     Observation(MessageRef<'a, Observation>),
@@ -48,7 +50,7 @@ pub enum In<'a> {
 }
 
 /// Output of the policy.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Out {
     /// To speech: the utterances applied.
     Mark(AppliedMark),
@@ -154,6 +156,14 @@ impl Node for PolicyNode {
 
     fn pending_since(&self) -> Option<Time> {
         self.waiting_since
+    }
+
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        self.whole_state()
+    }
+
+    fn resume(config: Config, checkpoint: &[u8]) -> Result<Self, NodeError> {
+        Self::with_whole_state(config, checkpoint)
     }
 
     fn snapshot(&self) -> Option<Vec<Record>> {

@@ -11,6 +11,7 @@ use messages::{
 use service::Time;
 use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
+use service::flight::Decision;
 use service::inspection::{Part, SharedFacts};
 use service::journal_record::JournalRecord;
 use service::lifecycle::Environment;
@@ -60,6 +61,11 @@ impl Program for PolicyProgram {
         let scene = journal_record::scene(settings, record);
         let record = journal_record::explain(scene.as_deref(), record);
         Some(JournalRecord::Policy(Box::new(record)))
+    }
+
+    fn decision(settings: &Settings, record: &Record) -> Option<Decision> {
+        let scene = journal_record::scene(std::slice::from_ref(settings), record);
+        Some(inspection::decision(scene.as_deref(), record))
     }
 
     fn verify(settings: &[Settings], parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {

@@ -11,6 +11,7 @@ use config::Settings;
 use messages::robot::{Order, Report};
 use messages::topics::{self, robot};
 use messages::{Service, Sighting, Topic};
+use serde::{Deserialize, Serialize};
 use service::bus::{EncodedWriter, PortError};
 use service::exit::{Exit, Failure};
 use service::lifecycle::Environment;
@@ -37,7 +38,7 @@ fn replaces(new: &Report<'_>, old: &Report<'_>) -> bool {
 }
 
 /// Inputs of the bridge.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum In {
     /// Something that is to be passed on.
     Pass(Out),
@@ -48,7 +49,7 @@ pub enum In {
 }
 
 /// Outputs of the bridge.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Out {
     /// To the group.
     Report(Report<'static>),
@@ -92,6 +93,7 @@ pub struct Ros1Program;
 impl Program for Ros1Program {
     const SERVICE: Service = Service::Robot;
     const RECORD: Option<&'static str> = None;
+    const RECORDS_FLIGHTS: bool = false;
     const ABOUT: &'static str =
         "whichone-ros1, the bridge to a Baxter's ROS 1 topics (docs/baxter.md)";
     type Node = Bridge;

@@ -98,7 +98,7 @@ impl Endpointing {
 
 /// Possible ends of an utterance in progress that are decoded one after the other, so that the next one
 /// does not delay the end by the first.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct EarlyDecoding {
     /// The sound that is being decoded, and the length of its speech.
     current: Option<(u64, usize)>,

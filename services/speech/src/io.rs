@@ -4,6 +4,7 @@ use messages::{
     Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MessageRef, MotionCommand,
     Partial, Presented, PromptId, Receipt, RobotAct, Utterance,
 };
+use serde::{Deserialize, Serialize};
 use service::Span;
 
 use crate::Hypothesis;
@@ -14,7 +15,7 @@ use crate::devices::vad::Closing;
 use crate::stream_events::StreamEvent;
 
 /// Events delivered to the reducer.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum In<'a> {
     /// An utterance or a request from a client.
     Injection(Injection),
@@ -53,7 +54,7 @@ pub enum In<'a> {
 }
 
 /// Messages published and requests to the devices.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Out {
     /// To grounding.
     Utterance(Box<Utterance>),
@@ -70,7 +71,7 @@ pub enum Out {
     /// To clients: interim result.
     Partial(Box<Partial>),
     /// To the recogniser: the next samples of a sound in progress.
-    InterimSamples(u64, Vec<i16>),
+    InterimSamples(u64, #[serde(with = "crate::unrecorded_sound")] Vec<i16>),
     /// To the recogniser: a possible end of a sound.
     DecodeEarly(u64, SpeechSegment),
     /// To the live source: the pause that ends a sound in progress.
@@ -86,7 +87,7 @@ pub enum Out {
 }
 
 /// Input of the recogniser.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RecognitionInput {
     /// A WAV file, absolute path.
     File(String),
@@ -95,7 +96,7 @@ pub enum RecognitionInput {
 }
 
 /// A prompt for the voice.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PlaybackRequest {
     /// Identifies the playback in the voice's events.
     pub playback: u64,
@@ -108,7 +109,7 @@ pub struct PlaybackRequest {
 }
 
 /// Progress of a playback.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PlaybackEvent {
     /// Number of the playback.
     pub playback: u64,
@@ -117,7 +118,7 @@ pub struct PlaybackEvent {
 }
 
 /// State of a playback.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PlaybackState {
     /// Its sound began.
     Started,
@@ -130,7 +131,7 @@ pub enum PlaybackState {
 }
 
 /// Result of the recogniser.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recognised {
     /// Number of the sound.
     pub sound: u64,
@@ -139,7 +140,7 @@ pub struct Recognised {
 }
 
 /// One utterance in a sound.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecognisedSegment {
     /// Beginning and end, seconds from the start of the sound.
     pub span_s: (f64, f64),

@@ -16,6 +16,7 @@ mod prompt_player;
 pub mod record;
 pub mod shell;
 pub mod stream_events;
+mod unrecorded_sound;
 mod utterance_content;
 mod utterance_intake;
 
@@ -108,6 +109,19 @@ impl Node for SpeechNode {
 
     fn pending_since(&self) -> Option<Time> {
         self.intake.accepted.pending_since()
+    }
+
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        let Self { intake, player, next_send } = self;
+        postcard::to_stdvec(&(intake.checkpoint()?, player, next_send)).ok()
+    }
+
+    fn resume(config: Config, checkpoint: &[u8]) -> Result<Self, NodeError> {
+        let foreign = NodeError::foreign_checkpoint;
+        let parts: Result<(Vec<u8>, _, _), _> = postcard::from_bytes(checkpoint);
+        let (intake, player, next_send) = parts.map_err(|_| foreign())?;
+        let intake = UtteranceIntake::resume(config, &intake).ok_or_else(foreign)?;
+        Ok(Self { intake, player, next_send })
     }
 
     fn snapshot(&self) -> Option<Vec<Record>> {

@@ -7,7 +7,7 @@ use messages::{FixedText, Partial, RequestKey, Source};
 use service::Time;
 
 /// A sound that may become an utterance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct PendingSound {
     /// The request or stream that it belongs to.
     pub(crate) key: RequestKey,
@@ -42,7 +42,7 @@ impl PendingSound {
 }
 
 /// A client's stream that has ended.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ClosedStream {
     pub(crate) key: RequestKey,
     /// Number of its utterances.
@@ -55,7 +55,7 @@ pub(crate) struct ClosedStream {
 const STREAMS_MAX: usize = 64;
 
 /// Every sound that has begun and has no result yet.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct PendingSounds {
     sounds: BTreeMap<u64, PendingSound>,
     last: u64,

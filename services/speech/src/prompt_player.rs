@@ -17,7 +17,7 @@ const PRESENTATIONS_MAX: usize = 16;
 const AIM_TIMEOUT: Span = Span::from_ms(6_000);
 
 /// The speaking half of the reducer.
-#[derive(Default)]
+#[derive(Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct PromptPlayer {
     /// Presentations of questions, complete or not, oldest first.
     presentations: VecDeque<Presentation>,
@@ -34,6 +34,7 @@ pub(crate) struct PromptPlayer {
 }
 
 /// The prompt that is being spoken.
+#[derive(serde::Serialize, serde::Deserialize)]
 struct Playing {
     playback: u64,
     presentation: Presentation,
@@ -41,6 +42,7 @@ struct Playing {
 }
 
 /// A prompt that waits to be spoken.
+#[derive(serde::Serialize, serde::Deserialize)]
 struct Waiting {
     act: ActId,
     /// The presentation; its times count from the first sound on.

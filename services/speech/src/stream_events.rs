@@ -3,12 +3,13 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use messages::{RequestKey, Source};
+use serde::{Deserialize, Serialize};
 use service::Time;
 
 use crate::devices::stream::SpeechSegment;
 
 /// An event of a live source. Every utterance that began ends exactly once.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum StreamEvent {
     /// An utterance began.
     Began(Began),
@@ -17,6 +18,7 @@ pub enum StreamEvent {
         /// The utterance.
         sound: u64,
         /// One channel at 16 kHz.
+        #[serde(with = "crate::unrecorded_sound")]
         samples: Vec<i16>,
     },
     /// The speaker paused: unless speech continues, the end carries the same segment. Optional.
@@ -67,7 +69,7 @@ impl StreamEvent {
 pub(crate) type Begin<'a> = &'a mut dyn FnMut(Time) -> Began;
 
 /// The beginning of an utterance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Began {
     /// Number of the sound: that of the request which opened the microphone, otherwise a new one
     /// ([`next_sound`]).

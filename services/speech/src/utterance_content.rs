@@ -8,7 +8,7 @@ use crate::{Config, Hypothesis};
 const WEIGHT_MAX: f64 = 1e9;
 
 /// Words, a pointing gesture, or both.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct UtteranceContent {
     /// Hypotheses, most likely first; none for a gesture without words.
     pub(crate) hypotheses: Vec<Hypothesis>,

@@ -13,6 +13,7 @@ mod batch;
 mod group;
 mod objects;
 mod record;
+mod replay;
 mod study;
 mod talk;
 
@@ -24,6 +25,7 @@ pub use group::{
 };
 pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
 pub use record::{ExportVerb, McapArgs, OpenArgs, PomdpArgs, RecordVerb, RecorderArgs};
+pub use replay::ReplayArgs;
 pub use study::{ALL as STUDY_ALL, Preset, ReportArgs, StudyArgs, StudyVerb};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalAction, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
@@ -182,6 +184,12 @@ pub enum Verb {
         #[command(subcommand)]
         what: RecordVerb,
     },
+    /// Replay what the services were given, and compare what they state with what they stated.
+    ///
+    /// The exit code is 0 if every record and every output is as recorded, and 70 at the first one that is
+    /// not: it is shown with its pass, time and field, and with the events before it. With --what-if, the
+    /// decisions that differ are listed instead.
+    Replay(ReplayArgs),
     /// List, verify or set aside the journals.
     Journal(JournalArgs),
     /// Print a completion script for a shell.

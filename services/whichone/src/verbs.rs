@@ -33,6 +33,7 @@ mod operate;
 mod paths;
 mod planning;
 mod record;
+mod replay;
 mod speak;
 mod status;
 mod study;
@@ -77,6 +78,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
             motion::motion(&paths()?, MotionOrder::Resume, args.timeout, out)
         }
         Verb::Record { what } => record::record(&paths()?, what, out),
+        Verb::Replay(args) => replay::replay(paths, &args, out),
         Verb::Journal(args) => inspection::journal(&paths()?, &args, out),
         Verb::Completions { shell } => completions(shell, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),

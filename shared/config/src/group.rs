@@ -25,6 +25,19 @@ pub struct Group {
     pub perception: Perception,
     /// The recorder.
     pub recorder: Recorder,
+    /// The flight recorder of each service.
+    pub flight: Flight,
+}
+
+/// Space of the flights, in which each service records what it was given and what it stated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Flight {
+    /// Whether services record.
+    pub enabled: bool,
+    /// Bytes of all flights of one service together; the oldest are deleted.
+    pub bytes_max: u64,
+    /// Space of the disk that stays free, bytes: nothing is recorded below.
+    pub free_min: u64,
 }
 
 /// The recorder's ring of files.
@@ -87,6 +100,15 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Group {
             .table("shared_memory", |f| f.whole("free_min_mib", 0..=1 << 20)),
         perception: f.table("perception", perceived),
         recorder: f.table("recorder", recorder),
+        flight: f.table("flight", flight),
+    }
+}
+
+fn flight(f: &mut Fields<'_>) -> Flight {
+    Flight {
+        enabled: f.flag("enabled"),
+        bytes_max: f.whole::<u64>("mib_max", 2..=1 << 24) << 20,
+        free_min: f.whole::<u64>("free_min_mib", 0..=1 << 24) << 20,
     }
 }
 

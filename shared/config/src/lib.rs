@@ -39,7 +39,7 @@ pub use crate::console::{Access, Camera, Console};
 pub use crate::detectors::{Labels, Ros1Objects, Ros2Objects};
 pub use crate::dialogue::{CostsFrom, Dialogue, Gesture};
 pub use crate::files::{RobotFiles, read_file};
-pub use crate::group::{Group, Log, Perception, Recorder, RestartLimits};
+pub use crate::group::{Flight, Group, Log, Perception, Recorder, RestartLimits};
 pub use crate::manager::ManagerError;
 pub use crate::resolved::{Origin, Section};
 pub use crate::ros2::{Network, Ros2, ServiceMapping};

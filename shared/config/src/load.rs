@@ -104,7 +104,7 @@ fn profile_file(dir: &Path, name: &str, report: &mut Report) -> Option<Table> {
     Table::parse(&text, &Source::new(path.display().to_string(), 0), report)
 }
 
-fn override_layer(key: &str, value: &str, report: &mut Report) -> Option<Table> {
+pub(crate) fn override_layer(key: &str, value: &str, report: &mut Report) -> Option<Table> {
     let mut parts: Vec<&str> = key.split('.').collect();
     if parts.len() < 2 || parts.iter().any(|part| part.trim().is_empty()) {
         let what = "not a key with its section";

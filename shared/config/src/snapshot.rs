@@ -68,8 +68,22 @@ impl Settings {
             report.add(Diagnostic::new(label, "", "no such file", "start the group"));
             return report.verdict(None);
         };
-        let source = Source::new(label.as_str(), 0);
-        let Some(mut layer) = Table::parse(&text, &source, &mut report) else {
+        Self::from_snapshot(&label, &text, &[])
+    }
+
+    /// Reads a snapshot's text, which is called `label` in problems, with changes as in [`Settings::load`].
+    /// The scene, the robot and the durations stay those of the snapshot.
+    ///
+    /// # Errors
+    /// Every problem at once.
+    pub fn from_snapshot(
+        label: &str,
+        text: &str,
+        changes: &[(String, String)],
+    ) -> Result<Self, Diagnostics> {
+        let mut report = Report::default();
+        let source = Source::new(label, 0);
+        let Some(mut layer) = Table::parse(text, &source, &mut report) else {
             return report.verdict(None);
         };
         let measured = layer.take(DURATIONS);
@@ -79,12 +93,17 @@ impl Settings {
         for (key, what, file) in [(SCENE, "the scene", &scene), (URDF, "the robot", &urdf)] {
             if file.is_none() {
                 let help = "stop the group and start it again";
-                report.add(Diagnostic::new(&*label, key, format!("{what} is missing"), help));
+                report.add(Diagnostic::new(label, key, format!("{what} is missing"), help));
             }
         }
         let files = Files { scene, robot: urdf.map(|urdf| RobotFiles { urdf, srdf }) };
         let mut tree = resolved::defaults();
         tree.merge(layer, &mut Vec::new(), &mut report);
+        for (key, value) in changes {
+            if let Some(layer) = load::override_layer(key, value, &mut report) {
+                tree.merge(layer, &mut Vec::new(), &mut report);
+            }
+        }
         load::check(tree, report, files, Some((measured, source)))
     }
 

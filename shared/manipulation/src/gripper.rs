@@ -28,7 +28,7 @@ pub const DEAD_ZONE: f64 = 0.05;
 
 /// Distances between the fingertips of one gripper, and how hard they press: from the shapes of its
 /// fingers, see [`Robot::from_description`](crate::Robot::from_description).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Gripper {
     /// Distance at the closed end of the travel, metres. Negative: the tips meet before it, as after
     /// a calibration they do at position 0.

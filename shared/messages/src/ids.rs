@@ -33,7 +33,9 @@ pub struct Incarnation(pub u32);
 
 /// A client of the speech service, for its fair share: one program, or one viewer of the console.
 /// Random.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 pub struct ClientId(pub u64);
 
 /// Idempotency key of an injected utterance, kept through its retries: eight bytes that name the

@@ -20,6 +20,7 @@ mod services;
 pub mod text;
 pub mod topics;
 pub mod wire;
+mod wire_serde;
 
 pub use dialogue::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 pub use dialogue::{ActKind, Ended, Interpretation, Outcome, PickOutcome, PickPhase, Task};

@@ -1,5 +1,6 @@
 //! A message as its reader gets it.
 
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::ops::Deref;
 
@@ -51,5 +52,18 @@ impl<T: PartialEq> PartialEq for MessageRef<'_, T> {
 impl<T: fmt::Debug> fmt::Debug for MessageRef<'_, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         (**self).fmt(f)
+    }
+}
+
+impl<T: Serialize> Serialize for MessageRef<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        (**self).serialize(serializer)
+    }
+}
+
+/// What is read is in memory of its own.
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for MessageRef<'_, T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        T::deserialize(deserializer).map(|message| Self::Owned(Box::new(message)))
     }
 }

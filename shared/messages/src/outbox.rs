@@ -5,7 +5,7 @@ use crate::UtteranceSeq;
 use std::collections::VecDeque;
 
 /// Accepted messages that the receiver has not yet applied.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Outbox<T> {
     last: UtteranceSeq,
     waiting: VecDeque<(UtteranceSeq, T)>,

@@ -134,9 +134,32 @@ macro_rules! wire_struct {
     ) => {
         $(#[$doc])*
         #[repr(C)]
-        #[derive(Clone, Copy, Debug, Default, PartialEq, iceoryx2::prelude::ZeroCopySend)]
+        #[derive(
+            Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize,
+            iceoryx2::prelude::ZeroCopySend,
+        )]
         #[type_name($wire)]
-        pub struct $name { $($(#[$fdoc])* pub $field: $ty,)+ }
+        pub struct $name {
+            $($(#[$fdoc])* #[serde(with = "crate::wire_serde")] pub $field: $ty,)+
+        }
+
+        impl $crate::wire_serde::WireSerde for $name {
+            fn zero() -> Self {
+                Self::default()
+            }
+
+            fn is_zero(&self) -> bool {
+                true $(&& $crate::wire_serde::WireSerde::is_zero(&self.$field))+
+            }
+
+            fn write<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serde::Serialize::serialize(self, serializer)
+            }
+
+            fn read<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                serde::Deserialize::deserialize(deserializer)
+            }
+        }
 
         impl $crate::schema::Schema for $name {
             const NAME: &'static str = $wire;

@@ -44,6 +44,27 @@ impl<const N: usize> FixedText<N> {
         Self { len: end as u32, bytes }
     }
 
+    /// The length as the writer stated it.
+    pub(crate) fn raw_len(&self) -> u32 {
+        self.len
+    }
+
+    /// The bytes up to the length; all of them if that is invalid.
+    pub(crate) fn used(&self) -> &[u8] {
+        self.bytes.get(..self.len as usize).unwrap_or(&self.bytes)
+    }
+
+    /// A text as another process may write it, valid or not.
+    ///
+    /// # Errors
+    /// More than `N` bytes.
+    pub(crate) fn from_raw(len: u32, used: &[u8]) -> Result<Self, TextTooLong> {
+        let mut bytes = [0; N];
+        let slots = bytes.get_mut(..used.len());
+        slots.ok_or(TextTooLong { bytes: used.len(), max: N })?.copy_from_slice(used);
+        Ok(Self { len, bytes })
+    }
+
     /// The text.
     ///
     /// # Errors

@@ -68,6 +68,11 @@ impl<E: WireCode> Code<E> {
         Self { byte, variant: PhantomData }
     }
 
+    /// Returns the byte.
+    pub(crate) const fn raw(self) -> u8 {
+        self.byte
+    }
+
     /// Returns the variant. An invalid code, which no message from a reader has, counts as unset.
     pub fn get(self) -> E {
         E::from_byte(self.byte).unwrap_or(E::CODES[0].0)

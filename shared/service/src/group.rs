@@ -192,6 +192,11 @@ impl GroupPaths {
         self.root.join("recordings")
     }
 
+    /// What the services were given and what they stated ([`crate::flight`]).
+    pub fn flights(&self) -> PathBuf {
+        self.root.join("flight")
+    }
+
     /// The data of studies with people, where no other folder is set; never deleted.
     pub fn study(&self) -> PathBuf {
         self.root.join("study")

@@ -1,6 +1,6 @@
-//! Inspection of a service by its own program: `whichone journal` and `whichone doctor` run
-//! `whichone-SERVICE journal …` and `whichone-SERVICE doctor …`, so that only the service itself
-//! knows its records and its devices.
+//! Inspection of a service by its own program: `whichone journal`, `whichone doctor` and `whichone replay` run
+//! `whichone-SERVICE journal …` and so on, so that only the service itself knows its records, its reducer
+//! and its devices.
 
 use std::collections::BTreeSet;
 use std::io::{self, BufWriter, Write};
@@ -13,6 +13,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::exit::{Exit, Failure};
+use crate::flight;
 use crate::journal_clock::WallTimes;
 use crate::journal_record::JournalLine;
 use crate::log_file;
@@ -150,6 +151,8 @@ pub(crate) fn run<P: Program>(arguments: &[String]) -> Option<Exit> {
     let inspect = match arguments.first()?.as_str() {
         "journal" => show::<P>,
         "doctor" => examine::<P>,
+        "flight" => list_flight::<P>,
+        "replay" => replay::<P>,
         _ => return None,
     };
     let mut out = BufWriter::new(io::stdout().lock());
@@ -178,6 +181,8 @@ struct Request {
     json: bool,
     /// First record to be printed, from an older file if need be.
     since: Option<u64>,
+    /// Settings that a replay changes.
+    changes: Vec<(String, String)>,
 }
 
 impl Request {
@@ -190,6 +195,10 @@ impl Request {
                 "--facts" => request.facts = true,
                 "--json" => request.json = true,
                 "--since" => request.since = words.next().and_then(|word| word.parse().ok()),
+                "--what-if" => {
+                    let change = words.next().and_then(|word| word.split_once('='));
+                    request.changes.extend(change.map(|(k, v)| (k.to_owned(), v.to_owned())));
+                }
                 "--settings" => request.settings.extend(words.next().map(PathBuf::from)),
                 file => request.file = file.into(),
             }
@@ -213,6 +222,25 @@ fn examine<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fa
     let settings = request.settings()?;
     let findings = settings.first().map(P::doctor).unwrap_or_default();
     findings.iter().try_for_each(|finding| json_line(out, finding))
+}
+
+/// Prints every step of a flight.
+fn list_flight<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
+    let is_torn = flight::lines::<P>(&request.file, |step| json_line(out, &step))?;
+    if is_torn {
+        let _ = writeln!(io::stderr(), "ignored the unfinished end of {}", request.file.display());
+    }
+    Ok(())
+}
+
+/// Replays a flight and prints the report.
+fn replay<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
+    let report = flight::replay::<P>(&request.file, &request.changes)?;
+    json_line(out, &report)?;
+    match report.difference {
+        None => Ok(()),
+        Some(_) => Err(Failure::new(Exit::Invariant, "")),
+    }
 }
 
 fn show<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
@@ -311,6 +339,7 @@ fn verify<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fai
     }
 }
 
+/// Prints a value as one line.
 fn json_line(out: &mut impl Write, value: &impl Serialize) -> Result<(), Failure> {
     let json = serde_json::to_string(value).map_err(|error| Failure::output(error.into()))?;
     line(out, printable_json(&json))

@@ -9,6 +9,7 @@ mod commit;
 pub mod console_link;
 pub mod control;
 pub mod exit;
+pub mod flight;
 pub mod folders;
 pub mod group;
 pub mod inspection;

@@ -7,9 +7,11 @@
 //! handle further events before the records of an earlier one are durable.
 
 use crate::Time;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 /// Input of a node.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Event<In> {
     /// A journal of the group has been set aside since the epoch began. Comes before
     /// [`Event::Started`] at every start since, so it must be idempotent.
@@ -26,7 +28,7 @@ pub enum Event<In> {
 
 /// The numbers that are over because a journal of the group was set aside: nothing that has one of them
 /// is in progress any more, none of them is given again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SetAside {
     /// The highest of them; for utterances, interactions, prompts and acts alike.
     pub over: u64,
@@ -34,16 +36,17 @@ pub struct SetAside {
     pub is_own: bool,
 }
 
-/// A service as a reducer.
+/// A service as a reducer. What it is given and what it states can be recorded, and given again to another
+/// build of it ([`crate::flight`]).
 pub trait Node: Sized + 'static {
     /// Its configuration.
     type Config;
     /// Messages and device results that it receives; messages are read where they lie in shared memory.
-    type In<'a>;
+    type In<'a>: Serialize + DeserializeOwned;
     /// Messages that it publishes, and requests to its devices.
-    type Out;
+    type Out: Serialize + DeserializeOwned;
     /// Records of its journal. A stateless node uses [`Never`].
-    type Record: Send + 'static;
+    type Record: Serialize + DeserializeOwned + Send + 'static;
 
     /// Restores the node from its journal; empty at the first start. There is no other way
     /// to make one, so that first start and restart share one path.
@@ -81,10 +84,24 @@ pub trait Node: Sized + 'static {
     fn snapshot(&self) -> Option<Vec<Self::Record>> {
         None
     }
+
+    /// Returns the whole state, so that a flight can begin here; `None` where what is in progress, or the
+    /// kind of node, does not permit that.
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        None
+    }
+
+    /// Restores the node from [`Node::checkpoint`]: from here on it does what that node does.
+    ///
+    /// # Errors
+    /// The checkpoint is not of this configuration and this build.
+    fn resume(_config: Self::Config, _checkpoint: &[u8]) -> Result<Self, NodeError> {
+        Err(NodeError::foreign_checkpoint())
+    }
 }
 
 /// Effects of one or more events, in the order in which they were stated.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Effects<Out, Record> {
     records: Vec<Record>,
     vital: bool,
@@ -133,6 +150,22 @@ impl<Out, Record> Effects<Out, Record> {
         self.exit
     }
 
+    /// Returns whether nothing is stated.
+    pub fn is_empty(&self) -> bool {
+        let Self { records, urgent, outputs, exit, .. } = self;
+        records.is_empty() && urgent.is_empty() && outputs.is_empty() && !exit
+    }
+
+    /// Returns the records.
+    pub fn records(&self) -> &[Record] {
+        &self.records
+    }
+
+    /// Leaves what remains once everything is carried out: whether the service is to end.
+    pub(crate) fn carried_out(&mut self) {
+        *self = Self { exit: self.exit, ..Self::default() };
+    }
+
     /// Takes the records, leaving none.
     pub fn take_records(&mut self) -> Vec<Record> {
         std::mem::take(&mut self.records)
@@ -157,7 +190,7 @@ impl<Out, Record> Effects<Out, Record> {
 }
 
 /// The record type of a stateless node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Never {}
 
 /// A node cannot be recovered.
@@ -168,4 +201,12 @@ pub struct NodeError {
     pub what: String,
     /// Advice to the operator.
     pub help: String,
+}
+
+impl NodeError {
+    /// A checkpoint that this build cannot resume from.
+    pub fn foreign_checkpoint() -> Self {
+        let what = "the checkpoint is not of this build and configuration".to_owned();
+        Self { what, help: "replay the flight with the build that recorded it".to_owned() }
+    }
 }

@@ -9,6 +9,7 @@ use crate::bus::{Bus, Identity, PortError, WakeListener};
 use crate::clock;
 use crate::commit::Commit;
 use crate::exit::{Exit, Failure};
+use crate::flight::{Decision, Head, Ring, Tap};
 use crate::inspection::{self, Finding, Part, SharedFacts};
 use crate::journal_record::JournalRecord;
 use crate::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
@@ -19,10 +20,10 @@ use crate::{Effects, Event, Node, SetAside, Span, Time, journal_set};
 use config::Settings;
 use journal::Journal;
 use messages::Service;
-use serde::{Serialize, de::DeserializeOwned};
 use std::ops::ControlFlow;
 use std::os::fd::BorrowedFd;
 use std::process::ExitCode;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Maximum events per pass; the others wait for the next pass, so that heartbeats and signals are not
 /// delayed.
@@ -43,8 +44,10 @@ pub trait Program: Sized {
     const RECORD: Option<&'static str>;
     /// One paragraph for `--help`.
     const ABOUT: &'static str;
+    /// Whether its flights are recorded: not where the reducer only passes things on.
+    const RECORDS_FLIGHTS: bool = true;
     /// The reducer.
-    type Node: Node<Record: Serialize + DeserializeOwned>;
+    type Node: Node;
     /// Its topics and devices.
     type Shell: Shell<Self::Node>;
 
@@ -71,6 +74,11 @@ pub trait Program: Sized {
     /// Returns a journal record as `whichone journal --json` prints it, with the settings that were in
     /// force, newest first; none for a stateless service.
     fn explain(_settings: &[Settings], _record: &Record<Self>) -> Option<JournalRecord> {
+        None
+    }
+
+    /// What was decided with a journal record, as far as that is for replays with other settings to compare.
+    fn decision(_settings: &Settings, _record: &Record<Self>) -> Option<Decision> {
         None
     }
 
@@ -201,6 +209,7 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
     let settings = Settings::load_snapshot(&environment.paths.run())?;
     let config = P::config(&environment, &settings)?;
     let (journal, records, set_aside) = open_journal::<P>(&environment)?;
+    let tap = start_tap::<P>(&environment, &settings, &records);
     let node = P::Node::recover(config, records)?;
     let failed = |e: std::io::Error| Failure::new(Exit::NotReached, e.to_string());
     let file = environment.paths.journal_file(P::SERVICE.name());
@@ -215,16 +224,50 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
         inbox,
         wake_listener,
         effects: Effects::default(),
+        tap,
         port_error: None,
         port_failure: None,
         bus,
     };
     if let Some(set_aside) = set_aside {
-        service.node.on(Event::SetAside(set_aside), clock::now(), &mut service.effects);
+        service.feed(Event::SetAside(set_aside));
     }
-    service.node.on(Event::Started, clock::now(), &mut service.effects);
+    service.feed(Event::Started);
     service.commit()?;
+    service.tap.end_pass();
     drive(lifecycle, &mut service)
+}
+
+/// Begins the recording of this start.
+fn start_tap<P: Program>(
+    environment: &Environment,
+    settings: &Settings,
+    records: &[Record<P>],
+) -> Tap {
+    let config::Flight { enabled, bytes_max, free_min } = settings.group.flight;
+    if !enabled || !P::RECORDS_FLIGHTS {
+        return Tap::default();
+    }
+    let head = Head::of::<P>(environment, settings, clock::now(), wall_ns());
+    let ring = Ring { folder: environment.paths.flights(), bytes_max, free_min };
+    Tap::start(ring, &head, records)
+}
+
+/// Returns the wall time, nanoseconds since 1970.
+fn wall_ns() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos() as u64
+}
+
+/// Gives the node an event, and records it.
+fn feed<N: Node>(
+    node: &mut N,
+    tap: &mut Tap,
+    event: Event<N::In<'_>>,
+    effects: &mut Effects<N::Out, N::Record>,
+) {
+    let now = clock::now();
+    tap.event(&event, now);
+    node.on(event, now, effects);
 }
 
 fn open_topics<P: Program>(
@@ -265,6 +308,7 @@ struct Loop<P: Program> {
     inbox: DeviceReceiver<In<P>>,
     wake_listener: WakeListener,
     effects: Effects<Out<P>, Record<P>>,
+    tap: Tap,
     /// Failure of a topic in this pass.
     port_error: Option<PortError>,
     /// Failure of a topic in the last pass, and since when passes have had one.
@@ -286,7 +330,7 @@ impl<P: Program> Cycle for Loop<P> {
     }
 
     fn shut_down(&mut self) {
-        self.node.on(Event::Shutdown, clock::now(), &mut self.effects);
+        self.feed(Event::Shutdown);
     }
 
     fn pass(&mut self, ready: Ready) -> Result<ControlFlow<()>, Failure> {
@@ -298,6 +342,7 @@ impl<P: Program> Cycle for Loop<P> {
         }
         self.port_error = self.take_in(is_urgent).err();
         self.commit()?;
+        self.end_recorded_pass();
         self.judge_ports()?;
         // What waits for a full disk was never acknowledged, and is given up as by a kill.
         let is_done = self.commit.is_settled() || self.commit.is_short();
@@ -320,6 +365,21 @@ impl<P: Program> Cycle for Loop<P> {
 }
 
 impl<P: Program> Loop<P> {
+    fn feed(&mut self, event: Event<In<P>>) {
+        feed(&mut self.node, &mut self.tap, event, &mut self.effects);
+    }
+
+    /// Ends a pass of the flight, which continues in another file where that one is long.
+    fn end_recorded_pass(&mut self) {
+        self.tap.end_pass();
+        if self.tap.wants_checkpoint()
+            && self.effects.is_empty()
+            && let Some(checkpoint) = self.node.checkpoint()
+        {
+            self.tap.go_on(&checkpoint, clock::now(), wall_ns());
+        }
+    }
+
     /// Returns whether new inputs are taken, beside urgent ones.
     fn takes_inputs(&self) -> bool {
         !self.commit.is_behind() && !self.effects.exits()
@@ -335,11 +395,11 @@ impl<P: Program> Loop<P> {
     fn take_in(&mut self, is_urgent: bool) -> Result<(), PortError> {
         self.inbox.clear();
         let takes_inputs = self.takes_inputs();
-        let Self { node, shell, inbox, effects, .. } = self;
+        let Self { node, shell, inbox, effects, tap, .. } = self;
         let mut handled = 0;
         // A message is handled where it lies in shared memory, before the next one is taken.
         let mut handle = |message: <P::Node as Node>::In<'_>| {
-            node.on(Event::Message(message), clock::now(), effects);
+            feed(node, tap, Event::Message(message), effects);
             handled += 1;
         };
         let mut result = shell.drain_urgent(is_urgent, &mut handle);
@@ -347,11 +407,11 @@ impl<P: Program> Loop<P> {
             result = result.and(shell.drain(&mut handle));
             let left = PASS_EVENTS_MAX.saturating_sub(handled);
             for message in std::iter::from_fn(|| inbox.take()).take(left) {
-                node.on(Event::Message(message), clock::now(), effects);
+                feed(node, tap, Event::Message(message), effects);
             }
         }
         if self.takes_ticks() && self.node.deadline().is_some_and(|due| due <= clock::now()) {
-            self.node.on(Event::Tick, clock::now(), &mut self.effects);
+            self.feed(Event::Tick);
         }
         result
     }
@@ -359,6 +419,7 @@ impl<P: Program> Loop<P> {
     /// Publishes what waits for no record, hands over the records of the pass, and publishes what is
     /// backed by durable ones. Never the other way round.
     fn commit(&mut self) -> Result<(), Failure> {
+        self.tap.stated(&self.effects);
         let urgent = self.effects.take_urgent();
         self.publish(urgent);
         let settled = self.commit.settle()?;
@@ -367,6 +428,7 @@ impl<P: Program> Loop<P> {
         self.publish(now_durable);
         if self.commit.is_settled() {
             self.node.on_durable();
+            self.tap.durable();
         }
         if self.commit.wants_snapshot()
             && let Some(snapshot) = self.node.snapshot()

@@ -24,7 +24,7 @@ use rustix::net::{
     SocketFlags, SocketType, bind, recvmsg, sendto, socket_with, sockopt,
 };
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::group::GroupPaths;
 use crate::{Span, Time, clock};
@@ -71,6 +71,20 @@ pub struct StopState {
 /// Where an answer goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Caller(SocketAddrUnix);
+
+/// As the bytes of an address that is no file, which is the only kind that orders come from.
+impl Serialize for Caller {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.abstract_name().unwrap_or_default().serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Caller {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = Vec::<u8>::deserialize(deserializer)?;
+        SocketAddrUnix::new_abstract_name(&name).map(Self).map_err(serde::de::Error::custom)
+    }
+}
 
 impl Caller {
     /// A caller with an address of this name that is no file.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Free space of the file system that holds `folder`, bytes; `None` if it cannot be asked.
-fn free_bytes(folder: &Path) -> Option<u64> {
+pub(crate) fn free_bytes(folder: &Path) -> Option<u64> {
     let stat = rustix::fs::statvfs(folder).ok()?;
     // A file system without files left is as full as one without blocks.
     let no_file = stat.f_files > 0 && stat.f_favail == 0;

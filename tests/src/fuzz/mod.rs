@@ -8,6 +8,7 @@ mod bytes;
 mod config;
 mod console;
 mod control;
+mod flight;
 mod group;
 mod journal;
 mod language;
@@ -38,7 +39,7 @@ pub struct Target {
 }
 
 /// Every target.
-pub const TARGETS: [Target; 13] = [
+pub const TARGETS: [Target; 14] = [
     Target { name: "journal", run: journal::run, seeds: journal::seeds, mutations: 1_000 },
     Target {
         name: "records",
@@ -46,6 +47,7 @@ pub const TARGETS: [Target; 13] = [
         seeds: journal::record_seeds,
         mutations: 500,
     },
+    Target { name: "flight", run: flight::run, seeds: flight::seeds, mutations: 100 },
     Target { name: "wire", run: wire::run, seeds: wire::seeds, mutations: 4_000 },
     Target { name: "payload", run: payload::run, seeds: payload::seeds, mutations: 4_000 },
     Target { name: "peers", run: peers::run, seeds: peers::seeds, mutations: 100 },

@@ -1,9 +1,12 @@
 //! A node in a simulated process: it can die at any point between an event and the last of its
 //! effects, and comes back from what its disk has kept of its journal by then.
 
+use std::path::{Path, PathBuf};
+
 use config::Settings;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use service::flight::{Head, Ring, Tap};
 use service::lifecycle::Environment;
 use service::service_loop::Program;
 use service::{Effects, Event, Node, Time};
@@ -28,10 +31,19 @@ pub enum Crash {
 /// Records and outputs of one pass.
 type Batch<N> = (Vec<<N as Node>::Record>, Vec<<N as Node>::Out>);
 
+/// Begins the flight of a start in a folder.
+type Record<N> = dyn Fn(&Path, &[<N as Node>::Record], Time) -> Tap;
+
 /// A node, its journal, and the configuration that each start gets.
 #[allow(missing_debug_implementations, reason = "nodes have none")]
 pub struct Host<N: Node> {
     config: Box<dyn Fn() -> N::Config>,
+    record: Box<Record<N>>,
+    /// Folder of the flights, if they are recorded, and how many passes each file holds.
+    flights: Option<(PathBuf, u64)>,
+    passes: u64,
+    files: u64,
+    tap: Tap,
     node: Option<N>,
     disk: Disk<N::Record>,
     /// Passes that wait for room on the disk.
@@ -50,6 +62,11 @@ where
     pub fn new<P: Program<Node = N>>(settings: &Settings) -> Self {
         Self {
             config: configured::<P>(settings),
+            record: recorded::<P>(settings),
+            flights: None,
+            passes: 0,
+            files: 0,
+            tap: Tap::default(),
             node: None,
             disk: Disk::new(P::RECORD.unwrap_or("none")),
             waiting: Vec::new(),
@@ -67,7 +84,12 @@ where
             return Vec::new();
         }
         self.incarnation += 1;
-        let node = N::recover((self.config)(), self.disk.open());
+        let records = self.disk.open();
+        if let Some((folder, _)) = &self.flights {
+            self.tap = (self.record)(folder, &records, now);
+            self.passes = 0;
+        }
+        let node = N::recover((self.config)(), records);
         self.node = Some(node.unwrap_or_else(|e| panic!("recovery: {e}")));
         let crash = faults.crash(now);
         self.pass(vec![Event::Started], now, crash, faults)
@@ -77,11 +99,32 @@ where
     pub fn replace<P: Program<Node = N>>(&mut self, settings: &Settings) {
         self.kill();
         self.config = configured::<P>(settings);
+        self.record = recorded::<P>(settings);
+    }
+
+    /// Records flights of all further starts in a folder: another one after so many passes, once the node
+    /// can be described.
+    pub fn record(&mut self, folder: &Path, passes: u64) {
+        self.flights = Some((folder.to_owned(), passes));
+    }
+
+    fn go_on_recording(&mut self, now: Time) {
+        self.passes += 1;
+        let longest = self.flights.as_ref().map_or(u64::MAX, |(_, passes)| *passes);
+        if self.passes >= longest
+            && let Some(checkpoint) = self.node.as_ref().and_then(Node::checkpoint)
+        {
+            self.passes = 0;
+            // Files are named by milliseconds, and several passes may be at one time.
+            self.files += 1;
+            self.tap.go_on(&checkpoint, now, now.ns() + self.files * 1_000_000);
+        }
     }
 
     /// Kills the process.
     pub fn kill(&mut self) {
         self.node = None;
+        self.tap = Tap::default();
         self.waiting.clear();
         self.disk.close();
     }
@@ -142,7 +185,12 @@ where
     ) -> Vec<N::Out> {
         let Some(node) = &mut self.node else { return Vec::new() };
         let mut effects = Effects::default();
-        events.into_iter().for_each(|event| node.on(event, now, &mut effects));
+        for event in events {
+            self.tap.event(&event, now);
+            node.on(event, now, &mut effects);
+        }
+        self.tap.stated(&effects);
+        self.tap.end_pass();
         let mut visible = effects.take_urgent();
         if let Some(until) = faults.disk_full(now) {
             self.full_until = until;
@@ -156,6 +204,7 @@ where
             return visible;
         }
         visible.extend(self.commit(crash, faults));
+        self.go_on_recording(now);
         visible
     }
 
@@ -187,12 +236,23 @@ where
             }
             (None, Some(node)) => {
                 node.on_durable();
+                self.tap.durable();
                 self.disk.shorten(|| node.snapshot());
             }
             (None, None) => {}
         }
         outputs
     }
+}
+
+/// Returns what records the flights of the program.
+fn recorded<P: Program>(settings: &Settings) -> Box<Record<P::Node>> {
+    let settings = settings.clone();
+    Box::new(move |folder, records, now| {
+        let ring = Ring { folder: folder.to_owned(), bytes_max: 1 << 30, free_min: 0 };
+        let head = Head::of::<P>(&Environment::nowhere(), &settings, now, now.ns());
+        Tap::start(ring, &head, records)
+    })
 }
 
 /// Returns the configuration that the real program gives its node.

@@ -24,6 +24,8 @@ mod routes;
 mod table;
 mod user;
 
+use std::path::Path;
+
 use config::Settings;
 use dialogue::{Model, Rng};
 use evaluation::simulation::users::Domain;
@@ -38,7 +40,7 @@ pub use attribution::{Count, study};
 pub use client::Client;
 pub use faults::{Fault, Faults};
 pub use host::{Crash, Host};
-pub use perceived::{Tally, at_best, converse, perceive};
+pub use perceived::{Tally, at_best, before_camera, converse, perceive};
 pub use table::{Happening, TableTop};
 pub use user::{Channel, GroupUser};
 
@@ -159,6 +161,16 @@ impl SimulatedGroup {
     #[must_use]
     pub fn with_table(self, table: TableTop) -> Self {
         Self { table: Some(table), request_s: 1.5, ..self }
+    }
+
+    /// Records the flights of all services in a folder: another one after so many passes.
+    #[must_use]
+    pub fn recorded(mut self, folder: &Path, passes: u64) -> Self {
+        self.speech.record(folder, passes);
+        self.grounding.record(folder, passes);
+        self.policy.record(folder, passes);
+        self.arm.iter_mut().for_each(|arm| arm.record(folder, passes));
+        self
     }
 
     /// Returns the number of questions in the latest interaction that ended.

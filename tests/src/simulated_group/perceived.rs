@@ -134,11 +134,22 @@ pub fn converse(
     faults: Faults,
     seed: u64,
 ) -> SimulatedGroup {
-    let table = TableTop::new(&settings.scene, camera(seed), happening);
-    let user = GroupUser::typing(wanted);
-    let mut group = SimulatedGroup::new(settings.clone(), user, faults).with_table(table);
+    let mut group = before_camera(settings, wanted, happening, faults, seed);
     group.run();
     group
+}
+
+/// A group under the simulated camera before its dialogue.
+pub fn before_camera(
+    settings: &Settings,
+    wanted: usize,
+    happening: (Happening, Time),
+    faults: Faults,
+    seed: u64,
+) -> SimulatedGroup {
+    let table = TableTop::new(&settings.scene, camera(seed), happening);
+    let user = GroupUser::typing(wanted);
+    SimulatedGroup::new(settings.clone(), user, faults).with_table(table)
 }
 
 impl Tally {

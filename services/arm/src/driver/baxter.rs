@@ -21,6 +21,7 @@ use messages::MotionInhibit;
 use messages::robot::{
     AssemblyState, JointCommand, JointMode, JointState, JointTrajectoryPoint, SpeedRatio,
 };
+use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 
 /// Longest time between two passes: a little more than between two joint states, which begin a pass
@@ -59,7 +60,7 @@ pub struct BaxterDriver {
 }
 
 /// Command state of a limb.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Set {
     /// Commanded positions; `None` before the first report, or while it accepts no commands.
     q: Option<Joints>,
@@ -228,6 +229,20 @@ impl BaxterDriver {
 }
 
 impl ArmDriver for BaxterDriver {
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        let Self { settings: _, robot: _, used: _, measured, joints_at, assembly, .. } = self;
+        let Self { grippers, limbs, now, inhibit, ratio_sent, fresh, .. } = self;
+        let heard = (measured, joints_at, assembly, grippers);
+        postcard::to_stdvec(&(heard, (limbs, now, inhibit, ratio_sent, fresh))).ok()
+    }
+
+    fn resume(&mut self, checkpoint: &[u8]) -> Option<()> {
+        let (heard, said) = postcard::from_bytes(checkpoint).ok()?;
+        (self.measured, self.joints_at, self.assembly, self.grippers) = heard;
+        (self.limbs, self.now, self.inhibit, self.ratio_sent, self.fresh) = said;
+        Some(())
+    }
+
     fn measured(&self) -> Measured {
         self.measured
     }

@@ -41,6 +41,16 @@ impl KinematicArm {
 }
 
 impl ArmDriver for KinematicArm {
+    fn checkpoint(&self) -> Option<Vec<u8>> {
+        let Self { measured, grippers: _, grip } = self;
+        postcard::to_stdvec(&(measured, grip)).ok()
+    }
+
+    fn resume(&mut self, checkpoint: &[u8]) -> Option<()> {
+        (self.measured, self.grip) = postcard::from_bytes(checkpoint).ok()?;
+        Some(())
+    }
+
     fn measured(&self) -> Measured {
         self.measured
     }

@@ -69,7 +69,7 @@ impl Default for SegmenterOptions {
 }
 
 /// When a pause closes a segment whose words so far were judged.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Closing {
     /// Length of the speech that was judged, samples.
     pub speech: usize,

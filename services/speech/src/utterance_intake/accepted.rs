@@ -14,6 +14,7 @@ use crate::{Fx, Out};
 const WAITING_MAX: usize = 256;
 
 /// Accepted utterances.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct AcceptedUtterances {
     outbox: Outbox<Accepted>,
     /// The latest ones, applied or not.
@@ -109,7 +110,7 @@ impl AcceptedUtterances {
 }
 
 /// The latest receipts that were sent, so that a repeated request gets the same ones.
-#[derive(Default)]
+#[derive(Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Receipts {
     sent: VecDeque<Receipt>,
 }

@@ -7,6 +7,7 @@ use crate::devices::microphone::MicrophoneStatus;
 use crate::{Fx, Out};
 
 /// State of microphone and recogniser, and measurements of the last utterance.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(super) struct HearingStatus {
     recogniser: EarState,
     hearing: Hearing,

@@ -13,7 +13,7 @@ use messages::{
 use service::{Span, Time};
 
 /// Origin of an utterance.
-#[derive(Clone)]
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub(super) struct Origin {
     pub(super) key: RequestKey,
     /// Number and total of the segment.

@@ -20,13 +20,14 @@ const EACH_MAX: usize = 16;
 const CLIENTS_MAX: usize = 32;
 
 /// A valid request without a number.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(super) struct Request {
     pub(super) origin: Origin,
     pub(super) content: UtteranceContent,
 }
 
 /// The waiting requests of every client, the client whose turn it is first; none without requests.
-#[derive(Default)]
+#[derive(Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct WaitingRequests {
     clients: VecDeque<(ClientId, VecDeque<Request>)>,
 }

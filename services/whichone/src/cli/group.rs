@@ -145,7 +145,7 @@ pub struct SwapArgs {
     pub timeout: Duration,
 }
 
-fn key_and_value(text: &str) -> Result<(String, String), String> {
+pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
     let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, e.g. group.scene=tools")?;
     Ok((key.trim().to_owned(), value.trim().to_owned()))
 }

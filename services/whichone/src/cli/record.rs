@@ -47,7 +47,7 @@ pub struct OpenArgs {
 pub enum ExportVerb {
     /// The decision problem of the planners in Cassandra's text format, which public solvers read.
     Pomdp(PomdpArgs),
-    /// Recordings or journals as one MCAP file, which Foxglove and other robotics tools open.
+    /// Recordings, journals or flights as one MCAP file, which Foxglove and other robotics tools open.
     Mcap(McapArgs),
 }
 
@@ -67,7 +67,7 @@ pub struct PomdpArgs {
 /// Arguments of `export mcap`.
 #[derive(Debug, Args)]
 pub struct McapArgs {
-    /// A recording, a journal, or a folder with either.
+    /// A recording, a journal, a flight, or a folder of one kind.
     #[arg(value_name = "SOURCE")]
     pub source: PathBuf,
     /// The file to write; an existing one is not replaced.

@@ -10,7 +10,7 @@ use crate::{ActKind, Presentation};
 pub const HEARING_MAX: Span = Span::from_ms(10_000);
 
 /// What is known of both voices.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Floor {
     /// Since when the user speaks; none while no speech is heard.
     pub speaking_since: Option<Time>,

@@ -35,7 +35,7 @@ wire_enum! {
 pub const NO_SEQUENCE: u32 = 0;
 
 /// Commands to a gripper: the words of [`EndEffectorCommand::command`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Command {
     /// `calibrate`: finds both ends of the fingers' travel; before it none but this is obeyed.
     Calibrate,

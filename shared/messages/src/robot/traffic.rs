@@ -6,9 +6,10 @@ use super::{
     JointCommand, JointState, JointTrajectoryPoint, SpeedRatio,
 };
 use crate::MessageRef;
+use serde::{Deserialize, Serialize};
 
 /// What a robot reports.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Report<'a> {
     /// `joint_states`, of all or some joints.
     Joints(MessageRef<'a, JointState>),
@@ -23,7 +24,7 @@ pub enum Report<'a> {
 }
 
 /// An order to a robot.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Order<'a> {
     /// `joint_command` of a limb.
     Joints(usize, MessageRef<'a, JointCommand>),

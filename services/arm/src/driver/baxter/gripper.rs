@@ -28,7 +28,7 @@ const HOLDING_FORCE_PERCENT: f64 = 100.0;
 const SENDER: &str = "whichone";
 
 /// One gripper.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Gripper {
     geometry: gripper::Gripper,
     state: Option<(EndEffectorState, Time)>,

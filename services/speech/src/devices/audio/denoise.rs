@@ -44,7 +44,7 @@ const VOICED: f32 = 0.5;
 const SUREST: usize = 8;
 
 /// How much of a sound is a voice.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct VoiceEvidence {
     /// Probability of a voice in the surest 0.08 s, 0 to 1. The detector of speech takes knocks for a
     /// voice; they have a lower one.

@@ -67,7 +67,7 @@ impl MicrophoneOptions {
 }
 
 /// Status of the microphone, published on every change and five times a second while it listens.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MicrophoneStatus {
     /// Its state.
     pub state: MicrophoneState,

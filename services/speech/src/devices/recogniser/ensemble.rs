@@ -32,7 +32,7 @@ pub struct Ensemble {
 }
 
 /// What the recognisers think of one utterance.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Heard {
     /// The first recogniser's view.
     pub first: FirstView,
@@ -41,7 +41,7 @@ pub struct Heard {
 }
 
 /// The second recogniser's view of one utterance.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum SecondView {
     /// There is no second recogniser, or the first one was sure.
     NotAsked,

@@ -4,7 +4,7 @@ use crate::Hypothesis;
 use crate::devices::audio::VoiceEvidence;
 
 /// The first recogniser's view of one utterance, as far as it has one.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FirstView {
     /// Hypotheses with different texts, best first; none if nothing was recognised.
     pub hypotheses: Vec<Hypothesis>,

@@ -11,7 +11,7 @@ use crate::Hypothesis;
 use crate::devices::language_model::scene_sentences;
 
 /// Speech that is shown as heard but not acted on.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Rejected {
     /// The best hypothesis; empty if nothing was recognised.
     pub text: String,

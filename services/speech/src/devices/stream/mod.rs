@@ -13,6 +13,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
 use service::Time;
 
 pub use audio::SampleClock;
@@ -33,13 +34,14 @@ const UNDECIDED: usize = 8 * 256;
 const BLOCK: usize = 5_600;
 
 /// An utterance from a stream, with the quiet around it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SpeechSegment {
     /// When the speech began.
     pub onset: Time,
     /// When the speech ended.
     pub end: Time,
     /// Samples to decode, one channel at [`RATE_HZ`].
+    #[serde(with = "crate::unrecorded_sound")]
     pub samples: Vec<i16>,
     /// Range of the speech in `samples`.
     pub speech: Range<usize>,

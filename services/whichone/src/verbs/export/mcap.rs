@@ -1,20 +1,24 @@
-//! `export mcap`: recordings or journals as one MCAP file.
+//! `export mcap`: recordings, journals or flights as one MCAP file.
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::UNIX_EPOCH;
 
 use messages::Service;
-use recording::journals::{self, Entry};
+use recording::journals::{Entry, Origin, Writer};
 use recording::list::entries;
 use recording::recover::merge;
+use scene::count;
 use serde_json::json;
 use service::exit::{Exit, Failure};
+use service::flight::{self, Direction, Head, Line};
 use service::journal_record::JournalLine;
 
 use super::super::inspection::{command, failed};
 use super::super::record::failure;
+use super::super::replay::service_of;
 use crate::Outcome;
 use crate::cli::McapArgs;
 use crate::output::{Output, note};
@@ -28,23 +32,18 @@ const SETTINGS: &str = "settings";
 pub(super) fn export(args: &McapArgs, out: &mut Output<'_>) -> Outcome {
     let McapArgs { source, out: to } = args;
     fs::metadata(source).map_err(|error| Failure::file(source, &error))?;
-    let journals = journals_in(source);
-    let messages = if journals.is_empty() {
-        recordings(source, to)?
+    let (journals, flights) = (journals_in(source), flights_in(source)?);
+    let (messages, noun) = if !flights.is_empty() {
+        (steps(&flights, to)?, "step")
+    } else if journals.is_empty() {
+        (recordings(source, to)?, "message")
     } else {
-        let mut records = Vec::new();
-        for (service, file) in &journals {
-            records.extend(records_of(*service, file)?);
-        }
-        records.sort_by_key(|entry| entry.at_ns);
-        journals::write(&records, to).map_err(failure)?;
-        records.len() as u64
+        (records(&journals, to)?, "record")
     };
     match out.is_json() {
         true => out.json(&json!({ "file": to, "messages": messages }))?,
         false => {
-            let noun = if journals.is_empty() { "message" } else { "record" };
-            out.line(format_args!("{}: {}", to.display(), scene::count(messages, noun)))?;
+            out.line(format_args!("{}: {}", to.display(), count(messages, noun)))?;
         }
     }
     Ok(Exit::Ok)
@@ -56,7 +55,7 @@ fn recordings(source: &Path, to: &Path) -> Result<u64, Failure> {
         false => vec![source.to_owned()],
     };
     if files.is_empty() {
-        let what = format!("{}: neither recordings nor journals in it", source.display());
+        let what = format!("{}: no recordings, journals or flights in it", source.display());
         let help = "help: `whichone record list` prints the folder of a group's recordings";
         return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
     }
@@ -65,6 +64,69 @@ fn recordings(source: &Path, to: &Path) -> Result<u64, Failure> {
         note("the end of a recording is damaged; everything before it is exported");
     }
     Ok(messages)
+}
+
+fn records(journals: &[(Service, PathBuf)], to: &Path) -> Result<u64, Failure> {
+    let mut records = Vec::new();
+    for (service, file) in journals {
+        records.extend(records_of(*service, file)?);
+    }
+    records.sort_by_key(|entry| entry.at_ns);
+    let mut writer = Writer::create(to).map_err(failure)?;
+    records.iter().try_for_each(|entry| writer.add(entry)).map_err(failure)?;
+    writer.finish().map_err(failure)?;
+    Ok(records.len() as u64)
+}
+
+/// The flights of a folder, or the one that is named.
+fn flights_in(source: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let is_flight = |path: &PathBuf| path.extension().is_some_and(|it| it == flight::EXTENSION);
+    Ok(flight::list(source)?.into_iter().filter(is_flight).collect())
+}
+
+/// Writes the steps of flights, one flight after another: what each service was given and what it stated.
+fn steps(flights: &[PathBuf], to: &Path) -> Result<u64, Failure> {
+    let mut writer = Writer::create(to).map_err(failure)?;
+    let mut steps = 0;
+    for file in flights {
+        let (head, service) = (flight::head(file)?, service_of(file)?);
+        let mut program: Command = command(service.name(), "flight");
+        program.arg(file).stdout(Stdio::piped()).stderr(Stdio::inherit());
+        let mut child = program.spawn().map_err(|error| failed(&program, &error))?;
+        let Some(lines) = child.stdout.take() else { continue };
+        for line in BufReader::new(lines).lines() {
+            let line = line.map_err(|error| Failure::file(file, &error))?;
+            let step = serde_json::from_str(&line).map_err(|error| {
+                let (file, name) = (file.display(), service.name());
+                let what = format!("{file}: unexpected output of {name}: {error}");
+                Failure::new(Exit::Invariant, what)
+            })?;
+            writer.add(&entry(&head, step)).map_err(failure)?;
+            steps += 1;
+        }
+        let status = child.wait().map_err(|error| failed(&program, &error))?;
+        if !status.success() {
+            return Err(Failure::new(Exit::of_process(status.code()), String::new()));
+        }
+    }
+    writer.finish().map_err(failure)?;
+    Ok(steps)
+}
+
+/// A step of a flight at its wall time.
+fn entry(head: &Head, step: Line) -> Entry {
+    let origin = match step.direction {
+        Direction::In => Origin::FlightIn,
+        Direction::Out => Origin::FlightOut,
+    };
+    Entry {
+        origin,
+        service: head.service.clone(),
+        seq: step.pass,
+        at_ns: head.started_wall_ns + step.at_ns.saturating_sub(head.started.ns()),
+        text: None,
+        record: step.value,
+    }
 }
 
 /// The journals of a folder, or the one that is named.
@@ -107,10 +169,11 @@ fn records_of(service: Service, file: &Path) -> Result<Vec<Entry>, Failure> {
     let entry = |line: JournalLine| {
         let known_ns = line.unix_ms.map(|ms| ms * 1_000_000);
         Some(Entry {
+            origin: Origin::Journal,
             service: service.name().to_owned(),
             seq: line.seq,
             at_ns: known_ns.unwrap_or(line.at_ns + offset_ns),
-            text: line.text,
+            text: Some(line.text),
             record: serde_json::to_value(line.record).ok()?,
         })
     };

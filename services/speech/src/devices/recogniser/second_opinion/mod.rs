@@ -24,7 +24,7 @@ use crate::Hypothesis;
 use crate::devices::worker_thread::WorkerThread;
 
 /// What the second recogniser thinks of an utterance.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Opinion {
     /// Its own words, empty if it heard none.
     pub text: String,

@@ -1,0 +1,51 @@
+//! The whole state of the reducer, for flights that begin in the middle of a start.
+
+use dialogue::ids::PromptId;
+use dialogue::manager::{Cause, Floor, Record, State};
+use serde::{Deserialize, Serialize};
+use service::{Node, NodeError, Time};
+
+use crate::{Config, PolicyNode};
+
+/// What a record holds, and what it does not.
+#[derive(Serialize, Deserialize)]
+struct Checkpoint {
+    state: State,
+    floor: Floor,
+    said: (PromptId, u32),
+    heard_of_speech: Time,
+    rejected: u64,
+    waiting_since: Option<Time>,
+    next_send: Time,
+}
+
+impl PolicyNode {
+    /// Returns the state; `None` where objects are followed, which is not described.
+    pub(crate) fn whole_state(&self) -> Option<Vec<u8>> {
+        let Self { manager: _, state, perceived, floor, said, heard_of_speech, .. } = self;
+        let Self { rejected, waiting_since, next_send, .. } = self;
+        if perceived.is_some() {
+            return None;
+        }
+        let checkpoint = Checkpoint {
+            state: state.clone(),
+            floor: *floor,
+            said: *said,
+            heard_of_speech: *heard_of_speech,
+            rejected: *rejected,
+            waiting_since: *waiting_since,
+            next_send: *next_send,
+        };
+        postcard::to_stdvec(&checkpoint).ok()
+    }
+
+    /// Returns the node of this state.
+    pub(crate) fn with_whole_state(config: Config, bytes: &[u8]) -> Result<Self, NodeError> {
+        let checkpoint = postcard::from_bytes(bytes);
+        let Checkpoint { state, floor, said, heard_of_speech, rejected, waiting_since, next_send } =
+            checkpoint.map_err(|_| NodeError::foreign_checkpoint())?;
+        let record = Record { cause: Cause::Snapshot, at: Time(0), state };
+        let node = Self::recover(config, vec![record])?;
+        Ok(Self { floor, said, heard_of_speech, rejected, waiting_since, next_send, ..node })
+    }
+}

@@ -1,0 +1,159 @@
+//! `replay`: flights through this build's reducers, each by its service's own program.
+
+use std::path::Path;
+use std::process::Stdio;
+
+use messages::Service;
+use scene::count;
+use serde_json::Value;
+use service::exit::{Exit, Failure};
+use service::flight::{self, Changed, Decision, Difference, Report};
+use service::group::{GroupError, GroupPaths};
+
+use super::inspection::{command, failed};
+use crate::Outcome;
+use crate::cli::ReplayArgs;
+use crate::output::{Output, note};
+
+/// Longest event or value in text, characters.
+const SHOWN_MAX: usize = 200;
+
+/// Replays the flights, up to the first difference.
+pub(super) fn replay(
+    paths: impl FnOnce() -> Result<GroupPaths, GroupError>,
+    args: &ReplayArgs,
+    out: &mut Output<'_>,
+) -> Outcome {
+    let folder = match &args.folder {
+        Some(folder) => folder.clone(),
+        None => paths()?.flights(),
+    };
+    let mut replayed = 0_u64;
+    for file in flight::list(&folder)? {
+        let service = service_of(&file)?;
+        if args.service.as_deref().is_some_and(|wanted| wanted != service.name()) {
+            continue;
+        }
+        replayed += 1;
+        match run(service, &file, &args.what_if)? {
+            Ok(report) => {
+                show(&report, &args.what_if, out)?;
+                if report.difference.is_some() {
+                    return Ok(Exit::Invariant);
+                }
+            }
+            Err(exit) => return Ok(exit),
+        }
+    }
+    if replayed == 0 {
+        let of = args.service.as_deref().map(|name| format!(" of {name}")).unwrap_or_default();
+        let what = format!("no flights{of} in {}", folder.display());
+        let help = "help: services record them where group.toml has flight.enabled = true";
+        return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
+    }
+    Ok(Exit::Ok)
+}
+
+/// The service of a flight.
+pub(super) fn service_of(file: &Path) -> Result<Service, Failure> {
+    let name = flight::head(file)?.service;
+    Service::from_name(&name).ok_or_else(|| {
+        let what = format!("{}: a flight of {name:?}, whose program is not known", file.display());
+        Failure::new(Exit::Config, what)
+    })
+}
+
+/// Has a service's program replay a flight. It says itself on standard error why it cannot.
+fn run(
+    service: Service,
+    file: &Path,
+    changes: &[(String, String)],
+) -> Result<Result<Report, Exit>, Failure> {
+    let mut program = command(service.name(), "replay");
+    program.arg(file).stderr(Stdio::inherit());
+    for (key, value) in changes {
+        program.arg("--what-if").arg(format!("{key}={value}"));
+    }
+    let output = program.output().map_err(|error| failed(&program, &error))?;
+    let report = serde_json::from_slice::<Report>(&output.stdout).ok();
+    Ok(report.ok_or(Exit::of_process(output.status.code())))
+}
+
+fn show(
+    report: &Report,
+    changes: &[(String, String)],
+    out: &mut Output<'_>,
+) -> Result<(), Failure> {
+    let name = report.file.file_name().unwrap_or_default().display();
+    if report.torn {
+        note(format_args!("{name}: its end is unfinished; everything before it is replayed"));
+    }
+    if out.is_json() {
+        return out.json(report);
+    }
+    let (passes, events) = (count(report.passes, "pass"), count(report.events, "event"));
+    let verdict = match &report.difference {
+        _ if !changes.is_empty() => "open loop",
+        None => "as recorded",
+        Some(_) => "differs",
+    };
+    out.line(format_args!("{name}: {passes}, {events}, {:.1} s: {verdict}", report.seconds))?;
+    if let Some(difference) = &report.difference {
+        show_difference(report, difference, out)?;
+    }
+    report.decisions.iter().try_for_each(|changed| show_changed(changed, out))?;
+    if !changes.is_empty() {
+        let decisions = count(report.decisions.len() as u64, "decision");
+        let others = count(report.other_passes, "other pass");
+        let verb = if report.decisions.len() == 1 { "differs" } else { "differ" };
+        out.line(format_args!("  {decisions} {verb}; {others} with other records or outputs"))?;
+    }
+    Ok(())
+}
+
+fn show_difference(
+    report: &Report,
+    difference: &Difference,
+    out: &mut Output<'_>,
+) -> Result<(), Failure> {
+    let Difference { pass, at_ns: _, after_s, path, recorded, recomputed, before } = difference;
+    out.line(format_args!("  pass {pass}, {after_s:.3} s after the start: {path}"))?;
+    out.line(format_args!("    recorded    {}", shown(recorded)))?;
+    out.line(format_args!("    recomputed  {}", shown(recomputed)))?;
+    if report.recorded_by != report.replayed_by {
+        let Report { recorded_by, replayed_by, .. } = report;
+        out.line(format_args!("    recorded by version {recorded_by}, replayed by {replayed_by}"))?;
+    }
+    out.line("  events up to there:")?;
+    for event in before {
+        let at_s = (event["at_ns"].as_u64().unwrap_or(0) as f64 - difference.at_ns as f64) / 1e9;
+        let after_s = difference.after_s + at_s;
+        out.line(format_args!("    {after_s:>9.3} s  {}", shown(&event["event"])))?;
+    }
+    Ok(())
+}
+
+fn show_changed(changed: &Changed, out: &mut Output<'_>) -> Result<(), Failure> {
+    let Changed { pass, after_s, recorded, recomputed, .. } = changed;
+    let interaction = recorded.as_ref().or(recomputed.as_ref()).map_or(0, |it| it.interaction);
+    out.line(format_args!("  pass {pass}, {after_s:.3} s, interaction {interaction}"))?;
+    out.line(format_args!("    recorded  {}", decision(recorded.as_ref())))?;
+    out.line(format_args!("    what if   {}", decision(recomputed.as_ref())))
+}
+
+fn decision(decision: Option<&Decision>) -> String {
+    match decision {
+        None => "no decision".to_owned(),
+        Some(Decision { what, value: None, .. }) => what.clone(),
+        Some(Decision { what, value: Some(value), .. }) => format!("{what}  (value {value:.2})"),
+    }
+}
+
+/// A value in a line.
+fn shown(value: &Value) -> String {
+    let text = value.to_string();
+    match text.char_indices().nth(SHOWN_MAX) {
+        None => text,
+        Some((end, _)) => format!("{}…", &text[..end]),
+    }
+}

@@ -1,0 +1,263 @@
+//! Gives this build's reducer what a flight holds, and compares what it states.
+
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+
+use config::Settings;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::difference::first_difference;
+use super::reader::{self, Flight, Step};
+use super::{Beginning, Entry, Head};
+use crate::exit::{Exit, Failure};
+use crate::lifecycle::Environment;
+use crate::service_loop::{Program, Record};
+use crate::{Effects, Event, Node, Time};
+
+/// Events before a difference that a report shows.
+const BEFORE_MAX: usize = 20;
+/// Settings whose files are in the flight.
+const FIXED: [&str; 2] = ["group.scene", "arm.robot"];
+
+type In<P> = <<P as Program>::Node as Node>::In<'static>;
+type Fx<P> = Effects<<<P as Program>::Node as Node>::Out, Record<P>>;
+
+/// Result of a replay.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// The file.
+    pub file: PathBuf,
+    /// The service.
+    pub service: String,
+    /// Version of the program that recorded it.
+    pub recorded_by: String,
+    /// Version of the program that replayed it.
+    pub replayed_by: String,
+    /// Passes with events that were compared.
+    pub passes: u64,
+    /// Events that the reducer was given.
+    pub events: u64,
+    /// Time from the start to the last event, seconds.
+    pub seconds: f64,
+    /// Whether the file ends in the middle of a frame, as that of a killed machine may.
+    pub torn: bool,
+    /// The first difference, at which a replay without changed settings ends.
+    pub difference: Option<Difference>,
+    /// With changed settings: the decisions that differ.
+    pub decisions: Vec<Changed>,
+    /// With changed settings: passes in which anything else differs.
+    pub other_passes: u64,
+}
+
+/// Where records or outputs differ.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Difference {
+    /// Number of the pass, from 1.
+    pub pass: u64,
+    /// Time of its last event, nanoseconds of the monotonic clock.
+    pub at_ns: u64,
+    /// The same from the start of the service on, seconds.
+    pub after_s: f64,
+    /// Field, e.g. `outputs[0].Act.prompt`; `panic` where the reducer panics.
+    pub path: String,
+    /// What was recorded there.
+    pub recorded: Value,
+    /// What this build states there.
+    pub recomputed: Value,
+    /// The last events up to there, oldest first: `at_ns` and `event`.
+    pub before: Vec<Value>,
+}
+
+/// A decision, as replays with other settings compare them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Decision {
+    /// Its interaction, 0 outside of one.
+    pub interaction: u64,
+    /// What is done, in words: equal decisions have equal words.
+    pub what: String,
+    /// What it is expected to be worth, if that is known.
+    pub value: Option<f64>,
+}
+
+/// A decision that differs under other settings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Changed {
+    /// Number of the pass, from 1.
+    pub pass: u64,
+    /// Time of its last event, nanoseconds of the monotonic clock.
+    pub at_ns: u64,
+    /// The same from the start of the service on, seconds.
+    pub after_s: f64,
+    /// The recorded decision.
+    pub recorded: Option<Decision>,
+    /// The one under the other settings.
+    pub recomputed: Option<Decision>,
+}
+
+/// Replays the flight in `file`: exactly, up to the first difference; or, with `changes` to the settings
+/// (`("dialogue.planner", "entropy")`), open loop to its end: the recorded inputs stay what they were.
+///
+/// # Errors
+/// The file cannot be read or is of another build; a setting that does not exist or cannot be changed.
+pub fn replay<P: Program>(file: &Path, changes: &[(String, String)]) -> Result<Report, Failure> {
+    let (flight, head, beginning) = reader::open::<P>(file)?;
+    if let Some((key, _)) = changes.iter().find(|(key, _)| FIXED.contains(&key.as_str())) {
+        let what =
+            format!("--what-if {key}: a flight is about the scene and the robot that it holds");
+        return Err(Failure::new(Exit::Usage, format!("{what}; help: change another setting")));
+    }
+    let label = file.display().to_string();
+    let recorded = Settings::from_snapshot(&label, &head.settings, &[])?;
+    let settings = Settings::from_snapshot(&label, &head.settings, changes)?;
+    let environment = Environment { arguments: head.arguments.clone(), ..Environment::nowhere() };
+    let config = P::config(&environment, &settings)?;
+    let node = match beginning {
+        Beginning::Journal(records) => P::Node::recover(config, records)?,
+        Beginning::Checkpoint(checkpoint) => P::Node::resume(config, &checkpoint)?,
+    };
+    let run = Run::<P> {
+        report: report(file, &head),
+        started: head.started,
+        settings: [recorded, settings],
+        is_what_if: !changes.is_empty(),
+        node,
+        effects: Effects::default(),
+        now: head.started,
+        before: VecDeque::new(),
+    };
+    run.to_end(flight)
+}
+
+fn report(file: &Path, head: &Head) -> Report {
+    Report {
+        file: file.to_owned(),
+        service: head.service.clone(),
+        recorded_by: head.version.clone(),
+        replayed_by: env!("CARGO_PKG_VERSION").to_owned(),
+        passes: 0,
+        events: 0,
+        seconds: 0.0,
+        torn: false,
+        difference: None,
+        decisions: Vec::new(),
+        other_passes: 0,
+    }
+}
+
+/// A replay under way.
+struct Run<P: Program> {
+    report: Report,
+    started: Time,
+    /// The recorded ones and those of the replay.
+    settings: [Settings; 2],
+    is_what_if: bool,
+    node: P::Node,
+    effects: Fx<P>,
+    now: Time,
+    /// The last events, as they are in the file.
+    before: VecDeque<Vec<u8>>,
+}
+
+impl<P: Program> Run<P> {
+    fn to_end(mut self, mut flight: Flight) -> Result<Report, Failure> {
+        while self.report.difference.is_none()
+            && let Some(step) = reader::step::<P>(&mut flight)?
+        {
+            match step {
+                Step::Event(at, event, bytes) => self.event(at, event, bytes),
+                Step::Durable => self.node.on_durable(),
+                Step::Stated(recorded, bytes) => self.compare(&recorded, &bytes)?,
+            }
+        }
+        self.report.torn = flight.is_torn;
+        self.report.seconds = self.now.since(self.started).s();
+        Ok(self.report)
+    }
+
+    fn event(&mut self, at: Time, event: Event<In<P>>, bytes: Vec<u8>) {
+        (self.now, self.report.events) = (at, self.report.events + 1);
+        if self.before.len() == BEFORE_MAX {
+            self.before.pop_front();
+        }
+        self.before.push_back(bytes);
+        let Self { node, effects, .. } = self;
+        // A flight may hold the event at which its service panicked.
+        let result = catch_unwind(AssertUnwindSafe(|| node.on(event, at, effects)));
+        if let Err(panic) = result {
+            let text = panic.downcast_ref::<String>().map(String::as_str);
+            let text = text.or(panic.downcast_ref::<&str>().copied()).unwrap_or_default();
+            self.differs("panic".to_owned(), Value::Null, json!(text));
+        }
+    }
+
+    /// Compares what was stated in a pass with what this build states.
+    fn compare(&mut self, recorded: &Fx<P>, bytes: &[u8]) -> Result<(), Failure> {
+        self.report.passes += 1;
+        let internal = |error: &dyn std::error::Error| {
+            Failure::new(Exit::Invariant, format!("effects cannot be encoded: {error}"))
+        };
+        let own = reader::encoded(&self.effects).map_err(|error| internal(&error))?;
+        if own != bytes {
+            if self.is_what_if {
+                self.compare_decisions(recorded);
+            } else {
+                let [a, b] = [recorded, &self.effects].map(serde_json::to_value);
+                let (a, b) = (a.map_err(|e| internal(&e))?, b.map_err(|e| internal(&e))?);
+                // Values that JSON does not have, as infinities, are the same there.
+                let found = first_difference(&a, &b).unwrap_or((String::new(), a, b));
+                self.differs(found.0, found.1, found.2);
+            }
+        }
+        self.effects.carried_out();
+        Ok(())
+    }
+
+    fn compare_decisions(&mut self, recorded: &Fx<P>) {
+        let decisions = |settings: &Settings, effects: &Fx<P>| -> Vec<Decision> {
+            effects.records().iter().filter_map(|record| P::decision(settings, record)).collect()
+        };
+        let mut recorded = decisions(&self.settings[0], recorded).into_iter();
+        let mut recomputed = decisions(&self.settings[1], &self.effects).into_iter();
+        let mut differs = false;
+        loop {
+            let (a, b) = (recorded.next(), recomputed.next());
+            if a.is_none() && b.is_none() {
+                break;
+            }
+            if a.as_ref().map(|it| &it.what) != b.as_ref().map(|it| &it.what) {
+                differs = true;
+                let (pass, at_ns) = (self.report.passes, self.now.ns());
+                let after_s = self.now.since(self.started).s();
+                self.report.decisions.push(Changed {
+                    pass,
+                    at_ns,
+                    after_s,
+                    recorded: a,
+                    recomputed: b,
+                });
+            }
+        }
+        self.report.other_passes += u64::from(!differs);
+    }
+
+    fn differs(&mut self, path: String, recorded: Value, recomputed: Value) {
+        let event = |bytes: &Vec<u8>| {
+            let entry = postcard::from_bytes::<Entry<Event<In<P>>, ()>>(bytes).ok();
+            match entry {
+                Some(Entry::Event(at, event)) => json!({ "at_ns": at.ns(), "event": event }),
+                _ => Value::Null,
+            }
+        };
+        self.report.difference = Some(Difference {
+            pass: self.report.passes,
+            at_ns: self.now.ns(),
+            after_s: self.now.since(self.started).s(),
+            path,
+            recorded,
+            recomputed,
+            before: self.before.iter().map(event).collect(),
+        });
+    }
+}

@@ -1,0 +1,153 @@
+//! The main loop's side of the recorder: encodes each pass and hands it to the writer's thread.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+
+use crossbeam_channel::{Sender, TrySendError, bounded};
+use serde::Serialize;
+
+use super::writer::{Job, Ring, Writer};
+use super::{Beginning, Entry, Head};
+use crate::{Effects, Event, Time};
+
+/// Passes that may wait for the disk. The loop never waits: a flight with a gap could not be replayed, so
+/// with more than that the recording ends.
+const WAITING_MAX: usize = 1024;
+/// Size up to which passes without an event are kept together, bytes.
+const QUIET_BYTES_MAX: usize = 256;
+
+/// Records one flight.
+#[derive(Debug, Default)]
+pub struct Tap {
+    /// None while nothing is recorded.
+    jobs: Option<Sender<Job>>,
+    thread: Option<JoinHandle<()>>,
+    head: Option<Head>,
+    /// Set by the writer while the file is long enough for another one to begin.
+    is_long: Arc<AtomicBool>,
+    /// The pass so far.
+    pass: Vec<u8>,
+    has_events: bool,
+}
+
+impl Tap {
+    /// Starts to record into a new file of `ring`. `records` are those that the node was recovered from.
+    /// Where that fails, the service does without a recording.
+    pub fn start<R: Serialize>(ring: Ring, head: &Head, records: &[R]) -> Self {
+        let mut tap = Self::default();
+        tap.head = Some(head.clone());
+        let (jobs, waiting) = bounded(WAITING_MAX);
+        let is_long = Arc::clone(&tap.is_long);
+        let started = Writer::create(ring, head, is_long).and_then(|writer| {
+            let thread = std::thread::Builder::new().name("flight".into());
+            thread.spawn(move || writer.run(&waiting))
+        });
+        match started {
+            Ok(thread) => (tap.jobs, tap.thread) = (Some(jobs), Some(thread)),
+            Err(error) => tracing::warn!(%error, "this start is not recorded"),
+        }
+        tap.add(head);
+        tap.add(&Beginning::<_, ()>::Journal(records));
+        tap.send();
+        tap
+    }
+
+    /// Returns whether the file is long, and another one may begin with a checkpoint of the node.
+    pub fn wants_checkpoint(&self) -> bool {
+        self.jobs.is_some() && self.is_long.load(Ordering::Relaxed)
+    }
+
+    /// Continues in another file, between two passes of a node that has this checkpoint.
+    pub fn go_on(&mut self, checkpoint: &[u8], now: Time, wall_ns: u64) {
+        self.send();
+        let Some(mut head) = self.head.clone() else { return };
+        (head.started, head.started_wall_ns) = (now, wall_ns);
+        self.is_long.store(false, Ordering::Relaxed);
+        self.hand_over(Job::Begin(wall_ns));
+        self.add(&head);
+        self.add(&Beginning::<(), _>::Checkpoint(checkpoint));
+        self.send();
+    }
+
+    /// Returns whether anything is recorded.
+    pub fn is_on(&self) -> bool {
+        self.jobs.is_some()
+    }
+
+    /// Records an event just before the node is given it.
+    pub fn event<In: Serialize>(&mut self, event: &Event<In>, now: Time) {
+        self.has_events = true;
+        self.add(&Entry::<_, ()>::Event(now, event));
+    }
+
+    /// Records that the node was told of durable records.
+    pub fn durable(&mut self) {
+        self.add(&Entry::<(), ()>::Durable);
+    }
+
+    /// Records what the node has stated in a pass, before any of it is carried out.
+    pub fn stated<Out: Serialize, Record: Serialize>(&mut self, effects: &Effects<Out, Record>) {
+        if self.has_events {
+            self.add(&Entry::<(), _>::Stated(effects));
+        }
+    }
+
+    /// Ends a pass: what it holds is written now.
+    pub fn end_pass(&mut self) {
+        if self.has_events || self.pass.len() >= QUIET_BYTES_MAX {
+            self.send();
+        }
+    }
+
+    /// Returns how many parts wait for the writer.
+    #[cfg(test)]
+    pub(super) fn waiting(&self) -> usize {
+        self.jobs.as_ref().map_or(0, Sender::len)
+    }
+
+    fn add(&mut self, value: &impl Serialize) {
+        if self.jobs.is_none() {
+            return;
+        }
+        match postcard::to_extend(value, std::mem::take(&mut self.pass)) {
+            Ok(pass) => self.pass = pass,
+            Err(error) => self.end(&format!("an entry cannot be encoded: {error}")),
+        }
+    }
+
+    fn send(&mut self) {
+        self.has_events = false;
+        if !self.pass.is_empty() {
+            let pass = std::mem::take(&mut self.pass);
+            self.hand_over(Job::Pass(pass));
+        }
+    }
+
+    fn hand_over(&mut self, job: Job) {
+        let Some(jobs) = &self.jobs else { return };
+        match jobs.try_send(job) {
+            Ok(()) => {}
+            Err(TrySendError::Full(_)) => self.end("the disk is too slow"),
+            // The writer has said why.
+            Err(TrySendError::Disconnected(_)) => self.jobs = None,
+        }
+    }
+
+    fn end(&mut self, why: &str) {
+        tracing::warn!(why, "the recording of this start ends; the service continues");
+        self.jobs = None;
+    }
+}
+
+/// What is recorded is written, also where the main loop panics: the event that it panicked at is in the
+/// flight.
+impl Drop for Tap {
+    fn drop(&mut self) {
+        self.send();
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
