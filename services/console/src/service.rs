@@ -25,7 +25,7 @@ use crate::history::History;
 use crate::hub::command::{Command, Motion};
 use crate::hub::outbound::{CameraSettings, PageSettings, VoiceSettings};
 use crate::hub::{Channels, Hub};
-use crate::live::Live;
+use crate::live::{self, Live};
 use crate::metrics::Metrics;
 use crate::server::connections::Limits;
 use crate::server::web::Web;
@@ -88,13 +88,13 @@ impl Console {
         let study = Study::new(settings, paths)?;
         let handover = Span::from_s(settings.console.handover.as_secs_f64());
         let channels = Channels { commands: commands.clone(), motions, restarts };
-        let limits = limits(settings.console.viewers_max);
+        let (limits, is_live_possible) = limits(settings.console.viewers_max);
         let history = History::start(paths).map_err(failed("history's thread"))?;
         let session = random_secret().map_err(failed("session"))?;
         let app = Arc::new(App {
             history,
             hub: Hub::new(channels, limits.viewers, handover, Metrics::new(paths.recordings())),
-            live: Live::new(settings, paths.name().as_str(), &session),
+            live: Live::new(settings, paths.name().as_str(), &session, is_live_possible),
             access: access(settings, paths)?,
             group: paths.name().to_string(),
             settings: page_settings(settings, study.is_some()),
@@ -123,18 +123,21 @@ fn access(settings: &Settings, paths: &GroupPaths) -> Result<Access, Failure> {
     Access::by_token(&file, console_link::sessions_file(paths)).map_err(failed)
 }
 
-/// Raises the limit of descriptors as far as allowed, and divides it.
-fn limits(viewers_max: usize) -> Limits {
+/// Raises the limit of descriptors as far as allowed, and divides it: first to pages, then to the live view.
+/// Returns whether enough is left for that.
+fn limits(viewers_max: usize) -> (Limits, bool) {
     let Rlimit { maximum, .. } = getrlimit(Resource::Nofile);
     let raised = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });
     let allowed = getrlimit(Resource::Nofile).current.map_or(usize::MAX, |most| most as usize);
     let used = std::fs::read_dir("/proc/self/fd").map_or(0, Iterator::count);
-    let limits = Limits::new(viewers_max, allowed.saturating_sub(used));
+    let free = allowed.saturating_sub(used);
+    let limits = Limits::new(viewers_max, free);
+    let is_live_possible = free >= Limits::most(viewers_max) + live::descriptors();
     if limits.viewers < viewers_max {
         let most = limits.viewers;
         tracing::warn!(allowed, used, ?raised, "too few file descriptors: at most {most} pages");
     }
-    limits
+    (limits, is_live_possible)
 }
 
 fn page_settings(settings: &Settings, study: bool) -> PageSettings {

@@ -57,6 +57,9 @@ pub struct GroupReader {
     failure: Option<String>,
     /// A message with its CDR header.
     buffer: Vec<u8>,
+    /// Topics that are still to be opened, the next one last.
+    unopened: Vec<(ChannelId, &'static Topic)>,
+    since: Time,
 }
 
 impl GroupReader {
@@ -71,22 +74,46 @@ impl GroupReader {
         log_folder: PathBuf,
         since: Time,
     ) -> Result<Self, OpenError> {
+        let mut reader = Self::closed(settings, log_folder, since)?;
+        while reader.open_next(bus)? {}
+        Ok(reader)
+    }
+
+    /// As [`GroupReader::open`], with every topic still to be opened by [`GroupReader::open_next`]: each takes
+    /// a while.
+    ///
+    /// # Errors
+    /// The robot's description is invalid.
+    pub fn closed(
+        settings: &Settings,
+        log_folder: PathBuf,
+        since: Time,
+    ) -> Result<Self, OpenError> {
         let files = settings.robot_files();
         let robot = Robot::read(&files.urdf, files.srdf.as_ref());
         let robot = robot.map_err(|found| OpenError::Robot(found.to_string()))?;
-        let mut topics = Vec::new();
-        for (place, topic) in group_topics().enumerate() {
-            let channel = ChannelId::of_topic(place);
-            if channel.is_sound() && !settings.group.recorder.sound {
-                continue;
-            }
-            let reader = bus.any_reader(topic)?;
-            // Of a state the latest message counts, however old it is.
-            let since = if topic.history > 1 { since } else { Time(0) };
-            topics.push(Source { topic, channel, reader, since });
-        }
+        let topics = group_topics().enumerate();
+        let topics = topics.map(|(place, topic)| (ChannelId::of_topic(place), topic));
+        let is_shown = |channel: ChannelId| settings.group.recorder.sound || !channel.is_sound();
+        let mut unopened: Vec<_> = topics.filter(|(channel, _)| is_shown(*channel)).collect();
+        unopened.reverse();
         let painter = Painter::new(settings, &robot, log_folder);
-        Ok(Self { topics, painter, failure: None, buffer: Vec::new() })
+        let (topics, buffer) = (Vec::new(), Vec::new());
+        Ok(Self { topics, painter, failure: None, buffer, unopened, since })
+    }
+
+    /// Opens the next topic; returns whether there was one.
+    ///
+    /// # Errors
+    /// The topic cannot be read; it is tried again with the next call.
+    pub fn open_next(&mut self, bus: &Bus) -> Result<bool, OpenError> {
+        let Some((channel, topic)) = self.unopened.last().copied() else { return Ok(false) };
+        let reader = bus.any_reader(topic)?;
+        // Of a state the latest message counts, however old it is.
+        let since = if topic.history > 1 { self.since } else { Time(0) };
+        self.topics.push(Source { topic, channel, reader, since });
+        self.unopened.pop();
+        Ok(true)
     }
 
     /// Shows everything that is known to one who begins to look at `now`.

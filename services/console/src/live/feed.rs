@@ -15,6 +15,8 @@ use crate::metrics::Metrics;
 const LOOK_EVERY: Span = Span::from_ms(30);
 /// Interval between two looks at the services' logs and at the wall clock.
 const TEND_EVERY: Span = Span::from_ms(500);
+/// Topics that are opened in one pass of the main loop, which has other work.
+const OPENED_AT_ONCE: usize = 2;
 /// Pause after a failure to open the topics.
 const RETRY_AFTER: Span = Span::from_ms(2_000);
 
@@ -56,13 +58,22 @@ impl Feed {
             metrics.live_lost.inc_by(lost);
             metrics.live_messages.inc();
         };
+        if now < self.next_attempt {
+            return;
+        }
         if self.open.is_none() {
-            self.open(bus, now);
+            self.open(now);
             if let Some(Open { reader, clock, .. }) = &mut self.open {
                 reader.begin(now, *clock, &mut publish);
             }
         }
         let Some(Open { reader, clock, next_look, next_tend }) = &mut self.open else { return };
+        for _ in 0..OPENED_AT_ONCE {
+            if let Err(error) = reader.open_next(bus) {
+                tracing::warn!(%error, "a topic cannot be opened for the live view; trying again");
+                self.next_attempt = now + RETRY_AFTER;
+            }
+        }
         if now >= *next_look {
             reader.look(now, *clock, &mut publish);
             *next_look = now + LOOK_EVERY;
@@ -77,17 +88,14 @@ impl Feed {
         }
     }
 
-    fn open(&mut self, bus: &Bus, now: Time) {
-        if now < self.next_attempt {
-            return;
-        }
-        match GroupReader::open(bus, &self.settings, self.log_folder.clone(), now) {
+    fn open(&mut self, now: Time) {
+        match GroupReader::closed(&self.settings, self.log_folder.clone(), now) {
             Ok(reader) => {
                 let clock = WallClock::read();
                 self.open = Some(Open { reader, clock, next_look: now, next_tend: now });
             }
             Err(error) => {
-                tracing::warn!(%error, "the topics cannot be opened for the live view; trying again");
+                tracing::warn!(%error, "no live view; trying again");
                 self.next_attempt = now + RETRY_AFTER;
             }
         }

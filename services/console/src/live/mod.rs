@@ -14,15 +14,23 @@ mod viewers;
 use std::collections::BTreeMap;
 
 use config::Settings;
-use recording::channels::{Channel, ChannelId, shown};
+use recording::channels::{Channel, ChannelId, group_topics, shown};
 
 pub use socket::serve;
 use viewers::Viewers;
+
+/// Descriptors that reading every topic takes: at most this many for each.
+pub fn descriptors() -> usize {
+    const OF_A_TOPIC: usize = 6;
+    OF_A_TOPIC * group_topics().count()
+}
 
 /// Everything that the live view serves, shared by main loop and sockets.
 #[derive(Debug)]
 pub struct Live {
     pub viewers: Viewers,
+    /// Whether there are descriptors for it.
+    pub is_possible: bool,
     /// Other origins whose pages may connect.
     origins: Vec<String>,
     /// The messages that every viewer gets at first: the server, its channels, its services.
@@ -33,7 +41,7 @@ pub struct Live {
 
 impl Live {
     /// Makes the live view of a group. The session identifies this start of the console.
-    pub fn new(settings: &Settings, group: &str, session: &str) -> Self {
+    pub fn new(settings: &Settings, group: &str, session: &str, is_possible: bool) -> Self {
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let channels: Vec<(ChannelId, Channel)> = shown(settings.group.recorder.sound).collect();
         let metadata = BTreeMap::from([("group", group.to_owned()), ("version", version.clone())]);
@@ -41,6 +49,7 @@ impl Live {
         let states = channels.iter().map(|(id, channel)| (*id, channel.is_state));
         Self {
             viewers: Viewers::new(states),
+            is_possible,
             origins: settings.console.foxglove_origins.clone(),
             greeting: [
                 protocol::server_info(&name, session, &metadata),

@@ -44,6 +44,11 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Returns the descriptors that are ever used with so many pages.
+    pub fn most(viewers_max: usize) -> usize {
+        RESERVE + viewers_max + OTHERS_MAX
+    }
+
     /// Divides `free` descriptors: first what a page needs to load, then pages, then more connections.
     pub fn new(viewers_max: usize, free: usize) -> Self {
         let free = free.saturating_sub(RESERVE);
@@ -324,5 +329,8 @@ mod tests {
         assert_eq!(Limits::new(32, 120), limits(32, 56));
         assert_eq!(Limits::new(32, 70), limits(22, OTHERS_MIN));
         assert_eq!(Limits::new(32, 0), limits(2, OTHERS_MIN));
+        let most = Limits::most(32);
+        assert_eq!(Limits::new(32, most), Limits::new(32, 100_000));
+        assert_ne!(Limits::new(32, most - 1), Limits::new(32, most));
     }
 }

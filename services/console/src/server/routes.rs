@@ -60,6 +60,10 @@ pub(super) async fn foxglove(
         return (status, why).into_response();
     }
     connection.prove();
+    if !app.live.is_possible {
+        let why = "too few file descriptors for a live view; help: raise the limit (ulimit -n)\n";
+        return (StatusCode::SERVICE_UNAVAILABLE, why).into_response();
+    }
     let role = match form_field(query, "role").as_deref() {
         Some("operator") => Role::Operator,
         Some("viewer") | None => Role::Viewer,
