@@ -115,7 +115,14 @@ pub fn replay<P: Program>(file: &Path, changes: &[(String, String)]) -> Result<R
     let config = P::config(&environment, &settings)?;
     let node = match beginning {
         Beginning::Journal(records) => P::Node::recover(config, records)?,
-        Beginning::Checkpoint(checkpoint) => P::Node::resume(config, &checkpoint)?,
+        Beginning::Checkpoint(checkpoint) => {
+            let mut node = P::Node::resume(config, &checkpoint)?;
+            if !changes.is_empty() {
+                // As after a restart with them, the node takes over the other settings.
+                node.on(Event::Started, head.started, &mut Effects::default());
+            }
+            node
+        }
     };
     let run = Run::<P> {
         report: report(file, &head),

@@ -1,7 +1,7 @@
 //! The main loop's side of the recorder: encodes each pass and hands it to the writer's thread.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::JoinHandle;
 
 use crossbeam_channel::{Sender, TrySendError, bounded};
@@ -24,8 +24,10 @@ pub struct Tap {
     jobs: Option<Sender<Job>>,
     thread: Option<JoinHandle<()>>,
     head: Option<Head>,
-    /// Set by the writer while the file is long enough for another one to begin.
-    is_long: Arc<AtomicBool>,
+    /// Number of the current file, counted from 0.
+    files: u64,
+    /// Number of files that the writer has found long enough for another one to begin.
+    long_files: Arc<AtomicU64>,
     /// The pass so far.
     pass: Vec<u8>,
     has_events: bool,
@@ -38,8 +40,8 @@ impl Tap {
         let mut tap = Self::default();
         tap.head = Some(head.clone());
         let (jobs, waiting) = bounded(WAITING_MAX);
-        let is_long = Arc::clone(&tap.is_long);
-        let started = Writer::create(ring, head, is_long).and_then(|writer| {
+        let long_files = Arc::clone(&tap.long_files);
+        let started = Writer::create(ring, head, long_files).and_then(|writer| {
             let thread = std::thread::Builder::new().name("flight".into());
             thread.spawn(move || writer.run(&waiting))
         });
@@ -55,7 +57,7 @@ impl Tap {
 
     /// Returns whether the file is long, and another one may begin with a checkpoint of the node.
     pub fn wants_checkpoint(&self) -> bool {
-        self.jobs.is_some() && self.is_long.load(Ordering::Relaxed)
+        self.jobs.is_some() && self.long_files.load(Ordering::Relaxed) > self.files
     }
 
     /// Continues in another file, between two passes of a node that has this checkpoint.
@@ -63,7 +65,7 @@ impl Tap {
         self.send();
         let Some(mut head) = self.head.clone() else { return };
         (head.started, head.started_wall_ns) = (now, wall_ns);
-        self.is_long.store(false, Ordering::Relaxed);
+        self.files += 1;
         self.hand_over(Job::Begin(wall_ns));
         self.add(&head);
         self.add(&Beginning::<(), _>::Checkpoint(checkpoint));

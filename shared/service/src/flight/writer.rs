@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crossbeam_channel::Receiver;
 use flate2::{Compress, Compression, FlushCompress};
@@ -141,7 +141,9 @@ pub(super) enum Job {
 pub(super) struct Writer {
     ring: Ring,
     service: String,
-    is_long: Arc<AtomicBool>,
+    /// Number of the current file, counted from 0, and the number of long ones.
+    files: u64,
+    long_files: Arc<AtomicU64>,
     path: PathBuf,
     file: File,
     bytes: u64,
@@ -155,14 +157,15 @@ impl Writer {
     ///
     /// # Errors
     /// It cannot be created, or there is no space for it.
-    pub(super) fn create(ring: Ring, head: &Head, is_long: Arc<AtomicBool>) -> io::Result<Self> {
+    pub(super) fn create(ring: Ring, head: &Head, long_files: Arc<AtomicU64>) -> io::Result<Self> {
         crate::folders::make_private(&ring.folder).map_err(io::Error::other)?;
         let (path, file) = ring.new_file(&head.service, head.started_wall_ns)?;
         let bytes = start().len() as u64;
         Ok(Self {
             ring,
             service: head.service.clone(),
-            is_long,
+            files: 0,
+            long_files,
             path,
             file,
             bytes,
@@ -191,6 +194,7 @@ impl Writer {
     fn begin(&mut self, wall_ns: u64) -> io::Result<()> {
         (self.path, self.file) = self.ring.new_file(&self.service, wall_ns)?;
         (self.bytes, self.looked_at) = (start().len() as u64, 0);
+        self.files += 1;
         self.compress.reset();
         Ok(())
     }
@@ -200,7 +204,7 @@ impl Writer {
         self.file.write_all(&self.frame)?;
         self.bytes += self.frame.len() as u64;
         if self.bytes >= self.ring.bytes_max / FILES_MIN {
-            self.is_long.store(true, Ordering::Relaxed);
+            self.long_files.store(self.files + 1, Ordering::Relaxed);
         }
         if self.bytes - self.looked_at >= LOOK_EVERY_BYTES {
             self.looked_at = self.bytes;
