@@ -134,7 +134,7 @@ pub fn replay<P: Program>(file: &Path, changes: &[(String, String)]) -> Result<R
         now: head.started,
         before: VecDeque::new(),
     };
-    run.to_end(flight)
+    run.finish(flight)
 }
 
 fn report(file: &Path, head: &Head) -> Report {
@@ -168,7 +168,7 @@ struct Run<P: Program> {
 }
 
 impl<P: Program> Run<P> {
-    fn to_end(mut self, mut flight: Flight) -> Result<Report, Failure> {
+    fn finish(mut self, mut flight: Flight) -> Result<Report, Failure> {
         while self.report.difference.is_none()
             && let Some(step) = reader::step::<P>(&mut flight)?
         {
