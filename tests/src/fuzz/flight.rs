@@ -51,5 +51,5 @@ fn replayed<P: Program>(entries: &[u8]) {
 /// No records; then `Started` at 5 ns, nothing stated, durable, a tick, and nothing stated.
 pub(super) fn seeds() -> Vec<Vec<u8>> {
     let entries = [0, 0, 0, 5, 1, 2, 0, 0, 0, 0, 0, 1, 0, 6, 3, 2, 0, 0, 0, 0, 0];
-    (0..3).map(|kind| chosen(kind, entries.to_vec())).collect()
+    (0..3).map(|kind| chosen(kind, entries)).collect()
 }
