@@ -19,8 +19,11 @@ use whichone_tests::simulated_group::{
 
 use crate::replay_all;
 
+/// The name of a dialogue, and a group that holds it.
+type Dialogue = (&'static str, fn() -> SimulatedGroup);
+
 /// Dialogues of the corpus: every scene that ships, every kind of user, perception, and services that die.
-const DIALOGUES: [(&str, fn() -> SimulatedGroup); 6] = [
+const DIALOGUES: [Dialogue; 6] = [
     ("bowls", || typing(&[], 3, Faults::none())),
     ("tools-entropy", || {
         typing(&[("group.scene", "tools"), ("dialogue.planner", "entropy")], 4, Faults::none())
