@@ -61,6 +61,7 @@ macro_rules! targets {
 targets! {
     journals_with_any_damage "journal"
     journals_of_any_records "records"
+    flights_with_any_damage "flight"
     fixed_messages "wire"
     encoded_payloads "payload"
     forged_messages_between_services "peers"
