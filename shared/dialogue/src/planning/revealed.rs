@@ -17,7 +17,7 @@ use std::collections::HashMap;
 
 use super::channel::{Channel, Query};
 use super::reduced::Reduced;
-use super::told::{Split, Told};
+use super::told::{Kind, Split, Told};
 use crate::{Costs, Rng};
 
 /// The easier problem.
@@ -125,9 +125,17 @@ impl<'a> Revealed<'a> {
         let questions: Vec<_> = reduced.queries.iter().map(question).collect::<Option<_>>()?;
         let cheapest =
             questions.iter().map(|q| q.channel).min_by(|a, b| a.cost.total_cmp(&b.cost))?;
-        let several = reduced.share.iter().copied().filter(|share| *share < 1.0).reduce(f64::max);
-        let shares = std::iter::once(1.0).chain(several);
-        let told = shares.map(|share| Told::new(costs, cheapest, reduced.classes(), share));
+        let several = reduced.share.iter().copied().filter(|share| *share < 1.0);
+        let classes = several.clone().count();
+        let single = Kind { share: 1.0, classes: reduced.classes() - classes };
+        let several = several.reduce(f64::max).map(|share| Kind { share, classes });
+        // Each kind first among all; without classes of one object, as if there were one.
+        let single = Kind { classes: single.classes.max(1), ..single };
+        let kinds: Vec<Kind> = std::iter::once(single).chain(several).collect();
+        let mut turned = kinds.clone();
+        turned.reverse();
+        let told = [kinds, turned].into_iter().take(1 + usize::from(several.is_some()));
+        let told = told.map(|kinds| Told::new(costs, cheapest, &kinds));
         let told: Vec<Told> = told.collect::<Option<_>>()?;
         Some(Self {
             reduced,
@@ -251,7 +259,8 @@ impl<'a> Revealed<'a> {
     /// compensation, and what another class would get is at the expense of the picked one.
     fn stop(&self, at: &State) -> f64 {
         let Costs { correct, wrong, .. } = self.costs;
-        let paid = |class: usize| at.mass[class] * self.told[0].compensation(at.log[class]);
+        let paid =
+            |class: usize| at.mass[class] * self.told_of(class as u16).compensation(at.log[class]);
         let all: f64 = (0..at.mass.len()).map(paid).sum();
         let (mut left, mut total, mut top) = (0.0, 0.0, 0.0_f64);
         for class in at.left.iter().map(|class| usize::from(*class)) {

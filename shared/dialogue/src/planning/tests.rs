@@ -354,11 +354,17 @@ fn revealed_errors_bound_the_value() {
 fn no_question_beats_being_told_the_class() {
     let (seed, mut rng) = (83, Rng::new(83));
     for (name, costs) in Costs::PRESETS {
-        for (p_l, epsilon, classes) in [(0.95, 0.01, 50), (0.8, 0.1, 7), (0.99, 0.001, 400)] {
+        let kind = |share, classes| told::Kind { share, classes };
+        for (p_l, epsilon, kinds) in [
+            (0.95, 0.01, vec![kind(1.0, 50)]),
+            (0.8, 0.1, vec![kind(0.5, 7)]),
+            (0.95, 0.01, vec![kind(0.5, 2), kind(1.0, 48)]),
+            (0.99, 0.001, vec![kind(1.0, 400)]),
+        ] {
             let params = Params { p_l, epsilon, ..Params::default() };
             let channel = channel::Channel::yes_no(params, &costs, costs.attribute_s);
-            let share = if classes == 7 { 0.5 } else { 1.0 };
-            let told = told::Told::new(&costs, &channel, classes, share);
+            let told = told::Told::new(&costs, &channel, &kinds);
+            let told::Kind { share, classes } = kinds[0];
             let Some(told) = told else { continue };
             let value = |x: f64| told.value(x, x.ln());
             for _ in 0..20_000 {
@@ -371,10 +377,14 @@ fn no_question_beats_being_told_the_class() {
                 let asked = channel.price.pay(after) + split.compensation[0];
                 let label = format!("seed {seed} {name} {params:?} x {x} p {p}");
                 assert!(asked <= value(x) + 1e-6, "{label}: {asked} above {}", value(x));
+                // Least is paid for the others where they are all alike; among those of its own kind it is the
+                // same compensation.
                 let others =
                     (1.0 - x) / x * told.compensation(((1.0 - x) / (classes - 1) as f64).ln());
                 let picked = costs.pick_value(share) - others;
-                assert!(picked <= value(x) + 1e-6, "{label} picked");
+                assert!(kinds.len() > 1 || picked <= value(x) + 1e-6, "{label} picked");
+                let another = told.compensation(x.ln()) - costs.wrong;
+                assert!(another <= value(x) + 1e-6, "{label} another picked");
             }
         }
     }

@@ -6,7 +6,7 @@
 //! Here a question, whose classes that say yes have probability `p`, adds `B (I − d)`, where `d` is
 //! the information that its answers carry given on which side the wanted class is, and `I` their
 //! mean. A pick adds `κ(b_i) = max(0, K + B ln b_i)` if class `i` is wanted and another one is
-//! picked, and takes the mean of that from the picked one. `B` and `K` are free.
+//! picked, and takes the mean of that from the picked one. `B` and each class's `K` are free.
 //!
 //! **Told the class.** Of the belief such a planner needs the probability `x` of its class alone, if
 //! it may choose the `p ≥ x` of every question. Written `w(x) = B ln x + r(x)`, the logarithms of
@@ -35,13 +35,22 @@ pub(super) struct Told {
 struct Stakes {
     costs: Costs,
     channel: Channel,
-    classes: usize,
     /// Value of picking the class where it is wanted.
     worth: f64,
     /// `B`.
     price: f64,
     /// `K`.
     credit: f64,
+    /// `−B ln Σ exp(−K_i / B)` of the other classes, whose `Σ y_i (K_i + B ln y_i)` is least where each `y_i` is
+    /// proportional to `exp(−K_i / B)`.
+    against: f64,
+}
+
+/// Classes whose best object has the same share of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kind {
+    pub(super) share: f64,
+    pub(super) classes: usize,
 }
 
 /// A question, given the probability of the classes that say yes; the first of each pair is theirs,
@@ -79,24 +88,26 @@ const AHEAD: f64 = 0.5;
 const SHORT: f64 = 1.5;
 
 impl Told {
-    /// The bounds for questions like this one, the cheapest, about classes whose best object has that
-    /// share of them; none if they cannot be shown.
-    pub(super) fn new(
-        costs: &Costs,
-        channel: &Channel,
-        classes: usize,
-        share: f64,
-    ) -> Option<Self> {
+    /// The bounds for the classes of the first kind among those of all, and questions like this one, the
+    /// cheapest; none if they cannot be shown.
+    pub(super) fn new(costs: &Costs, channel: &Channel, kinds: &[Kind]) -> Option<Self> {
         let (cost, discount) = (channel.price.cost, channel.price.discount);
         let price = (cost + (1.0 - discount) * AHEAD * costs.correct) / channel.capacity;
-        let credit = costs.correct + costs.wrong - SHORT * cost;
+        let worth = |kind: &Kind| costs.pick_value(kind.share);
+        // The stake of those who know the class: whoever is told of it gains nothing by picking another.
+        let credit = |kind: &Kind| {
+            worth(kind).max(costs.wait_value()).max(-costs.wrong) + costs.wrong - SHORT * cost
+        };
+        let [own, others @ ..] = kinds else { return None };
+        let others = others.iter().map(|kind| (kind, kind.classes)).chain([(own, own.classes - 1)]);
+        let against: f64 = others.map(|(kind, n)| n as f64 * (-credit(kind) / price).exp()).sum();
         let stakes = Stakes {
             costs: *costs,
             channel: *channel,
-            classes,
-            worth: costs.pick_value(share),
+            worth: worth(own),
             price,
-            credit,
+            credit: credit(own),
+            against: -price * against.ln(),
         };
         let rest = (0..CELLS).map(|cell| costs.correct - price * span(cell)[0].ln()).collect();
         let mut told = Self { stakes, rest };
@@ -201,10 +212,10 @@ impl Stakes {
         }
     }
 
-    /// `stop − B ln x` at most. The picked class pays for the others, least if they are all alike.
+    /// `stop − B ln x` at most. The picked class pays for the others.
     fn stop(&self, [low, high]: [f64; 2]) -> f64 {
         let log = self.price * low.ln();
-        let others = self.credit + self.price * ((1.0 - high) / (self.classes as f64 - 1.0)).ln();
+        let others = self.against + self.price * (1.0 - high).ln();
         let own = self.worth - (1.0 - high) / high * others.max(0.0);
         let idle = self.costs.wait_value().max(-self.costs.wrong);
         (own.max(idle) - log).max(self.credit - self.costs.wrong)
