@@ -16,8 +16,10 @@ const SECONDS: [f64; 5] = [1.0, 5.0, 15.0, 30.0, 60.0];
 /// them; the next attempt may look at twice as many.
 const FIRST: usize = 1_000;
 const EASIER: usize = 20;
-/// Attempts with the same bounds, after which more beliefs are not tried.
+/// Attempts with the same bounds in about the same time, after which more beliefs are not tried.
 const ALIKE: usize = 3;
+/// How much longer the last of these may take than the first.
+const TIME_ALIKE: f64 = 1.5;
 /// Most beliefs of the search: each takes one to four kilobytes.
 const SEARCHED_MAX: usize = 100_000;
 /// Dialogues less probable than this are cut short in the value of `lookahead`.
@@ -80,7 +82,9 @@ fn attempts(problem: &DecisionProblem<'_>, limit_s: f64) -> Vec<Attempt> {
 fn is_exhausted(attempts: &[Attempt]) -> bool {
     let Some(alike) = attempts.last_chunk::<ALIKE>() else { return false };
     let bounds = |attempt: &Attempt| (attempt.lower, attempt.upper);
-    alike.iter().all(|attempt| bounds(attempt) == bounds(&alike[0]))
+    let [first, .., last] = alike;
+    alike.iter().all(|attempt| bounds(attempt) == bounds(first))
+        && last.processor_s <= TIME_ALIKE * first.processor_s
 }
 
 fn attempt(problem: &DecisionProblem<'_>, beliefs: usize) -> Attempt {
