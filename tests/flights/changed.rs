@@ -140,6 +140,7 @@ fn torn_flight_replays_up_to_its_last_whole_frame() {
     fs::write(&file, &damaged).unwrap();
     let damaged = replayed(&file, &[]);
     assert!(damaged.torn && damaged.difference.is_none(), "{damaged:?}");
+    assert!(damaged.damaged_at.is_some_and(|at| at < bytes.len() as u64 - 500), "{damaged:?}");
 }
 
 #[test]

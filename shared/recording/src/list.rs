@@ -46,7 +46,14 @@ pub fn entries(folder: &Path) -> Vec<Entry> {
 /// The unfinished recordings of a folder, oldest first.
 pub fn unfinished(folder: &Path) -> Vec<PathBuf> {
     let all = entries(folder).into_iter();
-    all.filter(|entry| !entry.is_finished).map(|entry| entry.path).collect()
+    all.filter(|entry| !entry.is_finished && entry.is_own()).map(|entry| entry.path).collect()
+}
+
+impl Entry {
+    /// Whether the name is one that the recorder gives; others are never deleted or completed.
+    pub fn is_own(&self) -> bool {
+        self.began_ns > 0
+    }
 }
 
 fn entry(path: &Path) -> Option<Entry> {
@@ -54,10 +61,11 @@ fn entry(path: &Path) -> Option<Entry> {
     let stem = |end: &str| name.strip_suffix(end)?.strip_suffix('.');
     let finished = stem(EXTENSION);
     let stem = finished.or_else(|| stem(UNFINISHED))?;
+    let about = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
     Some(Entry {
         path: path.to_owned(),
         began_ns: clock::parse(stem).unwrap_or(0),
-        bytes: fs::metadata(path).ok()?.len(),
+        bytes: about.len(),
         is_finished: finished.is_some(),
     })
 }

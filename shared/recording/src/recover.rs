@@ -53,7 +53,7 @@ pub fn recover(path: &Path) -> Result<Recovered, RecordingError> {
 }
 
 /// Writes one complete recording from several, in their order; they may be unfinished or still being
-/// written. Returns the number of messages, and whether the end of one was damaged.
+/// written. Returns the number of messages, and whether the end of one, or one of several as a whole, was damaged.
 ///
 /// # Errors
 /// As [`recover`]; nothing is left of the copy then.
@@ -80,8 +80,16 @@ fn copy(from: &[PathBuf], to: &Path) -> Result<(u64, bool), RecordingError> {
     for file in from {
         copier.schemas.clear();
         copier.channels.clear();
-        let end = each_record(file, |record| copier.add(record).map_err(RecordingError::mcap(to)))?;
-        was_torn |= end == End::Torn;
+        let end = each_record(file, |record| copier.add(record).map_err(RecordingError::mcap(to)));
+        was_torn |= match end {
+            Ok(end) => end == End::Torn,
+            // One of many that is no recording hides none of the others.
+            Err(RecordingError::Mcap(path, error)) if from.len() > 1 && path != to => {
+                tracing::warn!(file = %path.display(), %error, "not a recording");
+                true
+            }
+            Err(error) => return Err(error),
+        };
     }
     let Copier { mut writer, messages, .. } = copier;
     writer.finish().map_err(RecordingError::mcap(to))?;
@@ -270,6 +278,11 @@ mod tests {
         let second = abandoned(folder.path(), 50);
         let to = folder.path().join("both.mcap");
         assert_eq!(merge(&[first.clone(), second.clone()], &to).unwrap(), (80, false));
+        // What is no recording hides none of the others.
+        let (odd, despite) = (folder.path().join("odd.mcap"), folder.path().join("despite.mcap"));
+        fs::write(&odd, [7; 300]).unwrap();
+        assert_eq!(merge(&[odd.clone(), first.clone()], &despite).unwrap(), (30, true));
+        assert!(merge(&[odd], &folder.path().join("none.mcap")).is_err());
         let found = summary(&to).unwrap();
         assert_eq!((found.messages, found.span_ns), (80, (0, 49)));
         assert!(second.exists(), "it may be written still");

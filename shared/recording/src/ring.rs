@@ -139,7 +139,7 @@ impl Ring {
     fn delete_old(&mut self, now: Time, clock: WallClock) {
         self.next_deletion = now + DELETE_EVERY;
         let mut others = entries(&self.folder);
-        others.retain(|file| Some(file.path.as_path()) != self.current());
+        others.retain(|file| file.is_own() && Some(file.path.as_path()) != self.current());
         let bytes_max = self.limits.bytes_max;
         // The file that is written grows by what is sent until the next look.
         let most = bytes_max - bytes_max / FILES_MIN - bytes_max / 64;
@@ -150,7 +150,10 @@ impl Ring {
                 break;
             }
             match fs::remove_file(&path) {
-                Ok(()) => bytes -= own,
+                Ok(()) => {
+                    tracing::debug!(file = %path.display(), "deleted");
+                    bytes -= own;
+                }
                 Err(error) => tracing::warn!(file = %path.display(), %error, "not deleted"),
             }
         }

@@ -226,9 +226,8 @@ fn examine<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fa
 
 /// Prints every step of a flight.
 fn list_flight<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
-    let is_torn = flight::lines::<P>(&request.file, |step| json_line(out, &step))?;
-    if is_torn {
-        let _ = writeln!(io::stderr(), "ignored the unfinished end of {}", request.file.display());
+    if let Some(note) = flight::lines::<P>(&request.file, |step| json_line(out, &step))? {
+        let _ = writeln!(io::stderr(), "{}: {note}", request.file.display());
     }
     Ok(())
 }

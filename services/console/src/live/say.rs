@@ -56,8 +56,8 @@ pub fn read(request: &[u8]) -> Result<Words, String> {
     })?;
     let mut words = typed(&spoken_text(&text)?);
     if let Some(key) = key {
-        if key.len() > KEY_MAX {
-            return Err(format!("key: expected at most {KEY_MAX} bytes, found {}", key.len()));
+        if key.is_empty() || key.len() > KEY_MAX {
+            return Err(format!("key: expected 1 to {KEY_MAX} bytes, found {}", key.len()));
         }
         words.key = Some(request_key(&key));
     }
@@ -99,7 +99,8 @@ mod tests {
             (r#"{"key":"a"}"#, "missing field `text`"),
             (r#"{"text":"yes","kye":"a"}"#, "unknown field `kye`"),
             (r#"{"text":" "}"#, "expected words"),
-            (long.as_str(), "at most 256 bytes"),
+            (long.as_str(), "1 to 256 bytes"),
+            (r#"{"text":"yes","key":""}"#, "1 to 256 bytes"),
         ] {
             let why = read(request.as_bytes()).unwrap_err();
             assert!(why.contains(expected), "{request}: {why}");

@@ -1,6 +1,6 @@
 //! `record`: the recorder and its files.
 
-use std::path::PathBuf;
+use std::fs;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use messages::Service;
@@ -83,8 +83,9 @@ fn open(paths: &GroupPaths, args: &OpenArgs, out: &mut Output<'_>) -> Outcome {
     };
     let copy = args.out.clone();
     let copy = copy.or_else(|| {
-        let own = PathBuf::from(format!("{}.{EXTENSION}", name(&entry)));
-        (!entry.is_finished).then_some(own)
+        let own = std::env::temp_dir().join(format!("{}.{EXTENSION}", name(&entry)));
+        // A former copy of the same recording has less of it.
+        (!entry.is_finished).then(|| fs::remove_file(&own)).map(|_| own)
     });
     let path = match copy {
         None => entry.path,

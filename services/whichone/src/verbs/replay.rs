@@ -28,7 +28,7 @@ pub(super) fn replay(
         Some(folder) => folder.clone(),
         None => paths()?.flights(),
     };
-    let mut replayed = 0_u64;
+    let (mut replayed, mut is_damaged) = (0_u64, false);
     for file in flight::list(&folder)? {
         let service = service_of(&file)?;
         if args.service.as_deref().is_some_and(|wanted| wanted != service.name()) {
@@ -38,6 +38,7 @@ pub(super) fn replay(
         match run(service, &file, &args.what_if)? {
             Ok(report) => {
                 show(&report, &args.what_if, out)?;
+                is_damaged |= report.damaged_at.is_some();
                 if report.difference.is_some() {
                     return Ok(Exit::Invariant);
                 }
@@ -51,7 +52,7 @@ pub(super) fn replay(
         let help = "help: services record them where group.toml has flight.enabled = true";
         return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
     }
-    Ok(Exit::Ok)
+    Ok(if is_damaged { Exit::Storage } else { Exit::Ok })
 }
 
 /// The service of a flight.
@@ -85,8 +86,8 @@ fn show(
     out: &mut Output<'_>,
 ) -> Result<(), Failure> {
     let name = report.file.file_name().unwrap_or_default().display();
-    if report.torn {
-        note(format_args!("{name}: its end is unfinished; everything before it is replayed"));
+    if let Some(unread) = flight::unread(report.torn, report.damaged_at) {
+        note(format_args!("{name}: {unread}"));
     }
     if out.is_json() {
         return out.json(report);

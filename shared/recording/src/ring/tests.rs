@@ -102,6 +102,21 @@ fn a_week_stays_in_bounds_and_has_no_gap_at_a_change_of_file() {
 }
 
 #[test]
+fn files_of_others_are_neither_deleted_nor_completed() {
+    let folder = tempfile::tempdir().unwrap();
+    let others = ["day.mcap", "tuesday.mcap.part"].map(|name| folder.path().join(name));
+    others.iter().for_each(|file| fs::write(file, "mine").unwrap());
+    let (mut ring, _) = ring(folder.path(), limits());
+    for s in (0..48 * HOUR).step_by(600) {
+        ring.tend(at(s), clock());
+        write(&mut ring, s);
+    }
+    ring.finish(at(48 * HOUR));
+    recover_all(&unfinished(folder.path()));
+    others.iter().for_each(|file| assert_eq!(fs::read(file).unwrap(), b"mine"));
+}
+
+#[test]
 fn size_bounds_the_ring_where_age_does_not() {
     let folder = tempfile::tempdir().unwrap();
     let (mut ring, _) =

@@ -36,7 +36,7 @@ use crate::lifecycle::Environment;
 use crate::service_loop::Program;
 
 pub use difference::first_difference;
-pub use reader::{Direction, Line, head, lines};
+pub use reader::{Direction, Line, head, lines, unread};
 pub use replay::{Changed, Decision, Difference, Report, replay};
 pub use tap::Tap;
 pub use writer::{Ring, file_of, pack};

@@ -1,7 +1,7 @@
 //! Reads flights, up to the last whole frame.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use flate2::{Decompress, FlushDecompress};
@@ -28,6 +28,8 @@ pub(super) struct Flight {
     at: usize,
     /// Whether the file ends in the middle of a frame.
     pub(super) is_torn: bool,
+    /// Where a whole frame that is damaged begins, bytes; nothing after it can be read.
+    pub(super) damaged_at: Option<u64>,
 }
 
 impl Flight {
@@ -44,7 +46,7 @@ impl Flight {
             return Err(foreign(path, format_args!("expected format {FORMAT}, found {format}")));
         }
         let (path, inflate) = (path.to_owned(), Decompress::new(false));
-        Ok(Self { path, file, inflate, frame: Vec::new(), at: 0, is_torn: false })
+        Ok(Self { path, file, inflate, frame: Vec::new(), at: 0, is_torn: false, damaged_at: None })
     }
 
     /// Returns the next value of the stream and its bytes; `None` at the end.
@@ -83,22 +85,29 @@ impl Flight {
 
     /// Reads the next frame. Returns whether there is a whole one.
     fn next_frame(&mut self) -> Result<bool, Failure> {
+        let begin =
+            self.file.stream_position().map_err(|error| Failure::file(&self.path, &error))?;
         let mut head = [0; FRAME_HEAD];
         let read = read_up_to(&mut self.file, &mut head)
             .map_err(|error| Failure::file(&self.path, &error))?;
         self.is_torn = read > 0;
         let [len, crc] = [0, 4]
             .map(|at| u32::from_le_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]));
-        if read < FRAME_HEAD || len as usize > FRAME_BYTES_MAX {
+        if read < FRAME_HEAD {
+            return Ok(false);
+        }
+        if len as usize > FRAME_BYTES_MAX {
+            self.damaged_at = Some(begin);
             return Ok(false);
         }
         let mut content = vec![0; len as usize];
         let read = read_up_to(&mut self.file, &mut content)
             .map_err(|error| Failure::file(&self.path, &error))?;
-        if read < content.len() || crc32c::crc32c(&content) != crc {
+        if read < content.len() {
             return Ok(false);
         }
-        self.is_torn = !self.inflate(&content);
+        self.is_torn = crc32c::crc32c(&content) != crc || !self.inflate(&content);
+        self.damaged_at = self.is_torn.then_some(begin);
         Ok(!self.is_torn)
     }
 
@@ -122,6 +131,14 @@ impl Flight {
             }
             self.frame.reserve(self.frame.capacity().max(64));
         }
+    }
+}
+
+/// What could not be read of a flight that is torn or damaged there, for its user.
+pub fn unread(is_torn: bool, damaged_at: Option<u64>) -> Option<String> {
+    match damaged_at {
+        Some(at) => Some(format!("damaged at byte {at}; nothing after it is read")),
+        None => is_torn.then(|| "its end is unfinished; everything before it is read".to_owned()),
     }
 }
 
@@ -213,14 +230,14 @@ pub struct Line {
     pub value: serde_json::Value,
 }
 
-/// Hands every step of a flight to `take`. Returns whether the end of the file is torn.
+/// Hands every step of a flight to `take`. Returns a note on what could not be read, if anything.
 ///
 /// # Errors
 /// The file cannot be read, or is of another build; or `take` fails.
 pub fn lines<P: Program>(
     path: &Path,
     mut take: impl FnMut(Line) -> Result<(), Failure>,
-) -> Result<bool, Failure> {
+) -> Result<Option<String>, Failure> {
     let (mut flight, head, _) = open::<P>(path)?;
     let (mut pass, mut at_ns) = (1, head.started.ns());
     let json = |value: Result<serde_json::Value, serde_json::Error>| {
@@ -243,5 +260,5 @@ pub fn lines<P: Program>(
             }
         }
     }
-    Ok(flight.is_torn)
+    Ok(unread(flight.is_torn, flight.damaged_at))
 }

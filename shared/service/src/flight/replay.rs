@@ -43,6 +43,8 @@ pub struct Report {
     pub seconds: f64,
     /// Whether the file ends in the middle of a frame, as that of a killed machine may.
     pub torn: bool,
+    /// Where a damaged frame begins, bytes; nothing after it was replayed.
+    pub damaged_at: Option<u64>,
     /// The first difference, at which a replay without changed settings ends.
     pub difference: Option<Difference>,
     /// With changed settings: the decisions that differ.
@@ -147,6 +149,7 @@ fn report(file: &Path, head: &Head) -> Report {
         events: 0,
         seconds: 0.0,
         torn: false,
+        damaged_at: None,
         difference: None,
         decisions: Vec::new(),
         other_passes: 0,
@@ -178,7 +181,7 @@ impl<P: Program> Run<P> {
                 Step::Stated(recorded, bytes) => self.compare(&recorded, &bytes)?,
             }
         }
-        self.report.torn = flight.is_torn;
+        (self.report.torn, self.report.damaged_at) = (flight.is_torn, flight.damaged_at);
         self.report.seconds = self.now.since(self.started).s();
         Ok(self.report)
     }

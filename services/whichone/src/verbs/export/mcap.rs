@@ -61,7 +61,7 @@ fn recordings(source: &Path, to: &Path) -> Result<u64, Failure> {
     }
     let (messages, was_torn) = merge(&files, to).map_err(failure)?;
     if was_torn {
-        note("the end of a recording is damaged; everything before it is exported");
+        note("a recording is damaged; what can be read of it is exported");
     }
     Ok(messages)
 }
