@@ -110,7 +110,7 @@ impl Talker {
 fn full_memory_is_an_error_of_the_creator_and_of_nobody_else() {
     let home = tempfile::tempdir().unwrap();
     let paths = GroupPaths::in_home(home.path(), &GroupName::new("full").unwrap()).unwrap();
-    with_shared_memory(16, || {
+    with_shared_memory(32, || {
         let group = Admin::open(&paths, Epoch(1)).unwrap();
         let join =
             || Bus::open(&paths, "test", Identity { epoch: Epoch(1), ..Identity::default() });

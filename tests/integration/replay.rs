@@ -63,7 +63,7 @@ fn flights_of_killed_services_replay_exactly_and_answer_what_if() {
     let what_if = ["--service", "policy", "--what-if", "dialogue.planner=never-ask"];
     let ended = replay(folder.path(), &what_if);
     assert_eq!(ended.code, Some(0), "{ended:?}");
-    for part in ["interaction 1", "recorded  Ask: ", "what if   Pick: ", "decisions differ"] {
+    for part in ["interaction 1", "recorded  ask \"", "what if   pick \"", "decisions differ"] {
         assert!(ended.stdout.contains(part), "{part}: {}", ended.stdout);
     }
     let ended = replay(folder.path(), &["--what-if", "dialogue.planer=entropy"]);

@@ -15,7 +15,10 @@ fn error_rate_is_learned_and_survives_a_restart() {
     group.say("get me the bowl");
     // Something must be true of the wanted object: to deny everything is to err.
     for _ in 0..30 {
-        if group.dialogue()["decision"] != "ask" {
+        let decision = wait_for("a decision", 10.0, || {
+            Some(group.dialogue()["decision"].clone()).filter(|decision| decision != "wait")
+        });
+        if decision != "ask" {
             break;
         }
         group.say("no");
