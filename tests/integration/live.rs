@@ -5,7 +5,7 @@ use std::process::{Child, Command, Stdio};
 
 use serde_json::{Value as Json, json};
 use whichone_tests::console::{Visitor, http};
-use whichone_tests::{Ended, Group, run, wait_for};
+use whichone_tests::{DIALOGUE_CHANNELS, Ended, Group, run, wait_for};
 
 /// Real time enough for a viewer to see each change, and one other origin.
 const SETTINGS: [&str; 3] = [
@@ -77,27 +77,7 @@ fn live_view_shows_a_dialogue_and_takes_the_operators_words() {
     }
     assert_eq!(found["again"], json!({"utterance": 1, "known": true}), "another connection");
     let counts = found["counts"].as_object().unwrap();
-    for topic in [
-        "/speech/inject",
-        "/speech/receipt",
-        "/speech/utterance",
-        "/speech/presented",
-        "/speech/activity",
-        "/speech/hearing",
-        "/grounding/observation",
-        "/policy/mark",
-        "/policy/act",
-        "/policy/view",
-        "/arm/status",
-        "/arm/joints",
-        "/arm/world",
-        "/arm/trajectory",
-        "/robot_description",
-        "/joint_states",
-        "/scene",
-        "/tf",
-        "/dialogue",
-    ] {
+    for topic in DIALOGUE_CHANNELS {
         assert!(counts.get(topic).and_then(Json::as_u64) > Some(0), "{topic}: {counts:?}");
     }
     assert!(!counts.contains_key("/speech/audio") && !counts.contains_key("/sound"));

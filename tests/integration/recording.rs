@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
-use whichone_tests::{Group, run, wait_for};
+use whichone_tests::{DIALOGUE_CHANNELS, Group, run, wait_for};
 
 /// Real time enough for ten looks a second to see each change, and no demand on the disk.
 const SETTINGS: [&str; 2] = ["arm.time_scale=10.0", "group.recorder.free_min_mib=0"];
@@ -68,28 +68,7 @@ fn recorded_dialogue_is_read_by_the_libraries_of_others() {
     let files: Vec<PathBuf> = recordings(&group).into_iter().map(|entry| entry.path).collect();
     let found = read_by_others(&files);
     let topics = found["topics"].as_object().unwrap();
-    for topic in [
-        "/speech/inject",
-        "/speech/receipt",
-        "/speech/utterance",
-        "/speech/presented",
-        "/speech/activity",
-        "/speech/hearing",
-        "/grounding/observation",
-        "/policy/mark",
-        "/policy/act",
-        "/policy/view",
-        "/arm/status",
-        "/arm/joints",
-        "/arm/world",
-        "/arm/trajectory",
-        "/robot_description",
-        "/joint_states",
-        "/scene",
-        "/tf",
-        "/dialogue",
-        "/log",
-    ] {
+    for topic in DIALOGUE_CHANNELS.into_iter().chain(["/log"]) {
         assert!(topics.get(topic).is_some_and(|it| it["count"].as_u64() > Some(0)), "{topic}");
     }
     // Every message that a service has sent since, by its own count.

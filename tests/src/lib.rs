@@ -52,3 +52,26 @@ pub fn wait_for<T>(what: &str, seconds: f64, mut fact: impl FnMut() -> Option<T>
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
 }
+
+/// Channels of recordings and live views that have messages once an object was fetched.
+pub const DIALOGUE_CHANNELS: [&str; 19] = [
+    "/speech/inject",
+    "/speech/receipt",
+    "/speech/utterance",
+    "/speech/presented",
+    "/speech/activity",
+    "/speech/hearing",
+    "/grounding/observation",
+    "/policy/mark",
+    "/policy/act",
+    "/policy/view",
+    "/arm/status",
+    "/arm/joints",
+    "/arm/world",
+    "/arm/trajectory",
+    "/robot_description",
+    "/joint_states",
+    "/scene",
+    "/tf",
+    "/dialogue",
+];
