@@ -32,12 +32,14 @@ fn metrics_are_read_by_prometheus_client() {
     group.must(&["restart", "grounding"]);
     let none = json!({});
     let grounding = json!({ "service": "grounding" });
-    // The supervisor is asked once a second.
-    let metrics = wait_for("the restart in the metrics", 20.0, || {
+    // The supervisor is asked once a second, and services report their syncs with their heartbeats.
+    let journaling = ["speech", "policy", "arm"].map(|it| json!({ "service": it }));
+    let metrics = wait_for("the restart and the syncs in the metrics", 20.0, || {
         let metrics = parsed(&group);
-        let name = "whichone_service_restarts";
-        let restarts = sample(&metrics, name, &format!("{name}_total"), &grounding);
-        (restarts == Some(1.0)).then_some(metrics)
+        let counted = |name: &str, of: &Json| sample(&metrics, name, &format!("{name}_total"), of);
+        let synced = |it: &Json| counted("whichone_journal_syncs", it) > Some(0.0);
+        let restarts = counted("whichone_service_restarts", &grounding);
+        (restarts == Some(1.0) && journaling.iter().all(synced)).then_some(metrics)
     });
     let counted =
         |family: &str, labels: &Json| sample(&metrics, family, &format!("{family}_total"), labels);
@@ -57,10 +59,8 @@ fn metrics_are_read_by_prometheus_client() {
         assert!(of("whichone_service_resident_memory_bytes") > Some(1e6), "{service}");
         assert!(of("whichone_service_beat_age_seconds") < Some(60.0), "{service}");
     }
-    for service in ["speech", "policy", "arm"] {
-        let service = json!({ "service": service });
-        assert!(counted("whichone_journal_syncs", &service) > Some(0.0), "{service}");
-        assert!(counted("whichone_journal_sync_seconds", &service) > Some(0.0), "{service}");
+    for service in &journaling {
+        assert!(counted("whichone_journal_sync_seconds", service) > Some(0.0), "{service}");
     }
     assert_eq!(counted("whichone_journal_syncs", &grounding), None, "it has no journal");
     let recorder = json!({ "service": "recorder" });

@@ -172,6 +172,13 @@ fn request_by_topic_ends_in_a_delivered_object(implementation: Implementation) {
     group.down();
 }
 
+/// Diagnostics are published once a second: the first may still say that services start.
+fn diagnosed_as_working(diagnostics: &Value) -> bool {
+    let services = ["speech", "grounding", "policy", "arm", "ros2"];
+    services.iter().all(|it| diagnostics[format!("whichone: {it}")]["level"] == 0)
+        && diagnostics["whichone: ROS 2 node"]["values"]["accepted"] == "1"
+}
+
 fn every_topic_is_seen_with_its_contents(implementation: Implementation) {
     let (mut peer, group) = implementation.start(&[]);
     deliver(&mut peer, &group, "the clear bowl", "clear");
@@ -180,6 +187,7 @@ fn every_topic_is_seen_with_its_contents(implementation: Implementation) {
         let mut counts = seen["count"].as_object().into_iter().flatten();
         counts.all(|(topic, count)| count != 0 || untyped.contains(&topic.as_str().into()))
             && seen["state"]["dialogue"]["last"]["object"] == "clear"
+            && diagnosed_as_working(&seen["diagnostics"])
     });
     let shipped = include_str!("../../config/robots/baxter.urdf");
     assert!(seen["description"] == shipped, "the description as it is in its file");
@@ -192,11 +200,6 @@ fn every_topic_is_seen_with_its_contents(implementation: Implementation) {
     };
     let view = group.call(&["watch", "--once", "--json"]).json();
     assert_eq!(keys(&seen["state"]), keys(&view));
-    let diagnostics = &seen["diagnostics"];
-    for service in ["speech", "grounding", "policy", "arm", "ros2"] {
-        assert_eq!(diagnostics[format!("whichone: {service}")]["level"], 0, "{diagnostics}");
-    }
-    assert_eq!(diagnostics["whichone: ROS 2 node"]["values"]["accepted"], "1", "{diagnostics}");
     if let Some(markers) = seen["markers"].as_array() {
         let named = |name: &str| {
             let begins = format!("{name} ");
