@@ -9,13 +9,15 @@ use serde::Serialize;
 
 use super::writer::{Job, Ring, Writer};
 use super::{Beginning, Entry, Head};
-use crate::{Effects, Event, Time};
+use crate::{Effects, Event, Span, Time};
 
 /// Passes that may wait for the disk. The loop never waits: a flight with a gap could not be replayed, so
 /// with more than that the recording ends.
 const WAITING_MAX: usize = 1024;
-/// Size up to which passes without an event are kept together, bytes.
-const QUIET_BYTES_MAX: usize = 256;
+/// How long passes in which nothing but time passed are kept, so that they are written together, and up
+/// to which size, bytes.
+const ROUTINE_KEPT: Span = Span::from_ms(500);
+const ROUTINE_BYTES_MAX: usize = 4096;
 
 /// Records one flight.
 #[derive(Debug, Default)]
@@ -28,9 +30,16 @@ pub struct Tap {
     files: u64,
     /// Number of files that the writer has found long enough for another one to begin.
     long_files: Arc<AtomicU64>,
-    /// The pass so far.
-    pass: Vec<u8>,
+    /// The passes that are kept, and the present one so far.
+    passes: Vec<u8>,
+    /// Time of the first event in them, and of the last one.
+    span: Option<(Time, Time)>,
+    /// Whether the present pass has an event.
     has_events: bool,
+    /// Whether more happened in them than time passing.
+    is_eventful: bool,
+    #[cfg(test)]
+    handed_over: usize,
 }
 
 impl Tap {
@@ -80,6 +89,8 @@ impl Tap {
     /// Records an event just before the node is given it.
     pub fn event<In: Serialize>(&mut self, event: &Event<In>, now: Time) {
         self.has_events = true;
+        self.is_eventful |= !matches!(event, Event::Tick);
+        self.span = Some((self.span.map_or(now, |(first, _)| first), now));
         self.add(&Entry::<_, ()>::Event(now, event));
     }
 
@@ -91,13 +102,16 @@ impl Tap {
     /// Records what the node has stated in a pass, before any of it is carried out.
     pub fn stated<Out: Serialize, Record: Serialize>(&mut self, effects: &Effects<Out, Record>) {
         if self.has_events {
+            self.is_eventful |= !effects.records().is_empty();
             self.add(&Entry::<(), _>::Stated(effects));
         }
     }
 
-    /// Ends a pass: what it holds is written now.
+    /// Ends a pass. It is written now, unless nothing but time passed in it.
     pub fn end_pass(&mut self) {
-        if self.has_events || self.pass.len() >= QUIET_BYTES_MAX {
+        self.has_events = false;
+        let is_old = self.span.is_some_and(|(first, last)| last >= first + ROUTINE_KEPT);
+        if self.is_eventful || is_old || self.passes.len() >= ROUTINE_BYTES_MAX {
             self.send();
         }
     }
@@ -108,26 +122,36 @@ impl Tap {
         self.jobs.as_ref().map_or(0, Sender::len)
     }
 
+    /// Returns how many parts the writer has been given.
+    #[cfg(test)]
+    pub(super) fn handed_over(&self) -> usize {
+        self.handed_over
+    }
+
     fn add(&mut self, value: &impl Serialize) {
         if self.jobs.is_none() {
             return;
         }
-        match postcard::to_extend(value, std::mem::take(&mut self.pass)) {
-            Ok(pass) => self.pass = pass,
+        match postcard::to_extend(value, std::mem::take(&mut self.passes)) {
+            Ok(passes) => self.passes = passes,
             Err(error) => self.end(&format!("an entry cannot be encoded: {error}")),
         }
     }
 
     fn send(&mut self) {
-        self.has_events = false;
-        if !self.pass.is_empty() {
-            let pass = std::mem::take(&mut self.pass);
-            self.hand_over(Job::Pass(pass));
+        (self.span, self.is_eventful) = (None, false);
+        if !self.passes.is_empty() {
+            let passes = std::mem::take(&mut self.passes);
+            self.hand_over(Job::Passes(passes));
         }
     }
 
     fn hand_over(&mut self, job: Job) {
         let Some(jobs) = &self.jobs else { return };
+        #[cfg(test)]
+        {
+            self.handed_over += 1;
+        }
         match jobs.try_send(job) {
             Ok(()) => {}
             Err(TrySendError::Full(_)) => self.end("the disk is too slow"),

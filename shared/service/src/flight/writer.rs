@@ -131,8 +131,8 @@ fn seal(compress: &mut Compress, part: &[u8], frame: &mut Vec<u8>) -> io::Result
 /// Work for the writer, in order.
 #[derive(Debug)]
 pub(super) enum Job {
-    /// A part of the stream.
-    Pass(Vec<u8>),
+    /// A part of the stream: whole passes.
+    Passes(Vec<u8>),
     /// Another file, which begins at this time, nanoseconds since 1970.
     Begin(u64),
 }
@@ -179,7 +179,7 @@ impl Writer {
     pub(super) fn run(mut self, jobs: &Receiver<Job>) {
         while let Ok(job) = jobs.recv() {
             let done = match job {
-                Job::Pass(pass) => self.write(&pass),
+                Job::Passes(passes) => self.write(&passes),
                 Job::Begin(wall_ns) => self.begin(wall_ns),
             };
             if let Err(error) = done {
@@ -199,8 +199,8 @@ impl Writer {
         Ok(())
     }
 
-    fn write(&mut self, pass: &[u8]) -> io::Result<()> {
-        seal(&mut self.compress, pass, &mut self.frame)?;
+    fn write(&mut self, passes: &[u8]) -> io::Result<()> {
+        seal(&mut self.compress, passes, &mut self.frame)?;
         self.file.write_all(&self.frame)?;
         self.bytes += self.frame.len() as u64;
         if self.bytes >= self.ring.bytes_max / FILES_MIN {
