@@ -141,7 +141,8 @@ impl SpeechShell {
 impl Shell<SpeechNode> for SpeechShell {
     fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
         let bus = context.bus;
-        let work = context.environment.paths.run();
+        let paths = &context.environment.paths;
+        let work = paths.run();
         let (settings, inbox) = (context.settings, &context.devices);
         let echo = Span::from_s(settings.speech.microphone.echo_pause.as_secs_f64());
         let playback_mask = Arc::new(PlaybackMask::new(echo));
@@ -159,7 +160,7 @@ impl Shell<SpeechNode> for SpeechShell {
             motion: bus.writer(&topics::MOTION)?,
             hearing: bus.writer(&topics::HEARING)?,
             partials: bus.writer(&topics::PARTIAL)?,
-            recogniser: start_recogniser(settings, &work, inbox),
+            recogniser: start_recogniser(settings, &paths.recogniser(), inbox),
             microphone: microphone::start(settings, &playback_mask, &closings, inbox),
             streams: ClientStreams::start(
                 SegmenterOptions::of(&settings.speech),
@@ -231,7 +232,7 @@ fn start_recogniser(
         inbox.send(In::RecogniserState(EarState::Off));
         return Err("speech recognition is switched off (speech.recogniser)".to_owned());
     }
-    let (worker, events) = AsrWorker::start(settings, &work.join("recogniser"));
+    let (worker, events) = AsrWorker::start(settings, work);
     let inbox = inbox.clone();
     forward("recogniser", events, move |event| inbox.send(event));
     Ok(worker)

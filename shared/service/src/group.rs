@@ -187,6 +187,11 @@ impl GroupPaths {
         self.root.join("policies")
     }
 
+    /// The recogniser's dictionary and language model of the scene; a cache, which may be deleted.
+    pub fn recogniser(&self) -> PathBuf {
+        self.root.join("recogniser")
+    }
+
     /// Recordings of the group's topics.
     pub fn recordings(&self) -> PathBuf {
         self.root.join("recordings")

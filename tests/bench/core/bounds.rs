@@ -16,10 +16,6 @@ const SECONDS: [f64; 5] = [1.0, 5.0, 15.0, 30.0, 60.0];
 /// them; the next attempt may look at twice as many.
 const FIRST: usize = 1_000;
 const EASIER: usize = 20;
-/// Attempts with the same bounds in about the same time, after which more beliefs are not tried.
-const ALIKE: usize = 3;
-/// How much longer the last of these may take than the first.
-const TIME_ALIKE: f64 = 1.5;
 /// Most beliefs of the search: each takes one to four kilobytes.
 const SEARCHED_MAX: usize = 100_000;
 /// Dialogues less probable than this are cut short in the value of `lookahead`.
@@ -27,6 +23,8 @@ const CUT: f64 = 1e-5;
 
 /// What an attempt has shown.
 struct Attempt {
+    /// Beliefs that the search could look at.
+    searched: usize,
     lower: f64,
     upper: f64,
     processor_s: f64,
@@ -78,27 +76,26 @@ fn attempts(problem: &DecisionProblem<'_>, limit_s: f64) -> Vec<Attempt> {
     attempts
 }
 
-/// Returns whether the easier problem is solved and the search has all the memory that it may have.
+/// Returns whether twice the beliefs have shown nothing more, with all the memory that the search may have.
 fn is_exhausted(attempts: &[Attempt]) -> bool {
-    let Some(alike) = attempts.last_chunk::<ALIKE>() else { return false };
+    let Some([before, last]) = attempts.last_chunk() else { return false };
     let bounds = |attempt: &Attempt| (attempt.lower, attempt.upper);
-    let [first, .., last] = alike;
-    alike.iter().all(|attempt| bounds(attempt) == bounds(first))
-        && last.processor_s <= TIME_ALIKE * first.processor_s
+    before.searched >= SEARCHED_MAX && bounds(before) == bounds(last)
 }
 
 fn attempt(problem: &DecisionProblem<'_>, beliefs: usize) -> Attempt {
     let mut planner = Optimal::default();
     // No gap is close enough: what is measured is how far the bounds can be tightened.
     planner.tolerance = 0.0;
-    planner.beliefs_max = beliefs.min(SEARCHED_MAX);
+    let searched = beliefs.min(SEARCHED_MAX);
+    planner.beliefs_max = searched;
     planner.certify_max = beliefs * EASIER;
     let belief = Belief::uniform(problem.model.objects());
     let (begun, used) = (Instant::now(), thread_s());
     let bounds = planner.decide(problem, &belief, Step::default()).bounds;
     let (lower, upper) = bounds.unwrap_or((f64::NAN, f64::NAN));
     let (processor_s, elapsed_s) = (thread_s() - used, begun.elapsed().as_secs_f64());
-    Attempt { lower, upper, processor_s, elapsed_s }
+    Attempt { searched, lower, upper, processor_s, elapsed_s }
 }
 
 fn cell(attempts: &[Attempt], seconds: f64) -> String {

@@ -23,11 +23,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Parts of the benchmark, by the option that selects each.
-const PARTS: [&str; 15] = [
+const PARTS: [&str; 17] = [
     "--core",
     "--bounds",
     "--kinematics",
     "--processes",
+    "--recorder",
+    "--flight",
     "--long",
     "--joints",
     "--orders",
