@@ -5,9 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use mcap::records::Record;
+use service::wall_time;
 
 use crate::recover::each_record;
-use crate::{EXTENSION, RecordingError, UNFINISHED, clock};
+use crate::{EXTENSION, RecordingError, UNFINISHED};
 
 /// A recording in a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -64,7 +65,7 @@ fn entry(path: &Path) -> Option<Entry> {
     let about = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
     Some(Entry {
         path: path.to_owned(),
-        began_ns: clock::parse(stem).unwrap_or(0),
+        began_ns: wall_time::parse(stem).unwrap_or(0),
         bytes: about.len(),
         is_finished: finished.is_some(),
     })
