@@ -1,7 +1,9 @@
 //! A request to the speech service, resent under one key until its receipts have arrived, so that
 //! a restart in between neither loses nor doubles it.
 
-use messages::{ClientId, FixedText, Injection, PromptId, Receipt, ReceiptStatus, RequestKey, Sound};
+use messages::{
+    ClientId, FixedText, Injection, PromptId, Receipt, ReceiptStatus, RequestKey, Sound,
+};
 
 use crate::client::{own_id, request_key};
 use crate::{Span, Time};

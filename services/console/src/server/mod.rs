@@ -121,7 +121,8 @@ async fn admit(
         return Redirect::to("/login").into_response();
     }
     let what = Access::refusal(request.headers(), false);
-    let help = "`whichone console` prints a link; programs send the header Authorization: Bearer TOKEN";
+    let help =
+        "`whichone console` prints a link; programs send the header Authorization: Bearer TOKEN";
     (StatusCode::UNAUTHORIZED, format!("{what}; help: {help}\n")).into_response()
 }
 

@@ -351,7 +351,8 @@ mod tests {
 
     #[test]
     fn history_refuses_what_is_not_a_part_of_it() {
-        let of = |query: &str| Part::of(Query::try_from_uri(&format!("/?{query}").parse().unwrap()));
+        let of =
+            |query: &str| Part::of(Query::try_from_uri(&format!("/?{query}").parse().unwrap()));
         assert_eq!(of(""), Ok(Part::default()));
         assert_eq!(of("limit=3&before=7"), Ok(Part { before: 7, limit: 3 }));
         let wrong = ["before=abc", "before=-1", "before=", "limit=0", "limit=201", "befor=7"];
