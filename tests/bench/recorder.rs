@@ -4,7 +4,7 @@ use crate::idle::{of_process, pids};
 use crate::latency::Taps;
 use crate::peers::resident_mib;
 use crate::report::Report;
-use recording::list::entries;
+use recording::list::{Entry, entries};
 use std::time::{Duration, Instant};
 use whichone_tests::{Group, wait_for};
 
@@ -68,7 +68,7 @@ fn latencies(report: &mut Report, utterances: usize) {
 fn start(group: &Group) {
     wait_for("a recording", 30.0, || {
         let files = entries(&group.paths().recordings());
-        (pid(group).is_some() && files.iter().any(|file| !file.is_finished)).then_some(())
+        (pid(group).is_some() && files.iter().any(Entry::is_being_written)).then_some(())
     });
 }
 

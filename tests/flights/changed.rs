@@ -155,7 +155,7 @@ fn flight_of_another_build_or_service_is_refused() {
     other[8] = 77;
     let refusals = [
         (other, "found 77"),
-        (b"not a flight".to_vec(), "not a flight"),
+        (b"not a flight".to_vec(), "found another file"),
         (bytes[..40].to_vec(), "first frame"),
     ];
     for (content, part) in refusals {

@@ -195,7 +195,8 @@ fn invalid_messages_are_reported_and_harmless() {
         page.messages.iter().any(|t| t["t"] == "pong" && t["at"] == 12.5).then_some(())
     });
     page.send_raw(Message::Text("x".repeat(65 << 10).into()));
-    page.until("the end of a page that sends too much", |page| page.closed.clone());
+    let closed = page.until("the end of a page that sends too much", |page| page.closed.clone());
+    assert!(closed.0 == 1009 && closed.1.contains("65536 bytes"), "{closed:?}");
     let mut mute = Page::connect(&place, &Visitor::operator(3)).unwrap();
     mute.send(&json!({ "t": "ping", "at": 1 }));
     mute.until("the end of a page without a hello", |page| page.closed.clone());

@@ -48,6 +48,11 @@ fn page_is_for_those_with_the_token() {
     assert_eq!(http(&place, "GET", "/login", &[html], "").0, 200);
     assert_eq!(http(&place, "GET", "/healthz", &[], "").0, 200);
     assert!(Page::connect(&place, &Visitor::operator(1)).unwrap_err().contains("401"));
+    let stranger = Console { token: Some("wrong-token-0123".to_owned()), ..place.clone() };
+    for (place, why) in [(&place, "token required; help:"), (&stranger, "wrong token; help:")] {
+        let (status, _, body) = http(place, "GET", "/api/state", &[], "");
+        assert!(status == 401 && body.starts_with(why), "{status} {body}");
+    }
     let token = owner.token.clone().expect("a token");
     let own = format!("Origin: http://{place}");
     let wrong = http(&place, "POST", "/login", &[&own], "token=guess");

@@ -1,7 +1,9 @@
 //! Journals explain themselves: records for programs, and verification across a change of settings.
 
 use crate::config::edited;
+use serde_json::Value;
 use service::journal_record::{JournalLine, JournalRecord, PolicyCause, SpeechRecord};
+use service::wall_time;
 use std::time::{SystemTime, UNIX_EPOCH};
 use whichone_tests::Group;
 
@@ -48,6 +50,7 @@ fn journals_are_typed_named_and_verified_under_the_settings_of_their_time() {
         let since = journal(&group, service, &last.seq.to_string());
         assert_eq!(since.first(), Some(last), "{service}");
     }
+    listing_says_when_and_what_is_missing(&group);
     beliefs_and_words(&group);
 
     let verified = group.must(&["journal", "--verify"]).stdout;
@@ -56,6 +59,9 @@ fn journals_are_typed_named_and_verified_under_the_settings_of_their_time() {
         "{verified}"
     );
     assert!(!verified.contains("not reproduced"), "{verified}");
+    let verified = group.must(&["journal", "--verify", "--json"]).stdout;
+    let last: Value = serde_json::from_str(verified.lines().last().unwrap()).unwrap();
+    assert!(last["together"].as_str().is_some_and(|it| it.contains("epoch")), "{verified}");
     // Without the former settings their states are counted, and nothing else fails.
     let settings = group.paths().kept_settings();
     let mut kept: Vec<_> = std::fs::read_dir(settings).unwrap().flatten().collect();
@@ -67,6 +73,19 @@ fn journals_are_typed_named_and_verified_under_the_settings_of_their_time() {
         "{verified}"
     );
     group.down();
+}
+
+/// The text form has the wall time, and a number beyond the end is named.
+fn listing_says_when_and_what_is_missing(group: &Group) {
+    let last = journal(group, "arm", "1").pop().unwrap();
+    let listed = group.must(&["journal", "arm", "--since", &last.seq.to_string()]);
+    let wall = wall_time::text(last.unix_ms.unwrap() * 1_000_000);
+    assert!(listed.stdout.contains(&format!(" s  {wall}  ")), "{listed:?}");
+    assert_eq!(listed.stderr, "");
+    let beyond = group.must(&["journal", "arm", "--since", "1000000"]);
+    assert_eq!(beyond.stdout, "");
+    let expected = format!("the last one is {}, written at ", last.seq);
+    assert!(beyond.stderr.contains(&expected) && beyond.stderr.contains(&wall), "{beyond:?}");
 }
 
 /// What was said and believed, with the scene's names, in both parts.

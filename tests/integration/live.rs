@@ -72,7 +72,12 @@ fn live_view_shows_a_dialogue_and_takes_the_operators_words() {
         says[..2],
         [json!({"utterance": 1, "known": false}), json!({"utterance": 1, "known": true})]
     );
-    for (say, why) in says[2..].iter().zip(["unknown field", "expected json", "does not exist"]) {
+    for (say, why) in says[2..].iter().zip([
+        "unknown field",
+        "expected json",
+        "does not exist",
+        "conflict (409): utterance 1",
+    ]) {
         assert!(say["failure"].as_str().unwrap().contains(why), "{say}");
     }
     assert_eq!(found["again"], json!({"utterance": 1, "known": true}), "another connection");
@@ -127,6 +132,8 @@ fn live_view_gives_a_viewer_no_right_and_bears_malformed_frames() {
     assert_eq!(found["parameters"]["/scene"], "bowls");
     assert!(found["statuses"].as_u64() > Some(100), "{found}");
     assert_eq!(found["levels"], json!([2]));
+    assert_eq!(found["too_long"][0], 1009, "{found}");
+    assert!(found["too_long"][1].as_str().unwrap().contains("65536 bytes"), "{found}");
     // Not a word of it has reached the robot.
     assert_eq!(group.dialogue()["applied"], 0);
     assert_eq!(group.incarnation("console"), 1, "{}", group.logs());

@@ -1,6 +1,6 @@
 //! The recorder in a real group, and its files as the libraries of others read them.
 
-use recording::list::{Entry, entries, summary};
+use recording::list::{Entry, State, entries, summary};
 use rustix::process::Signal;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -164,7 +164,7 @@ fn killed_recorder_leaves_a_file_that_is_completed_at_its_next_start() {
     let torn = wait_for("the utterance in the file", 20.0, || {
         recordings(&group).into_iter().find(|entry| count(entry, "/speech/receipt") > 0)
     });
-    assert!(!torn.is_finished);
+    assert_eq!(torn.state(), State::BeingWritten);
     let (before, killed) = (group.incarnation("recorder"), wall_ns());
     group.signal("recorder", Signal::KILL);
     let status = group.call(&["status"]);
@@ -173,7 +173,7 @@ fn killed_recorder_leaves_a_file_that_is_completed_at_its_next_start() {
     let whole = wait_for("the completed file", 20.0, || {
         recordings(&group)
             .into_iter()
-            .find(|entry| entry.began_ns == torn.began_ns && entry.is_finished)
+            .find(|entry| entry.began_ns == torn.began_ns && entry.state() == State::Complete)
     });
     assert!(count(&whole, "/speech/receipt") > 0 && count(&whole, "/speech/utterance") > 0);
     let end = summary(&whole.path).unwrap().span_ns.1;
@@ -204,9 +204,17 @@ fn group_is_whole_without_its_recorder() {
     let listed = group.must(&["record", "list", "--json"]).stdout;
     let listed: Vec<Value> =
         listed.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    assert!(listed.iter().all(|it| it["finished"] == true), "{listed:?}");
+    assert!(listed.iter().all(|it| it["state"] == "complete"), "{listed:?}");
     let newest = listed.last().unwrap();
     let opened = group.must(&["record", "open", "--json"]).json();
     assert_eq!(opened["file"], newest["file"]);
+    // The group's recordings, where no source is named.
+    let day = folder.path().join("day.mcap").display().to_string();
+    let exported = group.must(&["export", "mcap", "--out", &day, "--json"]).json();
+    assert!(exported["messages"].as_u64() > Some(0), "{exported}");
+    let again = group.call(&["export", "mcap", "--out", &day]);
+    assert_eq!(again.code, Some(74), "{again:?}");
+    let expected = format!("{day}: it exists already; help: name another file");
+    assert!(again.stderr.contains(&expected), "{again:?}");
     group.down();
 }

@@ -66,9 +66,20 @@ fn flights_of_killed_services_replay_exactly_and_answer_what_if() {
     for part in ["interaction 1", "recorded  ask \"", "what if   pick \"", "decisions differ"] {
         assert!(ended.stdout.contains(part), "{part}: {}", ended.stdout);
     }
+    for part in ["other passes differ", "first other difference:", "recorded    ", "recomputed  "] {
+        assert!(ended.stdout.contains(part), "{part}: {}", ended.stdout);
+    }
+    let report = &self::reports(&replay(folder.path(), &[&what_if[..], &["--json"]].concat()))[0];
+    let first = report.other_difference.as_ref().unwrap();
+    assert!(report.other_passes > 0 && !first.path.is_empty(), "{first:?}");
+    assert_ne!(first.recorded, first.recomputed);
     let ended = replay(folder.path(), &["--what-if", "dialogue.planer=entropy"]);
     assert_eq!(ended.code, Some(78), "{ended:?}");
-    assert!(ended.stderr.contains("dialogue.planer"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("--what-if: dialogue.planer: unknown key"), "{}", ended.stderr);
+    let ended = replay(folder.path(), &["--service", "foo"]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    let expected = "help: there are flights of arm, grounding, policy, speech";
+    assert!(ended.stderr.contains(expected), "{}", ended.stderr);
 
     let mcap = folder.path().join("flights.mcap");
     let mut export = Command::new(program("whichone"));
@@ -127,5 +138,11 @@ fn replay_stops_at_the_first_difference_with_exit_code_70() {
     fs::write(folder.path().join("arm-0.flight"), "something else").unwrap();
     let ended = replay(folder.path(), &[]);
     assert_eq!(ended.code, Some(78), "{ended:?}");
-    assert!(ended.stderr.contains("arm-0.flight"), "{}", ended.stderr);
+    for part in ["arm-0.flight: expected a flight, found another file", "help: name a flight"] {
+        assert!(ended.stderr.contains(part), "{}", ended.stderr);
+    }
+    fs::write(folder.path().join("arm-0.flight"), b"WOFLIGHT\x09\0\0\0").unwrap();
+    let ended = replay(folder.path(), &[]);
+    assert_eq!(ended.code, Some(78), "{ended:?}");
+    assert!(ended.stderr.contains("found 9; help: replay it with the build"), "{}", ended.stderr);
 }

@@ -39,6 +39,22 @@ fn silence_is_prompted_again_and_then_abandoned() {
 }
 
 #[test]
+fn request_for_what_is_not_there_ends_at_once() {
+    let group = Group::up(&[]);
+    group.say("get me the plate");
+    let ended = group.call(&["await", "pick", "--json", "--timeout", "50"]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    let outcome = ended.json();
+    assert_eq!(outcome["outcome"], "no_pick", "{outcome}");
+    assert!(outcome["answer"].as_str().is_some_and(|it| it.contains("plate")), "{outcome}");
+    // That is reported once; then the next interaction counts.
+    assert_eq!(group.fetch("get me the bowl", "clear")["object"], "clear");
+    let again = group.call(&["await", "pick", "--json", "--timeout", "1"]).json();
+    assert_eq!(again["outcome"], "timeout", "{again}");
+    group.down();
+}
+
+#[test]
 fn unknown_words_end_with_a_pick() {
     let group = Group::up(&["dialogue.turns.questions_max=6"]);
     group.say("get me the bowl");

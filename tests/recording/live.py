@@ -168,6 +168,7 @@ def dialogue(place, token, wanted):
             view.call(3, {"text": "get me the bowl", "wrong": 1}),
             view.call(4, {"text": "x"}, encoding=b"cdr"),
             view.call(5, {"text": "x"}, service=77),
+            view.call(6, {"text": "get me the cup", "key": "first"}),
         ]
         # The test answers the robot's questions.
         print("said", file=sys.stderr, flush=True)
@@ -264,6 +265,10 @@ def viewer(place, token, seed):
         found["parameters"] = view.get("after")
         found["statuses"] = len(view.statuses)
         found["levels"] = sorted({status["level"] for status in view.statuses})
+        try:
+            view.call(2, {"text": "x" * 1_000_000})
+        except websockets.exceptions.ConnectionClosed as closed:
+            found["too_long"] = [closed.rcvd.code, closed.rcvd.reason]
     return found
 
 

@@ -81,16 +81,13 @@ fn held_record(scene: Option<&Scene>, held: &Held) -> HeldRecord {
 #[cfg(test)]
 mod tests {
     use manipulation::Limb;
-    use messages::{InteractionId, MotionOrder, PickId, PickOutcome, PickPhase, Task};
+    use messages::{InteractionId, MotionOrder, PickId, PickOutcome, PickPhase, Service, Task};
     use service::Time;
-    use service::journal_record::{JournalLine, JournalRecord};
+    use service::journal_record::{JournalRecord, golden};
 
     use super::*;
     use crate::inspection;
     use crate::state::{ArmState, Offered, Posture};
-
-    const GOLDEN: &str =
-        concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/journal_arm.jsonl");
 
     fn bowls() -> Scene {
         let text = include_str!("../../../config/scenes/bowls.toml");
@@ -160,22 +157,12 @@ mod tests {
     #[test]
     fn records_for_programs_match_the_golden_file() {
         let scene = bowls();
-        let mut found = String::new();
-        for (n, record) in records(scene.key()).iter().enumerate() {
-            let line = JournalLine {
-                seq: n as u64 + 1,
-                at_ns: record.at.ns(),
-                unix_ms: Some(1_700_000_000_000 + record.at.ns() / 1_000_000),
-                text: inspection::line(Some(&scene), record),
-                record: JournalRecord::Arm(Box::new(explain(Some(&scene), record))),
-            };
-            found += &(serde_json::to_string(&line).unwrap() + "\n");
-        }
-        if std::env::var_os("WHICHONE_BLESS").is_some() {
-            std::fs::write(GOLDEN, &found).unwrap();
-        }
-        let golden = std::fs::read_to_string(GOLDEN).unwrap_or_default();
-        assert_eq!(found, golden, "if the change is intended, run this test with WHICHONE_BLESS=1");
+        let described = |record: Record| {
+            let explained = JournalRecord::Arm(Box::new(explain(Some(&scene), &record)));
+            (record.at, inspection::line(Some(&scene), &record), explained)
+        };
+        let found = golden::lines(records(scene.key()).into_iter().map(described));
+        golden::check(Service::Arm, &found);
     }
 
     #[test]

@@ -14,11 +14,15 @@ use axum::http::{Response, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::IntoResponse;
 use axum::routing::get;
+use serde::Deserialize;
 use service::console_link::random_secret;
 use service::exit::{Exit, Failure};
 
+use crate::history::Interaction;
 use crate::server::{Access, page_asset, secure};
 
+/// What the page marks a file with.
+const FORMAT: &str = "whichone.interaction/1";
 /// Largest file, bytes: many times what an interaction takes.
 const FILE_MAX: u64 = 32 << 20;
 
@@ -55,14 +59,28 @@ fn secret() -> Result<String, Failure> {
     random_secret().map_err(|error| Failure::new(Exit::NotReached, error.to_string()))
 }
 
-/// Reads the file; whether it is an interaction is for the page to say.
+/// Reads the file, which must hold an interaction.
 fn read(file: &Path) -> Result<String, Failure> {
     let length = fs::metadata(file).map_err(|error| Failure::file(file, &error))?.len();
+    let wrong = |found: String| {
+        let help = "help: save one with the arrow in the history of the console's page";
+        let expected = format!("expected an interaction, JSON with \"format\": \"{FORMAT}\"");
+        Failure::new(Exit::Config, format!("{}: {expected}, found {found}; {help}", file.display()))
+    };
     if length > FILE_MAX {
-        let what = format!("{}: {length} bytes are more than an interaction takes", file.display());
-        return Err(Failure::new(Exit::Config, what));
+        return Err(wrong(format!("{length} bytes")));
     }
-    fs::read_to_string(file).map_err(|error| Failure::file(file, &error))
+    let bytes = fs::read(file).map_err(|error| Failure::file(file, &error))?;
+    let text = String::from_utf8(bytes).map_err(|_| wrong("a file that is not text".to_owned()))?;
+    let json: serde_json::Value =
+        serde_json::from_str(&text).map_err(|error| wrong(format!("no JSON ({error})")))?;
+    match &json["format"] {
+        format if format == FORMAT => {}
+        serde_json::Value::Null => return Err(wrong("no format".to_owned())),
+        format => return Err(wrong(format!("format {format}"))),
+    }
+    let read = Interaction::deserialize(&json);
+    read.map(|_| text).map_err(|error| wrong(format!("other content ({error})")))
 }
 
 #[derive(Debug)]
@@ -91,4 +109,45 @@ async fn guard(request: Request, next: Next) -> Response<Body> {
     };
     secure(response.headers_mut(), None, None);
     response
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::*;
+
+    fn read_as_file(content: &str) -> Result<String, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("shared.json");
+        fs::write(&file, content).unwrap();
+        let read = read(&file).map_err(|failure| failure.to_string());
+        read.inspect_err(|why| assert!(why.contains("shared.json: expected"), "{why}"))
+    }
+
+    #[test]
+    fn viewer_takes_interactions_only() {
+        let page = include_str!("../page/js/history/model.js");
+        assert!(page.contains(&format!("\"{FORMAT}\"")), "the page writes what is read here");
+        let whole = json!({ "format": FORMAT, "group": "lab", "version": "0", "interaction": 3,
+            "unix_ms": null, "whole": true, "objects": [{ "name": "a", "label": "the cup" }],
+            "moments": [{ "after_ms": 0, "event": { "type": "silence" }, "thought": null }],
+            "left_out": 0, "end": null });
+        assert!(read_as_file(&whole.to_string()).is_ok());
+        let with = |key: &str, value: Value| {
+            let mut json = whole.clone();
+            json[key] = value;
+            json.to_string()
+        };
+        for (content, found) in [
+            (String::new(), "no JSON"),
+            ("{\"a\": 1}".to_owned(), "no format"),
+            ("[1]".to_owned(), "no format"),
+            (with("format", json!("whichone.interaction/2")), "interaction/2"),
+            (with("moments", json!(7)), "other content"),
+        ] {
+            let why = read_as_file(&content).unwrap_err();
+            assert!(why.contains(found) && why.contains("help:"), "{why}");
+        }
+    }
 }

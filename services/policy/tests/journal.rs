@@ -7,10 +7,11 @@ use config::Settings;
 use dialogue::manager::{Cause, Record, State, Utterance};
 use dialogue::{Belief, PickOutcome, Posterior, Presentation};
 use journal::{Header, Journal};
-use messages::{Interpretation, PromptId, UtteranceSeq};
+use messages::{Interpretation, PromptId, Service, UtteranceSeq};
 use scene::{Reading, Response};
 use serde_json::Value;
 use service::Time;
+use service::journal_record::golden;
 
 /// A journal and a snapshot of the shipped settings in a temporary folder.
 struct Lab(tempfile::TempDir);
@@ -147,8 +148,6 @@ fn rounded(value: &mut Value) {
 /// Programs read it. `WHICHONE_BLESS=1` rewrites the golden file.
 #[test]
 fn records_for_programs_match_the_golden_file() {
-    const GOLDEN: &str =
-        concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/journal_policy.jsonl");
     let lab = Lab::with(&every_cause());
     let clock = "{\"seq\":1,\"wall_minus_monotonic_ns\":1700000000000000000}\n";
     std::fs::write(lab.0.path().join("policy.clock"), clock).expect("a disk");
@@ -161,11 +160,7 @@ fn records_for_programs_match_the_golden_file() {
         format!("{line}\n")
     });
     let found: String = lines.collect();
-    if std::env::var_os("WHICHONE_BLESS").is_some() {
-        std::fs::write(GOLDEN, &found).expect("a disk");
-    }
-    let golden = std::fs::read_to_string(GOLDEN).unwrap_or_default();
-    assert_eq!(found, golden, "if the change is intended, run this test with WHICHONE_BLESS=1");
+    golden::check(Service::Policy, &found);
 }
 
 #[test]

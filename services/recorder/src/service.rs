@@ -11,7 +11,7 @@ use messages::Service;
 use recording::clock::WallClock;
 use recording::file::Attached;
 use recording::group_reader::{GroupReader, OpenError};
-use recording::list::{entries, unfinished};
+use recording::list::{entries, incomplete};
 use recording::recover;
 use recording::ring::{Ring, TEND_EVERY, free_space};
 use service::bus::WakeListener;
@@ -61,7 +61,7 @@ impl Recorder {
         let folder = paths.recordings();
         make_private(&folder).map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
         let began = clock::now();
-        let (since, torn) = (newest(&folder, began), unfinished(&folder));
+        let since = newest(&folder, began);
         let client = Client::of_service(environment, Service::Recorder.name())?;
         let wake_listener = client.bus().wake_listener(Service::Recorder)?;
         let reader = GroupReader::open(client.bus(), settings, paths.log(), since);
@@ -71,7 +71,7 @@ impl Recorder {
         })?;
         let attached = attached(environment, settings);
         let limits = settings.group.recorder.clone();
-        let ring = Ring::new(folder, limits, attached, Box::new(free_space));
+        let ring = Ring::new(folder.clone(), limits, attached, Box::new(free_space));
         let mut recorder = Self {
             _client: client,
             wake_listener,
@@ -81,7 +81,9 @@ impl Recorder {
             next_tend: began,
             is_ending: false,
         };
+        // Deletes what is too old: the rest is completed.
         recorder.tend(began);
+        let torn = incomplete(&folder);
         // Beside the recording, as it may take a while. A failure leaves them unfinished.
         let recovery = move || recover::recover_all(&torn);
         let spawned = std::thread::Builder::new().name("recover".into()).spawn(recovery);

@@ -50,16 +50,13 @@ fn presentation(settings: &[Settings], put: &Presentation) -> PresentationRecord
 
 #[cfg(test)]
 mod tests {
-    use messages::{Hypothesis, PromptId, RequestKey, Source, UtteranceSeq};
+    use messages::{Hypothesis, PromptId, RequestKey, Service, Source, UtteranceSeq};
     use scene::{AttributeId, Question, ValueId};
     use service::Time;
-    use service::journal_record::{JournalLine, JournalRecord};
+    use service::journal_record::{JournalRecord, golden};
 
     use super::*;
     use crate::inspection;
-
-    const GOLDEN: &str =
-        concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/journal_speech.jsonl");
 
     fn settings() -> Settings {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config");
@@ -127,23 +124,12 @@ mod tests {
     #[test]
     fn records_for_programs_match_the_golden_file() {
         let settings = [settings()];
-        let mut found = String::new();
-        for (n, record) in records(settings[0].scene.key()).iter().enumerate() {
-            let at_ns = inspection::recorded_at(record).ns();
-            let line = JournalLine {
-                seq: n as u64 + 1,
-                at_ns,
-                unix_ms: Some(1_700_000_000_000 + at_ns / 1_000_000),
-                text: inspection::line(record),
-                record: JournalRecord::Speech(Box::new(explain(&settings, record))),
-            };
-            found += &(serde_json::to_string(&line).unwrap() + "\n");
-        }
-        if std::env::var_os("WHICHONE_BLESS").is_some() {
-            std::fs::write(GOLDEN, &found).unwrap();
-        }
-        let golden = std::fs::read_to_string(GOLDEN).unwrap_or_default();
-        assert_eq!(found, golden, "if the change is intended, run this test with WHICHONE_BLESS=1");
+        let described = |record: Record| {
+            let explained = JournalRecord::Speech(Box::new(explain(&settings, &record)));
+            (inspection::recorded_at(&record), inspection::line(&record), explained)
+        };
+        let found = golden::lines(records(settings[0].scene.key()).into_iter().map(described));
+        golden::check(Service::Speech, &found);
     }
 
     #[test]

@@ -63,8 +63,8 @@ pub struct Cli {
 }
 
 /// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
-const WITHOUT_GROUP: [&str; 9] =
-    ["check", "completions", "belief", "ground", "plan", "export", "arm", "fk", "ik"];
+const WITHOUT_GROUP: [&str; 8] =
+    ["check", "completions", "belief", "ground", "plan", "arm", "fk", "ik"];
 
 impl Cli {
     /// Returns the definition of the command line, from which help and completions are made.
@@ -77,6 +77,10 @@ impl Cli {
             "study" => verb
                 .arg(listed.clone().hide(true))
                 .mut_subcommands(|report| report.arg(listed.clone())),
+            // So are recordings, journals and flights.
+            "export" => verb
+                .arg(listed.clone().hide(true))
+                .mut_subcommand("mcap", |mcap| mcap.arg(listed.clone())),
             name if WITHOUT_GROUP.contains(&name) => verb.arg(listed.clone().hide(true)),
             _ => verb,
         })

@@ -92,7 +92,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Plan(args) => {
             batch::plan(&mut planning::decider(&args)?, batch::open(&args.input)?, out)
         }
-        Verb::Export { what } => export::export(&what, out),
+        Verb::Export { what } => export::export(paths, &what, out),
         Verb::Study(args) => match &args.verb {
             Some(StudyVerb::Report(report)) => study::report(&paths()?, report, out),
             None => study::study(&args, out),

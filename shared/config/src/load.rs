@@ -28,7 +28,7 @@ pub(crate) fn load(
     }
     layers.extend(profile.and_then(|name| profile_file(dir, name, &mut report)));
     for (key, value) in overrides {
-        layers.extend(override_layer(key, value, &mut report));
+        layers.extend(override_layer("--set", (key, value), &mut report));
     }
     let mut tree = resolved::defaults();
     for layer in layers {
@@ -104,16 +104,21 @@ fn profile_file(dir: &Path, name: &str, report: &mut Report) -> Option<Table> {
     Table::parse(&text, &Source::new(path.display().to_string(), 0), report)
 }
 
-pub(crate) fn override_layer(key: &str, value: &str, report: &mut Report) -> Option<Table> {
+/// The layer of one value from the command line, given with `option`.
+pub(crate) fn override_layer(
+    option: &str,
+    (key, value): (&str, &str),
+    report: &mut Report,
+) -> Option<Table> {
     let mut parts: Vec<&str> = key.split('.').collect();
     if parts.len() < 2 || parts.iter().any(|part| part.trim().is_empty()) {
         let what = "not a key with its section";
         let help = "write SECTION.KEY=VALUE, e.g. arm.speed_ratio=0.4";
-        report.add(Diagnostic::new("--set", key, what, help));
+        report.add(Diagnostic::new(option, key, what, help));
         return None;
     }
     let last = parts.pop().unwrap_or_default();
-    let leaf = Node::from_toml(value_of(value), &Source::new("--set", 0));
+    let leaf = Node::from_toml(value_of(value), &Source::new(option, 0));
     let mut layer = wrapped(last, leaf);
     for part in parts.into_iter().rev() {
         layer = wrapped(part, Node::Table(layer));

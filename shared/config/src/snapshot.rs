@@ -68,18 +68,18 @@ impl Settings {
             report.add(Diagnostic::new(label, "", "no such file", "start the group"));
             return report.verdict(None);
         };
-        Self::from_snapshot(&label, &text, &[])
+        Self::from_snapshot(&label, &text, ("", &[]))
     }
 
-    /// Reads a snapshot's text, which is called `label` in problems, with changes as in [`Settings::load`].
-    /// The scene, the robot and the durations stay those of the snapshot.
+    /// Reads a snapshot's text, which is called `label` in problems, with changes as in [`Settings::load`],
+    /// which were given with the option of that name. The scene, the robot and the durations stay those of the snapshot.
     ///
     /// # Errors
     /// Every problem at once.
     pub fn from_snapshot(
         label: &str,
         text: &str,
-        changes: &[(String, String)],
+        (option, changes): (&str, &[(String, String)]),
     ) -> Result<Self, Diagnostics> {
         let mut report = Report::default();
         let source = Source::new(label, 0);
@@ -100,7 +100,7 @@ impl Settings {
         let mut tree = resolved::defaults();
         tree.merge(layer, &mut Vec::new(), &mut report);
         for (key, value) in changes {
-            if let Some(layer) = load::override_layer(key, value, &mut report) {
+            if let Some(layer) = load::override_layer(option, (key, value), &mut report) {
                 tree.merge(layer, &mut Vec::new(), &mut report);
             }
         }

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap};
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Seek, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
@@ -73,7 +73,13 @@ pub(crate) fn create_private(path: &Path) -> Result<File, RecordingError> {
     options.open(path).map_err(RecordingError::io(path))
 }
 
-/// A recording that is being written. One that is dropped instead of finished is complete in its chunks, but
+/// Returns whether a recorder is writing the file.
+pub(crate) fn is_locked(path: &Path) -> bool {
+    File::open(path)
+        .is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
+}
+
+/// A recording that is being written; its file is locked. One that is dropped instead of finished is complete in its chunks, but
 /// keeps its unfinished name.
 pub struct Recording {
     writer: Writer<Counted>,
@@ -98,7 +104,10 @@ impl Recording {
         attached: &Attached,
     ) -> Result<Self, RecordingError> {
         let path = folder.join(format!("{}.{UNFINISHED}", clock::name(now_ns)));
-        let file = BufWriter::new(create_private(&path)?);
+        let file = create_private(&path)?;
+        // Held until the file is closed, also by the death of this process.
+        file.lock().map_err(RecordingError::io(&path))?;
+        let file = BufWriter::new(file);
         let bytes = Rc::new(Cell::new(0));
         let writer = options().create(Counted { file, bytes: Rc::clone(&bytes) });
         let writer = writer.map_err(RecordingError::mcap(&path))?;

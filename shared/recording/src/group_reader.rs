@@ -1,5 +1,6 @@
 //! Everything that a recording or a live view shows: readers of every topic, and the picture.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use config::Settings;
@@ -19,7 +20,7 @@ use crate::picture::{Painter, Shown};
 pub struct Sample<'a> {
     /// The channel.
     pub channel: ChannelId,
-    /// Number of the message among those of its writer; 0 where there is none.
+    /// Number of the message among those of its writer, or of the picture's channel since its reader was made.
     pub sequence: u32,
     /// When it was sent, nanoseconds since 1970.
     pub at_ns: u64,
@@ -53,6 +54,8 @@ struct Source {
 pub struct GroupReader {
     topics: Vec<Source>,
     painter: Painter,
+    /// Number of the latest message of each channel of the picture.
+    numbers: Numbers,
     /// The latest failure to read a topic, so that it is logged once.
     failure: Option<String>,
     /// A message with its CDR header.
@@ -98,8 +101,8 @@ impl GroupReader {
         let mut unopened: Vec<_> = topics.filter(|(channel, _)| is_shown(*channel)).collect();
         unopened.reverse();
         let painter = Painter::new(settings, &robot, log_folder);
-        let (topics, buffer) = (Vec::new(), Vec::new());
-        Ok(Self { topics, painter, failure: None, buffer, unopened, since })
+        let (topics, numbers, buffer) = (Vec::new(), Numbers::new(), Vec::new());
+        Ok(Self { topics, painter, numbers, failure: None, buffer, unopened, since })
     }
 
     /// Opens the next topic; returns whether there was one.
@@ -118,12 +121,13 @@ impl GroupReader {
 
     /// Shows everything that is known to one who begins to look at `now`.
     pub fn begin(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) {
-        self.painter.begin(now, clock, &mut |shown| picture(&shown, show));
+        let Self { painter, numbers, .. } = self;
+        painter.begin(now, clock, &mut |shown| picture(&shown, numbers, show));
     }
 
     /// Takes what has arrived on all topics.
     pub fn look(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) {
-        let Self { topics, painter, buffer, .. } = self;
+        let Self { topics, painter, numbers, buffer, .. } = self;
         let mut failure = None;
         for Source { topic, channel, reader, since } in topics.iter() {
             let taken = reader.drain(&mut |stamp, message| {
@@ -147,18 +151,19 @@ impl GroupReader {
                         Err(error) => tracing::debug!(%error, "not shown"),
                     },
                 }
-                let mut show_picture = |shown| picture(&shown, show);
+                let mut show_picture = |shown| picture(&shown, numbers, show);
                 painter.on_message(topic, (sent, clock), message, &mut show_picture);
             });
             failure = failure.or(taken.err());
         }
-        painter.show_scene(now, clock, &mut |shown| picture(&shown, show));
+        painter.show_scene(now, clock, &mut |shown| picture(&shown, numbers, show));
         self.judge(failure);
     }
 
     /// Shows the lines that were added to the services' logs.
     pub fn show_logs(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) {
-        self.painter.show_logs(now, clock, &mut |shown| picture(&shown, show));
+        let Self { painter, numbers, .. } = self;
+        painter.show_logs(now, clock, &mut |shown| picture(&shown, numbers, show));
     }
 
     /// Drops what has arrived on all topics.
@@ -178,8 +183,18 @@ impl GroupReader {
     }
 }
 
-fn picture((picture, at_ns, data): &Shown, show: &mut dyn FnMut(Sample<'_>)) {
-    show(Sample { channel: (*picture).into(), sequence: 0, at_ns: *at_ns, data });
+/// Number of the latest message by channel.
+type Numbers = BTreeMap<ChannelId, u32>;
+
+fn picture(
+    (picture, at_ns, data): &Shown,
+    numbers: &mut Numbers,
+    show: &mut dyn FnMut(Sample<'_>),
+) {
+    let channel = (*picture).into();
+    let sequence = numbers.entry(channel).or_default();
+    *sequence = sequence.wrapping_add(1);
+    show(Sample { channel, sequence: *sequence, at_ns: *at_ns, data });
 }
 
 /// When a message was sent, unless its sender gives an impossible time.

@@ -1,25 +1,44 @@
 //! The recordings of a folder.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
 
-use mcap::records::Record;
+use mcap::records::{Record, Statistics};
+use mcap::sans_io::summary_reader::{SummaryReadEvent, SummaryReader, SummaryReaderOptions};
+use serde::Serialize;
+use service::wall_time;
 
 use crate::recover::each_record;
-use crate::{EXTENSION, RecordingError, UNFINISHED, clock};
+use crate::{EXTENSION, RecordingError, UNFINISHED, file};
 
 /// A recording in a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// The file.
     pub path: PathBuf,
-    /// When it began, nanoseconds since 1970, by its name.
+    /// When it began, nanoseconds since 1970, by its name; 0 where the name is not one that the recorder gives.
     pub began_ns: u64,
     /// Its size, bytes.
     pub bytes: u64,
-    /// Whether it is complete.
-    pub is_finished: bool,
+}
+
+/// State of a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    /// It was completed.
+    Complete,
+    /// A recorder is writing it.
+    BeingWritten,
+    /// Its recorder ended before it was completed, which the next start of the recorder does.
+    Incomplete,
+    /// It has the name of a complete recording, and cannot be read as one.
+    Damaged,
+    /// Its name is not one that the recorder gives.
+    Foreign,
 }
 
 /// What is in a recording.
@@ -43,10 +62,10 @@ pub fn entries(folder: &Path) -> Vec<Entry> {
     found
 }
 
-/// The unfinished recordings of a folder, oldest first.
-pub fn unfinished(folder: &Path) -> Vec<PathBuf> {
+/// The incomplete recordings of a folder, oldest first.
+pub fn incomplete(folder: &Path) -> Vec<PathBuf> {
     let all = entries(folder).into_iter();
-    all.filter(|entry| !entry.is_finished && entry.is_own()).map(|entry| entry.path).collect()
+    all.filter(|entry| entry.state() == State::Incomplete).map(|entry| entry.path).collect()
 }
 
 impl Entry {
@@ -54,19 +73,75 @@ impl Entry {
     pub fn is_own(&self) -> bool {
         self.began_ns > 0
     }
+
+    /// Whether the name is that of a complete recording.
+    fn is_finished(&self) -> bool {
+        self.path.extension().is_some_and(|end| end == EXTENSION)
+    }
+
+    /// Whether a recorder is writing it.
+    pub fn is_being_written(&self) -> bool {
+        !self.is_finished() && self.is_own() && file::is_locked(&self.path)
+    }
+
+    /// Returns its state.
+    pub fn state(&self) -> State {
+        match self.is_finished() {
+            _ if !self.is_own() => State::Foreign,
+            true if statistics(&self.path).is_some() => State::Complete,
+            true => State::Damaged,
+            false if self.is_being_written() => State::BeingWritten,
+            false => State::Incomplete,
+        }
+    }
+
+    /// Returns the time from its first message to its last one, seconds; of an incomplete one from its beginning
+    /// to its last change. None where that is not known.
+    pub fn seconds(&self) -> Option<f64> {
+        let ns = match self.state() {
+            State::Complete => {
+                let Statistics { message_start_time, message_end_time, .. } =
+                    statistics(&self.path)?;
+                message_end_time.saturating_sub(message_start_time)
+            }
+            State::BeingWritten | State::Incomplete => {
+                let changed = fs::metadata(&self.path).and_then(|found| found.modified()).ok()?;
+                let changed = changed.duration_since(UNIX_EPOCH).ok()?.as_nanos();
+                u64::try_from(changed).ok()?.saturating_sub(self.began_ns)
+            }
+            State::Damaged | State::Foreign => return None,
+        };
+        Some(ns as f64 / 1e9)
+    }
+}
+
+/// The statistics at the end of a complete file.
+fn statistics(path: &Path) -> Option<Statistics> {
+    let mut file = File::open(path).ok()?;
+    let size = file.metadata().ok()?.len();
+    let options = SummaryReaderOptions::default().with_file_size(size);
+    let mut reader = SummaryReader::new_with_options(options);
+    while let Some(event) = reader.next_event() {
+        match event.ok()? {
+            SummaryReadEvent::ReadRequest(wanted) => {
+                let read = file.read(reader.insert(wanted)).ok()?;
+                reader.notify_read(read);
+            }
+            SummaryReadEvent::SeekRequest(to) => reader.notify_seeked(file.seek(to).ok()?),
+        }
+    }
+    reader.finish()?.stats
 }
 
 fn entry(path: &Path) -> Option<Entry> {
     let name = path.file_name()?.to_str()?;
     let stem = |end: &str| name.strip_suffix(end)?.strip_suffix('.');
-    let finished = stem(EXTENSION);
-    let stem = finished.or_else(|| stem(UNFINISHED))?;
+    let stem = stem(EXTENSION).or_else(|| stem(UNFINISHED))?;
     let about = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
     Some(Entry {
         path: path.to_owned(),
-        began_ns: clock::parse(stem).unwrap_or(0),
+        began_ns: wall_time::parse(stem).unwrap_or(0),
         bytes: about.len(),
-        is_finished: finished.is_some(),
     })
 }
 

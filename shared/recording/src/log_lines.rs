@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use service::log_tail::LogFile;
+use service::wall_time;
 
-use crate::clock;
 use crate::foxglove::{Log, Time, level};
 
 /// End of the name of a log.
@@ -69,7 +69,7 @@ fn entry(service: &str, line: &str, now_ns: u64) -> (u64, Log) {
             (stamp, level, file, message.to_owned())
         }
     };
-    let stamped = clock::parse(stamp);
+    let stamped = wall_time::parse(stamp);
     let (level, message) = match (stamped, number(level)) {
         (Some(_), Some(level)) => (level, message),
         // A panic, or the output of a library.

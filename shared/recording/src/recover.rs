@@ -35,6 +35,8 @@ pub fn recover_all(unfinished: &[PathBuf]) {
             Ok(Recovered { path, messages, .. }) => {
                 tracing::info!(file = %path.display(), messages, "unfinished recording completed");
             }
+            // Its turn to be deleted has come meanwhile.
+            Err(RecordingError::Io(_, error)) if error.kind() == ErrorKind::NotFound => {}
             Err(error) => tracing::warn!(%error, "unfinished recording is left as it is"),
         }
     }
@@ -199,7 +201,7 @@ mod tests {
     use crate::channels::{self, ChannelId};
     use crate::clock::WallClock;
     use crate::file::{Attached, Recording};
-    use crate::list::{summary, unfinished};
+    use crate::list::{incomplete, summary};
 
     /// A recording that is flushed after every ten messages and then abandoned.
     fn abandoned(folder: &Path, messages: u32) -> PathBuf {
@@ -217,7 +219,10 @@ mod tests {
             }
         }
         let path = recording.path().to_owned();
-        // As a kill does: nothing is written any more.
+        // As a kill does: nothing is written any more, and the lock is gone.
+        let copy = folder.join("copy");
+        fs::copy(&path, &copy).unwrap();
+        fs::rename(&copy, &path).unwrap();
         std::mem::forget(recording);
         path
     }
@@ -252,7 +257,7 @@ mod tests {
         let empty = folder.path().join(format!("2020-01-01T00-00-00.000Z.{UNFINISHED}"));
         fs::write(&empty, "").unwrap();
         let torn = abandoned(folder.path(), 30);
-        recover_all(&unfinished(folder.path()));
+        recover_all(&incomplete(folder.path()));
         assert!(!empty.exists() && !empty.with_extension("").exists() && !torn.exists());
         let (mut attached, mut messages) = (Vec::new(), 0);
         let whole = torn.with_extension("");

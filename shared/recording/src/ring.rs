@@ -1,7 +1,7 @@
 //! A ring of recordings in bounded space: the oldest give way, and the disk is never filled.
 
 use std::fs;
-use std::io;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use service::{Span, Time};
@@ -186,7 +186,7 @@ impl Ring {
     fn on_failure(&mut self, error: &RecordingError, now: Time) {
         // What was flushed is completed at the next start.
         self.current = None;
-        self.pause(error.to_string(), now + RETRY_AFTER);
+        self.pause(format!("{error}{}", help(error)), now + RETRY_AFTER);
     }
 
     fn pause(&mut self, why: String, until: Time) {
@@ -194,6 +194,18 @@ impl Ring {
             tracing::error!(why, "recording is paused");
         }
         self.paused = Some((why, until));
+    }
+}
+
+/// What a person can do about a failure to write.
+fn help(error: &RecordingError) -> &'static str {
+    let RecordingError::Io(_, error) = error else { return "" };
+    match error.kind() {
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            "; help: make the folder writable for the user who runs the group"
+        }
+        ErrorKind::NotFound => "; help: create the folder again",
+        _ => "",
     }
 }
 

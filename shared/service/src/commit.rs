@@ -318,9 +318,10 @@ impl<R, S: Store<R>> Writer<R, S> {
         let Self { store, vital, .. } = self;
         match sync_time::measure(|| store.sync(*vital)) {
             Ok(()) => {
-                self.clock.note(first);
                 (self.durable, self.vital) = (self.appended, false);
                 self.report_durable();
+                // What waits for the records does not wait for this aid for readers.
+                self.clock.note(first);
                 Ok(true)
             }
             Err(error @ (SyncError::Full(_) | SyncError::Write(_))) => {
@@ -336,9 +337,9 @@ impl<R, S: Store<R>> Writer<R, S> {
         let first = self.store.next_seq();
         match self.store.rotate(snapshot) {
             Ok(()) => {
+                self.report_durable();
                 self.clock.note(first);
                 tracing::info!(records = snapshot.len(), "journal rotated with a snapshot");
-                self.report_durable();
                 Ok(())
             }
             Err(RotateError::Sync(error @ (SyncError::Unknown(_) | SyncError::Poisoned))) => {

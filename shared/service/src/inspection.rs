@@ -19,6 +19,7 @@ use crate::journal_record::JournalLine;
 use crate::log_file;
 use crate::printable::{one_line, printable_json};
 use crate::service_loop::{Program, Record};
+use crate::{Time, wall_time};
 
 /// One file of a journal.
 #[derive(Debug)]
@@ -142,7 +143,7 @@ impl<R: DeserializeOwned> Part<R> {
 }
 
 /// A time of the machine's monotonic clock, seconds, as a column of a listing.
-pub fn at(time: crate::Time) -> String {
+pub fn at(time: Time) -> String {
     format!("{:>12.3} s", time.ns() as f64 / 1e9)
 }
 
@@ -278,20 +279,43 @@ fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fail
     }
     let settings = request.settings().unwrap_or_default();
     let times = WallTimes::of(&request.file);
+    let since = request.since.unwrap_or(0);
+    let mut last = None;
     for (seq, record) in shown.iter().flat_map(Part::numbered) {
-        if request.since.is_some_and(|since| seq < since) {
+        let (recorded, text) = (P::recorded_at(record), P::describe(&settings, record));
+        let unix_ms = times.unix_ms(seq, recorded);
+        last = Some((seq, recorded, unix_ms));
+        if seq < since {
             continue;
         }
-        let (recorded, text) = (P::recorded_at(record), P::describe(&settings, record));
         if !request.json {
-            line(out, format_args!("{seq:>6}  {}  {text}", at(recorded)))?;
+            line(out, format_args!("{seq:>6}  {}  {text}", when(recorded, unix_ms)))?;
         } else if let Some(record) = P::explain(&settings, record) {
-            let (at_ns, unix_ms) = (recorded.ns(), times.unix_ms(seq, recorded));
-            json_line(out, &JournalLine { seq, at_ns, unix_ms, text, record })?;
+            json_line(out, &JournalLine { seq, at_ns: recorded.ns(), unix_ms, text, record })?;
         }
     }
     out.flush().map_err(Failure::output)?;
+    if last.is_none_or(|(seq, ..)| seq < since) {
+        let _ = writeln!(io::stderr(), "{}", nothing_since(since, last));
+    }
     shown.last().map_or(Ok(()), check_ending)
+}
+
+/// When a record was written, as a column: by the wall clock too, where that is known.
+fn when(recorded: Time, unix_ms: Option<u64>) -> String {
+    let wall = unix_ms.map(|ms| format!("  {}", wall_time::text(ms.saturating_mul(1_000_000))));
+    at(recorded) + &wall.unwrap_or_default()
+}
+
+/// Why no record is listed, with the last one: its number, and when it was written.
+fn nothing_since(since: u64, last: Option<(u64, Time, Option<u64>)>) -> String {
+    match last {
+        None => "the journal has no records yet".to_owned(),
+        Some((seq, recorded, unix_ms)) => {
+            let when = when(recorded, unix_ms);
+            format!("no record from {since} on; the last one is {seq}, written at {}", when.trim())
+        }
+    }
 }
 
 /// Checks the end of a journal: an interrupted write was never acknowledged; other damage is an error.

@@ -6,6 +6,7 @@
 //! clock. `docs/journals.md` has the table, `tests/golden/journal_*.jsonl` an example of each type.
 
 mod arm;
+pub mod golden;
 mod named;
 mod policy;
 mod speech;

@@ -34,6 +34,7 @@ pub mod storage;
 pub mod submission;
 mod sync_time;
 pub mod view;
+pub mod wall_time;
 pub mod worker_channel;
 
 pub use dialogue::time::{Span, Time};

@@ -95,12 +95,13 @@ pub struct ServiceStatus {
 }
 
 impl ServiceStatus {
-    /// Returns what a person can do about the state; none where it passes by itself.
+    /// Returns what a person can do about the state; none where it passes by itself, or where its reason says so.
     pub fn help(&self) -> Option<String> {
         let name = &self.name;
         match self.state {
             ServiceState::Held => Some(format!("whichone release {name}")),
             ServiceState::Failed => Some(format!("whichone logs {name}, then start {name}")),
+            ServiceState::Short if self.has_own_help() => None,
             ServiceState::Short => Some("free some; it is retried by itself".to_owned()),
             ServiceState::Down => Some(format!("whichone start {name}")),
             ServiceState::Waiting
@@ -111,11 +112,19 @@ impl ServiceStatus {
         }
     }
 
+    /// Whether the reason of its state ends with help of its own.
+    fn has_own_help(&self) -> bool {
+        self.why.as_deref().is_some_and(|why| why.contains("; help: "))
+    }
+
     /// Returns why it does nothing for anyone until a person acts or a shortage ends, in a
     /// sentence with the way out; none where it works or soon will.
     pub fn unavailable(&self) -> Option<String> {
-        let (name, help) = (&self.name, self.help()?);
-        let why = self.why.as_deref();
+        let (name, why) = (&self.name, self.why.as_deref());
+        if self.state == ServiceState::Short && self.has_own_help() {
+            return Some(format!("{name} {}", why.unwrap_or_default()));
+        }
+        let help = self.help()?;
         Some(match self.state {
             ServiceState::Held => format!("{name} is held by the operator; help: {help}"),
             ServiceState::Short => format!("{name} {}; help: {help}", why.unwrap_or("is short")),

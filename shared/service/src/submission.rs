@@ -1,7 +1,9 @@
 //! A request to the speech service, resent under one key until its receipts have arrived, so that
 //! a restart in between neither loses nor doubles it.
 
-use messages::{ClientId, Injection, PromptId, Receipt, RequestKey, Sound};
+use messages::{
+    ClientId, FixedText, Injection, PromptId, Receipt, ReceiptStatus, RequestKey, Sound,
+};
 
 use crate::client::{own_id, request_key};
 use crate::{Span, Time};
@@ -81,6 +83,15 @@ impl Submission {
         (self.receipts.len() >= first.segments as usize).then_some(&self.receipts)
     }
 
+    /// Returns true if the receipt accepts other words than those of this request: its key was used for them
+    /// before. Words are compared as far as a receipt holds them; sounds and gestures are not compared.
+    pub fn conflicts_with(&self, receipt: &Receipt) -> bool {
+        let Sound::Text(text) = &self.injection.sound else { return false };
+        receipt.request() == self.key()
+            && receipt.status == ReceiptStatus::Accepted
+            && receipt.note != FixedText::truncated(text)
+    }
+
     /// Returns true if the patience has run out without all receipts.
     pub fn is_expired(&self, now: Time) -> bool {
         now >= self.expires && self.receipts().is_none()
@@ -110,6 +121,29 @@ mod tests {
         assert_eq!(sent, [0, 250, 500, 750]);
         assert!(!submission.is_expired(at(999)));
         assert!(submission.is_expired(at(1_000)));
+    }
+
+    #[test]
+    fn a_submission_conflicts_with_other_words_under_its_key() {
+        let long = "a cup ".repeat(200);
+        let said = |text: &str| {
+            let sound = Sound::Text(text.to_owned());
+            let new = Submission::new(sound, (at(0), at(0)), at(0), Span::from_ms(1_000));
+            new.under(RequestKey([7; 16]))
+        };
+        let receipt = |key: u8, status: ReceiptStatus, text: &str| Receipt {
+            key: [key; 16],
+            status: status.code(),
+            note: FixedText::truncated(text),
+            ..Receipt::default()
+        };
+        let accepted = |text: &str| receipt(7, ReceiptStatus::Accepted, text);
+        assert!(!said("hello").conflicts_with(&accepted("hello")));
+        assert!(said("hello").conflicts_with(&accepted("help")));
+        assert!(!said(&long).conflicts_with(&accepted(&long)), "a receipt holds its beginning");
+        assert!(!said("hello").conflicts_with(&receipt(8, ReceiptStatus::Accepted, "help")));
+        let refused = receipt(7, ReceiptStatus::Refused, "empty utterance");
+        assert!(!said("hello").conflicts_with(&refused));
     }
 
     #[test]

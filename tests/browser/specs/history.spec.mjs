@@ -84,6 +84,26 @@ test("a past interaction is walked through, after a kill of the console and a re
   await expectWalk(page, known);
 });
 
+test.describe("on a phone", () => {
+  test.use({ viewport: { width: 390, height: 700 } });
+
+  test("the stop is reached while the history is open", async ({ console: page, group }) => {
+    await show(page);
+    const sheet = sheetOf(page);
+    await expect(sheet).toBeVisible();
+    const stop = sheet.locator("#stop");
+    await expect(stop).toBeInViewport({ ratio: 1 });
+    await stop.click();
+    await until("the stop", async () => (await group.state()).arm?.stopped);
+    await expect(sheet).toBeVisible();
+    await expect(stop).toHaveAttribute("data-mode", "resume");
+    await expectAccessible(page);
+    await sheet.getByRole("button", { name: t("history.close") }).click();
+    await expect(sheet).toBeHidden();
+    await expect(page.locator("#actions #stop")).toBeInViewport();
+  });
+});
+
 test("an interaction is saved as a file and opened in a page of its own, with a group and without", async ({
   console: page,
   group,

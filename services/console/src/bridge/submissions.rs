@@ -99,10 +99,16 @@ impl Submissions {
     ) {
         let key = receipt.request();
         let Some(at) = self.0.iter().position(|it| it.submission.key() == key) else { return };
-        let Waiting { viewer, accepted, .. } = self.0.swap_remove(at);
+        let Waiting { viewer, accepted, submission } = self.0.swap_remove(at);
         let Some((viewer, id)) = viewer else { return };
         let note = receipt.note.as_str().unwrap_or_default();
         let answer = match receipt.status.get() {
+            _ if submission.conflicts_with(receipt) => {
+                let seq = receipt.seq;
+                Err(format!(
+                    "conflict (409): utterance {seq} with other text has this key; help: use a new key"
+                ))
+            }
             ReceiptStatus::Accepted => {
                 let (seq, waits_for) = (receipt.seq, hindrance());
                 Ok(Some(Answer::Accepted { seq, waits_for, known: seq <= accepted }))

@@ -160,10 +160,10 @@ impl Reader<'_> {
         let mut pace = Pace::default();
         loop {
             let request = match pace.next(&mut into).await {
-                Some(Frame::Text(text)) => protocol::read_text(&text),
-                Some(Frame::Binary(bytes)) => protocol::read_binary(&bytes),
-                Some(Frame::Ping(_) | Frame::Pong(_)) => continue,
-                Some(Frame::Close(_)) | None => return Ended::Page,
+                Ok(Frame::Text(text)) => protocol::read_text(&text),
+                Ok(Frame::Binary(bytes)) => protocol::read_binary(&bytes),
+                Ok(_) => continue,
+                Err(ended) => return ended,
             };
             self.app.hub.note(self.viewer, clock::now());
             let replies = match request {
@@ -220,10 +220,15 @@ impl Reader<'_> {
             return Err(format!("a viewer may not speak to the robot; {help}"));
         }
         let ask = || self.app.hub.ask(self.viewer, call.id.into(), Verb::Say(words.clone()));
-        let Err(why) = ask() else { return Ok(()) };
+        if ask().is_ok() {
+            return Ok(());
+        }
         match self.app.hub.take_control(self.viewer, clock::now())? {
             Some(Answer::Control { granted: true, .. }) => ask(),
-            _ => Err(format!("{why}; control is requested now: call again once it was given")),
+            _ => {
+                let what = "another viewer is in control, which is requested for this one";
+                Err(format!("{what}; help: call again once it is granted"))
+            }
         }
     }
 }

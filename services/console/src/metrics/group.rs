@@ -9,7 +9,7 @@ use prometheus_client::encoding::{DescriptorEncoder, EncodeMetric};
 use prometheus_client::metrics::MetricType;
 use prometheus_client::metrics::counter::ConstCounter;
 use prometheus_client::metrics::gauge::ConstGauge;
-use recording::list::entries;
+use recording::list::{Entry, entries};
 use service::status::{GroupState, GroupStatus, ServiceState, ServiceStatus};
 
 /// Gauges and counters that others keep; a counter begins again with its service.
@@ -69,7 +69,7 @@ impl Collector for GroupMetrics {
     fn encode(&self, mut encoder: DescriptorEncoder<'_>) -> Result<(), fmt::Error> {
         let files = entries(&self.recordings);
         let bytes: u64 = files.iter().map(|file| file.bytes).sum();
-        let is_written = files.last().is_some_and(|file| !file.is_finished);
+        let is_written = files.last().is_some_and(Entry::is_being_written);
         let status = self.status.lock().unwrap_or_else(PoisonError::into_inner).clone();
         gauge(&mut encoder, "recordings_bytes", "Size of all recordings", bytes as f64)?;
         gauge(&mut encoder, "recordings_files", "Number of recordings", files.len() as f64)?;

@@ -149,7 +149,10 @@ fn status() -> GroupStatus {
 fn figures_of_services_are_exported_while_the_supervisor_answers() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("2026-11-25T10-08-19.250Z.mcap.part");
-    std::fs::write(file, "12345").unwrap();
+    std::fs::write(&file, "12345").unwrap();
+    // As the recorder does.
+    let file = std::fs::File::open(file).unwrap();
+    file.lock().unwrap();
     let metrics = Metrics::new(folder.path().to_owned());
     metrics.set_group(Some(&status()));
     let lines = [

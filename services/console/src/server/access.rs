@@ -75,9 +75,17 @@ impl Access {
     /// Returns whether the request carries the token as a bearer, or the cookie of a session.
     pub fn is_known(&self, headers: &HeaderMap, now_s: u64) -> bool {
         let Some(guard) = &self.0 else { return true };
-        let bearer = text(headers, &header::AUTHORIZATION);
-        let bearer = bearer.and_then(|said| said.strip_prefix("Bearer "));
-        bearer.is_some_and(|said| same(said, &guard.token)) || guard.has_session(headers, now_s)
+        bearer(headers).is_some_and(|said| same(said, &guard.token))
+            || guard.has_session(headers, now_s)
+    }
+
+    /// Returns why a request is refused that is not known: it carries no token, or a wrong one, be it in its
+    /// address.
+    pub fn refusal(headers: &HeaderMap, has_token_in_address: bool) -> &'static str {
+        match has_token_in_address || bearer(headers).is_some() {
+            true => "wrong token",
+            false => "token required",
+        }
     }
 
     /// Returns whether this is the token. Without one, any word is.
@@ -108,6 +116,11 @@ impl Access {
         let cookie = cookie_name(headers);
         Some(format!("{cookie}={name}; Path=/; Max-Age={SESSION_S}; HttpOnly; SameSite=Strict"))
     }
+}
+
+/// Returns the token that a program sends.
+fn bearer(headers: &HeaderMap) -> Option<&str> {
+    text(headers, &header::AUTHORIZATION)?.strip_prefix("Bearer ")
 }
 
 impl Guard {

@@ -120,9 +120,10 @@ async fn admit(
     if wants_page && is_get {
         return Redirect::to("/login").into_response();
     }
-    let why = "token required; help: `whichone console` prints a link; programs send the header \
-               Authorization: Bearer TOKEN\n";
-    (StatusCode::UNAUTHORIZED, why).into_response()
+    let what = Access::refusal(request.headers(), false);
+    let help =
+        "`whichone console` prints a link; programs send the header Authorization: Bearer TOKEN";
+    (StatusCode::UNAUTHORIZED, format!("{what}; help: {help}\n")).into_response()
 }
 
 /// Returns the wall clock's time, Unix seconds.

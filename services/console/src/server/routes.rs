@@ -5,11 +5,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::body::{Body, Bytes};
+use axum::extract::rejection::{PathRejection, QueryRejection};
 use axum::extract::ws::WebSocketUpgrade;
-use axum::extract::{ConnectInfo, Path, State};
+use axum::extract::{ConnectInfo, Path, Query, State};
 use axum::http::{HeaderMap, Method, Response, StatusCode, Uri, header};
 use axum::response::{AppendHeaders, IntoResponse, Redirect};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use service::Span;
 use service::clock;
 use tokio::task::JoinHandle;
@@ -92,9 +93,9 @@ async fn admitted(app: &App, headers: &HeaderMap, query: &str) -> Result<(), (St
         if token.is_some() {
             tokio::time::sleep(PAUSE).await;
         }
-        let why = "token required; help: add ?token=TOKEN to the address; `whichone console` prints \
-                   the token in a link\n";
-        return Err((StatusCode::UNAUTHORIZED, why.to_owned()));
+        let what = Access::refusal(headers, token.is_some());
+        let help = "add ?token=TOKEN to the address; `whichone console` prints the token in a link";
+        return Err((StatusCode::UNAUTHORIZED, format!("{what}; help: {help}\n")));
     }
     let origin = Access::origin(headers);
     if Access::is_own(headers) || origin.is_some_and(|origin| app.live.admits(origin)) {
@@ -112,23 +113,56 @@ pub(super) async fn state(State(app): State<Arc<App>>) -> Response<Body> {
     (json, app.hub.board.all()).into_response()
 }
 
-/// A part of the list of past interactions: `limit` of those before `before`, newest first.
-pub(super) async fn history(State(app): State<Arc<App>>, uri: Uri) -> Response<Body> {
-    let number = |name| form_field(uri.query()?, name)?.parse::<u64>().ok();
-    let before = number("before").unwrap_or(u64::MAX);
-    let limit =
-        number("limit").map_or(PAGE_MAX, |limit| usize::try_from(limit).unwrap_or(PAGE_MAX));
-    let history = Arc::clone(&app.history);
-    as_json(tokio::task::spawn_blocking(move || Some(history.page(before, limit)))).await
+/// The part of the history that is asked for: at most `limit` interactions before number `before`.
+#[derive(Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Part {
+    before: u64,
+    limit: usize,
+}
+
+impl Default for Part {
+    fn default() -> Self {
+        Self { before: u64::MAX, limit: PAGE_MAX }
+    }
+}
+
+impl Part {
+    fn of(query: Result<Query<Self>, QueryRejection>) -> Result<Self, String> {
+        let form = format!("expected before=N and limit=M, whole numbers, M from 1 to {PAGE_MAX}");
+        match query {
+            Ok(Query(part)) if (1..=PAGE_MAX).contains(&part.limit) => Ok(part),
+            Ok(Query(part)) => Err(format!("{form}; found limit={}\n", part.limit)),
+            Err(error) => Err(format!("{form}; {}\n", error.body_text())),
+        }
+    }
+}
+
+/// A part of the list of past interactions, newest first.
+pub(super) async fn history(
+    State(app): State<Arc<App>>,
+    query: Result<Query<Part>, QueryRejection>,
+) -> Response<Body> {
+    match Part::of(query) {
+        Ok(Part { before, limit }) => {
+            let history = Arc::clone(&app.history);
+            as_json(tokio::task::spawn_blocking(move || Some(history.page(before, limit)))).await
+        }
+        Err(why) => (StatusCode::BAD_REQUEST, why).into_response(),
+    }
 }
 
 /// One interaction with everything that happened in it.
 pub(super) async fn interaction(
     State(app): State<Arc<App>>,
-    Path(interaction): Path<u64>,
+    number: Result<Path<u64>, PathRejection>,
 ) -> Response<Body> {
+    let Ok(Path(number)) = number else {
+        let why = "expected /api/history/N with the number N of an interaction\n";
+        return (StatusCode::BAD_REQUEST, why).into_response();
+    };
     let history = Arc::clone(&app.history);
-    as_json(tokio::task::spawn_blocking(move || history.interaction(interaction))).await
+    as_json(tokio::task::spawn_blocking(move || history.interaction(number))).await
 }
 
 /// The result of a blocking task as JSON, 404 where there is none.
@@ -312,6 +346,19 @@ mod tests {
             "",
         ] {
             assert_eq!(sound_file(folder, bad), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn history_refuses_what_is_not_a_part_of_it() {
+        let of =
+            |query: &str| Part::of(Query::try_from_uri(&format!("/?{query}").parse().unwrap()));
+        assert_eq!(of(""), Ok(Part::default()));
+        assert_eq!(of("limit=3&before=7"), Ok(Part { before: 7, limit: 3 }));
+        let wrong = ["before=abc", "before=-1", "before=", "limit=0", "limit=201", "befor=7"];
+        for query in wrong.into_iter().chain(["limit=99999999999999999999"]) {
+            let why = of(query).unwrap_err();
+            assert!(why.starts_with("expected before=N and limit=M"), "{query}: {why}");
         }
     }
 

@@ -9,10 +9,12 @@ use futures_util::{SinkExt, StreamExt};
 use service::clock;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, interval_at, sleep_until, timeout};
+use tungstenite::Error as SocketError;
+use tungstenite::error::ProtocolError;
 
 use super::App;
 use super::connections::Connection;
-use super::message::{self, Do, Hello, Message, PROTOCOL};
+use super::message::{self, Do, FRAME_BYTES_MAX, Hello, Message, PROTOCOL};
 use crate::hub::board::Cursor;
 use crate::hub::outbound::{Done, PageMessage, Welcome};
 use crate::hub::{Hub, OutboundFrame, ViewerId, ms};
@@ -71,6 +73,14 @@ pub(crate) enum Ended {
     Replaced,
     GaveWay,
     Slow,
+    /// No frame arrived, not even a pong.
+    Silent,
+    /// It sent a message above [`FRAME_BYTES_MAX`].
+    TooLong,
+    /// It sent a text that is not UTF-8.
+    NotText,
+    /// It broke the protocol.
+    Protocol,
     Console,
 }
 
@@ -84,7 +94,26 @@ impl Ended {
             Self::GaveWay => {
                 (GAVE_WAY, "too many pages are open; this one was idle for the longest time")
             }
+            Self::Silent => (close_code::POLICY, "nothing was received for 60 s"),
+            Self::TooLong => (close_code::SIZE, "expected a message of at most 65536 bytes"),
+            Self::NotText => (close_code::INVALID, "expected a text in UTF-8"),
+            Self::Protocol => (close_code::PROTOCOL, "expected frames of the WebSocket protocol"),
             Self::Page => (close_code::NORMAL, ""),
+        }
+    }
+}
+
+const _: () = assert!(FRAME_BYTES_MAX == 65_536, "the reason says so");
+
+impl From<axum::Error> for Ended {
+    /// The reason why a frame cannot be read.
+    fn from(error: axum::Error) -> Self {
+        match error.into_inner().downcast_ref::<SocketError>() {
+            Some(SocketError::Capacity(_)) => Self::TooLong,
+            Some(SocketError::Utf8(_)) => Self::NotText,
+            Some(SocketError::Protocol(ProtocolError::ResetWithoutClosingHandshake)) => Self::Page,
+            Some(SocketError::Protocol(_)) => Self::Protocol,
+            _ => Self::Page,
         }
     }
 }
@@ -96,6 +125,10 @@ impl std::fmt::Display for Ended {
             Self::Replaced => "it is open elsewhere",
             Self::GaveWay => "it gave way to an operator",
             Self::Slow => "it did not read",
+            Self::Silent => "nothing was received from it",
+            Self::TooLong => "it sent a message that is too long",
+            Self::NotText => "it sent a text that is not UTF-8",
+            Self::Protocol => "it broke the WebSocket protocol",
             Self::Console => "the console ends",
         })
     }
@@ -203,12 +236,19 @@ impl Default for Pace {
 }
 
 impl Pace {
-    /// Reads the next frame; none once the socket is closed, broken or silent for too long.
-    pub(crate) async fn next(&mut self, into: &mut In) -> Option<Frame> {
+    /// Reads the next frame.
+    ///
+    /// # Errors
+    /// The socket is closed, broken or silent for too long.
+    pub(crate) async fn next(&mut self, into: &mut In) -> Result<Frame, Ended> {
         // One that sends faster waits, and fills its own connection only.
         self.0 = self.0.max(Instant::now() - FRAME_EVERY * FRAMES_AT_ONCE) + FRAME_EVERY;
         sleep_until(self.0).await;
-        timeout(SILENCE_MAX, into.next()).await.ok()??.ok()
+        let next = timeout(SILENCE_MAX, into.next()).await.map_err(|_| Ended::Silent)?;
+        match next.ok_or(Ended::Page)?? {
+            Frame::Close(_) => Err(Ended::Page),
+            frame => Ok(frame),
+        }
     }
 }
 
@@ -216,15 +256,15 @@ async fn read(into: &mut In, viewer: ViewerId, hub: &Hub) -> Ended {
     let mut pace = Pace::default();
     loop {
         match pace.next(into).await {
-            Some(Frame::Text(text)) => text_frame(&text, viewer, hub),
-            Some(Frame::Binary(bytes)) => {
+            Ok(Frame::Text(text)) => text_frame(&text, viewer, hub),
+            Ok(Frame::Binary(bytes)) => {
                 let taken = PcmFrame::read(&bytes).and_then(|frame| hub.sound(viewer, frame));
                 if let Err(why) = taken {
                     hub.error(viewer, &why);
                 }
             }
-            Some(Frame::Ping(_) | Frame::Pong(_)) => {}
-            Some(Frame::Close(_)) | None => return Ended::Page,
+            Ok(_) => {}
+            Err(ended) => return ended,
         }
     }
 }

@@ -67,9 +67,12 @@ pub struct PomdpArgs {
 /// Arguments of `export mcap`.
 #[derive(Debug, Args)]
 pub struct McapArgs {
-    /// A recording, a journal, a flight, or a folder of one kind.
+    /// A recording, a journal, a flight, or a folder of one kind [default: the recordings of the group].
+    ///
+    /// The folder of a group has its recordings in `recordings`, its journals in `journal` and its flights in
+    /// `flight`; `whichone record list` prints where that is.
     #[arg(value_name = "SOURCE")]
-    pub source: PathBuf,
+    pub source: Option<PathBuf>,
     /// The file to write; an existing one is not replaced.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,

@@ -118,7 +118,7 @@ pub struct AwaitArgs {
 /// Condition to wait for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Awaited {
-    /// The end of an interaction; printed at once if no earlier `await` has printed it.
+    /// The end of an interaction, or words that open none; printed at once if no earlier `await` has printed it.
     Pick,
 }
 

@@ -128,15 +128,16 @@ mod tests {
             json!({ "name": name, "wanted": "up", "actual": "down", "state": state, "why": why,
                     "incarnation": 1, "restarts": 0 })
         };
-        let found = |state: &str| {
+        let found_why = |state: &str, why: &str| {
             let status = json!({
                 "name": "lab", "state": "degraded", "supervisor_pid": 7, "version": "0",
                 "epoch": 1, "uptime_s": 1.0, "scene": "bowls", "config": "/c", "strays_killed": 0,
-                "services": [service("console", "failed", ""), service("arm", state, "so")],
+                "services": [service("console", "failed", ""), service("arm", state, why)],
             });
             let status = serde_json::from_value(status).unwrap();
             Availability(Some(status)).first_missing(&Service::DIALOGUE, |_| true)
         };
+        let found = |state: &str| found_why(state, "so");
         for state in ["ready", "starting", "waiting", "restarting", "stopping"] {
             assert_eq!(found(state), None, "{state}");
         }
@@ -148,5 +149,7 @@ mod tests {
         assert_eq!(found("down").as_deref(), Some(down));
         let short = "arm so; help: free some; it is retried by itself";
         assert_eq!(found("short").as_deref(), Some(short));
+        let why = "waits for /r: Permission denied; help: make the folder writable";
+        assert_eq!(found_why("short", why), Some(format!("arm {why}")));
     }
 }

@@ -3,7 +3,7 @@
 use std::thread;
 use std::time::Instant;
 
-use messages::{Ended, Outcome as How};
+use messages::{ActKind, Ended, Outcome as How};
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -27,13 +27,18 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
     let mut conversation = Conversation::join(paths)?;
     let mut wanted = args.answer_as.as_deref();
     let mut user = None;
-    let mut waiting = Waiting::new(reported_before(paths));
+    let reported = Reported::before(paths);
+    let mut waiting = Waiting::new(reported.interaction);
     let mut lookout = Lookout::new();
     loop {
         conversation.look()?;
         if let Some(ended) = waiting.look(conversation.latest()) {
-            remember(paths, ended.interaction.0)?;
+            Reported::now(&conversation, ended.interaction.0).remember(paths)?;
             return report(&ended, out);
+        }
+        if waiting.is_in_vain(conversation.latest(), reported.utterance) {
+            Reported::now(&conversation, reported.interaction).remember(paths)?;
+            return report_none(&conversation, started, out);
         }
         if let Some(name) = wanted.take_if(|_| conversation.knows_objects()) {
             let may_be_absent = conversation.may_be_absent();
@@ -93,6 +98,25 @@ pub(super) fn sentence(ended: &Ended) -> String {
     format!("{what}{object} after {questions} and {}", words::time(ended.seconds))
 }
 
+/// Reports that the words so far have opened no interaction, with the robot's answer to them.
+fn report_none(conversation: &Conversation, started: Instant, out: &mut Output<'_>) -> Outcome {
+    let view = conversation.latest().view.as_ref();
+    let answer = view.filter(|view| view.decision == ActKind::Say).map(|view| view.text.as_str());
+    if out.is_json() {
+        out.json(&json!({
+            "object": null,
+            "questions": 0,
+            "seconds": started.elapsed().as_secs_f64(),
+            "outcome": "no_pick",
+            "answer": answer,
+        }))?;
+    } else {
+        let answer = answer.map(|text| format!("; the robot said \"{text}\"")).unwrap_or_default();
+        out.line(format_args!("no pick: the words asked for no object that is here{answer}"))?;
+    }
+    Ok(Exit::NotReached)
+}
+
 fn report_timeout(conversation: &Conversation, started: Instant, out: &mut Output<'_>) -> Outcome {
     let seconds = started.elapsed().as_secs_f64();
     if out.is_json() {
@@ -114,18 +138,37 @@ fn report_timeout(conversation: &Conversation, started: Instant, out: &mut Outpu
     Ok(Exit::NotReached)
 }
 
-/// Returns the last interaction that an earlier `await` of this run reported.
-fn reported_before(paths: &GroupPaths) -> u64 {
-    let text = std::fs::read_to_string(paths.run().join(AWAITED)).unwrap_or_default();
-    text.trim().parse().unwrap_or(0)
+/// What earlier awaits of this run have reported.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Reported {
+    /// The last interaction.
+    interaction: u64,
+    /// The last utterance that had been applied.
+    utterance: u64,
 }
 
-fn remember(paths: &GroupPaths, interaction: u64) -> Result<(), Failure> {
-    let path = paths.run().join(AWAITED);
-    std::fs::write(&path, format!("{interaction}\n")).map_err(|error| Failure::file(&path, &error))
+impl Reported {
+    fn before(paths: &GroupPaths) -> Self {
+        let text = std::fs::read_to_string(paths.run().join(AWAITED)).unwrap_or_default();
+        let mut numbers = text.split_whitespace().map(|number| number.parse().unwrap_or(0));
+        let mut next = || numbers.next().unwrap_or(0);
+        Self { interaction: next(), utterance: next() }
+    }
+
+    fn now(conversation: &Conversation, interaction: u64) -> Self {
+        let utterance = conversation.latest().view.as_ref().map_or(0, |view| view.applied);
+        Self { interaction, utterance }
+    }
+
+    fn remember(self, paths: &GroupPaths) -> Result<(), Failure> {
+        let path = paths.run().join(AWAITED);
+        let Self { interaction, utterance } = self;
+        std::fs::write(&path, format!("{interaction} {utterance}\n"))
+            .map_err(|error| Failure::file(&path, &error))
+    }
 }
 
-/// File with the number of the last reported interaction.
+/// File with the numbers of what was reported last.
 const AWAITED: &str = "awaited";
 
 #[cfg(test)]
@@ -145,11 +188,12 @@ mod tests {
     #[test]
     fn await_remembers_what_it_reported_while_the_group_runs() {
         let (_home, paths) = super::super::lab();
-        assert_eq!(reported_before(&paths), 0);
+        assert_eq!(Reported::before(&paths), Reported::default());
         std::fs::create_dir_all(paths.run()).unwrap();
-        remember(&paths, 41).unwrap();
-        assert_eq!(reported_before(&paths), 41);
+        let reported = Reported { interaction: 41, utterance: 57 };
+        reported.remember(&paths).unwrap();
+        assert_eq!(Reported::before(&paths), reported);
         std::fs::write(paths.run().join(AWAITED), "?").unwrap();
-        assert_eq!(reported_before(&paths), 0);
+        assert_eq!(Reported::before(&paths), Reported::default());
     }
 }

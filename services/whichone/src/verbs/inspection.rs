@@ -102,8 +102,9 @@ fn verify_all(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
         out.line(format_args!("{}: {} verified", service.name(), scene::count(records, "record")))?;
         facts.iter().try_for_each(|fact| out.line(format_args!("  {fact}")))?;
     }
-    if !out.is_json() {
-        out.line(format_args!("together: {together}"))?;
+    match out.is_json() {
+        true => out.json(&json!({ "together": together, "ok": true }))?,
+        false => out.line(format_args!("together: {together}"))?,
     }
     Ok(Exit::Ok)
 }

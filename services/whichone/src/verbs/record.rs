@@ -1,10 +1,10 @@
 //! `record`: the recorder and its files.
 
 use std::fs;
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::io::ErrorKind;
 
 use messages::Service;
-use recording::list::{Entry, entries};
+use recording::list::{Entry, State, entries};
 use recording::recover::merge;
 use recording::{EXTENSION, RecordingError};
 use serde_json::json;
@@ -42,10 +42,10 @@ fn list(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
             out.json(&json!({
                 "name": name(entry),
                 "file": entry.path,
-                "began_unix_s": entry.began_ns as f64 / 1e9,
-                "seconds": seconds(entry),
+                "began_unix_s": entry.is_own().then_some(entry.began_ns as f64 / 1e9),
+                "seconds": entry.seconds(),
                 "bytes": entry.bytes,
-                "finished": entry.is_finished,
+                "state": entry.state(),
             }))?;
         }
         return Ok(Exit::Ok);
@@ -55,9 +55,9 @@ fn list(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
         return Ok(Exit::Ok);
     }
     let row = |entry: &Entry| {
-        let state = if entry.is_finished { "complete" } else { "being written" };
+        let length = entry.seconds().map_or("-".to_owned(), words::time);
         let size = words::memory(entry.bytes >> 10);
-        vec![name(entry), words::time(seconds(entry)), size, state.to_owned()]
+        vec![name(entry), length, size, state(entry).to_owned()]
     };
     let rows: Vec<_> = entries.iter().map(row).collect();
     out.line(paths.recordings().display())?;
@@ -85,7 +85,8 @@ fn open(paths: &GroupPaths, args: &OpenArgs, out: &mut Output<'_>) -> Outcome {
     let copy = copy.or_else(|| {
         let own = std::env::temp_dir().join(format!("{}.{EXTENSION}", name(&entry)));
         // A former copy of the same recording has less of it.
-        (!entry.is_finished).then(|| fs::remove_file(&own)).map(|_| own)
+        let is_open = matches!(entry.state(), State::BeingWritten | State::Incomplete);
+        is_open.then(|| fs::remove_file(&own)).map(|_| own)
     });
     let path = match copy {
         None => entry.path,
@@ -108,15 +109,24 @@ fn name(entry: &Entry) -> String {
     file.split_once(&format!(".{EXTENSION}")).map_or(file.clone(), |(name, _)| name.to_owned())
 }
 
-/// Seconds from its beginning to its last change.
-fn seconds(entry: &Entry) -> f64 {
-    let changed = entry.path.metadata().and_then(|found| found.modified());
-    let changed = changed.unwrap_or_else(|_| SystemTime::now());
-    let changed = changed.duration_since(UNIX_EPOCH).unwrap_or_default();
-    (changed.as_secs_f64() - entry.began_ns as f64 / 1e9).max(0.0)
+/// The state in words.
+fn state(entry: &Entry) -> &'static str {
+    match entry.state() {
+        State::Complete => "complete",
+        State::BeingWritten => "being written",
+        State::Incomplete => "incomplete",
+        State::Damaged => "damaged",
+        State::Foreign => "not of the recorder",
+    }
 }
 
 /// The failure of a verb that writes a recording.
 pub(super) fn failure(error: RecordingError) -> Failure {
-    Failure::new(Exit::Storage, error.to_string())
+    match &error {
+        RecordingError::Io(path, cause) if cause.kind() == ErrorKind::AlreadyExists => {
+            let help = "help: name another file, or remove this one";
+            Failure::new(Exit::Storage, format!("{}: it exists already; {help}", path.display()))
+        }
+        _ => Failure::new(Exit::Storage, error.to_string()),
+    }
 }

@@ -1,5 +1,6 @@
 //! `replay`: flights through this build's reducers, each by its service's own program.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Stdio;
 
@@ -28,9 +29,10 @@ pub(super) fn replay(
         Some(folder) => folder.clone(),
         None => paths()?.flights(),
     };
-    let (mut replayed, mut is_damaged) = (0_u64, false);
+    let (mut replayed, mut is_damaged, mut services) = (0_u64, false, BTreeSet::new());
     for file in flight::list(&folder)? {
         let service = service_of(&file)?;
+        services.insert(service.name());
         if args.service.as_deref().is_some_and(|wanted| wanted != service.name()) {
             continue;
         }
@@ -47,12 +49,22 @@ pub(super) fn replay(
         }
     }
     if replayed == 0 {
-        let of = args.service.as_deref().map(|name| format!(" of {name}")).unwrap_or_default();
-        let what = format!("no flights{of} in {}", folder.display());
-        let help = "help: services record them where group.toml has flight.enabled = true";
-        return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
+        return Err(none_found(&folder, args.service.as_deref(), &services));
     }
     Ok(if is_damaged { Exit::Storage } else { Exit::Ok })
+}
+
+/// The failure where no flight is the wanted one; `found` are the services that have one.
+fn none_found(folder: &Path, wanted: Option<&str>, found: &BTreeSet<&str>) -> Failure {
+    let of = wanted.map(|name| format!(" of {name}")).unwrap_or_default();
+    let help = match found.is_empty() {
+        true => "services record them where group.toml has flight.enabled = true".to_owned(),
+        false => {
+            let found: Vec<&str> = found.iter().copied().collect();
+            format!("there are flights of {}", found.join(", "))
+        }
+    };
+    Failure::new(Exit::NotReached, format!("no flights{of} in {}; help: {help}", folder.display()))
 }
 
 /// The service of a flight.
@@ -106,10 +118,39 @@ fn show(
     if !changes.is_empty() {
         let decisions = count(report.decisions.len() as u64, "decision");
         let others = count(report.other_passes, "other pass");
-        let verb = if report.decisions.len() == 1 { "differs" } else { "differ" };
-        out.line(format_args!("  {decisions} {verb}; {others} with other records or outputs"))?;
+        let [verb, others_verb] = [report.decisions.len() as u64, report.other_passes]
+            .map(|n| if n == 1 { "differs" } else { "differ" });
+        out.line(format_args!("  {decisions} {verb}; {others} {others_verb}"))?;
+    }
+    if let Some(first) = &report.other_difference {
+        out.line("  first other difference:")?;
+        show_values(first, out)?;
     }
     Ok(())
+}
+
+/// Prints where two values differ, and both.
+fn show_values(difference: &Difference, out: &mut Output<'_>) -> Result<(), Failure> {
+    let Difference { pass, after_s, path, recorded, recomputed, .. } = difference;
+    let unit = unit(path);
+    out.line(format_args!("  pass {pass}, {after_s:.3} s after the start: {path}"))?;
+    out.line(format_args!("    recorded    {}{unit}", shown(recorded)))?;
+    out.line(format_args!("    recomputed  {}{unit}", shown(recomputed)))
+}
+
+/// The unit that the name of a field ends with, after a space.
+fn unit(path: &str) -> &'static str {
+    let name = path.rsplit('.').next().unwrap_or_default();
+    let name = name.split('[').next().unwrap_or_default();
+    match name.rsplit_once('_').map(|(_, end)| end) {
+        Some("ns") => " ns",
+        Some("ms") => " ms",
+        Some("s") => " s",
+        Some("m") => " m",
+        Some("rad") => " rad",
+        Some("db") => " dB",
+        _ => "",
+    }
 }
 
 fn show_difference(
@@ -117,16 +158,13 @@ fn show_difference(
     difference: &Difference,
     out: &mut Output<'_>,
 ) -> Result<(), Failure> {
-    let Difference { pass, at_ns: _, after_s, path, recorded, recomputed, before } = difference;
-    out.line(format_args!("  pass {pass}, {after_s:.3} s after the start: {path}"))?;
-    out.line(format_args!("    recorded    {}", shown(recorded)))?;
-    out.line(format_args!("    recomputed  {}", shown(recomputed)))?;
+    show_values(difference, out)?;
     if report.recorded_by != report.replayed_by {
         let Report { recorded_by, replayed_by, .. } = report;
         out.line(format_args!("    recorded by version {recorded_by}, replayed by {replayed_by}"))?;
     }
     out.line("  events up to there:")?;
-    for event in before {
+    for event in &difference.before {
         let at_s = (event["at_ns"].as_u64().unwrap_or(0) as f64 - difference.at_ns as f64) / 1e9;
         let after_s = difference.after_s + at_s;
         out.line(format_args!("    {after_s:>9.3} s  {}", shown(&event["event"])))?;
@@ -156,5 +194,24 @@ fn shown(value: &Value) -> String {
     match text.char_indices().nth(SHOWN_MAX) {
         None => text,
         Some((end, _)) => format!("{}…", &text[..end]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn replay_shows_the_unit_of_a_field() {
+        for (path, expected) in [
+            ("outputs[0].Act.decided_ns", " ns"),
+            ("records[1].held.position_m[2]", " m"),
+            ("outputs[0].Hearing.snr_db", " dB"),
+            ("outputs[0].Act.prompt", ""),
+            ("exit", ""),
+            ("", ""),
+        ] {
+            assert_eq!(unit(path), expected, "{path}");
+        }
     }
 }

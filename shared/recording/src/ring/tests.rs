@@ -6,7 +6,7 @@ use mcap::records::Record;
 
 use super::*;
 use crate::channels::{ChannelId, Picture};
-use crate::list::unfinished;
+use crate::list::{State, incomplete};
 use crate::recover::{each_record, recover_all};
 
 const MIB: u64 = 1 << 20;
@@ -112,7 +112,7 @@ fn files_of_others_are_neither_deleted_nor_completed() {
         write(&mut ring, s);
     }
     ring.finish(at(48 * HOUR));
-    recover_all(&unfinished(folder.path()));
+    recover_all(&incomplete(folder.path()));
     others.iter().for_each(|file| assert_eq!(fs::read(file).unwrap(), b"mine"));
 }
 
@@ -163,10 +163,51 @@ fn failure_to_write_is_tried_again_later() {
     let gone = folder.path().join("gone");
     let (mut ring, _) = ring(&gone, limits());
     assert!(!ring.tend(at(0), clock()));
-    assert!(ring.paused().unwrap().contains("No such file"), "{:?}", ring.paused());
+    let why = ring.paused().unwrap();
+    assert!(why.contains("No such file") && why.contains("help: create the folder"), "{why}");
     fs::create_dir(&gone).unwrap();
     assert!(!ring.tend(at(1), clock()), "not at once");
     assert!(ring.tend(at(10), clock()) && ring.paused().is_none());
+}
+
+#[test]
+fn failure_says_what_a_person_can_do_about_it() {
+    let failed = |kind: ErrorKind| help(&RecordingError::Io("r".into(), kind.into()));
+    assert!(failed(ErrorKind::PermissionDenied).contains("help: make the folder writable"));
+    assert_eq!(failed(ErrorKind::StorageFull), "", "the status has help for a shortage");
+}
+
+#[test]
+fn recordings_are_listed_with_what_is_known_of_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut ring, _) = ring(folder.path(), limits());
+    for s in [0, 60, 600] {
+        ring.tend(at(s), clock());
+        write(&mut ring, s);
+    }
+    ring.tend(at(601), clock());
+    let named = |name: &str, content: &[u8]| {
+        fs::write(folder.path().join(name), content).unwrap();
+    };
+    let whole = fs::read(&entries(folder.path())[0].path).unwrap();
+    named("2026-01-01T00-00-00.000Z.mcap", &[7; 5_000]);
+    named("2026-01-02T00-00-00.000Z.mcap.part", &whole[..whole.len() / 2]);
+    named("day.mcap", &whole);
+    let found = |entry: &Entry| (entry.state(), entry.seconds().is_some());
+    let all = entries(folder.path());
+    assert_eq!(
+        all.iter().map(found).collect::<Vec<_>>(),
+        [
+            (State::Foreign, false),
+            (State::Complete, true),
+            (State::BeingWritten, true),
+            (State::Damaged, false),
+            (State::Incomplete, true),
+        ]
+    );
+    assert_eq!(all[1].seconds(), Some(60.0), "from the first message to the last one");
+    drop(ring);
+    assert_eq!(entries(folder.path())[2].state(), State::Incomplete);
 }
 
 #[test]
@@ -180,6 +221,6 @@ fn new_file_begins_when_the_wall_clock_is_set() {
     assert_eq!(ring.clock(), Some(set));
     write(&mut ring, 2);
     drop(ring);
-    recover_all(&unfinished(folder.path()));
+    recover_all(&incomplete(folder.path()));
     assert_eq!(entries(folder.path()).len(), 2);
 }

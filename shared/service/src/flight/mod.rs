@@ -157,8 +157,8 @@ fn is_of(path: &Path, service: &str) -> bool {
     is_flight && number.is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// A file that this build cannot replay.
-fn foreign(path: &Path, what: impl std::fmt::Display) -> Failure {
+/// A flight that this build cannot replay.
+fn of_other_build(path: &Path, what: impl std::fmt::Display) -> Failure {
     let help = "help: replay it with the build that recorded it";
     Failure::new(Exit::Config, format!("{}: {what}; {help}", path.display()))
 }

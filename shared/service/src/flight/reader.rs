@@ -8,8 +8,10 @@ use flate2::{Decompress, FlushDecompress};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::{Beginning, Entry, FORMAT, FRAME_BYTES_MAX, FRAME_HEAD, Head, MAGIC, STATED, foreign};
-use crate::exit::Failure;
+use super::{
+    Beginning, Entry, FORMAT, FRAME_BYTES_MAX, FRAME_HEAD, Head, MAGIC, STATED, of_other_build,
+};
+use crate::exit::{Exit, Failure};
 use crate::service_loop::{Program, Record};
 use crate::{Effects, Event, Node, Time};
 
@@ -37,13 +39,22 @@ impl Flight {
         let failed = |error: io::Error| Failure::file(path, &error);
         let mut file = BufReader::new(File::open(path).map_err(failed)?);
         let mut start = [0; MAGIC.len() + 4];
-        let is_whole = file.read_exact(&mut start).is_ok();
-        if !is_whole || &start[..MAGIC.len()] != MAGIC {
-            return Err(foreign(path, "not a flight"));
+        let read = read_up_to(&mut file, &mut start).map_err(failed)?;
+        let marked = read.min(MAGIC.len());
+        if start[..marked] != MAGIC[..marked] {
+            let what = "expected a flight, found another file";
+            let help = "help: name a flight, or a folder with none but flights in files *.flight";
+            return Err(Failure::new(Exit::Config, format!("{}: {what}; {help}", path.display())));
+        }
+        if read < start.len() {
+            return Err(empty(path));
         }
         let format = u32::from_le_bytes(start[MAGIC.len()..].try_into().unwrap_or_default());
         if format != FORMAT {
-            return Err(foreign(path, format_args!("expected format {FORMAT}, found {format}")));
+            return Err(of_other_build(
+                path,
+                format_args!("expected format {FORMAT}, found {format}"),
+            ));
         }
         let (path, inflate) = (path.to_owned(), Decompress::new(false));
         Ok(Self { path, file, inflate, frame: Vec::new(), at: 0, is_torn: false, damaged_at: None })
@@ -61,9 +72,10 @@ impl Flight {
                 self.at = self.frame.len() - rest.len();
                 Ok(Some((value, &self.frame[begin..self.at])))
             }
-            Err(error) => {
-                Err(foreign(&self.path, format_args!("its content is of another build ({error})")))
-            }
+            Err(error) => Err(of_other_build(
+                &self.path,
+                format_args!("its content is of another build ({error})"),
+            )),
         }
     }
 
@@ -71,7 +83,7 @@ impl Flight {
     pub(super) fn first<T: DeserializeOwned>(&mut self) -> Result<T, Failure> {
         let path = self.path.clone();
         let found = self.next()?.map(|(value, _)| value);
-        found.ok_or_else(|| foreign(&path, "it ends before its first frame"))
+        found.ok_or_else(|| empty(&path))
     }
 
     /// Returns the whole stream.
@@ -134,6 +146,12 @@ impl Flight {
     }
 }
 
+/// A flight whose writer was killed before it recorded anything.
+fn empty(path: &Path) -> Failure {
+    let what = "expected a flight, found one that ends before its first frame; help: remove it";
+    Failure::new(Exit::Config, format!("{}: {what}", path.display()))
+}
+
 /// What could not be read of a flight that is torn or damaged there, for its user.
 pub fn unread(is_torn: bool, damaged_at: Option<u64>) -> Option<String> {
     match damaged_at {
@@ -173,7 +191,7 @@ pub(super) fn open<P: Program>(path: &Path) -> Result<(Flight, Head, BeginningOf
         ((P::SERVICE.name(), P::RECORD), (head.service.as_str(), head.record.as_deref()));
     if own != found {
         let what = format!("expected a flight of {own:?}, found one of {found:?}");
-        return Err(foreign(path, what));
+        return Err(of_other_build(path, what));
     }
     let beginning = flight.first()?;
     Ok((flight, head, beginning))

@@ -18,6 +18,8 @@ use crate::{Effects, Event, Node, Time};
 
 /// Events before a difference that a report shows.
 const BEFORE_MAX: usize = 20;
+/// The option with which settings are changed.
+const WHAT_IF: &str = "--what-if";
 /// Settings whose files are in the flight.
 const FIXED: [&str; 2] = ["group.scene", "arm.robot"];
 
@@ -51,6 +53,8 @@ pub struct Report {
     pub decisions: Vec<Changed>,
     /// With changed settings: passes in which anything else differs.
     pub other_passes: u64,
+    /// The difference in the first of them.
+    pub other_difference: Option<Difference>,
 }
 
 /// Where records or outputs differ.
@@ -107,12 +111,12 @@ pub fn replay<P: Program>(file: &Path, changes: &[(String, String)]) -> Result<R
     let (flight, head, beginning) = reader::open::<P>(file)?;
     if let Some((key, _)) = changes.iter().find(|(key, _)| FIXED.contains(&key.as_str())) {
         let what =
-            format!("--what-if {key}: a flight is about the scene and the robot that it holds");
+            format!("{WHAT_IF}: {key}: a flight is about the scene and the robot that it holds");
         return Err(Failure::new(Exit::Usage, format!("{what}; help: change another setting")));
     }
     let label = file.display().to_string();
-    let recorded = Settings::from_snapshot(&label, &head.settings, &[])?;
-    let settings = Settings::from_snapshot(&label, &head.settings, changes)?;
+    let with = |changes: &[_]| Settings::from_snapshot(&label, &head.settings, (WHAT_IF, changes));
+    let (recorded, settings) = (with(&[])?, with(changes)?);
     let environment = Environment { arguments: head.arguments.clone(), ..Environment::nowhere() };
     let config = P::config(&environment, &settings)?;
     let node = match beginning {
@@ -153,6 +157,7 @@ fn report(file: &Path, head: &Head) -> Report {
         difference: None,
         decisions: Vec::new(),
         other_passes: 0,
+        other_difference: None,
     }
 }
 
@@ -198,33 +203,37 @@ impl<P: Program> Run<P> {
         if let Err(panic) = result {
             let text = panic.downcast_ref::<String>().map(String::as_str);
             let text = text.or(panic.downcast_ref::<&str>().copied()).unwrap_or_default();
-            self.differs("panic".to_owned(), Value::Null, json!(text));
+            let found = ("panic".to_owned(), Value::Null, json!(text));
+            self.report.difference = Some(self.difference(found));
         }
     }
 
     /// Compares what was stated in a pass with what this build states.
     fn compare(&mut self, recorded: &Fx<P>, bytes: &[u8]) -> Result<(), Failure> {
         self.report.passes += 1;
-        let internal = |error: &dyn std::error::Error| {
-            Failure::new(Exit::Invariant, format!("effects cannot be encoded: {error}"))
-        };
-        let own = reader::encoded(&self.effects).map_err(|error| internal(&error))?;
-        if own != bytes {
-            if self.is_what_if {
-                self.compare_decisions(recorded);
-            } else {
-                let [a, b] = [recorded, &self.effects].map(serde_json::to_value);
-                let (a, b) = (a.map_err(|e| internal(&e))?, b.map_err(|e| internal(&e))?);
-                // Values that JSON does not have, as infinities, are the same there.
-                let found = first_difference(&a, &b).unwrap_or((String::new(), a, b));
-                self.differs(found.0, found.1, found.2);
+        let own = reader::encoded(&self.effects).map_err(|error| not_encoded(&error))?;
+        if own != bytes && !self.is_what_if {
+            self.report.difference = Some(self.difference_to(recorded)?);
+        } else if own != bytes && !self.compare_decisions(recorded) {
+            self.report.other_passes += 1;
+            if self.report.other_difference.is_none() {
+                self.report.other_difference = Some(self.difference_to(recorded)?);
             }
         }
         self.effects.carried_out();
         Ok(())
     }
 
-    fn compare_decisions(&mut self, recorded: &Fx<P>) {
+    /// The first difference between what was recorded in this pass and what this build states.
+    fn difference_to(&self, recorded: &Fx<P>) -> Result<Difference, Failure> {
+        let [a, b] = [recorded, &self.effects].map(serde_json::to_value);
+        let (a, b) = (a.map_err(|e| not_encoded(&e))?, b.map_err(|e| not_encoded(&e))?);
+        // Values that JSON does not have, as infinities, are the same there.
+        Ok(self.difference(first_difference(&a, &b).unwrap_or((String::new(), a, b))))
+    }
+
+    /// Notes the decisions of this pass that differ. Returns whether there are any.
+    fn compare_decisions(&mut self, recorded: &Fx<P>) -> bool {
         let decisions = |settings: &Settings, effects: &Fx<P>| -> Vec<Decision> {
             effects.records().iter().filter_map(|record| P::decision(settings, record)).collect()
         };
@@ -249,10 +258,11 @@ impl<P: Program> Run<P> {
                 });
             }
         }
-        self.report.other_passes += u64::from(!differs);
+        differs
     }
 
-    fn differs(&mut self, path: String, recorded: Value, recomputed: Value) {
+    /// A difference in this pass: its field, what was recorded there, and what this build states.
+    fn difference(&self, (path, recorded, recomputed): (String, Value, Value)) -> Difference {
         let event = |bytes: &Vec<u8>| {
             let entry = postcard::from_bytes::<Entry<Event<In<P>>, ()>>(bytes).ok();
             match entry {
@@ -260,7 +270,7 @@ impl<P: Program> Run<P> {
                 _ => Value::Null,
             }
         };
-        self.report.difference = Some(Difference {
+        Difference {
             pass: self.report.passes,
             at_ns: self.now.ns(),
             after_s: self.now.since(self.started).s(),
@@ -268,6 +278,10 @@ impl<P: Program> Run<P> {
             recorded,
             recomputed,
             before: self.before.iter().map(event).collect(),
-        });
+        }
     }
+}
+
+fn not_encoded(error: &dyn std::error::Error) -> Failure {
+    Failure::new(Exit::Invariant, format!("effects cannot be encoded: {error}"))
 }

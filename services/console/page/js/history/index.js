@@ -33,7 +33,10 @@ export async function mountHistory({ store, t }) {
     h("div", { class: "past" }, list.element, one.element),
   );
   dialog.addEventListener("keydown", onKey);
-  dialog.addEventListener("close", () => address(""));
+  dialog.addEventListener("close", () => {
+    store.set("cover", null);
+    address("");
+  });
   document.body.append(dialog);
 
   function title() {
@@ -128,6 +131,7 @@ export async function mountHistory({ store, t }) {
     narrow(interaction > 0);
     if (!dialog.open) {
       dialog.showModal();
+      store.set("cover", dialog);
       // The keys work at once, and no button looks chosen.
       dialog.focus();
     }

@@ -97,10 +97,17 @@ export function mountActions(element, context) {
     if (event.key === "Escape" && !event.isComposing) countEscape(event.timeStamp);
     else otherAt = event.timeStamp;
   };
+  // The stop is in what covers the page: the full screen, or a sheet.
+  const place = () => {
+    const full = document.fullscreenElement;
+    const host = full ?? store.get("cover") ?? element;
+    if (button.parentElement !== host) host.append(button);
+    button.classList.toggle("floats", full !== null);
+  };
+  store.subscribe("cover", place);
   const onFullScreen = ({ timeStamp }) => {
     const full = document.fullscreenElement;
-    (full ?? element).append(button);
-    button.classList.toggle("floats", full !== null);
+    place();
     // Most browsers keep the key that leaves the full screen to themselves.
     const known = escapedAt !== null && timeStamp - escapedAt < SAME_MS;
     if (!full && !known && timeStamp - otherAt > ASIDE_MS) countEscape(timeStamp);

@@ -41,6 +41,14 @@ impl Waiting {
         let last = view.last.clone().filter(|last| last.interaction.0 > self.reported);
         last.filter(|_| self.settled >= LOOKS)
     }
+
+    /// Returns whether words after utterance `reported`, the latest one of which the outcome was reported, have
+    /// opened no interaction, and none is awaited: what they asked for is not there, or they asked for nothing.
+    pub fn is_in_vain(&self, seen: &Latest, reported: u64) -> bool {
+        let Some(view) = seen.view.as_ref().filter(|_| self.goal.is_none()) else { return false };
+        let led_somewhere = reported.max(view.utterances.1);
+        seen.is_settled() && self.settled >= LOOKS && view.applied > led_somewhere
+    }
 }
 
 #[cfg(test)]
@@ -90,6 +98,30 @@ mod tests {
             reported(0, &[asked(Question::None), asked(Question::None), next]),
             Some((2, 7))
         );
+    }
+
+    #[test]
+    fn await_ends_with_words_that_lead_to_no_interaction() {
+        // Utterances 1 to 3 belong to interaction 7, which was reported.
+        let with = |mut seen: Latest, applied: u64| {
+            if let Some(view) = &mut seen.view {
+                (view.applied, view.utterances) = (applied, (1, 3));
+            }
+            Latest { accepted: applied, ..seen }
+        };
+        let in_vain = |looks: &[Latest], reported: u64| {
+            let mut waiting = Waiting::new(7);
+            let mut look =
+                |seen| waiting.look(seen).is_none() && waiting.is_in_vain(seen, reported);
+            looks.iter().position(|seen| look(seen))
+        };
+        let answered = with(ended(7), 4);
+        assert_eq!(in_vain(&vec![with(ended(7), 3); 9], 0), None, "of the interaction");
+        assert_eq!(in_vain(&vec![answered.clone(); 9], 0), Some(2));
+        assert_eq!(in_vain(&vec![answered.clone(); 9], 4), None, "reported before");
+        assert_eq!(in_vain(&vec![unapplied(answered.clone()); 9], 0), None);
+        let opens = with(asked(Question::None), 4);
+        assert_eq!(in_vain(&[answered.clone(), opens.clone(), answered, opens], 0), None);
     }
 
     #[test]

@@ -14,6 +14,7 @@ use scene::count;
 use serde_json::json;
 use service::exit::{Exit, Failure};
 use service::flight::{self, Direction, Head, Line};
+use service::group::{GroupError, GroupPaths};
 use service::journal_record::JournalLine;
 
 use super::super::inspection::{command, failed};
@@ -29,8 +30,16 @@ const JOURNAL: &str = "journal";
 const SETTINGS: &str = "settings";
 
 /// Writes the file.
-pub(super) fn export(args: &McapArgs, out: &mut Output<'_>) -> Outcome {
+pub(super) fn export(
+    paths: impl FnOnce() -> Result<GroupPaths, GroupError>,
+    args: &McapArgs,
+    out: &mut Output<'_>,
+) -> Outcome {
     let McapArgs { source, out: to } = args;
+    let source = &match source {
+        Some(source) => source.clone(),
+        None => paths()?.recordings(),
+    };
     fs::metadata(source).map_err(|error| Failure::file(source, &error))?;
     let (journals, flights) = (journals_in(source), flights_in(source)?);
     let (messages, noun) = if !flights.is_empty() {
