@@ -113,7 +113,7 @@ mod tests {
             let mut waiting = Waiting::new(7);
             let mut look =
                 |seen| waiting.look(seen).is_none() && waiting.is_in_vain(seen, reported);
-            looks.iter().position(|seen| look(seen))
+            looks.iter().position(look)
         };
         let answered = with(ended(7), 4);
         assert_eq!(in_vain(&vec![with(ended(7), 3); 9], 0), None, "of the interaction");
