@@ -192,6 +192,9 @@ impl Service {
         if std::env::var_os(group::ENV_LOG).is_none() {
             environment.push((group::ENV_LOG, (&around.log.level).into()));
         }
+        if around.log.json && std::env::var_os(group::ENV_LOG_FORMAT).is_none() {
+            environment.push((group::ENV_LOG_FORMAT, "json".into()));
+        }
         environment
     }
 

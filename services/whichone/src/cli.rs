@@ -14,6 +14,7 @@ mod group;
 mod objects;
 mod record;
 mod replay;
+mod scene;
 mod study;
 mod talk;
 
@@ -26,6 +27,7 @@ pub use group::{
 pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
 pub use record::{ExportVerb, McapArgs, OpenArgs, PomdpArgs, RecordVerb, RecorderArgs};
 pub use replay::ReplayArgs;
+pub use scene::{SceneCheckArgs, SceneNewArgs, ScenePlaceArgs, SceneShowArgs, SceneVerb};
 pub use study::{ALL as STUDY_ALL, Preset, ReportArgs, StudyArgs, StudyVerb};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalAction, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
@@ -63,8 +65,8 @@ pub struct Cli {
 }
 
 /// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
-const WITHOUT_GROUP: [&str; 8] =
-    ["check", "completions", "belief", "ground", "plan", "arm", "fk", "ik"];
+const WITHOUT_GROUP: [&str; 9] =
+    ["check", "scene", "completions", "belief", "ground", "plan", "arm", "fk", "ik"];
 
 impl Cli {
     /// Returns the definition of the command line, from which help and completions are made.
@@ -152,6 +154,12 @@ pub enum Verb {
     Reload(ReloadArgs),
     /// Check a configuration: list every problem, or the services that would run.
     Check(CheckArgs),
+    /// Write, show, check or complete a scene file.
+    Scene {
+        /// Action.
+        #[command(subcommand)]
+        what: SceneVerb,
+    },
     /// Replace the program of a service while the dialogue continues.
     ///
     /// Rolls back to the old program if the new one does not become ready.

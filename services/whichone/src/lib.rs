@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use service::exit::{Exit, Failure};
 
 use crate::cli::Cli;
-use crate::output::{Output, print_error};
+use crate::output::{Output, print_error, print_json_error};
 
 pub mod batch;
 pub mod cli;
@@ -24,17 +24,27 @@ pub type Outcome = Result<Exit, Failure>;
 
 /// Runs the command line `arguments`, program name first, and returns the exit code of the process.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let json = arguments.iter().take_while(|word| *word != "--").any(|word| word == "--json");
     let cli = match Cli::parse_line(arguments) {
         Ok(cli) => cli,
         Err(error) => {
+            let exit = if error.use_stderr() { Exit::Usage } else { Exit::Ok };
+            if exit == Exit::Usage && json {
+                print_json_error(&Failure::new(exit, error.to_string().trim_end()));
+            }
             // Nothing to do if the output is closed.
             let _ = error.print();
-            return if error.use_stderr() { Exit::Usage } else { Exit::Ok };
+            return exit;
         }
     };
     let mut out = Output::standard(cli.json);
     let ended = verbs::run(cli, &mut out).and_then(|exit| out.flush().map(|()| exit));
+    drop(out);
     ended.unwrap_or_else(|failure| {
+        if json {
+            print_json_error(&failure);
+        }
         print_error(&failure);
         failure.exit
     })

@@ -1,7 +1,7 @@
 //! Output of the verbs.
 //!
 //! Invariant: results go to standard output, as text or as JSON; progress and errors go to standard
-//! error. Colour appears on terminals only, and never where `NO_COLOR` is set. Whatever is printed
+//! error, with `--json` errors also to standard output as `{"error","exit"}`. Colour appears on terminals only, and never where `NO_COLOR` is set. Whatever is printed
 //! passes [`printable`], so that no foreign text steers the terminal.
 
 use service::exit::Failure;
@@ -192,6 +192,17 @@ pub fn print_error(failure: &Failure) {
     }
     let style = Style { colour: io::stderr().is_terminal() && colour_is_welcome() };
     note_in(style, &format!("{} {failure}", style.paint(Ink::Red, "error:")));
+}
+
+/// Prints a failure that has a message as `{"error","exit"}` on standard output, for `--json`.
+pub fn print_json_error(failure: &Failure) {
+    if failure.message.is_empty() {
+        return;
+    }
+    let mut out = Output::standard(true);
+    let error = serde_json::json!({ "error": failure.message, "exit": failure.exit as u8 });
+    // Nothing to do if standard output is closed.
+    let _ = out.json(&error);
 }
 
 fn colour_is_welcome() -> bool {

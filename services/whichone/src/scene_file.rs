@@ -29,8 +29,13 @@ pub fn read_file(path: &Path) -> Result<String, Failure> {
     })
 }
 
+/// Returns whether the text of a scene file is JSON: it begins with a brace.
+pub fn is_json(text: &str) -> bool {
+    text.trim_start_matches('\u{feff}').trim_start().starts_with('{')
+}
+
 fn read(file: &str, text: &str) -> Result<Scene, Diagnostics> {
-    if !text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
+    if !is_json(text) {
         return Scene::from_toml(file, text);
     }
     let json = serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| {

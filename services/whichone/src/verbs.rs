@@ -7,7 +7,7 @@ use service::group::GroupPaths;
 
 use crate::Outcome;
 use crate::batch;
-use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, ConfigArgs, StudyVerb, Verb};
+use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;
 use crate::output::Output;
 use service::exit::{Exit, Failure};
@@ -34,6 +34,7 @@ mod paths;
 mod planning;
 mod record;
 mod replay;
+mod scene;
 mod speak;
 mod status;
 mod study;
@@ -79,14 +80,13 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         }
         Verb::Record { what } => record::record(&paths()?, what, out),
         Verb::Replay(args) => replay::replay(paths, &args, out),
+        Verb::Scene { what } => scene::scene(what, out),
         Verb::Journal(args) => inspection::journal(&paths()?, &args, out),
         Verb::Completions { shell } => completions(shell, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
         Verb::Belief(args) => batch::belief(batch::open(&args)?, out),
         Verb::Ground(args) => {
-            let config = ConfigArgs { config: args.config, ..ConfigArgs::default() };
-            let scene = planning::load_scene(&args.scene, &config)?;
-            let grounder = batch::Grounder::new(scene, args.language);
+            let grounder = planning::grounder(&args)?;
             batch::ground(&grounder, batch::open(&args.input)?, out)
         }
         Verb::Plan(args) => {

@@ -4,6 +4,7 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
 use diagnostics::Fields;
+use serde_json::json;
 
 /// Who may use the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +65,10 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Console {
 
 fn foxglove_origins(f: &mut Fields<'_>) -> Vec<String> {
     let origins = f.texts("foxglove_origins");
+    f.note("foxglove_origins", || {
+        let origin = "^(file://|[A-Za-z0-9-]+://[A-Za-z0-9.:\\[\\]-]+)$";
+        json!({ "items": { "type": "string", "pattern": origin } })
+    });
     for origin in &origins {
         // `null` is the origin of pages that do not say where they come from; a star is a misunderstanding.
         let is_plain = |b: u8| b.is_ascii_alphanumeric() || b".-:[]".contains(&b);
@@ -87,6 +92,10 @@ fn foxglove_origins(f: &mut Fields<'_>) -> Vec<String> {
 
 fn camera(f: &mut Fields<'_>) -> Option<Camera> {
     let url = f.optional_text("camera");
+    f.note("camera", || {
+        let host = "[A-Za-z0-9.-]+(:[0-9]{1,5})?";
+        json!({ "pattern": format!("^$|^https?://{host}([/?#][^\\s\"'<>\\\\;,]*)?$") })
+    });
     let every = f.seconds("camera_every_s", 0.0..=3600.0);
     let url = url?;
     match origin(&url) {
@@ -135,6 +144,7 @@ fn origin(url: &str) -> Result<String, &'static str> {
 
 fn listen(f: &mut Fields<'_>) -> SocketAddr {
     let text = f.text("listen");
+    f.note("listen", || json!({ "pattern": "^([0-9.]+|\\[[0-9A-Fa-f:.]+\\]):[0-9]{1,5}$" }));
     text.parse().unwrap_or_else(|_| {
         if !f.is_wrong("listen") {
             let what = format!("`{text}` is not an address with a port");
@@ -147,6 +157,7 @@ fn listen(f: &mut Fields<'_>) -> SocketAddr {
 /// Reads the language, which is part of a path and so must be a plain name.
 fn language(f: &mut Fields<'_>) -> String {
     let language = f.text("language");
+    f.note("language", || json!({ "pattern": "^[A-Za-z0-9-]{1,16}$" }));
     let plain =
         language.len() <= 16 && language.chars().all(|c| c.is_ascii_alphanumeric() || c == '-');
     if !plain && !f.is_wrong("language") {

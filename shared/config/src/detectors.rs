@@ -3,6 +3,7 @@
 use ::scene::Scene;
 use diagnostics::{Fields, Report, Table, suggestion};
 use perception::Label;
+use serde_json::json;
 
 use crate::files::one_of;
 
@@ -74,7 +75,9 @@ pub(crate) fn ros2(f: &mut Fields<'_>) -> Ros2Objects {
 
 /// Reads the name of a topic that may be absent.
 fn topic(f: &mut Fields<'_>, key: &'static str) -> Option<String> {
-    let name = f.optional_text(key)?;
+    let name = f.optional_text(key);
+    f.note(key, || json!({ "pattern": "^$|^(/[A-Za-z_][A-Za-z0-9_]*)+$" }));
+    let name = name?;
     let is_topic = name.strip_prefix('/').is_some_and(|parts| parts.split('/').all(is_name));
     if !is_topic {
         let what = format!("`{name}` is not a topic of ROS");

@@ -8,6 +8,7 @@ use dialogue::{
 };
 use language::Language;
 use scene::Scene;
+use serde_json::json;
 
 /// The dialogue.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +60,7 @@ pub struct Gesture {
 
 pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
     let planner = f.text("planner");
+    f.note_choices("planner", dialogue::registry::names().into_iter());
     if !f.is_wrong("planner") && !dialogue::registry::names().contains(&planner.as_str()) {
         f.not_one_of("planner", &planner, &dialogue::registry::names());
     }
@@ -90,6 +92,9 @@ fn params(f: &mut Fields<'_>) -> Params {
         alpha: f.any_number("alpha"),
     };
     report(params.check(), f);
+    f.note("p_l", || json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 1 }));
+    f.note("epsilon", || json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 0.5 }));
+    f.note("alpha", || json!({ "exclusiveMinimum": 0 }));
     params
 }
 
@@ -104,12 +109,18 @@ fn costs(f: &mut Fields<'_>) -> (Costs, CostsFrom) {
         discount: f.any_number("discount"),
     };
     report(costs.check(), f);
+    for amount in ["wait_s", "attribute_s", "which_s", "point_s", "correct", "wrong"] {
+        f.note(amount, || json!({ "exclusiveMinimum": 0 }));
+    }
+    f.note("discount", || json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 1 }));
     (costs, f.choice("from", &[("config", CostsFrom::Config), ("robot", CostsFrom::Robot)]))
 }
 
 fn announce(f: &mut Fields<'_>) -> Announce {
     let announce = Announce { heard: f.any_number("heard"), cost_s: f.any_number("cost_s") };
     report(announce.check(), f);
+    f.note("heard", || json!({ "minimum": 0, "exclusiveMaximum": 1 }));
+    f.note("cost_s", || json!({ "minimum": 0 }));
     announce
 }
 
@@ -158,6 +169,14 @@ fn gesture(f: &mut Fields<'_>) -> Gesture {
         stray: f.any_number("stray"),
     };
     report(model.check(), f);
+    for share in ["p_g", "stray"] {
+        f.note(share, || json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 1 }));
+    }
+    let std_theta_max = Gestures::STD_THETA_MAX;
+    f.note("std_theta_rad", || json!({ "exclusiveMinimum": 0, "maximum": std_theta_max }));
+    f.note("person_xyz", || {
+        json!({ "items": { "type": "number", "minimum": -PERSON_MAX_M, "maximum": PERSON_MAX_M } })
+    });
     let person_xyz_m = f.triple("person_xyz");
     if !f.is_wrong("person_xyz") && person_xyz_m.iter().any(|x| x.abs() > PERSON_MAX_M) {
         let what = format!("expected -{PERSON_MAX_M} to {PERSON_MAX_M} m, found {person_xyz_m:?}");

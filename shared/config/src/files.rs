@@ -29,13 +29,19 @@ pub(crate) const FILE_BYTES_MAX: u64 = 16 << 20;
 const BUILT_IN: &str = "baxter";
 
 impl Files {
-    /// Reads the files that `group.scene` and `arm.robot` name. The SRDF lies beside the URDF.
-    pub(crate) fn find(dir: &Path, tree: &Table, report: &mut Report) -> Self {
+    /// Reads the files that `group.scene` and `arm.robot` name, the scene's unless it is given. The SRDF
+    /// lies beside the URDF.
+    pub(crate) fn find(
+        dir: &Path,
+        tree: &Table,
+        given: Option<TextFile>,
+        report: &mut Report,
+    ) -> Self {
         let scene = Kind { key: ["group", "scene"], folder: "scenes", ending: ".toml", more: None };
         let robot =
             Kind { key: ["arm", "robot"], folder: "robots", ending: ".urdf", more: Some(BUILT_IN) };
         Self {
-            scene: scene.find(dir, tree, report).and_then(|path| path.read(report)),
+            scene: given.or_else(|| scene.find(dir, tree, report)?.read(report)),
             robot: robot.find(dir, tree, report).and_then(|path| {
                 let Found::File(path) = path else { return Some(RobotFiles::built_in()) };
                 let urdf = Found::File(path.clone()).read(report)?;

@@ -6,6 +6,7 @@ use crate::services::{self, ServiceConfig};
 use ::dialogue::time::Span;
 use diagnostics::Fields;
 use perception::Frame;
+use serde_json::json;
 
 /// The process group.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,6 +85,8 @@ pub struct RestartLimits {
 pub struct Log {
     /// Filter given to the services, e.g. `info` or `info,policy=debug`.
     pub level: String,
+    /// Lines are JSON objects with `timestamp`, `level`, `target` and `fields`; else text.
+    pub json: bool,
     /// Size at which a log is rotated, bytes.
     pub file_bytes_max: u64,
     /// Rotated logs kept beside the current one.
@@ -162,9 +165,14 @@ fn restart(f: &mut Fields<'_>) -> RestartLimits {
 fn log(f: &mut Fields<'_>) -> Log {
     let log = Log {
         level: f.text("level"),
+        json: f.choice("format", &[("text", false), ("json", true)]),
         file_bytes_max: f.whole("file_bytes_max", 4096..=1 << 40),
         files_kept: f.whole("files_kept", 0..=1000),
     };
+    f.note("level", || {
+        let level = format!("[^,]*({})", LEVELS.join("|"));
+        json!({ "pattern": format!("^ *({level}) *(, *({level}) *)*$") })
+    });
     if !f.is_wrong("level")
         && let Some(wrong) = log.level.split(',').find(|part| !is_directive(part))
     {

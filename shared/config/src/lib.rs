@@ -40,6 +40,7 @@ pub use crate::detectors::{Labels, Ros1Objects, Ros2Objects};
 pub use crate::dialogue::{CostsFrom, Dialogue, Gesture};
 pub use crate::files::{RobotFiles, read_file};
 pub use crate::group::{Flight, Group, Log, Perception, Recorder, RestartLimits};
+pub use crate::load::Examined;
 pub use crate::manager::ManagerError;
 pub use crate::resolved::{Origin, Section};
 pub use crate::ros2::{Network, Ros2, ServiceMapping};
@@ -86,7 +87,19 @@ impl Settings {
         profile: Option<&str>,
         overrides: &[(String, String)],
     ) -> Result<Self, Diagnostics> {
-        load::load(dir, profile, overrides)
+        let examined = load::examine(dir, profile, overrides, None);
+        examined.report.verdict(examined.settings)
+    }
+
+    /// Reads a configuration as [`Settings::load`] does, without a verdict; with `scene` in place of
+    /// the scene that it names.
+    pub fn examine(
+        dir: &Path,
+        profile: Option<&str>,
+        overrides: &[(String, String)],
+        scene: Option<TextFile>,
+    ) -> Examined {
+        load::examine(dir, profile, overrides, scene)
     }
 
     /// The merged values of one section as TOML, the dependency of a service that reads only that

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use diagnostics::{Diagnostic, Diagnostics, Fields, Node, Report, Source, Table, suggestion};
+use diagnostics::{
+    Diagnostic, Fields, Node, Report, Source, Table, TextFile, suggestion,
+};
 use scene::Scene;
 use toml::Value;
 
@@ -12,16 +14,29 @@ use crate::{
     Settings, arm, console, detectors, dialogue, group, ros2, services, snapshot, speech, study,
 };
 
-pub(crate) fn load(
+/// What a configuration was found to be, before a verdict: further checks may add to the report.
+#[derive(Debug)]
+pub struct Examined {
+    /// The settings without the wrong parts of the scene; `None` if there is no scene or no robot.
+    pub settings: Option<Settings>,
+    /// Every problem so far.
+    pub report: Report,
+    /// The arm's settings are right, so that its reach can be checked in the same round.
+    pub arm_is_right: bool,
+}
+
+pub(crate) fn examine(
     dir: &Path,
     profile: Option<&str>,
     overrides: &[(String, String)],
-) -> Result<Settings, Diagnostics> {
+    scene: Option<TextFile>,
+) -> Examined {
+    let mut report = Report::default();
     if !dir.is_dir() {
         let help = "name a folder that contains group.toml";
-        return Err(Diagnostic::new(dir.display().to_string(), "", "not a folder", help).into());
+        report.add(Diagnostic::new(dir.display().to_string(), "", "not a folder", help));
+        return Examined { settings: None, report, arm_is_right: false };
     }
-    let mut report = Report::default();
     let mut layers = Vec::new();
     for section in Section::ALL {
         layers.extend(section_file(dir, section, &mut report));
@@ -34,7 +49,7 @@ pub(crate) fn load(
     for layer in layers {
         tree.merge(layer, &mut Vec::new(), &mut report);
     }
-    let files = Files::find(dir, &tree, &mut report);
+    let files = Files::find(dir, &tree, scene, &mut report);
     check(tree, report, files, None)
 }
 
@@ -48,21 +63,28 @@ pub(crate) fn check(
     mut report: Report,
     files: Files,
     measured: Option<Measured>,
-) -> Result<Settings, Diagnostics> {
+) -> Examined {
+    let before = report.count();
     services::complete(tree.table_at("group"), &mut report);
+    let mut arm_is_right = before == 0;
     let mut fields = Fields::new(&tree, Vec::new(), &mut report);
     let group = fields.table("group", group::read);
     let dialogue = fields.table("dialogue", dialogue::read);
     let speech = fields.table("speech", speech::read);
-    let arm = fields.table("arm", arm::read);
+    let arm = fields.table("arm", |f| {
+        let arm = arm::read(f);
+        arm_is_right &= f.is_right();
+        arm
+    });
     let study = fields.table("study", |f| study::read(f, &dialogue.planner));
     let console = fields.table("console", console::read);
     let ros2 = fields.table("ros2", ros2::read);
     fields.finish();
     arm::check_camera(&arm, group.perception.enabled, &tree, &mut report);
     let Files { scene: file, robot } = files;
-    let read = file.as_ref().map(|file| Scene::from_toml(&file.label, &file.text));
-    let scene = read.and_then(|read| read.map_err(|found| report.extend(found)).ok());
+    let scene = file.as_ref().and_then(|TextFile { label, text }| {
+        Scene::examine(label, text, &mut report)
+    });
     if let Some(scene) = &scene {
         dialogue::check_person(scene, &dialogue.gesture, &tree, &mut report);
         let perceives = group.perception.enabled;
@@ -78,7 +100,7 @@ pub(crate) fn check(
         let resolved = Resolved { tree, scene: file, robot };
         Settings { group, dialogue, speech, arm, study, console, ros2, scene, durations, resolved }
     });
-    report.verdict(settings)
+    Examined { settings, report, arm_is_right }
 }
 
 fn section_file(dir: &Path, section: Section, report: &mut Report) -> Option<Table> {

@@ -3,6 +3,7 @@
 use std::net::Ipv4Addr;
 
 use diagnostics::Fields;
+use serde_json::json;
 
 use crate::detectors::{self, Ros2Objects, is_name};
 
@@ -61,6 +62,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Ros2 {
 
 fn namespace(f: &mut Fields<'_>) -> String {
     let text = f.text("namespace");
+    f.note("namespace", || json!({ "pattern": "^/$|^(/[A-Za-z_][A-Za-z0-9_]*)+$" }));
     let is_namespace = |parts: &str| parts.is_empty() || parts.split('/').all(is_name);
     let is_good = text.strip_prefix('/').is_some_and(is_namespace);
     if !is_good && !f.is_wrong("namespace") {
@@ -72,6 +74,7 @@ fn namespace(f: &mut Fields<'_>) -> String {
 
 fn node(f: &mut Fields<'_>) -> String {
     let text = f.text("node");
+    f.note("node", || json!({ "pattern": "^[A-Za-z_][A-Za-z0-9_]{0,63}$" }));
     if !is_name(&text) && !f.is_wrong("node") {
         let what = format!("`{text}` is not a name of a ROS node");
         f.problem("node", what, "use letters, digits and _, e.g. \"whichone\"");
@@ -81,6 +84,7 @@ fn node(f: &mut Fields<'_>) -> String {
 
 fn network(f: &mut Fields<'_>) -> Network {
     let text = f.text("network");
+    f.note("network", || json!({ "pattern": "^(loopback|all|[0-9]+(\\.[0-9]+){3})$" }));
     match (text.as_str(), text.parse::<Ipv4Addr>()) {
         ("loopback", _) => Network::Loopback,
         ("all", _) => Network::All,

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use diagnostics::{Fields, Node, Report, Source, Table, suggestion};
 use messages::{SUPERVISOR, Service};
+use serde_json::json;
 
 use crate::files::one_of;
 
@@ -78,6 +79,10 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Vec<ServiceConfig> {
     let services = f.each("services", |name, f| {
         check_name(name, f);
         one(name, f)
+    });
+    f.note("services", || {
+        let others = NAME_LEN_MAX - 1;
+        json!({ "propertyNames": { "pattern": format!("^[a-z0-9][a-z0-9-]{{0,{others}}}$") } })
     });
     check_order(&services, f);
     services

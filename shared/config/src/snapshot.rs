@@ -104,7 +104,8 @@ impl Settings {
                 tree.merge(layer, &mut Vec::new(), &mut report);
             }
         }
-        load::check(tree, report, files, Some((measured, source)))
+        let examined = load::check(tree, report, files, Some((measured, source)));
+        examined.report.verdict(examined.settings)
     }
 
     /// The durations in force as TOML, a dependency of every service that decides. Empty if the

@@ -4,13 +4,15 @@ use std::fmt;
 
 /// An error in a text file.
 ///
-/// Displays as `FILE:LINE: KEY: WHAT; help: HELP`, without the parts that are unknown.
+/// Displays as `FILE:LINE:COLUMN: KEY: WHAT; help: HELP`, without the parts that are unknown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Path of the file, or another name of the source.
     pub file: String,
     /// Line, from 1, if known.
     pub line: Option<u32>,
+    /// Column, from 1, in characters, if known; only with a line.
+    pub column: Option<u32>,
     /// Dotted key or element, e.g. `objects[2].attributes.color`; empty for the file as a whole.
     pub key: String,
     /// The problem: expected and found.
@@ -30,6 +32,7 @@ impl Diagnostic {
         Self {
             file: file.into(),
             line: None,
+            column: None,
             key: key.into(),
             what: what.into(),
             help: help.into(),
@@ -40,6 +43,11 @@ impl Diagnostic {
     pub fn at(self, line: Option<u32>) -> Self {
         Self { line, ..self }
     }
+
+    /// The same with its column, from 1, in characters.
+    pub fn at_column(self, column: Option<u32>) -> Self {
+        Self { column, ..self }
+    }
 }
 
 impl fmt::Display for Diagnostic {
@@ -47,6 +55,9 @@ impl fmt::Display for Diagnostic {
         f.write_str(&self.file)?;
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
+            if let Some(column) = self.column {
+                write!(f, ":{column}")?;
+            }
         }
         if !self.key.is_empty() {
             write!(f, ": {}", self.key)?;
@@ -105,6 +116,11 @@ impl Report {
     /// Number of diagnostics so far.
     pub fn count(&self) -> usize {
         self.0.len()
+    }
+
+    /// The diagnostics so far, in the order found.
+    pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
+        self.0.iter()
     }
 
     /// Sorts the diagnostics by line.

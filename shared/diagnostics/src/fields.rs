@@ -6,6 +6,9 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use serde_json::json;
+
+use crate::schema::{ANY, Schema};
 use crate::source::quoted;
 use crate::{Node, Report, Scalar, Table, nearest, suggestion};
 
@@ -19,6 +22,8 @@ pub struct Fields<'a> {
     known: Vec<&'a str>,
     wrong: Vec<String>,
     report: &'a mut Report,
+    /// What is read, while a schema is made of it.
+    pub(crate) schema: Option<Schema>,
 }
 
 const QUOTES: &str = "write it in double quotes";
@@ -26,12 +31,13 @@ const QUOTES: &str = "write it in double quotes";
 impl<'a> Fields<'a> {
     /// Reads a table whose key is `path`.
     pub fn new(table: &'a Table, path: Vec<String>, report: &'a mut Report) -> Self {
-        Self { table, path, known: Vec::new(), wrong: Vec::new(), report }
+        Self { table, path, known: Vec::new(), wrong: Vec::new(), report, schema: None }
     }
 
     /// Reads a number within the range.
     pub fn number(&mut self, key: &'a str, range: RangeInclusive<f64>) -> f64 {
         let number = self.any_number(key);
+        self.note(key, || json!({ "minimum": range.start(), "maximum": range.end() }));
         if !self.is_wrong(key) && !range.contains(&number) {
             self.out_of_range(key, number, range.start(), range.end());
         }
@@ -40,6 +46,7 @@ impl<'a> Fields<'a> {
 
     /// Reads a finite number.
     pub fn any_number(&mut self, key: &'a str) -> f64 {
+        self.note(key, || json!({ "type": "number" }));
         let number = self.required(key).map(Node::as_number);
         self.typed(key, number, "a finite number", "write digits, e.g. `1.5`")
     }
@@ -54,6 +61,10 @@ impl<'a> Fields<'a> {
     where
         T: TryFrom<i64> + PartialOrd + Copy + Display + Default,
     {
+        self.note(key, || {
+            let bound = |bound: &T| bound.to_string().parse::<i64>().ok();
+            json!({ "type": "integer", "minimum": bound(range.start()), "maximum": bound(range.end()) })
+        });
         let integer = self.required(key).map(|node| match node {
             Node::Scalar(Scalar::Integer(number), _) => Some(*number),
             _ => None,
@@ -71,6 +82,7 @@ impl<'a> Fields<'a> {
 
     /// Reads a boolean.
     pub fn flag(&mut self, key: &'a str) -> bool {
+        self.note(key, || json!({ "type": "boolean" }));
         let flag = self.required(key).map(|node| match node {
             Node::Scalar(Scalar::Boolean(flag), _) => Some(*flag),
             _ => None,
@@ -80,6 +92,7 @@ impl<'a> Fields<'a> {
 
     /// Reads a string that is not blank.
     pub fn text(&mut self, key: &'a str) -> String {
+        self.note(key, || json!({ "type": "string", "pattern": "\\S" }));
         let node = self.required(key);
         node.and_then(|node| self.text_of(key, node)).unwrap_or_default()
     }
@@ -87,6 +100,7 @@ impl<'a> Fields<'a> {
     /// Reads a string that may be absent. An empty one counts as absent, so that a layer can take
     /// back the string of another.
     pub fn optional_text(&mut self, key: &'a str) -> Option<String> {
+        self.note(key, || json!({ "type": "string" }));
         let node = self.optional(key)?;
         let text = self.typed(key, Some(node.as_text().map(str::to_owned)), "a string", QUOTES);
         (!text.is_empty()).then_some(text)
@@ -95,7 +109,9 @@ impl<'a> Fields<'a> {
     /// Reads a path that may be absent. It must be absolute: services run in other folders than the
     /// one where it was written.
     pub fn absolute(&mut self, key: &'a str) -> Option<PathBuf> {
-        let path = PathBuf::from(self.optional_text(key)?);
+        let text = self.optional_text(key);
+        self.note(key, || json!({ "pattern": "^(/|$)" }));
+        let path = PathBuf::from(text?);
         if !path.is_absolute() {
             self.problem(key, "not an absolute path", "begin it with `/`");
         }
@@ -105,6 +121,7 @@ impl<'a> Fields<'a> {
     /// Reads one of the named choices.
     pub fn choice<T: Copy>(&mut self, key: &'a str, choices: &[(&str, T)]) -> T {
         let text = self.text(key);
+        self.note_choices(key, choices.iter().map(|(name, _)| *name));
         match choices.iter().find(|(name, _)| *name == text) {
             Some((_, choice)) => return *choice,
             None if self.is_wrong(key) => {}
@@ -115,12 +132,15 @@ impl<'a> Fields<'a> {
 
     /// The names of all keys.
     pub fn names(&self) -> Vec<&'a str> {
-        self.table.entries.iter().map(|(name, _)| name.as_str()).collect()
+        match self.schema {
+            Some(_) => vec![ANY],
+            None => self.table.entries.iter().map(|(name, _)| name.as_str()).collect(),
+        }
     }
 
     /// Returns true if the table has the key.
     pub fn has(&self, key: &str) -> bool {
-        self.table.get(key).is_some()
+        self.schema.is_some() || self.table.get(key).is_some()
     }
 
     /// The dotted key of this table.
@@ -158,6 +178,11 @@ impl<'a> Fields<'a> {
         })
     }
 
+    /// Returns true if no key of this table had a problem, those of nested tables aside.
+    pub fn is_right(&self) -> bool {
+        self.wrong.is_empty()
+    }
+
     /// Reports a problem with the value at `key`, or at an item `key[n]` of it.
     pub fn problem(&mut self, key: &str, what: impl Into<String>, help: impl Into<String>) {
         self.wrong.push(key.to_owned());
@@ -190,11 +215,18 @@ impl<'a> Fields<'a> {
 
     fn optional(&mut self, key: &'a str) -> Option<&'a Node> {
         self.known.push(key);
-        self.table.get(key)
+        let node = self.table.get(key);
+        if let (Some(schema), Some(node)) = (&mut self.schema, node) {
+            schema.set_default(key, node);
+        }
+        node
     }
 
     fn required(&mut self, key: &'a str) -> Option<&'a Node> {
         let node = self.optional(key);
+        if let Some(schema) = &mut self.schema {
+            schema.require(key, node);
+        }
         if node.is_none() {
             self.problem(key, "missing", format!("add `{key} = …`"));
         }

@@ -12,15 +12,18 @@
 //! | values with the place that they were read from | `source.rs` |
 //! | conversion of TOML and JSON | `text.rs` |
 //! | reading a table key by key, with types and ranges | `fields.rs`, `fields/nested.rs` |
+//! | JSON Schema of what a reader accepts | `schema.rs` |
 //! | "did you mean" | `spelling.rs` |
 
 mod diagnostic;
 mod fields;
+mod schema;
 mod source;
 mod spelling;
 mod text;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Report};
 pub use fields::Fields;
+pub use schema::schema_of;
 pub use source::{Node, Scalar, Source, Table, TextFile};
 pub use spelling::{nearest, suggestion};

@@ -28,6 +28,8 @@ pub struct Source {
     pub label: Arc<str>,
     /// Line, from 1, if there is a file.
     pub line: Option<u32>,
+    /// Column, from 1, in characters, if there is a line.
+    pub column: Option<u32>,
     /// Leading parts of a key that the file leaves out: `arm.toml` says `limb` for `arm.limb`.
     omits: usize,
 }
@@ -38,7 +40,7 @@ const BUILT_IN: &str = "built-in defaults";
 impl Source {
     /// A source whose keys leave out the first `omits` parts.
     pub fn new(label: impl Into<Arc<str>>, omits: usize) -> Self {
-        Self { label: label.into(), line: None, omits }
+        Self { label: label.into(), line: None, column: None, omits }
     }
 
     /// The source of defaults.
@@ -63,11 +65,19 @@ impl Source {
         what: impl Into<String>,
         help: impl Into<String>,
     ) -> Diagnostic {
-        Diagnostic::new(&*self.label, self.key(path), what, help).at(self.line)
+        self.locate(Diagnostic::new(&*self.label, self.key(path), what, help))
     }
 
-    pub(crate) fn at(&self, line: Option<u32>) -> Self {
-        Self { line: line.filter(|_| !self.is_built_in()), ..self.clone() }
+    /// The diagnostic with this place.
+    fn locate(&self, diagnostic: Diagnostic) -> Diagnostic {
+        diagnostic.at(self.line).at_column(self.column)
+    }
+
+    /// The same file at a line and a column; defaults have neither.
+    pub(crate) fn at(&self, (line, column): (u32, u32)) -> Self {
+        let is_file = !self.is_built_in();
+        let (line, column) = (is_file.then_some(line), is_file.then_some(column));
+        Self { line, column, ..self.clone() }
     }
 }
 
@@ -175,18 +185,18 @@ impl Node {
         }
     }
 
-    /// The line of what `rest` of a dotted key names in this value; none if `rest` does not continue
+    /// The place of what `rest` of a dotted key names in this value; none if `rest` does not continue
     /// a key here.
-    fn line_within(&self, rest: &str) -> Option<Option<u32>> {
+    fn place_within(&self, rest: &str) -> Option<&Source> {
         match self {
-            Self::Table(table) => Some(table.line_of(rest.strip_prefix('.')?)),
+            Self::Table(table) => Some(table.place_of(rest.strip_prefix('.')?)),
             Self::List(items, source) => {
                 let (n, rest) = rest.strip_prefix('[')?.split_once(']')?;
                 let item = n.parse::<usize>().ok().and_then(|n| items.get(n));
-                let line = |item: &Self| item.line_within(rest).unwrap_or(item.source().line);
-                Some(item.map_or(source.line, line))
+                let place = |item| Self::place_within(item, rest).unwrap_or(item.source());
+                Some(item.map_or(source, place))
             }
-            Self::Scalar(_, source) => rest.starts_with(['.', '[']).then_some(source.line),
+            Self::Scalar(_, source) => rest.starts_with(['.', '[']).then_some(source),
         }
     }
 }
@@ -249,7 +259,7 @@ impl Table {
         }
     }
 
-    /// A diagnostic at a dotted key of this table, with the line of the value that it names, or of
+    /// A diagnostic at a dotted key of this table, with the place of the value that it names, or of
     /// the nearest value that contains it.
     pub fn diagnostic(
         &self,
@@ -258,16 +268,18 @@ impl Table {
         help: impl Into<String>,
     ) -> Diagnostic {
         let key = key.into();
-        let line = self.line_of(&key);
-        Diagnostic::new(&*self.source.label, key, what, help).at(line)
+        let place = self.place_of(&key).clone();
+        place.locate(Diagnostic::new(&*self.source.label, key, what, help))
     }
 
-    fn line_of(&self, key: &str) -> Option<u32> {
-        let inside = |(name, node): &'_ (String, Node)| {
-            let rest = key.strip_prefix(quoted(name).as_str())?;
-            rest.is_empty().then(|| node.source().line).or_else(|| node.line_within(rest))
-        };
-        self.entries.iter().find_map(inside).unwrap_or(self.source.line)
+    fn place_of(&self, key: &str) -> &Source {
+        self.entries
+            .iter()
+            .find_map(|(name, node)| {
+                let rest = key.strip_prefix(quoted(name).as_str())?;
+                if rest.is_empty() { Some(node.source()) } else { node.place_within(rest) }
+            })
+            .unwrap_or(&self.source)
     }
 }
 

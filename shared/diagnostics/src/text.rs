@@ -57,7 +57,7 @@ impl Node {
 impl Table {
     /// Parses TOML; every syntax error is reported.
     pub fn parse(text: &str, source: &Source, report: &mut Report) -> Option<Self> {
-        let lines = Lines::of(text);
+        let lines = Places::of(text);
         let (table, errors) = DeTable::parse_recoverable(text);
         if errors.is_empty() {
             let mut parser = Parser { lines, source, path: Vec::new(), report };
@@ -65,10 +65,9 @@ impl Table {
         }
         for error in errors {
             let offset = error.span().map_or(0, |span| span.start);
-            let (key, message) =
-                (format!("column {}", lines.column(text, offset)), error.message());
-            let syntax = Diagnostic::new(&*source.label, key, message, "correct the TOML here");
-            report.add(syntax.at(Some(lines.line(offset))));
+            let (line, column) = lines.of_offset(offset);
+            let syntax = Diagnostic::new(&*source.label, "", error.message(), "correct the TOML here");
+            report.add(syntax.at(Some(line)).at_column(Some(column)));
         }
         None
     }
@@ -77,7 +76,7 @@ impl Table {
 /// Conversion of a parsed text, which keeps the order of keys: the parser sorts them, but knows
 /// their positions.
 struct Parser<'a> {
-    lines: Lines,
+    lines: Places<'a>,
     source: &'a Source,
     path: Vec<String>,
     report: &'a mut Report,
@@ -89,24 +88,24 @@ impl Parser<'_> {
         entries.sort_by_key(|(key, _)| key.span().start);
         let mut read = Table::empty(source);
         for (key, value) in entries {
-            let line = self.lines.line(key.span().start);
+            let place = self.lines.of_offset(key.span().start);
             let key = key.into_inner().into_owned();
             self.path.push(key.clone());
-            read.entries.extend(self.node(value, line).map(|node| (key, node)));
+            read.entries.extend(self.node(value, place).map(|node| (key, node)));
             self.path.pop();
         }
         read
     }
 
-    fn node(&mut self, value: Spanned<DeValue<'_>>, line: u32) -> Option<Node> {
-        let source = self.source.at(Some(line));
+    fn node(&mut self, value: Spanned<DeValue<'_>>, place: (u32, u32)) -> Option<Node> {
+        let source = self.source.at(place);
         let span = value.span();
         match value.into_inner() {
             DeValue::Table(table) => Some(Node::Table(self.table(table, source))),
             DeValue::Array(items) => {
                 let item = |item: Spanned<DeValue<'_>>| {
-                    let line = self.lines.line(item.span().start);
-                    self.node(item, line)
+                    let place = self.lines.of_offset(item.span().start);
+                    self.node(item, place)
                 };
                 Some(Node::List(items.into_iter().filter_map(item).collect(), source))
             }
@@ -116,7 +115,7 @@ impl Parser<'_> {
                     let help = "write a value that TOML can hold";
                     let (label, key) = (&*source.label, self.path.join("."));
                     let found = Diagnostic::new(label, key, error.message(), help);
-                    self.report.add(found.at(source.line));
+                    self.report.add(found.at(source.line).at_column(source.column));
                     None
                 }
             },
@@ -124,23 +123,31 @@ impl Parser<'_> {
     }
 }
 
-/// Byte offsets at which the lines of a text begin.
-struct Lines(Vec<usize>);
+/// Longest part of a line of which characters are counted, bytes.
+const COUNTED_MAX: usize = 4096;
 
-impl Lines {
-    fn of(text: &str) -> Self {
+/// Lines and columns of a text.
+struct Places<'a> {
+    text: &'a str,
+    /// Byte offsets at which the lines begin.
+    starts: Vec<usize>,
+}
+
+impl<'a> Places<'a> {
+    fn of(text: &'a str) -> Self {
         let after = text.match_indices('\n').map(|(at, _)| at + 1);
-        Self(std::iter::once(0).chain(after).collect())
+        Self { text, starts: std::iter::once(0).chain(after).collect() }
     }
 
-    fn line(&self, offset: usize) -> u32 {
-        u32::try_from(self.0.partition_point(|start| *start <= offset)).unwrap_or(u32::MAX)
-    }
-
-    /// The column of an offset, from 1, in characters.
-    fn column(&self, text: &str, offset: usize) -> usize {
-        let start = self.0[self.line(offset) as usize - 1];
-        text.get(start..offset).map_or(0, |before| before.chars().count()) + 1
+    /// Line and column of a byte offset, both from 1; the column in characters, and in bytes where
+    /// a line is so long that counting its characters for each value would take too long.
+    fn of_offset(&self, offset: usize) -> (u32, u32) {
+        let line = self.starts.partition_point(|start| *start <= offset);
+        let start = self.starts[line - 1];
+        let before = self.text.get(start..offset).filter(|before| before.len() <= COUNTED_MAX);
+        let column = before.map_or(offset - start, |before| before.chars().count()) + 1;
+        let number = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        (number(line), number(column))
     }
 }
 

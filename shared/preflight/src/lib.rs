@@ -8,10 +8,12 @@
 //! | loading a configuration with all checks | `load.rs` |
 //! | robot, limb and plan settings from a configuration | `setup.rs` |
 //! | reachability of every object | `reach.rs` |
+//! | places for objects that cannot be reached | `arrange.rs` |
 //! | durations of the arm's trajectories | `motion.rs` |
 //! | durations of speech: robot, person, recogniser | `speech.rs` |
 //! | durations of every question and pick in a scene | `measure.rs` |
 
+mod arrange;
 mod load;
 mod measure;
 mod motion;
@@ -23,7 +25,8 @@ mod testing;
 #[cfg(test)]
 mod tests;
 
-pub use load::{durations, load};
+pub use arrange::Arrangement;
+pub use load::{durations, load, load_with_scene};
 pub use measure::measure;
 pub use motion::{Extent, MotionError, Motions, Refusal};
 pub use reach::pose;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use config::{CostsFrom, Settings};
-use diagnostics::{Diagnostics, Report};
+use config::{CostsFrom, Examined, Settings};
+use diagnostics::{Diagnostics, TextFile};
 use dialogue::Durations;
 use scene::Scene;
 
@@ -13,18 +13,41 @@ use crate::{ArmSetup, Extent, MotionError, Motions, Pace, Voice, measure, reach}
 /// has a place, and measures the durations if they are the costs of questions.
 ///
 /// # Errors
-/// Every problem of the files at once; if there is none, every fault of the robot's description; if
-/// there is none either, every object with a place that the arm cannot fetch.
+/// Every problem of the files and every object with a place that the arm cannot fetch, at once. The
+/// reach is not checked where a problem concerns the arm's settings or the robot's description.
 pub fn load(
     dir: &Path,
     profile: Option<&str>,
     overrides: &[(String, String)],
 ) -> Result<Settings, Diagnostics> {
-    let mut settings = Settings::load(dir, profile, overrides)?;
-    let setup = ArmSetup::new(&settings)?;
-    let mut report = Report::default();
-    reach::check(&settings, &setup, &mut report);
-    report.verdict(Some(()))?;
+    load_with_scene(dir, profile, overrides, None)
+}
+
+/// Does the same as [`load`], with `scene` in place of the scene that the configuration names.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with_scene(
+    dir: &Path,
+    profile: Option<&str>,
+    overrides: &[(String, String)],
+    scene: Option<TextFile>,
+) -> Result<Settings, Diagnostics> {
+    let Examined { settings, mut report, arm_is_right } =
+        Settings::examine(dir, profile, overrides, scene);
+    let known = settings.as_ref().filter(|_| arm_is_right);
+    let setup = match known.map(|settings| (settings, ArmSetup::new(settings))) {
+        Some((settings, Ok(setup))) => {
+            reach::check(settings, &setup, &mut report);
+            Some(setup)
+        }
+        Some((_, Err(faults))) => {
+            report.extend(faults);
+            None
+        }
+        None => None,
+    };
+    let (mut settings, setup) = report.verdict(settings.zip(setup))?;
     if settings.dialogue.costs_from == CostsFrom::Robot {
         let pointing = settings.dialogue.actions.point();
         let measured = durations(&settings, &setup, &settings.scene, pointing);

@@ -5,7 +5,7 @@ use diagnostics::{Diagnostic, Report};
 use manipulation::{GraspError, ObjectPose, PlanError, PlanSettings, check_reachable};
 use scene::{Form, Placement};
 
-use crate::ArmSetup;
+use crate::{ArmSetup, Arrangement};
 
 /// Most objects with a place. The plans that are tried grow with the square of their number: this
 /// many take seconds. Objects without a place are not planned, so that their number is not limited.
@@ -15,7 +15,10 @@ const PLACED_MAX: usize = 256;
 /// all objects where some have none.
 pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) {
     let placed = placed(settings);
-    check_unplaced(settings, placed.len(), report);
+    // An object whose place is wrong has none here.
+    if report.count() == 0 {
+        check_unplaced(settings, placed.len(), report);
+    }
     if placed.len() > PLACED_MAX {
         let what =
             format!("expected at most {PLACED_MAX} objects with a place, found {}", placed.len());
@@ -33,24 +36,72 @@ pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) 
     }
     let mut hand_over = None;
     let elsewhere = reachable_elsewhere(&poses, setup);
-    for (((n, _), found), elsewhere) in placed.iter().zip(found).zip(elsewhere) {
+    let names: Vec<&str> =
+        placed.iter().map(|(n, _)| settings.scene.objects()[*n].name.as_str()).collect();
+    let (arrangement, mut searched) = (Arrangement::new(setup, poses), 0);
+    for (i, (((n, _), found), elsewhere)) in
+        placed.iter().zip(found).zip(elsewhere).enumerate()
+    {
         let Err(error) = found else { continue };
         if elsewhere {
             hand_over.get_or_insert(error);
             continue;
         }
-        let (key, help) = match &error {
-            PlanError::Grasp(error) => grasp_help(error),
-            _ => (
-                "xyz",
-                "move it, leave out its place, or change limb, hover_m or table_z_m of the arm",
-            ),
-        };
-        report.add(of_object(settings, *n, key, &reason(&error, setup), help));
+        if let PlanError::Grasp(grasp) = &error {
+            let (key, help) = grasp_help(grasp);
+            report.add(of_object(settings, *n, key, &reason(&error, setup), help));
+            continue;
+        }
+        let is_searched = searched < SEARCHED_MAX;
+        searched += usize::from(is_searched);
+        let (what, help) = move_help(i, &error, is_searched, &names, &arrangement);
+        report.add(of_object(settings, *n, "xyz", &what, &help));
     }
     if let Some(error) = hand_over {
         report.add(hand_over_problem(settings, &error));
     }
+}
+
+/// Most objects for which a better place is searched: each takes a second or so.
+const SEARCHED_MAX: usize = 8;
+
+/// Returns why object `i` cannot be fetched, with the other object that is in the way, and a move that
+/// helps, both where `is_searched`.
+fn move_help(
+    i: usize,
+    error: &PlanError,
+    is_searched: bool,
+    names: &[&str],
+    arrangement: &Arrangement<'_>,
+) -> (String, String) {
+    const OTHERWISE: &str = "leave out its place, or change limb, hover_m or table_z_m of the arm";
+    let mut what = reason(error, arrangement.setup());
+    if !is_searched {
+        return (what, format!("move it, {OTHERWISE}"));
+    }
+    if let Some(other) = arrangement.in_the_way(i) {
+        what += &format!(" (`{}` is in the way)", names[other]);
+    }
+    let help = match arrangement.nearest(i) {
+        None => format!("no place at this height helps: {OTHERWISE}"),
+        Some(to) => {
+            let [x, y, z] = to;
+            let moved = directions(arrangement.place(i), to);
+            format!("move it {moved}: xyz = [{x}, {y}, {z}]")
+        }
+    };
+    (what, help)
+}
+
+/// A horizontal move in words, as the robot sees it: `40 mm to the left and 10 mm forward`.
+fn directions(from: [f64; 3], to: [f64; 3]) -> String {
+    let part = |axis: usize, plus: &str, minus: &str| {
+        let mm = (to[axis] - from[axis]) * 1e3;
+        let way = if mm > 0.0 { plus } else { minus };
+        (mm.abs() >= 0.5).then(|| format!("{:.0} mm {way}", mm.abs()))
+    };
+    let parts = [part(1, "to the left", "to the right"), part(0, "forward", "back")];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(" and ")
 }
 
 /// Returns the key that keeps an object from being held, and how it can be held after all.
@@ -117,9 +168,10 @@ fn check_widths(
     let (open_m, whole_m) = (widest(setup.plan.open_percent), widest(100.0));
     for (n, pose) in placed {
         if pose.grasp_width_m > open_m && pose.grasp_width_m <= whole_m {
-            let what = format!("is wider than the fingers open: {:.1} mm", open_m * 1e3);
-            let help = "raise grip_open_percent of the arm";
-            report.add(of_object(settings, *n, "grasp_width", &what, help));
+            let (width_mm, open_mm) = (pose.grasp_width_m * 1e3, open_m * 1e3);
+            let what = format!("is gripped at {width_mm:.1} mm, and the fingers open {open_mm:.1} mm");
+            let help = format!("raise grip_open_percent of the arm: at 100 they open {:.1} mm", whole_m * 1e3);
+            report.add(of_object(settings, *n, "grasp_width", &what, &help));
         }
     }
 }

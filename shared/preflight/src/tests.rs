@@ -134,12 +134,12 @@ fn preflight_reports_an_object_out_of_reach() {
     };
     let far = complaints(&bowl_with("xyz", "xyz = [2.0, 0.2, -0.125]"), &[]);
     let expected =
-        "scenes/bowls.toml:12: objects[0].xyz: `red_one` is out of reach of both limbs: ";
+        "scenes/bowls.toml:12:1: objects[0].xyz: `red_one` is out of reach of both limbs: ";
     assert!(far.starts_with(expected), "{far}");
     let left = complaints(&bowl_with("xyz", "xyz = [0.7, -0.8, -0.125]"), &[("arm.limb", "left")]);
     assert!(left.contains("`red_one` is out of reach of the left limb: "), "{left}");
     let wide = complaints(&bowl_with("grasp_width", "grasp_width = 0.09"), &[]);
-    let expected = "scenes/bowls.toml:14: objects[0].grasp_width: `red_one` cannot be grasped: ";
+    let expected = "scenes/bowls.toml:14:1: objects[0].grasp_width: `red_one` cannot be grasped: ";
     assert!(wide.starts_with(expected), "{wide}");
     let thin = complaints(&bowl_with("grasp_width", "grasp_width = 0.0015"), &[]);
     assert!(thin.contains("would close on 1.5 mm but holds 1.9 mm at least; help: "), "{thin}");
@@ -152,7 +152,7 @@ fn preflight_reports_an_object_out_of_reach() {
     assert!(solid.contains("objects[0].form: ") && solid.contains(expected), "{solid}");
     let narrow = [("arm.grip_open_percent", "30.0")];
     let narrow = complaints(&bowl_with("grasp_width", "grasp_width = 0.02"), &narrow);
-    assert!(narrow.contains("`red_one` is wider than the fingers open: 11.4 mm"), "{narrow}");
+    assert!(narrow.contains("`red_one` is gripped at 20.0 mm, and the fingers open 11.4 mm; help: raise"), "{narrow}");
 }
 
 /// A scene with the bowl and `more` others at its place.
@@ -194,7 +194,7 @@ fn preflight_rejects_a_scene_without_poses() {
     assert_eq!(
         complaints,
         [
-            "scenes/bowls.toml:6: objects: no object has a place, so none can be fetched; help: add `xyz`, `size` and `grasp_width` to those within reach"
+            "scenes/bowls.toml:6:3: objects: no object has a place, so none can be fetched; help: add `xyz`, `size` and `grasp_width` to those within reach"
         ]
     );
 }
@@ -216,6 +216,76 @@ fn preflight_accepts_thousands_of_objects_without_a_place_but_neither_pointing_n
         "--set: dialogue.costs.from: fetching `far_0` takes no known time: it has no place; help: use \"config\", or give every object a place",
     ];
     assert_eq!(complaints, expected);
+}
+
+/// A bowl with boxes, one of them so near that the gripper does not fit beside it.
+fn narrow() -> String {
+    let boxes = [("near", 0.265), ("far", -0.2)].map(|(name, y)| {
+        format!(
+            "\n[[objects]]\nname = \"{name}\"\nattributes = {{ color = \"red\" }}\nxyz = [0.7, {y}, -0.055]\n\
+             size = [0.2, 0.02, 0.2]\ngrasp_width = 0.02\n"
+        )
+    });
+    format!("{ONE_BOWL}{}", boxes.concat())
+}
+
+/// The place that a help proposes.
+fn proposed(line: &str) -> &str {
+    let (_, place) = line.split_once(": xyz = ").unwrap_or_else(|| panic!("{line}"));
+    place
+}
+
+#[test]
+fn clearance_problem_names_the_other_object_and_a_move_that_helps() {
+    let text = narrow();
+    let found = complaints(&[("scenes/bowls.toml", &text)], &[]);
+    assert!(found[0].contains("objects[0].xyz: `red_one` cannot be fetched"), "{found:?}");
+    assert!(found[0].contains("(`near` is in the way); help: move it "), "{found:?}");
+    assert!(found[0].contains(" mm to the right"), "{found:?}");
+    let moved = text.replacen("[0.7, 0.2, -0.125]", proposed(&found[0]), 1);
+    assert_ne!(moved, text);
+    let left = load(folder(&[("scenes/bowls.toml", &moved)]).path(), None, &[]).err();
+    let left = left.map_or_else(String::new, |left| left.to_string());
+    assert!(!left.contains("`red_one`"), "{left}");
+}
+
+#[test]
+fn object_out_of_reach_gets_the_nearest_place_within() {
+    let far = bowl_with("xyz", "xyz = [0.7, 1.3, -0.125]");
+    let found = complaints(&[("scenes/bowls.toml", &far)], &[]);
+    assert!(found[0].contains("help: move it ") && found[0].contains("to the right"), "{found:?}");
+    let near = bowl_with("xyz", &format!("xyz = {}", proposed(&found[0])));
+    load(folder(&[("scenes/bowls.toml", &near)]).path(), None, &[]).unwrap();
+}
+
+#[test]
+fn places_are_checked_in_the_same_round_as_everything_else() {
+    let scene = bowl_with("xyz", "xyz = [2.0, 0.2, -0.125]").replace("name = \"color\"", "nmae = 3");
+    let files = [("scenes/bowls.toml", scene.as_str()), ("console.toml", "viewers_max = 0")];
+    let found = complaints(&files, &[]).join("\n");
+    for part in ["console.toml:1:1: viewers_max", "nmae: unknown key", "`red_one` is out of reach"] {
+        assert!(found.contains(part), "{part}: {found}");
+    }
+    // With the arm's own settings wrong its reach is not known.
+    let files = [("scenes/bowls.toml", scene.as_str()), ("arm.toml", "hover_m = 0")];
+    let found = complaints(&files, &[]).join("\n");
+    assert!(found.contains("hover_m") && !found.contains("out of reach"), "{found}");
+}
+
+#[test]
+fn nine_objects_without_places_are_arranged_the_same_way_each_time() {
+    let settings = Settings::load(&shipped(), None, &[]).unwrap();
+    let setup = ArmSetup::new(&settings).unwrap();
+    let bowl = crate::pose(&settings.scene.objects()[0].placement.unwrap());
+    let poses = vec![manipulation::ObjectPose { xyz_m: [0.0; 3], ..bowl }; 9];
+    let all: Vec<usize> = (0..9).collect();
+    let arranged = || {
+        let mut arrangement = crate::Arrangement::new(&setup, poses.clone());
+        assert_eq!(arrangement.arrange(&all), all);
+        all.iter().for_each(|&i| assert!(arrangement.limb(i).is_ok(), "{i}"));
+        all.iter().map(|&i| arrangement.place(i)).collect::<Vec<_>>()
+    };
+    assert_eq!(arranged(), arranged());
 }
 
 /// Baxter with another velocity limit of its first joints.

@@ -263,7 +263,7 @@ fn check_values(attribute: &DraftAttribute, report: &mut Checks<'_>) {
 }
 
 /// Longest wording of a question, in characters.
-const WORDING_CHARS_MAX: usize = 120;
+pub(crate) const WORDING_CHARS_MAX: usize = 120;
 
 fn check_wording(attribute: &DraftAttribute, report: &mut Checks<'_>) {
     const SLOTS: [&str; 3] = ["{value}", "{attribute}", "{noun}"];

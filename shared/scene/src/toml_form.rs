@@ -33,9 +33,12 @@
 //! questions and names the entries of a belief.
 
 use diagnostics::{Diagnostics, Fields, Report, Source, Table};
+use serde_json::{Value as Json, json};
 
-use crate::check::{Checks, Draft, DraftAttribute, DraftObject, DraftValue};
-use crate::{Form, Placement, Scene};
+use crate::check::{
+    Checks, Draft, DraftAttribute, DraftObject, DraftValue, WORDING_CHARS_MAX,
+};
+use crate::{Form, Placement, Role, Scene};
 
 impl Scene {
     /// Reads the text of a scene file; `file` is its name in diagnostics.
@@ -44,38 +47,53 @@ impl Scene {
     /// Every problem of the text at once.
     pub fn from_toml(file: &str, text: &str) -> Result<Self, Diagnostics> {
         let mut report = Report::default();
-        let scene = Table::parse(text, &Source::new(file, 0), &mut report).and_then(|table| {
-            let draft = draft(&table, &mut report);
-            draft.check(&mut Checks { table: &table, report: &mut report })
-        });
+        let scene = Self::examine(file, text, &mut report);
         report.verdict(scene)
+    }
+
+    /// Reads the text of a scene file, reports every problem of it, and returns the scene without its
+    /// wrong parts, so that the places of the other objects can be checked in the same round; `None` if
+    /// there is no scene without them.
+    pub fn examine(file: &str, text: &str, report: &mut Report) -> Option<Self> {
+        let table = Table::parse(text, &Source::new(file, 0), report)?;
+        let mut f = Fields::new(&table, Vec::new(), report);
+        let draft = draft(&mut f);
+        f.finish();
+        draft.check(&mut Checks { table: &table, report })
+    }
+
+    /// Returns the JSON Schema of scene files.
+    pub fn schema() -> Json {
+        diagnostics::schema_of(&Table::empty(Source::built_in()), draft)
     }
 }
 
-fn draft(table: &Table, report: &mut Report) -> Draft {
-    let mut f = Fields::new(table, Vec::new(), report);
+fn draft(f: &mut Fields<'_>) -> Draft {
     let draft = Draft {
         name: f.text("name"),
         noun: f.text("noun"),
-        ask_wanted: f.one_or_more_texts("ask_wanted"),
-        ask_point: f.one_or_more_texts("ask_point"),
+        ask_wanted: wordings(f, "ask_wanted"),
+        ask_point: wordings(f, "ask_point"),
         attributes: f.list("attributes", "", attribute),
         objects: f.list("objects", "", object),
     };
-    f.finish();
+    f.at_least_one("attributes");
+    f.at_least_one("objects");
     draft
 }
 
 fn attribute(f: &mut Fields<'_>) -> DraftAttribute {
-    DraftAttribute {
+    let attribute = DraftAttribute {
         key: f.key(),
         name: f.text("name"),
         synonyms: f.texts("synonyms"),
-        role: f.optional_text("role"),
-        ask_yes_no: f.one_or_more_texts("ask_yes_no"),
-        ask_which: f.one_or_more_texts("ask_which"),
+        role: role(f),
+        ask_yes_no: wordings(f, "ask_yes_no"),
+        ask_which: wordings(f, "ask_which"),
         values: f.list("values", "", value),
-    }
+    };
+    f.at_least_one("values");
+    attribute
 }
 
 fn value(f: &mut Fields<'_>) -> DraftValue {
@@ -84,8 +102,30 @@ fn value(f: &mut Fields<'_>) -> DraftValue {
         name: f.text("name"),
         synonyms: f.texts("synonyms"),
         spoken: f.optional_text("spoken"),
-        role: f.optional_text("role"),
+        role: role(f),
     }
+}
+
+fn role(f: &mut Fields<'_>) -> Option<String> {
+    let role = f.optional_text("role");
+    f.note_choices("role", Role::NAMES.iter().map(|(name, _)| *name).chain([""]));
+    role
+}
+
+/// Reads wordings of a question; the [checks](crate::check) limit them.
+fn wordings(f: &mut Fields<'_>, key: &'static str) -> Vec<String> {
+    let texts = f.one_or_more_texts(key);
+    f.note(key, || {
+        let text = match key {
+            "ask_yes_no" => r"\{value\}",
+            "ask_which" => r"^((?!\{value\})[\s\S])*\S((?!\{value\})[\s\S])*$",
+            _ => r"\S",
+        };
+        let text = json!({ "type": "string", "pattern": text, "maxLength": WORDING_CHARS_MAX });
+        let list = json!({ "type": "array", "items": text, "minItems": 1, "uniqueItems": true });
+        json!({ "anyOf": [text, list] })
+    });
+    texts
 }
 
 pub(crate) fn object(f: &mut Fields<'_>) -> DraftObject {
@@ -103,14 +143,15 @@ pub(crate) fn object(f: &mut Fields<'_>) -> DraftObject {
 /// Greatest slope of a wall that the fingers, coming from above, enclose: degrees from the vertical.
 const WALL_DEG_MAX: f64 = 30.0;
 
-/// The place and size of an object: all of it or nothing.
+/// Lengths above these are taken for other units than metres.
+const EXTENT_MAX_M: f64 = 2.0;
+const GRASP_MAX_M: f64 = 0.5;
+const DISTANCE_MAX_M: f64 = 5.0;
+
+/// The place and size of an object: all of it or nothing; nothing either where something is wrong.
 fn placement(f: &mut Fields<'_>) -> Option<Placement> {
     const KEYS: [&str; 7] = ["xyz", "yaw", "size", "grasp_width", "mass_kg", "wall_deg", "form"];
-    if !KEYS.into_iter().any(|key| f.has(key)) {
-        f.allow(&KEYS);
-        return None;
-    }
-    let placement = Placement {
+    let placement = f.together(&KEYS, |f| Placement {
         xyz: f.triple("xyz"),
         yaw: if f.has("yaw") { f.any_number("yaw") } else { 0.0 },
         size: f.triple("size"),
@@ -118,21 +159,13 @@ fn placement(f: &mut Fields<'_>) -> Option<Placement> {
         mass_kg: f.has("mass_kg").then(|| f.any_number("mass_kg")),
         wall_deg: if f.has("wall_deg") { f.any_number("wall_deg") } else { 0.0 },
         form: if f.has("form") { f.choice("form", &Form::NAMES) } else { Form::default() },
-    };
-    for optional in ["yaw", "mass_kg", "wall_deg", "form"] {
-        if !f.has(optional) {
-            f.allow(&[optional]);
-        }
-    }
-    let sizes = placement.size.iter().enumerate().map(|(n, extent)| (format!("size[{n}]"), extent));
-    let width = ("grasp_width".to_owned(), &placement.grasp_width);
-    for (key, length_m) in sizes.chain([width]) {
-        if *length_m <= 0.0 && !f.is_wrong(key.split('[').next().unwrap_or(&key)) {
-            let what = format!("expected a length above 0 m, found {length_m}");
-            f.problem(&key, what, "");
-        }
-    }
-    if let Some(mass_kg) = placement.mass_kg.filter(|mass_kg| *mass_kg <= 0.0) {
+    })?;
+    check_lengths(f, "xyz", &placement.xyz, DISTANCE_MAX_M);
+    check_lengths(f, "size", &placement.size, EXTENT_MAX_M);
+    check_lengths(f, "grasp_width", &[placement.grasp_width], GRASP_MAX_M);
+    if let Some(mass_kg) = placement.mass_kg.filter(|mass_kg| *mass_kg <= 0.0)
+        && !f.is_wrong("mass_kg")
+    {
         f.problem("mass_kg", format!("expected a mass above 0 kg, found {mass_kg}"), "");
     }
     if !(0.0..=WALL_DEG_MAX).contains(&placement.wall_deg) {
@@ -140,5 +173,37 @@ fn placement(f: &mut Fields<'_>) -> Option<Placement> {
         let help = "flatter walls cannot be gripped from above: leave out the object's place";
         f.problem("wall_deg", what, help);
     }
-    Some(placement)
+    f.note("mass_kg", || json!({ "exclusiveMinimum": 0 }));
+    f.note("wall_deg", || json!({ "minimum": 0, "maximum": WALL_DEG_MAX }));
+    let is_right = !KEYS.iter().any(|key| f.is_wrong(key));
+    is_right.then_some(placement)
+}
+
+/// Reports lengths that no object on a table has: in metres they are at most `max_m`, and above 0
+/// unless they are coordinates.
+fn check_lengths(f: &mut Fields<'_>, key: &'static str, lengths_m: &[f64], max_m: f64) {
+    let is_place = key == "xyz";
+    f.note(key, || {
+        let rule = match is_place {
+            true => json!({ "type": "number", "minimum": -max_m, "maximum": max_m }),
+            false => json!({ "type": "number", "exclusiveMinimum": 0, "maximum": max_m }),
+        };
+        if lengths_m.len() == 1 { rule } else { json!({ "items": rule }) }
+    });
+    if f.is_wrong(key) {
+        return;
+    }
+    for (n, &length_m) in lengths_m.iter().enumerate() {
+        let item = if lengths_m.len() == 1 { key.to_owned() } else { format!("{key}[{n}]") };
+        if length_m <= 0.0 && !is_place {
+            f.problem(&item, format!("expected a length above 0 m, found {length_m}"), "");
+        } else if length_m.abs() > max_m {
+            // Centimetres, unless even these are too long: then millimetres.
+            let guess_m = [100.0, 1000.0].map(|parts| length_m / parts);
+            let guess_m = guess_m.iter().find(|guess_m| guess_m.abs() <= max_m / 2.0);
+            let guess = guess_m.map_or_else(String::new, |guess_m| format!("; did you mean {guess_m}?"));
+            let what = format!("expected at most {max_m} m, found {length_m}");
+            f.problem(&item, what, format!("lengths are in metres{guess}"));
+        }
+    }
 }

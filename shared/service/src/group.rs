@@ -17,6 +17,8 @@ pub const ENV_EPOCH: &str = "WHICHONE_EPOCH";
 pub const ENV_LIFELINE_FD: &str = "WHICHONE_LIFELINE_FD";
 /// … the log filter, as of `tracing_subscriber::EnvFilter`.
 pub const ENV_LOG: &str = "WHICHONE_LOG";
+/// … the form of the log lines: `json` for one object a line, anything else for text.
+pub const ENV_LOG_FORMAT: &str = "WHICHONE_LOG_FORMAT";
 
 /// Longest path of a Unix socket, without the final zero.
 const SOCKET_PATH_MAX: usize = 107;

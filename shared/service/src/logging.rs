@@ -5,7 +5,7 @@
 //! the thread's queue, or in a pipe that nobody reads, is dropped, and the next one that can be written is
 //! preceded by the number of lost lines.
 
-use crate::group::ENV_LOG;
+use crate::group::{ENV_LOG, ENV_LOG_FORMAT};
 use crossbeam_channel::{Receiver, Sender, bounded};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{FileType, Mode, OFlags, fstat, open};
@@ -35,7 +35,7 @@ pub fn init() -> LogFlush {
     let filter = EnvFilter::try_new(format!("{QUIET},{wanted}"))
         .unwrap_or_else(|_| EnvFilter::new(format!("{QUIET},info")));
     let colour = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    let json = std::env::var("WHICHONE_LOG_FORMAT").is_ok_and(|format| format == "json");
+    let json = std::env::var(ENV_LOG_FORMAT).is_ok_and(|format| format == "json");
     let nowhere = LogFlush(None);
     let Ok(stderr) = standard_error() else { return nowhere };
     let Ok(queue) = Queue::start(LossyLog::new(stderr, json)) else { return nowhere };

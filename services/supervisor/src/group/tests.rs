@@ -47,7 +47,7 @@ fn group(services: &[(&str, &[&str])]) -> Group {
     Group::new(&GroupSpec {
         services: services.iter().map(|(name, after)| service(name, after)).collect(),
         restart: LIMITS,
-        log: Log { level: "info".into(), file_bytes_max: 1 << 20, files_kept: 1 },
+        log: Log { level: "info".into(), json: false, file_bytes_max: 1 << 20, files_kept: 1 },
     })
     .unwrap()
 }
@@ -98,7 +98,7 @@ fn group_is_degraded_while_a_running_service_is_short_of_a_resource() {
 fn observer_neither_delays_nor_degrades_its_group() {
     let mut services: Vec<_> = CHAIN.iter().map(|(name, after)| service(name, after)).collect();
     services.push(ServiceSpec { observer: true, ..service("eye", &[]) });
-    let log = Log { level: "info".into(), file_bytes_max: 1 << 20, files_kept: 1 };
+    let log = Log { level: "info".into(), json: false, file_bytes_max: 1 << 20, files_kept: 1 };
     let mut group = Group::new(&GroupSpec { services, restart: LIMITS, log }).unwrap();
     group.start(NOW);
     while let Some((service, effect)) = group.settle(NOW) {

@@ -23,12 +23,13 @@ pub struct GroundArgs {
     /// The scene: a TOML or JSON file, or the name of a scene of the configuration.
     #[arg(long, value_name = "FILE")]
     pub scene: PathBuf,
-    /// Folder of the configuration [default: ./config, else `config` beside the program].
-    #[arg(long, value_name = "DIR", env = "WHICHONE_CONFIG", hide_env_values = true)]
-    pub config: Option<PathBuf>,
-    /// Interpretation of utterances.
-    #[arg(long, value_parser = one_of(LANGUAGES), default_value = "careful")]
-    pub language: Language,
+    /// Interpretation of utterances [default: careful; with --config, --profile or --set the
+    /// configuration's].
+    #[arg(long, value_parser = one_of(LANGUAGES))]
+    pub language: Option<Language>,
+    /// The configuration.
+    #[command(flatten)]
+    pub config: ConfigArgs,
     /// The lines.
     #[command(flatten)]
     pub input: InputArgs,
@@ -37,9 +38,10 @@ pub struct GroundArgs {
 /// The decision problem: what the robot may do, and what it costs.
 #[derive(Clone, Debug, Args)]
 pub struct ProblemArgs {
-    /// Whether user and robot share the room; the robot points only in mode `present`.
-    #[arg(long, value_parser = one_of(MODES), default_value = "remote")]
-    pub mode: Mode,
+    /// Whether user and robot share the room; the robot points only in mode `present` [default: remote;
+    /// with --config, --profile or --set the configuration's].
+    #[arg(long, value_parser = one_of(MODES))]
+    pub mode: Option<Mode>,
     /// Exclude questions like "Is it white?".
     #[arg(long)]
     pub no_attr: bool,
@@ -50,10 +52,12 @@ pub struct ProblemArgs {
     #[arg(long, value_name = "PRESET", value_parser = cost_names())]
     pub costs: Option<String>,
     /// Probability that a user who hears the wrong object announced denies it in time, 0 to below 1
-    /// [default: 0, every pick is final; a study without a preset: the configuration's].
+    /// [default: 0, every pick is final; with --config, --profile or --set, and in a study without a
+    /// preset, the configuration's].
     #[arg(long, value_name = "C", value_parser = heard)]
     pub announce: Option<f64>,
-    /// The configuration, for everything else.
+    /// The configuration. Its parameters and costs always count; with --config, --profile or --set the
+    /// robot also asks only the kinds of questions that the configuration allows.
     #[command(flatten)]
     pub config: ConfigArgs,
 }

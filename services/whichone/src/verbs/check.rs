@@ -1,7 +1,9 @@
 //! `check`: validation of a configuration, and the services that would run.
 
+use std::path::Path;
+
 use config::Settings;
-use diagnostics::Diagnostics;
+use diagnostics::{Diagnostic, Diagnostics};
 use scene::Scene;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
@@ -15,22 +17,32 @@ use crate::output::{Ink, Output, note, table};
 pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
     let folder = paths::config_folder(&args.config)?;
     let loaded = preflight::load(&folder, args.config.profile.as_deref(), &args.config.set);
+    verdict(loaded, &folder, args.values, out)
+}
+
+/// Reports what was loaded from `from`: every problem, or the services that would run.
+pub(super) fn verdict(
+    loaded: Result<Settings, Diagnostics>,
+    from: &Path,
+    with_values: bool,
+    out: &mut Output<'_>,
+) -> Outcome {
     match loaded {
         Err(problems) => refused(&problems, out),
         Ok(settings) if out.is_json() => {
-            out.json(&as_json(&settings, args.values))?;
+            out.json(&as_json(&settings, with_values))?;
             Ok(Exit::Ok)
         }
         Ok(settings) => {
             let good = out.style().paint(Ink::Green, "is right");
-            out.line(format_args!("{} {good}", folder.display()))?;
+            out.line(format_args!("{} {good}", from.display()))?;
             for line in summary(&settings) {
                 out.line(line)?;
             }
             for ambiguity in settings.scene.ambiguities() {
                 note(format_args!("warning: scene {}: {ambiguity}", settings.scene.name()));
             }
-            if args.values {
+            if with_values {
                 values(&settings, out)?;
             }
             Ok(Exit::Ok)
@@ -40,15 +52,21 @@ pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
 
 fn refused(problems: &Diagnostics, out: &mut Output<'_>) -> Outcome {
     if out.is_json() {
-        let problems: Vec<Json> = (problems.iter())
-            .map(|p| json!({ "file": p.file, "key": p.key, "what": p.what, "cure": p.help }))
-            .collect();
-        out.json(&json!({ "ok": false, "problems": problems }))?;
+        out.json(&json!({ "ok": false, "problems": self::problems(problems) }))?;
     } else {
         note(problems);
         note(scene::count(problems.iter().count(), "problem"));
     }
     Ok(Exit::Config)
+}
+
+/// The problems as JSON.
+pub(super) fn problems(problems: &Diagnostics) -> Vec<Json> {
+    let problem = |p: &Diagnostic| {
+        json!({ "file": p.file, "line": p.line, "column": p.column, "key": p.key, "what": p.what,
+                "cure": p.help })
+    };
+    problems.iter().map(problem).collect()
 }
 
 fn summary(settings: &Settings) -> Vec<String> {

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::log_tail::LogFile;
@@ -65,16 +65,46 @@ fn follow(
         .try_for_each(|(service, line)| print(several, service, line, out))
 }
 
-/// A line with `--json`.
+/// A line with `--json`: as it stands in the log, and its parts where it has them.
 #[derive(Serialize)]
 struct Line<'a> {
     service: &'a str,
     line: &'a str,
+    #[serde(flatten)]
+    parts: Option<Parts>,
+}
+
+/// Parts of a line that a service wrote; a panic or the output of a library has none.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+struct Parts {
+    timestamp: String,
+    level: String,
+    /// The module that wrote it.
+    target: String,
+    /// Values by name, the text as `message`. Lines of text have the values in the message.
+    fields: serde_json::Map<String, serde_json::Value>,
+}
+
+/// Returns the parts of a line of either form of the logs.
+fn parts(line: &str) -> Option<Parts> {
+    if line.starts_with('{') {
+        return serde_json::from_str(line).ok();
+    }
+    let timestamp = time_of(line)?;
+    let (level, rest) = line[timestamp.len()..].trim_start().split_once(' ')?;
+    let (target, message) = rest.trim_start().split_once(": ")?;
+    let is_level = matches!(level, "TRACE" | "DEBUG" | "INFO" | "WARN" | "ERROR");
+    is_level.then(|| Parts {
+        timestamp: timestamp.to_owned(),
+        level: level.to_owned(),
+        target: target.to_owned(),
+        fields: [("message".to_owned(), message.into())].into_iter().collect(),
+    })
 }
 
 fn print(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Result<(), Failure> {
     if out.is_json() {
-        return out.json(&Line { service, line });
+        return out.json(&Line { service, line, parts: parts(line) });
     }
     let line = one_line(line);
     if !several {

@@ -3,14 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use config::CostsFrom;
-use dialogue::{Actions, Announce, Costs, Model, Params, registry};
+use dialogue::{Actions, Announce, Costs, Mode, Model, Params, registry};
+use language::Language;
 use preflight::ArmSetup;
 use scene::Scene;
 use service::exit::{Exit, Failure};
 
 use super::paths;
-use crate::batch::{Decider, Problem};
-use crate::cli::{ConfigArgs, PlanArgs, ProblemArgs};
+use crate::batch::{Decider, Grounder, Problem};
+use crate::cli::{ConfigArgs, GroundArgs, PlanArgs, ProblemArgs};
 use crate::scene_file;
 
 /// Default planner without an option and a configuration.
@@ -23,15 +24,32 @@ pub(super) fn planner_of(problem: &Problem) -> &str {
 
 /// The planner and its problem.
 pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Failure> {
-    let problem = of_scene(&args.scene, &args.problem)?;
+    let follows = args.problem.config.is_given();
+    let problem = of_scene(&args.scene, &args.problem, follows)?;
     let planner = registry::planner(args.planner.as_deref().unwrap_or(planner_of(&problem)))
         .map_err(|error| Failure::new(Exit::Config, error.to_string()))?;
     Ok(Decider { problem, planner })
 }
 
-/// The problem of a scene given by its file or by its name in the configuration.
-pub(super) fn of_scene(scene: &Path, args: &ProblemArgs) -> Result<Problem, Failure> {
-    problem(load_scene(scene, &args.config)?, args)
+/// The reader of utterances about a scene.
+pub(super) fn grounder(args: &GroundArgs) -> Result<Grounder, Failure> {
+    let scene = load_scene(&args.scene, &args.config)?;
+    let language = match args.language {
+        Some(language) => language,
+        None if args.config.is_given() => paths::settings(&args.config)?.dialogue.language,
+        None => Language::Careful,
+    };
+    Ok(Grounder::new(scene, language))
+}
+
+/// The problem of a scene given by its file or by its name in the configuration. With `follows`, all
+/// that the command line leaves open is as the robot of the configuration does it.
+pub(super) fn of_scene(
+    scene: &Path,
+    args: &ProblemArgs,
+    follows: bool,
+) -> Result<Problem, Failure> {
+    problem(load_scene(scene, &args.config)?, args, follows)
 }
 
 /// Reads a scene given by its file or by its name in the configuration.
@@ -41,7 +59,7 @@ pub(super) fn load_scene(named: &Path, args: &ConfigArgs) -> Result<Scene, Failu
 
 /// Builds the problem from the command line, else the configuration, else, if none is named or
 /// found, the defaults.
-fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Failure> {
+fn problem(scene: Scene, args: &ProblemArgs, follows: bool) -> Result<Problem, Failure> {
     let config = &args.config;
     let settings = match paths::config_folder(config) {
         Err(_) if !config.is_given() => None,
@@ -51,8 +69,16 @@ fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Failure> {
     let params = configured.map_or_else(Params::default, |dialogue| dialogue.params);
     let preset = args.costs.as_deref().and_then(Costs::preset);
     let costs = preset.or(configured.map(|dialogue| dialogue.costs)).unwrap_or_default();
-    let actions = Actions { mode: args.mode, attribute: !args.no_attr, which: !args.no_which };
-    let model = Model::new(&scene, params);
+    let followed = settings.as_ref().filter(|_| follows);
+    let all = Actions { mode: Mode::Remote, attribute: true, which: true };
+    let allowed = followed.map_or(all, |settings| settings.dialogue.actions);
+    let actions = Actions {
+        mode: args.mode.unwrap_or(allowed.mode),
+        attribute: allowed.attribute && !args.no_attr,
+        which: allowed.which && !args.no_which,
+    };
+    let model = followed
+        .map_or_else(|| Model::new(&scene, params), |settings| settings.model_of(&scene));
     // A preset counts in units of its own.
     let of_robot = settings
         .as_ref()
@@ -65,14 +91,19 @@ fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Failure> {
         })
         .transpose()?;
     let cost_s = configured.map_or(Announce::COST_S, |dialogue| dialogue.announce.cost_s);
-    let announce = Announce { heard: args.announce.unwrap_or_default(), cost_s };
+    let heard = followed.map(|settings| settings.dialogue.announce.heard);
+    let announce = Announce { heard: args.announce.or(heard).unwrap_or_default(), cost_s };
     Ok(Problem { scene, model, costs, durations, actions, announce, settings })
+}
+
+/// Returns whether a path is a name without folder and extension.
+pub(super) fn is_word(path: &Path) -> bool {
+    path.extension().is_none() && path.components().count() == 1
 }
 
 /// Resolves a scene: a name without folder and extension is looked up in the configuration.
 pub(super) fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, Failure> {
-    let is_word = named.extension().is_none() && named.components().count() == 1;
-    if named.is_file() || !is_word {
+    if named.is_file() || !is_word(named) {
         return Ok(named.to_owned());
     }
     let scenes = paths::config_folder(args)?.join("scenes");

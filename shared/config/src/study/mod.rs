@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use diagnostics::Fields;
+use serde_json::json;
 
 mod item;
 mod protocol;
@@ -55,6 +56,7 @@ pub(crate) fn read(f: &mut Fields<'_>, configured_planner: &str) -> Study {
 fn policies(f: &mut Fields<'_>, configured: &str) -> Vec<String> {
     let policies = f.texts("policies");
     let known = ::dialogue::registry::names();
+    f.note("policies", || json!({ "items": { "enum": known }, "uniqueItems": true }));
     for (n, policy) in policies.iter().enumerate() {
         if !known.contains(&policy.as_str()) {
             f.not_one_of("policies", policy, &known);
@@ -67,6 +69,7 @@ fn policies(f: &mut Fields<'_>, configured: &str) -> Vec<String> {
 
 fn questionnaire(f: &mut Fields<'_>) -> Vec<Item> {
     let items = f.list("questionnaire", DEFAULTS, item);
+    f.note("questionnaire", || json!({ "maxItems": ITEMS_MAX }));
     if items.len() > ITEMS_MAX {
         let what = format!("has {} questions", items.len());
         f.problem("questionnaire", what, format!("ask at most {ITEMS_MAX}"));
@@ -107,6 +110,7 @@ fn item(f: &mut Fields<'_>) -> Item {
         points: f.whole("points", 2..=11),
         required: f.flag("required"),
     };
+    f.note("id", || json!({ "pattern": "^[A-Za-z0-9_]+$" }));
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if !f.is_wrong("id") && !item.id.chars().all(plain) {
         f.problem("id", format!("`{}` is not a column name", item.id), "use letters, digits and _");

@@ -36,7 +36,7 @@ fn unknown_profiles_scenes_and_robots_get_a_suggestion() {
         profiles: no profile `lap`; help: did you mean `lab`?
         --set: group.scene: no scene `bowl`: there is no scenes/bowl.toml; help: did you mean `bowls`?
         --set: arm.robot: no robot `sawer`: there is no robots/sawer.urdf; help: did you mean `sawyer`?"#]].assert_eq(&folder.complaints(Some("lap"), &overrides).join("\n"));
-    expect!["profiles/ci.toml:1: amr: unknown key; help: did you mean `arm`?"]
+    expect!["profiles/ci.toml:1:2: amr: unknown key; help: did you mean `arm`?"]
         .assert_eq(&folder.complaints(Some("ci"), &[]).join("\n"));
 }
 
@@ -72,17 +72,17 @@ fn errors_of_all_layers_are_reported_at_once() {
     ]);
     let complaints = folder.complaints(Some("odd"), &[("arm.restock", "maybe")]);
     expect![[r#"
-        group.toml:3: log.level: `inof` is not a log level; help: use one of off, error, warn, info, debug, trace, or NAME=LEVEL,…
-        group.toml:1: scnee: unknown key; help: did you mean `scene`?
-        dialogue.toml:1: alpha: 0 is not a smoothing weight; help: use a number above 0, e.g. 0.2
-        dialogue.toml:2: mode: expected one of remote, present, found `far`
-        dialogue.toml:4: turns.repeats_max: expected a value from 0 to 100, found -1
-        speech.toml:1: voice_words_per_minute: expected a value from 80 to 450, found 9000
-        profiles/odd.toml:2: speech.voise: unknown key; help: did you mean `voice`?
-        arm.toml:1: limb: expected a string, found an integer; help: write it in double quotes
-        arm.toml:2: hover_m: expected a finite number, found a string; help: write digits, e.g. `1.5`
+        group.toml:3:1: log.level: `inof` is not a log level; help: use one of off, error, warn, info, debug, trace, or NAME=LEVEL,…
+        group.toml:1:1: scnee: unknown key; help: did you mean `scene`?
+        dialogue.toml:1:1: alpha: 0 is not a smoothing weight; help: use a number above 0, e.g. 0.2
+        dialogue.toml:2:1: mode: expected one of remote, present, found `far`
+        dialogue.toml:4:1: turns.repeats_max: expected a value from 0 to 100, found -1
+        speech.toml:1:1: voice_words_per_minute: expected a value from 80 to 450, found 9000
+        profiles/odd.toml:2:1: speech.voise: unknown key; help: did you mean `voice`?
+        arm.toml:1:1: limb: expected a string, found an integer; help: write it in double quotes
+        arm.toml:2:1: hover_m: expected a finite number, found a string; help: write digits, e.g. `1.5`
         --set: arm.restock: expected a boolean, found a string; help: write `true` or `false`
-        scenes/bowls.toml:16: objects[0].colour_blind: unknown key; help: remove it; the keys here are name, attributes, xyz, size, grasp_width, form, yaw, mass_kg, wall_deg"#]].assert_eq(&complaints.join("\n"));
+        scenes/bowls.toml:16:1: objects[0].colour_blind: unknown key; help: remove it; the keys here are name, attributes, xyz, size, grasp_width, form, xyz, yaw, size, grasp_width, mass_kg, wall_deg, form"#]].assert_eq(&complaints.join("\n"));
 }
 
 #[test]

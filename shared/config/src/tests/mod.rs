@@ -2,6 +2,7 @@
 
 mod invalid;
 mod layering;
+mod schemas;
 mod sections;
 mod snapshot;
 

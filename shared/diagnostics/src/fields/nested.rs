@@ -1,6 +1,9 @@
 //! Reading of lists and tables.
 
+use serde_json::json;
+
 use super::Fields;
+use crate::schema;
 use crate::source::quoted;
 use crate::{Node, Scalar, Table};
 
@@ -9,6 +12,7 @@ const COMMAND: &str = "write `[\"one\", \"two\"]`";
 impl<'a> Fields<'a> {
     /// Reads a list of strings that are not blank; absent is the same as empty.
     pub fn texts(&mut self, key: &'a str) -> Vec<String> {
+        self.note(key, || json!({ "type": "array", "items": schema::text() }));
         let mut texts = Vec::new();
         for (n, item) in self.items(key, "a list of strings", COMMAND).iter().enumerate() {
             texts.extend(self.text_of(&format!("{}[{n}]", quoted(key)), item));
@@ -18,7 +22,7 @@ impl<'a> Fields<'a> {
 
     /// Reads one string or a list of at least one; absent is an empty list.
     pub fn one_or_more_texts(&mut self, key: &'a str) -> Vec<String> {
-        match self.optional(key) {
+        let texts = match self.optional(key) {
             None => Vec::new(),
             Some(Node::List(items, _)) => {
                 if items.is_empty() {
@@ -27,7 +31,10 @@ impl<'a> Fields<'a> {
                 self.texts(key)
             }
             Some(node) => self.text_of(key, node).into_iter().collect(),
-        }
+        };
+        let list = || json!({ "type": "array", "items": schema::text(), "minItems": 1 });
+        self.note(key, || json!({ "anyOf": [schema::text(), list()] }));
+        texts
     }
 
     /// Reads a program and its arguments, which may be absent; an empty list counts as absent.
@@ -39,6 +46,10 @@ impl<'a> Fields<'a> {
     /// Reads three finite numbers.
     pub fn triple(&mut self, key: &'a str) -> [f64; 3] {
         const HELP: &str = "write `[x, y, z]`";
+        self.note(key, || {
+            let number = json!({ "type": "number" });
+            json!({ "type": "array", "items": number, "minItems": 3, "maxItems": 3 })
+        });
         let Some(node) = self.required(key) else { return [0.0; 3] };
         let Node::List(items, _) = node else {
             return self.other_type(key, "three finite numbers", node, HELP);
@@ -62,7 +73,13 @@ impl<'a> Fields<'a> {
         key: &'a str,
         read: impl FnOnce(&mut Fields<'_>) -> T,
     ) -> Option<T> {
-        let node = self.optional(key)?;
+        let node = self.optional(key);
+        if let Some(parent) = &mut self.schema {
+            let (read, made) = schema::record(node.and_then(Node::as_table), read);
+            parent.set(key, made);
+            return Some(read);
+        }
+        let node = node?;
         let Node::Table(table) = node else {
             let help = format!("write a table `[{}]`", self.key_of(key));
             self.other_type::<()>(key, "a table", node, &help);
@@ -71,6 +88,26 @@ impl<'a> Fields<'a> {
         let mut fields = Fields::new(table, self.path_of(&quoted(key)), self.report);
         let read = read(&mut fields);
         fields.finish();
+        Some(read)
+    }
+
+    /// Reads keys that belong together, where one of `keys` is there: those that `read` requires
+    /// are all there or none is.
+    pub fn together<T>(
+        &mut self,
+        keys: &[&'a str],
+        read: impl FnOnce(&mut Self) -> T,
+    ) -> Option<T> {
+        if !keys.iter().any(|key| self.has(key)) {
+            self.allow(keys);
+            return None;
+        }
+        let required = self.schema.as_ref().map(|schema| schema.required.clone());
+        let read = read(self);
+        if let (Some(schema), Some(before)) = (&mut self.schema, required) {
+            schema.bind(keys, before);
+        }
+        self.allow(keys);
         Some(read)
     }
 
@@ -104,6 +141,9 @@ impl<'a> Fields<'a> {
         defaults: &str,
         mut read: impl FnMut(&mut Fields<'_>) -> T,
     ) -> Vec<T> {
+        if self.schema.is_some() {
+            return vec![self.list_schema(key, defaults, read)];
+        }
         let help = format!("write a table `[[{key}]]` for each");
         let mut all = Vec::new();
         for (n, item) in self.items(key, "a list of tables", &help).iter().enumerate() {
@@ -131,6 +171,23 @@ impl<'a> Fields<'a> {
             fields.finish();
         }
         all
+    }
+
+    /// Notes the schema of a list's items, and returns one of them.
+    fn list_schema<T>(
+        &mut self,
+        key: &'a str,
+        defaults: &str,
+        read: impl FnOnce(&mut Fields<'_>) -> T,
+    ) -> T {
+        self.known.push(key);
+        let source = self.table.source.clone();
+        let table = Table::parse(defaults, &source, self.report);
+        let (read, item) = schema::record(table.as_ref(), read);
+        let is_short = defaults.is_empty() && schema::is_named_alone(&item);
+        let item = if is_short { json!({ "anyOf": [schema::text(), item] }) } else { item };
+        self.note(key, || json!({ "type": "array", "items": item }));
+        read
     }
 
     /// The items of a list, empty if it is absent.

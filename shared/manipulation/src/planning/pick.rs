@@ -104,27 +104,41 @@ pub fn check_reachable(
     let check = |i: usize| {
         let mut others = cuboids.clone();
         others.remove(i);
-        let scenes =
-            planning_scenes(robot, &objects[i], limb, &robot.neutral(), &others, settings)?;
-        let mut furthest = Furthest::default();
-        for scene in &scenes {
-            let grasps = |arm: &Arm| objects[i].grasps(&arm.gripper);
-            let mut choices = Choices::new(grasps, std::slice::from_ref(scene), &mut furthest);
-            while let Some(choice) = choices.next(&mut furthest) {
-                let carrying = choice.carrying(&objects[i]);
-                let fetched = choice.descent(&carrying).and_then(|_| {
-                    Carry::find(&carrying, &choice.above, Search::No).map_err(|error| (6, error))
-                });
-                match fetched {
-                    Ok(_) => return Ok(scene.limb),
-                    Err((progress, error)) => furthest.add(progress, error),
-                }
-                choices.failed(&choice);
-            }
-        }
-        Err(furthest.report())
+        fetching_limb(robot, &objects[i], limb, &others, settings)
     };
     (0..objects.len()).map(check).collect()
+}
+
+/// The limb that can fetch one object from the neutral posture among `others`; see
+/// [`check_reachable`].
+///
+/// # Errors
+/// [`PlanError`] of the attempt that came furthest.
+pub fn fetching_limb(
+    robot: &Robot,
+    object: &ObjectPose,
+    limb: Option<Limb>,
+    others: &[Cuboid],
+    settings: &PlanSettings,
+) -> Result<Limb, PlanError> {
+    let scenes = planning_scenes(robot, object, limb, &robot.neutral(), others, settings)?;
+    let mut furthest = Furthest::default();
+    for scene in &scenes {
+        let grasps = |arm: &Arm| object.grasps(&arm.gripper);
+        let mut choices = Choices::new(grasps, std::slice::from_ref(scene), &mut furthest);
+        while let Some(choice) = choices.next(&mut furthest) {
+            let carrying = choice.carrying(object);
+            let fetched = choice.descent(&carrying).and_then(|_| {
+                Carry::find(&carrying, &choice.above, Search::No).map_err(|error| (6, error))
+            });
+            match fetched {
+                Ok(_) => return Ok(scene.limb),
+                Err((progress, error)) => furthest.add(progress, error),
+            }
+            choices.failed(&choice);
+        }
+    }
+    Err(furthest.report())
 }
 
 fn planning_scenes<'a>(

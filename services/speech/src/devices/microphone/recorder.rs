@@ -2,6 +2,7 @@
 
 use std::io::{self, BufRead, BufReader, ErrorKind, Read as _};
 use std::process::{ChildStdout, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::Duration;
 
@@ -38,6 +39,8 @@ pub(super) struct Recorder {
     stdout: ChildStdout,
     /// First byte of an incomplete sample.
     odd: Option<u8>,
+    /// The first line on its standard error, once that is closed or the line is there.
+    complaint: Option<Receiver<String>>,
 }
 
 /// Result of a read.
@@ -59,12 +62,19 @@ impl Recorder {
         let mut command = Command::new(name);
         command.args(arguments).stdout(Stdio::piped());
         let mut process = ChildProcess::start(command).map_err(|error| error.to_string())?;
-        if let Some(stderr) = process.child.stderr.take() {
+        let complaint = process.child.stderr.take().map(|stderr| {
+            let (said, complaint) = channel();
             let name = name.clone();
-            thread::spawn(move || log(&name, stderr));
-        }
+            thread::spawn(move || {
+                log(&name, stderr, |line| {
+                    // The program may be gone already.
+                    let _ = said.send(line.to_owned());
+                });
+            });
+            complaint
+        });
         let stdout = process.child.stdout.take().ok_or_else(|| format!("{name} has no output"))?;
-        Ok(Self { process, stdout, odd: None })
+        Ok(Self { process, stdout, odd: None, complaint })
     }
 
     /// Returns the name of the program.
@@ -107,17 +117,19 @@ impl Recorder {
         samples
     }
 
-    /// Returns why the program has closed its output.
+    /// Returns why the program has closed its output: what it said itself, where it said something.
     fn end(&mut self) -> String {
-        match self.process.wait(EXIT_TIMEOUT, sleep) {
+        let ended = match self.process.wait(EXIT_TIMEOUT, sleep) {
             Ok(_) => format!("{} exited", self.name()),
             Err(error) => error.to_string(),
-        }
+        };
+        let said = self.complaint.take().and_then(|said| said.recv_timeout(EXIT_TIMEOUT).ok());
+        said.map_or_else(|| ended.clone(), |said| format!("{ended}: {said}"))
     }
 }
 
-/// Logs a program's standard error.
-fn log(name: &str, stderr: impl io::Read) {
+/// Logs a program's standard error, and passes each line on.
+fn log(name: &str, stderr: impl io::Read, mut pass_on: impl FnMut(&str)) {
     let mut reader = BufReader::new(stderr);
     for _ in 0..LINES_MAX {
         let mut line = Vec::new();
@@ -128,6 +140,7 @@ fn log(name: &str, stderr: impl io::Read) {
         let text = String::from_utf8_lossy(&line);
         if !text.trim().is_empty() {
             tracing::warn!(program = name, stderr = text.trim(), "recording program");
+            pass_on(text.trim());
         }
     }
     // A full pipe would block the program.

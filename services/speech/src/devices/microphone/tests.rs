@@ -137,6 +137,17 @@ fn microphone_uses_the_first_program_that_works() {
 }
 
 #[test]
+fn microphone_that_fails_reports_what_the_installed_program_said() {
+    let failing = ["sh", "-c", "echo no such card >&2; exit 1"].map(str::to_owned).to_vec();
+    let programs = vec![failing, vec!["no-such-recorder".to_owned()]];
+    let heard = listen(MicrophoneOptions { programs, ..options(&[]) });
+    for restarts in [2, 4] {
+        let status = heard.status(|status| status.restarts == restarts);
+        assert!(status.note.contains("no such card"), "{status:?}");
+    }
+}
+
+#[test]
 fn microphone_mutes_the_robots_own_voice() {
     let folder = tempfile::tempdir().unwrap();
     let go = folder.path().join("go");

@@ -40,6 +40,8 @@ pub(super) struct Worker {
     retry_at: Instant,
     level: Level,
     status: MicrophoneStatus,
+    /// Why the latest program failed that is installed.
+    cause: Option<String>,
     request: Option<Request>,
 }
 
@@ -71,6 +73,7 @@ impl Worker {
             retry_at: now,
             level: Level::default(),
             status: MicrophoneStatus::closed(),
+            cause: None,
             request: None,
             options,
         }
@@ -153,6 +156,7 @@ impl Worker {
         self.last_read = now;
         if self.running_since.is_none() {
             self.running_since = Some(now);
+            self.cause = None;
             tracing::info!(program = self.status.note, "microphone listening");
         }
         let at = self.clock.read(samples.len(), clock::now());
@@ -214,6 +218,11 @@ impl Worker {
 
     /// Handles the end of the program, or a failed start.
     fn failed(&mut self, reason: String) {
+        // That another program is not installed does not explain why this one failed.
+        let reason = match self.recorder {
+            Some(_) => self.cause.insert(reason).clone(),
+            None => self.cause.clone().unwrap_or(reason),
+        };
         let worked = self.running_since.is_some_and(|since| since.elapsed() >= WORKING);
         self.close();
         self.status.restarts += 1;

@@ -13,7 +13,7 @@ use crate::output::Output;
 
 /// Prints the problem or writes it to the given file.
 pub(super) fn export(args: &PomdpArgs, out: &mut Output<'_>) -> Outcome {
-    let found = planning::of_scene(&args.scene, &args.problem)?;
+    let found = planning::of_scene(&args.scene, &args.problem, args.problem.config.is_given())?;
     let comment = comment(found.scene.name());
     let exported =
         dialogue::export::pomdp(&found.scene, &found.decision(), &comment).map_err(|error| {

@@ -67,3 +67,18 @@ fn log_is_followed_through_partial_lines_and_rotation() {
     fs::write(paths.log_file("arm"), "emptied\n").unwrap();
     assert_eq!(file.new_lines().unwrap(), ["emptied"]);
 }
+
+#[test]
+fn lines_of_both_forms_have_level_target_and_fields() {
+    let text = "2025-11-25T10:08:19.250000Z  WARN policy::shell: a topic fails n=3";
+    let json = r#"{"timestamp":"2025-11-25T10:08:19.250000Z","level":"WARN","fields":{"message":"a topic fails","n":3},"target":"policy::shell"}"#;
+    let (text, json) = (parts(text).unwrap(), parts(json).unwrap());
+    for parts in [&text, &json] {
+        assert_eq!(parts.timestamp, "2025-11-25T10:08:19.250000Z");
+        assert_eq!((parts.level.as_str(), parts.target.as_str()), ("WARN", "policy::shell"));
+    }
+    assert_eq!(text.fields["message"], "a topic fails n=3");
+    assert_eq!((&json.fields["message"], &json.fields["n"]), (&"a topic fails".into(), &3.into()));
+    let panic = "thread 'main' panicked at src/main.rs:1:1:";
+    assert_eq!(parts(panic), None);
+}

@@ -34,7 +34,9 @@ impl Setup {
     /// Prepares what is asked for: reads the files, and plans every motion of the arm.
     pub(super) fn new(args: &StudyArgs) -> Result<Self, Failure> {
         let scene = args.scene.as_deref().unwrap_or(Path::new(PAPER_SCENE));
-        let mut problem = of_scene(scene, &preset(args))?;
+        // A preset has its own problem.
+        let follows = args.preset.is_none() && args.problem.config.is_given();
+        let mut problem = of_scene(scene, &preset(args), follows)?;
         if let (None, Some(settings)) = (args.preset, &problem.settings) {
             // A study compares planners of the robot that runs.
             problem.model = settings.model_of(&problem.scene);
@@ -107,7 +109,7 @@ fn preset(args: &StudyArgs) -> ProblemArgs {
     let mut problem = args.problem.clone();
     match args.preset {
         None => {}
-        Some(Preset::PaperPresent) => (problem.mode, problem.no_which) = (Mode::Present, true),
+        Some(Preset::PaperPresent) => (problem.mode, problem.no_which) = (Some(Mode::Present), true),
         Some(Preset::PaperRemote) => problem.no_which = true,
     }
     problem

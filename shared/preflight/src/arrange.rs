@@ -1,0 +1,194 @@
+//! Places for objects that the arm cannot fetch where they are: the nearest one, or any on the table.
+
+use std::f64::consts::TAU;
+
+use manipulation::{Cuboid, Limb, ObjectPose, PlanError, fetching_limb};
+
+use crate::ArmSetup;
+
+/// Distances at which a nearer place is looked for, centimetres.
+const RINGS_CM: [f64; 22] = [
+    1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0, 35.0, 40.0,
+    50.0, 60.0, 80.0, 100.0, 120.0,
+];
+
+/// Directions in which it is looked for; the first four are those of the axes.
+const DIRECTIONS: usize = 16;
+
+/// Distance between boxes of objects below which a place is not tried, metres.
+const GAP_M: f64 = 0.02;
+
+/// Distances between boxes that are tried one after the other on a free table, metres: what stands
+/// loosely leaves room for the next object.
+const LOOSE_M: [f64; 3] = [0.10, 0.05, GAP_M];
+
+/// Spacing of the places that are tried on a free table, and how far they reach from its middle, metres.
+const GRID_M: f64 = 0.05;
+const GRID_STEPS: i32 = 20;
+
+/// Farthest distance at which an object is asked whether it is in the way, metres, and most objects
+/// that are asked.
+const NEIGHBOUR_M: f64 = 0.6;
+const NEIGHBOURS_MAX: usize = 12;
+
+/// Objects with their places, some of which are still to be found.
+pub struct Arrangement<'a> {
+    setup: &'a ArmSetup,
+    poses: Vec<ObjectPose>,
+    /// Whether the object stands there, so that others must not touch it.
+    stands: Vec<bool>,
+}
+
+impl<'a> Arrangement<'a> {
+    /// All of them stand where they are.
+    pub fn new(setup: &'a ArmSetup, poses: Vec<ObjectPose>) -> Self {
+        let stands = vec![true; poses.len()];
+        Self { setup, poses, stands }
+    }
+
+    /// Returns the limb that can fetch an object among those that stand.
+    ///
+    /// # Errors
+    /// [`PlanError`] of the attempt that came furthest.
+    pub fn limb(&self, i: usize) -> Result<Limb, PlanError> {
+        self.limb_at(i, &self.poses[i], None)
+    }
+
+    /// Returns the object without which the arm could fetch `i`, if it is one that is in the way.
+    pub fn in_the_way(&self, i: usize) -> Option<usize> {
+        let mut near: Vec<(f64, usize)> = self
+            .others(i)
+            .map(|j| (distance_m(&self.poses[i].xyz_m, &self.poses[j].xyz_m), j))
+            .filter(|(m, _)| *m < NEIGHBOUR_M)
+            .collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut near = near.into_iter().take(NEIGHBOURS_MAX).map(|(_, j)| j);
+        near.find(|&j| self.limb_at(i, &self.poses[i], Some(j)).is_ok())
+    }
+
+    /// Returns the nearest place at the same height where the arm can fetch `i`, and all others that it
+    /// can fetch now.
+    pub fn nearest(&self, i: usize) -> Option<[f64; 3]> {
+        let [x, y, z] = self.poses[i].xyz_m;
+        let turned = |n: usize| {
+            // Straight along the axes first, then between them.
+            let (quarter, part) = (n % 4, n / 4);
+            (quarter as f64 + part as f64 * 4.0 / DIRECTIONS as f64) * TAU / 4.0
+        };
+        RINGS_CM
+            .iter()
+            .flat_map(|cm| (0..DIRECTIONS).map(move |n| (cm / 100.0, turned(n))))
+            .map(|(m, turn)| [rounded(x + m * turn.cos()), rounded(y + m * turn.sin()), z])
+            .find(|&place| self.fits(i, place, GAP_M))
+    }
+
+    /// Moves every object that cannot be fetched where it stands to the nearest place where it can,
+    /// then puts each of `new`, which do not stand anywhere yet, on the table. Returns those that have
+    /// another place now. Objects for which there is none keep theirs, out of the others' way; no place
+    /// helps those that cannot be grasped.
+    pub fn arrange(&mut self, new: &[usize]) -> Vec<usize> {
+        new.iter().for_each(|&i| self.stands[i] = false);
+        let is_misplaced =
+            |&i: &usize| matches!(self.limb(i), Err(error) if !matches!(error, PlanError::Grasp(_)));
+        let known = (0..self.poses.len()).filter(|i| self.stands[*i]);
+        let misplaced: Vec<usize> = known.filter(is_misplaced).collect();
+        misplaced.iter().for_each(|&i| self.stands[i] = false);
+        let mut moved = Vec::new();
+        for &i in misplaced.iter().chain(new) {
+            let stays = self.poses[i].xyz_m;
+            let place = if new.contains(&i) {
+                self.on_table(i)
+            } else if self.fits(i, stays, GAP_M) {
+                Some(stays)
+            } else {
+                self.nearest(i).or_else(|| self.on_table(i))
+            };
+            if let Some(place) = place {
+                (self.poses[i].xyz_m, self.stands[i]) = (place, true);
+                moved.extend((place != stays).then_some(i));
+            }
+        }
+        moved
+    }
+
+    pub(crate) fn setup(&self) -> &'a ArmSetup {
+        self.setup
+    }
+
+    /// The place of an object, metres, frame `base`.
+    pub fn place(&self, i: usize) -> [f64; 3] {
+        self.poses[i].xyz_m
+    }
+
+    /// Returns a place on the table, the nearest to the middle of what the arm reaches.
+    fn on_table(&self, i: usize) -> Option<[f64; 3]> {
+        let plan = &self.setup.plan;
+        // In front of the robot, a little nearer than objects are handed over.
+        let middle_x = rounded(plan.hand_over_xyz_m[0] - 0.1);
+        let z = plan.table_z_m + 0.5 * self.poses[i].size_m[2];
+        let steps = || -GRID_STEPS..=GRID_STEPS;
+        let mut places: Vec<[f64; 3]> = steps()
+            .flat_map(|n| steps().map(move |k| (f64::from(n) * GRID_M, f64::from(k) * GRID_M)))
+            .map(|(dx, dy)| [rounded(middle_x + dx), rounded(dy), (z * 1e4).round() / 1e4])
+            .collect();
+        let from_middle = |at: &[f64; 3]| (at[0] - middle_x).hypot(at[1]);
+        // The sort is stable, so that equal distances keep their order.
+        places.sort_by(|a, b| from_middle(a).total_cmp(&from_middle(b)));
+        LOOSE_M
+            .iter()
+            .find_map(|gap_m| places.iter().copied().find(|&place| self.fits(i, place, *gap_m)))
+    }
+
+    /// Returns whether the arm can fetch `i` at a place that is `gap_m` from others, and still fetch
+    /// those that it can fetch now.
+    fn fits(&self, i: usize, place: [f64; 3], gap_m: f64) -> bool {
+        let pose = ObjectPose { xyz_m: place, ..self.poses[i] };
+        if self.others(i).any(|j| are_near(&pose, &self.poses[j], gap_m)) {
+            return false;
+        }
+        if self.limb_at(i, &pose, None).is_err() {
+            return false;
+        }
+        let mut moved = Self { poses: self.poses.clone(), stands: self.stands.clone(), ..*self };
+        (moved.poses[i], moved.stands[i]) = (pose, true);
+        let is_near = |&j: &usize| distance_m(&place, &self.poses[j].xyz_m) < NEIGHBOUR_M;
+        let mut others = self.others(i).filter(is_near);
+        others.all(|j| moved.limb(j).is_ok() || self.limb(j).is_err())
+    }
+
+    fn limb_at(&self, i: usize, pose: &ObjectPose, but: Option<usize>) -> Result<Limb, PlanError> {
+        let others: Vec<Cuboid> = (self.others(i).filter(|j| Some(*j) != but))
+            .map(|j| self.poses[j].cuboid())
+            .collect();
+        let ArmSetup { robot, limb, plan } = self.setup;
+        fetching_limb(robot, pose, *limb, &others, plan)
+    }
+
+    fn others(&self, i: usize) -> impl Iterator<Item = usize> + '_ {
+        (0..self.poses.len()).filter(move |&j| j != i && self.stands[j])
+    }
+}
+
+/// Returns whether the upright boxes round two objects are nearer than `gap_m` in every direction.
+fn are_near(a: &ObjectPose, b: &ObjectPose, gap_m: f64) -> bool {
+    let half = |pose: &ObjectPose| {
+        let (sin, cos) = (pose.yaw_rad.sin().abs(), pose.yaw_rad.cos().abs());
+        let [x, y, z] = pose.size_m;
+        [0.5 * (cos * x + sin * y), 0.5 * (sin * x + cos * y), 0.5 * z]
+    };
+    let (of_a, of_b) = (half(a), half(b));
+    (0..3).all(|axis| {
+        let gap_m = if axis == 2 { 0.0 } else { gap_m };
+        (a.xyz_m[axis] - b.xyz_m[axis]).abs() < of_a[axis] + of_b[axis] + gap_m
+    })
+}
+
+fn distance_m(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Rounds to millimetres, as finely as places on a table are measured.
+fn rounded(m: f64) -> f64 {
+    // Zero has no sign in a file.
+    (m * 1e3).round() / 1e3 + 0.0
+}
