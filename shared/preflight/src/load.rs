@@ -35,28 +35,29 @@ pub fn load_with_scene(
 ) -> Result<Settings, Diagnostics> {
     let Examined { settings, mut report, arm_is_right } =
         Settings::examine(dir, profile, overrides, scene);
-    let known = settings.as_ref().filter(|_| arm_is_right);
-    let setup = match known.map(|settings| (settings, ArmSetup::new(settings))) {
-        Some((settings, Ok(setup))) => {
-            reach::check(settings, &setup, &mut report);
-            Some(setup)
+    let mut measured = None;
+    if let Some(settings) = settings.as_ref().filter(|_| arm_is_right) {
+        match ArmSetup::new(settings) {
+            Ok(setup) => reach::check(settings, &setup, &mut report, || {
+                measured = costs(settings, &setup);
+                matches!(measured, Some(Ok(_)))
+            }),
+            Err(faults) => report.extend(faults),
         }
-        Some((_, Err(faults))) => {
-            report.extend(faults);
-            None
-        }
-        None => None,
-    };
-    let (mut settings, setup) = report.verdict(settings.zip(setup))?;
-    if settings.dialogue.costs_from == CostsFrom::Robot {
-        let pointing = settings.dialogue.actions.point();
-        let measured = durations(&settings, &setup, &settings.scene, pointing);
-        settings.durations = Some(measured.map_err(|error| {
-            let help = "move it, or set costs.from of the dialogue to \"config\"";
-            Diagnostics::from(settings.scene_diagnostic("objects", error.to_string(), help))
-        })?);
     }
+    let mut settings = report.verdict(settings)?;
+    settings.durations = measured.transpose().map_err(|error| {
+        let help = "move it, or set costs.from of the dialogue to \"config\"";
+        Diagnostics::from(settings.scene_diagnostic("objects", error.to_string(), help))
+    })?;
     Ok(settings)
+}
+
+/// The durations, if they are the costs of questions.
+fn costs(settings: &Settings, setup: &ArmSetup) -> Option<Result<Durations, MotionError>> {
+    let pointing = settings.dialogue.actions.point();
+    let from_robot = settings.dialogue.costs_from == CostsFrom::Robot;
+    from_robot.then(|| durations(settings, setup, &settings.scene, pointing))
 }
 
 /// Measures the seconds of every question and pick in a scene, at the configured speed of voice and

@@ -152,7 +152,11 @@ fn preflight_reports_an_object_out_of_reach() {
     assert!(solid.contains("objects[0].form: ") && solid.contains(expected), "{solid}");
     let narrow = [("arm.grip_open_percent", "30.0")];
     let narrow = complaints(&bowl_with("grasp_width", "grasp_width = 0.02"), &narrow);
-    assert!(narrow.contains("`red_one` is gripped at 20.0 mm, and the fingers open 11.4 mm; help: raise"), "{narrow}");
+    assert!(
+        narrow
+            .contains("`red_one` is gripped at 20.0 mm, and the fingers open 11.4 mm; help: raise"),
+        "{narrow}"
+    );
 }
 
 /// A scene with the bowl and `more` others at its place.
@@ -260,10 +264,12 @@ fn object_out_of_reach_gets_the_nearest_place_within() {
 
 #[test]
 fn places_are_checked_in_the_same_round_as_everything_else() {
-    let scene = bowl_with("xyz", "xyz = [2.0, 0.2, -0.125]").replace("name = \"color\"", "nmae = 3");
+    let scene =
+        bowl_with("xyz", "xyz = [2.0, 0.2, -0.125]").replace("name = \"color\"", "nmae = 3");
     let files = [("scenes/bowls.toml", scene.as_str()), ("console.toml", "viewers_max = 0")];
     let found = complaints(&files, &[]).join("\n");
-    for part in ["console.toml:1:1: viewers_max", "nmae: unknown key", "`red_one` is out of reach"] {
+    for part in ["console.toml:1:1: viewers_max", "nmae: unknown key", "`red_one` is out of reach"]
+    {
         assert!(found.contains(part), "{part}: {found}");
     }
     // With the arm's own settings wrong its reach is not known.

@@ -35,9 +35,7 @@
 use diagnostics::{Diagnostics, Fields, Report, Source, Table};
 use serde_json::{Value as Json, json};
 
-use crate::check::{
-    Checks, Draft, DraftAttribute, DraftObject, DraftValue, WORDING_CHARS_MAX,
-};
+use crate::check::{Checks, Draft, DraftAttribute, DraftObject, DraftValue, WORDING_CHARS_MAX};
 use crate::{Form, Placement, Role, Scene};
 
 impl Scene {
@@ -201,7 +199,8 @@ fn check_lengths(f: &mut Fields<'_>, key: &'static str, lengths_m: &[f64], max_m
             // Centimetres, unless even these are too long: then millimetres.
             let guess_m = [100.0, 1000.0].map(|parts| length_m / parts);
             let guess_m = guess_m.iter().find(|guess_m| guess_m.abs() <= max_m / 2.0);
-            let guess = guess_m.map_or_else(String::new, |guess_m| format!("; did you mean {guess_m}?"));
+            let guess =
+                guess_m.map_or_else(String::new, |guess_m| format!("; did you mean {guess_m}?"));
             let what = format!("expected at most {max_m} m, found {length_m}");
             f.problem(&item, what, format!("lengths are in metres{guess}"));
         }

@@ -77,8 +77,8 @@ fn problem(scene: Scene, args: &ProblemArgs, follows: bool) -> Result<Problem, F
         attribute: allowed.attribute && !args.no_attr,
         which: allowed.which && !args.no_which,
     };
-    let model = followed
-        .map_or_else(|| Model::new(&scene, params), |settings| settings.model_of(&scene));
+    let model =
+        followed.map_or_else(|| Model::new(&scene, params), |settings| settings.model_of(&scene));
     // A preset counts in units of its own.
     let of_robot = settings
         .as_ref()

@@ -26,7 +26,8 @@ impl Descriptions {
         for choice in schema.get_mut("anyOf").and_then(Json::as_array_mut).into_iter().flatten() {
             self.put_below(choice, path);
         }
-        let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+        let below =
+            |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
         for (key, child) in schema["properties"].as_object_mut().into_iter().flatten() {
             if let Some(text) = self.by_path.get(&below(key)) {
                 child["description"] = json!(text);
@@ -107,7 +108,8 @@ fn beside(rest: &str, is_service: bool) -> String {
 
 /// The descriptions of scene files: the tables of the page about them.
 pub(super) fn of_scenes(page: &str) -> Descriptions {
-    let mut found = Descriptions { whole: "A scene: objects and words.".to_owned(), ..Default::default() };
+    let mut found =
+        Descriptions { whole: "A scene: objects and words.".to_owned(), ..Default::default() };
     let mut parent = None;
     for line in page.lines() {
         let heads = [
