@@ -65,6 +65,7 @@ fn group_is_listed_where_it_means_something_and_accepted_everywhere() {
         (&["study", "report"], true),
         (&["study"], false),
         (&["export", "pomdp"], false),
+        (&["export", "mcap"], true),
         (&["ground"], false),
         (&["arm", "plot"], false),
     ] {
