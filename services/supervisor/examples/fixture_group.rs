@@ -85,7 +85,12 @@ fn load(file: &std::path::Path) -> Result<Configuration, Vec<String>> {
                 backoff_max: Duration::from_secs(5),
                 backoff_reset: Duration::from_secs(30),
             },
-            log: Log { level: "info".into(), json: false, file_bytes_max: group.log_bytes_max, files_kept: 2 },
+            log: Log {
+                level: "info".into(),
+                json: false,
+                file_bytes_max: group.log_bytes_max,
+                files_kept: 2,
+            },
         },
         scene: "bowls".into(),
         profile: None,

@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use diagnostics::{
-    Diagnostic, Fields, Node, Report, Source, Table, TextFile, suggestion,
-};
+use diagnostics::{Diagnostic, Fields, Node, Report, Source, Table, TextFile, suggestion};
 use scene::Scene;
 use toml::Value;
 
@@ -82,9 +80,8 @@ pub(crate) fn check(
     fields.finish();
     arm::check_camera(&arm, group.perception.enabled, &tree, &mut report);
     let Files { scene: file, robot } = files;
-    let scene = file.as_ref().and_then(|TextFile { label, text }| {
-        Scene::examine(label, text, &mut report)
-    });
+    let scene =
+        file.as_ref().and_then(|TextFile { label, text }| Scene::examine(label, text, &mut report));
     if let Some(scene) = &scene {
         dialogue::check_person(scene, &dialogue.gesture, &tree, &mut report);
         let perceives = group.perception.enabled;

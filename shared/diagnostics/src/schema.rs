@@ -136,7 +136,8 @@ impl<'a> Fields<'a> {
     pub fn note_choices<'n>(&mut self, key: &'a str, names: impl Iterator<Item = &'n str>) {
         if let Some(schema) = &mut self.schema {
             let names: Vec<&str> = names.collect();
-            let default = schema.properties.get(key).and_then(|known| known.get("default")).cloned();
+            let default =
+                schema.properties.get(key).and_then(|known| known.get("default")).cloned();
             schema.set(key, json!({ "enum": names }));
             if let Some(default) = default {
                 schema.add(key, json!({ "default": default }));

@@ -66,7 +66,8 @@ impl Table {
         for error in errors {
             let offset = error.span().map_or(0, |span| span.start);
             let (line, column) = lines.of_offset(offset);
-            let syntax = Diagnostic::new(&*source.label, "", error.message(), "correct the TOML here");
+            let syntax =
+                Diagnostic::new(&*source.label, "", error.message(), "correct the TOML here");
             report.add(syntax.at(Some(line)).at_column(Some(column)));
         }
         None

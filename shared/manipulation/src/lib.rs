@@ -37,9 +37,9 @@ pub use kinematics::inverse::{IkSolution, TOLERANCE_M, TOLERANCE_RAD, Unreachabl
 pub use kinematics::limb::{JOINTS, Joints, Limb};
 pub use kinematics::limits::{MotionLimits, PositionLimits};
 pub use planning::{
-    Grasp, GraspError, OUTSIDE_MAX_RAD, ObjectPose, PlanError, PlanSettings, check_reachable, fetching_limb,
-    plan_delivery, plan_pick, plan_point, plan_put_back, plan_put_down, plan_retreat, plan_return,
-    plan_withdrawal,
+    Grasp, GraspError, OUTSIDE_MAX_RAD, ObjectPose, PlanError, PlanSettings, check_reachable,
+    fetching_limb, plan_delivery, plan_pick, plan_point, plan_put_back, plan_put_down,
+    plan_retreat, plan_return, plan_withdrawal,
 };
 pub use robot::{Arm, Robot, Unsuitable};
 pub use trajectory::{

@@ -88,8 +88,7 @@ impl<'a> Arrangement<'a> {
     /// helps those that cannot be grasped.
     pub fn arrange(&mut self, new: &[usize]) -> Vec<usize> {
         new.iter().for_each(|&i| self.stands[i] = false);
-        let is_misplaced =
-            |&i: &usize| matches!(self.limb(i), Err(error) if !matches!(error, PlanError::Grasp(_)));
+        let is_misplaced = |&i: &usize| matches!(self.limb(i), Err(error) if !matches!(error, PlanError::Grasp(_)));
         let known = (0..self.poses.len()).filter(|i| self.stands[*i]);
         let misplaced: Vec<usize> = known.filter(is_misplaced).collect();
         misplaced.iter().for_each(|&i| self.stands[i] = false);
@@ -157,9 +156,8 @@ impl<'a> Arrangement<'a> {
     }
 
     fn limb_at(&self, i: usize, pose: &ObjectPose, but: Option<usize>) -> Result<Limb, PlanError> {
-        let others: Vec<Cuboid> = (self.others(i).filter(|j| Some(*j) != but))
-            .map(|j| self.poses[j].cuboid())
-            .collect();
+        let others: Vec<Cuboid> =
+            (self.others(i).filter(|j| Some(*j) != but)).map(|j| self.poses[j].cuboid()).collect();
         let ArmSetup { robot, limb, plan } = self.setup;
         fetching_limb(robot, pose, *limb, &others, plan)
     }

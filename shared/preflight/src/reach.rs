@@ -39,9 +39,7 @@ pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) 
     let names: Vec<&str> =
         placed.iter().map(|(n, _)| settings.scene.objects()[*n].name.as_str()).collect();
     let (arrangement, mut searched) = (Arrangement::new(setup, poses), 0);
-    for (i, (((n, _), found), elsewhere)) in
-        placed.iter().zip(found).zip(elsewhere).enumerate()
-    {
+    for (i, (((n, _), found), elsewhere)) in placed.iter().zip(found).zip(elsewhere).enumerate() {
         let Err(error) = found else { continue };
         if elsewhere {
             hand_over.get_or_insert(error);
@@ -169,8 +167,12 @@ fn check_widths(
     for (n, pose) in placed {
         if pose.grasp_width_m > open_m && pose.grasp_width_m <= whole_m {
             let (width_mm, open_mm) = (pose.grasp_width_m * 1e3, open_m * 1e3);
-            let what = format!("is gripped at {width_mm:.1} mm, and the fingers open {open_mm:.1} mm");
-            let help = format!("raise grip_open_percent of the arm: at 100 they open {:.1} mm", whole_m * 1e3);
+            let what =
+                format!("is gripped at {width_mm:.1} mm, and the fingers open {open_mm:.1} mm");
+            let help = format!(
+                "raise grip_open_percent of the arm: at 100 they open {:.1} mm",
+                whole_m * 1e3
+            );
             report.add(of_object(settings, *n, "grasp_width", &what, &help));
         }
     }

@@ -35,9 +35,7 @@
 use diagnostics::{Diagnostics, Fields, Report, Source, Table};
 use serde_json::{Value as Json, json};
 
-use crate::check::{
-    Checks, Draft, DraftAttribute, DraftObject, DraftValue, WORDING_CHARS_MAX,
-};
+use crate::check::{Checks, Draft, DraftAttribute, DraftObject, DraftValue, WORDING_CHARS_MAX};
 use crate::{Form, Placement, Role, Scene};
 
 impl Scene {
@@ -153,12 +151,12 @@ fn placement(f: &mut Fields<'_>) -> Option<Placement> {
     const KEYS: [&str; 7] = ["xyz", "yaw", "size", "grasp_width", "mass_kg", "wall_deg", "form"];
     let placement = f.together(&KEYS, |f| Placement {
         xyz: f.triple("xyz"),
-        yaw: if f.has("yaw") { f.any_number("yaw") } else { 0.0 },
+        yaw: f.optionally("yaw", Fields::any_number).unwrap_or(0.0),
         size: f.triple("size"),
         grasp_width: f.any_number("grasp_width"),
-        mass_kg: f.has("mass_kg").then(|| f.any_number("mass_kg")),
-        wall_deg: if f.has("wall_deg") { f.any_number("wall_deg") } else { 0.0 },
-        form: if f.has("form") { f.choice("form", &Form::NAMES) } else { Form::default() },
+        mass_kg: f.optionally("mass_kg", Fields::any_number),
+        wall_deg: f.optionally("wall_deg", Fields::any_number).unwrap_or(0.0),
+        form: f.optionally("form", |f, key| f.choice(key, &Form::NAMES)).unwrap_or_default(),
     })?;
     check_lengths(f, "xyz", &placement.xyz, DISTANCE_MAX_M);
     check_lengths(f, "size", &placement.size, EXTENT_MAX_M);
@@ -201,7 +199,8 @@ fn check_lengths(f: &mut Fields<'_>, key: &'static str, lengths_m: &[f64], max_m
             // Centimetres, unless even these are too long: then millimetres.
             let guess_m = [100.0, 1000.0].map(|parts| length_m / parts);
             let guess_m = guess_m.iter().find(|guess_m| guess_m.abs() <= max_m / 2.0);
-            let guess = guess_m.map_or_else(String::new, |guess_m| format!("; did you mean {guess_m}?"));
+            let guess =
+                guess_m.map_or_else(String::new, |guess_m| format!("; did you mean {guess_m}?"));
             let what = format!("expected at most {max_m} m, found {length_m}");
             f.problem(&item, what, format!("lengths are in metres{guess}"));
         }

@@ -158,7 +158,8 @@ fn command(program: &Path, options: &Options, paths: &GroupPaths) -> Command {
 
 fn open_log(paths: &GroupPaths) -> io::Result<(File, u64)> {
     let path = paths.log_file(SUPERVISOR);
-    let limits = Log { level: String::new(), json: false, file_bytes_max: LOG_BYTES_MAX, files_kept: 3 };
+    let limits =
+        Log { level: String::new(), json: false, file_bytes_max: LOG_BYTES_MAX, files_kept: 3 };
     let log = log_file::open(&path, &limits)?;
     let from = log_file::size(&path);
     Ok((log, from))

@@ -17,7 +17,7 @@ mod static_obstacles;
 pub use deliver::{plan_delivery, plan_return, plan_withdrawal};
 pub use error::PlanError;
 pub use grasp::{Grasp, GraspError, ObjectPose};
-pub use pick::{fetching_limb, check_reachable, plan_pick};
+pub use pick::{check_reachable, fetching_limb, plan_pick};
 pub use planning_scene::PlanSettings;
 pub use point::plan_point;
 pub use put_back::{plan_put_back, plan_put_down};

@@ -104,8 +104,12 @@ mod tests {
         let mut edit = SceneEdit::parse("s", text).unwrap();
         assert_eq!(edit.add_places(), [0]);
         edit.set_place(0, [0.5, 0.0, 0.0]);
-        assert!(edit.text().contains("grasp_width = 1 , xyz = [0.5, 0.0, 0.0] }, 'p']")
-            || edit.text().contains("grasp_width = 1, xyz = [0.5, 0.0, 0.0] }, 'p']"), "{}", edit.text());
+        assert!(
+            edit.text().contains("grasp_width = 1 , xyz = [0.5, 0.0, 0.0] }, 'p']")
+                || edit.text().contains("grasp_width = 1, xyz = [0.5, 0.0, 0.0] }, 'p']"),
+            "{}",
+            edit.text()
+        );
     }
 
     #[test]

@@ -39,7 +39,10 @@ pub(super) fn show(args: &SceneShowArgs, out: &mut Output<'_>) -> Outcome {
     }
     for (object, reach) in scene.objects().iter().zip(&reach) {
         if let Some(Err(why)) = reach {
-            note(format_args!("`{}` cannot be fetched: {why}; help: whichone scene check", object.name));
+            note(format_args!(
+                "`{}` cannot be fetched: {why}; help: whichone scene check",
+                object.name
+            ));
         }
     }
     scene.ambiguities().iter().for_each(|text| note(format_args!("warning: {text}")));

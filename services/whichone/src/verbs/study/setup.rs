@@ -109,7 +109,9 @@ fn preset(args: &StudyArgs) -> ProblemArgs {
     let mut problem = args.problem.clone();
     match args.preset {
         None => {}
-        Some(Preset::PaperPresent) => (problem.mode, problem.no_which) = (Some(Mode::Present), true),
+        Some(Preset::PaperPresent) => {
+            (problem.mode, problem.no_which) = (Some(Mode::Present), true)
+        }
         Some(Preset::PaperRemote) => problem.no_which = true,
     }
     problem
