@@ -31,7 +31,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Err(error) => {
             let exit = if error.use_stderr() { Exit::Usage } else { Exit::Ok };
             if exit == Exit::Usage && json {
-                print_json_error(&Failure::new(exit, error.to_string().trim_end()));
+                let text = error.to_string();
+                let text = text.trim_end().trim_start_matches("error: ");
+                print_json_error(&Failure::new(exit, text));
             }
             // Nothing to do if the output is closed.
             let _ = error.print();

@@ -151,12 +151,12 @@ fn placement(f: &mut Fields<'_>) -> Option<Placement> {
     const KEYS: [&str; 7] = ["xyz", "yaw", "size", "grasp_width", "mass_kg", "wall_deg", "form"];
     let placement = f.together(&KEYS, |f| Placement {
         xyz: f.triple("xyz"),
-        yaw: if f.has("yaw") { f.any_number("yaw") } else { 0.0 },
+        yaw: f.optionally("yaw", Fields::any_number).unwrap_or(0.0),
         size: f.triple("size"),
         grasp_width: f.any_number("grasp_width"),
-        mass_kg: f.has("mass_kg").then(|| f.any_number("mass_kg")),
-        wall_deg: if f.has("wall_deg") { f.any_number("wall_deg") } else { 0.0 },
-        form: if f.has("form") { f.choice("form", &Form::NAMES) } else { Form::default() },
+        mass_kg: f.optionally("mass_kg", Fields::any_number),
+        wall_deg: f.optionally("wall_deg", Fields::any_number).unwrap_or(0.0),
+        form: f.optionally("form", |f, key| f.choice(key, &Form::NAMES)).unwrap_or_default(),
     })?;
     check_lengths(f, "xyz", &placement.xyz, DISTANCE_MAX_M);
     check_lengths(f, "size", &placement.size, EXTENT_MAX_M);

@@ -116,3 +116,28 @@ pub(super) fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, Fai
     let help = "name a scene file, or a scene without its folder and extension, e.g. bowls";
     Err(Failure::new(Exit::Config, format!("{what}; help: {help}")))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn problem_follows_the_configuration_where_it_is_asked_to() {
+        let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+        let set = [("dialogue.mode", "present"), ("dialogue.announce.heard", "0.5")];
+        let set = set.map(|(key, value)| (key.to_owned(), value.to_owned())).to_vec();
+        let config = ConfigArgs { config: Some(config), set, profile: None };
+        let (mode, no_attr, no_which, costs, announce) = (None, false, false, None, None);
+        let args = ProblemArgs { mode, no_attr, no_which, costs, announce, config };
+        let scene = Path::new("bowls");
+        let followed = of_scene(scene, &args, true).unwrap();
+        assert_eq!((followed.actions.mode, followed.actions.which), (Mode::Present, false));
+        assert_eq!(followed.announce.heard, 0.5);
+        let own = of_scene(scene, &args, false).unwrap();
+        assert_eq!((own.actions.mode, own.actions.which), (Mode::Remote, true));
+        assert_eq!(own.announce.heard, 0.0);
+        let args = ProblemArgs { mode: Some(Mode::Remote), announce: Some(0.1), ..args };
+        let mixed = of_scene(scene, &args, true).unwrap();
+        assert_eq!((mixed.actions.mode, mixed.announce.heard), (Mode::Remote, 0.1));
+    }
+}

@@ -115,3 +115,117 @@ fn examine(args: &ConfigArgs, scene: Option<TextFile>) -> Result<Settings, Failu
     let examined = Settings::examine(&folder, profile, &args.set, scene);
     Ok(examined.report.verdict(examined.settings)?)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{ScenePlaceArgs, SceneShowArgs};
+    use serde_json::Value as Json;
+
+    /// The shipped configuration.
+    fn shipped() -> ConfigArgs {
+        let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+        ConfigArgs { config: Some(config), ..ConfigArgs::default() }
+    }
+
+    fn with(set: &[(&str, &str)], profile: Option<&str>) -> ConfigArgs {
+        let set = set.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+        ConfigArgs { set, profile: profile.map(str::to_owned), ..shipped() }
+    }
+
+    fn json(what: SceneVerb) -> (Json, Exit) {
+        let mut bytes = Vec::new();
+        let exit = scene(what, &mut Output::to(&mut bytes, true)).unwrap();
+        (serde_json::from_slice(&bytes).unwrap(), exit)
+    }
+
+    #[test]
+    fn new_scene_passes_the_check_of_each_robot_and_replaces_no_file() {
+        let folder = tempfile::tempdir().unwrap();
+        for profile in [None, Some("ur5e")] {
+            let config = with(&[], profile);
+            let file = folder.path().join(format!("{}.toml", profile.unwrap_or("own")));
+            let args = || SceneNewArgs { file: file.clone(), config: config.clone() };
+            let (made, exit) = json(SceneVerb::New(args()));
+            assert_eq!((&made["objects"], exit), (&Json::from(4), Exit::Ok), "{made}");
+            let text = fs::read_to_string(&file).unwrap();
+            assert!(text.starts_with("#:schema file:///"), "{text}");
+            let check = SceneCheckArgs { file: file.clone(), config: config.clone() };
+            let (checked, exit) = json(SceneVerb::Check(check));
+            assert_eq!((&checked["ok"], exit), (&Json::Bool(true), Exit::Ok), "{checked}");
+            let mut bytes = Vec::new();
+            let again =
+                scene(SceneVerb::New(args()), &mut Output::to(&mut bytes, true)).unwrap_err();
+            assert_eq!(again.exit, Exit::Usage, "{again}");
+            assert_eq!(fs::read_to_string(&file).unwrap(), text);
+        }
+    }
+
+    #[test]
+    fn place_completes_a_scene_and_keeps_the_rest_of_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("mine.toml");
+        // One object without a place, one out of reach, and a comment at each.
+        let (head, _) = TEMPLATE.split_once("\n[[objects]]").unwrap();
+        let text = format!(
+            "{}\n[[objects]] # first\nname = 'a'\nattributes = {{ kind = 'box' }}\nsize = [0.10, 0.03, 0.05]\n\
+             grasp_width = 0.03 # thin\n\n[[objects]] # second\nname = 'b'\nattributes = {{ kind = 'cup' }}\n\
+             xyz = [0.70, 1.4, -0.130] # far\nsize = [0.10, 0.03, 0.05]\ngrasp_width = 0.03\n",
+            head.replace("@NAME@", "'mine'").replace("@SCHEMA@", "")
+        );
+        fs::write(&file, &text).unwrap();
+        let place = |write| {
+            json(SceneVerb::Place(ScenePlaceArgs { file: file.clone(), write, config: shipped() }))
+        };
+        let (proposed, exit) = place(false);
+        assert_eq!((exit, fs::read_to_string(&file).unwrap()), (Exit::Ok, text.clone()));
+        assert_eq!(proposed["moved"][0]["from"], Json::from(vec![0.7, 1.4, -0.13]), "{proposed}");
+        assert_eq!(proposed["moved"][1]["from"], Json::Null, "{proposed}");
+        let (written, _) = place(true);
+        assert_eq!(written["moved"], proposed["moved"]);
+        let after = fs::read_to_string(&file).unwrap();
+        let changed: Vec<&str> =
+            text.lines().filter(|line| !after.lines().any(|other| other == *line)).collect();
+        assert_eq!(changed, ["xyz = [0.70, 1.4, -0.130] # far"]);
+        assert_eq!(after.lines().count(), text.lines().count() + 1);
+        let (nothing, _) = place(true);
+        assert_eq!(
+            (&nothing["moved"], &nothing["written"]),
+            (&Json::Array(vec![]), &Json::Bool(false))
+        );
+        let show = SceneShowArgs { scene: Some(file), config: shipped() };
+        let (shown, _) = json(SceneVerb::Show(show));
+        assert_eq!(shown["objects"][1]["words"], "cup");
+        assert!(
+            shown["objects"].as_array().unwrap().iter().all(|it| it["arm"].is_string()),
+            "{shown}"
+        );
+    }
+
+    #[test]
+    fn problems_have_their_line_and_column_and_come_with_those_of_the_places() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("bad.toml");
+        let text = "name = 'bad'\nnoun = 'box'\n[[attributes]]\nname = 'k'\nvalues = ['v']\n[[objects]]\n\
+                    name = 'a'\nattributes = { k = 'w' }\nxyz = [0.7, 1.4, -0.13]\nsize = [0.1, 0.03, 0.05]\n\
+                    grasp_width = 0.03\n[[objects]]\nname = 'b'\nxyz = [70.0, 0.2, -0.13]\n\
+                    size = [0.1, 0.03, 0.05]\ngrasp_width = 0.05\n";
+        fs::write(&file, text).unwrap();
+        let (found, exit) = json(SceneVerb::Check(SceneCheckArgs { file, config: shipped() }));
+        assert_eq!(exit, Exit::Config);
+        let problems: Vec<(Json, Json, &str)> = (found["problems"].as_array().unwrap().iter())
+            .map(|it| (it["line"].clone(), it["column"].clone(), it["key"].as_str().unwrap()))
+            .collect();
+        let at = |line: u32, column: u32, key| (Json::from(line), Json::from(column), key);
+        let expected = [
+            at(14, 1, "objects[1].xyz[0]"),
+            at(8, 16, "objects[0].attributes.k"),
+            at(9, 1, "objects[0].xyz"),
+        ];
+        assert_eq!(problems, expected, "{found}");
+        assert!(
+            found["problems"][0]["cure"].as_str().unwrap().ends_with("did you mean 0.7?"),
+            "{found}"
+        );
+    }
+}

@@ -91,6 +91,23 @@ impl<'a> Fields<'a> {
         Some(read)
     }
 
+    /// Reads a key that may be absent.
+    pub fn optionally<T>(
+        &mut self,
+        key: &'a str,
+        read: impl FnOnce(&mut Self, &'a str) -> T,
+    ) -> Option<T> {
+        if !self.has(key) {
+            self.allow(&[key]);
+            return None;
+        }
+        let read = read(self, key);
+        if let Some(schema) = &mut self.schema {
+            schema.required.retain(|required| required != key);
+        }
+        Some(read)
+    }
+
     /// Reads keys that belong together, where one of `keys` is there: those that `read` requires
     /// are all there or none is.
     pub fn together<T>(

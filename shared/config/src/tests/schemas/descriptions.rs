@@ -28,7 +28,8 @@ impl Descriptions {
         }
         let below =
             |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
-        for (key, child) in schema["properties"].as_object_mut().into_iter().flatten() {
+        let properties = schema.get_mut("properties").and_then(Json::as_object_mut);
+        for (key, child) in properties.into_iter().flatten() {
             if let Some(text) = self.by_path.get(&below(key)) {
                 child["description"] = json!(text);
             }
@@ -51,6 +52,8 @@ pub(super) fn of_file(text: &str) -> Descriptions {
     let mut found = Descriptions::default();
     let mut table = String::new();
     let (mut block, mut last) = (String::new(), None::<String>);
+    // The comment above a group of keys describes each of them that has none of its own.
+    let mut group = String::new();
     for line in text.lines().filter(|line| !line.starts_with("#:")) {
         let comment = line.strip_prefix('#');
         let more = line.trim_start().strip_prefix('#').map(str::trim).filter(|_| {
@@ -67,14 +70,16 @@ pub(super) fn of_file(text: &str) -> Descriptions {
         } else if let Some((key, rest)) = key_of(comment.unwrap_or(line).trim_start()) {
             // The keys of a service are listed in a comment, indented.
             let is_service = comment.is_some_and(|it| it.starts_with("   "));
-            let above = std::mem::take(&mut block);
+            if !block.is_empty() {
+                group = std::mem::take(&mut block);
+            }
             let beside = beside(rest, is_service);
             if is_service && beside.is_empty() {
                 continue;
             }
             let parent = if is_service { "services.*" } else { &table };
             let path = if parent.is_empty() { key.to_owned() } else { format!("{parent}.{key}") };
-            found.add(path.clone(), if beside.is_empty() { above } else { beside });
+            found.add(path.clone(), if beside.is_empty() { group.clone() } else { beside });
             last = Some(path);
         } else if let Some(comment) = comment {
             if found.whole.is_empty() {
@@ -84,7 +89,7 @@ pub(super) fn of_file(text: &str) -> Descriptions {
             }
             last = None;
         } else {
-            (block, last) = (String::new(), None);
+            (block, group, last) = (String::new(), String::new(), None);
         }
     }
     for (key, text) in [("services", "The services by name."), ("services.*", "A service.")] {
