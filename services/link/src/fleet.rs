@@ -38,22 +38,26 @@ pub fn list(keys: &Path) -> Result<Vec<Listed>, Failure> {
         true => vec![Keys::of_all()],
         false => identity.robots.iter().map(Keys::of).collect(),
     };
-    let (sender, presences) = mpsc::channel();
     let mut robots: BTreeMap<Name, Option<Presence>> = BTreeMap::new();
     for keys in &allowed {
-        let sender = sender.clone();
-        // The list is complete when nobody listens any more.
-        let take = move |bytes: Vec<u8>| drop(sender.send(bytes));
-        request(&session, keys, Call::Presence, Vec::new(), PATIENCE, take);
         let tokens = session.liveliness().get(keys.alive("*")).timeout(PATIENCE).wait();
-        let tokens = tokens
-            .map_err(|error| Failure::new(Exit::NotReached, format!("list of robots: {error}")))?;
+        let tokens = tokens.map_err(|error| {
+            Failure::new(Exit::NotReached, format!("list of robots: {error}"))
+        })?;
         while let Ok(reply) = tokens.recv() {
             let key = reply.result().ok().map(|sample| sample.key_expr().as_str().to_owned());
             if let Some(robot) = key.as_deref().and_then(robot_of) {
                 robots.insert(robot, None);
             }
         }
+    }
+    let (sender, presences) = mpsc::channel();
+    for robot in robots.keys() {
+        let sender = sender.clone();
+        // The list is complete when nobody listens any more.
+        let take = move |bytes: Vec<u8>| drop(sender.send(bytes));
+        // Each by its own key: the router lets no request for all robots through to one.
+        request(&session, &Keys::of(robot), Call::Presence, Vec::new(), PATIENCE, take);
     }
     drop(sender);
     let until = Instant::now() + PATIENCE;

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use config::Settings;
-use messages::Epoch;
+use messages::{Epoch, Incarnation, Service};
 use rustix::fs::{FlockOperation, flock};
 use service::exit::{Exit, Failure};
 use service::folders::{make_private, make_root};
@@ -17,6 +17,9 @@ use super::{Options, own_settings};
 use crate::keyring::storage;
 use crate::names::Name;
 use crate::presence::Hello;
+
+/// The start of every service that the mirror writes as.
+pub(super) const INCARNATION: Incarnation = Incarnation(1);
 
 /// File in the group's folder that says which robot it mirrors.
 const MARK: &str = "mirror";
@@ -94,6 +97,11 @@ impl Local {
         JournalSet::new(hello.epoch).save(paths).map_err(stored(paths.epoch_file()))?;
         settings.write_snapshot(&run).map_err(stored(run.clone()))?;
         let admin = Admin::open(paths, epoch)?;
+        // Readers believe a service's start only while the supervisor's socket for it is there.
+        for service in Service::DIALOGUE {
+            let socket = paths.notify_socket(service.name(), INCARNATION.0);
+            File::create(&socket).map_err(stored(socket.clone()))?;
+        }
         tracing::info!(robot = %options.robot, group = %paths.name(), "mirrored");
         Ok(Self { paths: paths.clone(), epoch, admin: Some(admin) })
     }

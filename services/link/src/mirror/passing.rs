@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use config::Settings;
 use messages::{
-    AudioChunk, Incarnation, Injection, Presented, Receipt, ReceiptStatus, Service, Sound, topics,
+    AudioChunk, Injection, Presented, Receipt, ReceiptStatus, Service, Sound, topics,
 };
 use service::bus::{Bus, EncodedReader, Identity, Joined, Reader, WakeListener};
 use service::exit::{Exit, Failure};
@@ -21,7 +21,7 @@ use zenoh::qos::{CongestionControl, Priority};
 use super::console::Console;
 use super::control::{self, Known, lock};
 use super::inlets::Inlets;
-use super::local::Local;
+use super::local::{INCARNATION, Local};
 use super::motion::{Event, Motion};
 use super::{End, Inbound, Link, SAID};
 use crate::names::Call;
@@ -114,7 +114,7 @@ impl<'a> Passing<'a> {
             move |e: std::io::Error| Failure::new(Exit::NotReached, format!("{what}: {e}"))
         };
         let paths = &local.paths;
-        let identity = Identity { epoch: local.epoch, incarnation: Incarnation(1) };
+        let identity = Identity { epoch: local.epoch, incarnation: INCARNATION };
         // As the service whose wake-ups it takes in place of the robot's.
         let bus = Bus::open(paths, Service::Speech.name(), identity)?;
         let console = match link.options.console {
