@@ -23,7 +23,7 @@ use zenoh::{Session, Wait};
 use crate::identity::Identity;
 use crate::names::{Call, Keys, Name};
 use crate::presence::Hello;
-use crate::session::{connect_patiently, request};
+use crate::session::{close, connect_patiently, request};
 use local::Local;
 
 /// Timeout of the robot's settings, after which they are asked for again.
@@ -100,6 +100,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             End::Changed => tracing::info!("the robot's group has changed; following"),
         }
     }
+    close(link);
     drop(held);
     Ok(())
 }

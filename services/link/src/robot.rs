@@ -31,6 +31,7 @@ use crate::identity::Identity;
 use crate::names::{Call, Keys};
 use crate::presence::{PRESENCE_EVERY, Presence};
 use crate::say::Asked;
+use crate::session::close;
 use senders::Senders;
 use sources::TopicSources;
 
@@ -52,7 +53,11 @@ fn serve(arguments: Vec<String>) -> Result<(), Failure> {
     let lifecycle = Lifecycle::begin(&environment.paths)?;
     let settings = Settings::load_snapshot(&environment.paths.run())?;
     let mut robot = Robot::open(&environment, settings)?;
-    drive(lifecycle, &mut robot)
+    let ended = drive(lifecycle, &mut robot);
+    if let Some(senders) = robot.senders.take() {
+        close(senders);
+    }
+    ended
 }
 
 /// What other threads give to the main loop.

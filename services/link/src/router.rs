@@ -13,7 +13,7 @@ use zenoh::{Config, Wait};
 use crate::identity::{AUTHORITY, Role, absolute};
 use crate::keyring::{Member, PORT, Ring, write_private};
 use crate::names::{Call, Keys, Name};
-use crate::session::transport;
+use crate::session::{close, transport};
 
 const FILE: &str = "router.json";
 const PASSWORDS: &str = "passwords";
@@ -152,6 +152,6 @@ pub fn run(folder: &Path) -> Result<(), Failure> {
     while !is_ending.load(Ordering::Relaxed) {
         std::thread::sleep(Duration::from_millis(100));
     }
-    drop(session);
+    close(session);
     Ok(())
 }

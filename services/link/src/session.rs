@@ -17,6 +17,8 @@ use crate::names::{Call, Keys};
 const LEASE_MS: u32 = 3_000;
 /// Bytes that are sent at once: an urgent message waits for no more than that.
 const BATCH_BYTES: u32 = 4_096;
+/// Timeout of the router's goodbye.
+const CLOSE_PATIENCE: Duration = Duration::from_millis(500);
 /// First and longest pause before the next attempt to connect.
 const PAUSE: (Duration, Duration) = (Duration::from_millis(500), Duration::from_secs(5));
 
@@ -149,5 +151,18 @@ pub(crate) fn request(
 pub(crate) fn reply(query: &Query, bytes: Vec<u8>, keys: &Keys, call: Call) {
     if let Err(error) = query.reply(keys.call(call), bytes).wait() {
         tracing::debug!(%error, ?call, "not answered; it is asked again");
+    }
+}
+
+/// Drops what holds a session, which says goodbye to the router. A router that is gone is not waited for.
+pub(crate) fn close(holder: impl Send + 'static) {
+    let (done, closed) = std::sync::mpsc::channel();
+    let close = move || {
+        drop(holder);
+        // Nobody listens any more where it took too long.
+        let _ = done.send(());
+    };
+    if std::thread::Builder::new().name("close".into()).spawn(close).is_ok() {
+        let _ = closed.recv_timeout(CLOSE_PATIENCE);
     }
 }
