@@ -41,9 +41,8 @@ pub fn list(keys: &Path) -> Result<Vec<Listed>, Failure> {
     let mut robots: BTreeMap<Name, Option<Presence>> = BTreeMap::new();
     for keys in &allowed {
         let tokens = session.liveliness().get(keys.alive("*")).timeout(PATIENCE).wait();
-        let tokens = tokens.map_err(|error| {
-            Failure::new(Exit::NotReached, format!("list of robots: {error}"))
-        })?;
+        let tokens = tokens
+            .map_err(|error| Failure::new(Exit::NotReached, format!("list of robots: {error}")))?;
         while let Ok(reply) = tokens.recv() {
             let key = reply.result().ok().map(|sample| sample.key_expr().as_str().to_owned());
             if let Some(robot) = key.as_deref().and_then(robot_of) {

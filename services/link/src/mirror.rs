@@ -137,7 +137,15 @@ impl Link {
             }
             inbox.clear();
             while let Some(inbound) = inbox.take() {
-                let Inbound::Hello(bytes) = inbound else { continue };
+                let bytes = match inbound {
+                    Inbound::Hello(bytes) => bytes,
+                    // It has just come.
+                    Inbound::Alive(_, true) => {
+                        self.ask_hello();
+                        continue;
+                    }
+                    _ => continue,
+                };
                 match postcard::from_bytes(&bytes) {
                     Ok(hello) => return Some(hello),
                     Err(error) => tracing::warn!(

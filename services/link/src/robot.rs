@@ -123,13 +123,8 @@ impl Robot {
         let injections = bus.encoded_writer(&topics::INJECTION)?;
         let audio = bus.writer(&topics::AUDIO)?;
         let ending = Arc::clone(&is_ending);
-        let connecting = senders::Connecting {
-            identity,
-            folder,
-            keys,
-            start,
-            paths: paths.clone(),
-        };
+        let connecting =
+            senders::Connecting { identity, folder, keys, start, paths: paths.clone() };
         let connect = move || connecting.run(&sender, &ending);
         std::thread::Builder::new()
             .name("connect".into())

@@ -7,9 +7,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use config::Settings;
-use messages::{
-    AudioChunk, Injection, Presented, Receipt, ReceiptStatus, Service, Sound, topics,
-};
+use messages::{AudioChunk, Injection, Presented, Receipt, ReceiptStatus, Service, Sound, topics};
 use service::bus::{Bus, EncodedReader, Identity, Joined, Reader, WakeListener};
 use service::exit::{Exit, Failure};
 use service::status::GroupStatus;
