@@ -11,7 +11,7 @@ use std::process::Command;
 const TOP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
 /// Licences of dependencies, and the reason why each may be linked.
-const LICENCES: [(&str, &str); 10] = [
+const LICENCES: [(&str, &str); 12] = [
     ("MIT", "the project's own"),
     ("Apache-2.0", "the project's own"),
     ("0BSD", "asks for nothing"),
@@ -22,19 +22,29 @@ const LICENCES: [(&str, &str); 10] = [
     ("Zlib", "asks for nothing in binaries"),
     ("Unicode-3.0", "tables of characters: asks for its notice only"),
     ("Apache-2.0 WITH LLVM-exception", "Apache-2.0 that asks for less"),
+    ("CDLA-Permissive-2.0", "data: certificates of public authorities"),
+    ("MPL-2.0", "a crate that zenoh brings, unchanged: its own files stay under it"),
 ];
 
 /// Crates of which two versions are built, and who brings the older one.
-const DUPLICATES: [(&str, &str); 15] = [
+const DUPLICATES: [(&str, &str); 23] = [
     ("cpufeatures", "sha1 of axum's web sockets"),
+    ("darling", "enumset of iceoryx2; beside it zenoh's serde_with"),
+    ("darling_core", "darling of enumset"),
+    ("darling_macro", "darling of enumset"),
+    ("foldhash", "hashbrown of zenoh's petgraph"),
     ("getrandom", "rand of axum's web sockets"),
+    ("hashbrown", "zenoh"),
     ("itertools", "bindgen, to build iceoryx2"),
     ("libloading", "clang-sys, to build iceoryx2"),
     ("miniz_oxide", "png"),
     ("nom", "bindgen's cexpr, to build iceoryx2"),
     ("rand", "axum's web sockets"),
+    ("rand_chacha", "rand of zenoh"),
     ("rand_core", "rand of axum's web sockets"),
     ("shlex", "bindgen, to build iceoryx2"),
+    ("socket2", "zenoh"),
+    ("spin", "flume of zenoh"),
     ("syn", "macros of crates that have not moved on: built, not linked"),
     ("thiserror", "serde-reflection"),
     ("thiserror-impl", "serde-reflection"),
@@ -69,7 +79,14 @@ struct Package {
 fn packages() -> Vec<Package> {
     let output = Command::new(env!("CARGO"))
         .args(["tree", "--offline", "--locked", "--workspace", "--prefix", "none", "--no-dedupe"])
-        .args(["--features", "ros2/dds", "--edges", "normal,build,dev", "--format", "{p}\t{l}"])
+        .args([
+            "--features",
+            "ros2/dds,link/zenoh",
+            "--edges",
+            "normal,build,dev",
+            "--format",
+            "{p}\t{l}",
+        ])
         .current_dir(TOP)
         .output()
         .unwrap();

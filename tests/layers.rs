@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::process::Command;
 
-const SERVICES: [&str; 11] = [
+const SERVICES: [&str; 12] = [
     "speech",
     "grounding",
     "policy",
@@ -13,6 +13,7 @@ const SERVICES: [&str; 11] = [
     "baxter",
     "ros1",
     "ros2",
+    "link",
     "console",
     "recorder",
     "supervisor",

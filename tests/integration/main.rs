@@ -22,6 +22,7 @@ mod isolation;
 mod journal_format;
 mod journal_loss;
 mod journals;
+mod link;
 mod live;
 mod metrics;
 mod own_voice;

@@ -7,6 +7,7 @@ pub mod fuzz;
 mod group;
 pub mod hammer;
 pub mod isolated;
+pub mod link;
 pub mod ros1;
 pub mod ros2;
 pub mod second_user;

@@ -142,8 +142,8 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
         Some(Service::Policy) => (&[Section::Dialogue], true),
         Some(Service::Arm) => (&[Section::Arm], false),
         Some(Service::Console) => (&Section::ALL[1..], false),
-        // Each of its files holds the settings that were in force.
-        Some(Service::Recorder) => (&Section::ALL, true),
+        // Each recording holds the settings in force, and each mirror begins with them.
+        Some(Service::Recorder | Service::Link) => (&Section::ALL, true),
         Some(Service::Ros2) => (&[Section::Ros2, Section::Arm], false),
         Some(Service::Robot) | None => (&[Section::Speech, Section::Dialogue, Section::Arm], true),
     };

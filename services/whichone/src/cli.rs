@@ -11,6 +11,7 @@ use service::group::{ENV_GROUP, GroupName};
 mod arm;
 mod batch;
 mod group;
+mod link;
 mod objects;
 mod record;
 mod replay;
@@ -24,6 +25,7 @@ pub use group::{
     CheckArgs, ConfigArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs,
     SwapArgs, UpArgs, WaitFor,
 };
+pub use link::LinkArgs;
 pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
 pub use record::{ExportVerb, McapArgs, OpenArgs, PomdpArgs, RecordVerb, RecorderArgs};
 pub use replay::ReplayArgs;
@@ -190,6 +192,16 @@ pub enum Verb {
     StopMotion(MotionArgs),
     /// Release the motion stop.
     ResumeMotion(MotionArgs),
+    /// Show a robot elsewhere as a group of this machine, make keys, run the router.
+    ///
+    /// `whichone link --help` lists the arguments. Requires the program whichone-link (docs/remote.md).
+    #[command(disable_help_flag = true)]
+    Link(LinkArgs),
+    /// List the robots that are connected to the router.
+    ///
+    /// Requires the program whichone-link (docs/remote.md).
+    #[command(disable_help_flag = true)]
+    Fleet(LinkArgs),
     /// Start or stop the recorder, list its recordings, or open one.
     Record {
         /// Action.

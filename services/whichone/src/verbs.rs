@@ -25,6 +25,7 @@ mod hearing;
 mod inspection;
 mod interrupt;
 mod leftovers;
+mod link;
 mod listen;
 mod logs;
 mod motion;
@@ -78,6 +79,8 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::ResumeMotion(args) => {
             motion::motion(&paths()?, MotionOrder::Resume, args.timeout, out)
         }
+        Verb::Link(args) => Err(link::link(&cli.group, args)),
+        Verb::Fleet(args) => Err(link::fleet(args, cli.json)),
         Verb::Record { what } => record::record(&paths()?, what, out),
         Verb::Replay(args) => replay::replay(paths, &args, out),
         Verb::Scene { what } => scene::scene(what, out),

@@ -15,6 +15,7 @@ mod detectors;
 mod dialogue;
 mod files;
 mod group;
+mod link;
 mod load;
 mod manager;
 mod resolved;
@@ -40,6 +41,7 @@ pub use crate::detectors::{Labels, Ros1Objects, Ros2Objects};
 pub use crate::dialogue::{CostsFrom, Dialogue, Gesture};
 pub use crate::files::{RobotFiles, read_file};
 pub use crate::group::{Flight, Group, Log, Perception, Recorder, RestartLimits};
+pub use crate::link::Link;
 pub use crate::load::Examined;
 pub use crate::manager::ManagerError;
 pub use crate::resolved::{Origin, Section};
@@ -68,6 +70,8 @@ pub struct Settings {
     pub console: Console,
     /// The ROS 2 node.
     pub ros2: Ros2,
+    /// The link to operators elsewhere.
+    pub link: Link,
     /// The scene; after `preflight`, every object has a place that the arm can reach.
     pub scene: Scene,
     /// Measured seconds of every question and pick, under [`CostsFrom::Robot`]; set by

@@ -9,7 +9,8 @@ use toml::Value;
 use crate::files::{FILE_BYTES_MAX, Files, names, one_of, read_text};
 use crate::resolved::{self, Resolved, Section};
 use crate::{
-    Settings, arm, console, detectors, dialogue, group, ros2, services, snapshot, speech, study,
+    Settings, arm, console, detectors, dialogue, group, link, ros2, services, snapshot, speech,
+    study,
 };
 
 /// What a configuration was found to be, before a verdict: further checks may add to the report.
@@ -77,7 +78,9 @@ pub(crate) fn check(
     let study = fields.table("study", |f| study::read(f, &dialogue.planner));
     let console = fields.table("console", console::read);
     let ros2 = fields.table("ros2", ros2::read);
+    let link = fields.table("link", link::read);
     fields.finish();
+    link::check(&link, &group, &tree, &mut report);
     arm::check_camera(&arm, group.perception.enabled, &tree, &mut report);
     let Files { scene: file, robot } = files;
     let scene =
@@ -95,7 +98,19 @@ pub(crate) fn check(
             snapshot::read_durations(node, &dialogue, &scene, &source, &mut report)
         });
         let resolved = Resolved { tree, scene: file, robot };
-        Settings { group, dialogue, speech, arm, study, console, ros2, scene, durations, resolved }
+        Settings {
+            group,
+            dialogue,
+            speech,
+            arm,
+            study,
+            console,
+            ros2,
+            link,
+            scene,
+            durations,
+            resolved,
+        }
     });
     Examined { settings, report, arm_is_right }
 }

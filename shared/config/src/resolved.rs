@@ -21,11 +21,13 @@ pub enum Section {
     Console,
     /// `ros2.toml`
     Ros2,
+    /// `link.toml`
+    Link,
 }
 
 impl Section {
     /// Every section.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Group,
         Self::Dialogue,
         Self::Speech,
@@ -33,6 +35,7 @@ impl Section {
         Self::Console,
         Self::Study,
         Self::Ros2,
+        Self::Link,
     ];
 
     /// Its name: the first part of its keys.
@@ -45,6 +48,7 @@ impl Section {
             Self::Study => "study",
             Self::Console => "console",
             Self::Ros2 => "ros2",
+            Self::Link => "link",
         }
     }
 
@@ -63,6 +67,7 @@ impl Section {
             Self::Study => include_str!("../../../config/study.toml"),
             Self::Console => include_str!("../../../config/console.toml"),
             Self::Ros2 => include_str!("../../../config/ros2.toml"),
+            Self::Link => include_str!("../../../config/link.toml"),
         }
     }
 }

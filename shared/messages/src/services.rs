@@ -23,6 +23,8 @@ pub enum Service {
     Robot,
     /// Presents the group as a ROS 2 node; optional.
     Ros2,
+    /// Links the group to operators elsewhere; optional.
+    Link,
 }
 
 impl Service {
@@ -47,6 +49,7 @@ impl Service {
             Self::Recorder => "recorder",
             Self::Robot => "baxter",
             Self::Ros2 => "ros2",
+            Self::Link => "link",
         }
     }
 
@@ -54,7 +57,7 @@ impl Service {
     pub fn from_name(name: &str) -> Option<Self> {
         Self::BUILT_IN
             .into_iter()
-            .chain([Self::Robot, Self::Ros2])
+            .chain([Self::Robot, Self::Ros2, Self::Link])
             .find(|service| service.name() == name)
     }
 }

@@ -18,7 +18,7 @@ use std::time::Duration;
 use tracing_subscriber::EnvFilter;
 
 /// Libraries that report every step of a connection, unless the filter says otherwise.
-const QUIET: &str = "rustdds=error,ros2_client=error";
+const QUIET: &str = "rustdds=error,ros2_client=error,zenoh=error";
 /// Bytes that a descriptor takes without blocking once it polls as writable: a pipe's page.
 const CHUNK_BYTES: usize = 4096;
 /// Most lines that wait for the thread.

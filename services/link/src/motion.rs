@@ -1,0 +1,355 @@
+//! Orders to the motion stop over a link, exactly as safe as on the robot.
+//!
+//! A stop is stamped with the robot's own clock when it first arrives there, and keeps that stamp however often it is
+//! repeated. A release names the stop that it lifts, by that stop's stamp, and the state that the person saw. The
+//! robot gives it the very next stamp after the named stop's: the arm, which ignores orders older than the last one obeyed,
+//! cannot release a later stop by it, whichever order messages arrive in. Both machines' clocks are never compared: how
+//! old the seen state is, is the robot's own time since it sent it.
+
+use std::collections::VecDeque;
+
+use messages::{MotionInhibit, MotionOrder};
+use serde::{Deserialize, Serialize};
+use service::stop_socket::StopState;
+use service::{Span, Time};
+
+/// Greatest age of the state that a release is based on.
+pub const RELEASE_AGE_MAX: Span = Span::from_ms(2_000);
+/// Stops whose stamps are remembered. An older one that is repeated stops again.
+const KNOWN_MAX: usize = 64;
+
+/// The motion stop's state as the robot sends it, in the robot's time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Seen {
+    /// When it was sent.
+    pub at_ns: u64,
+    /// Stamp of the order in force; 0 for none yet.
+    pub in_force_ns: u64,
+    /// Whether the stop is latched.
+    pub stopped: bool,
+}
+
+/// What a person orders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Order {
+    /// Halt and latch.
+    Stop,
+    /// Release the stop that was seen.
+    Release(Seen),
+}
+
+/// An order on its way to the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Request {
+    /// Made by the person's machine at random, kept through repetitions.
+    pub key: [u8; 16],
+    /// The order.
+    pub order: Order,
+}
+
+/// The robot's answer to a request.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Answer {
+    /// What the arm answered, and the stamp that the order was given.
+    State(Stamped),
+    /// The release is refused, for this reason.
+    Refused(String),
+    /// The arm has not answered.
+    Silent,
+}
+
+/// The arm's answer in the robot's time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stamped {
+    /// Stamp of the order.
+    pub given_ns: u64,
+    /// Stamp of the order in force.
+    pub in_force_ns: u64,
+    /// See [`StopState`].
+    pub stopped: bool,
+    /// See [`StopState`].
+    pub at_rest: bool,
+    /// See [`StopState`].
+    pub durable: bool,
+    /// See [`StopState`].
+    pub inhibit: MotionInhibit,
+}
+
+impl From<StopState> for Stamped {
+    fn from(state: StopState) -> Self {
+        let StopState { given_ns, in_force_ns, stopped, at_rest, durable, inhibit } = state;
+        Self { given_ns, in_force_ns, stopped, at_rest, durable, inhibit }
+    }
+}
+
+impl Stamped {
+    /// The answer to the same order that was given at `given_ns` of the reader's clock. An order that
+    /// overrules it comes right after.
+    pub fn here(&self, given_ns: u64) -> StopState {
+        let in_force_ns = match self.in_force_ns.cmp(&self.given_ns) {
+            std::cmp::Ordering::Less => given_ns.saturating_sub(1),
+            std::cmp::Ordering::Equal => given_ns,
+            std::cmp::Ordering::Greater => given_ns.saturating_add(1),
+        };
+        let Self { stopped, at_rest, durable, inhibit, .. } = *self;
+        StopState { given_ns, in_force_ns, stopped, at_rest, durable, inhibit }
+    }
+}
+
+/// The robot's side: gives orders their stamps.
+#[derive(Debug, Default)]
+pub struct Register {
+    known: VecDeque<([u8; 16], Time)>,
+    latest: Time,
+}
+
+impl Register {
+    /// Returns the order for the arm and its stamp.
+    ///
+    /// # Errors
+    /// Why a release is refused.
+    pub fn stamp(&mut self, request: &Request, now: Time) -> Result<(MotionOrder, Time), String> {
+        match request.order {
+            Order::Stop => Ok((MotionOrder::Stop, self.stamp_stop(request.key, now))),
+            Order::Release(seen) => {
+                let age = now.since(Time(seen.at_ns));
+                if seen.at_ns > now.ns() || age > RELEASE_AGE_MAX {
+                    return Err(format!(
+                        "the state that the release is based on is {:.1} s old, at most {:.0} s are allowed; \
+                         help: give the order again",
+                        age.s(),
+                        RELEASE_AGE_MAX.s()
+                    ));
+                }
+                Ok((MotionOrder::Resume, Time(seen.in_force_ns.saturating_add(1))))
+            }
+        }
+    }
+
+    fn stamp_stop(&mut self, key: [u8; 16], now: Time) -> Time {
+        if let Some((_, stamp)) = self.known.iter().find(|(known, _)| *known == key) {
+            return *stamp;
+        }
+        // Each has a stamp of its own, so that each can be named.
+        let stamp = now.max(self.latest + Span(1));
+        self.latest = stamp;
+        self.known.push_back((key, stamp));
+        if self.known.len() > KNOWN_MAX {
+            self.known.pop_front();
+        }
+        stamp
+    }
+}
+
+/// Interval at which the mirror repeats a request without an answer.
+const ASK_EVERY: Span = Span::from_ms(250);
+/// Time after which an order that its client no longer repeats is given up.
+const GIVEN_UP: Span = Span::from_ms(1_000);
+
+/// The mirror's side: one order at a time, the latest.
+#[derive(Debug, Default)]
+pub struct Orders {
+    current: Option<Current>,
+}
+
+#[derive(Debug)]
+struct Current {
+    given_ns: u64,
+    request: Request,
+    asked: Option<Time>,
+    repeated: Time,
+    answer: Option<Stamped>,
+}
+
+impl Orders {
+    /// Takes an order of a local client, given at `given_ns`, and each of its repetitions. Returns the answer to it if there is
+    /// one already.
+    ///
+    /// # Errors
+    /// A release of a robot whose state is not known.
+    pub fn take(
+        &mut self,
+        (order, given_ns): (MotionOrder, u64),
+        seen: Option<Seen>,
+        key: [u8; 16],
+        now: Time,
+    ) -> Result<Option<StopState>, &'static str> {
+        if let Some(current) = self.current.as_mut().filter(|current| current.given_ns == given_ns)
+        {
+            current.repeated = now;
+            return Ok(current.answer.map(|answer| answer.here(given_ns)));
+        }
+        let is_overruled = self.current.as_ref().is_some_and(|current| current.given_ns > given_ns);
+        if is_overruled {
+            return Ok(None);
+        }
+        let order = match order {
+            MotionOrder::Stop => Order::Stop,
+            MotionOrder::Resume => Order::Release(seen.ok_or("the robot's state is not known")?),
+        };
+        let request = Request { key, order };
+        self.current =
+            Some(Current { given_ns, request, asked: None, repeated: now, answer: None });
+        Ok(None)
+    }
+
+    /// Returns the request that is due at `now`. A release is based on the newest state in which the stop that it lifts
+    /// is still in force.
+    pub fn due(&mut self, seen: Option<Seen>, now: Time) -> Option<Request> {
+        self.current.take_if(|current| now >= current.repeated + GIVEN_UP);
+        let current = self.current.as_mut()?;
+        let is_asked = current.asked.is_some_and(|asked| now < asked + ASK_EVERY);
+        if is_asked || current.answer.is_some_and(|answer| answer.at_rest && answer.durable) {
+            return None;
+        }
+        if let (Order::Release(old), Some(new)) = (&mut current.request.order, seen)
+            && old.in_force_ns == new.in_force_ns
+        {
+            *old = new;
+        }
+        current.asked = Some(now);
+        Some(current.request)
+    }
+
+    /// When the next request is due.
+    pub fn next(&self) -> Option<Time> {
+        self.current
+            .as_ref()
+            .map(|current| current.asked.map_or(Time(0), |asked| asked + ASK_EVERY))
+    }
+
+    /// Takes the robot's answer to the request with `key`; returns it for the local client.
+    pub fn on_answer(&mut self, key: [u8; 16], answer: &Answer) -> Option<StopState> {
+        let current = self.current.as_mut().filter(|current| current.request.key == key)?;
+        let Answer::State(stamped) = answer else { return None };
+        current.answer = Some(*stamped);
+        Some(stamped.here(current.given_ns))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(ms: u64) -> Time {
+        Time(0) + Span::from_ms(ms)
+    }
+
+    fn stop(key: u8) -> Request {
+        Request { key: [key; 16], order: Order::Stop }
+    }
+
+    fn release(key: u8, at_ms: u64, in_force: Time) -> Request {
+        let seen = Seen { at_ns: at(at_ms).ns(), in_force_ns: in_force.ns(), stopped: true };
+        Request { key: [key; 16], order: Order::Release(seen) }
+    }
+
+    /// The arm's rule.
+    #[derive(Default)]
+    struct Arm {
+        stopped: bool,
+        obeyed: Time,
+    }
+
+    impl Arm {
+        fn obey(&mut self, (order, given): (MotionOrder, Time)) {
+            if given > self.obeyed {
+                (self.stopped, self.obeyed) = (order == MotionOrder::Stop, given);
+            }
+        }
+    }
+
+    #[test]
+    fn repeated_stop_keeps_the_stamp_of_its_first_arrival() {
+        let mut register = Register::default();
+        let first = register.stamp(&stop(1), at(100)).unwrap();
+        assert_eq!(first, (MotionOrder::Stop, at(100)));
+        assert_eq!(register.stamp(&stop(1), at(900)).unwrap(), first);
+        let second = register.stamp(&stop(2), at(100)).unwrap();
+        assert!(second.1 > first.1, "two stops at once have stamps of their own");
+    }
+
+    #[test]
+    fn release_lifts_the_stop_that_it_names_and_no_later_one_in_every_order_of_arrival() {
+        let (mut register, one) = (Register::default(), at(1_000));
+        let requests = [stop(1), release(3, 1_500, one), stop(2), release(3, 1_500, one), stop(1)];
+        // Every sequence of five arrivals out of these, repeated and swapped as a network may.
+        for word in 0..5_usize.pow(5) {
+            let mut arm = Arm::default();
+            register.known.clear();
+            register.latest = Time(0);
+            arm.obey(register.stamp(&stop(1), one).unwrap());
+            let mut is_stopped_again = false;
+            for place in 0..5_u32 {
+                let request = requests[word / 5_usize.pow(place) % 5];
+                let now = at(1_600 + u64::from(place));
+                is_stopped_again |= request.key == [2; 16];
+                arm.obey(register.stamp(&request, now).unwrap());
+            }
+            assert!(arm.stopped || !is_stopped_again, "{word}: a later stop was released");
+        }
+    }
+
+    #[test]
+    fn old_release_is_refused() {
+        let mut register = Register::default();
+        assert!(register.stamp(&release(1, 1_000, at(900)), at(3_000)).is_ok());
+        let error = register.stamp(&release(1, 1_000, at(900)), at(3_001)).unwrap_err();
+        assert!(error.contains("2.0 s old"), "{error}");
+        assert!(register.stamp(&release(1, 9_000, at(900)), at(3_000)).is_err(), "from the future");
+    }
+
+    #[test]
+    fn request_is_repeated_under_one_key_while_its_client_wants_it() {
+        let mut orders = Orders::default();
+        let given = at(50).ns();
+        let mut sent = Vec::new();
+        for ms in (0..3_000).step_by(10) {
+            if ms < 1_000 {
+                let key = [ms as u8; 16];
+                let taken = orders.take((MotionOrder::Stop, given), None, key, at(ms));
+                assert_eq!(taken, Ok(None));
+            }
+            sent.extend(orders.due(None, at(ms)).map(|request| (ms, request.key[0])));
+        }
+        let expected: Vec<_> = (0..2_000).step_by(250).map(|ms| (ms, 0)).collect();
+        assert_eq!(sent, expected);
+    }
+
+    #[test]
+    fn answers_come_back_in_the_clients_time() {
+        let mut orders = Orders::default();
+        let given = at(50).ns();
+        orders.take((MotionOrder::Stop, given), None, [1; 16], at(50)).unwrap();
+        let stamped = Stamped {
+            given_ns: 900,
+            in_force_ns: 900,
+            stopped: true,
+            at_rest: false,
+            durable: false,
+            inhibit: MotionInhibit::None,
+        };
+        assert_eq!(orders.on_answer([2; 16], &Answer::State(stamped)), None);
+        let here = orders.on_answer([1; 16], &Answer::State(stamped)).unwrap();
+        assert_eq!((here.given_ns, here.in_force_ns, here.at_rest), (given, given, false));
+        let overruled = Stamped { in_force_ns: 901, ..stamped };
+        assert_eq!(overruled.here(given).in_force_ns, given + 1);
+        assert!(orders.due(None, at(60)).is_some(), "until it is at rest");
+        let done = Stamped { at_rest: true, durable: true, ..stamped };
+        orders.on_answer([1; 16], &Answer::State(done));
+        assert_eq!(orders.due(None, at(900)), None);
+    }
+
+    #[test]
+    fn release_needs_a_state_and_keeps_to_the_stop_that_was_seen() {
+        let mut orders = Orders::default();
+        let resume = (MotionOrder::Resume, at(50).ns());
+        assert!(orders.take(resume, None, [1; 16], at(50)).is_err());
+        let seen = Seen { at_ns: 10, in_force_ns: 5, stopped: true };
+        orders.take(resume, Some(seen), [1; 16], at(50)).unwrap();
+        let newer = Seen { at_ns: 20, ..seen };
+        assert_eq!(orders.due(Some(newer), at(50)).unwrap().order, Order::Release(newer));
+        let other_stop = Seen { at_ns: 30, in_force_ns: 25, stopped: true };
+        assert_eq!(orders.due(Some(other_stop), at(400)).unwrap().order, Order::Release(newer));
+    }
+}

@@ -1,0 +1,198 @@
+//! Names of robots and people, and the keys under which a robot is found.
+
+use serde::{Deserialize, Serialize};
+
+/// Name of a robot or a person: 1 to 32 of `a–z 0–9 -`, beginning with a letter or digit.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Name(String);
+
+/// Invalid name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{0:?} is not a name; help: use 1 to 32 of a-z, 0-9 and -, beginning with a letter or digit"
+)]
+pub struct NameError(String);
+
+impl Name {
+    /// Checks a name.
+    ///
+    /// # Errors
+    /// The name is invalid.
+    pub fn new(name: &str) -> Result<Self, NameError> {
+        let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+        let fits = (1..=32).contains(&name.len()) && !name.starts_with('-');
+        match fits && name.chars().all(allowed) {
+            true => Ok(Self(name.to_owned())),
+            false => Err(NameError(name.to_owned())),
+        }
+    }
+
+    /// The name.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+impl std::fmt::Display for Name {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl std::str::FromStr for Name {
+    type Err = NameError;
+
+    fn from_str(name: &str) -> Result<Self, NameError> {
+        Self::new(name)
+    }
+}
+
+impl TryFrom<String> for Name {
+    type Error = NameError;
+
+    fn try_from(name: String) -> Result<Self, NameError> {
+        Self::new(&name)
+    }
+}
+
+impl From<Name> for String {
+    fn from(name: Name) -> Self {
+        name.0
+    }
+}
+
+/// First part of every key.
+const ROOT: &str = "whichone";
+
+/// The keys of one robot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Keys(String);
+
+/// A request to a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Call {
+    /// What a list of robots shows.
+    Presence,
+    /// What a mirror needs to know first.
+    Hello,
+    /// Sound of one of the robot's lines.
+    Voice,
+    /// Words of a person.
+    Say,
+    /// An order to the motion stop.
+    Motion,
+}
+
+impl Call {
+    /// Every one.
+    pub const ALL: [Self; 5] = [Self::Presence, Self::Hello, Self::Voice, Self::Say, Self::Motion];
+
+    /// Last part of its key.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Presence => "presence",
+            Self::Hello => "hello",
+            Self::Voice => "voice",
+            Self::Say => "say",
+            Self::Motion => "motion",
+        }
+    }
+
+    /// Returns whether it only reads, so that a viewer may make it.
+    pub fn only_reads(self) -> bool {
+        matches!(self, Self::Presence | Self::Hello | Self::Voice)
+    }
+}
+
+impl Keys {
+    /// The keys of `robot`.
+    pub fn of(robot: &Name) -> Self {
+        Self(format!("{ROOT}/{robot}"))
+    }
+
+    /// The keys of every robot.
+    pub fn of_all() -> Self {
+        Self(format!("{ROOT}/*"))
+    }
+
+    /// All of its keys.
+    pub fn all(&self) -> String {
+        format!("{}/**", self.0)
+    }
+
+    /// A state: a topic by its name, `group` or `motion`.
+    pub fn state(&self, name: &str) -> String {
+        format!("{}/state/{name}", self.0)
+    }
+
+    /// Joint states.
+    pub fn joints(&self) -> String {
+        format!("{}/joints", self.0)
+    }
+
+    /// What a list of robots shows.
+    pub fn presence(&self) -> String {
+        format!("{}/presence", self.0)
+    }
+
+    /// Token that exists while the robot's link runs; `start` is its number ([`crate::frame::Frame::start`]).
+    pub fn alive(&self, start: &str) -> String {
+        format!("{}/alive/{start}", self.0)
+    }
+
+    /// A request.
+    pub fn call(&self, call: Call) -> String {
+        format!("{}/call/{}", self.0, call.name())
+    }
+
+    /// Every request.
+    pub fn calls(&self) -> String {
+        format!("{}/call/*", self.0)
+    }
+
+    /// Sound that a person streams to the robot.
+    pub fn audio(&self) -> String {
+        format!("{}/audio", self.0)
+    }
+
+    /// Returns the state's name in a key of this robot.
+    pub fn state_of<'a>(&self, key: &'a str) -> Option<&'a str> {
+        key.strip_prefix(&self.0)?.strip_prefix("/state/")
+    }
+}
+
+/// Returns the request in a key, which may be one of every robot.
+pub fn call_of(key: &str) -> Option<Call> {
+    let (_, name) = key.split_once("/call/")?;
+    Call::ALL.into_iter().find(|call| call.name() == name)
+}
+
+/// Returns the robot in a key.
+pub fn robot_of(key: &str) -> Option<Name> {
+    let mut parts = key.split('/');
+    (parts.next() == Some(ROOT)).then(|| Name::new(parts.next()?).ok())?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_cannot_reach_beyond_their_robot() {
+        assert!(Name::new("r1").is_ok());
+        for bad in ["", "-a", "R1", "a/b", "*", "**", "a b", "$a", "a:b", &"x".repeat(33)] {
+            assert_eq!(Name::new(bad), Err(NameError(bad.to_owned())));
+        }
+    }
+
+    #[test]
+    fn keys_name_their_robot_and_state() {
+        let keys = Keys::of(&Name::new("r1").unwrap());
+        assert_eq!(keys.state_of(&keys.state("policy/view")), Some("policy/view"));
+        assert_eq!(keys.state_of(&keys.joints()), None);
+        assert_eq!(keys.state_of("whichone/r10/state/group"), None);
+        assert_eq!(robot_of(&keys.alive("7")).unwrap().as_str(), "r1");
+        assert_eq!(robot_of("other/r1/presence"), None);
+    }
+}

@@ -1,0 +1,254 @@
+//! The robot's side: a service of its group that shows it to mirrors, and takes words and orders from them.
+//!
+//! The main loop reads topics, submits words and decides what is sent; it never touches the network. Threads of their own send
+//! states, joints and answers, and one more does nothing but orders to the motion stop.
+
+mod answering;
+mod motion;
+mod senders;
+mod sources;
+
+use std::ops::ControlFlow;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use config::Settings;
+use messages::{AudioChunk, Injection, Receipt, Service, topics};
+use service::bus::{EncodedWriter, Reader, WakeListener, Writer};
+use service::client::{Client, random_number};
+use service::control::{Reply, Request, call};
+use service::exit::{Exit, Failure};
+use service::group::GroupPaths;
+use service::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
+use service::status::GroupStatus;
+use service::worker_channel::{self, DeviceReceiver, DeviceSender};
+use service::{Span, Time, clock, service_loop};
+use zenoh::query::Query;
+
+use crate::identity::Identity;
+use crate::names::{Call, Keys};
+use crate::presence::{PRESENCE_EVERY, Presence};
+use crate::say::Asked;
+use crate::session::close;
+use senders::Senders;
+use sources::TopicSources;
+
+/// Longest sleep: while words wait for their receipts, while somebody watches, and else.
+const LOOK_EVERY: [Span; 3] = [Span::from_ms(2), Span::from_ms(15), Span::from_ms(250)];
+/// Interval at which the supervisor is asked.
+const STATUS_EVERY: Duration = Duration::from_millis(2_000);
+/// Timeout of its answer.
+const SUPERVISOR_PATIENCE: Duration = Duration::from_secs(2);
+
+/// Runs the service until it is shut down.
+pub fn run() -> ExitCode {
+    let about = "links the group to operators elsewhere (docs/remote.md)";
+    service_loop::program(Service::Link.name(), about, serve)
+}
+
+fn serve(arguments: Vec<String>) -> Result<(), Failure> {
+    let environment = Environment::read(arguments)?;
+    let lifecycle = Lifecycle::begin(&environment.paths)?;
+    let settings = Settings::load_snapshot(&environment.paths.run())?;
+    let mut robot = Robot::open(&environment, settings)?;
+    let ended = drive(lifecycle, &mut robot);
+    if let Some(senders) = robot.senders.take() {
+        close(senders);
+    }
+    ended
+}
+
+/// What other threads give to the main loop.
+enum Inbound {
+    /// A connection to the router.
+    Connected(Box<Senders>),
+    /// A request of a mirror.
+    Asked(Call, Query),
+    /// Sound of a person.
+    Audio(Vec<u8>),
+    /// The group's state, or why there is none.
+    Status(Result<Box<GroupStatus>, String>),
+}
+
+struct Robot {
+    settings: Settings,
+    paths: GroupPaths,
+    epoch: u64,
+    client: Client,
+    wake_listener: WakeListener,
+    inbox: DeviceReceiver<Inbound>,
+    sources: TopicSources,
+    receipts: Reader<Receipt>,
+    injections: EncodedWriter<Injection>,
+    audio: Writer<AudioChunk>,
+    asked: Asked<Query>,
+    senders: Option<Senders>,
+    presence: Presence,
+    presence_sent: Option<Time>,
+    is_ending: Arc<AtomicBool>,
+}
+
+impl Robot {
+    fn open(environment: &Environment, settings: Settings) -> Result<Self, Failure> {
+        let failed = |what: &'static str| {
+            move |e: std::io::Error| Failure::new(Exit::NotReached, format!("{what}: {e}"))
+        };
+        let folder = settings.link.keys.clone().ok_or_else(|| {
+            let what = "link.keys is not set; help: set it to the folder robots/NAME of `whichone link init`";
+            Failure::new(Exit::Config, what)
+        })?;
+        let identity = Identity::load(&folder)?;
+        identity.require(true, &folder)?;
+        let paths = environment.paths.clone();
+        let client = Client::of_service(environment, Service::Link.name())?;
+        let bus = client.bus();
+        let wake_listener = bus.wake_listener(Service::Link)?;
+        let start = random_number();
+        let sources = TopicSources::open(bus, &settings, start)?;
+        let (sender, inbox) = worker_channel::channel().map_err(failed("inbox"))?;
+        let keys = Keys::of(&identity.name);
+        let is_ending = Arc::new(AtomicBool::new(false));
+        let presence = Presence {
+            robot: identity.name.to_string(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            scene: settings.scene.name().to_owned(),
+            dialogue: "idle".to_owned(),
+            arm: "rest".to_owned(),
+            ..Presence::default()
+        };
+        watch_supervisor(&paths, sender.clone()).map_err(failed("supervisor's thread"))?;
+        let receipts = bus.reader(&topics::RECEIPT)?;
+        let injections = bus.encoded_writer(&topics::INJECTION)?;
+        let audio = bus.writer(&topics::AUDIO)?;
+        let ending = Arc::clone(&is_ending);
+        let connecting =
+            senders::Connecting { identity, folder, keys, start, paths: paths.clone() };
+        let connect = move || connecting.run(&sender, &ending);
+        std::thread::Builder::new()
+            .name("connect".into())
+            .spawn(connect)
+            .map_err(failed("connecting thread"))?;
+        Ok(Self {
+            settings,
+            paths,
+            epoch: environment.epoch.0,
+            client,
+            wake_listener,
+            inbox,
+            sources,
+            receipts,
+            injections,
+            audio,
+            asked: Asked::default(),
+            senders: None,
+            presence,
+            presence_sent: None,
+            is_ending,
+        })
+    }
+
+    fn take_in(&mut self) {
+        self.inbox.clear();
+        while let Some(inbound) = self.inbox.take() {
+            match inbound {
+                Inbound::Connected(senders) => self.senders = Some(*senders),
+                Inbound::Asked(call, query) => self.on_call(call, query),
+                Inbound::Audio(bytes) => self.on_audio(&bytes),
+                Inbound::Status(status) => self.on_status(status),
+            }
+        }
+    }
+
+    /// Sends what has changed, to those who watch.
+    fn send(&mut self, now: Time) {
+        let Some(senders) = &self.senders else { return };
+        self.sources.send(senders, now);
+        let presence = self.presence.clone().with(
+            self.sources.view(),
+            self.sources.status(),
+            &self.settings.scene,
+        );
+        let is_due = self.presence_sent.is_none_or(|sent| now >= sent + PRESENCE_EVERY);
+        if is_due {
+            self.presence_sent = Some(now);
+            senders.presence(&presence);
+        }
+        self.presence = presence;
+    }
+
+    fn on_status(&mut self, status: Result<Box<GroupStatus>, String>) {
+        match status {
+            Ok(status) => {
+                self.presence.state = format!("{:?}", status.state).to_lowercase();
+                if let Some(senders) = &self.senders {
+                    senders.group(&status);
+                }
+            }
+            Err(why) => {
+                tracing::debug!(why, "no status from the supervisor");
+                self.presence.state.clear();
+            }
+        }
+    }
+}
+
+impl Cycle for Robot {
+    fn listener(&self) -> &WakeListener {
+        &self.wake_listener
+    }
+
+    fn wake(&self, now: Time) -> (Sources<'_>, Time) {
+        let is_watched = self.senders.as_ref().is_some_and(Senders::is_watched);
+        let [busy, watched, alone] = LOOK_EVERY;
+        let longest = match (self.asked.is_waiting(), is_watched) {
+            (true, _) => busy,
+            (false, true) => watched,
+            (false, false) => alone,
+        };
+        ([Some(self.inbox.fd()), None, None], now + longest)
+    }
+
+    fn shut_down(&mut self) {
+        self.is_ending.store(true, Ordering::Relaxed);
+    }
+
+    fn pass(&mut self, ready: Ready) -> Result<ControlFlow<()>, Failure> {
+        if self.is_ending.load(Ordering::Relaxed) {
+            return Ok(ControlFlow::Break(()));
+        }
+        if ready.by_wake
+            && let Some(joined) = self.wake_listener.take()
+        {
+            self.client.bus().connect(joined);
+        }
+        self.take_in();
+        self.submit();
+        self.sources.look();
+        self.send(clock::now());
+        Ok(ControlFlow::Continue(()))
+    }
+
+    fn health(&mut self, _now: Time) -> Health {
+        Health::Working(None)
+    }
+}
+
+/// Asks for the group's status now and then, on a thread of its own: answers may take a while.
+fn watch_supervisor(paths: &GroupPaths, main_loop: DeviceSender<Inbound>) -> std::io::Result<()> {
+    let socket = paths.control_socket();
+    let ask = move || {
+        loop {
+            let status = match call(&socket, &Request::Status, SUPERVISOR_PATIENCE) {
+                Ok(Reply::Status(status)) => Ok(status),
+                Ok(other) => Err(format!("{other:?}")),
+                Err(error) => Err(error.to_string()),
+            };
+            // A full inbox gets the next one.
+            let _ = main_loop.offer(Inbound::Status(status));
+            std::thread::sleep(STATUS_EVERY);
+        }
+    };
+    std::thread::Builder::new().name("supervisor".into()).spawn(ask).map(drop)
+}

@@ -1,0 +1,120 @@
+//! Requests of mirrors, but for orders to the motion stop.
+
+use std::path::{Path, PathBuf};
+
+use messages::{AudioChunk, RequestKey, Sound};
+use service::clock;
+use zenoh::query::Query;
+
+use super::Robot;
+use crate::names::Call;
+use crate::offset::time_ns;
+use crate::presence::Hello;
+use crate::say::{Receipts, Said, Sent};
+
+impl Robot {
+    pub(super) fn on_call(&mut self, call: Call, query: Query) {
+        let payload = query.payload().map(|payload| payload.to_bytes().into_owned());
+        let payload = payload.unwrap_or_default();
+        let bytes = match call {
+            Call::Presence => serde_json::to_vec(&self.presence).ok(),
+            Call::Hello => {
+                let version = env!("CARGO_PKG_VERSION").to_owned();
+                let settings = self.settings.snapshot();
+                postcard::to_stdvec(&Hello { version, epoch: self.epoch, settings }).ok()
+            }
+            Call::Voice => self.line_of(&payload),
+            Call::Say => return self.on_said(query, &payload),
+            Call::Motion => None,
+        };
+        if let Some((bytes, senders)) = bytes.zip(self.senders.as_ref()) {
+            senders.answer(call, query, bytes);
+        }
+    }
+
+    /// The sound of one of the robot's lines, by its file's name.
+    fn line_of(&self, name: &[u8]) -> Option<Vec<u8>> {
+        let name = std::str::from_utf8(name).ok().filter(|name| is_line(name))?;
+        std::fs::read(self.settings.voice_dir(&self.paths.run())?.join(name)).ok()
+    }
+
+    fn on_said(&mut self, query: Query, payload: &[u8]) {
+        let Ok(said) = postcard::from_bytes::<Said>(payload) else {
+            return tracing::warn!("unintelligible words ignored");
+        };
+        let Some(sound) = self.sound_of(&said) else {
+            return tracing::warn!("words that name a file of this machine ignored");
+        };
+        if let Some((query, receipts)) = self.asked.take(&said, sound, query, clock::now()) {
+            self.answer_words(vec![query], receipts);
+        }
+    }
+
+    /// What speech is to hear; contents of a file are written to one first.
+    fn sound_of(&self, said: &Said) -> Option<Sound> {
+        match &said.sound {
+            Sent::Sound(Sound::Wav(_)) => None,
+            Sent::Sound(sound) => Some(sound.clone()),
+            Sent::File(contents) => {
+                let file = sound_file(&self.paths.run(), said.key);
+                if !self.asked.waits_for(said.key) {
+                    let written = std::fs::write(&file, contents);
+                    written
+                        .inspect_err(|error| tracing::warn!(%error, "sound not written"))
+                        .ok()?;
+                }
+                Some(Sound::Wav(file.display().to_string()))
+            }
+        }
+    }
+
+    /// Submits words, and answers those whose receipts have come.
+    pub(super) fn submit(&mut self) {
+        for injection in self.asked.due(clock::now()) {
+            if let Err(error) = self.injections.send(&injection) {
+                tracing::warn!(%error, "words not submitted; tried again");
+            }
+        }
+        let mut answered = Vec::new();
+        let read = self.receipts.drain(|receipt| answered.extend(self.asked.on_receipt(receipt)));
+        if let Err(error) = read {
+            tracing::debug!(%error, "receipts not read; tried again");
+        }
+        for (queries, receipts) in answered {
+            if let Some(first) = receipts.first() {
+                // It is there only where a file was sent.
+                let _ = std::fs::remove_file(sound_file(&self.paths.run(), first.request()));
+            }
+            self.answer_words(queries, receipts);
+        }
+    }
+
+    fn answer_words(&self, queries: Vec<Query>, receipts: Vec<messages::Receipt>) {
+        let Some(senders) = &self.senders else { return };
+        let answer = Receipts { sent_ns: clock::now().ns(), receipts };
+        let bytes = postcard::to_stdvec(&answer).unwrap_or_default();
+        queries.into_iter().for_each(|query| senders.answer(Call::Say, query, bytes.clone()));
+    }
+
+    /// A chunk travels with the age of its first sample in place of the time.
+    pub(super) fn on_audio(&self, bytes: &[u8]) {
+        let Ok(mut chunk) = postcard::from_bytes::<AudioChunk>(bytes) else {
+            return tracing::debug!("unintelligible sound ignored");
+        };
+        chunk.taken_ns = time_ns(Some(chunk.taken_ns), clock::now());
+        if let Err(error) = self.audio.send(&chunk) {
+            tracing::debug!(%error, "sound not passed on");
+        }
+    }
+}
+
+fn sound_file(run: &Path, RequestKey(key): RequestKey) -> PathBuf {
+    let key: String = key.iter().map(|byte| format!("{byte:02x}")).collect();
+    run.join(format!("link-{key}.wav"))
+}
+
+/// Returns whether a text is the name of a line's file, and nothing else.
+fn is_line(name: &str) -> bool {
+    let numbers = name.strip_prefix("line-").and_then(|name| name.strip_suffix(".wav"));
+    numbers.is_some_and(|numbers| numbers.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-'))
+}

@@ -1,0 +1,136 @@
+//! The topics that mirrors see, each with what is to be sent of it.
+
+use config::Settings;
+use messages::{
+    Activity, ArmStatus, Hearing, JointStates, Observation, Partial, PolicyView, Presented,
+    Receipt, RobotAct, TableView, TrajectoryView, WorldView,
+};
+use service::Time;
+use service::bus::{Bus, BusError, EncodedReader, PortError, Reader, WireMessage};
+
+use super::senders::Senders;
+use crate::frame::Outgoing;
+use crate::mirrored::Mirrored;
+
+/// A reader of a topic, of fixed or variable size.
+trait Drain<T> {
+    fn drain(&self, take: &mut dyn FnMut(T)) -> Result<(), PortError>;
+}
+
+impl<T: WireMessage> Drain<T> for Reader<T> {
+    fn drain(&self, take: &mut dyn FnMut(T)) -> Result<(), PortError> {
+        self.drain(|message| take(*message))
+    }
+}
+
+impl<T: Mirrored> Drain<T> for EncodedReader<T> {
+    fn drain(&self, take: &mut dyn FnMut(T)) -> Result<(), PortError> {
+        self.drain_in_turn(take)
+    }
+}
+
+/// A topic: its reader, what is to be sent, and its latest message.
+struct Source<T> {
+    reader: Box<dyn Drain<T>>,
+    outgoing: Outgoing<T>,
+    latest: Option<T>,
+}
+
+impl<T: Mirrored> Source<T> {
+    fn new(reader: impl Drain<T> + 'static, start: u64) -> Self {
+        Self { reader: Box::new(reader), outgoing: Outgoing::new(start), latest: None }
+    }
+}
+
+/// What the loop does with every topic.
+trait AnySource {
+    fn name(&self) -> &'static str;
+    fn look(&mut self);
+    fn due(&mut self, now: Time) -> Option<Vec<u8>>;
+}
+
+impl<T: Mirrored> AnySource for Source<T> {
+    fn name(&self) -> &'static str {
+        T::TOPIC.name
+    }
+
+    fn look(&mut self) {
+        let Self { reader, outgoing, latest } = self;
+        let taken = reader.drain(&mut |message| {
+            *latest = Some(message.clone());
+            outgoing.take(message);
+        });
+        if let Err(error) = taken {
+            tracing::debug!(%error, "not read; tried again");
+        }
+    }
+
+    fn due(&mut self, now: Time) -> Option<Vec<u8>> {
+        self.outgoing.due(now)
+    }
+}
+
+/// All of them. Policy and arm are also read for the presence.
+pub(super) struct TopicSources {
+    view: Source<PolicyView>,
+    status: Source<ArmStatus>,
+    others: Vec<Box<dyn AnySource>>,
+}
+
+impl TopicSources {
+    pub(super) fn open(bus: &Bus, settings: &Settings, start: u64) -> Result<Self, BusError> {
+        fn fixed<T: Mirrored + WireMessage>(bus: &Bus, start: u64) -> Result<Source<T>, BusError> {
+            Ok(Source::new(bus.reader::<T>(&T::TOPIC)?, start))
+        }
+        fn encoded<T: Mirrored + 'static>(bus: &Bus, start: u64) -> Result<Source<T>, BusError> {
+            Ok(Source::new(bus.encoded_reader::<T>(&T::TOPIC)?, start))
+        }
+        let mut others: Vec<Box<dyn AnySource>> = vec![
+            Box::new(fixed::<Receipt>(bus, start)?),
+            Box::new(fixed::<Presented>(bus, start)?),
+            Box::new(fixed::<Activity>(bus, start)?),
+            Box::new(fixed::<Hearing>(bus, start)?),
+            Box::new(fixed::<Partial>(bus, start)?),
+            Box::new(fixed::<Observation>(bus, start)?),
+            Box::new(fixed::<RobotAct>(bus, start)?),
+            Box::new(fixed::<JointStates>(bus, start)?),
+            Box::new(encoded::<WorldView>(bus, start)?),
+            Box::new(encoded::<TrajectoryView>(bus, start)?),
+        ];
+        if settings.group.perception.enabled {
+            others.push(Box::new(encoded::<TableView>(bus, start)?));
+        }
+        Ok(Self { view: encoded(bus, start)?, status: fixed(bus, start)?, others })
+    }
+
+    fn all(&mut self) -> impl Iterator<Item = &mut dyn AnySource> {
+        let Self { view, status, others } = self;
+        let first: [&mut dyn AnySource; 2] = [status, view];
+        first.into_iter().chain(others.iter_mut().map(|it| &mut **it as &mut dyn AnySource))
+    }
+
+    /// Takes what has arrived.
+    pub(super) fn look(&mut self) {
+        self.all().for_each(|source| source.look());
+    }
+
+    /// Sends what is due to those who watch.
+    pub(super) fn send(&mut self, senders: &Senders, now: Time) {
+        for source in self.all() {
+            let name = source.name();
+            if senders.is_state_watched(name)
+                && let Some(bytes) = source.due(now)
+            {
+                senders.state(name, bytes);
+            }
+        }
+    }
+
+    pub(super) fn view(&self) -> Option<&PolicyView> {
+        self.view.latest.as_ref()
+    }
+
+    pub(super) fn status(&self) -> Option<&ArmStatus> {
+        self.status.latest.as_ref()
+    }
+}

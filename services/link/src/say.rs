@@ -1,0 +1,331 @@
+//! Words of people over a link, applied exactly once.
+//!
+//! Nothing is added to the group's own protocol: a client repeats its [`Injection`] under one key until its receipts arrive,
+//! and the speech service applies a key once. The mirror repeats the request under the same key, the robot's link repeats
+//! the injection, and an answer that was lost is given again. Times travel as ages.
+
+use std::collections::VecDeque;
+
+use messages::{Injection, PromptId, Receipt, RequestKey, Sound};
+use serde::{Deserialize, Serialize};
+use service::submission::Submission;
+use service::{Span, Time};
+
+use crate::offset::{age_ns, time_ns};
+
+/// Time that the robot's link takes for a request before the mirror asks again.
+pub const PATIENCE: Span = Span::from_ms(2_000);
+/// Interval at which the mirror asks again when there was no answer at all.
+const ASK_AGAIN: Span = Span::from_ms(2_500);
+/// Time after which a request that its client no longer repeats is given up.
+const GIVEN_UP: Span = Span::from_ms(3_000);
+/// Requests whose answers are remembered.
+const ANSWERED_MAX: usize = 64;
+/// Requests on their way.
+const WAITING_MAX: usize = messages::topics::WINDOW;
+
+/// An injection on its way to the robot.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Said {
+    /// See [`Injection`].
+    pub key: RequestKey,
+    /// Time since the person began, nanoseconds.
+    pub onset_age_ns: Option<u64>,
+    /// Time since the person had ended, nanoseconds.
+    pub end_age_ns: Option<u64>,
+    /// See [`Injection`].
+    pub seen_prompt: u64,
+    /// What was said. A file is its contents.
+    pub sound: Sent,
+}
+
+/// A client's input on its way.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Sent {
+    /// Anything but a file.
+    Sound(Sound),
+    /// The contents of a WAV file.
+    File(Vec<u8>),
+}
+
+/// The robot's answer: the receipts, and when they were sent by the robot's clock.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Receipts {
+    /// When they were sent.
+    pub sent_ns: u64,
+    /// One for text, one for every utterance in a sound file.
+    pub receipts: Vec<Receipt>,
+}
+
+/// The robot's side: requests that wait for their receipts. `Q` is the way back.
+#[derive(Debug)]
+pub struct Asked<Q> {
+    waiting: Vec<Waiting<Q>>,
+    answered: VecDeque<(RequestKey, Vec<Receipt>)>,
+}
+
+#[derive(Debug)]
+struct Waiting<Q> {
+    submission: Submission,
+    callers: Vec<Q>,
+}
+
+impl<Q> Default for Asked<Q> {
+    fn default() -> Self {
+        Self { waiting: Vec::new(), answered: VecDeque::new() }
+    }
+}
+
+impl<Q> Asked<Q> {
+    /// Takes a request, whose sound is `sound` on this machine. Returns the caller with the receipts where they
+    /// are known already; one for whom there is no room is dropped, and asks again.
+    pub fn take(
+        &mut self,
+        said: &Said,
+        sound: Sound,
+        caller: Q,
+        now: Time,
+    ) -> Option<(Q, Vec<Receipt>)> {
+        if let Some((_, receipts)) = self.answered.iter().find(|(key, _)| *key == said.key) {
+            return Some((caller, receipts.clone()));
+        }
+        let known = self.waiting.iter_mut().find(|waiting| waiting.submission.key() == said.key);
+        if let Some(waiting) = known {
+            waiting.callers.push(caller);
+            return None;
+        }
+        if self.waiting.len() < WAITING_MAX {
+            let times = (said.onset_age_ns, said.end_age_ns);
+            let times = (Time(time_ns(times.0, now)), Time(time_ns(times.1, now)));
+            let submission = Submission::new(sound, times, now, PATIENCE)
+                .after(PromptId(said.seen_prompt))
+                .under(said.key);
+            self.waiting.push(Waiting { submission, callers: vec![caller] });
+        }
+        None
+    }
+
+    /// Returns the injections that are due at `now`, and drops requests that have waited too long: the mirror asks again.
+    pub fn due(&mut self, now: Time) -> Vec<Injection> {
+        self.waiting.retain(|waiting| !waiting.submission.is_expired(now));
+        let due =
+            self.waiting.iter_mut().filter_map(|waiting| waiting.submission.due(now).cloned());
+        due.collect()
+    }
+
+    /// Takes a receipt of any client; returns those who wait for it once all of theirs are there.
+    pub fn on_receipt(&mut self, receipt: &Receipt) -> Option<(Vec<Q>, Vec<Receipt>)> {
+        let place = self
+            .waiting
+            .iter()
+            .position(|waiting| waiting.submission.key() == receipt.request())?;
+        let waiting = self.waiting.get_mut(place)?;
+        waiting.submission.on_receipt(receipt);
+        let receipts = waiting.submission.receipts()?.to_vec();
+        let waiting = self.waiting.swap_remove(place);
+        self.answered.push_back((receipt.request(), receipts.clone()));
+        if self.answered.len() > ANSWERED_MAX {
+            self.answered.pop_front();
+        }
+        Some((waiting.callers, receipts))
+    }
+
+    /// Returns whether requests wait.
+    pub fn is_waiting(&self) -> bool {
+        !self.waiting.is_empty()
+    }
+
+    /// Returns whether the request with this key still waits.
+    pub fn waits_for(&self, key: RequestKey) -> bool {
+        self.waiting.iter().any(|waiting| waiting.submission.key() == key)
+    }
+}
+
+/// The mirror's side: injections of local clients on their way to the robot.
+#[derive(Debug, Default)]
+pub struct Outbound {
+    waiting: Vec<Pending>,
+    answered: VecDeque<(RequestKey, Vec<Receipt>)>,
+}
+
+#[derive(Debug)]
+struct Pending {
+    injection: Injection,
+    arrived: Time,
+    repeated: Time,
+    asked: Option<Time>,
+}
+
+impl Outbound {
+    /// Takes an injection of a local client, and each of its repetitions. Returns the receipts where they are known.
+    pub fn take(&mut self, injection: Injection, now: Time) -> Option<&[Receipt]> {
+        let key = injection.key;
+        if let Some(place) = self.answered.iter().position(|(known, _)| *known == key) {
+            return self.answered.get(place).map(|(_, receipts)| receipts.as_slice());
+        }
+        let known = self.waiting.iter_mut().find(|pending| pending.injection.key == key);
+        if let Some(pending) = known {
+            pending.repeated = now;
+        } else if self.waiting.len() < WAITING_MAX {
+            self.waiting.push(Pending { injection, arrived: now, repeated: now, asked: None });
+        }
+        None
+    }
+
+    /// Returns the requests that are due at `now`, and drops those that their clients no longer repeat.
+    pub fn due(&mut self, now: Time) -> Vec<Said> {
+        self.waiting.retain(|pending| now < pending.repeated + GIVEN_UP);
+        let is_due = |pending: &&mut Pending| pending.asked.is_none_or(|at| now >= at + ASK_AGAIN);
+        let due = self.waiting.iter_mut().filter(is_due).map(|pending| {
+            pending.asked = Some(now);
+            let Pending { injection, arrived, .. } = pending;
+            let Injection { key, onset_ns, end_ns, seen_prompt, ref sound } = *injection;
+            // What was said when it arrived was not said when it is sent again.
+            let age = |at_ns| age_ns(at_ns, now).or_else(|| age_ns(arrived.ns(), now));
+            let sent = Sent::Sound(sound.clone());
+            let (onset_age_ns, end_age_ns) = (age(onset_ns), age(end_ns));
+            Said { key, onset_age_ns, end_age_ns, seen_prompt, sound: sent }
+        });
+        due.collect()
+    }
+
+    /// The robot did not answer the request: it is due at once.
+    pub fn on_silence(&mut self, key: RequestKey) {
+        let waiting = self.waiting.iter_mut().filter(|pending| pending.injection.key == key);
+        waiting.for_each(|pending| pending.asked = None);
+    }
+
+    /// Takes the receipts of a request, in this machine's time. Returns whether they are new.
+    pub fn on_answer(&mut self, key: RequestKey, receipts: &[Receipt]) -> bool {
+        let before = self.waiting.len();
+        self.waiting.retain(|pending| pending.injection.key != key);
+        let is_new = self.waiting.len() < before;
+        if is_new {
+            self.answered.push_back((key, receipts.to_vec()));
+            if self.answered.len() > ANSWERED_MAX {
+                self.answered.pop_front();
+            }
+        }
+        is_new
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    fn at(ms: u64) -> Time {
+        Time(0) + Span::from_ms(ms)
+    }
+
+    fn injection(key: u8, onset: Time) -> Injection {
+        Injection {
+            key: RequestKey([key; 16]),
+            onset_ns: onset.ns(),
+            end_ns: 0,
+            seen_prompt: 3,
+            sound: Sound::Text(format!("words {key}")),
+        }
+    }
+
+    /// A small generator, so that a failure is repeated by its seed.
+    struct Dice(u64);
+
+    impl Dice {
+        fn roll(&mut self, sides: u64) -> u64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (self.0 >> 33) % sides
+        }
+    }
+
+    /// Speech that applies a key once and repeats its receipt.
+    #[derive(Default)]
+    struct Speech(BTreeMap<RequestKey, (u64, u32)>);
+
+    impl Speech {
+        fn hear(&mut self, injection: &Injection) -> Receipt {
+            let next = self.0.len() as u64 + 1;
+            let (seq, heard) = self.0.entry(injection.key).or_insert((next, 0));
+            *heard += 1;
+            Receipt { key: injection.key.0, seq: *seq, segments: 1, ..Receipt::default() }
+        }
+    }
+
+    /// Runs one client's words through mirror, network and robot until `end_ms`; half of all messages are lost, and each may
+    /// be late by up to half a second. Returns when the client had its receipt.
+    fn run(seed: u64) -> (Option<u64>, Speech) {
+        let (mut dice, mut speech) = (Dice(seed), Speech::default());
+        let (mut mirror, mut robot) = (Outbound::default(), Asked::<()>::default());
+        let mut up: Vec<(u64, Said)> = Vec::new();
+        let mut down: Vec<(u64, Vec<Receipt>)> = Vec::new();
+        let mut done = None;
+        for ms in (0..60_000).step_by(10) {
+            let now = at(ms);
+            if ms % 250 == 0 && done.is_none() && mirror.take(injection(1, at(0)), now).is_some() {
+                done = Some(ms);
+            }
+            for said in mirror.due(now) {
+                (0..dice.roll(3)).for_each(|_| up.push((ms + dice.roll(500), said.clone())));
+            }
+            let arrived = up.extract_if(.., |(at, _)| *at <= ms).collect::<Vec<_>>();
+            for (_, said) in arrived {
+                let sound = Sound::Text("words 1".into());
+                if let Some(((), receipts)) = robot.take(&said, sound, (), now) {
+                    down.push((ms + dice.roll(500), receipts));
+                }
+            }
+            for injection in robot.due(now) {
+                if dice.roll(2) == 0 {
+                    let receipt = speech.hear(&injection);
+                    for (callers, receipts) in robot.on_receipt(&receipt) {
+                        for () in callers {
+                            let lost = dice.roll(2) == 0;
+                            (!lost).then(|| down.push((ms + dice.roll(500), receipts.clone())));
+                        }
+                    }
+                }
+            }
+            for (_, receipts) in down.extract_if(.., |(at, _)| *at <= ms).collect::<Vec<_>>() {
+                mirror.on_answer(RequestKey([1; 16]), &receipts);
+            }
+        }
+        (done, speech)
+    }
+
+    #[test]
+    fn words_are_applied_once_and_answered_whatever_is_lost_doubled_or_late() {
+        for seed in 0..200 {
+            let (done, speech) = run(seed);
+            assert!(done.is_some(), "seed {seed}: never answered");
+            assert_eq!(speech.0.len(), 1, "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn times_travel_as_ages() {
+        let mut mirror = Outbound::default();
+        mirror.take(injection(1, at(10_000)), at(10_700));
+        let said = mirror.due(at(10_800)).remove(0);
+        assert_eq!(said.onset_age_ns, Some(Span::from_ms(800).0));
+        assert_eq!(said.end_age_ns, Some(Span::from_ms(100).0), "it arrived then");
+        // On the robot, whose clock shows something else.
+        let mut robot = Asked::default();
+        assert!(robot.take(&said, Sound::Text("words 1".into()), (), at(500_000)).is_none());
+        let injection = robot.due(at(500_000)).remove(0);
+        assert_eq!(injection.onset_ns, at(499_200).ns());
+        assert_eq!(injection.end_ns, at(499_900).ns());
+        assert_eq!((injection.key, injection.seen_prompt), (said.key, 3));
+    }
+
+    #[test]
+    fn words_that_their_client_has_given_up_are_not_said_later() {
+        let mut mirror = Outbound::default();
+        mirror.take(injection(1, at(0)), at(0));
+        assert_eq!(mirror.due(at(0)).len(), 1);
+        mirror.on_silence(RequestKey([1; 16]));
+        assert_eq!(mirror.due(at(2_900)).len(), 1);
+        mirror.on_silence(RequestKey([1; 16]));
+        assert_eq!(mirror.due(at(3_000)).len(), 0);
+    }
+}

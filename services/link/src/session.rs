@@ -1,0 +1,168 @@
+//! Sessions with the router. QUIC, never the library's TLS links: those share a connection between two tasks without a lock
+//! (eclipse-zenoh/zenoh#2557).
+
+use std::path::Path;
+use std::time::Duration;
+
+use serde_json::{Value, json};
+use service::exit::{Exit, Failure};
+use zenoh::qos::{CongestionControl, Priority};
+use zenoh::query::{Query, Reply};
+use zenoh::{Config, Session, Wait};
+
+use crate::identity::{AUTHORITY, CERTIFICATE, Identity, KEY, absolute};
+use crate::names::{Call, Keys};
+
+/// Time without any message after which a connection counts as lost, milliseconds.
+const LEASE_MS: u32 = 3_000;
+/// Bytes that are sent at once: an urgent message waits for no more than that.
+const BATCH_BYTES: u32 = 4_096;
+/// Timeout of the router's goodbye.
+const CLOSE_PATIENCE: Duration = Duration::from_millis(500);
+/// First and longest pause before the next attempt to connect.
+const PAUSE: (Duration, Duration) = (Duration::from_millis(500), Duration::from_secs(5));
+
+/// Settings of every link; `keys` is the owner's folder.
+pub(crate) fn transport(keys: &Path) -> Value {
+    let file = |name: &str| keys.join(name).display().to_string();
+    json!({
+        "link": {
+            "protocols": ["quic"],
+            "tx": { "lease": LEASE_MS, "keep_alive": 4, "batch_size": BATCH_BYTES },
+            "rx": { "max_message_size": 16 << 20 },
+            "tls": {
+                "root_ca_certificate": file(AUTHORITY),
+                "enable_mtls": true,
+                "verify_name_on_connect": true,
+                "close_link_on_expiration": true,
+                "connect_certificate": file(CERTIFICATE),
+                "connect_private_key": file(KEY),
+                "listen_certificate": file(CERTIFICATE),
+                "listen_private_key": file(KEY),
+            },
+        },
+    })
+}
+
+fn config(identity: &Identity, keys: &Path) -> Result<Config, Failure> {
+    let mut transport = transport(&absolute(keys));
+    let password = &identity.password;
+    transport["auth"] = json!({ "usrpwd": { "user": identity.user(), "password": password } });
+    let config = json!({
+        "mode": "client",
+        "connect": {
+            "endpoints": [format!("quic/{}", identity.router)],
+            "timeout_ms": 0,
+            "exit_on_failure": true,
+            "retry": { "period_init_ms": 200, "period_max_ms": 1_000, "period_increase_factor": 2 },
+        },
+        "scouting": { "multicast": { "enabled": false }, "gossip": { "enabled": false } },
+        "transport": transport,
+    });
+    Config::from_json5(&config.to_string())
+        .map_err(|error| Failure::new(Exit::Config, format!("{}: {error}", keys.display())))
+}
+
+/// Connects once.
+///
+/// # Errors
+/// The router does not answer, or refuses these keys.
+pub(crate) fn connect(identity: &Identity, keys: &Path) -> Result<Session, Failure> {
+    zenoh::open(config(identity, keys)?).wait().map_err(|error| {
+        let Identity { router, .. } = identity;
+        let what = format!(
+            "router {router}, as {}: no connection ({error}); help: see that it runs and knows these keys \
+             ({})",
+            identity.user(),
+            keys.display()
+        );
+        Failure::new(Exit::NotReached, what)
+    })
+}
+
+/// Connects, trying again until it succeeds or `is_ending` says that it is not wanted any more. A connection that is lost later
+/// is made again by the library.
+pub(crate) fn connect_patiently(
+    identity: &Identity,
+    keys: &Path,
+    is_ending: &dyn Fn() -> bool,
+) -> Option<Session> {
+    let (mut pause, longest) = PAUSE;
+    let mut reported = String::new();
+    while !is_ending() {
+        match connect(identity, keys) {
+            Ok(session) => {
+                tracing::info!(router = identity.router, "connected");
+                return Some(session);
+            }
+            Err(error) => {
+                let error = error.to_string();
+                if error != reported {
+                    tracing::warn!("{error}; trying again");
+                    reported = error;
+                }
+            }
+        }
+        let mut left = pause;
+        while !left.is_zero() && !is_ending() {
+            let step = left.min(Duration::from_millis(100));
+            std::thread::sleep(step);
+            left -= step;
+        }
+        pause = (pause * 2).min(longest);
+    }
+    None
+}
+
+/// Makes a request; `take` gets each answer, on a thread of the library, and must not wait.
+pub(crate) fn request(
+    session: &Session,
+    keys: &Keys,
+    call: Call,
+    payload: Vec<u8>,
+    timeout: Duration,
+    take: impl Fn(Vec<u8>) + Send + Sync + 'static,
+) {
+    let priority = match call {
+        Call::Motion => Priority::RealTime,
+        Call::Say => Priority::InteractiveHigh,
+        Call::Presence | Call::Hello | Call::Voice => Priority::DataHigh,
+    };
+    let answered = move |reply: Reply| {
+        if let Ok(sample) = reply.result() {
+            take(sample.payload().to_bytes().into_owned());
+        }
+    };
+    let asked = session
+        .get(keys.call(call))
+        .payload(payload)
+        .priority(priority)
+        // What finds no room is asked again.
+        .congestion_control(CongestionControl::Drop)
+        .timeout(timeout)
+        .callback(answered)
+        .wait();
+    if let Err(error) = asked {
+        tracing::debug!(%error, ?call, "not asked");
+    }
+}
+
+/// Answers a request. It may wait for room, so that only a thread that does nothing else may answer.
+pub(crate) fn reply(query: &Query, bytes: Vec<u8>, keys: &Keys, call: Call) {
+    if let Err(error) = query.reply(keys.call(call), bytes).wait() {
+        tracing::debug!(%error, ?call, "not answered; it is asked again");
+    }
+}
+
+/// Drops what holds a session, which says goodbye to the router. A router that is gone is not waited for.
+pub(crate) fn close(holder: impl Send + 'static) {
+    let (done, closed) = std::sync::mpsc::channel();
+    let close = move || {
+        drop(holder);
+        // Nobody listens any more where it took too long.
+        let _ = done.send(());
+    };
+    if std::thread::Builder::new().name("close".into()).spawn(close).is_ok() {
+        let _ = closed.recv_timeout(CLOSE_PATIENCE);
+    }
+}

@@ -1,0 +1,48 @@
+//! Hands over to the program whichone-link, which alone knows the network.
+
+use std::ffi::OsString;
+use std::io::ErrorKind;
+use std::os::unix::process::CommandExt;
+use std::process::Command;
+
+use messages::Service;
+use service::exit::{Exit, Failure};
+use service::group::{ENV_GROUP, GroupName};
+use service::launch::program_of;
+
+use crate::cli::LinkArgs;
+
+/// `whichone link …`; returns only if that fails.
+pub(super) fn link(group: &GroupName, args: LinkArgs) -> Failure {
+    // Without arguments the program is a service.
+    let arguments = match args.arguments {
+        none if none.is_empty() => vec!["--help".into()],
+        some => some,
+    };
+    hand_over(arguments, Some(group))
+}
+
+/// `whichone fleet …`; returns only if that fails.
+pub(super) fn fleet(args: LinkArgs, json: bool) -> Failure {
+    let json = json.then(|| OsString::from("--json"));
+    let arguments = std::iter::once("fleet".into()).chain(args.arguments).chain(json);
+    hand_over(arguments.collect(), None)
+}
+
+fn hand_over(arguments: Vec<OsString>, group: Option<&GroupName>) -> Failure {
+    let program = program_of(Service::Link.name());
+    let mut command = Command::new(&program);
+    command.args(arguments);
+    if let Some(group) = group {
+        command.env(ENV_GROUP, group.as_str());
+    }
+    let error = command.exec();
+    let what = match error.kind() {
+        ErrorKind::NotFound => format!(
+            "{}: no such program; help: build it with `cargo build --release -p link --features link/zenoh`",
+            program.display()
+        ),
+        _ => format!("{}: {error}", program.display()),
+    };
+    Failure::new(Exit::NotReached, what)
+}

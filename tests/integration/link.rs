@@ -1,0 +1,175 @@
+//! A robot over the link: robot, router and mirror on this machine, over QUIC.
+
+use rustix::process::Signal;
+use serde_json::Value;
+use std::time::Instant;
+use whichone_tests::link::{Mirror, Relay};
+use whichone_tests::{Group, wait_for};
+
+/// Time in which everything is back after a failure, seconds.
+const BACK_S: f64 = 20.0;
+
+#[test]
+#[ignore = "needs whichone-link, which scripts/link builds"]
+fn link_dialogue_at_a_mirror_ends_in_the_right_pick() {
+    let relay = Relay::start(&["--robot", "r1", "--operator", "ann"]);
+    let robot = relay.robot_up("r1", &[]);
+    let mirror = Mirror::start("r1", &relay.person("ann"));
+    for object in ["white2", "clear"] {
+        let outcome = mirror.group.fetch("get me the bowl", object);
+        assert_eq!(
+            (&outcome["outcome"], &outcome["object"]),
+            (&"delivered".into(), &object.into())
+        );
+    }
+    // Both show the same dialogue, and every utterance was applied once.
+    let there = robot.dialogue();
+    let here = wait_for("the same dialogue here and there", 10.0, || {
+        let here = mirror.group.dialogue();
+        (here["applied"] == there["applied"] && here["belief"] == there["belief"]).then_some(here)
+    });
+    assert!(here["applied"].as_u64().unwrap() >= 4, "{here}");
+    let utterances = robot.must(&["journal", "speech", "--json"]).stdout;
+    let mut texts = Vec::new();
+    for line in utterances.lines() {
+        let record: Value = serde_json::from_str(line).unwrap();
+        if let Some(key) = record["utterance"]["key"].as_str().or(record["key"].as_str()) {
+            texts.push(key.to_owned());
+        }
+    }
+    let before = texts.len();
+    texts.sort();
+    texts.dedup();
+    assert_eq!(texts.len(), before, "an utterance was accepted twice");
+    // A service's name stands for the robot's, and orders for it are refused with the reason.
+    let ended = mirror.group.call(&["restart", "policy"]);
+    assert!(ended.stderr.contains("mirrors robot r1"), "{ended:?}");
+    robot.verify_journals();
+    let listed = relay.fleet(&relay.person("ann")).json();
+    assert_eq!(listed[0]["robot"], "r1", "{listed}");
+    assert_eq!(listed[0]["presence"]["dialogue"], "idle", "{listed}");
+    mirror.down();
+    robot.down();
+}
+
+/// A stop from the mirror halts the robot; a release from there lifts it, also one given at the robot.
+#[test]
+#[ignore = "needs whichone-link, which scripts/link builds"]
+fn link_motion_stop_works_from_a_mirror() {
+    let relay = Relay::start(&["--robot", "r1", "--operator", "ann"]);
+    let robot = relay.robot_up("r1", &["arm.time_scale=1"]);
+    let mirror = Mirror::start("r1", &relay.person("ann"));
+    mirror.group.say("get me the metal bowl");
+    wait_for("a moving arm", 20.0, || (robot.arm()["moving"] == true).then_some(()));
+    let began = Instant::now();
+    let state = mirror.group.must(&["stop-motion", "--json"]).json();
+    println!("stop at the mirror to arm at rest: {:.0} ms", began.elapsed().as_secs_f64() * 1e3);
+    assert_eq!((&state["stopped"], &state["at_rest"]), (&true.into(), &true.into()), "{state}");
+    assert_eq!(robot.arm()["stopped"], true);
+    let is_shown = || (mirror.group.arm()["stopped"] == true).then_some(());
+    wait_for("the stop at the mirror", 5.0, is_shown);
+    wait_for("a release from the mirror", 10.0, || {
+        (mirror.group.call(&["resume-motion"]).code == Some(0)).then_some(())
+    });
+    assert_eq!(robot.arm()["stopped"], false);
+    robot.must(&["stop-motion"]);
+    wait_for("the robot's own stop at the mirror", 5.0, is_shown);
+    // The state on which a release is based comes twice a second.
+    wait_for("a release of the robot's own stop", 10.0, || {
+        (mirror.group.call(&["resume-motion"]).code == Some(0)).then_some(())
+    });
+    assert_eq!(robot.arm()["stopped"], false);
+    assert_eq!(mirror.group.await_pick(None)["outcome"], "delivered");
+    mirror.down();
+    robot.down();
+}
+
+/// Replaces a value of a folder's `link.json`.
+fn forge(folder: &std::path::Path, key: &str, value: &str) {
+    let path = folder.join("link.json");
+    let mut link: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    link[key] = value.into();
+    std::fs::write(path, link.to_string()).unwrap();
+}
+
+#[test]
+#[ignore = "needs whichone-link, which scripts/link builds"]
+fn link_refuses_wrong_keys() {
+    let people = ["--operator", "ann", "--operator", "eve", "--operator", "mallory"];
+    let relay = Relay::start(&[&["--robot", "r1", "--robot", "r2"], &people[..]].concat());
+    relay.init(&["--viewer", "bob"]);
+    relay.init(&["--operator", "carl", "--for", "r2"]);
+    let mut relay = relay;
+    relay.kill_router();
+    relay.start_router();
+    let robot = relay.robot_up("r1", &[]);
+    let is_listed = || {
+        let ended = relay.fleet(&relay.person("ann"));
+        (ended.code == Some(0)).then(|| ended.json()).filter(|list| list[0]["robot"] == "r1")
+    };
+    wait_for("the robot in the list", 20.0, is_listed);
+    // A wrong password.
+    forge(&relay.person("eve"), "password", "0123456789abcdef");
+    let refused = relay.fleet(&relay.person("eve"));
+    assert_eq!(refused.code, Some(1), "{refused:?}");
+    assert!(refused.stderr.contains("no connection"), "{refused:?}");
+    // The certificate of another authority, with the right password.
+    let other = Relay::start(&["--robot", "r1", "--operator", "mallory"]);
+    for file in ["certificate.pem", "key.pem"] {
+        let (from, to) = (other.person("mallory").join(file), relay.person("mallory").join(file));
+        std::fs::copy(from, to).unwrap();
+    }
+    assert_eq!(relay.fleet(&relay.person("mallory")).code, Some(1));
+    // Another one's robot is neither listed nor mirrored.
+    assert_eq!(relay.fleet(&relay.person("carl")).json().as_array().map(Vec::len), Some(0));
+    let mut foreign = Mirror::launch("r1", &relay.person("carl"));
+    // A viewer sees, and is neither heard nor obeyed.
+    let viewer = Mirror::start("r1", &relay.person("bob"));
+    let before = robot.dialogue()["applied"].clone();
+    assert_ne!(viewer.group.call(&["say", "get me the bowl", "--timeout", "4"]).code, Some(0));
+    assert_ne!(viewer.group.call(&["stop-motion", "--timeout", "4"]).code, Some(0));
+    assert_eq!(robot.dialogue()["applied"], before);
+    assert_eq!(robot.arm()["stopped"], false);
+    assert!(foreign.runs(), "it waits for a robot that it may see");
+    assert!(!foreign.group.paths().run().exists(), "nothing of the robot was shown");
+    // A robot cannot speak for another one.
+    forge(&relay.robot("r2"), "name", "r1");
+    let forged = relay.fleet(&relay.person("ann")).json();
+    assert_eq!(forged.as_array().map(Vec::len), Some(1), "{forged}");
+    viewer.down();
+    drop(foreign);
+    robot.down();
+}
+
+#[test]
+#[ignore = "needs whichone-link, which scripts/link builds"]
+fn link_is_back_by_itself() {
+    let mut relay = Relay::start(&["--robot", "r1", "--operator", "ann"]);
+    let mut robot = relay.robot_up("r1", &[]);
+    let mirror = Mirror::start("r1", &relay.person("ann"));
+    let back = |what: &str, robot: &Group| {
+        let began = Instant::now();
+        wait_for("words that arrive", BACK_S, || {
+            let said = mirror.group.call(&["say", "hello", "--timeout", "3"]);
+            (said.code == Some(0)).then_some(())
+        });
+        println!("{what}: words arrive again after {:.1} s", began.elapsed().as_secs_f64());
+        mirror.wait_ready(BACK_S);
+        let outcome = mirror.group.fetch("get me the bowl", "white2");
+        assert_eq!(outcome["object"], "white2", "{what}: {outcome}");
+        robot.verify_journals();
+    };
+    back("at first", &robot);
+    robot.signal("link", Signal::KILL);
+    back("robot's link killed", &robot);
+    relay.kill_router();
+    relay.start_router();
+    back("router killed", &robot);
+    robot.must(&["down"]);
+    let own = relay.settings("r1");
+    let started = robot.start(&own.iter().map(String::as_str).collect::<Vec<_>>());
+    assert_eq!(started.code, Some(0), "{started:?}");
+    back("robot's group started again", &robot);
+    mirror.down();
+    robot.down();
+}
