@@ -11,7 +11,7 @@ use serde_json::{Map, Value as Json, json};
 
 use super::{Folder, shipped};
 use crate::resolved::{Section, defaults};
-use crate::{arm, console, dialogue, group, ros2, services, speech, study};
+use crate::{arm, console, dialogue, group, link, ros2, services, speech, study};
 
 mod descriptions;
 
@@ -64,6 +64,7 @@ fn of_section(section: Section) -> Json {
         Section::Study => drop(study::read(f, "lookahead")),
         Section::Console => drop(console::read(f)),
         Section::Ros2 => drop(ros2::read(f)),
+        Section::Link => drop(link::read(f)),
     };
     schema_of(table, read)
 }
