@@ -278,7 +278,7 @@ mod tests {
             for injection in robot.due(now) {
                 if dice.roll(2) == 0 {
                     let receipt = speech.hear(&injection);
-                    for (callers, receipts) in robot.on_receipt(&receipt) {
+                    if let Some((callers, receipts)) = robot.on_receipt(&receipt) {
                         for () in callers {
                             let lost = dice.roll(2) == 0;
                             (!lost).then(|| down.push((ms + dice.roll(500), receipts.clone())));

@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     fn limits(files_kept: u32) -> Log {
-        Log { level: "info".into(), file_bytes_max: 100, files_kept }
+        Log { level: "info".into(), json: false, file_bytes_max: 100, files_kept }
     }
 
     fn read(path: &Path) -> String {

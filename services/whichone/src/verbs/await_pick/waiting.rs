@@ -111,8 +111,7 @@ mod tests {
         };
         let in_vain = |looks: &[Latest], reported: u64| {
             let mut waiting = Waiting::new(7);
-            let mut look =
-                |seen| waiting.look(seen).is_none() && waiting.is_in_vain(seen, reported);
+            let look = |seen| waiting.look(seen).is_none() && waiting.is_in_vain(seen, reported);
             looks.iter().position(look)
         };
         let answered = with(ended(7), 4);
