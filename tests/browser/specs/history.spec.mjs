@@ -74,7 +74,7 @@ test("a past interaction is walked through, after a kill of the console and a re
   expect(new URL(page.url()).hash).toBe("#history=1");
   await page.keyboard.press("Escape");
   await expect(sheetOf(page)).toBeHidden();
-  expect(new URL(page.url()).hash).toBe("");
+  await expect.poll(() => new URL(page.url()).hash).toBe("");
   await group.killAndWait("console");
   await page.reload();
   await show(page);
