@@ -23,10 +23,6 @@ use service::{Span, Time, clock, service_loop};
 
 /// Interval between two looks at all topics. Their buffers hold three times as much.
 const LOOK_EVERY: Span = Span::from_ms(100);
-/// Interval while little comes; a client's utterance wakes the recorder.
-const LOOK_SELDOM: Span = Span::from_ms(200);
-/// Messages of one look up to which that is little: an arm at rest sends four joint states in that time.
-const LITTLE: usize = 8;
 /// Seconds before the end of the newest recording from which on a message may not be in it.
 const UNFLUSHED_S: f64 = 1.0;
 
@@ -96,15 +92,10 @@ impl Recorder {
     /// Takes what has arrived on all topics; it is dropped while nothing is recorded.
     fn look(&mut self, now: Time) {
         let Self { reader, ring, .. } = self;
-        let mut taken = 0;
         match ring.clock() {
-            Some(clock) => reader.look(now, clock, &mut |sample| {
-                taken += 1;
-                ring.write(sample, now);
-            }),
+            Some(clock) => reader.look(now, clock, &mut |sample| ring.write(sample, now)),
             None => reader.skip(),
         }
-        self.next_look = now + if taken > LITTLE { LOOK_EVERY } else { LOOK_SELDOM };
     }
 
     fn tend(&mut self, now: Time) {
@@ -175,6 +166,7 @@ impl Cycle for Recorder {
         // Clients wake it: what they sent is gone when they end.
         if now >= self.next_look || ready.by_wake || self.is_ending {
             self.look(now);
+            self.next_look = now + LOOK_EVERY;
             // At the end, too: what was logged in the last second.
             if now >= self.next_tend || self.is_ending {
                 self.tend(now);

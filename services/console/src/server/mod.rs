@@ -30,7 +30,7 @@ use connections::{Gate, Of};
 pub use routes::page_asset;
 
 /// Interval of the server's progress reports.
-const PROGRESS_EVERY: Duration = Duration::from_millis(500);
+const PROGRESS_EVERY: Duration = Duration::from_millis(250);
 
 /// State and files that the server serves.
 #[derive(Debug)]
