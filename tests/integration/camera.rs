@@ -15,9 +15,12 @@ const CAMERA: &str = "arm.simulated.camera.enabled=true";
 /// Places in which no other bowl stands, as words.
 const FREE: [[&str; 2]; 2] = [["0.58", "-0.38"], ["0.58", "0.36"]];
 
-/// The objects on the table, without those that a person has.
+/// The objects on the table, without those that a person has. A policy that starts again may not know them yet.
 fn table(group: &Group) -> Vec<Value> {
-    let table = group.must(&["objects", "--json"]).json();
+    let table = wait_for("the objects", 20.0, || {
+        Some(group.call(&["objects", "--json"])).filter(|ended| ended.code == Some(0))
+    });
+    let table = table.json();
     let objects = table["objects"].as_array().unwrap().iter();
     objects.filter(|object| object["taken"] == false && object["gone"] == false).cloned().collect()
 }

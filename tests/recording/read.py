@@ -113,10 +113,6 @@ def read(path, found):
                 {"count": 0, "lost": 0, "schema": schema.name, "encoding": channel.message_encoding, "last": 0},
             )
             topic["count"] += 1
-            # A smaller number is of the writer's next start.
-            if topic["last"] and message.sequence > topic["last"]:
-                topic["lost"] += message.sequence - topic["last"] - 1
-            topic["last"] = message.sequence
             span = found["span"]
             span[0] = min(span[0] or message.log_time, message.log_time)
             span[1] = max(span[1], message.log_time)
@@ -127,6 +123,13 @@ def read(path, found):
                 if not messages or messages[-1] != fields:
                     messages.append(fields)
         assert count == statistics.message_count, (count, statistics.message_count)
+        # As they were written: lines of several logs come late.
+        for _, channel, message in reader.iter_messages(log_time_order=False):
+            topic = found["topics"][channel.topic]
+            # A smaller number is of the writer's next start.
+            if topic["last"] and message.sequence > topic["last"]:
+                topic["lost"] += message.sequence - topic["last"] - 1
+            topic["last"] = message.sequence
         for attachment in reader.iter_attachments():
             found["attachments"][attachment.name] = len(attachment.data)
         for metadata in reader.iter_metadata():
