@@ -56,7 +56,10 @@ pub(crate) fn fetch(group: &Group, bowl: &str, client: &Client) -> Value {
         let words = ["await", "pick", "--json", "--timeout", "20", "--answer-as", bowl];
         let (_, text) = client.run(group, &words);
         match serde_json::from_str::<Value>(&text) {
-            Ok(outcome) if outcome["outcome"] != "timeout" => return outcome,
+            // A failure has none: the group is down for a moment.
+            Ok(ended) if ended["outcome"].is_string() && ended["outcome"] != "timeout" => {
+                return ended;
+            }
             _ => in_time("waiting for the pick"),
         }
     }
