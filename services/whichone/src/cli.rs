@@ -45,6 +45,7 @@ pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
     version,
     subcommand_required = true,
     arg_required_else_help = true,
+    args_override_self = true,
     after_help = EXIT_CODES
 )]
 pub struct Cli {

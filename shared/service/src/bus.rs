@@ -4,7 +4,7 @@
 use crate::group::{GroupPaths, ShmName};
 use iceoryx2::prelude::*;
 use messages::schema::Schema;
-use messages::topics::Topic;
+use messages::topics::{self, Topic};
 use messages::{Epoch, Incarnation, Service, Stamp, WireField};
 use std::cell::{Cell, RefCell};
 use std::rc::{Rc, Weak};
@@ -158,6 +158,9 @@ pub(crate) fn config(name: &ShmName) -> Result<Config, BusError> {
     config.global.node.cleanup_dead_nodes_on_creation = false;
     config.global.node.cleanup_dead_nodes_on_destruction = false;
     config.global.service.cleanup_dead_nodes_on_open = false;
+    // As many writers of a topic as can end between two looks of a reader, whose last messages it still gets.
+    // Each reader initialises this room, 1.5 kB a writer: with iceoryx2's 128 that was most of its start.
+    config.defaults.publish_subscribe.subscriber_expired_connection_buffer = topics::CLIENTS_MAX;
     Ok(config)
 }
 
