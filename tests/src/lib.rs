@@ -4,6 +4,7 @@
 mod command;
 pub mod console;
 pub mod fuzz;
+pub mod gateway;
 mod group;
 pub mod hammer;
 pub mod isolated;
