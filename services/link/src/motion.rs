@@ -8,7 +8,7 @@
 
 use std::collections::VecDeque;
 
-use messages::{MotionInhibit, MotionOrder};
+use messages::MotionOrder;
 use serde::{Deserialize, Serialize};
 use service::stop_socket::StopState;
 use service::{Span, Time};
@@ -60,39 +60,18 @@ pub enum Answer {
 
 /// The arm's answer in the robot's time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Stamped {
-    /// Stamp of the order.
-    pub given_ns: u64,
-    /// Stamp of the order in force.
-    pub in_force_ns: u64,
-    /// See [`StopState`].
-    pub stopped: bool,
-    /// See [`StopState`].
-    pub at_rest: bool,
-    /// See [`StopState`].
-    pub durable: bool,
-    /// See [`StopState`].
-    pub inhibit: MotionInhibit,
-}
-
-impl From<StopState> for Stamped {
-    fn from(state: StopState) -> Self {
-        let StopState { given_ns, in_force_ns, stopped, at_rest, durable, inhibit } = state;
-        Self { given_ns, in_force_ns, stopped, at_rest, durable, inhibit }
-    }
-}
+pub struct Stamped(pub StopState);
 
 impl Stamped {
     /// The answer to the same order that was given at `given_ns` of the reader's clock. An order that
     /// overrules it comes right after.
     pub fn here(&self, given_ns: u64) -> StopState {
-        let in_force_ns = match self.in_force_ns.cmp(&self.given_ns) {
+        let in_force_ns = match self.0.in_force_ns.cmp(&self.0.given_ns) {
             std::cmp::Ordering::Less => given_ns.saturating_sub(1),
             std::cmp::Ordering::Equal => given_ns,
             std::cmp::Ordering::Greater => given_ns.saturating_add(1),
         };
-        let Self { stopped, at_rest, durable, inhibit, .. } = *self;
-        StopState { given_ns, in_force_ns, stopped, at_rest, durable, inhibit }
+        StopState { given_ns, in_force_ns, ..self.0 }
     }
 }
 
@@ -199,7 +178,7 @@ impl Orders {
         self.current.take_if(|current| now >= current.repeated + GIVEN_UP);
         let current = self.current.as_mut()?;
         let is_asked = current.asked.is_some_and(|asked| now < asked + ASK_EVERY);
-        if is_asked || current.answer.is_some_and(|answer| answer.at_rest && answer.durable) {
+        if is_asked || current.answer.is_some_and(|Stamped(state)| state.at_rest && state.durable) {
             return None;
         }
         if let (Order::Release(old), Some(new)) = (&mut current.request.order, seen)
@@ -230,6 +209,7 @@ impl Orders {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use messages::MotionInhibit;
 
     fn at(ms: u64) -> Time {
         Time(0) + Span::from_ms(ms)
@@ -321,7 +301,7 @@ mod tests {
         let mut orders = Orders::default();
         let given = at(50).ns();
         orders.take((MotionOrder::Stop, given), None, [1; 16], at(50)).unwrap();
-        let stamped = Stamped {
+        let state = StopState {
             given_ns: 900,
             in_force_ns: 900,
             stopped: true,
@@ -329,13 +309,13 @@ mod tests {
             durable: false,
             inhibit: MotionInhibit::None,
         };
-        assert_eq!(orders.on_answer([2; 16], &Answer::State(stamped)), None);
-        let here = orders.on_answer([1; 16], &Answer::State(stamped)).unwrap();
+        assert_eq!(orders.on_answer([2; 16], &Answer::State(Stamped(state))), None);
+        let here = orders.on_answer([1; 16], &Answer::State(Stamped(state))).unwrap();
         assert_eq!((here.given_ns, here.in_force_ns, here.at_rest), (given, given, false));
-        let overruled = Stamped { in_force_ns: 901, ..stamped };
+        let overruled = Stamped(StopState { in_force_ns: 901, ..state });
         assert_eq!(overruled.here(given).in_force_ns, given + 1);
         assert!(orders.due(None, at(60)).is_some(), "until it is at rest");
-        let done = Stamped { at_rest: true, durable: true, ..stamped };
+        let done = Stamped(StopState { at_rest: true, durable: true, ..state });
         orders.on_answer([1; 16], &Answer::State(done));
         assert_eq!(orders.due(None, at(900)), None);
     }

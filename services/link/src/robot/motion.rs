@@ -154,7 +154,7 @@ impl Worker {
         };
         let over: Vec<Waiting> = self.waiting.extract_if(.., is_over).collect();
         for Waiting { query, state, .. } in over {
-            let answer = state.map(|state| motion::Answer::State(Stamped::from(state)));
+            let answer = state.map(|state| motion::Answer::State(Stamped(state)));
             self.answer(query, &answer.unwrap_or(motion::Answer::Silent));
         }
     }
