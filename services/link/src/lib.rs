@@ -27,4 +27,4 @@ pub mod robot;
 #[cfg(feature = "zenoh")]
 pub mod router;
 #[cfg(feature = "zenoh")]
-mod session;
+pub mod session;

@@ -122,8 +122,20 @@ impl Register {
 
 /// Interval at which the mirror repeats a request without an answer.
 const ASK_EVERY: Span = Span::from_ms(250);
+/// Time after which each repetition goes out once more, on the other way: longer than what is put into one packet, much
+/// shorter than the time in which the network finds out that a packet was lost.
+const COPY_AFTER: Span = Span::from_ms(10);
 /// Time after which an order that its client no longer repeats is given up.
 const GIVEN_UP: Span = Span::from_ms(1_000);
+
+/// Priority under which a request travels. Each has a stream of its own, so that a lost packet holds up one of two copies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// Ahead of everything.
+    First,
+    /// Its copy, ahead of everything else.
+    Second,
+}
 
 /// The mirror's side: one order at a time, the latest.
 #[derive(Debug, Default)]
@@ -135,7 +147,9 @@ pub struct Orders {
 struct Current {
     given_ns: u64,
     request: Request,
-    asked: Option<Time>,
+    /// When it goes out next, and on which way.
+    due: Time,
+    way: Way,
     repeated: Time,
     answer: Option<Stamped>,
 }
@@ -168,17 +182,17 @@ impl Orders {
         };
         let request = Request { key, order };
         self.current =
-            Some(Current { given_ns, request, asked: None, repeated: now, answer: None });
+            Some(Current { given_ns, request, due: now, way: Way::First, repeated: now, answer: None });
         Ok(None)
     }
 
-    /// Returns the request that is due at `now`. A release is based on the newest state in which the stop that it lifts
-    /// is still in force.
-    pub fn due(&mut self, seen: Option<Seen>, now: Time) -> Option<Request> {
+    /// Returns the request that is due at `now`, and its way. A release is based on the newest state in which the stop
+    /// that it lifts is still in force.
+    pub fn due(&mut self, seen: Option<Seen>, now: Time) -> Option<(Request, Way)> {
         self.current.take_if(|current| now >= current.repeated + GIVEN_UP);
         let current = self.current.as_mut()?;
-        let is_asked = current.asked.is_some_and(|asked| now < asked + ASK_EVERY);
-        if is_asked || current.answer.is_some_and(|Stamped(state)| state.at_rest && state.durable) {
+        let is_done = current.answer.is_some_and(|Stamped(state)| state.at_rest && state.durable);
+        if now < current.due || is_done {
             return None;
         }
         if let (Order::Release(old), Some(new)) = (&mut current.request.order, seen)
@@ -186,15 +200,17 @@ impl Orders {
         {
             *old = new;
         }
-        current.asked = Some(now);
-        Some(current.request)
+        let way = current.way;
+        (current.due, current.way) = match way {
+            Way::First => (now + COPY_AFTER, Way::Second),
+            Way::Second => (now + ASK_EVERY - COPY_AFTER, Way::First),
+        };
+        Some((current.request, way))
     }
 
     /// When the next request is due.
     pub fn next(&self) -> Option<Time> {
-        self.current
-            .as_ref()
-            .map(|current| current.asked.map_or(Time(0), |asked| asked + ASK_EVERY))
+        self.current.as_ref().map(|current| current.due)
     }
 
     /// Takes the robot's answer to the request with `key`; returns it for the local client.
@@ -290,9 +306,10 @@ mod tests {
                 let taken = orders.take((MotionOrder::Stop, given), None, key, at(ms));
                 assert_eq!(taken, Ok(None));
             }
-            sent.extend(orders.due(None, at(ms)).map(|request| (ms, request.key[0])));
+            sent.extend(orders.due(None, at(ms)).map(|(request, way)| (ms, request.key[0], way)));
         }
-        let expected: Vec<_> = (0..2_000).step_by(250).map(|ms| (ms, 0)).collect();
+        let both = |ms| [(ms, 0, Way::First), (ms + 10, 0, Way::Second)];
+        let expected: Vec<_> = (0..2_000).step_by(250).flat_map(both).collect();
         assert_eq!(sent, expected);
     }
 
@@ -328,8 +345,8 @@ mod tests {
         let seen = Seen { at_ns: 10, in_force_ns: 5, stopped: true };
         orders.take(resume, Some(seen), [1; 16], at(50)).unwrap();
         let newer = Seen { at_ns: 20, ..seen };
-        assert_eq!(orders.due(Some(newer), at(50)).unwrap().order, Order::Release(newer));
+        assert_eq!(orders.due(Some(newer), at(50)).unwrap().0.order, Order::Release(newer));
         let other_stop = Seen { at_ns: 30, in_force_ns: 25, stopped: true };
-        assert_eq!(orders.due(Some(other_stop), at(400)).unwrap().order, Order::Release(newer));
+        assert_eq!(orders.due(Some(other_stop), at(400)).unwrap().0.order, Order::Release(newer));
     }
 }

@@ -36,6 +36,8 @@ use sources::TopicSources;
 
 /// Longest sleep: while words wait for their receipts, while somebody watches, and else.
 const LOOK_EVERY: [Span; 3] = [Span::from_ms(2), Span::from_ms(15), Span::from_ms(250)];
+/// Messages of one pass: a peer that sends without end does not keep the loop.
+const INBOUND_MAX: usize = 256;
 /// Interval at which the supervisor is asked.
 const STATUS_EVERY: Duration = Duration::from_millis(2_000);
 
@@ -155,7 +157,8 @@ impl Robot {
 
     fn take_in(&mut self) {
         self.inbox.clear();
-        while let Some(inbound) = self.inbox.take() {
+        for _ in 0..INBOUND_MAX {
+            let Some(inbound) = self.inbox.take() else { return };
             match inbound {
                 Inbound::Connected(senders) => self.senders = Some(*senders),
                 Inbound::Asked(call, query) => self.on_call(call, query),
