@@ -206,7 +206,7 @@ impl Far<'_> {
         let robot = self.robot_up(&["arm.time_scale=1"]);
         let mirror = self.mirror();
         let joints = JointWatch::open(&robot);
-        let mut stops = Stops { robot: &robot, mirror: &mirror.group, joints, count };
+        let stops = Stops { robot: &robot, mirror: &mirror.group, joints, count };
         stops.measure("free", table);
         let load = self.network.fill();
         // Until the queues are full.
@@ -258,7 +258,7 @@ struct Stops<'a> {
 }
 
 impl Stops<'_> {
-    fn measure(&mut self, network: &str, table: &mut Table) {
+    fn measure(&self, network: &str, table: &mut Table) {
         let (mut rest_ms, mut confirmed_ms) = (Vec::new(), Vec::new());
         while rest_ms.len() < self.count {
             self.start_pick();
