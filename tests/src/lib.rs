@@ -14,6 +14,7 @@ pub mod ros2;
 pub mod second_user;
 pub mod shortage;
 pub mod simulated_group;
+pub mod slow_network;
 pub mod spoken;
 
 pub use command::{Ended, program, run};

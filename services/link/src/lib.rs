@@ -29,4 +29,8 @@ pub mod robot;
 #[cfg(feature = "zenoh")]
 pub mod router;
 #[cfg(feature = "zenoh")]
-mod session;
+pub mod session;
+#[cfg(feature = "zenoh")]
+pub mod simulated;
+#[cfg(feature = "zenoh")]
+pub mod watch;

@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use messages::topics;
 use messages::{ArmStatus, FixedText, MotionOrder, PolicyView, Receipt, RequestKey, Sound};
 use service::exit::{Exit, Failure};
+use service::stop_socket::StopState;
 use service::{Time, clock};
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Publisher;
@@ -314,14 +315,14 @@ impl Robot {
             Ok((order, Time(stamp))) => {
                 let stopped = order == MotionOrder::Stop;
                 mind.arm.stopped = stopped.into();
-                Answer::State(Stamped {
+                Answer::State(Stamped(StopState {
                     given_ns: stamp,
                     in_force_ns: stamp,
                     stopped,
                     at_rest: true,
                     durable: true,
                     inhibit: messages::MotionInhibit::default(),
-                })
+                }))
             }
         };
         postcard::to_stdvec(&answer).ok()
