@@ -19,7 +19,8 @@ fn visitor(number: u32) -> Visitor<'static> {
 }
 
 fn is_refused(done: &Value) -> bool {
-    done["ok"] == false && done["error"].as_str().is_some_and(|why| why.contains("may see this robot"))
+    done["ok"] == false
+        && done["error"].as_str().is_some_and(|why| why.contains("may see this robot"))
 }
 
 #[test]
@@ -55,7 +56,11 @@ fn gateway_gives_each_person_their_rights_and_records_orders() {
     let mut page = Page::open(&ann_here, &visitor(3)).unwrap();
     for (verb, stopped) in [("stop", true), ("resume", false)] {
         let done = page.ask(verb, &json!({}));
-        assert_eq!((&done["ok"], &group.arm()["stopped"]), (&true.into(), &stopped.into()), "{done}");
+        assert_eq!(
+            (&done["ok"], &group.arm()["stopped"]),
+            (&true.into(), &stopped.into()),
+            "{done}"
+        );
     }
     assert_eq!(page.ask("say", &json!({ "text": "get me the bowl" }))["ok"], true);
     look.until_line("the operator's words", |line| line["text"] == "get me the bowl");

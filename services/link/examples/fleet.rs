@@ -19,12 +19,18 @@ use service::exit::{Exit, Failure};
 
 /// Longest time for everything to be there.
 const PATIENCE: Duration = Duration::from_secs(300);
+/// Ticks of processor time in a second, as Linux reports them.
+const TICKS: f64 = 100.0;
 /// Robots of one process.
 const ROBOTS_PER_PROCESS: usize = 500;
 
 /// Simulates a fleet of robots and prints its cost.
 #[derive(Debug, Parser)]
-#[command(name = "scripts/fleet", args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+#[command(
+    name = "scripts/fleet",
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true
+)]
 struct Cli {
     #[command(subcommand)]
     part: Option<Part>,
@@ -36,13 +42,7 @@ struct Cli {
 enum Part {
     /// Be robots of a fleet (a process of its own, so that its memory is theirs).
     #[command(hide = true)]
-    Robots {
-        keys: PathBuf,
-        first: usize,
-        count: usize,
-        spread_s: f64,
-        config: PathBuf,
-    },
+    Robots { keys: PathBuf, first: usize, count: usize, spread_s: f64, config: PathBuf },
 }
 
 #[derive(Debug, Args)]
@@ -94,7 +94,12 @@ fn say(text: &str) -> Result<(), Failure> {
 }
 
 /// Simulates robots until standard input ends.
-fn be_robots(keys: PathBuf, numbers: std::ops::Range<usize>, spread_s: f64, config: &Path) -> Result<(), Failure> {
+fn be_robots(
+    keys: PathBuf,
+    numbers: std::ops::Range<usize>,
+    spread_s: f64,
+    config: &Path,
+) -> Result<(), Failure> {
     let settings = config::Settings::load(config, None, &[])?.snapshot();
     let names = numbers.map(simulated::name).collect::<Result<_, _>>()?;
     let fleet = Fleet { keys, names, spread: Duration::from_secs_f64(spread_s), settings };
@@ -126,15 +131,18 @@ impl Drop for Process {
 impl Process {
     /// Resident memory, KiB, and processor time, seconds.
     fn cost(&self) -> (f64, f64) {
-        let read = |file: &str| std::fs::read_to_string(format!("/proc/{}/{file}", self.0.id())).unwrap_or_default();
+        let read = |file: &str| {
+            std::fs::read_to_string(format!("/proc/{}/{file}", self.0.id())).unwrap_or_default()
+        };
         let status = read("status");
         let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
         let rss = line.and_then(|line| line.trim().trim_end_matches(" kB").trim().parse().ok());
         let stat = read("stat");
         let after = stat.rsplit_once(')').map_or("", |(_, after)| after);
-        let fields: Vec<f64> = after.split_whitespace().skip(11).take(2).filter_map(|it| it.parse().ok()).collect();
-        let ticks = rustix::param::clock_ticks_per_second().max(1) as f64;
-        (rss.unwrap_or(0.0), fields.iter().sum::<f64>() / ticks)
+        let fields: Vec<f64> =
+            after.split_whitespace().skip(11).take(2).filter_map(|it| it.parse().ok()).collect();
+
+        (rss.unwrap_or(0.0), fields.iter().sum::<f64>() / TICKS)
     }
 }
 
@@ -196,7 +204,11 @@ fn start_router(keys: &Path) -> Result<Process, Failure> {
 
 impl Site {
     /// Makes keys, and starts a router and a watcher.
-    fn start(folder: &Path, number: usize, numbers: std::ops::Range<usize>) -> Result<Self, Failure> {
+    fn start(
+        folder: &Path,
+        number: usize,
+        numbers: std::ops::Range<usize>,
+    ) -> Result<Self, Failure> {
         let keys = folder.join(format!("site-{number}"));
         let probe = std::net::UdpSocket::bind("[::]:0").map_err(failed("a port"))?;
         let port = probe.local_addr().map_err(failed("a port"))?.port();
@@ -212,7 +224,10 @@ impl Site {
         keyring::init(&keys, &wanted)?;
         let router = start_router(&keys)?;
         let mut watch = Command::new(program()?);
-        watch.args(["fleet", "--watch", "--keys"]).arg(keys.join("people/ann")).stdout(Stdio::piped());
+        watch
+            .args(["fleet", "--watch", "--keys"])
+            .arg(keys.join("people/ann"))
+            .stdout(Stdio::piped());
         let mut watcher = spawn(&mut watch)?;
         let seen = Seen::default();
         if let Some(output) = watcher.0.stdout.take() {
@@ -241,11 +256,19 @@ impl Site {
 }
 
 fn seen(sites: &[Site]) -> (usize, usize) {
-    sites.iter().map(|site| site.seen.counts()).fold((0, 0), |all, one| (all.0 + one.0, all.1 + one.1))
+    sites
+        .iter()
+        .map(|site| site.seen.counts())
+        .fold((0, 0), |all, one| (all.0 + one.0, all.1 + one.1))
 }
 
 /// Waits until `enough` of the counts of connected and of speaking robots; returns the seconds since `began`.
-fn wait(sites: &[Site], began: Instant, what: &str, enough: impl Fn((usize, usize)) -> bool) -> Result<f64, Failure> {
+fn wait(
+    sites: &[Site],
+    began: Instant,
+    what: &str,
+    enough: impl Fn((usize, usize)) -> bool,
+) -> Result<f64, Failure> {
     let until = Instant::now() + PATIENCE;
     loop {
         let now = seen(sites);
@@ -253,7 +276,8 @@ fn wait(sites: &[Site], began: Instant, what: &str, enough: impl Fn((usize, usiz
             return Ok(began.elapsed().as_secs_f64());
         }
         if Instant::now() > until {
-            let what = format!("{what}: not within {PATIENCE:?}; {} connected, {} speak", now.0, now.1);
+            let what =
+                format!("{what}: not within {PATIENCE:?}; {} connected, {} speak", now.0, now.1);
             return Err(Failure::new(Exit::NotReached, what));
         }
         std::thread::sleep(Duration::from_millis(20));
@@ -269,14 +293,19 @@ fn measure(args: &RunArgs) -> Result<(), Failure> {
     let began = Instant::now();
     let share = all.div_ceil(args.routers);
     let mut sites = (0..args.routers)
-        .map(|number| Site::start(folder.path(), number, number * share..all.min((number + 1) * share)))
+        .map(|number| {
+            Site::start(folder.path(), number, number * share..all.min((number + 1) * share))
+        })
         .collect::<Result<Vec<_>, _>>()?;
     say(&format!("keys of {all} robots: {:.1} s", began.elapsed().as_secs_f64()))?;
     std::thread::sleep(Duration::from_secs(2));
     let empty = routers(&sites);
 
     let began = Instant::now();
-    let robots = sites.iter().map(|site| site.robots(args.spread, &args.config)).collect::<Result<Vec<_>, _>>()?;
+    let robots = sites
+        .iter()
+        .map(|site| site.robots(args.spread, &args.config))
+        .collect::<Result<Vec<_>, _>>()?;
     let robots: Vec<Process> = robots.into_iter().flatten().collect();
     wait(&sites, began, "robots that are connected", |(connected, _)| connected == all)?;
     let joined = began.elapsed().as_secs_f64();
@@ -322,7 +351,13 @@ fn routers(sites: &[Site]) -> (f64, f64) {
 }
 
 /// Measures the fleet while nobody mirrors a robot and one watcher has the list.
-fn rest(args: &RunArgs, all: usize, sites: &[Site], robots: &[Process], empty: (f64, f64)) -> Result<(), Failure> {
+fn rest(
+    args: &RunArgs,
+    all: usize,
+    sites: &[Site],
+    robots: &[Process],
+    empty: (f64, f64),
+) -> Result<(), Failure> {
     let (before, began) = ((routers(sites), cost(robots)), Instant::now());
     std::thread::sleep(Duration::from_secs_f64(args.rest));
     let (after, seconds) = ((routers(sites), cost(robots)), began.elapsed().as_secs_f64());
@@ -353,13 +388,18 @@ fn list(all: usize, sites: &[Site]) -> Result<(), Failure> {
     let lists = sites.iter().map(|site| {
         let mut command = Command::new(&program);
         command.args(["fleet", "--json", "--keys"]).arg(site.keys.join("people/ann"));
-        command.stdout(Stdio::piped()).stdin(Stdio::null()).spawn().map_err(failed("whichone fleet"))
+        command
+            .stdout(Stdio::piped())
+            .stdin(Stdio::null())
+            .spawn()
+            .map_err(failed("whichone fleet"))
     });
     let lists = lists.collect::<Result<Vec<_>, _>>()?;
     let (mut listed, mut speaking) = (0, 0);
     for list in lists {
         let output = list.wait_with_output().map_err(failed("whichone fleet"))?;
-        let robots: Vec<serde_json::Value> = serde_json::from_slice(&output.stdout).unwrap_or_default();
+        let robots: Vec<serde_json::Value> =
+            serde_json::from_slice(&output.stdout).unwrap_or_default();
         listed += robots.len();
         speaking += robots.iter().filter(|robot| !robot["presence"].is_null()).count();
     }

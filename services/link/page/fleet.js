@@ -13,8 +13,26 @@ let shown = "";
 
 /** What a robot's row says: text, and tone where it matters. @param {any} listed */
 function cells({ connected, presence, right }) {
-  if (!connected) return [["not connected", "warn"], ["", ""], ["", ""], ["", ""], ["", ""], ["", ""], [right, ""]];
-  if (!presence) return [["silent", "warn"], ["", ""], ["", ""], ["", ""], ["", ""], ["", ""], [right, ""]];
+  if (!connected)
+    return [
+      ["not connected", "warn"],
+      ["", ""],
+      ["", ""],
+      ["", ""],
+      ["", ""],
+      ["", ""],
+      [right, ""],
+    ];
+  if (!presence)
+    return [
+      ["silent", "warn"],
+      ["", ""],
+      ["", ""],
+      ["", ""],
+      ["", ""],
+      ["", ""],
+      [right, ""],
+    ];
   const { state, line, likeliest, arm, stopped, scene, version } = presence;
   const share = likeliest ? `${likeliest[0]} ${Math.round(likeliest[1] * 100)} %` : "";
   return [

@@ -75,7 +75,10 @@ struct Gateway {
 ///
 /// # Errors
 /// The folder, its files or the port cannot be had.
-fn serve(options: &Options, ready: impl FnOnce(&Address) -> Result<(), Failure>) -> Result<(), Failure> {
+fn serve(
+    options: &Options,
+    ready: impl FnOnce(&Address) -> Result<(), Failure>,
+) -> Result<(), Failure> {
     let is_ending = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
         signal_hook::flag::register(signal, Arc::clone(&is_ending))
@@ -113,7 +116,8 @@ impl Gateway {
     fn open(options: &Options, address: Address) -> Result<Self, Failure> {
         let folder = &options.folder;
         make_private(folder).map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
-        let audit = Audit::open(folder).map_err(|error| Failure::file(&folder.join(audit::FILE), &error))?;
+        let audit = Audit::open(folder)
+            .map_err(|error| Failure::file(&folder.join(audit::FILE), &error))?;
         Ok(Self {
             people: PeopleFile::open(folder.join(people::FILE))?,
             sessions: Sessions::open(folder.join(sessions::FILE)),
@@ -126,7 +130,11 @@ impl Gateway {
     }
 }
 
-async fn run(gateway: &Arc<Gateway>, gate: connections::Gate, is_ending: &AtomicBool) -> std::io::Result<()> {
+async fn run(
+    gateway: &Arc<Gateway>,
+    gate: connections::Gate,
+    is_ending: &AtomicBool,
+) -> std::io::Result<()> {
     let tidying = Arc::clone(gateway);
     let tidy = tokio::spawn(async move {
         loop {
@@ -135,10 +143,11 @@ async fn run(gateway: &Arc<Gateway>, gate: connections::Gate, is_ending: &Atomic
         }
     });
     let mut ending = gateway.ending.subscribe();
-    let served = axum::serve(gate, web::router(Arc::clone(gateway))).with_graceful_shutdown(async move {
-        // A gateway that is gone ends the server, too.
-        let _ = ending.wait_for(|ending| *ending).await;
-    });
+    let served =
+        axum::serve(gate, web::router(Arc::clone(gateway))).with_graceful_shutdown(async move {
+            // A gateway that is gone ends the server, too.
+            let _ = ending.wait_for(|ending| *ending).await;
+        });
     let mut served = tokio::spawn(async move { served.await });
     let ended = loop {
         tokio::select! {

@@ -168,9 +168,9 @@ fn declare(
         publisher.congestion_control(CongestionControl::Drop).wait()
     };
     let names = TOPICS.into_iter().filter(|name| *name != topics::JOINTS.name);
-    let states = names.chain(["group", "motion"]).map(|name| {
-        publisher(keys.state(name), Priority::Data).map(|publisher| (name, publisher))
-    });
+    let states = names
+        .chain(["group", "motion"])
+        .map(|name| publisher(keys.state(name), Priority::Data).map(|publisher| (name, publisher)));
     let states = states.collect::<zenoh::Result<Vec<_>>>()?;
     let presence = publisher(keys.presence(), Priority::DataLow)?;
     let asked = asked.clone();

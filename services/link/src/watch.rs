@@ -75,17 +75,24 @@ pub fn run(folder: &Path, out: &mut impl Write) -> Result<(), Failure> {
                 let is_new = !robots.contains_key(&robot);
                 let known = robots.entry(robot.clone()).or_insert_with(|| {
                     let presences = presences(&session, &robot, &sender);
-                    Robot { starts: BTreeSet::new(), presence: None, asked: None, _presences: presences }
+                    Robot {
+                        starts: BTreeSet::new(),
+                        presence: None,
+                        asked: None,
+                        _presences: presences,
+                    }
                 });
                 known.starts.insert(start);
                 is_new.then_some(Change::Here { robot, presence: None })
             }
             Ok(News::Alive(robot, start, false)) => {
                 let known = robots.get_mut(&robot);
-                known.is_some_and(|known| known.starts.remove(&start) && known.starts.is_empty()).then(|| {
-                    robots.remove(&robot);
-                    Change::Gone { gone: robot }
-                })
+                known
+                    .is_some_and(|known| known.starts.remove(&start) && known.starts.is_empty())
+                    .then(|| {
+                        robots.remove(&robot);
+                        Change::Gone { gone: robot }
+                    })
             }
             Ok(News::Presence(bytes)) => said(&mut robots, &bytes),
             Err(RecvTimeoutError::Timeout) => {

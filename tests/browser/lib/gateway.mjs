@@ -25,7 +25,10 @@ export class Gateway {
     const folder = await mkdtemp(join(tmpdir(), "wg"));
     const words = ["serve", folder, "--group", group.name, "--listen", "127.0.0.1:0"];
     const env = { ...process.env, WHICHONE_HOME: group.home };
-    const child = spawn(program("whichone-gateway"), words, { env, stdio: ["ignore", "pipe", "inherit"] });
+    const child = spawn(program("whichone-gateway"), words, {
+      env,
+      stdio: ["ignore", "pipe", "inherit"],
+    });
     const [url] = await once(createInterface(child.stdout), "line");
     return new Gateway(folder, child, url);
   }
@@ -39,7 +42,10 @@ export class Gateway {
   /** The audit's entries. */
   async audit() {
     const text = await readFile(join(this.folder, "audit.jsonl"), "utf8");
-    return text.trim().split("\n").map((line) => JSON.parse(line));
+    return text
+      .trim()
+      .split("\n")
+      .map((line) => JSON.parse(line));
   }
 
   async down() {

@@ -135,7 +135,10 @@ mod tests {
         }
         let cookie = address.cookie(&headers(&[("host", "robots.example")]), "v", 9);
         assert!(cookie.starts_with("whichone_gateway_0=v; ") && cookie.ends_with("; Secure"));
-        assert_eq!(super::cookie(&headers(&[("cookie", "a=b; whichone_gateway_0=v")])), Some("v".into()));
+        assert_eq!(
+            super::cookie(&headers(&[("cookie", "a=b; whichone_gateway_0=v")])),
+            Some("v".into())
+        );
     }
 
     #[test]

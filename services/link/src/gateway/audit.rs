@@ -132,7 +132,8 @@ fn write_all(log: &mut Log, jobs: &Receiver<Job>) {
             tracing::error!(%error, %text, "not in the audit");
         }
         for done in batch.into_iter().filter_map(|(_, done)| done) {
-            let result = written.as_ref().map(|_| ()).map_err(|e| io::Error::new(e.kind(), e.to_string()));
+            let result =
+                written.as_ref().map(|_| ()).map_err(|e| io::Error::new(e.kind(), e.to_string()));
             // Its connection may be gone.
             let _ = done.send(result);
         }

@@ -121,7 +121,8 @@ fn carry_out(verb: Verb) -> Result<(), Failure> {
             })
         }
         Verb::Add(AddArgs { folder, name, operator, viewer, renew }) => {
-            make_private(&folder).map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
+            make_private(&folder)
+                .map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
             let path = folder.join(people::FILE);
             let secret = people::add(&path, &name, &operator, &viewer, renew)?;
             let address = std::fs::read_to_string(folder.join(ADDRESS)).unwrap_or_default();
@@ -149,16 +150,18 @@ fn listed(people: &People) -> String {
         names => names.join(", "),
     };
     let line = |(name, person): (&Name, &people::Person)| {
-        format!("{name}: operator of {}, viewer of {}\n", robots(&person.operator), robots(&person.viewer))
+        format!(
+            "{name}: operator of {}, viewer of {}\n",
+            robots(&person.operator),
+            robots(&person.viewer)
+        )
     };
     let lines: String = people.iter().map(line).collect();
     if lines.is_empty() { "nobody; help: `whichone gateway add`\n".to_owned() } else { lines }
 }
 
 fn listed_json(people: &People) -> String {
-    let one = |(name, person): (&Name, &people::Person)| {
-        serde_json::json!({ "person": name, "operator": person.operator, "viewer": person.viewer })
-    };
+    let one = |(name, person): (&Name, &people::Person)| serde_json::json!({ "person": name, "operator": person.operator, "viewer": person.viewer });
     format!("{}\n", people.iter().map(one).collect::<serde_json::Value>())
 }
 

@@ -96,7 +96,11 @@ fn launch(keys: &Path) -> Result<Child, Failure> {
     let program = program_of(Service::Link.name());
     let mut command = Command::new(&program);
     command.args(["fleet", "--watch", "--keys"]).arg(keys);
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().map_err(|error| missing(&program, &error))
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .spawn()
+        .map_err(|error| missing(&program, &error))
 }
 
 /// The link's program cannot be started.
@@ -115,7 +119,8 @@ fn follow(
     *lock(child) = Some(process);
     // What the former child knew is said again by this one.
     lock(robots).clear();
-    for line in BufReader::new(output).lines().map_while(Result::ok).filter(|line| !line.is_empty()) {
+    for line in BufReader::new(output).lines().map_while(Result::ok).filter(|line| !line.is_empty())
+    {
         match serde_json::from_str(&line) {
             Ok(Change::Here { robot, presence }) => drop(lock(robots).insert(robot, presence)),
             Ok(Change::Gone { gone }) => drop(lock(robots).remove(&gone)),

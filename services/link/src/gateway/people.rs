@@ -79,7 +79,8 @@ impl People {
         }
         let bad = |what: String| Failure::new(Exit::Config, format!("{}: {what}", path.display()));
         let text = read_private(path).ok_or_else(|| {
-            bad("other users can read or change it, or it is another user's; help: chmod 600".into())
+            bad("other users can read or change it, or it is another user's; help: chmod 600"
+                .into())
         })?;
         let people: Self = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
         people.check().map_err(bad)?;
@@ -155,12 +156,13 @@ pub fn add(
 ) -> Result<Option<String>, Failure> {
     let mut people = People::load(path)?;
     let known = people.0.get(name).map(|person| person.secret.clone());
-    let fresh = match known {
-        Some(_) if !renew => None,
-        _ => Some(random_secret().map_err(|error| {
-            Failure::new(Exit::NotReached, format!("random numbers: {error}"))
-        })?),
-    };
+    let fresh =
+        match known {
+            Some(_) if !renew => None,
+            _ => Some(random_secret().map_err(|error| {
+                Failure::new(Exit::NotReached, format!("random numbers: {error}"))
+            })?),
+        };
     let secret = fresh.as_deref().map(hash).or(known).unwrap_or_default();
     let (operator, viewer) = (operator.to_vec(), viewer.to_vec());
     people.0.insert(name.clone(), Person { secret, operator, viewer });
@@ -256,7 +258,10 @@ mod tests {
         assert_eq!(file.current().with_secret(&bob), Some(&name("bob")));
         assert_ne!(add(&path, &name("ann"), &[], &[], true).unwrap(), Some(ann.clone()));
         remove(&path, &name("bob")).unwrap();
-        assert_eq!([&ann, &bob].map(|secret| file.current().with_secret(secret).cloned()), [None, None]);
+        assert_eq!(
+            [&ann, &bob].map(|secret| file.current().with_secret(secret).cloned()),
+            [None, None]
+        );
         assert!(remove(&path, &name("bob")).unwrap_err().message.contains("no such person"));
     }
 

@@ -34,8 +34,19 @@ const KEPT_BACK: [HeaderName; 6] = [
 
 /// First parts of paths that a viewer may read.
 const VIEWERS: [&str; 13] = [
-    "", "index.html", "history", "history.html", "audience", "audience.html", "css", "js", "strings",
-    "vendor", "icon.svg", "api", "robot.urdf",
+    "",
+    "index.html",
+    "history",
+    "history.html",
+    "audience",
+    "audience.html",
+    "css",
+    "js",
+    "strings",
+    "vendor",
+    "icon.svg",
+    "api",
+    "robot.urdf",
 ];
 
 /// Returns why a path of a console, from its `/` on, is not for someone with this right; `None` if it is.
@@ -116,10 +127,14 @@ mod tests {
 
     #[test]
     fn viewers_read_what_the_page_needs_and_nothing_else() {
-        for path in ["/", "/history", "/api/state", "/api/history/3", "/js/main.js", "/voice/line-1-1.wav"] {
+        for path in
+            ["/", "/history", "/api/state", "/api/history/3", "/js/main.js", "/voice/line-1-1.wav"]
+        {
             assert_eq!(denied(path, Right::Viewer), None, "{path}");
         }
-        for path in ["/study", "/study/export.csv", "//study/export.csv", "/results", "/metrics", "/x"] {
+        for path in
+            ["/study", "/study/export.csv", "//study/export.csv", "/results", "/metrics", "/x"]
+        {
             assert!(denied(path, Right::Viewer).is_some(), "{path}");
             assert_eq!(denied(path, Right::Operator), None, "{path}");
         }

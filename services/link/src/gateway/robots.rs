@@ -162,9 +162,10 @@ async fn look(robot: &Name, console: &Console) -> Option<Presence> {
     let (group, dialogue, arm) = (&state["group"], &state["dialogue"], &state["arm"]);
     let is_open = dialogue["interaction"].as_u64().is_some_and(|interaction| interaction > 0);
     let belief = dialogue["belief"].as_object().filter(|_| is_open);
-    let shares = belief.into_iter().flatten().filter_map(|(name, share)| {
-        share.as_f64().map(|share| (name.clone(), share))
-    });
+    let shares = belief
+        .into_iter()
+        .flatten()
+        .filter_map(|(name, share)| share.as_f64().map(|share| (name.clone(), share)));
     let phase = text(&arm["phase"]);
     let is_at_rest = ["", "idle", "done"].contains(&phase.as_str());
     Some(Presence {

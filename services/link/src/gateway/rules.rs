@@ -137,8 +137,17 @@ mod tests {
 
     fn commands() -> Vec<Value> {
         let verbs = [
-            "stop", "resume", "say", "not_that", "start_over", "take_control", "keep_control",
-            "give_control", "restart_service", "study.begin", "anything",
+            "stop",
+            "resume",
+            "say",
+            "not_that",
+            "start_over",
+            "take_control",
+            "keep_control",
+            "give_control",
+            "restart_service",
+            "study.begin",
+            "anything",
         ];
         verbs.map(|verb| json!({ "t": "do", "id": 4, "do": verb, "text": "the bowl" })).to_vec()
     }
@@ -154,7 +163,9 @@ mod tests {
         }
         let ping = json!({ "t": "ping", "at": 1.5 });
         assert_eq!(judged(ping.clone(), Right::Viewer), Verdict::Pass(ping.to_string()));
-        for bad in [json!([]), json!({}), json!({ "t": "state" }), json!({ "t": "do", "do": "stop" })] {
+        for bad in
+            [json!([]), json!({}), json!({ "t": "state" }), json!({ "t": "do", "do": "stop" })]
+        {
             for right in [Right::Viewer, Right::Operator] {
                 assert!(matches!(judged(bad.clone(), right), Verdict::Answer(_)), "{bad}");
             }

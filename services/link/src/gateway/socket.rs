@@ -204,7 +204,8 @@ impl<'a> Visit<'a> {
         to_page: &Sender<Page>,
     ) -> End {
         while let Some((order, text, stops)) = orders.recv().await {
-            let entry = self.entry(&order.what, Outcome::Ordered, Some(order.id), order.text.clone());
+            let entry =
+                self.entry(&order.what, Outcome::Ordered, Some(order.id), order.text.clone());
             let recorded = self.gateway.audit.record(&entry).await;
             let is_void = || order.is_resume() && stops != self.stops.load(Ordering::Relaxed);
             let why = match recorded {

@@ -148,7 +148,9 @@ async fn robot_page(State(gateway): Shared, request: Request) -> Response<Body> 
     });
     // Whether there is such a robot is not for strangers to know.
     let Some((robot, right)) = right else {
-        let why = format!("{person} has no right to a robot {first}; help: ask who administers the gateway");
+        let why = format!(
+            "{person} has no right to a robot {first}; help: ask who administers the gateway"
+        );
         return refuse(&headers, StatusCode::FORBIDDEN, &why);
     };
     if rest == "/login" {
@@ -211,7 +213,9 @@ fn split(uri: &Uri) -> (&str, &str) {
 fn unreached(headers: &HeaderMap, why: &Unreached) -> Response<Body> {
     let mut response = refuse(headers, StatusCode::SERVICE_UNAVAILABLE, &why.to_string());
     // A browser looks again.
-    response.headers_mut().insert(HeaderName::from_static("refresh"), HeaderValue::from_static("2"));
+    response
+        .headers_mut()
+        .insert(HeaderName::from_static("refresh"), HeaderValue::from_static("2"));
     response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from_static("2"));
     response
 }
@@ -221,15 +225,19 @@ fn refuse(headers: &HeaderMap, status: StatusCode, why: &str) -> Response<Body> 
         return (status, format!("{}\n", why.trim_end())).into_response();
     }
     let why = why.replace('&', "&amp;").replace('<', "&lt;");
-    html(status, &format!(
-        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>whichone</title>\
+    html(
+        status,
+        &format!(
+            "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>whichone</title>\
          <link rel=\"stylesheet\" href=\"/_/base.css\"><link rel=\"stylesheet\" href=\"/_/fleet.css\">\
          <main class=\"notice\"><h1>{status}</h1><p>{why}</p><p><a href=\"/\">All robots</a></p></main></html>\n"
-    ))
+        ),
+    )
 }
 
 fn html(status: StatusCode, text: &str) -> Response<Body> {
-    let kind = [(header::CONTENT_TYPE, "text/html; charset=utf-8"), (header::CACHE_CONTROL, "no-store")];
+    let kind =
+        [(header::CONTENT_TYPE, "text/html; charset=utf-8"), (header::CACHE_CONTROL, "no-store")];
     (status, kind, text.to_owned()).into_response()
 }
 
@@ -278,7 +286,8 @@ async fn enter(gateway: &Gateway, headers: &HeaderMap, secret: &str, page: &str)
     gateway.audit.note(&Entry::new(&person, None, "login", Outcome::Done));
     let cookie = gateway.address.cookie(headers, &value, SESSION_S);
     // One slash: two would lead to another host. A redirect of another site's link would not carry the cookie.
-    let page = format!("/{}", page.trim_start_matches('/')).replace('&', "&amp;").replace('"', "&quot;");
+    let page =
+        format!("/{}", page.trim_start_matches('/')).replace('&', "&amp;").replace('"', "&quot;");
     let go_on = format!(
         "<!doctype html><meta http-equiv=\"refresh\" content=\"0;url={page}\"><title>whichone</title>\n"
     );

@@ -38,7 +38,9 @@ const secret = new Secret(null);
 mountAlarm(at("alarm"), at("polite"), context);
 mountTools(at("tools"), context);
 for (const [file, key] of Object.entries(FILES)) {
-  at("files").append(h("li", {}, h("a", { href: addressOf(`/study/${file}`), download: file, text: t(key) })));
+  at("files").append(
+    h("li", {}, h("a", { href: addressOf(`/study/${file}`), download: file, text: t(key) })),
+  );
 }
 
 let looked = "";
@@ -66,7 +68,10 @@ function show(report) {
   at("results").replaceChildren(...reportView(report, t));
   version += 1;
   const picture = (name) =>
-    h("img", { src: addressOf(`/study/${name}.svg?v=${version}`), alt: t(`study.picture.${name}`) });
+    h("img", {
+      src: addressOf(`/study/${name}.svg?v=${version}`),
+      alt: t(`study.picture.${name}`),
+    });
   at("pictures").replaceChildren(...picturesOf(report).map(picture));
   document.documentElement.dataset.ready = "";
 }
