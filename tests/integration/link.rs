@@ -7,6 +7,7 @@ use whichone_tests::link::{Mirror, Relay, fuzzed_peer};
 use whichone_tests::{Group, wait_for};
 
 mod far;
+mod link_gateway;
 
 /// Time in which everything is back after a failure, seconds.
 const BACK_S: f64 = 20.0;
