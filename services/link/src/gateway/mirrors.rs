@@ -142,15 +142,20 @@ impl Mirrors {
     /// Ends those that nobody has used for a while.
     pub async fn end_idle(&self) {
         let is_idle = |mirror: &Mirror| mirror.pages == 0 && mirror.used.elapsed() > IDLE_MAX;
-        let idle: Vec<(Name, Mirror)> =
-            lock(&self.running).extract_if(.., |_, mirror| is_idle(mirror)).collect();
-        for (robot, mirror) in idle {
+        let mut idle = Vec::new();
+        lock(&self.running).retain(|robot, mirror| {
+            if is_idle(mirror) {
+                idle.push((robot.clone(), mirror.child.take()));
+            }
+            !is_idle(mirror)
+        });
+        for (robot, child) in idle {
             tracing::info!(%robot, "nobody uses the mirror; ending it");
             let Ok(paths) = self.paths(&robot) else { continue };
             // The runtime's own threads do not wait for a process.
             let _ = tokio::task::spawn_blocking(move || {
-                ask_to_end(&mirror, &paths);
-                wait_for_end(mirror, Instant::now() + PATIENCE);
+                ask_to_end(child.as_ref(), &paths);
+                wait_for_end(child, Instant::now() + PATIENCE);
             })
             .await;
         }
@@ -161,11 +166,11 @@ impl Mirrors {
         let all = std::mem::take(&mut *lock(&self.running));
         for (robot, mirror) in &all {
             if let Ok(paths) = self.paths(robot) {
-                ask_to_end(mirror, &paths);
+                ask_to_end(mirror.child.as_ref(), &paths);
             }
         }
         let until = Instant::now() + END_PATIENCE;
-        all.into_values().for_each(|mirror| wait_for_end(mirror, until));
+        all.into_values().for_each(|mirror| wait_for_end(mirror.child, until));
     }
 }
 
@@ -184,16 +189,16 @@ fn answers(paths: &GroupPaths) -> bool {
         && call(&paths.control_socket(), &Request::Ping, Duration::from_millis(300)).is_ok()
 }
 
-fn ask_to_end(mirror: &Mirror, paths: &GroupPaths) {
-    match &mirror.child {
+fn ask_to_end(child: Option<&Child>, paths: &GroupPaths) {
+    match child {
         // Not reaped yet: the number is still its own.
         Some(child) => drop(kill_process(Pid::from_child(child), Signal::TERM)),
         None => drop(call(&paths.control_socket(), &Request::Down, PATIENCE)),
     }
 }
 
-fn wait_for_end(mirror: Mirror, until: Instant) {
-    let Some(mut child) = mirror.child else { return };
+fn wait_for_end(child: Option<Child>, until: Instant) {
+    let Some(mut child) = child else { return };
     while Instant::now() < until {
         if !matches!(child.try_wait(), Ok(None)) {
             return;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use axum::body::{Body, to_bytes};
-use axum::http::{HeaderMap, HeaderName, Request, Response, StatusCode, header};
+use axum::http::{HeaderMap, Request, Response, StatusCode, header};
 use hyper::client::conn::http1::handshake;
 use hyper_util::rt::TokioIo;
 use tokio::net::TcpStream;
@@ -20,17 +20,10 @@ const LOOK_PATIENCE: Duration = Duration::from_millis(1_500);
 const STATE_MAX: usize = 4 << 20;
 
 /// Headers of a request that matter to a console. Whatever else a browser sends, cookies first of all, stays here.
-const PASSED: [HeaderName; 4] =
-    [header::ACCEPT, header::ACCEPT_ENCODING, header::IF_NONE_MATCH, header::HOST];
+const PASSED: [&str; 4] = ["accept", "accept-encoding", "if-none-match", "host"];
 /// Headers of an answer that are about the connection, or that only the gateway may set.
-const KEPT_BACK: [HeaderName; 6] = [
-    header::CONNECTION,
-    header::TRANSFER_ENCODING,
-    header::UPGRADE,
-    header::SET_COOKIE,
-    header::LOCATION,
-    header::WWW_AUTHENTICATE,
-];
+const KEPT_BACK: [&str; 6] =
+    ["connection", "transfer-encoding", "upgrade", "set-cookie", "location", "www-authenticate"];
 
 /// First parts of paths that a viewer may read.
 const VIEWERS: [&str; 13] = [
@@ -71,7 +64,7 @@ pub async fn pass(
 ) -> Result<Response<Body>, (StatusCode, String)> {
     let mut request = Request::get(path_and_query);
     for name in PASSED {
-        if let Some(value) = headers.get(&name) {
+        if let Some(value) = headers.get(name) {
             request = request.header(name, value);
         }
     }

@@ -197,7 +197,7 @@ async fn open(
         Err(why) => return (StatusCode::BAD_GATEWAY, format!("{why}\n")).into_response(),
     };
     let upgrade = upgrade.max_message_size(FRAME_BYTES_MAX).max_frame_size(FRAME_BYTES_MAX);
-    upgrade.on_upgrade(async move |page| {
+    upgrade.on_upgrade(move |page| async move {
         let _used = gateway.robots.used(&robot);
         Visit::new(&gateway, person, robot, right).serve(page, socket).await;
     })
