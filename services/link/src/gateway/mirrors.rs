@@ -144,10 +144,11 @@ impl Mirrors {
         let is_idle = |mirror: &Mirror| mirror.pages == 0 && mirror.used.elapsed() > IDLE_MAX;
         let mut idle = Vec::new();
         lock(&self.running).retain(|robot, mirror| {
-            if is_idle(mirror) {
+            let is_idle = is_idle(mirror);
+            if is_idle {
                 idle.push((robot.clone(), mirror.child.take()));
             }
-            !is_idle(mirror)
+            !is_idle
         });
         for (robot, child) in idle {
             tracing::info!(%robot, "nobody uses the mirror; ending it");
