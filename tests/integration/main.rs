@@ -17,6 +17,7 @@ mod fair_share;
 mod forged;
 mod full_log;
 mod full_memory;
+mod gateway;
 mod hearing;
 mod isolation;
 mod journal_format;

@@ -64,7 +64,7 @@ impl Visitor<'_> {
 /// Where a console is, and the token that lets one in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Console {
-    /// `127.0.0.1:PORT`.
+    /// `127.0.0.1:PORT`, behind a gateway `127.0.0.1:PORT/ROBOT`.
     pub place: String,
     /// None: the console is asked without it.
     pub token: Option<String>,
@@ -114,7 +114,7 @@ pub fn http(
     more: &[&str],
     body: &str,
 ) -> (u16, String, String) {
-    let place = &console.place;
+    let place = console.place.split('/').next().unwrap_or(&console.place);
     let mut stream = TcpStream::connect(place).expect("the console listens");
     stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
     let host = if more.iter().any(|line| line.starts_with("Host:")) { "" } else { place };
@@ -165,13 +165,15 @@ impl Page {
     /// The console rejects the connection.
     pub fn connect(console: &Console, visitor: &Visitor<'_>) -> Result<Self, String> {
         let place = &console.place;
+        // Behind a gateway a console has a folder.
+        let host = place.split('/').next().unwrap_or(place);
         let text = |error: &dyn std::fmt::Display| error.to_string();
-        let stream = TcpStream::connect(place).map_err(|e| text(&e))?;
+        let stream = TcpStream::connect(host).map_err(|e| text(&e))?;
         stream.set_read_timeout(Some(PATIENCE)).map_err(|e| text(&e))?;
         stream.set_write_timeout(Some(Duration::from_secs(1))).map_err(|e| text(&e))?;
         let mut request = format!("ws://{place}/ws").into_client_request().map_err(|e| text(&e))?;
         let headers = request.headers_mut();
-        let origin = HeaderValue::from_str(&format!("http://{place}")).map_err(|e| text(&e))?;
+        let origin = HeaderValue::from_str(&format!("http://{host}")).map_err(|e| text(&e))?;
         headers.insert("origin", origin);
         let bearer = console.bearer().map(|bearer| ("authorization", bearer));
         for (name, value) in bearer.iter().chain(&visitor.headers) {

@@ -4,6 +4,7 @@
 mod command;
 pub mod console;
 pub mod fuzz;
+pub mod gateway;
 mod group;
 pub mod hammer;
 pub mod isolated;
@@ -13,6 +14,7 @@ pub mod ros2;
 pub mod second_user;
 pub mod shortage;
 pub mod simulated_group;
+pub mod slow_network;
 pub mod spoken;
 
 pub use command::{Ended, program, run};

@@ -24,13 +24,18 @@ pub struct Mirror {
 impl Relay {
     /// Makes keys as `init` does with these arguments, and starts the router.
     pub fn start(arguments: &[&str]) -> Self {
+        Self::at("localhost", arguments)
+    }
+
+    /// As [`Relay::start`], of a router that is reached under this name or address.
+    pub fn at(host: &str, arguments: &[&str]) -> Self {
         let folder = tempfile::Builder::new().prefix("wo").tempdir().expect("a temporary folder");
         // Free a moment ago; the router takes the port at once.
         let probe = UdpSocket::bind("[::]:0").expect("a free port");
         let port = probe.local_addr().expect("an address").port();
         drop(probe);
         let mut relay = Self { folder, router: None };
-        let router = format!("localhost:{port}");
+        let router = format!("{host}:{port}");
         relay.init(&[&["--router", &router], arguments].concat());
         relay.start_router();
         relay
@@ -95,6 +100,14 @@ impl Relay {
     }
 }
 
+/// A peer with these keys that sends nonsense to a robot or in its name, for some seconds
+/// (`services/link/examples/fuzzed_peer.rs`).
+pub fn fuzzed_peer(keys: &Path, robot: &str, seed: u64, seconds: f64) -> Ended {
+    let mut command = Command::new(program("examples/fuzzed_peer"));
+    command.arg(keys).args([robot, &seed.to_string(), &seconds.to_string()]);
+    run(&mut command, "", seconds + 30.0)
+}
+
 impl Drop for Relay {
     fn drop(&mut self) {
         self.kill_router();
@@ -109,11 +122,23 @@ impl Mirror {
         mirror
     }
 
+    /// As [`Mirror::start`], with a console on a free port.
+    pub fn start_with_console(robot: &str, keys: &Path) -> Self {
+        let mirror = Self::launch_with(&["--listen", "127.0.0.1:0"], robot, keys);
+        mirror.wait_ready(30.0);
+        mirror
+    }
+
     /// Begins to mirror the robot.
     pub fn launch(robot: &str, keys: &Path) -> Self {
+        Self::launch_with(&["--no-console"], robot, keys)
+    }
+
+    fn launch_with(console: &[&str], robot: &str, keys: &Path) -> Self {
         let group = Group::new();
-        let mut command = group.command(&["link", "--mirror", robot, "--no-console", "--keys"]);
-        let process = command.arg(keys).spawn().expect("whichone starts");
+        let mut command = group.command(&["link", "--mirror", robot]);
+        command.args(console).arg("--keys").arg(keys);
+        let process = command.spawn().expect("whichone starts");
         Self { group, process }
     }
 

@@ -255,12 +255,28 @@ impl JointWatch {
         });
     }
 
+    /// Returns whether a joint moves.
+    ///
+    /// # Panics
+    /// If the topic breaks.
+    pub fn is_moving(&self) -> bool {
+        self.joints.latest().expect("a topic that can be read").is_some_and(|latest| moves(&latest))
+    }
+
     /// Stops the arm with `whichone stop-motion` and returns the milliseconds until the last joint state in
     /// which something moves; none if the arm stood already, as between two steps.
     ///
     /// # Panics
     /// If the stop is not confirmed, or a joint moves afterwards.
     pub fn stop(&self, group: &Group) -> Option<f64> {
+        self.stop_by(|| drop(group.must(&["stop-motion", "--json"])))
+    }
+
+    /// As [`JointWatch::stop`], by an order that returns once it is confirmed.
+    ///
+    /// # Panics
+    /// If the order does, or a joint moves afterwards.
+    pub fn stop_by(&self, order: impl FnOnce() + Send) -> Option<f64> {
         let given = clock::now();
         let mut last_moving = given;
         let mut seen = |joints: &JointStates| {
@@ -269,7 +285,7 @@ impl JointWatch {
             }
         };
         std::thread::scope(|scope| {
-            let stop = scope.spawn(|| group.must(&["stop-motion", "--json"]));
+            let stop = scope.spawn(order);
             while !stop.is_finished() {
                 self.joints.drain(&mut seen).expect("a topic that can be read");
                 std::thread::sleep(std::time::Duration::from_millis(2));

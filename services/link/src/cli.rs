@@ -10,7 +10,7 @@ use service::group::{ENV_GROUP, GroupName};
 
 use crate::keyring::{self, Wanted};
 use crate::names::Name;
-use crate::{fleet, mirror, robot, router};
+use crate::{fleet, mirror, robot, router, watch};
 
 /// Links robots with operators elsewhere (docs/remote.md).
 #[derive(Debug, Parser)]
@@ -44,6 +44,9 @@ enum Verb {
         /// Print JSON instead of text.
         #[arg(long)]
         json: bool,
+        /// Print each change of the list as a line of JSON, until Ctrl-C.
+        #[arg(long, conflicts_with = "json")]
+        watch: bool,
     },
 }
 
@@ -126,7 +129,8 @@ fn carry_out(cli: Cli) -> Result<(), Failure> {
             print(&done.iter().map(|line| format!("{line}\n")).collect::<String>())
         }
         Some(Verb::Router { folder }) => router::run(&folder),
-        Some(Verb::Fleet { keys, json }) => {
+        Some(Verb::Fleet { keys, watch: true, .. }) => watch::run(&keys, &mut std::io::stdout()),
+        Some(Verb::Fleet { keys, json, .. }) => {
             let robots = fleet::list(&keys)?;
             match json {
                 true => print(&format!("{}\n", serde_json::json!(robots))),

@@ -3,9 +3,11 @@
 //! The crate is what travels and the rules by which it does: [`frame`] and [`mirrored`] (state), [`say`] (words),
 //! [`motion`] (orders to the motion stop), [`offset`] (time), [`names`] and [`identity`], all of which neither
 //! know the transport nor do any IO beyond reading a folder of keys. The link itself comes with the feature `zenoh`:
-//! `robot` and `mirror` are its two ends, `router` lies between them, `keyring` makes their keys.
+//! `robot` and `mirror` are its two ends, `router` lies between them, `keyring` makes their keys. The [`gateway`] needs no
+//! transport.
 
 pub mod frame;
+pub mod gateway;
 pub mod identity;
 pub mod mirrored;
 pub mod motion;
@@ -27,4 +29,8 @@ pub mod robot;
 #[cfg(feature = "zenoh")]
 pub mod router;
 #[cfg(feature = "zenoh")]
-mod session;
+pub mod session;
+#[cfg(feature = "zenoh")]
+pub mod simulated;
+#[cfg(feature = "zenoh")]
+pub mod watch;

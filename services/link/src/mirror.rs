@@ -57,6 +57,8 @@ enum Inbound {
     Hello(Vec<u8>),
     /// Receipts for the words with this key.
     Receipts(messages::RequestKey, Vec<u8>),
+    /// The request with these words has ended; without an answer where there were no receipts.
+    WordsEnded(messages::RequestKey),
     /// Sound of a line of the robot, by its file's name.
     Line(String, Vec<u8>),
 }

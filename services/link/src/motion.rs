@@ -8,7 +8,7 @@
 
 use std::collections::VecDeque;
 
-use messages::{MotionInhibit, MotionOrder};
+use messages::MotionOrder;
 use serde::{Deserialize, Serialize};
 use service::stop_socket::StopState;
 use service::{Span, Time};
@@ -60,39 +60,18 @@ pub enum Answer {
 
 /// The arm's answer in the robot's time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Stamped {
-    /// Stamp of the order.
-    pub given_ns: u64,
-    /// Stamp of the order in force.
-    pub in_force_ns: u64,
-    /// See [`StopState`].
-    pub stopped: bool,
-    /// See [`StopState`].
-    pub at_rest: bool,
-    /// See [`StopState`].
-    pub durable: bool,
-    /// See [`StopState`].
-    pub inhibit: MotionInhibit,
-}
-
-impl From<StopState> for Stamped {
-    fn from(state: StopState) -> Self {
-        let StopState { given_ns, in_force_ns, stopped, at_rest, durable, inhibit } = state;
-        Self { given_ns, in_force_ns, stopped, at_rest, durable, inhibit }
-    }
-}
+pub struct Stamped(pub StopState);
 
 impl Stamped {
     /// The answer to the same order that was given at `given_ns` of the reader's clock. An order that
     /// overrules it comes right after.
     pub fn here(&self, given_ns: u64) -> StopState {
-        let in_force_ns = match self.in_force_ns.cmp(&self.given_ns) {
+        let in_force_ns = match self.0.in_force_ns.cmp(&self.0.given_ns) {
             std::cmp::Ordering::Less => given_ns.saturating_sub(1),
             std::cmp::Ordering::Equal => given_ns,
             std::cmp::Ordering::Greater => given_ns.saturating_add(1),
         };
-        let Self { stopped, at_rest, durable, inhibit, .. } = *self;
-        StopState { given_ns, in_force_ns, stopped, at_rest, durable, inhibit }
+        StopState { given_ns, in_force_ns, ..self.0 }
     }
 }
 
@@ -143,8 +122,20 @@ impl Register {
 
 /// Interval at which the mirror repeats a request without an answer.
 const ASK_EVERY: Span = Span::from_ms(250);
+/// Time after which each repetition goes out once more, on the other way: longer than what is put into one packet, much
+/// shorter than the time in which the network finds out that a packet was lost.
+const COPY_AFTER: Span = Span::from_ms(10);
 /// Time after which an order that its client no longer repeats is given up.
 const GIVEN_UP: Span = Span::from_ms(1_000);
+
+/// Priority under which a request travels. Each has a stream of its own, so that a lost packet holds up one of two copies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// Ahead of everything.
+    First,
+    /// Its copy, ahead of everything else.
+    Second,
+}
 
 /// The mirror's side: one order at a time, the latest.
 #[derive(Debug, Default)]
@@ -156,7 +147,9 @@ pub struct Orders {
 struct Current {
     given_ns: u64,
     request: Request,
-    asked: Option<Time>,
+    /// When it goes out next, and on which way.
+    due: Time,
+    way: Way,
     repeated: Time,
     answer: Option<Stamped>,
 }
@@ -188,18 +181,24 @@ impl Orders {
             MotionOrder::Resume => Order::Release(seen.ok_or("the robot's state is not known")?),
         };
         let request = Request { key, order };
-        self.current =
-            Some(Current { given_ns, request, asked: None, repeated: now, answer: None });
+        self.current = Some(Current {
+            given_ns,
+            request,
+            due: now,
+            way: Way::First,
+            repeated: now,
+            answer: None,
+        });
         Ok(None)
     }
 
-    /// Returns the request that is due at `now`. A release is based on the newest state in which the stop that it lifts
-    /// is still in force.
-    pub fn due(&mut self, seen: Option<Seen>, now: Time) -> Option<Request> {
+    /// Returns the request that is due at `now`, and its way. A release is based on the newest state in which the stop
+    /// that it lifts is still in force.
+    pub fn due(&mut self, seen: Option<Seen>, now: Time) -> Option<(Request, Way)> {
         self.current.take_if(|current| now >= current.repeated + GIVEN_UP);
         let current = self.current.as_mut()?;
-        let is_asked = current.asked.is_some_and(|asked| now < asked + ASK_EVERY);
-        if is_asked || current.answer.is_some_and(|answer| answer.at_rest && answer.durable) {
+        let is_done = current.answer.is_some_and(|Stamped(state)| state.at_rest && state.durable);
+        if now < current.due || is_done {
             return None;
         }
         if let (Order::Release(old), Some(new)) = (&mut current.request.order, seen)
@@ -207,15 +206,17 @@ impl Orders {
         {
             *old = new;
         }
-        current.asked = Some(now);
-        Some(current.request)
+        let way = current.way;
+        (current.due, current.way) = match way {
+            Way::First => (now + COPY_AFTER, Way::Second),
+            Way::Second => (now + ASK_EVERY - COPY_AFTER, Way::First),
+        };
+        Some((current.request, way))
     }
 
     /// When the next request is due.
     pub fn next(&self) -> Option<Time> {
-        self.current
-            .as_ref()
-            .map(|current| current.asked.map_or(Time(0), |asked| asked + ASK_EVERY))
+        self.current.as_ref().map(|current| current.due)
     }
 
     /// Takes the robot's answer to the request with `key`; returns it for the local client.
@@ -230,6 +231,7 @@ impl Orders {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use messages::MotionInhibit;
 
     fn at(ms: u64) -> Time {
         Time(0) + Span::from_ms(ms)
@@ -310,9 +312,10 @@ mod tests {
                 let taken = orders.take((MotionOrder::Stop, given), None, key, at(ms));
                 assert_eq!(taken, Ok(None));
             }
-            sent.extend(orders.due(None, at(ms)).map(|request| (ms, request.key[0])));
+            sent.extend(orders.due(None, at(ms)).map(|(request, way)| (ms, request.key[0], way)));
         }
-        let expected: Vec<_> = (0..2_000).step_by(250).map(|ms| (ms, 0)).collect();
+        let both = |ms| [(ms, 0, Way::First), (ms + 10, 0, Way::Second)];
+        let expected: Vec<_> = (0..2_000).step_by(250).flat_map(both).collect();
         assert_eq!(sent, expected);
     }
 
@@ -321,7 +324,7 @@ mod tests {
         let mut orders = Orders::default();
         let given = at(50).ns();
         orders.take((MotionOrder::Stop, given), None, [1; 16], at(50)).unwrap();
-        let stamped = Stamped {
+        let state = StopState {
             given_ns: 900,
             in_force_ns: 900,
             stopped: true,
@@ -329,13 +332,13 @@ mod tests {
             durable: false,
             inhibit: MotionInhibit::None,
         };
-        assert_eq!(orders.on_answer([2; 16], &Answer::State(stamped)), None);
-        let here = orders.on_answer([1; 16], &Answer::State(stamped)).unwrap();
+        assert_eq!(orders.on_answer([2; 16], &Answer::State(Stamped(state))), None);
+        let here = orders.on_answer([1; 16], &Answer::State(Stamped(state))).unwrap();
         assert_eq!((here.given_ns, here.in_force_ns, here.at_rest), (given, given, false));
-        let overruled = Stamped { in_force_ns: 901, ..stamped };
+        let overruled = Stamped(StopState { in_force_ns: 901, ..state });
         assert_eq!(overruled.here(given).in_force_ns, given + 1);
         assert!(orders.due(None, at(60)).is_some(), "until it is at rest");
-        let done = Stamped { at_rest: true, durable: true, ..stamped };
+        let done = Stamped(StopState { at_rest: true, durable: true, ..state });
         orders.on_answer([1; 16], &Answer::State(done));
         assert_eq!(orders.due(None, at(900)), None);
     }
@@ -348,8 +351,8 @@ mod tests {
         let seen = Seen { at_ns: 10, in_force_ns: 5, stopped: true };
         orders.take(resume, Some(seen), [1; 16], at(50)).unwrap();
         let newer = Seen { at_ns: 20, ..seen };
-        assert_eq!(orders.due(Some(newer), at(50)).unwrap().order, Order::Release(newer));
+        assert_eq!(orders.due(Some(newer), at(50)).unwrap().0.order, Order::Release(newer));
         let other_stop = Seen { at_ns: 30, in_force_ns: 25, stopped: true };
-        assert_eq!(orders.due(Some(other_stop), at(400)).unwrap().order, Order::Release(newer));
+        assert_eq!(orders.due(Some(other_stop), at(400)).unwrap().0.order, Order::Release(newer));
     }
 }

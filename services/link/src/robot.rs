@@ -18,12 +18,11 @@ use config::Settings;
 use messages::{AudioChunk, Injection, Receipt, Service, topics};
 use service::bus::{EncodedWriter, Reader, WakeListener, Writer};
 use service::client::{Client, random_number};
-use service::control::{Reply, Request, call};
+use service::control::{Watched, watch_supervisor};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
-use service::status::GroupStatus;
-use service::worker_channel::{self, DeviceReceiver, DeviceSender};
+use service::worker_channel::{self, DeviceReceiver};
 use service::{Span, Time, clock, service_loop};
 use zenoh::query::Query;
 
@@ -37,10 +36,10 @@ use sources::TopicSources;
 
 /// Longest sleep: while words wait for their receipts, while somebody watches, and else.
 const LOOK_EVERY: [Span; 3] = [Span::from_ms(2), Span::from_ms(15), Span::from_ms(250)];
+/// Messages of one pass: a peer that sends without end does not keep the loop.
+const INBOUND_MAX: usize = 256;
 /// Interval at which the supervisor is asked.
 const STATUS_EVERY: Duration = Duration::from_millis(2_000);
-/// Timeout of its answer.
-const SUPERVISOR_PATIENCE: Duration = Duration::from_secs(2);
 
 /// Runs the service until it is shut down.
 pub fn run() -> ExitCode {
@@ -69,7 +68,7 @@ enum Inbound {
     /// Sound of a person.
     Audio(Vec<u8>),
     /// The group's state, or why there is none.
-    Status(Result<Box<GroupStatus>, String>),
+    Status(Watched),
 }
 
 struct Robot {
@@ -118,7 +117,14 @@ impl Robot {
             arm: "rest".to_owned(),
             ..Presence::default()
         };
-        watch_supervisor(&paths, sender.clone()).map_err(failed("supervisor's thread"))?;
+        let main_loop = sender.clone();
+        // A full inbox gets the next status.
+        let take = move |status| drop(main_loop.offer(Inbound::Status(status)));
+        let pause = || {
+            std::thread::sleep(STATUS_EVERY);
+            true
+        };
+        watch_supervisor(&paths, take, pause).map_err(failed("supervisor's thread"))?;
         let receipts = bus.reader(&topics::RECEIPT)?;
         let injections = bus.encoded_writer(&topics::INJECTION)?;
         let audio = bus.writer(&topics::AUDIO)?;
@@ -151,7 +157,8 @@ impl Robot {
 
     fn take_in(&mut self) {
         self.inbox.clear();
-        while let Some(inbound) = self.inbox.take() {
+        for _ in 0..INBOUND_MAX {
+            let Some(inbound) = self.inbox.take() else { return };
             match inbound {
                 Inbound::Connected(senders) => self.senders = Some(*senders),
                 Inbound::Asked(call, query) => self.on_call(call, query),
@@ -178,7 +185,7 @@ impl Robot {
         self.presence = presence;
     }
 
-    fn on_status(&mut self, status: Result<Box<GroupStatus>, String>) {
+    fn on_status(&mut self, status: Watched) {
         match status {
             Ok(status) => {
                 self.presence.state = format!("{:?}", status.state).to_lowercase();
@@ -233,22 +240,4 @@ impl Cycle for Robot {
     fn health(&mut self, _now: Time) -> Health {
         Health::Working(None)
     }
-}
-
-/// Asks for the group's status now and then, on a thread of its own: answers may take a while.
-fn watch_supervisor(paths: &GroupPaths, main_loop: DeviceSender<Inbound>) -> std::io::Result<()> {
-    let socket = paths.control_socket();
-    let ask = move || {
-        loop {
-            let status = match call(&socket, &Request::Status, SUPERVISOR_PATIENCE) {
-                Ok(Reply::Status(status)) => Ok(status),
-                Ok(other) => Err(format!("{other:?}")),
-                Err(error) => Err(error.to_string()),
-            };
-            // A full inbox gets the next one.
-            let _ = main_loop.offer(Inbound::Status(status));
-            std::thread::sleep(STATUS_EVERY);
-        }
-    };
-    std::thread::Builder::new().name("supervisor".into()).spawn(ask).map(drop)
 }

@@ -15,14 +15,20 @@ use crate::offset::{age_ns, time_ns};
 
 /// Time that the robot's link takes for a request before the mirror asks again.
 pub const PATIENCE: Span = Span::from_ms(2_000);
-/// Interval at which the mirror asks again when there was no answer at all.
-const ASK_AGAIN: Span = Span::from_ms(2_500);
+/// As [`PATIENCE`], for a sound file: it travels for a while, and is then understood.
+pub const FILE_PATIENCE: Span = Span::from_ms(60_000);
+/// Time beyond these at which the mirror asks again when there was no answer at all.
+const GRACE: Span = Span::from_ms(500);
+/// Shortest interval at which the mirror asks again.
+const ASK_AGAIN: Span = Span::from_ms(250);
 /// Time after which a request that its client no longer repeats is given up.
 const GIVEN_UP: Span = Span::from_ms(3_000);
 /// Requests whose answers are remembered.
 const ANSWERED_MAX: usize = 64;
 /// Requests on their way.
 const WAITING_MAX: usize = messages::topics::WINDOW;
+/// Callers of one request that wait for its answer; the oldest of more have asked again since.
+const CALLERS_MAX: usize = 8;
 
 /// An injection on its way to the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,6 +52,16 @@ pub enum Sent {
     Sound(Sound),
     /// The contents of a WAV file.
     File(Vec<u8>),
+}
+
+impl Sent {
+    /// Time that the robot's link takes for it.
+    pub fn patience(&self) -> Span {
+        match self {
+            Self::Sound(Sound::Wav(_)) | Self::File(_) => FILE_PATIENCE,
+            Self::Sound(_) => PATIENCE,
+        }
+    }
 }
 
 /// The robot's answer: the receipts, and when they were sent by the robot's clock.
@@ -86,18 +102,21 @@ impl<Q> Asked<Q> {
         caller: Q,
         now: Time,
     ) -> Option<(Q, Vec<Receipt>)> {
-        if let Some((_, receipts)) = self.answered.iter().find(|(key, _)| *key == said.key) {
-            return Some((caller, receipts.clone()));
+        if let Some(receipts) = self.answer(said.key) {
+            return Some((caller, receipts.to_vec()));
         }
         let known = self.waiting.iter_mut().find(|waiting| waiting.submission.key() == said.key);
         if let Some(waiting) = known {
+            if waiting.callers.len() >= CALLERS_MAX {
+                waiting.callers.remove(0);
+            }
             waiting.callers.push(caller);
             return None;
         }
-        if self.waiting.len() < WAITING_MAX {
+        if self.has_room() {
             let times = (said.onset_age_ns, said.end_age_ns);
             let times = (Time(time_ns(times.0, now)), Time(time_ns(times.1, now)));
-            let submission = Submission::new(sound, times, now, PATIENCE)
+            let submission = Submission::new(sound, times, now, said.sound.patience())
                 .after(PromptId(said.seen_prompt))
                 .under(said.key);
             self.waiting.push(Waiting { submission, callers: vec![caller] });
@@ -105,9 +124,14 @@ impl<Q> Asked<Q> {
         None
     }
 
-    /// Returns the injections that are due at `now`, and drops requests that have waited too long: the mirror asks again.
+    /// Drops requests that have waited too long, and returns their keys: the mirror asks again.
+    pub fn expire(&mut self, now: Time) -> Vec<RequestKey> {
+        let is_expired = |waiting: &mut Waiting<Q>| waiting.submission.is_expired(now);
+        self.waiting.extract_if(.., is_expired).map(|waiting| waiting.submission.key()).collect()
+    }
+
+    /// Returns the injections that are due at `now`.
     pub fn due(&mut self, now: Time) -> Vec<Injection> {
-        self.waiting.retain(|waiting| !waiting.submission.is_expired(now));
         let due =
             self.waiting.iter_mut().filter_map(|waiting| waiting.submission.due(now).cloned());
         due.collect()
@@ -135,6 +159,17 @@ impl<Q> Asked<Q> {
         !self.waiting.is_empty()
     }
 
+    /// Returns whether one more request finds room.
+    pub fn has_room(&self) -> bool {
+        self.waiting.len() < WAITING_MAX
+    }
+
+    /// Returns the receipts of the request with this key, if it was answered lately.
+    pub fn answer(&self, key: RequestKey) -> Option<&[Receipt]> {
+        let found = self.answered.iter().find(|(known, _)| *known == key);
+        found.map(|(_, receipts)| receipts.as_slice())
+    }
+
     /// Returns whether the request with this key still waits.
     pub fn waits_for(&self, key: RequestKey) -> bool {
         self.waiting.iter().any(|waiting| waiting.submission.key() == key)
@@ -153,7 +188,8 @@ struct Pending {
     injection: Injection,
     arrived: Time,
     repeated: Time,
-    asked: Option<Time>,
+    /// When it is asked next.
+    due: Time,
 }
 
 impl Outbound {
@@ -167,7 +203,7 @@ impl Outbound {
         if let Some(pending) = known {
             pending.repeated = now;
         } else if self.waiting.len() < WAITING_MAX {
-            self.waiting.push(Pending { injection, arrived: now, repeated: now, asked: None });
+            self.waiting.push(Pending { injection, arrived: now, repeated: now, due: now });
         }
         None
     }
@@ -175,24 +211,24 @@ impl Outbound {
     /// Returns the requests that are due at `now`, and drops those that their clients no longer repeat.
     pub fn due(&mut self, now: Time) -> Vec<Said> {
         self.waiting.retain(|pending| now < pending.repeated + GIVEN_UP);
-        let is_due = |pending: &&mut Pending| pending.asked.is_none_or(|at| now >= at + ASK_AGAIN);
+        let is_due = |pending: &&mut Pending| now >= pending.due;
         let due = self.waiting.iter_mut().filter(is_due).map(|pending| {
-            pending.asked = Some(now);
-            let Pending { injection, arrived, .. } = pending;
+            let Pending { injection, arrived, due, .. } = pending;
             let Injection { key, onset_ns, end_ns, seen_prompt, ref sound } = *injection;
             // What was said when it arrived was not said when it is sent again.
             let age = |at_ns| age_ns(at_ns, now).or_else(|| age_ns(arrived.ns(), now));
             let sent = Sent::Sound(sound.clone());
+            *due = now + sent.patience() + GRACE;
             let (onset_age_ns, end_age_ns) = (age(onset_ns), age(end_ns));
             Said { key, onset_age_ns, end_age_ns, seen_prompt, sound: sent }
         });
         due.collect()
     }
 
-    /// The robot did not answer the request: it is due at once.
-    pub fn on_silence(&mut self, key: RequestKey) {
+    /// The request has ended at `now` without an answer: it is asked again soon.
+    pub fn on_silence(&mut self, key: RequestKey, now: Time) {
         let waiting = self.waiting.iter_mut().filter(|pending| pending.injection.key == key);
-        waiting.for_each(|pending| pending.asked = None);
+        waiting.for_each(|pending| pending.due = pending.due.min(now + ASK_AGAIN));
     }
 
     /// Takes the receipts of a request, in this machine's time. Returns whether they are new.
@@ -275,6 +311,7 @@ mod tests {
                     down.push((ms + dice.roll(500), receipts));
                 }
             }
+            robot.expire(now);
             for injection in robot.due(now) {
                 if dice.roll(2) == 0 {
                     let receipt = speech.hear(&injection);
@@ -323,9 +360,48 @@ mod tests {
         let mut mirror = Outbound::default();
         mirror.take(injection(1, at(0)), at(0));
         assert_eq!(mirror.due(at(0)).len(), 1);
-        mirror.on_silence(RequestKey([1; 16]));
+        mirror.on_silence(RequestKey([1; 16]), at(500));
+        assert_eq!(mirror.due(at(700)).len(), 0, "not without a pause");
         assert_eq!(mirror.due(at(2_900)).len(), 1);
-        mirror.on_silence(RequestKey([1; 16]));
+        mirror.on_silence(RequestKey([1; 16]), at(2_900));
         assert_eq!(mirror.due(at(3_000)).len(), 0);
+    }
+
+    #[test]
+    fn sound_files_are_waited_for_before_they_are_sent_again() {
+        let mut mirror = Outbound::default();
+        let sound = Sound::Wav("/tmp/ask.wav".into());
+        let mut sent = Vec::new();
+        for ms in (0..130_000).step_by(100) {
+            mirror.take(Injection { sound: sound.clone(), ..injection(1, at(0)) }, at(ms));
+            sent.extend(mirror.due(at(ms)).iter().map(|_| ms));
+        }
+        assert_eq!(sent, [0, 60_500, 121_000]);
+    }
+
+    #[test]
+    fn robot_takes_a_bounded_number_of_requests_and_callers_and_returns_what_has_expired() {
+        let mut robot = Asked::default();
+        let said = |key: u8| Said {
+            key: RequestKey([key; 16]),
+            onset_age_ns: None,
+            end_age_ns: None,
+            seen_prompt: 0,
+            sound: Sent::Sound(Sound::Text("words".into())),
+        };
+        let sound = || Sound::Text("words".into());
+        for key in 0..=u8::MAX {
+            robot.take(&said(key), sound(), usize::from(key), at(0));
+        }
+        assert!(!robot.has_room());
+        for caller in 0..1_000 {
+            robot.take(&said(0), sound(), caller, at(1));
+        }
+        let receipt = Receipt { key: [0; 16], segments: 1, ..Receipt::default() };
+        let (callers, _) = robot.on_receipt(&receipt).unwrap();
+        assert_eq!(callers, (1_000 - CALLERS_MAX..1_000).collect::<Vec<_>>());
+        assert!(robot.expire(at(1_000)).is_empty());
+        assert_eq!(robot.expire(at(2_001)).len(), WAITING_MAX - 1);
+        assert!(!robot.is_waiting());
     }
 }

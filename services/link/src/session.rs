@@ -67,7 +67,7 @@ fn config(identity: &Identity, keys: &Path) -> Result<Config, Failure> {
 ///
 /// # Errors
 /// The router does not answer, or refuses these keys.
-pub(crate) fn connect(identity: &Identity, keys: &Path) -> Result<Session, Failure> {
+pub fn connect(identity: &Identity, keys: &Path) -> Result<Session, Failure> {
     zenoh::open(config(identity, keys)?).wait().map_err(|error| {
         let Identity { router, .. } = identity;
         let what = format!(
@@ -114,8 +114,9 @@ pub(crate) fn connect_patiently(
     None
 }
 
-/// Makes a request; `take` gets each answer, on a thread of the library, and must not wait.
-pub(crate) fn request(
+/// Makes a request; `take` gets each answer, on a thread of the library, and must not wait. It is dropped when the request
+/// has ended, answered or not.
+pub fn request(
     session: &Session,
     keys: &Keys,
     call: Call,
@@ -125,9 +126,21 @@ pub(crate) fn request(
 ) {
     let priority = match call {
         Call::Motion => Priority::RealTime,
-        Call::Say => Priority::InteractiveHigh,
+        Call::Say => Priority::InteractiveLow,
         Call::Presence | Call::Hello | Call::Voice => Priority::DataHigh,
     };
+    request_at(session, keys, (call, priority), payload, timeout, take);
+}
+
+/// As [`request`], at a priority. Each priority has a stream of its own.
+pub(crate) fn request_at(
+    session: &Session,
+    keys: &Keys,
+    (call, priority): (Call, Priority),
+    payload: Vec<u8>,
+    timeout: Duration,
+    take: impl Fn(Vec<u8>) + Send + Sync + 'static,
+) {
     let answered = move |reply: Reply| {
         if let Ok(sample) = reply.result() {
             take(sample.payload().to_bytes().into_owned());

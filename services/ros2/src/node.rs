@@ -7,12 +7,12 @@ use crate::joints::JointNames;
 use crate::types::{Text, Triggered};
 use crate::{hear, orders, threads};
 use config::Settings;
-use health::Status;
 use messages::{Injection, JointStates, Service, Sighting, WorldView, topics};
 use motion::MotionCall;
 use scene::Scene;
 use service::bus::{EncodedReader, EncodedWriter, Reader, WakeListener};
 use service::client::Client;
+use service::control::Watched;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
@@ -67,8 +67,8 @@ struct Node {
     stop_client: StopClient,
     orders: orders::Orders<MotionCall>,
     waiting: hear::Waiting<Speaking>,
-    statuses: DeviceReceiver<Status>,
-    status: Status,
+    statuses: DeviceReceiver<Watched>,
+    status: Watched,
     scene: Scene,
     names: JointNames,
     detectors: Detectors,
@@ -119,7 +119,7 @@ impl Node {
         dds.robot_description
             .publish(Text { data: files.urdf.text.clone() }, &mut counters.dropped);
         let (sender, statuses) = worker_channel::channel().map_err(failed("inbox"))?;
-        health::watch_supervisor(paths, sender).map_err(failed("supervisor's thread"))?;
+        health::watch(paths, sender).map_err(failed("supervisor's thread"))?;
         let threads = threads::running();
         let config::Ros2 { domain_id, namespace, node, network, .. } = &settings.ros2;
         tracing::info!(domain_id, namespace, node, ?network, threads, "joined the DDS domain");

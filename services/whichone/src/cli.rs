@@ -203,6 +203,11 @@ pub enum Verb {
     /// Requires the program whichone-link (docs/remote.md).
     #[command(disable_help_flag = true)]
     Fleet(LinkArgs),
+    /// Serve the pages of many robots under one address, with people's rights and an audit.
+    ///
+    /// `whichone gateway --help` lists the arguments (docs/fleet.md).
+    #[command(disable_help_flag = true)]
+    Gateway(LinkArgs),
     /// Start or stop the recorder, list its recordings, or open one.
     Record {
         /// Action.

@@ -81,6 +81,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         }
         Verb::Link(args) => Err(link::link(&cli.group, args)),
         Verb::Fleet(args) => Err(link::fleet(args, cli.json)),
+        Verb::Gateway(args) => Err(link::gateway(args)),
         Verb::Record { what } => record::record(&paths()?, what, out),
         Verb::Replay(args) => replay::replay(paths, &args, out),
         Verb::Scene { what } => scene::scene(what, out),

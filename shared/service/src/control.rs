@@ -12,8 +12,10 @@ use serde::{Deserialize, Serialize};
 use crate::status::GroupStatus;
 
 pub use client::{CallError, PendingReply, call, send};
+pub use watch::{Watched, watch_supervisor};
 
 mod client;
+mod watch;
 
 /// Maximum size of a request, bytes; the longest part is the command line of a swap.
 pub const REQUEST_BYTES_MAX: usize = 64 << 10;

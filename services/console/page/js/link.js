@@ -2,6 +2,7 @@
 import { backoffMs } from "./link/backoff.js";
 import { Clock } from "./link/clock.js";
 import { LinkError, Requests } from "./link/requests.js";
+import { addressOf } from "./place.js";
 
 export { LinkError };
 
@@ -38,7 +39,7 @@ const ATTEMPTS = 2;
  * A link to the server that mends itself: it connects again, says what it has seen already, and
  * keeps the server's clock.
  * @param {object} options
- * @param {string} [options.url] the socket's address; by default `/ws` on the page's own host
+ * @param {string} [options.url] the socket's address; by default `/ws` where the page is served
  * @param {string} options.session 32 hexadecimal digits, see `sessionId`
  * @param {"operator"|"viewer"|"screen"} [options.role] what this page wishes to be
  * @param {string} [options.name] what it is called towards the other viewers
@@ -325,15 +326,14 @@ class Link {
 }
 
 function ownUrl() {
-  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-  return `${scheme}//${location.host}/ws`;
+  return addressOf("/ws").replace(/^http/, "ws");
 }
 
 /** A server that requires its token rejects sockets without a reason; a page request shows it. */
 async function askForToken() {
   try {
-    const answer = await fetch("/api/state", { method: "HEAD", cache: "no-store" });
-    if (answer.status === 401) location.assign("/login");
+    const answer = await fetch(addressOf("/api/state"), { method: "HEAD", cache: "no-store" });
+    if (answer.status === 401) location.assign(addressOf("/login"));
   } catch {
     // Unreachable: the page shows that already.
   }

@@ -1,4 +1,6 @@
 // @ts-check
+import { place } from "./place.js";
+
 /**
  * The other pages of the same person: tabs of one browser report to each other which viewers they are, so
  * that control moves between them at once.
@@ -9,7 +11,8 @@
 export function myPages({ link, store }) {
   const own = () => store.get("welcome")?.viewer ?? null;
   if (typeof BroadcastChannel === "undefined") return { isMine: () => false, fetch: () => {} };
-  const channel = new BroadcastChannel("whichone.pages");
+  // Pages of other robots at the same gateway number their viewers, too.
+  const channel = new BroadcastChannel(`whichone.pages${place}`);
   /** @type {Set<string>} */
   const others = new Set();
   const say = (what) => own() && channel.postMessage({ what, viewer: own() });

@@ -1,4 +1,6 @@
 // @ts-check
+import { addressOf } from "./place.js";
+
 /** Languages that the page speaks; the first one stands in for what another lacks. */
 export const LANGUAGES = ["en", "de"];
 
@@ -92,7 +94,7 @@ const TRY_AGAIN_MS = 400;
 async function table(code) {
   for (let attempt = 1; attempt <= TRIES; attempt++) {
     try {
-      const answer = await fetch(`/strings/${code}.json`);
+      const answer = await fetch(addressOf(`/strings/${code}.json`));
       return answer.ok ? await answer.json() : {};
     } catch {
       await new Promise((resolve) => setTimeout(resolve, TRY_AGAIN_MS));

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError};
-use service::control::{Reply, Request, call};
+use service::control::{Reply, Request, call, watch_supervisor};
 use service::group::GroupPaths;
 use service::worker_channel::DeviceSender;
 
@@ -15,7 +15,7 @@ use crate::server::App;
 
 /// Interval at which the supervisor is polled.
 const ASK_EVERY: Duration = Duration::from_secs(1);
-/// Timeout of its answer.
+/// Timeout of the answer to a restart.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// A restart that a viewer has requested.
@@ -29,28 +29,24 @@ pub(crate) fn watch(
     main_loop: DeviceSender<Command>,
 ) -> std::io::Result<()> {
     let (socket, hub) = (paths.control_socket(), Arc::downgrade(app));
-    let ask = move || loop {
-        let status = match call(&socket, &Request::Status, PATIENCE) {
-            Ok(Reply::Status(status)) => Ok(status),
-            Ok(other) => Err(format!("{other:?}")),
-            Err(error) => Err(error.to_string()),
-        };
-        // A full inbox gets the next status a second later.
-        let _ = main_loop.offer(Command::Group(status));
-        match restarts.recv_timeout(ASK_EVERY) {
-            Ok((viewer, id, service)) => {
-                let restart = Request::Restart { service, original: false, wait_ms: 0 };
-                let outcome = match call(&socket, &restart, PATIENCE) {
-                    Ok(Reply::Done { message }) => Ok(Some(Answer::Supervisor { message })),
-                    Ok(_) => Ok(None),
-                    Err(error) => Err(error.to_string()),
-                };
-                let Some(app) = hub.upgrade() else { return };
+    // A full inbox gets the next status a second later.
+    let take = move |status| drop(main_loop.offer(Command::Group(status)));
+    let pause = move || match restarts.recv_timeout(ASK_EVERY) {
+        Ok((viewer, id, service)) => {
+            let restart = Request::Restart { service, original: false, wait_ms: 0 };
+            let outcome = match call(&socket, &restart, PATIENCE) {
+                Ok(Reply::Done { message }) => Ok(Some(Answer::Supervisor { message })),
+                Ok(_) => Ok(None),
+                Err(error) => Err(error.to_string()),
+            };
+            let app = hub.upgrade();
+            if let Some(app) = &app {
                 app.hub.answer(viewer, id, outcome);
             }
-            Err(RecvTimeoutError::Timeout) if hub.strong_count() > 0 => {}
-            Err(_) => return,
+            app.is_some()
         }
+        Err(RecvTimeoutError::Timeout) => hub.strong_count() > 0,
+        Err(RecvTimeoutError::Disconnected) => false,
     };
-    std::thread::Builder::new().name("supervisor".into()).spawn(ask).map(drop)
+    watch_supervisor(paths, take, pause)
 }

@@ -3,7 +3,7 @@
 use messages::{PromptId, RequestKey};
 use serde_json::Value as Json;
 use service::Time;
-use service::status::GroupStatus;
+use service::control::Watched;
 
 use super::ViewerId;
 use crate::voice::PcmFrame;
@@ -16,7 +16,7 @@ pub enum Command {
     Sound(ViewerId, PcmFrame),
     Left(ViewerId),
     /// The supervisor's status of the group, or why there is none.
-    Group(Result<Box<GroupStatus>, String>),
+    Group(Watched),
 }
 
 /// A command for dialogue or study.

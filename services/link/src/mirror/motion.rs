@@ -13,13 +13,16 @@ use service::stop_socket::{Caller, StopListener};
 use service::worker_channel::{self, DeviceReceiver, DeviceSender};
 use service::{Span, clock};
 use zenoh::Session;
+use zenoh::qos::Priority;
 
-use crate::motion::{Answer, Orders, Request, Seen};
+use crate::motion::{Answer, Orders, Request, Seen, Way};
 use crate::names::{Call, Keys};
-use crate::session::request;
+use crate::session::request_at;
 
 /// Longest sleep.
 const LOOK_EVERY: Span = Span::from_ms(50);
+/// Events of one pass.
+const EVENTS_MAX: usize = 64;
 /// Timeout of the robot's answer; a request is repeated much sooner.
 const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 
@@ -88,14 +91,15 @@ impl Worker {
         while !is_ending.load(Ordering::Relaxed) {
             self.wait();
             self.inbox.clear();
-            while let Some(event) = self.inbox.take() {
+            for _ in 0..EVENTS_MAX {
+                let Some(event) = self.inbox.take() else { break };
                 self.on_event(event);
             }
             let mut arrived = Vec::new();
             self.listener.drain(|command, caller| arrived.push((command, caller)));
             arrived.into_iter().for_each(|(command, caller)| self.on_order(&command, caller));
-            if let Some(request) = self.orders.due(self.seen, clock::now()) {
-                self.ask(&request);
+            if let Some((request, way)) = self.orders.due(self.seen, clock::now()) {
+                self.ask(&request, way);
             }
         }
     }
@@ -143,7 +147,7 @@ impl Worker {
         }
     }
 
-    fn ask(&self, order: &Request) {
+    fn ask(&self, order: &Request, way: Way) {
         let (key, events) = (order.key, self.events.clone());
         let take = move |bytes: Vec<u8>| {
             if let Ok(answer) = postcard::from_bytes(&bytes) {
@@ -151,6 +155,11 @@ impl Worker {
             }
         };
         let payload = postcard::to_stdvec(order).unwrap_or_default();
-        request(&self.session, &self.keys, Call::Motion, payload, ANSWER_WITHIN, take);
+        let priority = match way {
+            Way::First => Priority::RealTime,
+            Way::Second => Priority::InteractiveHigh,
+        };
+        let call = (Call::Motion, priority);
+        request_at(&self.session, &self.keys, call, payload, ANSWER_WITHIN, take);
     }
 }

@@ -11,7 +11,7 @@ use messages::{AudioChunk, Injection, Presented, Receipt, ReceiptStatus, Service
 use service::bus::{Bus, EncodedReader, Identity, Joined, Reader, WakeListener};
 use service::exit::{Exit, Failure};
 use service::status::GroupStatus;
-use service::worker_channel::DeviceReceiver;
+use service::worker_channel::{DeviceReceiver, DeviceSender};
 use service::{Span, Time, clock};
 use zenoh::Wait;
 use zenoh::qos::{CongestionControl, Priority};
@@ -26,18 +26,18 @@ use crate::names::Call;
 use crate::offset::{Offset, age_ns};
 use crate::presence::Hello;
 use crate::say::{Outbound, PATIENCE, Receipts, Said, Sent};
-use crate::session::request;
+use crate::session::{request, request_at};
 
 /// Longest sleep.
 const LOOK_EVERY: Span = Span::from_ms(10);
 /// Interval at which late readers are handed the latest messages, and the console is looked after.
 const TEND_EVERY: Span = Span::from_ms(200);
+/// Messages of one pass: a robot that sends without end does not keep the loop.
+const INBOUND_MAX: usize = 256;
 /// Longest wait of a robot's line for its sound.
 const SOUND_PATIENCE: Span = Span::from_ms(800);
 /// Largest sound file that is sent to the robot, bytes: four minutes of speech.
 const FILE_BYTES_MAX: u64 = 8 << 20;
-/// Time for a sound file to reach the robot and be understood.
-const FILE_PATIENCE: Duration = Duration::from_secs(60);
 /// Sounds of lines that are kept.
 const LINES_KEPT: usize = 16;
 
@@ -64,6 +64,19 @@ pub(super) fn run(
     // Wakes the thread that listens there, so that it ends.
     let _ = UnixStream::connect(passing.local.paths.control_socket());
     Ok(end)
+}
+
+/// A request with words that is under way; its end is reported.
+struct WordsAsked {
+    key: messages::RequestKey,
+    sender: DeviceSender<Inbound>,
+}
+
+impl Drop for WordsAsked {
+    fn drop(&mut self) {
+        // A full inbox: it is asked again after its time.
+        let _ = self.sender.offer(Inbound::WordsEnded(self.key));
+    }
 }
 
 /// A line of the robot that waits for its sound.
@@ -176,7 +189,8 @@ impl<'a> Passing<'a> {
     fn pass(&mut self) -> bool {
         let now = clock::now();
         self.inbox.clear();
-        while let Some(inbound) = self.inbox.take() {
+        for _ in 0..INBOUND_MAX {
+            let Some(inbound) = self.inbox.take() else { break };
             if self.take(inbound, now) {
                 return true;
             }
@@ -203,6 +217,7 @@ impl<'a> Passing<'a> {
             Inbound::State(name, bytes) => self.on_state(&name, &bytes, now),
             Inbound::Joints(bytes) => self.on_frame(topics::JOINTS.name, &bytes, now),
             Inbound::Receipts(key, bytes) => self.on_receipts(key, &bytes, now),
+            Inbound::WordsEnded(key) => self.outbound.on_silence(key, now),
             Inbound::Line(file, bytes) => self.on_line(&file, &bytes),
             Inbound::Hello(bytes) => {
                 let new = postcard::from_bytes::<Hello>(&bytes);
@@ -333,19 +348,21 @@ impl<'a> Passing<'a> {
     }
 
     fn ask(&mut self, mut said: Said, now: Time) {
-        let mut patience = Duration::from_nanos(PATIENCE.0);
         if let Sent::Sound(Sound::Wav(path)) = &said.sound {
             match contents(Path::new(path)) {
                 Ok(contents) => said.sound = Sent::File(contents),
                 Err(why) => return self.refuse(&said, &why, now),
             }
-            patience = FILE_PATIENCE;
         }
-        let (key, sender) = (said.key, self.link.sender.clone());
-        let take = move |bytes| drop(sender.offer(Inbound::Receipts(key, bytes)));
+        let patience = Duration::from_nanos(said.sound.patience().0);
+        let asked = WordsAsked { key: said.key, sender: self.link.sender.clone() };
+        let take = move |bytes| drop(asked.sender.offer(Inbound::Receipts(asked.key, bytes)));
         let Link { session, keys, .. } = self.link;
+        // A file is long: words, sound and orders go ahead of it.
+        let is_file = matches!(said.sound, Sent::File(_));
+        let priority = if is_file { Priority::Data } else { Priority::InteractiveLow };
         let payload = postcard::to_stdvec(&said).unwrap_or_default();
-        request(session, keys, Call::Say, payload, patience, take);
+        request_at(session, keys, (Call::Say, priority), payload, patience, take);
     }
 
     /// Refuses words in the robot's place.
@@ -382,7 +399,7 @@ impl<'a> Passing<'a> {
             let mut chunk = *chunk;
             chunk.taken_ns = age_ns(chunk.taken_ns, now).unwrap_or_default();
             let bytes = postcard::to_stdvec(&chunk).unwrap_or_default();
-            let put = session.put(keys.audio(), bytes).priority(Priority::InteractiveHigh);
+            let put = session.put(keys.audio(), bytes).priority(Priority::InteractiveLow);
             if let Err(error) = put.congestion_control(CongestionControl::Drop).wait() {
                 tracing::debug!(%error, "sound lost");
             }

@@ -42,6 +42,13 @@ impl Robot {
         let Ok(said) = postcard::from_bytes::<Said>(payload) else {
             return tracing::warn!("unintelligible words ignored");
         };
+        if let Some(receipts) = self.asked.answer(said.key) {
+            let receipts = receipts.to_vec();
+            return self.answer_words(vec![query], receipts);
+        }
+        if !self.asked.waits_for(said.key) && !self.asked.has_room() {
+            return tracing::debug!("no room for words; they are asked again");
+        }
         let Some(sound) = self.sound_of(&said) else {
             return tracing::warn!("words that name a file of this machine ignored");
         };
@@ -70,7 +77,11 @@ impl Robot {
 
     /// Submits words, and answers those whose receipts have come.
     pub(super) fn submit(&mut self) {
-        for injection in self.asked.due(clock::now()) {
+        let now = clock::now();
+        for key in self.asked.expire(now) {
+            self.forget_sound(key);
+        }
+        for injection in self.asked.due(now) {
             if let Err(error) = self.injections.send(&injection) {
                 tracing::warn!(%error, "words not submitted; tried again");
             }
@@ -82,11 +93,15 @@ impl Robot {
         }
         for (queries, receipts) in answered {
             if let Some(first) = receipts.first() {
-                // It is there only where a file was sent.
-                let _ = std::fs::remove_file(sound_file(&self.paths.run(), first.request()));
+                self.forget_sound(first.request());
             }
             self.answer_words(queries, receipts);
         }
+    }
+
+    fn forget_sound(&self, key: RequestKey) {
+        // It is there only where a file was sent.
+        let _ = std::fs::remove_file(sound_file(&self.paths.run(), key));
     }
 
     fn answer_words(&self, queries: Vec<Query>, receipts: Vec<messages::Receipt>) {

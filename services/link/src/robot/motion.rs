@@ -17,6 +17,8 @@ use crate::names::Call;
 
 /// Interval at which an order is repeated to the arm.
 const RESEND_EVERY: Span = Span::from_ms(10);
+/// Requests of one pass, and requests that wait for the arm.
+const REQUESTS_MAX: usize = 64;
 /// Time for the arm to be at rest, before a request is answered with what is known.
 const ANSWER_WITHIN: Span = Span::from_ms(400);
 /// Interval at which the arm is asked for its state while somebody watches.
@@ -68,7 +70,8 @@ impl Worker {
         loop {
             self.wait();
             self.requests.clear();
-            while let Some(query) = self.requests.take() {
+            for _ in 0..REQUESTS_MAX {
+                let Some(query) = self.requests.take() else { break };
                 self.on_request(query);
             }
             self.advance(clock::now());
@@ -94,6 +97,11 @@ impl Worker {
         match self.register.stamp(&request, now) {
             Ok((order, stamp)) => {
                 tracing::info!(?order, stamp = stamp.ns(), "motion stop, over the link");
+                if self.waiting.len() >= REQUESTS_MAX {
+                    // Carried out without an answer: it is asked again.
+                    let _ = self.stop_client.send(order, stamp);
+                    return;
+                }
                 let (sent, state) = (None, None);
                 self.waiting.push(Waiting { query, order, stamp, since: now, sent, state });
             }
@@ -154,7 +162,7 @@ impl Worker {
         };
         let over: Vec<Waiting> = self.waiting.extract_if(.., is_over).collect();
         for Waiting { query, state, .. } in over {
-            let answer = state.map(|state| motion::Answer::State(Stamped::from(state)));
+            let answer = state.map(|state| motion::Answer::State(Stamped(state)));
             self.answer(query, &answer.unwrap_or(motion::Answer::Silent));
         }
     }

@@ -5,10 +5,9 @@ use crate::clock::SystemClock;
 use crate::diagnostics::statuses;
 use crate::threads;
 use crate::types::{DiagnosticArray, Header};
-use service::control::{Reply, Request, call};
+use service::control::{Watched, watch_supervisor};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
-use service::status::GroupStatus;
 use service::worker_channel::DeviceSender;
 use service::{Span, Time, clock};
 use std::time::Duration;
@@ -17,11 +16,6 @@ use std::time::Duration;
 const COUNT_EVERY: Span = Span::from_ms(250);
 /// Interval of the diagnostics.
 const DIAGNOSE_EVERY: Span = Span::from_ms(1_000);
-/// Timeout of the supervisor's answer.
-const SUPERVISOR_PATIENCE: Duration = Duration::from_secs(2);
-
-/// Status of the group, or why there is none.
-pub(super) type Status = Result<Box<GroupStatus>, String>;
 
 impl Node {
     /// Takes in the supervisor's status, which comes once a second, and publishes it.
@@ -67,24 +61,13 @@ impl Node {
     }
 }
 
-/// Requests the group's status every second, on a thread of its own: answers may take a while.
-pub(super) fn watch_supervisor(
-    paths: &GroupPaths,
-    main_loop: DeviceSender<Status>,
-) -> std::io::Result<()> {
-    let socket = paths.control_socket();
+/// Requests the group's status every second.
+pub(super) fn watch(paths: &GroupPaths, main_loop: DeviceSender<Watched>) -> std::io::Result<()> {
     let every = Duration::from_secs_f64(DIAGNOSE_EVERY.s());
-    let ask = move || {
-        loop {
-            let status = match call(&socket, &Request::Status, SUPERVISOR_PATIENCE) {
-                Ok(Reply::Status(status)) => Ok(status),
-                Ok(other) => Err(format!("{other:?}")),
-                Err(error) => Err(error.to_string()),
-            };
-            // A full inbox gets the next status a second later.
-            let _ = main_loop.offer(status);
-            std::thread::sleep(every);
-        }
-    };
-    std::thread::Builder::new().name("supervisor".into()).spawn(ask).map(drop)
+    // A full inbox gets the next status a second later.
+    let take = move |status| drop(main_loop.offer(status));
+    watch_supervisor(paths, take, move || {
+        std::thread::sleep(every);
+        true
+    })
 }

@@ -1,4 +1,4 @@
-//! Hands over to the program whichone-link, which alone knows the network.
+//! Hands over to the program whichone-link, which alone knows the network, and to whichone-gateway.
 
 use std::ffi::OsString;
 use std::io::ErrorKind;
@@ -12,6 +12,9 @@ use service::launch::program_of;
 
 use crate::cli::LinkArgs;
 
+/// Builds the program whichone-link.
+const LINK_HELP: &str = "cargo build --release -p link --features link/zenoh";
+
 /// `whichone link …`; returns only if that fails.
 pub(super) fn link(group: &GroupName, args: LinkArgs) -> Failure {
     // Without arguments the program is a service.
@@ -19,18 +22,32 @@ pub(super) fn link(group: &GroupName, args: LinkArgs) -> Failure {
         none if none.is_empty() => vec!["--help".into()],
         some => some,
     };
-    hand_over(arguments, Some(group))
+    hand_over(Service::Link.name(), LINK_HELP, arguments, Some(group))
 }
 
 /// `whichone fleet …`; returns only if that fails.
 pub(super) fn fleet(args: LinkArgs, json: bool) -> Failure {
     let json = json.then(|| OsString::from("--json"));
     let arguments = std::iter::once("fleet".into()).chain(args.arguments).chain(json);
-    hand_over(arguments.collect(), None)
+    hand_over(Service::Link.name(), LINK_HELP, arguments.collect(), None)
 }
 
-fn hand_over(arguments: Vec<OsString>, group: Option<&GroupName>) -> Failure {
-    let program = program_of(Service::Link.name());
+/// `whichone gateway …`; returns only if that fails.
+pub(super) fn gateway(args: LinkArgs) -> Failure {
+    let arguments = match args.arguments {
+        none if none.is_empty() => vec!["--help".into()],
+        some => some,
+    };
+    hand_over("gateway", "cargo build --release -p link", arguments, None)
+}
+
+fn hand_over(
+    program: &str,
+    help: &str,
+    arguments: Vec<OsString>,
+    group: Option<&GroupName>,
+) -> Failure {
+    let program = program_of(program);
     let mut command = Command::new(&program);
     command.args(arguments);
     if let Some(group) = group {
@@ -38,10 +55,9 @@ fn hand_over(arguments: Vec<OsString>, group: Option<&GroupName>) -> Failure {
     }
     let error = command.exec();
     let what = match error.kind() {
-        ErrorKind::NotFound => format!(
-            "{}: no such program; help: build it with `cargo build --release -p link --features link/zenoh`",
-            program.display()
-        ),
+        ErrorKind::NotFound => {
+            format!("{}: no such program; help: build it with `{help}`", program.display())
+        }
         _ => format!("{}: {error}", program.display()),
     };
     Failure::new(Exit::NotReached, what)

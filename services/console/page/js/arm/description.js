@@ -1,4 +1,6 @@
 // @ts-check
+import { addressOf } from "../place.js";
+
 /** Delay before the robot's description is requested again after a failure, milliseconds. */
 const RETRY_MS = 2_000;
 
@@ -14,7 +16,7 @@ export function followDescription(link, use, failed) {
   const load = async () => {
     clearTimeout(retry);
     try {
-      const answer = await fetch("/robot.urdf");
+      const answer = await fetch(addressOf("/robot.urdf"));
       if (!answer.ok) throw new Error(`${answer.status}`);
       const text = await answer.text();
       if (text === known) return;

@@ -1,6 +1,7 @@
 // @ts-check
 import { eachFrame, h, setText } from "../dom.js";
 import { icon } from "../icons.js";
+import { addressOf } from "../place.js";
 import { notify } from "../views/attempt.js";
 import { linked, linkTo } from "./address.js";
 import { listView } from "./list.js";
@@ -23,7 +24,7 @@ export async function mountHistory({ store, t }) {
   const state = h("p", { class: "empty past-state", role: "status" });
   const toList = button("tool past-to-list", "before", "history.to_list", () => narrow(false));
   const close = button("tool", "close", "history.close", () => dialog.close());
-  const files = h("a", { class: "past-open", href: "/history", target: "_blank" });
+  const files = h("a", { class: "past-open", href: addressOf("/history"), target: "_blank" });
   files.append(t("history.open_file"));
   const dialog = h(
     "dialog",

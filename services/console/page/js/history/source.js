@@ -1,4 +1,6 @@
 // @ts-check
+import { addressOf } from "../place.js";
+
 /** Interactions that are fetched at a time. */
 const PAGE = 50;
 
@@ -64,7 +66,7 @@ export class Source {
 export const fetchOne = (interaction) => answer(`/api/history/${interaction}`);
 
 async function answer(path) {
-  const response = await fetch(path);
+  const response = await fetch(addressOf(path));
   if (response.status === 404) return null;
   if (!response.ok) throw new Error(`${path}: ${response.status}`);
   return response.json();

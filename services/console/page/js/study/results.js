@@ -3,6 +3,7 @@ import { eachFrame, h, setText } from "../dom.js";
 import { keptLanguage, tabStorage } from "../kept.js";
 import { sessionId } from "../link/session.js";
 import { connect } from "../link.js";
+import { addressOf } from "../place.js";
 import { keep, Store } from "../store.js";
 import { chooseLanguage, loadStrings, t, translate } from "../strings.js";
 import { mountAlarm } from "../views/alarm.js";
@@ -37,7 +38,9 @@ const secret = new Secret(null);
 mountAlarm(at("alarm"), at("polite"), context);
 mountTools(at("tools"), context);
 for (const [file, key] of Object.entries(FILES)) {
-  at("files").append(h("li", {}, h("a", { href: `/study/${file}`, download: file, text: t(key) })));
+  at("files").append(
+    h("li", {}, h("a", { href: addressOf(`/study/${file}`), download: file, text: t(key) })),
+  );
 }
 
 let looked = "";
@@ -50,7 +53,7 @@ async function look(force = false) {
   if (now === looked && !force) return;
   looked = now;
   try {
-    const answer = await fetch("/study/report.json");
+    const answer = await fetch(addressOf("/study/report.json"));
     if (!answer.ok) throw new Error(await answer.text());
     show(await answer.json());
   } catch (error) {
@@ -65,7 +68,10 @@ function show(report) {
   at("results").replaceChildren(...reportView(report, t));
   version += 1;
   const picture = (name) =>
-    h("img", { src: `/study/${name}.svg?v=${version}`, alt: t(`study.picture.${name}`) });
+    h("img", {
+      src: addressOf(`/study/${name}.svg?v=${version}`),
+      alt: t(`study.picture.${name}`),
+    });
   at("pictures").replaceChildren(...picturesOf(report).map(picture));
   document.documentElement.dataset.ready = "";
 }

@@ -1,4 +1,5 @@
 // @ts-check
+import { addressOf } from "../place.js";
 import { keyOf, offsetS, plan } from "./schedule.js";
 
 /** Remembers that the robot is not to be heard here. */
@@ -182,7 +183,7 @@ class Playback {
 
 /** @param {AudioContext} context @param {string} url */
 async function load(context, url) {
-  const response = await fetch(url);
+  const response = await fetch(addressOf(url));
   if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
   return context.decodeAudioData(await response.arrayBuffer());
 }
