@@ -4,11 +4,11 @@
 //! Clients poll; they are few, short-lived, and must not cost the services anything.
 
 use crate::bus::{Bus, BusError, EncodedWriter, Identity, PortError, Reader};
-use crate::{clock, epoch};
 use crate::group::GroupPaths;
 use crate::lifecycle::Environment;
 use crate::submission::Submission;
 use crate::{Span, Time};
+use crate::{clock, epoch};
 use messages::{ClientId, Injection, Receipt, RequestKey, Sound, topics};
 use std::sync::OnceLock;
 use std::time::Duration;

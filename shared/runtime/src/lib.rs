@@ -13,6 +13,7 @@ pub mod folders;
 pub mod group;
 pub mod lifecycle;
 pub mod notify;
+pub mod port_failures;
 pub mod shm_cleanup;
 pub mod stop_socket;
 pub mod submission;
