@@ -52,7 +52,7 @@ const FAULTS: [(&str, &str, &str); 23] = [
     ("drops-fields", "answers", "expected the utterance's asked"),
     ("mistakes-the-scene", "answers", "found 0000000000000001"),
     ("invents-codes", "answers", "with invalid codes"),
-    ("invents-words", "answers", "invalid readings: word"),
+    ("invents-words", "answers", "invalid readings: invalid word 999"),
     ("halves-weights", "answers", "sum to 1, found 0.5"),
     ("ignores-questions", "answers", "expected weights for question 0"),
     ("changes-its-mind", "repeats", "expected the same observation again"),

@@ -194,6 +194,8 @@ pub(super) struct Test<'a> {
     subject: Option<Subject>,
     /// Incarnation of the latest start.
     incarnation: u32,
+    /// Whether a start has led to nothing: further ones would, too, after the same time.
+    is_given_up: bool,
     /// What was written so far, beside the tester's own messages.
     written: Vec<Written>,
     /// The tester's topics, in the place of speech and policy.
@@ -202,8 +204,9 @@ pub(super) struct Test<'a> {
 
 impl<'a> Test<'a> {
     fn new(bench: Bench, command: &'a [String]) -> Self {
-        let (subject, incarnation, written, speaking) = (None, 0, Vec::new(), None);
-        Self { bench, command, subject, incarnation, written, speaking }
+        let (subject, incarnation, is_given_up) = (None, 0, false);
+        let (written, speaking) = (Vec::new(), None);
+        Self { bench, command, subject, incarnation, is_given_up, written, speaking }
     }
 
     /// Starts the next incarnation.
@@ -216,6 +219,9 @@ impl<'a> Test<'a> {
 
     /// Returns the service, ready: it is started where it does not run.
     fn running(&mut self) -> Result<&mut Subject, Broken> {
+        if self.is_given_up {
+            return Err(Broken::new("not tested: it has not become ready", "mend that first"));
+        }
         if self
             .subject
             .as_mut()
@@ -239,6 +245,7 @@ impl<'a> Test<'a> {
                 "send READY=1 to $NOTIFY_SOCKET once its topics are open",
             ),
         };
+        self.is_given_up = true;
         self.forget();
         Err(broken)
     }
