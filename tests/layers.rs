@@ -56,6 +56,18 @@ fn messages_depend_on_no_configuration() {
     assert!(tree.contains("dialogue") && !tree.contains("config"), "{tree:?}");
 }
 
+/// What a program from outside is built on has neither configuration nor journal, and no shell of a service.
+#[test]
+fn sdk_links_little() {
+    let tree = tree("whichone-sdk", "99");
+    assert!(tree.contains("runtime") && tree.contains("messages"), "{tree:?}");
+    let heavy =
+        ["service", "config", "journal", "language", "tracing-subscriber", "flate2", "tokio"];
+    for absent in heavy {
+        assert!(!tree.contains(absent), "whichone-sdk depends on {absent}");
+    }
+}
+
 #[test]
 fn no_service_depends_on_a_service() {
     for service in SERVICES {

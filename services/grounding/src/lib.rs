@@ -7,16 +7,15 @@
 //! Stateless: an observation depends on the scene and the utterance alone, so this service can be
 //! killed or swapped at any moment and forgets nothing.
 
-mod interpret;
+mod rules;
 pub mod shell;
 
-use interpret::interpretations;
 use language::Reader;
-use messages::{
-    Fits, FixedText, Interpretation, MessageRef, Observation, Utterance, WireError, WireReading,
-};
-use scene::{Reading, Scene};
+use messages::{MessageRef, Observation, Utterance};
+use rules::Rules;
+use scene::Scene;
 use service::{Effects, Event, Never, Node, NodeError, Time};
+use whichone_sdk::grounding::observation;
 
 /// The scene and its reader.
 pub struct Config {
@@ -48,11 +47,14 @@ impl Node for GroundingNode {
         fx: &mut Effects<Box<Observation>, Never>,
     ) {
         match event {
-            Event::Message(utterance) => match self.read(&utterance, now) {
-                Ok(observation) => fx.publish(Box::new(observation)),
-                // Speech sends it again; a broken sender shows in its input age.
-                Err(error) => tracing::warn!(seq = utterance.seq, %error, "utterance refused"),
-            },
+            Event::Message(utterance) => {
+                let Config { scene, reader } = &self.config;
+                match observation(&mut Rules(reader), scene, &utterance, now) {
+                    Ok(observation) => fx.publish(Box::new(observation)),
+                    // Speech sends it again; a broken sender shows in its input age.
+                    Err(error) => tracing::warn!(seq = utterance.seq, %error, "utterance refused"),
+                }
+            }
             Event::Shutdown => fx.exit(),
             Event::SetAside(_) | Event::Started | Event::Tick => {}
         }
@@ -68,44 +70,5 @@ impl Node for GroundingNode {
 
     fn resume(config: Config, _checkpoint: &[u8]) -> Result<Self, NodeError> {
         Self::recover(config, Vec::new())
-    }
-}
-
-impl GroundingNode {
-    fn read(&self, utterance: &Utterance, now: Time) -> Result<Observation, WireError> {
-        let mut observation = Observation {
-            seq: utterance.seq,
-            asked: utterance.asked,
-            asked_count: utterance.asked_count,
-            source: utterance.source,
-            scene_key: self.config.scene.key(),
-            gesture: utterance.gesture.target_m()?.into(),
-            onset_ns: utterance.onset_ns,
-            end_ns: utterance.end_ns,
-            accepted_ns: utterance.accepted_ns,
-            grounded_ns: now.ns(),
-            ..Observation::default()
-        };
-        let heard = utterance.hypotheses()?;
-        let mut meant = if heard.is_empty() && utterance.gesture.target_m()?.is_some() {
-            // A pointing gesture without words: one reading, without a word.
-            vec![Interpretation { weight: 1.0, answers: None, reading: Reading::default() }]
-        } else {
-            interpretations(&self.config, &heard, utterance.asked()?)?
-        };
-        meant.truncate(observation.readings.len());
-        observation.reading_count = meant.len() as u8;
-        for (slot, interpretation) in observation.readings.iter_mut().zip(&meant) {
-            let (wire, fits) = WireReading::new(interpretation);
-            if fits == Fits::Cut {
-                tracing::warn!(seq = utterance.seq, "more scene words than a message holds");
-            }
-            *slot = wire;
-        }
-        if let Some(word) = heard.first().and_then(|best| interpret::unknown(&self.config, best)) {
-            observation.unknown = FixedText::truncated(&word.text);
-            observation.unknown_role = word.role.into();
-        }
-        Ok(observation)
     }
 }

@@ -10,6 +10,7 @@ use messages::Service;
 use service::group::GroupPaths;
 use service::kept_settings;
 use service::launch::Options;
+use service::wakes::Wakes;
 
 pub use config::{Log, Restart, RestartLimits};
 
@@ -102,9 +103,18 @@ fn configuration(settings: Settings, options: &Options) -> Configuration {
         publish: Box::new(move |paths| {
             // Those in force change last, when nothing can fail any more.
             kept_settings::keep(paths, &settings)?;
+            wakes(&settings).save(paths)?;
             settings.write_snapshot(&paths.run())
         }),
     }
+}
+
+/// What wakes the services beside the table of topics.
+fn wakes(settings: &Settings) -> Wakes {
+    let services = settings.group.services.iter();
+    Wakes::new(services.flat_map(|service| {
+        service.reads.iter().map(|topic| (service.name.as_str(), topic.as_str()))
+    }))
 }
 
 fn service(service: &ServiceConfig, settings: &Settings) -> ServiceSpec {

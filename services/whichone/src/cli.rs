@@ -22,8 +22,8 @@ mod talk;
 pub use arm::{ArmPlotArgs, ArmVerb};
 pub use batch::{ArmArgs, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm};
 pub use group::{
-    CheckArgs, ConfigArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs,
-    SwapArgs, UpArgs, WaitFor,
+    CheckArgs, ConfigArgs, ConformArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs,
+    ServiceArgs, SwapArgs, UpArgs, WaitFor,
 };
 pub use link::LinkArgs;
 pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
@@ -68,8 +68,8 @@ pub struct Cli {
 }
 
 /// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
-const WITHOUT_GROUP: [&str; 9] =
-    ["check", "scene", "completions", "belief", "ground", "plan", "arm", "fk", "ik"];
+const WITHOUT_GROUP: [&str; 10] =
+    ["check", "conform", "scene", "completions", "belief", "ground", "plan", "arm", "fk", "ik"];
 
 impl Cli {
     /// Returns the definition of the command line, from which help and completions are made.
@@ -167,6 +167,12 @@ pub enum Verb {
     ///
     /// Rolls back to the old program if the new one does not become ready.
     Swap(SwapArgs),
+    /// Test a service of your own against the contract, in a group of its own.
+    ///
+    /// Prints a line for each rule: readiness, heartbeats, identity, topics, messages that make no sense,
+    /// restart, end; for a grounder also its answers, and their time. The exit code is 0 if every rule
+    /// holds. Nothing of it touches a running group.
+    Conform(ConformArgs),
     /// Say something to the robot.
     Say(SayArgs),
     /// Point at a place, as the user in front of the robot.

@@ -17,6 +17,7 @@ mod availability;
 mod await_pick;
 mod chat;
 mod check;
+mod conform;
 mod console;
 mod conversation;
 mod doctor;
@@ -65,6 +66,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Reload(args) => operate::reload(&paths()?, args.timeout, out),
         Verb::Check(args) => check::check(&args, out),
         Verb::Swap(args) => operate::swap(&paths()?, args, out),
+        Verb::Conform(args) => conform::conform(&args, out),
         Verb::Say(args) => speak::say(&paths()?, &args, out),
         Verb::Point(args) => speak::point(&paths()?, &args, out),
         Verb::Objects(args) => objects::objects(&paths()?, &args, out),

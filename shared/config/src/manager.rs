@@ -44,14 +44,14 @@ impl Settings {
     /// # Errors
     /// An unknown planner.
     pub fn manager_of_key(&self, settings_key: u64) -> Result<Manager, ManagerError> {
-        let mut known = registry::names().into_iter();
+        let mut known = registry::known().into_iter();
         let planner = known.find(|planner| self.manager_key(planner) == settings_key);
         self.manager_with(planner.unwrap_or(&self.dialogue.planner))
     }
 
     /// Returns whether the key is that of these settings, perhaps with another planner.
     pub fn makes_key(&self, settings_key: u64) -> bool {
-        registry::names().into_iter().any(|planner| self.manager_key(planner) == settings_key)
+        registry::known().into_iter().any(|planner| self.manager_key(planner) == settings_key)
     }
 
     /// Returns everything that the manager decides by, besides its planner.

@@ -21,7 +21,7 @@ use crate::Effects;
 use crate::exit::{Exit, Failure};
 use crate::journal_clock::JournalClock;
 use crate::storage;
-use crate::sync_time;
+use runtime::sync_time;
 use crate::worker_channel::{self, DeviceReceiver, DeviceSender};
 
 /// Interval at which a failed write is tried again.

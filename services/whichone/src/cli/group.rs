@@ -145,6 +145,22 @@ pub struct SwapArgs {
     pub timeout: Duration,
 }
 
+/// Arguments of `conform`.
+#[derive(Debug, Args)]
+pub struct ConformArgs {
+    /// Kind of the service: its name in a group, e.g. grounding.
+    pub service: String,
+    /// The program to test, and its arguments.
+    #[arg(last = true, required = true, value_name = "COMMAND")]
+    pub command: Vec<String>,
+    /// Test this rule alone; may be repeated.
+    #[arg(long = "rule", value_name = "NAME")]
+    pub rules: Vec<String>,
+    /// The configuration whose scene and settings the service gets.
+    #[command(flatten)]
+    pub config: ConfigArgs,
+}
+
 pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
     let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, e.g. group.scene=tools")?;
     Ok((key.trim().to_owned(), value.trim().to_owned()))

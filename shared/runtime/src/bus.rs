@@ -2,6 +2,7 @@
 //! folder so that groups never see each other.
 
 use crate::group::{GroupPaths, ShmName};
+use crate::wakes::Wakes;
 use iceoryx2::prelude::*;
 use messages::schema::Schema;
 use messages::topics::{self, Topic};
@@ -14,6 +15,7 @@ mod encoded;
 mod gate;
 mod open;
 mod ports;
+mod raw;
 mod renewed;
 mod segment;
 mod segment_error;
@@ -28,6 +30,7 @@ pub use encoded::{EncodedReader, EncodedWriter};
 pub use gate::rejected;
 pub use open::Topics;
 pub use ports::{Reader, Writer};
+pub use raw::{RawReader, RawWriter};
 pub use segment_error::SegmentError;
 pub use sleeper::Woken;
 pub(crate) use variant::Ipc;
@@ -39,6 +42,8 @@ pub struct Bus {
     node: Node<Ipc>,
     identity: Identity,
     paths: GroupPaths,
+    /// Services that are woken beyond the topics' own table.
+    wakes: Wakes,
     /// How this process joins: as a service or as a client.
     joins: Joined,
     /// Notifiers that are open, one for each service that is woken.
@@ -184,9 +189,11 @@ impl Bus {
                 .signal_handling_mode(SignalHandlingMode::Disabled)
                 .create::<Ipc>()
         })?;
-        let joins = Service::from_name(name).map_or(Joined::Client, |_| Joined::Service);
+        let is_service = identity.incarnation.0 > 0 || Service::from_name(name).is_some();
+        let joins = if is_service { Joined::Service } else { Joined::Client };
         let (notifiers, writers) = (RefCell::default(), RefCell::default());
-        Ok(Self { node, identity, paths: paths.clone(), joins, notifiers, writers })
+        let (paths, wakes) = (paths.clone(), Wakes::load(paths));
+        Ok(Self { node, identity, paths, wakes, joins, notifiers, writers })
     }
 
     /// Connects the readers that have joined since this process's writers last sent something, and so

@@ -104,7 +104,9 @@ impl Topics {
     pub fn create(bus: &Bus) -> Result<Self, BusError> {
         let topics = topics::ALL.iter().chain(&topics::robot::ALL);
         let topics = topics.map(|topic| keep(bus, topic)).collect::<Result<_, _>>()?;
-        let notifiers = topics::woken().into_iter().map(|service| wake::open(bus, service));
+        let mut woken = topics::woken();
+        woken.extend(bus.wakes.services().into_iter().filter(|it| !topics::woken().contains(it)));
+        let notifiers = woken.into_iter().map(|service| wake::open(bus, service));
         Ok(Self { _topics: topics, _notifiers: notifiers.collect::<Result<_, _>>()? })
     }
 }
@@ -118,5 +120,6 @@ fn keep(bus: &Bus, topic: &Topic) -> Result<Box<dyn std::fmt::Debug>, BusError> 
 
 /// The notifiers of a topic's readers.
 pub(super) fn notifiers(bus: &Bus, topic: &Topic) -> Result<Vec<Rc<WakeNotifier>>, BusError> {
-    topic.readers.iter().map(|&service| bus.notifier(service)).collect()
+    let services = topic.readers.iter().copied().chain(bus.wakes.readers(topic));
+    services.map(|service| bus.notifier(service)).collect()
 }

@@ -199,7 +199,7 @@ impl GroupPaths {
         self.root.join("recordings")
     }
 
-    /// What the services were given and what they stated ([`crate::flight`]).
+    /// Flights: what the services were given and what they stated.
     pub fn flights(&self) -> PathBuf {
         self.root.join("flight")
     }
@@ -219,7 +219,7 @@ impl GroupPaths {
         self.log().join(format!("{service}.log"))
     }
 
-    /// The file that holds the [set of journals](crate::journal_set).
+    /// The file that holds the [epoch](crate::epoch) and the set of journals.
     pub fn epoch_file(&self) -> PathBuf {
         self.root.join("epoch")
     }
@@ -263,6 +263,11 @@ impl GroupPaths {
     /// it, and nothing else says the name before the first segment exists.
     pub fn shm_name_file(&self) -> PathBuf {
         self.run().join("shm")
+    }
+
+    /// The file that names the services which topics wake beyond their own table ([`crate::wakes`]).
+    pub fn wakes_file(&self) -> PathBuf {
+        self.run().join("wakes")
     }
 
     /// What every name of the group in shared memory begins with, at each of its starts: two groups

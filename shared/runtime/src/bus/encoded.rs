@@ -103,9 +103,33 @@ impl<T: Schema> EncodedWriter<T> {
     where
         T: Serialize,
     {
+        let failed = |error: postcard::Error| PortError::new(self.topic, error.to_string());
+        let length = postcard::serialize_with_flavor(payload, Size::default()).map_err(failed)?;
+        self.send_filled(length, |unwritten| {
+            postcard::serialize_with_flavor(payload, unwritten).map_err(failed)
+        })
+    }
+}
+
+impl<T: Schema> EncodedWriter<T> {
+    /// Sends bytes that somebody else has encoded.
+    ///
+    /// # Errors
+    /// As [`EncodedWriter::send`].
+    pub(super) fn send_bytes(&self, bytes: &[u8]) -> Result<(), PortError> {
+        self.send_filled(bytes.len(), |mut unwritten| {
+            let written = unwritten.try_extend(bytes).and_then(|()| unwritten.finalize());
+            written.map_err(|error| PortError::new(self.topic, error.to_string()))
+        })
+    }
+
+    /// Sends a payload of this length, which `fill` writes into shared memory to its end.
+    fn send_filled(
+        &self,
+        length: usize,
+        fill: impl FnOnce(Unwritten<'_>) -> Result<(), PortError>,
+    ) -> Result<(), PortError> {
         let failed = |cause| PortError::new(self.topic, cause);
-        let length = postcard::serialize_with_flavor(payload, Size::default());
-        let length = length.map_err(|e| failed(e.to_string()))?;
         if length > BYTES_MAX {
             return Err(failed(format!("{length} bytes, {BYTES_MAX} at most")));
         }
@@ -117,23 +141,18 @@ impl<T: Schema> EncodedWriter<T> {
             };
             self.is_short.set(false);
             *sample.user_header_mut() = self.stamps.next();
-            let unwritten = Unwritten(sample.payload_mut());
-            let encoded = postcard::serialize_with_flavor(payload, unwritten);
-            encoded.map_err(|e| failed(e.to_string()))?;
-            // SAFETY: encoded without an error, every byte has been written.
+            fill(Unwritten(sample.payload_mut()))?;
+            // SAFETY: filled to its end without an error, every byte has been written.
             #[allow(unsafe_code)]
             let sample = unsafe { sample.assume_init() };
             sample.send().map(|_| true).map_err(|e| failed(format!("{e:?}")))
         })?;
-        if !is_sent {
-            return Ok(());
+        if is_sent {
+            self.sender.wake_readers();
         }
-        self.sender.wake_readers();
         Ok(())
     }
-}
 
-impl<T: Schema> EncodedWriter<T> {
     fn unsent(&self, cause: String) -> Result<(), PortError> {
         match segment_error::take() {
             Some(error @ SegmentError::Room { .. }) if self.is_view => {

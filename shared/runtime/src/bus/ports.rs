@@ -38,8 +38,10 @@ impl Bus {
                     .create()
             })
         })?;
-        let sender = Sender::open(self, name, publisher, notifiers(self, topic)?);
-        let latest = topic.is_state().then(Cell::default);
+        let readers = notifiers(self, topic)?;
+        // A state of which only the latest message counts is repeated, and wakes when it has changed.
+        let latest = (topic.buffer == 1 && !readers.is_empty()).then(Cell::default);
+        let sender = Sender::open(self, name, publisher, readers);
         Ok(Writer { topic: name, sender, stamps: self.stamps(), latest })
     }
 

@@ -4,9 +4,9 @@
 
 use messages::topics;
 use messages::{AppliedMark, Epoch, Incarnation, PolicyView, Service};
-use service::bus::{Bus, BusError, Identity, SegmentError};
-use service::group::{GroupName, GroupPaths};
-use service::shm_cleanup;
+use runtime::bus::{Bus, BusError, Identity, SegmentError};
+use runtime::group::{GroupName, GroupPaths};
+use runtime::shm_cleanup;
 use std::fs::{self, File};
 use std::os::unix::fs::MetadataExt;
 use std::path::PathBuf;

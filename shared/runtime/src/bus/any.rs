@@ -102,7 +102,7 @@ impl<T: Schema + Debug> AnyReader for Counted<EncodedReader<T>> {
     }
 }
 
-fn bytes<T: WireMessage>(message: &T) -> &[u8] {
+pub(super) fn bytes<T: WireMessage>(message: &T) -> &[u8] {
     // SAFETY: a message of fixed layout has no padding (the test of the wire layout checks each), so that
     // every byte of it is initialised.
     #[allow(unsafe_code)]

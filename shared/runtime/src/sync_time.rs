@@ -7,7 +7,7 @@ static SYNCS: AtomicU64 = AtomicU64::new(0);
 static TIME_US: AtomicU64 = AtomicU64::new(0);
 
 /// Runs one sync, and counts it with its time.
-pub(crate) fn measure<T>(sync: impl FnOnce() -> T) -> T {
+pub fn measure<T>(sync: impl FnOnce() -> T) -> T {
     let began = Instant::now();
     let result = sync();
     let us = u64::try_from(began.elapsed().as_micros()).unwrap_or(u64::MAX);

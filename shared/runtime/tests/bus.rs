@@ -8,10 +8,10 @@ use messages::topics::{self, Topic};
 use messages::{
     AppliedMark, Epoch, Incarnation, Injection, PolicyView, Presented, RequestKey, Service, Sound,
 };
-use service::Span;
-use service::bus::{AnyMessage, Bus, BusError, Identity, Joined, WakeListener};
-use service::group::{GroupName, GroupPaths};
-use service::shm_cleanup;
+use runtime::Span;
+use runtime::bus::{AnyMessage, Bus, BusError, Identity, Joined, WakeListener};
+use runtime::group::{GroupName, GroupPaths};
+use runtime::shm_cleanup;
 
 /// A group's shared memory for one test; removed with it.
 struct Shm {

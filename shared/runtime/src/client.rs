@@ -4,13 +4,12 @@
 //! Clients poll; they are few, short-lived, and must not cost the services anything.
 
 use crate::bus::{Bus, BusError, EncodedWriter, Identity, PortError, Reader};
-use crate::clock;
 use crate::group::GroupPaths;
-use crate::journal_set::JournalSet;
 use crate::lifecycle::Environment;
 use crate::submission::Submission;
 use crate::{Span, Time};
-use messages::{ClientId, Epoch, Injection, Receipt, RequestKey, Sound, topics};
+use crate::{clock, epoch};
+use messages::{ClientId, Injection, Receipt, RequestKey, Sound, topics};
 use std::sync::OnceLock;
 use std::time::Duration;
 
@@ -77,8 +76,7 @@ impl Client {
     pub fn join(paths: &GroupPaths) -> Result<Self, ClientError> {
         let none = || ClientError::NoGroup(paths.name().to_string());
         paths.shm_name().map_err(|_| none())?;
-        let set = JournalSet::load(paths).ok().flatten().ok_or_else(none)?;
-        let epoch = Epoch(set.epoch);
+        let epoch = epoch::read(paths).ok().flatten().ok_or_else(none)?;
         let bus = Bus::open(paths, "client", Identity { epoch, ..Identity::default() })?;
         Ok(Self { bus })
     }
