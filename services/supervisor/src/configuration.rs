@@ -102,6 +102,7 @@ fn configuration(settings: Settings, options: &Options) -> Configuration {
         publish: Box::new(move |paths| {
             // Those in force change last, when nothing can fail any more.
             kept_settings::keep(paths, &settings)?;
+            settings.write_words(&paths.run())?;
             settings.write_snapshot(&paths.run())
         }),
     }

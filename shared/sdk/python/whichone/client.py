@@ -50,8 +50,23 @@ class Snapshot:
     """Belief, question and decision of the robot."""
     arm: m.ArmStatus | None
     """State of the arm."""
+    presented: m.Presented | None
+    """Progress of the robot's latest line."""
+    activity: m.Activity | None
+    """Utterances that are not applied yet."""
     scene: Scene
     """The scene, for the names of objects and words."""
+
+    @property
+    def open_question(self) -> m.Question | None:
+        """The question that waits for an answer: said to its end, and with nothing on its way that may answer it.
+        Where the robot asks for a confirmation, it is what it wants to be confirmed."""
+        view, presented, activity = self.view, self.presented, self.activity
+        if view is None or presented is None or activity is None or activity.pending or not view.interaction:
+            return None
+        is_confirmation = view.decision == m.ActKind.SAY and view.question != m.QuestionNone()
+        is_presented = presented.prompt == view.prompt and presented.state == m.PresentationState.ENDED
+        return view.question if is_presented and (view.decision == m.ActKind.ASK or is_confirmation) else None
 
     @property
     def belief(self) -> dict[str, float]:
@@ -79,9 +94,11 @@ class Client:
         self._receipts = self.bus.reader("speech/receipt")
         self._views, self._statuses = self.bus.reader("policy/view"), self.bus.reader("arm/status")
         self._activities = self.bus.reader("speech/activity")
+        self._presentations = self.bus.reader("speech/presented")
         self._view: m.PolicyView | None = None
         self._arm: m.ArmStatus | None = None
         self._activity: m.Activity | None = None
+        self._presented: m.Presented | None = None
         self._said = 0
         self._reported = 0
 
@@ -101,15 +118,17 @@ class Client:
         # Pending utterances before the view, which is the newer of both.
         self._activity = self._activities.latest() or self._activity
         self._arm = self._statuses.latest() or self._arm
+        self._presented = self._presentations.latest() or self._presented
         self._view = self._views.latest() or self._view
-        return Snapshot(self._view, self._arm, self.scene)
+        return Snapshot(self._view, self._arm, self._presented, self._activity, self.scene)
 
     def watch(self, every_s: float = LOOK_S) -> Iterator[Snapshot]:
         """Yields the state now and after each change. It ends when the group does."""
         before = None
         while (self.group.run / "control.sock").exists():
             now = self.look()
-            state = (now.view, bytes(now.arm) if now.arm else None)
+            parts = (now.arm, now.presented, now.activity)
+            state = (now.view, *(part and bytes(part) for part in parts))
             if state != before:
                 before = state
                 yield now
