@@ -39,6 +39,7 @@ mod replay;
 mod robot;
 mod ros1;
 mod ros2;
+mod sdk_bindings;
 mod second_user;
 mod shortage;
 mod speech;

@@ -20,6 +20,7 @@ const HEAD: &str = r#"/* Messages of the topics. Generated from the wire layout;
 
 #ifdef __cplusplus
 #define WHICHONE_ASSERT(condition, text) static_assert(condition, text)
+#define _Alignof alignof
 #else
 #define WHICHONE_ASSERT(condition, text) _Static_assert(condition, text)
 #endif
@@ -145,14 +146,47 @@ fn declaration(ty: &Type, field: &str, model: &Model) -> String {
     format!("{name} {field}{dimensions}")
 }
 
+const TOPIC: &str = r#"
+/** A topic. */
+typedef struct whichone_topic {
+    const char *name;
+    /** Name of the type for iceoryx2; "u8" where the payload is postcard in a slice of bytes. */
+    const char *type;
+    /** Key of the layout, an attribute of the topic that both sides must agree on. */
+    const char *schema;
+    /** Bytes of a message and their alignment; size 0 for a slice of bytes. */
+    size_t size, alignment;
+    /** The service that writes it; NULL where clients do. */
+    const char *writer;
+    /** Services that are woken after a message, up to a NULL. */
+    const char *wakes[4];
+    /** Unread messages that a reader holds, and messages that a late reader still gets. */
+    size_t buffer, history;
+} whichone_topic_t;
+
+"#;
+
 fn put_topics(out: &mut String, model: &Model) {
-    out.push_str("\n/* Topics. */\n");
-    for Topic { name, payload, writer, readers, .. } in &model.topics {
-        let constant = name.replace(['/', '-'], "_").to_ascii_uppercase();
-        let writer = writer.map_or("clients", |it| it.name());
-        let wakes: Vec<_> = readers.iter().map(|it| it.name()).collect();
-        let wakes = if wakes.is_empty() { String::new() } else { format!(", wakes {}", wakes.join(" ")) };
-        let _ = writeln!(out, "/** {payload}, written by {writer}{wakes}. */");
-        let _ = writeln!(out, "#define WHICHONE_TOPIC_{constant} \"{name}\"");
+    out.push_str(TOPIC);
+    let text = |text: &str| format!("\"{text}\"");
+    for Topic { name, payload, writer, readers, buffer, history, .. } in &model.topics {
+        let constant = name.replace(['/', '-'], "_");
+        let of = model.structs.iter().find(|it| it.name == *payload);
+        let (ty, size) = match of {
+            Some(it) => {
+                let ty = format!("whichone_{}_t", snake(&it.name));
+                (it.name.as_str(), format!("sizeof({ty}), _Alignof({ty})"))
+            }
+            None => ("u8", "0, 1".to_owned()),
+        };
+        let writer = writer.map_or("NULL".to_owned(), |it| text(it.name()));
+        assert!(readers.len() < 4, "{name}: more readers are woken than the C header has room for");
+        let wakes: Vec<_> = readers.iter().map(|it| text(it.name())).chain(["NULL".into()]).collect();
+        let (wakes, schema) = (wakes.join(", "), format!("WHICHONE_{}_SCHEMA", upper(payload)));
+        let _ = writeln!(out, "/** Carries {payload}. */");
+        let _ = writeln!(
+            out,
+            "static const whichone_topic_t whichone_{constant} = {{\n    \"{name}\", \"{ty}\", {schema}, {size}, {writer}, {{{wakes}}}, {buffer}, {history}}};"
+        );
     }
 }
