@@ -25,15 +25,16 @@ from . import messages
 from ._fixed import InvalidMessage
 from .bus import Bus, Reader, WrongSchema, Writer, log
 from .client import Client, NoPick, NotStopped, Refused, Snapshot
-from .grounding import Grounder, Heard, Hypothesis, Reading, spot
+from .grounding import Grounder, Heard, Hypothesis, Meaning, Reading, spot
 from .group import Group, GroupNotRunning
-from .messages import Intent, Reference, Response
+from .messages import Intent, Reference, Response, Role
 from .scene import Scene
 from .service import Service
 
 __version__ = "0.1.0"
 __all__ = [
     "Bus", "Client", "Grounder", "Group", "GroupNotRunning", "Heard", "Hypothesis", "Intent", "InvalidMessage",
-    "NoPick", "NotStopped", "Reader", "Reading", "Reference", "Refused", "Response", "Scene", "Service", "Snapshot",
+    "Meaning", "NoPick", "NotStopped", "Reader", "Reading", "Reference", "Refused", "Response", "Role", "Scene", "Service",
+    "Snapshot",
     "Writer", "WrongSchema", "log", "messages", "spot",
 ]

@@ -81,6 +81,17 @@ class Reading:
     """The same for the response."""
 
 
+@dataclass
+class Meaning:
+    """The readings of an utterance, with a word that the scene does not have."""
+
+    readings: Sequence[Reading]
+    unknown: str = ""
+    """The word, for the robot's reply: "wooden", "plate"."""
+    role: m.Role = m.Role.QUALITY
+    """What it is: a quality, a place, or a kind of thing."""
+
+
 def heard(utterance: m.Utterance, scene: Scene) -> Heard:
     """What an utterance's message says. Raises `InvalidMessage` for one that makes no sense."""
     if utterance.hypothesis_count > m.HYPOTHESES_MAX or utterance.asked_count > m.ASKED_MAX:
@@ -114,13 +125,16 @@ def spot(heard: Heard, scene: Scene) -> list[Reading]:
     return readings
 
 
-def observation(utterance: m.Utterance, readings: Sequence[Reading], scene: Scene) -> m.Observation:
+def observation(utterance: m.Utterance, meaning: Sequence[Reading] | Meaning, scene: Scene) -> m.Observation:
     """The message that states the meaning of an utterance.
 
     For each question the weights are made to sum to 1. A question without readings gets those that answer none.
     Raises `ValueError` for words, numbers or questions that make no sense, and names them.
     """
-    message = m.Observation()
+    meaning = meaning if isinstance(meaning, Meaning) else Meaning(meaning)
+    message, readings = m.Observation(), meaning.readings
+    message.unknown.set(meaning.unknown)
+    message.unknown_role = m.Role(meaning.role)
     for name, _ in message._fields_:
         # Fields that both messages have are copied: utterance, questions, gesture, times.
         if name != "reserved" and hasattr(utterance, name):
@@ -195,8 +209,8 @@ class Grounder(Service):
         """The scene in force."""
         self._known: OrderedDict[tuple[int, bytes], m.Observation] = OrderedDict()
 
-    def ground(self, heard: Heard) -> Sequence[Reading]:
-        """The possible meanings of an utterance. Readings that leave out `question` count for every question.
+    def ground(self, heard: Heard) -> Sequence[Reading] | Meaning:
+        """The possible meanings of an utterance; a `Meaning` where it names what the scene does not have. Readings that leave out `question` count for every question.
         Takes about a second at most; calls `beat` meanwhile where it may take longer."""
         raise NotImplementedError
 
