@@ -39,6 +39,17 @@ fn c_header_is_that_of_the_wire_layout() {
     check("c/whichone.h", &c::text(&Model::read(), &Docs::read()));
 }
 
+/// Sizes and offsets are assertions in the header.
+#[test]
+fn c_header_compiles_with_its_assertions() {
+    let header = format!("{SDK}/c/whichone.h");
+    let mut compiler = std::process::Command::new("cc");
+    compiler.args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-x", "c", &header]);
+    // Rust links with the same program.
+    let ended = compiler.output().expect("cc is installed");
+    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+}
+
 #[test]
 fn fields_of_messages_are_documented() {
     let (model, docs) = (Model::read(), Docs::read());

@@ -34,7 +34,6 @@ from .service import Service
 __version__ = "0.1.0"
 __all__ = [
     "Bus", "Client", "Grounder", "Group", "GroupNotRunning", "Heard", "Hypothesis", "Intent", "InvalidMessage",
-    "Meaning", "NoPick", "NotStopped", "Reader", "Reading", "Reference", "Refused", "Response", "Role", "Scene", "Service",
-    "Snapshot",
-    "Writer", "WrongSchema", "log", "messages", "spot",
+    "Meaning", "NoPick", "NotStopped", "Reader", "Reading", "Reference", "Refused", "Response", "Role", "Scene",
+    "Service", "Snapshot", "Writer", "WrongSchema", "log", "messages", "spot",
 ]

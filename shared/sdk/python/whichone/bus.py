@@ -116,7 +116,8 @@ class Reader:
         self._newest = 0
         self._is_fixed = issubclass(topic.message, Message)
         self._service = bus.open(topic)
-        self._port = self._service.subscriber_builder().buffer_size(topic.buffer).history_request(topic.history).create()
+        builder = self._service.subscriber_builder().buffer_size(topic.buffer)
+        self._port = builder.history_request(topic.history).create()
         bus.greet(topic)
 
     def __iter__(self) -> Iterator[Any]:

@@ -210,8 +210,11 @@ class Grounder(Service):
         self._known: OrderedDict[tuple[int, bytes], m.Observation] = OrderedDict()
 
     def ground(self, heard: Heard) -> Sequence[Reading] | Meaning:
-        """The possible meanings of an utterance; a `Meaning` where it names what the scene does not have. Readings that leave out `question` count for every question.
-        Takes about a second at most; calls `beat` meanwhile where it may take longer."""
+        """The possible meanings of an utterance; a `Meaning` where it names what the scene does not have.
+
+        Readings that leave out `question` count for every question. Takes about a second at most, and calls `beat`
+        meanwhile where it may take longer.
+        """
         raise NotImplementedError
 
     def open(self) -> None:

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 
 import iceoryx2 as iox2
 
-from .bus import JOINED_SERVICE, Bus, Reader, Writer, log
+from .bus import JOINED_SERVICE, Bus, Reader, Writer, WrongSchema, log
 from .group import Group
 
 USAGE, STORAGE, CONFIG = 64, 74, 78
@@ -158,7 +158,12 @@ class Service:
     def run(self) -> None:
         """Runs the service until it is asked to end."""
         self._listen()
-        self.open()
+        try:
+            self.open()
+        except WrongSchema as error:
+            # It will not be another one at the next start.
+            print(error, file=sys.stderr)
+            raise SystemExit(CONFIG) from None
         self.supervised.say("READY=1")
         while not self.ends:
             self.step()
