@@ -175,7 +175,11 @@ fn package_in_python_passes_its_tests() {
     let ended = run(&mut command, "", PATIENCE_S);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     // Started by hand, a service says how it is started.
-    let ended = run(Command::new(python()).arg(example("grounding")).env("PYTHONPATH", PACKAGE), "", PATIENCE_S);
+    let ended = run(
+        Command::new(python()).arg(example("grounding")).env("PYTHONPATH", PACKAGE),
+        "",
+        PATIENCE_S,
+    );
     assert_eq!(ended.code, Some(64), "{ended:?}");
     assert!(ended.stderr.contains("help: services are started by their supervisor"), "{ended:?}");
 }

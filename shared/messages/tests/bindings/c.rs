@@ -106,10 +106,7 @@ fn put_struct(out: &mut String, message: &Struct, (model, docs): (&Model, &Docs)
         let _ = writeln!(out, "    {};", declaration(ty, field, model));
     }
     let _ = writeln!(out, "}} whichone_{c}_t;");
-    let _ = writeln!(
-        out,
-        "WHICHONE_ASSERT(sizeof(whichone_{c}_t) == {size}, \"size of {name}\");"
-    );
+    let _ = writeln!(out, "WHICHONE_ASSERT(sizeof(whichone_{c}_t) == {size}, \"size of {name}\");");
     for (field, offset, _) in fields {
         let _ = writeln!(
             out,
@@ -135,7 +132,9 @@ fn declaration(ty: &Type, field: &str, model: &Model) -> String {
             ("u", bits) => format!("uint{bits}_t"),
             (_, bits) => format!("int{bits}_t"),
         },
-        Type::Code(name) => return format!("uint8_t {field}{dimensions} /* enum whichone_{} */", snake(name)),
+        Type::Code(name) => {
+            return format!("uint8_t {field}{dimensions} /* enum whichone_{} */", snake(name));
+        }
         Type::Text(bytes) => format!("whichone_text_{bytes}_t"),
         Type::Struct(rust) => {
             let of = model.structs.iter().find(|it| it.rust == *rust);
@@ -181,7 +180,8 @@ fn put_topics(out: &mut String, model: &Model) {
         };
         let writer = writer.map_or("NULL".to_owned(), |it| text(it.name()));
         assert!(readers.len() < 4, "{name}: more readers are woken than the C header has room for");
-        let wakes: Vec<_> = readers.iter().map(|it| text(it.name())).chain(["NULL".into()]).collect();
+        let wakes: Vec<_> =
+            readers.iter().map(|it| text(it.name())).chain(["NULL".into()]).collect();
         let (wakes, schema) = (wakes.join(", "), format!("WHICHONE_{}_SCHEMA", upper(payload)));
         let _ = writeln!(out, "/** Carries {payload}. */");
         let _ = writeln!(

@@ -37,9 +37,9 @@ impl Docs {
 
     /// The documentation of a field or variant.
     pub fn of_field(&self, name: &str, field: &str) -> String {
-        let name = ["", "Wire"].iter().find_map(|prefix| {
-            self.texts.get(&(format!("{prefix}{name}"), field.to_owned()))
-        });
+        let name = ["", "Wire"]
+            .iter()
+            .find_map(|prefix| self.texts.get(&(format!("{prefix}{name}"), field.to_owned())));
         name.cloned().unwrap_or_default()
     }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use messages::robot::{JOINTS_MAX, LIMB_JOINTS};
 use messages::topics::{self, Topic};
 use messages::*;
-use serde_reflection::{ContainerFormat, Format, VariantFormat};
+use serde_reflection::{ContainerFormat, Format, FormatHolder, VariantFormat};
 
 use crate::layouts::{self, Layout};
 
@@ -114,7 +114,8 @@ impl Model {
         layouts.extend(layouts::payloads_of_perception());
         let mut formats = BTreeMap::new();
         for field in layouts.iter().flat_map(|layout| &layout.fields) {
-            let format = serde_json::from_str(&field.ty).unwrap_or_else(|e| panic!("{e}: {field:?}"));
+            let format =
+                serde_json::from_str(&field.ty).unwrap_or_else(|e| panic!("{e}: {field:?}"));
             formats.insert(field.name.to_string(), format);
         }
         let mut types = Vec::new();

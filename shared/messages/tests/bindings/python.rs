@@ -79,7 +79,10 @@ fn put_struct(out: &mut String, message: &Struct, docs: &Docs) {
     let _ = writeln!(out, "\n\nclass {rust}(Message):");
     put_doc(out, "    ", &docs.of(rust));
     out.push('\n');
-    let _ = writeln!(out, "    wire_name = \"{name}\"\n    wire_size = {size}\n    schema_key = \"{key}\"");
+    let _ = writeln!(
+        out,
+        "    wire_name = \"{name}\"\n    wire_size = {size}\n    schema_key = \"{key}\""
+    );
     for (field, _, ty) in fields {
         let _ = writeln!(out, "    {field}: {}", annotation(ty));
         put_doc(out, "    ", &docs.of_field(rust, field));
@@ -143,9 +146,13 @@ fn put_type(
             let _ = writeln!(out, "{name}_ENCODING = {}", codec(inner, model));
         }
         ContainerFormat::Struct(fields) => {
-            let codecs = fields.iter().map(|it| format!("    {}={},\n", it.name, codec(&it.value, model)));
+            let codecs =
+                fields.iter().map(|it| format!("    {}={},\n", it.name, codec(&it.value, model)));
             let codecs: String = codecs.collect();
-            let _ = write!(out, "\n\n@encoding.struct(\n{codecs})\n@dataclass(kw_only=True)\nclass {name}:\n");
+            let _ = write!(
+                out,
+                "\n\n@encoding.struct(\n{codecs})\n@dataclass(kw_only=True)\nclass {name}:\n"
+            );
             put_doc(out, "    ", &docs.of(name));
             out.push('\n');
             for field in fields {
@@ -153,7 +160,10 @@ fn put_type(
                 put_doc(out, "    ", &docs.of_field(name, &field.name));
             }
             if let Some(key) = key {
-                let _ = writeln!(out, "\n\n{name}.wire_name, {name}.schema_key = \"{name}\", \"{key}\"");
+                let _ = writeln!(
+                    out,
+                    "\n\n{name}.wire_name, {name}.schema_key = \"{name}\", \"{key}\""
+                );
             }
         }
         ContainerFormat::Enum(variants) => {
@@ -162,9 +172,12 @@ fn put_type(
             for variant in variants.values() {
                 put_variant(out, name, variant, (model, docs));
             }
-            let parts = variants.iter().map(|(code, it)| format!("{code}: {name}{}", model::camel(&it.name)));
+            let parts = variants
+                .iter()
+                .map(|(code, it)| format!("{code}: {name}{}", model::camel(&it.name)));
             let parts: Vec<_> = parts.collect();
-            let _ = writeln!(out, "\n\n{name}_ENCODING = encoding.Variants({{{}}})", parts.join(", "));
+            let _ =
+                writeln!(out, "\n\n{name}_ENCODING = encoding.Variants({{{}}})", parts.join(", "));
         }
         ContainerFormat::UnitStruct | ContainerFormat::TupleStruct(_) => {
             panic!("{name}: no message has such a type yet; help: add it to {}", file!())
@@ -179,11 +192,16 @@ fn put_variant(
     (model, docs): (&Model, &Docs),
 ) {
     let fields = variant_fields(value);
-    let codecs: String =
-        fields.iter().map(|(field, format)| format!("    {field}={},\n", codec(format, model))).collect();
+    let codecs: String = fields
+        .iter()
+        .map(|(field, format)| format!("    {field}={},\n", codec(format, model)))
+        .collect();
     let codecs = if codecs.is_empty() { String::new() } else { format!("\n{codecs}") };
     let class = format!("{of}{}", model::camel(name));
-    let _ = write!(out, "\n\n@encoding.struct({codecs})\n@dataclass(frozen=True)\nclass {class}({of}):\n");
+    let _ = write!(
+        out,
+        "\n\n@encoding.struct({codecs})\n@dataclass(frozen=True)\nclass {class}({of}):\n"
+    );
     put_doc(out, "    ", &or(docs.of_field(of, &model::camel(name)), &format!("`{name}`.")));
     if !fields.is_empty() {
         out.push('\n');
@@ -237,7 +255,9 @@ fn hint(format: &Format, model: &Model) -> String {
 fn codec(format: &Format, model: &Model) -> String {
     let simple = |name: &str| format!("encoding.{name}");
     match format {
-        Format::TypeName(name) if model.enums.contains_key(name) => format!("encoding.Codes({name})"),
+        Format::TypeName(name) if model.enums.contains_key(name) => {
+            format!("encoding.Codes({name})")
+        }
         Format::TypeName(name) => match model.types.iter().find(|(of, _)| of == name) {
             Some((_, ContainerFormat::Struct(_))) => format!("encoding.Nested({name})"),
             _ => format!("{name}_ENCODING"),
