@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rustix::process::Signal;
 use serde_json::Value;
-use whichone_tests::Group;
+use whichone_tests::{Group, program, run};
 
 use crate::python;
 use crate::swap::swap;
@@ -66,33 +66,48 @@ fn sdk_python_grounder_has_the_outcomes_of_the_built_in_one() {
     check_same_outcomes(&command.each_ref().map(String::as_str));
 }
 
-/// The folder of the built C examples.
-fn c_examples() -> String {
-    std::env::var("WHICHONE_SDK_C").expect("WHICHONE_SDK_C is set; help: run `scripts/sdk test`")
+/// Compiles an example in C against the library of this build, into a folder of its own.
+fn c_example(name: &str) -> (tempfile::TempDir, String) {
+    let library = program("libwhichone_c.so");
+    let folder = library.parent().expect("a folder").display().to_string();
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let example = out.path().join(name).display().to_string();
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/sdk/c/examples");
+    let mut compiler = std::process::Command::new("cc");
+    compiler.args(["-std=gnu11", "-Wall", "-Wextra", "-Werror", &format!("{source}/{name}.c")]);
+    compiler.args(["-o", &example, &format!("-L{folder}"), "-lwhichone_c"]);
+    compiler.arg(format!("-Wl,-rpath,{folder}"));
+    // Rust links with the same program.
+    let ended = run(&mut compiler, "", 60.0);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    (out, example)
 }
 
 #[test]
-#[ignore = "needs the C examples, which `scripts/sdk test` builds"]
 fn sdk_c_grounder_has_the_outcomes_of_the_built_in_one() {
-    check_same_outcomes(&[&format!("{}/grounding", c_examples())]);
+    let (_out, grounder) = c_example("grounding");
+    check_same_outcomes(&[&grounder]);
+    // Started by hand, it says how it is started.
+    let ended = run(&mut std::process::Command::new(&grounder), "", 10.0);
+    assert_eq!(ended.code, Some(64), "{ended:?}");
+    assert!(ended.stderr.contains("help: services are started by their supervisor"), "{ended:?}");
 }
 
 #[test]
-#[ignore = "needs the C examples, which `scripts/sdk test` builds"]
 fn sdk_c_client_says_and_watches() {
-    let say = format!("{}/say", c_examples());
+    let (_out, say) = c_example("say");
     let group = Group::up(&[]);
-    let run = |text: &str, name: &str| {
+    let said = |text: &str, name: &str| {
         let mut command = std::process::Command::new(&say);
         command.env("WHICHONE_HOME", group.paths().home()).env("WHICHONE_GROUP", name);
-        whichone_tests::run(command.args([text, "60"]), "", 90.0)
+        run(command.args([text, "60"]), "", 90.0)
     };
-    let ended = run("get me the clear bowl", group.paths().name().as_str());
+    let ended = said("get me the clear bowl", group.paths().name().as_str());
     assert_eq!(ended.code, Some(0), "{ended:?}\n{}", group.logs());
     assert!(ended.stdout.contains("robot: ") && ended.stdout.contains(" delivered"), "{ended:?}");
-    let ended = run(" ", group.paths().name().as_str());
+    let ended = said(" ", group.paths().name().as_str());
     assert!(ended.code == Some(64) && ended.stderr.contains("refused: "), "{ended:?}");
-    let ended = run("hello", "no-such-group");
+    let ended = said("hello", "no-such-group");
     assert!(ended.code == Some(1) && ended.stderr.contains("is not running"), "{ended:?}");
     group.verify_journals();
     group.down();

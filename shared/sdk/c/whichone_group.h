@@ -1,7 +1,7 @@
 /* A process in its group: typed topics in shared memory, readiness and beats, wake-ups, and the scene's words.
  *
  * Everything belongs to one thread. Functions that can fail say why on standard error and return NULL, -1 or false.
- * Link with whichone_group.c and the C library of iceoryx2 (`scripts/sdk c` builds both).
+ * Link with -lwhichone_c, which `scripts/sdk c` builds.
  */
 #ifndef WHICHONE_GROUP_H
 #define WHICHONE_GROUP_H
@@ -16,8 +16,8 @@
 extern "C" {
 #endif
 
-/** Exit codes: the start was wrong, and is not tried again; the group is not as the program needs it. */
-enum { WHICHONE_EXIT_USAGE = 64, WHICHONE_EXIT_BROKEN = 70, WHICHONE_EXIT_CONFIG = 78 };
+/** Exit codes: the start was wrong, or the group is not as the program needs it. Neither is tried again. */
+enum { WHICHONE_EXIT_USAGE = 64, WHICHONE_EXIT_CONFIG = 78 };
 
 /** A process's access to its group. */
 typedef struct whichone_group whichone_group_t;
@@ -36,9 +36,6 @@ whichone_group_t *whichone_join_as_client(const char *group);
 /** Leaves the group, with all readers and writers closed before. */
 void whichone_leave(whichone_group_t *group);
 
-/** The path of a file of the group, e.g. "run/settings.toml", in memory of the caller. Returns `path`. */
-char *whichone_path(const whichone_group_t *group, const char *file, char *path, size_t size);
-
 /** Opens a topic for reading: `whichone_open_reader(group, &whichone_speech_utterance)`. */
 whichone_reader_t *whichone_open_reader(whichone_group_t *group, const whichone_topic_t *topic);
 
@@ -49,26 +46,19 @@ void whichone_close_reader(whichone_reader_t *reader);
 void whichone_close_writer(whichone_writer_t *writer);
 
 /** Copies the next message to `message`, which has room for `size` bytes. Returns its bytes, 0 if there is none, -1
- * if the topic fails. Messages of other epochs and of earlier processes are left out. Codes are not checked: compare
- * them with the enums before use. */
-long whichone_take(whichone_reader_t *reader, void *message, size_t size);
+ * if the topic fails or the message is larger. Messages of other epochs and of earlier processes are left out, those
+ * with codes that their enums do not have are rejected and logged. Counts and numbers are the writer's: compare them
+ * with their bounds before use. */
+ptrdiff_t whichone_take(whichone_reader_t *reader, void *message, size_t size);
 
 /** Sends a copy of a message of `size` bytes and wakes the topic's readers. Nothing waits: the oldest unread message
- * gives way. */
+ * gives way. A message with a wrong size, or a code that its enum does not have, is not sent. */
 bool whichone_send(whichone_writer_t *writer, const void *message, size_t size);
 
-/** Tells the supervisor that the service is ready. */
-void whichone_ready(whichone_group_t *group);
-
-/** Sends a beat to the supervisor if one is due. Call it in each pass of the main loop, and from within long work: a
- * service that is silent for 3 s is restarted. */
-void whichone_beat(whichone_group_t *group);
-
-/** Whether to shut down: on request, or because the supervisor is gone. */
-bool whichone_ends(const whichone_group_t *group);
-
-/** Sleeps until there is a wake-up for this service, or for `longest_ms`. A client just sleeps. */
-void whichone_wait(whichone_group_t *group, unsigned longest_ms);
+/** Runs a service until it is asked to end: reports that it is ready, and calls `step` with `context` after each
+ * wake-up and twice a second besides; beats after each step. A step that takes longer than 3 s counts as hung.
+ * Returns the exit code of the program. */
+int whichone_run(whichone_group_t *group, void (*step)(void *context), void *context);
 
 /** Nanoseconds of the monotonic clock, as all times in messages are. */
 uint64_t whichone_now_ns(void);
@@ -77,17 +67,14 @@ uint64_t whichone_now_ns(void);
  * number, or 0 with the reason on standard error. */
 uint64_t whichone_say(whichone_group_t *group, const char *text, double seconds);
 
-/** The words of the scene, whose places are their numbers in messages, and the scene's key. */
-typedef struct whichone_words {
-    uint64_t scene_key;
-    size_t count;
-    char **words;
-} whichone_words_t;
+/** Key of the scene in force, for messages about it. */
+uint64_t whichone_scene_key(const whichone_group_t *group);
 
-/** Reads the words of the scene in force. */
-bool whichone_read_words(const whichone_group_t *group, whichone_words_t *words);
+/** Number of the scene's words; a word's number in messages is its place, from 0. */
+size_t whichone_word_count(const whichone_group_t *group);
 
-void whichone_free_words(whichone_words_t *words);
+/** The word of this number, valid until the group is left; NULL if there is none. */
+const char *whichone_word(const whichone_group_t *group, size_t number);
 
 #ifdef __cplusplus
 }

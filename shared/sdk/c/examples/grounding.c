@@ -34,7 +34,7 @@ static bool is_one_of(const char *text, const char *const *words) {
 }
 
 /* What a wording says: the scene's words, the longest at each place, and yes, no or neither. */
-static void read_wording(const char *text, const uint8_t *confidence, const whichone_words_t *words,
+static void read_wording(const char *text, const uint8_t *confidence, const whichone_group_t *group,
                          whichone_reading_t *reading) {
     static const char *const affirmative[] = {"yes", "yeah", "sure", "yup", "yep", NULL};
     static const char *const negative[] = {"no", "nope", "not", "nah", "other", NULL};
@@ -45,8 +45,8 @@ static void read_wording(const char *text, const uint8_t *confidence, const whic
         if (!is_inside) {
             yes = yes || is_one_of(at, affirmative);
             no = no || is_one_of(at, negative);
-            for (size_t n = 0; n < words->count; n++) {
-                size_t length = starts_with(at, words->words[n]);
+            for (size_t n = 0; n < whichone_word_count(group); n++) {
+                size_t length = starts_with(at, whichone_word(group, n));
                 if (length > longest)
                     longest = length, found = n;
             }
@@ -66,7 +66,7 @@ static void read_wording(const char *text, const uint8_t *confidence, const whic
 }
 
 /* Adds a reading of each wording as an answer to the question at `place`. */
-static void read_for(uint8_t place, const whichone_utterance_t *utterance, const whichone_words_t *words,
+static void read_for(uint8_t place, const whichone_utterance_t *utterance, const whichone_group_t *group,
                      whichone_observation_t *observation) {
     for (size_t n = 0; n < utterance->hypothesis_count; n++) {
         const whichone_hypothesis_t *heard = &utterance->hypotheses[n];
@@ -76,7 +76,7 @@ static void read_for(uint8_t place, const whichone_utterance_t *utterance, const
         reading->question = place;
         reading->weight = heard->weight;
         reading->intent = WHICHONE_INTENT_INFORM;
-        read_wording(text, heard->confidence, words, reading);
+        read_wording(text, heard->confidence, group, reading);
     }
 }
 
@@ -97,7 +97,7 @@ static void check(whichone_utterance_t *utterance) {
         utterance->asked_count = WHICHONE_ASKED_MAX;
 }
 
-static void observe(const whichone_utterance_t *utterance, const whichone_words_t *words,
+static void observe(const whichone_utterance_t *utterance, const whichone_group_t *group,
                     whichone_observation_t *observation) {
     memset(observation, 0, sizeof *observation);
     observation->seq = utterance->seq;
@@ -108,10 +108,10 @@ static void observe(const whichone_utterance_t *utterance, const whichone_words_
     observation->onset_ns = utterance->onset_ns;
     observation->end_ns = utterance->end_ns;
     observation->accepted_ns = utterance->accepted_ns;
-    observation->scene_key = words->scene_key;
+    observation->scene_key = whichone_scene_key(group);
     for (uint8_t place = 0; place < utterance->asked_count; place++)
-        read_for(place, utterance, words, observation);
-    read_for(WHICHONE_NO_QUESTION, utterance, words, observation);
+        read_for(place, utterance, group, observation);
+    read_for(WHICHONE_NO_QUESTION, utterance, group, observation);
     if (observation->reading_count == 0) {
         /* A pointing gesture without words, or nothing. */
         observation->readings[0].question = WHICHONE_NO_QUESTION;
@@ -122,30 +122,34 @@ static void observe(const whichone_utterance_t *utterance, const whichone_words_
     observation->grounded_ns = whichone_now_ns();
 }
 
+typedef struct {
+    const whichone_group_t *group;
+    whichone_reader_t *utterances;
+    whichone_writer_t *observations;
+} grounder_t;
+
+static void step(void *context) {
+    const grounder_t *grounder = context;
+    static whichone_utterance_t utterance;
+    static whichone_observation_t observation;
+    while (whichone_take(grounder->utterances, &utterance, sizeof utterance) > 0) {
+        check(&utterance);
+        observe(&utterance, grounder->group, &observation);
+        whichone_send(grounder->observations, &observation, sizeof observation);
+    }
+}
+
 int main(void) {
     whichone_group_t *group = whichone_join_as_service("grounding");
     if (!group)
         return WHICHONE_EXIT_USAGE;
-    whichone_words_t words;
-    whichone_reader_t *utterances = whichone_open_reader(group, &whichone_speech_utterance);
-    whichone_writer_t *observations = whichone_open_writer(group, &whichone_grounding_observation);
-    if (!utterances || !observations || !whichone_read_words(group, &words))
-        return WHICHONE_EXIT_CONFIG;
-    whichone_ready(group);
-    static whichone_utterance_t utterance;
-    static whichone_observation_t observation;
-    while (!whichone_ends(group)) {
-        while (whichone_take(utterances, &utterance, sizeof utterance) > 0) {
-            check(&utterance);
-            observe(&utterance, &words, &observation);
-            whichone_send(observations, &observation, sizeof observation);
-        }
-        whichone_beat(group);
-        whichone_wait(group, 100);
-    }
-    whichone_free_words(&words);
-    whichone_close_reader(utterances);
-    whichone_close_writer(observations);
+    grounder_t grounder = {group, whichone_open_reader(group, &whichone_speech_utterance),
+                           whichone_open_writer(group, &whichone_grounding_observation)};
+    int status = WHICHONE_EXIT_CONFIG;
+    if (grounder.utterances && grounder.observations)
+        status = whichone_run(group, step, &grounder);
+    whichone_close_reader(grounder.utterances);
+    whichone_close_writer(grounder.observations);
     whichone_leave(group);
-    return 0;
+    return status;
 }

@@ -3,6 +3,7 @@
  *
  *     target/sdk/c/say "get me the clear bowl" [SECONDS]
  */
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -40,7 +41,7 @@ int main(int count, char **words) {
                 number = 0;
             }
         fflush(stdout);
-        whichone_wait(group, 10);
+        poll(NULL, 0, 10);
     }
     whichone_close_reader(acts);
     whichone_close_reader(arm);
