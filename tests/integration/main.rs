@@ -42,6 +42,7 @@ mod robot;
 mod ros1;
 mod ros2;
 mod sdk;
+mod sdk_bindings;
 mod second_user;
 mod shortage;
 mod speech;

@@ -104,6 +104,7 @@ fn configuration(settings: Settings, options: &Options) -> Configuration {
             // Those in force change last, when nothing can fail any more.
             kept_settings::keep(paths, &settings)?;
             wakes(&settings).save(paths)?;
+            settings.write_words(&paths.run())?;
             settings.write_snapshot(&paths.run())
         }),
     }

@@ -47,7 +47,7 @@ pub use crate::manager::ManagerError;
 pub use crate::resolved::{Origin, Section};
 pub use crate::ros2::{Network, Ros2, ServiceMapping};
 pub use crate::services::{Restart, ServiceConfig};
-pub use crate::snapshot::SNAPSHOT_FILE;
+pub use crate::snapshot::{SNAPSHOT_FILE, WORDS_FILE};
 pub use crate::speech::{Microphone, MicrophoneMode, Recogniser, Speech, Voice};
 pub use crate::study::Study;
 
