@@ -2,8 +2,6 @@
 import { h } from "../dom.js";
 import { about, proposedPlace } from "./document.js";
 
-export { about };
-
 /**
  * Every problem of the scene, each with a way to what it is about and, where one is proposed, its move.
  * @param {any} t

@@ -1,6 +1,6 @@
 // @ts-check
 import { h, setText } from "../dom.js";
-import { icon } from "../icons.js";
+import { iconButton, textButton } from "./buttons.js";
 import {
   addAttribute,
   addValue,
@@ -35,13 +35,7 @@ export function wordsPanel(t, documentNow, change) {
   const element = h("div", { class: "scene-form" }, noun, ...attributes, add);
 
   function button(key, drawing, f, what = {}) {
-    const onclick = () => change(f, "");
-    return h("button", { type: "button", class: "small", onclick }, icon(drawing, 18), t(key, what));
-  }
-  function remove(label, f) {
-    const onclick = () => change(f, "");
-    const about = { type: "button", class: "tool", "aria-label": label, title: label, onclick };
-    return h("button", about, icon("close", 18));
+    return textButton(t(key, what), drawing, () => change(f, ""));
   }
   function attributeForm(k) {
     const own = () => documentNow().attributes[k] ?? { values: [], synonyms: [] };
@@ -118,7 +112,9 @@ export function wordsPanel(t, documentNow, change) {
           value.spoken = text.trim() || null;
         }),
       ),
-      remove(t("scene.value.remove", { name: title }), (document) => removeValue(document, k, v)),
+      iconButton(t("scene.value.remove", { name: title }), "close", () =>
+        change((document) => removeValue(document, k, v), ""),
+      ),
     );
   }
   /** Brings an attribute into sight. @param {number} k */
