@@ -90,6 +90,7 @@ export async function mountScene({ store, t, session: page }) {
     setAttribute(dialog, "data-busy", isBusy);
     setAttribute(dialog, "data-locked", !canEdit && !isBusy);
     setAttribute(dialog, "data-check", findings.state);
+    setAttribute(dialog, "data-reach", reach?.isComplete ? "known" : null);
     if (!draft) return;
     const concerned = findings.problems.map(about).filter(({ kind }) => kind === "object");
     const wrong = new Set(concerned.map(({ n }) => n));
