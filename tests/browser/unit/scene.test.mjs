@@ -202,7 +202,7 @@ describe("the map of the reach", () => {
     assert.equal(map.at(0.6, 0), "left");
     assert.equal(map.at(0.75, 0), "left");
     assert.equal(map.at(0.85, 0), null);
-    assert.equal(map.at(3, 0), undefined);
+    assert.equal(map.at(3, 0), null);
     const wide = map.stretches().filter(({ limb }) => limb === "left");
     const area = wide.reduce((sum, { from, to }) => sum + 0.05 * (to - from), 0);
     assert.ok(area > 0.9 && area < 1.4, String(area));

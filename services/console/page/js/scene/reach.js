@@ -86,15 +86,15 @@ export class ReachMap {
   }
 
   /**
-   * The limb that can fetch the object at a place; null: none, undefined: not known yet, or beyond the map.
+   * The limb that can fetch the object at a place; null: none, undefined: not known yet. Beyond the map it is as
+   * at its edge.
    * @param {number} x metres
    * @param {number} y
    */
   at(x, y) {
-    const [i, k] = [Math.round(x / CELL_M), Math.round(y / CELL_M)];
     const [fromX, toX, fromY, toY] = AREA;
-    if (i < fromX || i > toX || k < fromY || k > toY) return undefined;
-    return this.#cell(i, k);
+    const cell = (m, from, to) => Math.min(Math.max(Math.round(m / CELL_M), from), to);
+    return this.#cell(cell(x, fromX, toX), cell(y, fromY, toY));
   }
 
   /**

@@ -31,7 +31,7 @@ const on = ([x, y]) => [-y * 1e3, -x * 1e3];
  */
 export function topView(t, { choose, change, settle }) {
   const layers = Object.fromEntries(
-    ["grid", "boards", "reach", "robot", "gap", "things", "handle"].map((name) => [
+    ["grid", "boards", "reach", "robot", "things", "gap", "handle"].map((name) => [
       name,
       s("g", { class: `top-${name}` }),
     ]),
@@ -65,7 +65,7 @@ export function topView(t, { choose, change, settle }) {
     const { n, turns, dx, dy } = drag;
     const [x, y] = at(event);
     if (!turns) {
-      const to = [toMillimetre(x + dx), toMillimetre(y + dy)];
+      const to = inView(x + dx, y + dy).map(toMillimetre);
       change(n, (object) => object.xyz.splice(0, 2, ...to), `move ${n}`);
       return;
     }
@@ -112,6 +112,14 @@ export function topView(t, { choose, change, settle }) {
     const matrix = /** @type {SVGSVGElement} */ (svg).getScreenCTM()?.inverse();
     const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix);
     return [-point.y / 1e3, -point.x / 1e3];
+  }
+
+  /** The place in the picture that is nearest to one, metres. */
+  function inView(x, y) {
+    const { viewBox } = /** @type {SVGSVGElement} */ (svg);
+    const { x: left, y: above, width, height } = viewBox.baseVal;
+    const clamp = (m, low, high) => Math.min(Math.max(m, low / 1e3), high / 1e3);
+    return [clamp(x, -above - height, -above), clamp(y, -left - width, -left)];
   }
 
   /**

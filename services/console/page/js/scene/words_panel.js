@@ -111,6 +111,7 @@ export function wordsPanel(t, documentNow, change) {
         to((value, text) => {
           value.spoken = text.trim() || null;
         }),
+        { placeholder: own().name },
       ),
       iconButton(t("scene.value.remove", { name: title }), "close", () =>
         change((document) => removeValue(document, k, v), ""),
