@@ -114,7 +114,7 @@ fn problems_are_found_in_one_round_and_saved_on_request_only() {
     let found = lab.desk.check(&draft).unwrap();
     assert_eq!(found.problems.len(), 2, "{found:?}");
     let refused = lab.desk.save("mine", &saving(&opened, None, false)).unwrap_err();
-    assert_eq!((refused.status, &refused.problems), (StatusCode::UNPROCESSABLE_ENTITY, &found_in(&refused)));
+    assert_eq!((refused.status, refused.problems.len()), (StatusCode::UNPROCESSABLE_ENTITY, 2));
     assert!(refused.problems[1].file.ends_with("/mine.toml"), "{refused:?}");
     lab.desk.save("mine", &saving(&opened, None, true)).unwrap();
     assert!(lab.scene("mine").contains("1.9"));
@@ -122,11 +122,6 @@ fn problems_are_found_in_one_round_and_saved_on_request_only() {
     let hash = opened.hash.clone();
     let in_force = lab.desk.save("bowls", &saving(&opened, hash.as_deref(), true)).unwrap_err();
     assert_eq!(in_force.status, StatusCode::UNPROCESSABLE_ENTITY);
-}
-
-fn found_in(refused: &Refusal) -> Vec<Problem> {
-    assert_eq!(refused.problems.len(), 2);
-    refused.problems.clone()
 }
 
 #[test]
