@@ -121,7 +121,9 @@ impl Console {
 /// Why scenes are not changed from the page, if they are not.
 fn scenes_lock(settings: &Settings) -> Option<String> {
     let why = match (settings.study.enabled, settings.console.edit_scenes) {
-        (true, _) => "a study is enabled, and its scene is part of it; help: set study.enabled = false",
+        (true, _) => {
+            "a study is enabled, and its scene is part of it; help: set study.enabled = false"
+        }
         (_, false) => "scenes are not edited here; help: set console.edit_scenes = true",
         _ => return None,
     };

@@ -22,11 +22,12 @@ impl SceneEdit {
     /// # Errors
     /// Every syntax error.
     pub fn parse(label: &str, text: &str) -> Result<Self, Diagnostics> {
-        let toml = text.parse::<DocumentMut>().map_err(|error| match Scene::from_toml(label, text) {
-            // The usual reader names every error with its place.
-            Err(found) => found,
-            Ok(_) => Diagnostic::new(label, "", format!("{error}"), "correct it there").into(),
-        })?;
+        let toml =
+            text.parse::<DocumentMut>().map_err(|error| match Scene::from_toml(label, text) {
+                // The usual reader names every error with its place.
+                Err(found) => found,
+                Ok(_) => Diagnostic::new(label, "", format!("{error}"), "correct it there").into(),
+            })?;
         Ok(Self { label: label.to_owned(), toml })
     }
 

@@ -187,7 +187,8 @@ mod tests {
     #[test]
     fn names_lead_nowhere_else() {
         let (config, folder) = folder();
-        for name in ["", ".", "..", "../x", "a/b", "/etc/x", ".x", "-x", "a.b", "a b", "ä", "a\0"] {
+        for name in ["", ".", "..", "../x", "a/b", "/etc/x", ".x", "-x", "a.b", "a b", "ä", "a\0"]
+        {
             assert!(matches!(folder.file(name), Err(FileError::Name(_))), "{name}");
             assert!(folder.write(name, "x", None).is_err(), "{name}");
             assert!(folder.read(name).is_err(), "{name}");

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use axum::http::StatusCode;
 use diagnostics::{Diagnostics, TextFile};
 use scene_editing::{
-    Configuration, Document, FileError, Findings, ObjectEntry, Problem, Reach, RobotSummary, SceneEdit,
-    ScenesFolder, check, fingerprint, new_scene, schema_line,
+    Configuration, Document, FileError, Findings, ObjectEntry, Problem, Reach, RobotSummary,
+    SceneEdit, ScenesFolder, check, fingerprint, new_scene, schema_line,
 };
 use serde::{Deserialize, Serialize};
 use service::control::{CallError, Reply, Request, call};
@@ -55,7 +55,9 @@ impl From<FileError> for Refusal {
         let status = match &error {
             FileError::Name(_) => StatusCode::BAD_REQUEST,
             FileError::Missing(..) => StatusCode::NOT_FOUND,
-            FileError::Exists(_) | FileError::Changed(_) | FileError::Kind(_) => StatusCode::CONFLICT,
+            FileError::Exists(_) | FileError::Changed(_) | FileError::Kind(_) => {
+                StatusCode::CONFLICT
+            }
             FileError::Io(..) => StatusCode::INTERNAL_SERVER_ERROR,
         };
         Self::new(status, error.to_string())
@@ -227,7 +229,8 @@ impl Desk {
         let (configuration, _) = self.configuration()?;
         let reach = self.reach_in(&configuration, false)?;
         let found = reach.limbs(&places.object, &places.at, Instant::now() + REACH);
-        let what = "object: expected xyz within 5 m, size and grasp_width above 0 m and at most 2 m";
+        let what =
+            "object: expected xyz within 5 m, size and grasp_width above 0 m and at most 2 m";
         let found = found.ok_or_else(|| bad(what))?;
         let why = found.iter().find_map(|limb| limb.as_ref().err().cloned());
         Ok(Reached { limbs: found.into_iter().map(Result::ok).collect(), why })

@@ -149,6 +149,7 @@ pub struct SwapArgs {
 }
 
 pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
-    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, e.g. dialogue.planner=entropy")?;
+    let (key, value) =
+        text.split_once('=').ok_or("expected KEY=VALUE, e.g. dialogue.planner=entropy")?;
     Ok((key.trim().to_owned(), value.trim().to_owned()))
 }

@@ -92,8 +92,14 @@ fn comments_stay_when_entries_are_removed_added_and_moved() {
     let gone = changed(text, |document| {
         document.objects.remove(0);
     });
-    assert_eq!(lines_only_in(text, &gone), ["# the left one", "name = 'l' # left", "attributes = { k = 'a' }"]);
-    assert!(gone.contains("\n# about objects\n\n# the right one\n[[objects]]\nname = 'r'"), "{gone}");
+    assert_eq!(
+        lines_only_in(text, &gone),
+        ["# the left one", "name = 'l' # left", "attributes = { k = 'a' }"]
+    );
+    assert!(
+        gone.contains("\n# about objects\n\n# the right one\n[[objects]]\nname = 'r'"),
+        "{gone}"
+    );
     let swapped = changed(text, |document| document.objects.swap(0, 1));
     assert!(swapped.find("name = 'r'") < swapped.find("name = 'l' # left"), "{swapped}");
     assert_eq!(lines_only_in(text, &swapped), [""; 0]);
@@ -105,7 +111,10 @@ fn comments_stay_when_entries_are_removed_added_and_moved() {
         document.objects.insert(1, ObjectEntry { name, attributes, ..ObjectEntry::default() });
     });
     assert_eq!(lines_only_in(text, &added), [""; 0]);
-    assert_eq!(lines_only_in(&added, text), ["  \"c\",", "name = \"m\"", "attributes = { k = \"c\" }"]);
+    assert_eq!(
+        lines_only_in(&added, text),
+        ["  \"c\",", "name = \"m\"", "attributes = { k = \"c\" }"]
+    );
     let none = changed(text, |document| document.objects.clear());
     assert!(none.contains("# about objects") && none.contains("# end"), "{none}");
     assert!(!none.contains("[[objects]]"), "{none}");
@@ -169,7 +178,10 @@ fn disturb(document: &mut Document, steps: &[(u8, usize, usize)]) {
                 let values = &mut document.attributes[a % attributes].values;
                 let name = format!("v{b}");
                 let synonyms = vec!["x".to_owned(); b % 2];
-                values.insert(b % (values.len() + 1), ValueEntry { name, synonyms, ..ValueEntry::default() });
+                values.insert(
+                    b % (values.len() + 1),
+                    ValueEntry { name, synonyms, ..ValueEntry::default() },
+                );
             }
             5 if !document.attributes.is_empty() => {
                 let values = &mut document.attributes[a % attributes].values;
@@ -177,7 +189,9 @@ fn disturb(document: &mut Document, steps: &[(u8, usize, usize)]) {
                     values.remove(b % values.len());
                 }
             }
-            6 if document.attributes.len() > 1 => document.attributes.swap(a % attributes, b % attributes),
+            6 if document.attributes.len() > 1 => {
+                document.attributes.swap(a % attributes, b % attributes)
+            }
             7 if !document.attributes.is_empty() => {
                 document.attributes.remove(a % attributes);
             }

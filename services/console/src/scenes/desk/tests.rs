@@ -159,7 +159,10 @@ fn scene_is_put_into_force_by_the_supervisor() {
     let asked: Json = serde_json::from_str(&asked).unwrap();
     assert_eq!(asked, json!({ "verb": "use-scene", "scene": "markers", "wait_ms": 0 }));
     let refused = lab.desk.use_scene("tools").unwrap_err();
-    assert_eq!((refused.status, refused.details), (StatusCode::UNPROCESSABLE_ENTITY, vec!["why".into()]));
+    assert_eq!(
+        (refused.status, refused.details),
+        (StatusCode::UNPROCESSABLE_ENTITY, vec!["why".into()])
+    );
     assert_eq!(lab.desk.use_scene("..").unwrap_err().status, StatusCode::BAD_REQUEST);
 }
 
@@ -168,7 +171,10 @@ fn scenes_of_a_study_and_of_another_machine_are_left_alone() {
     let mut lab = lab(Some(json!([])), Some("a study is enabled"));
     let opened = lab.desk.open("bowls").unwrap();
     let refused = lab.desk.save("mine", &saving(&opened, None, false)).unwrap_err();
-    assert_eq!((refused.status, refused.error.as_str()), (StatusCode::FORBIDDEN, "a study is enabled"));
+    assert_eq!(
+        (refused.status, refused.error.as_str()),
+        (StatusCode::FORBIDDEN, "a study is enabled")
+    );
     assert_eq!(lab.desk.use_scene("bowls").unwrap_err().status, StatusCode::FORBIDDEN);
     let mut mirror = self::lab(None, None);
     assert!(mirror.desk.list().unwrap_err().error.contains("another machine"));
