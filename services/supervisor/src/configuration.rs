@@ -14,9 +14,9 @@ use service::wakes::Wakes;
 
 pub use config::{Log, Restart, RestartLimits};
 
-/// Loads the configuration: at the start and on reload. On failure,
-/// every problem, one line each.
-pub type Load = Box<dyn FnMut() -> Result<Configuration, Vec<String>>>;
+/// Loads the configuration: at the start and on reload; with the scene that an operator has chosen since, if
+/// any. On failure, every problem, one line each.
+pub type Load = Box<dyn FnMut(Option<&str>) -> Result<Configuration, Vec<String>>>;
 
 /// Writes the settings for the services into the group's run folder, and keeps them beside the journals.
 pub type Publish = Box<dyn Fn(&GroupPaths) -> io::Result<()>>;
@@ -31,6 +31,8 @@ pub struct Configuration {
     pub profile: Option<String>,
     /// The folder that it was read from.
     pub directory: PathBuf,
+    /// Overrides of its values.
+    pub set: Vec<(String, String)>,
     /// Shared memory that must be free for the group to start, MiB.
     pub shared_memory_free_min_mib: u64,
     /// Publishes it to the services.
@@ -79,16 +81,29 @@ pub struct ServiceSpec {
 
 /// Reads the configuration folder that `options` name.
 pub fn from_settings(options: Options) -> Load {
-    Box::new(move || {
-        let loaded = preflight::load(&options.config, options.profile.as_deref(), &options.set);
-        match loaded {
-            Ok(settings) => Ok(configuration(settings, &options)),
+    Box::new(move |scene| {
+        let set = with_scene(&options.set, scene);
+        match preflight::load(&options.config, options.profile.as_deref(), &set) {
+            Ok(settings) => Ok(configuration(settings, &options, set)),
             Err(problems) => Err(problems.iter().map(ToString::to_string).collect()),
         }
     })
 }
 
-fn configuration(settings: Settings, options: &Options) -> Configuration {
+/// The overrides with another scene.
+fn with_scene(set: &[(String, String)], scene: Option<&str>) -> Vec<(String, String)> {
+    const KEY: &str = "group.scene";
+    let Some(scene) = scene else { return set.to_vec() };
+    let others = set.iter().filter(|(key, _)| key != KEY).cloned();
+    // A quoted text, so that a scene called `7` is not a number.
+    others.chain([(KEY.to_owned(), format!("{scene:?}"))]).collect()
+}
+
+fn configuration(
+    settings: Settings,
+    options: &Options,
+    set: Vec<(String, String)>,
+) -> Configuration {
     let group = &settings.group;
     Configuration {
         spec: GroupSpec {
@@ -99,6 +114,7 @@ fn configuration(settings: Settings, options: &Options) -> Configuration {
         scene: group.scene.clone(),
         profile: options.profile.clone(),
         directory: options.config.clone(),
+        set,
         shared_memory_free_min_mib: group.shared_memory_free_min_mib.into(),
         publish: Box::new(move |paths| {
             // Those in force change last, when nothing can fail any more.
@@ -166,4 +182,20 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
         (name == Service::Console.name()).then(|| settings.group.recorder.sound.to_string());
     let texts = texts.chain(sound);
     texts.chain(durations).chain([settings.perception_text()]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chosen_scene_replaces_that_of_the_command_line() {
+        let set = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
+            pairs.iter().map(|(key, value)| ((*key).into(), (*value).into())).collect()
+        };
+        let given = set(&[("group.scene", "bowls"), ("arm.limb", "left")]);
+        assert_eq!(with_scene(&given, None), given);
+        let expected = set(&[("arm.limb", "left"), ("group.scene", "\"7\"")]);
+        assert_eq!(with_scene(&given, Some("7")), expected);
+    }
 }

@@ -63,7 +63,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Release(args) => operate::on_service(&paths()?, Request::Release, args, out),
         Verb::Console(args) => console::console(&paths()?, &args, out),
         Verb::Logs(args) => logs::logs(&paths()?, &args, out),
-        Verb::Reload(args) => operate::reload(&paths()?, args.timeout, out),
+        Verb::Reload(args) => operate::reload(&paths()?, args, out),
         Verb::Check(args) => check::check(&args, out),
         Verb::Swap(args) => operate::swap(&paths()?, args, out),
         Verb::Conform(args) => conform::conform(&args, out),

@@ -77,7 +77,7 @@ pub(super) fn start(
     fresh: bool,
 ) -> Result<Supervisor, StartError> {
     let started = Instant::now();
-    let configuration = load().map_err(StartError::Config)?;
+    let configuration = load(None).map_err(StartError::Config)?;
     let group = Group::new(&configuration.spec)?;
     // It holds the lock that the other folders wait for.
     make_root(paths.root())?;
@@ -101,6 +101,7 @@ pub(super) fn start(
         around,
         configuration,
         load,
+        scene: None,
         group,
         services,
         admin: Some(admin),

@@ -116,6 +116,9 @@ pub struct LogsArgs {
 /// Arguments of `reload`.
 #[derive(Debug, Args)]
 pub struct ReloadArgs {
+    /// Use another scene until the group ends: a name in `scenes` of the configuration, or a path from its folder.
+    #[arg(long, value_name = "NAME")]
+    pub scene: Option<String>,
     /// Timeout for the restarted services, seconds; 0 returns at once.
     #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]
     pub timeout: Duration,
@@ -162,6 +165,7 @@ pub struct ConformArgs {
 }
 
 pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
-    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, e.g. group.scene=tools")?;
+    let (key, value) =
+        text.split_once('=').ok_or("expected KEY=VALUE, e.g. dialogue.planner=entropy")?;
     Ok((key.trim().to_owned(), value.trim().to_owned()))
 }
