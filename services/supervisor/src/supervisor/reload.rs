@@ -11,6 +11,7 @@ use crate::machine::{Event, HeldBecause, Wanted};
 use crate::schedule::Schedule;
 use crate::server::Client;
 use service::control::{Refusal, RefusalKind, Reply};
+use service::logging;
 
 impl Supervisor {
     /// Reloads the configuration and restarts the affected services; or, where anything is wrong
@@ -86,6 +87,7 @@ impl Supervisor {
             entry.spec = spec;
         }
         self.around.log = configuration.spec.log.clone();
+        logging::set_json(self.around.log.json);
         self.configuration = configuration;
         changed
     }
