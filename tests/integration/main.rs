@@ -12,6 +12,7 @@ mod console_access;
 mod console_study;
 mod console_voice;
 mod dialogues;
+mod documents;
 mod export;
 mod fair_share;
 mod forged;
