@@ -11,6 +11,7 @@ mod console;
 mod console_access;
 mod console_study;
 mod console_voice;
+mod dashboard;
 mod dialogues;
 mod documents;
 mod export;

@@ -5,7 +5,7 @@
 
 use std::io::{self, Stdout};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::thread;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use messages::{MotionOrder, Receipt, ReceiptStatus};
@@ -23,7 +23,7 @@ use service::status::GroupStatus;
 
 use super::model::WatchModel;
 use super::{STATUS_EVERY, STATUS_PATIENCE};
-use crate::output::Style;
+use crate::output::{Style, note};
 use crate::verbs::interrupt::Interrupt;
 use crate::verbs::motion;
 use draw::{Notice, Picture, draw};
@@ -39,15 +39,29 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 /// Timeout of an order to the motion stop, as of `stop-motion`.
 const ORDER_PATIENCE: Duration = Duration::from_secs(5);
 
-/// Shows the dashboard until the user quits.
+/// Shows the dashboard until the user quits. An order to the motion stop that is not confirmed then is still
+/// waited for.
 pub(super) fn run(
     model: &mut WatchModel,
     interrupt: &Interrupt,
     style: Style,
 ) -> Result<(), Failure> {
+    let mut orders = Orders::new(model.paths());
+    let ended = show(model, interrupt, style, &mut orders);
+    if let Some(notice) = orders.finish() {
+        note(notice.text());
+    }
+    ended
+}
+
+fn show(
+    model: &mut WatchModel,
+    interrupt: &Interrupt,
+    style: Style,
+    orders: &mut Orders,
+) -> Result<(), Failure> {
     let mut screen = Screen::open().map_err(Failure::output)?;
     let status = status_of(model.paths());
-    let mut orders = Orders::new(model.paths());
     let (mut keyboard, mut notice) = (Keyboard::default(), None);
     let mut drawn = None::<Instant>;
     while !interrupt.is_requested() {
@@ -90,10 +104,9 @@ impl Screen {
     fn open() -> io::Result<Self> {
         let terminal = Terminal::new(CrosstermBackend::new(io::stdout()))?;
         // From here on a failure restores the terminal.
-        let mut screen = Self(terminal);
+        let screen = Self(terminal);
         enable_raw_mode()?;
         execute!(io::stdout(), EnterAlternateScreen)?;
-        screen.0.clear()?;
         Ok(screen)
     }
 }
@@ -128,17 +141,19 @@ fn status_of(paths: &GroupPaths) -> Receiver<GroupStatus> {
 struct Orders {
     paths: GroupPaths,
     results: (Sender<Notice>, Receiver<Notice>),
+    pending: Vec<JoinHandle<()>>,
 }
 
 impl Orders {
     fn new(paths: &GroupPaths) -> Self {
-        Self { paths: paths.clone(), results: channel() }
+        Self { paths: paths.clone(), results: channel(), pending: Vec::new() }
     }
 
     /// Gives an order; [`Orders::news`] has what becomes of it.
     fn give(&mut self, order: MotionOrder) -> Notice {
         let (paths, results) = (self.paths.clone(), self.results.0.clone());
-        thread::spawn(move || {
+        self.pending.retain(|order| !order.is_finished());
+        self.pending.push(thread::spawn(move || {
             let report = |text: String| drop(results.send(Notice::bad(text)));
             let ended = motion::give(&paths, order, ORDER_PATIENCE, report);
             let notice = match ended {
@@ -149,7 +164,7 @@ impl Orders {
             };
             // The dashboard may be closed.
             let _ = results.send(notice);
-        });
+        }));
         Notice::good(match order {
             MotionOrder::Stop => "stopping the arm …",
             MotionOrder::Resume => "releasing the motion stop …",
@@ -159,5 +174,14 @@ impl Orders {
     /// Returns the latest result, if there is a new one.
     fn news(&self) -> Option<Notice> {
         self.results.1.try_iter().last()
+    }
+
+    /// Waits for the orders that are not confirmed. Returns the latest result of them.
+    fn finish(&mut self) -> Option<Notice> {
+        self.pending.retain(|order| !order.is_finished());
+        let was_pending = !self.pending.is_empty();
+        // One that has panicked has no result.
+        self.pending.drain(..).for_each(|order| drop(order.join()));
+        self.news().filter(|_| was_pending)
     }
 }

@@ -44,6 +44,11 @@ impl Notice {
     pub(super) fn bad(text: impl Into<String>) -> Self {
         Self { text: text.into(), is_bad: true }
     }
+
+    /// The words.
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
 }
 
 /// All that is drawn, but for what is being typed.
