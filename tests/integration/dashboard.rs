@@ -152,7 +152,9 @@ fn watch_on_a_terminal_shows_the_dialogue_obeys_keys_and_follows_its_size() {
     assert_eq!(group.arm()["stopped"], false);
     resize(&terminal.master, 60, 20);
     terminal.wait_for("a smaller picture", |lines| {
-        has(lines, "speech ready") && lines.len() <= 20 && lines.iter().all(|l| l.chars().count() <= 60)
+        has(lines, "speech ready")
+            && lines.len() <= 20
+            && lines.iter().all(|l| l.chars().count() <= 60)
     });
     group.must(&["hold", "grounding"]);
     terminal.wait_for("the held service", |lines| has(lines, "grounding held"));

@@ -17,7 +17,8 @@ use whichone_tests::{program, run};
 const BLOCK_S: f64 = 120.0;
 
 const UP: &str = "whichone up";
-const A_DIALOGUE: &str = "whichone up; whichone say 'the bowl'; whichone await pick --answer-as white2";
+const A_DIALOGUE: &str =
+    "whichone up; whichone say 'the bowl'; whichone await pick --answer-as white2";
 
 /// The program on the reader's path. A page's own settings come later and count more.
 const UP_FOR_TESTS: &str = r#"case "$1" in
@@ -115,12 +116,10 @@ fn run_page(name: &str, before: &str) {
         let place = format!("{name}:{}", block.line);
         match mark(&place, &block) {
             Mark::Run => checkout.run(&place, &block.text),
-            Mark::Needs(programs) => {
-                match programs.iter().find(|program| !is_installed(program)) {
-                    None => checkout.run(&place, &block.text),
-                    Some(missing) => println!("{place}: not run without {missing}"),
-                }
-            }
+            Mark::Needs(programs) => match programs.iter().find(|program| !is_installed(program)) {
+                None => checkout.run(&place, &block.text),
+                Some(missing) => println!("{place}: not run without {missing}"),
+            },
             Mark::NotRun | Mark::Other => {}
         }
     }

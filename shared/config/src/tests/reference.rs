@@ -89,7 +89,8 @@ fn values(schema: &Json) -> String {
         Some("integer") => bounded("whole number", schema),
         Some("array") => {
             let (least, most) = (&schema["minItems"], &schema["maxItems"]);
-            let count = if least == most && !least.is_null() { format!(" {least}") } else { String::new() };
+            let count =
+                if least == most && !least.is_null() { format!(" {least}") } else { String::new() };
             let items = match schema["items"]["properties"].as_object() {
                 Some(keys) => {
                     let keys: Vec<String> = keys.keys().map(|key| format!("`{key}`")).collect();
@@ -104,10 +105,12 @@ fn values(schema: &Json) -> String {
 }
 
 fn bounded(kind: &str, schema: &Json) -> String {
-    let bound = |key: &str| schema.get(key).map(|bound| match bound.as_f64() {
-        Some(bound) => bound.to_string(),
-        None => bound.to_string(),
-    });
+    let bound = |key: &str| {
+        schema.get(key).map(|bound| match bound.as_f64() {
+            Some(bound) => bound.to_string(),
+            None => bound.to_string(),
+        })
+    };
     let least = bound("minimum").map(|least| format!("at least {least}"));
     let least = least.or(bound("exclusiveMinimum").map(|least| format!("above {least}")));
     let most = bound("maximum").map(|most| format!("at most {most}"));

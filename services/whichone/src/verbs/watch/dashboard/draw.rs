@@ -218,7 +218,11 @@ fn arm_lines(picture: &Picture<'_>) -> Vec<Line<'static>> {
         Some(arm) => {
             let is_held = arm.stopped != 0 || words::hindrance(arm.hindrance.get()).is_some();
             let text = arm_line(picture.scene, arm, Style::default());
-            if is_held { picture.span(Ink::Red, text) } else { Span::raw(one_line(&text).into_owned()) }
+            if is_held {
+                picture.span(Ink::Red, text)
+            } else {
+                Span::raw(one_line(&text).into_owned())
+            }
         }
     };
     let hearing = picture.latest.hearing.as_ref();
