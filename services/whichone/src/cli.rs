@@ -190,6 +190,9 @@ pub enum Verb {
     /// `speech.microphone.mode` other than `off`.
     Talk(TalkArgs),
     /// Show the belief, the dialogue, the arm and the services, live.
+    ///
+    /// Keys: q quits, s stops the arm's motion, r and Enter resume it, t types to the robot. Ctrl-S stops
+    /// motion also while you type.
     Watch(WatchArgs),
     /// Talk to the robot in this terminal; starts a group if none is running.
     Chat(ChatArgs),

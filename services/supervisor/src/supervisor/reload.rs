@@ -11,6 +11,7 @@ use crate::machine::{Event, HeldBecause, Wanted};
 use crate::schedule::Schedule;
 use crate::server::Client;
 use service::control::{Refusal, RefusalKind, Reply};
+use service::logging;
 
 impl Supervisor {
     /// Reloads the configuration, with another scene where `scene` names one, and restarts the affected
@@ -89,6 +90,7 @@ impl Supervisor {
             entry.spec = spec;
         }
         self.around.log = configuration.spec.log.clone();
+        logging::set_json(self.around.log.json);
         self.configuration = configuration;
         changed
     }
