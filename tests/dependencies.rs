@@ -57,8 +57,7 @@ const DUPLICATES: [(&str, &str); 23] = [
 ];
 
 /// Requirements that are not exact: interfaces that have been stable for years.
-const UNPINNED: [&str; 9] = [
-    "clap_complete",
+const UNPINNED: [&str; 8] = [
     "crc32c",
     "nalgebra",
     "proptest",

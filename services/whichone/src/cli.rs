@@ -1,10 +1,11 @@
 //! The command surface: every verb, its arguments and their help.
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 use clap::error::{ContextKind, ContextValue};
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
-use clap_complete::Shell;
+use clap::builder::PossibleValuesParser;
 use diagnostics::nearest;
 use service::group::{ENV_GROUP, GroupName};
 
@@ -67,8 +68,8 @@ pub struct Cli {
 }
 
 /// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
-const WITHOUT_GROUP: [&str; 9] =
-    ["check", "scene", "completions", "belief", "ground", "plan", "arm", "fk", "ik"];
+const WITHOUT_GROUP: [&str; 11] =
+    ["check", "init", "scene", "completions", "man", "belief", "ground", "plan", "arm", "fk", "ik"];
 
 impl Cli {
     /// Returns the definition of the command line, from which help and completions are made.
@@ -123,6 +124,9 @@ fn with_nearest_verb(
     error
 }
 
+/// Shells with completion.
+const SHELLS: [&str; 5] = ["bash", "elvish", "fish", "powershell", "zsh"];
+
 const EXIT_CODES: &str = "\
 Exit codes: 0 success; 1 goal not reached; 64 usage error; 70 broken invariant; 74 storage error;
 78 configuration error.";
@@ -156,6 +160,16 @@ pub enum Verb {
     Reload(ReloadArgs),
     /// Check a configuration: list every problem, or the services that would run.
     Check(CheckArgs),
+    /// Write the shipped configuration into a folder, to be edited: each key is explained there.
+    ///
+    /// A configuration is looked for in this order: `--config`, `$WHICHONE_CONFIG`, `./config`, `config` beside
+    /// the program or above it, `~/.config/whichone`, `/etc/whichone`, and last the shipped one, which is
+    /// built in.
+    Init {
+        /// The folder, which is created. Files that are there are not replaced.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
     /// Write, show, check or complete a scene file.
     Scene {
         /// Action.
@@ -217,10 +231,20 @@ pub enum Verb {
     /// List, verify or set aside the journals.
     Journal(JournalArgs),
     /// Print a completion script for a shell.
+    ///
+    /// It completes verbs and options, and asks this program for the names of groups, services, scenes,
+    /// profiles, settings and objects.
     Completions {
         /// The shell.
-        #[arg(value_enum)]
-        shell: Shell,
+        #[arg(value_parser = PossibleValuesParser::new(SHELLS))]
+        shell: String,
+    },
+    /// Write pages for `man`, one per verb.
+    #[command(hide = true)]
+    Man {
+        /// The folder of the pages, which is created.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
     },
     /// Check this machine for missing dependencies and suggest fixes.
     ///
