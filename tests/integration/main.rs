@@ -18,6 +18,7 @@ mod forged;
 mod full_log;
 mod full_memory;
 mod hearing;
+mod installed;
 mod isolation;
 mod journal_format;
 mod journal_loss;
