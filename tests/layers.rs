@@ -70,8 +70,10 @@ fn no_service_depends_on_a_service() {
 #[test]
 fn command_line_uses_no_service() {
     // The others are also names of verbs.
-    let crates = ["speech", "grounding", "policy", "baxter", "ros1", "ros2", "recorder", "supervisor"];
-    let mut folders = vec![PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../services/whichone/src"))];
+    let crates =
+        ["speech", "grounding", "policy", "baxter", "ros1", "ros2", "recorder", "supervisor"];
+    let mut folders =
+        vec![PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../services/whichone/src"))];
     let mut read = 0;
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(&folder).unwrap() {

@@ -77,7 +77,11 @@ fn one_file_in_an_empty_folder_is_a_working_group() {
         (installed.call(&["say", "the clear bowl"]).code == Some(0)).then_some(())
     });
     installed.must(&["journal", "--verify"]);
-    assert_eq!(std::fs::read_dir(installed.empty()).unwrap().count(), 0, "nothing is put elsewhere");
+    assert_eq!(
+        std::fs::read_dir(installed.empty()).unwrap().count(),
+        0,
+        "nothing is put elsewhere"
+    );
     installed.group.down();
 }
 
@@ -129,7 +133,10 @@ fn offered(installed: &Installed, line: &str) -> Vec<String> {
     let mut command = Command::new(installed.program());
     command.arg("--").args(&words).current_dir(installed.empty());
     command.env("HOME", installed.empty()).env(ENV_HOME, installed.group.paths().home());
-    command.env_remove("WHICHONE_CONFIG").env_remove("XDG_CONFIG_HOME").env_remove("WHICHONE_GROUP");
+    command
+        .env_remove("WHICHONE_CONFIG")
+        .env_remove("XDG_CONFIG_HOME")
+        .env_remove("WHICHONE_GROUP");
     command.env("WHICHONE_COMPLETE", "bash").env("_CLAP_IFS", "\n");
     command.env("_CLAP_COMPLETE_INDEX", index).env("_CLAP_COMPLETE_COMP_TYPE", "9");
     let ended = run(&mut command, "", 20.0);

@@ -3,9 +3,9 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
-use clap::builder::PossibleValuesParser;
 use diagnostics::nearest;
 use service::group::{ENV_GROUP, GroupName};
 

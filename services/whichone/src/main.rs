@@ -7,7 +7,5 @@ mod hosted;
 mod shipped_files;
 
 fn main() -> ExitCode {
-    hosted::run().unwrap_or_else(|| {
-        whichone::run(std::env::args_os(), shipped_files::FILES).code()
-    })
+    hosted::run().unwrap_or_else(|| whichone::run(std::env::args_os(), shipped_files::FILES).code())
 }

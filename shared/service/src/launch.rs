@@ -124,9 +124,7 @@ pub fn program() -> PathBuf {
 pub fn program_of(service: &str) -> PathBuf {
     let name = format!("{PREFIX}{service}");
     let beside = env::current_exe().ok().and_then(|own| Some(own.parent()?.join(&name)));
-    beside
-        .filter(|path| path.is_file() || host_of(path).is_some())
-        .unwrap_or_else(|| name.into())
+    beside.filter(|path| path.is_file() || host_of(path).is_some()).unwrap_or_else(|| name.into())
 }
 
 /// Returns the program that runs in place of `program`, if that is absent: a build of `whichone` contains the
@@ -267,7 +265,10 @@ mod tests {
         assert_eq!(host_of(&file("whichone-arm")), None, "there is none");
         std::fs::write(file("whichone"), "").unwrap();
         assert_eq!(host_of(&file("whichone-arm")), Some(file("whichone")));
-        assert!(words(&file("whichone-arm")).contains("whichone\" \""), "its name is the argument 0");
+        assert!(
+            words(&file("whichone-arm")).contains("whichone\" \""),
+            "its name is the argument 0"
+        );
         for other in ["arm", "whichone", "whichone-arm/x"] {
             assert_eq!(host_of(&file(other)), None, "{other}");
         }

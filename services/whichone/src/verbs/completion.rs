@@ -154,7 +154,9 @@ impl Line {
 
     /// Settings of the running group, unless the line names others, else of the configuration.
     fn settings(&self) -> Option<Settings> {
-        if !self.config.is_given() && let Some(running) = self.running() {
+        if !self.config.is_given()
+            && let Some(running) = self.running()
+        {
             return Some(running);
         }
         let folder = paths::config_folder(&self.config).ok()?;
