@@ -3,9 +3,9 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::builder::PossibleValuesParser;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap_complete::Shell;
 use diagnostics::nearest;
 use service::group::{ENV_GROUP, GroupName};
 
@@ -68,8 +68,20 @@ pub struct Cli {
 }
 
 /// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
-const WITHOUT_GROUP: [&str; 11] =
-    ["check", "init", "scene", "completions", "man", "belief", "ground", "plan", "arm", "fk", "ik"];
+const WITHOUT_GROUP: [&str; 12] = [
+    "check",
+    "init",
+    "scene",
+    "completions",
+    "complete",
+    "man",
+    "belief",
+    "ground",
+    "plan",
+    "arm",
+    "fk",
+    "ik",
+];
 
 impl Cli {
     /// Returns the definition of the command line, from which help and completions are made.
@@ -123,9 +135,6 @@ fn with_nearest_verb(
     }
     error
 }
-
-/// Shells with completion.
-const SHELLS: [&str; 5] = ["bash", "elvish", "fish", "powershell", "zsh"];
 
 const EXIT_CODES: &str = "\
 Exit codes: 0 success; 1 goal not reached; 64 usage error; 70 broken invariant; 74 storage error;
@@ -232,12 +241,19 @@ pub enum Verb {
     Journal(JournalArgs),
     /// Print a completion script for a shell.
     ///
-    /// It completes verbs and options, and asks this program for the names of groups, services, scenes,
-    /// profiles, settings and objects.
+    /// It completes verbs and options; in bash, zsh and fish also the names of groups, services, scenes,
+    /// profiles, settings and objects, as the running group or the configuration has them.
     Completions {
         /// The shell.
-        #[arg(value_parser = PossibleValuesParser::new(SHELLS))]
-        shell: String,
+        #[arg(value_enum)]
+        shell: Shell,
+    },
+    /// Print the names that the last word of a command line may be, for those scripts.
+    #[command(hide = true)]
+    Complete {
+        /// The line so far, the word that is being written last.
+        #[arg(last = true, required = true)]
+        line: Vec<String>,
     },
     /// Write pages for `man`, one per verb.
     #[command(hide = true)]

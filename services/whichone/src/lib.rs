@@ -28,9 +28,6 @@ pub type Outcome = Result<Exit, Failure>;
 pub fn run(arguments: impl IntoIterator<Item = OsString>, files: shipped::Files) -> Exit {
     shipped::provide(files);
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    if let Some(exit) = verbs::completion::answer(&arguments) {
-        return exit;
-    }
     let json = arguments.iter().take_while(|word| *word != "--").any(|word| word == "--json");
     let cli = match Cli::parse_line(arguments) {
         Ok(cli) => cli,

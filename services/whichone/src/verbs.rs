@@ -16,7 +16,7 @@ mod availability;
 mod await_pick;
 mod chat;
 mod check;
-pub(crate) mod completion;
+mod completion;
 mod console;
 mod conversation;
 mod doctor;
@@ -86,7 +86,8 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Replay(args) => replay::replay(paths, &args, out),
         Verb::Scene { what } => scene::scene(what, out),
         Verb::Journal(args) => inspection::journal(&paths()?, &args, out),
-        Verb::Completions { shell } => completion::completions(&shell, out),
+        Verb::Completions { shell } => completion::completions(shell, out),
+        Verb::Complete { line } => completion::complete(&line, out),
         Verb::Init { folder } => init::init(&folder, out),
         Verb::Man { folder } => init::man(&folder, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),

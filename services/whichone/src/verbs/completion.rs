@@ -1,171 +1,142 @@
-//! Completion of command lines: the scripts for shells, and the words that they ask this program for.
+//! Completion of command lines: the scripts for shells, and the names that they ask this program for.
 
-use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 
-use clap::{Arg, Command};
-use clap_complete::CompleteEnv;
-use clap_complete::engine::{ArgValueCandidates, ArgValueCompleter, CompletionCandidate};
-use clap_complete::engine::{PathCompleter, ValueCompleter};
-use clap_complete::env::Shells;
+use clap_complete::{Shell, generate};
 use config::Settings;
 use messages::SUPERVISOR;
-use scene::Scene;
 use service::exit::{Exit, Failure};
-use service::group::{GroupName, GroupPaths};
+use service::group::{ENV_GROUP, GroupName, GroupPaths};
 
 use super::paths;
 use crate::Outcome;
 use crate::cli::{Cli, ConfigArgs};
 use crate::output::Output;
 
-/// Variable by which a shell's script asks for words; its value is the name of the shell.
-const VARIABLE: &str = "WHICHONE_COMPLETE";
+/// Start of the function that completes in bash and zsh; the names are asked for first.
+const FUNCTION: &str = "_whichone() {\n";
+
+const BASH: &str = r#"    mapfile -t COMPREPLY < <(whichone complete -- "${COMP_WORDS[@]:0:COMP_CWORD+1}" 2>/dev/null)
+    if ((${#COMPREPLY[@]})); then
+        [[ ${COMPREPLY[0]} != *= ]] || compopt -o nospace
+        return 0
+    fi
+"#;
+
+const ZSH: &str = r#"    local -a names
+    names=(${(f)"$(whichone complete -- "${(@)words[1,CURRENT]}" 2>/dev/null)"})
+    if (( $#names )); then
+        compadd -S '' -a names
+        return
+    fi
+"#;
+
+const FISH: &str = "complete -c whichone -f -a '(whichone complete -- (commandline -opc) (commandline -ct) 2>/dev/null)'\n";
 
 /// Prints the script that completes command lines in a shell.
-pub(super) fn completions(shell: &str, out: &mut Output<'_>) -> Outcome {
-    let shells = Shells::builtins();
-    let unknown = || Failure::new(Exit::Usage, format!("{shell}: no script for this shell"));
-    let shell = shells.completer(shell).ok_or_else(unknown)?;
+pub(super) fn completions(shell: Shell, out: &mut Output<'_>) -> Outcome {
     let mut script = Vec::new();
-    let written =
-        shell.write_registration(VARIABLE, "whichone", "whichone", "whichone", &mut script);
-    written.map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
-    out.text(&String::from_utf8_lossy(&script))?;
+    generate(shell, &mut Cli::definition(), "whichone", &mut script);
+    let script = String::from_utf8_lossy(&script);
+    let script = match shell {
+        Shell::Bash => script.replacen(FUNCTION, &format!("{FUNCTION}{BASH}"), 1),
+        Shell::Zsh => script.replacen(FUNCTION, &format!("{FUNCTION}{ZSH}"), 1),
+        Shell::Fish => format!("{script}{FISH}"),
+        _ => script.into_owned(),
+    };
+    out.text(&script)?;
     Ok(Exit::Ok)
 }
 
-/// Answers the script of a shell, which asks for the words that may follow `arguments`; `None` if none does.
-pub(crate) fn answer(arguments: &[OsString]) -> Option<Exit> {
-    std::env::var_os(VARIABLE)?;
-    let line = Line::read(arguments);
-    let completion =
-        CompleteEnv::with_factory(move || with_words(Cli::definition(), "", line.clone()));
-    let here = std::env::current_dir().ok();
-    match completion.var(VARIABLE).try_complete(arguments.to_vec(), here.as_deref()) {
-        Ok(true) => Some(Exit::Ok),
-        Ok(false) => None,
-        Err(error) => {
-            // Nothing to do if standard error is closed.
-            let _ = error.print();
-            Some(Exit::Usage)
-        }
+/// Prints the names that the last word of a line may be, one per line; none where it is no name, and the
+/// shell's own script knows what it may be.
+pub(super) fn complete(line: &[String], out: &mut Output<'_>) -> Outcome {
+    let Some((word, before)) = line.split_last() else { return Ok(Exit::Ok) };
+    // Bash makes two words of `--group=lab`, and a third of the sign.
+    let word = if word == "=" { "" } else { word };
+    let names = Line::read(before).names();
+    for name in names.iter().filter(|name| name.starts_with(word)) {
+        out.queue_line(name)?;
     }
+    Ok(Exit::Ok)
 }
 
-/// Gives every argument of a verb and of its actions the words that it may be.
-fn with_words(command: Command, within: &str, line: Line) -> Command {
-    let name = command.get_name().to_owned();
-    let path = format!("{within} {name}");
-    let own = line.clone();
-    let of_verb = path.clone();
-    let command = command.mut_args(move |argument| words_of(argument, &of_verb, &own));
-    command.mut_subcommands(move |action| with_words(action, &path, line.clone()))
-}
-
-fn words_of(argument: Arg, verb: &str, line: &Line) -> Arg {
-    let line = line.clone();
-    match argument.get_id().as_str() {
-        "group" => argument.add(words(groups)),
-        "service" if argument.get_possible_values().is_empty() => {
-            let and_supervisor = verb.ends_with(" logs").then(|| SUPERVISOR.to_owned());
-            argument.add(words(move || {
-                line.services().into_iter().chain(and_supervisor.clone()).collect()
-            }))
-        }
-        "profile" => argument.add(words(move || line.files("profiles"))),
-        "scene" => argument.add(scenes(line)),
-        "file" if verb.ends_with(" scene check") || verb.ends_with(" scene place") => {
-            argument.add(scenes(line))
-        }
-        "set" | "what_if" => argument.add(words(move || line.keys())),
-        "answer_as" | "object" | "class" => argument.add(words(move || line.objects())),
-        _ => argument,
-    }
-}
-
-fn words(list: impl Fn() -> Vec<String> + Send + Sync + 'static) -> ArgValueCandidates {
-    ArgValueCandidates::new(move || list().into_iter().map(CompletionCandidate::new).collect())
-}
-
-/// Names of scenes, and files.
-fn scenes(line: Line) -> ArgValueCompleter {
-    ArgValueCompleter::new(move |current: &std::ffi::OsStr| {
-        let start = current.to_string_lossy();
-        let names = line.files("scenes").into_iter().filter(|name| name.starts_with(&*start));
-        let names = names.map(CompletionCandidate::new);
-        names.chain(PathCompleter::file().complete(current)).collect()
-    })
-}
-
-/// Groups that have a folder.
-fn groups() -> Vec<String> {
-    let Ok(paths) = default_group() else { return Vec::new() };
-    let entries = fs::read_dir(paths.home()).into_iter().flatten().flatten();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    sorted(names.filter(|name| GroupName::new(name).is_ok()))
-}
-
-fn default_group() -> Result<GroupPaths, Failure> {
-    Ok(GroupPaths::resolve(&GroupName::new(GroupName::DEFAULT)?)?)
-}
-
-fn sorted(names: impl Iterator<Item = String>) -> Vec<String> {
-    let mut names: Vec<String> = names.collect();
-    names.sort();
-    names.dedup();
-    names
-}
-
-/// The part of a command line on which words depend.
-#[derive(Clone, Default)]
+/// A line before the word that is completed.
 struct Line {
+    /// Words that are neither options nor their values: the verb, its action, …
+    verbs: Vec<String>,
+    /// The option whose value the word is.
+    option: Option<String>,
     group: Option<String>,
     config: ConfigArgs,
 }
 
 impl Line {
-    /// Reads the line that follows the first `--`.
-    fn read(arguments: &[OsString]) -> Self {
-        let mut line = Self::default();
-        let words = arguments.iter().map(|word| word.to_string_lossy().into_owned());
-        let words: Vec<String> = words.skip_while(|word| word != "--").skip(1).collect();
-        for (at, word) in words.iter().enumerate() {
-            let (option, value) = match word.split_once('=') {
-                Some((option, value)) => (option, Some(value.to_owned())),
-                None => (word.as_str(), words.get(at + 1).cloned()),
-            };
-            match (option, value) {
-                ("--group", group) => line.group = group,
-                ("--config", folder) => line.config.config = folder.map(Into::into),
-                ("--profile", profile) => line.config.profile = profile,
-                ("--scene", Some(scene)) if !scene.contains(['/', '.']) => {
-                    line.config.set.push(("group.scene".to_owned(), scene));
-                }
-                _ => {}
+    fn read(before: &[String]) -> Self {
+        let mut line =
+            Self { verbs: Vec::new(), option: None, group: None, config: ConfigArgs::default() };
+        line.config.config = std::env::var_os("WHICHONE_CONFIG").map(Into::into);
+        let words = before.iter().skip(1).filter(|word| *word != "=");
+        for word in words.flat_map(|word| match word.split_once('=') {
+            Some((option, value)) if word.starts_with("--") => vec![option, value],
+            _ => vec![word.as_str()],
+        }) {
+            match line.option.take() {
+                _ if word.starts_with('-') => line.option = takes_value(word),
+                Some(option) => line.note(&option, word),
+                None => line.verbs.push(word.to_owned()),
             }
-        }
-        if line.config.config.is_none() {
-            line.config.config = std::env::var_os("WHICHONE_CONFIG").map(Into::into);
         }
         line
     }
 
+    fn note(&mut self, option: &str, value: &str) {
+        match option {
+            "--group" => self.group = Some(value.to_owned()),
+            "--config" => self.config.config = Some(value.into()),
+            "--profile" => self.config.profile = Some(value.to_owned()),
+            "--scene" if !value.contains(['/', '.']) => {
+                self.config.set.push(("group.scene".to_owned(), value.to_owned()));
+            }
+            _ => {}
+        }
+    }
+
+    fn names(&self) -> Vec<String> {
+        let verbs: Vec<&str> = self.verbs.iter().map(String::as_str).collect();
+        match (self.option.as_deref(), verbs.as_slice()) {
+            (Some("--group"), _) => groups(),
+            (Some("--profile"), _) => self.files("profiles"),
+            (Some("--scene"), _) => self.files("scenes"),
+            (Some("--set" | "--what-if"), _) => self.keys(),
+            (Some("--answer-as" | "--object"), _) => self.objects(),
+            (Some("--service"), _) => self.services(),
+            (Some(_), _) => Vec::new(),
+            (None, ["start" | "stop" | "restart" | "hold" | "release" | "swap"]) => self.services(),
+            (None, ["logs"]) => {
+                self.services().into_iter().chain([SUPERVISOR.to_owned()]).collect()
+            }
+            (None, ["scene", "show" | "check" | "place"] | ["export", "pomdp"]) => {
+                self.files("scenes")
+            }
+            (None, ["objects", "add" | "move" | "remove"]) => self.objects(),
+            (None, _) => Vec::new(),
+        }
+    }
+
     /// Settings of the running group, unless the line names others, else of the configuration.
     fn settings(&self) -> Option<Settings> {
-        if !self.config.is_given()
-            && let Some(running) = self.running()
-        {
-            return Some(running);
-        }
-        let folder = paths::config_folder(&self.config).ok()?;
-        let profile = self.config.profile.as_deref();
-        Settings::examine(&folder, profile, &self.config.set, None).settings
+        let running = (!self.config.is_given()).then(|| self.running()).flatten();
+        running.or_else(|| {
+            let folder = paths::config_folder(&self.config).ok()?;
+            let profile = self.config.profile.as_deref();
+            Settings::examine(&folder, profile, &self.config.set, None).settings
+        })
     }
 
     fn running(&self) -> Option<Settings> {
-        let named = self.group.clone().or_else(|| std::env::var(service::group::ENV_GROUP).ok());
+        let named = self.group.clone().or_else(|| std::env::var(ENV_GROUP).ok());
         let name = GroupName::new(named.as_deref().unwrap_or(GroupName::DEFAULT)).ok()?;
         Settings::load_snapshot(&GroupPaths::resolve(&name).ok()?.run()).ok()
     }
@@ -191,7 +162,90 @@ impl Line {
     }
 
     fn objects(&self) -> Vec<String> {
-        let names = |scene: &Scene| scene.objects().iter().map(|it| it.name.clone()).collect();
-        self.settings().map_or_else(Vec::new, |settings| names(&settings.scene))
+        let Some(settings) = self.settings() else { return Vec::new() };
+        settings.scene.objects().iter().map(|object| object.name.clone()).collect()
+    }
+}
+
+/// Returns the option that a word is, if the next word is its value.
+fn takes_value(word: &str) -> Option<String> {
+    let definition = Cli::definition();
+    let mut commands = vec![&definition];
+    while let Some(command) = commands.pop() {
+        let named = |argument: &&clap::Arg| {
+            argument.get_long().map(|long| format!("--{long}")).as_deref() == Some(word)
+        };
+        if let Some(argument) = command.get_arguments().find(named) {
+            return argument.get_action().takes_values().then(|| word.to_owned());
+        }
+        commands.extend(command.get_subcommands());
+    }
+    None
+}
+
+/// Groups that have a folder.
+fn groups() -> Vec<String> {
+    let Ok(paths) = default_group() else { return Vec::new() };
+    let entries = fs::read_dir(paths.home()).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    sorted(names.filter(|name| GroupName::new(name).is_ok()))
+}
+
+fn default_group() -> Result<GroupPaths, Failure> {
+    Ok(GroupPaths::resolve(&GroupName::new(GroupName::DEFAULT)?)?)
+}
+
+fn sorted(names: impl Iterator<Item = String>) -> Vec<String> {
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The shipped configuration, and what a line's last word may be.
+    fn offered(line: &str) -> Vec<String> {
+        let config = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config");
+        let line = format!("whichone --config {config} {line}");
+        let words: Vec<String> = line.split(' ').map(str::to_owned).collect();
+        let mut bytes = Vec::new();
+        complete(&words, &mut Output::to(&mut bytes, false)).unwrap();
+        String::from_utf8(bytes).unwrap().lines().map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn names_are_those_of_the_configuration() {
+        for (line, names) in [
+            ("restart g", &["grounding"][..]),
+            ("restart --timeout 3 g", &["grounding"]),
+            ("logs sup", &["supervisor"]),
+            ("up --profile pap", &["paper"]),
+            ("up --profile=pap", &[]),
+            ("up --profile = pap", &["paper"]),
+            ("ground --scene ma", &["markers"]),
+            ("scene check bo", &["bowls"]),
+            ("export pomdp to", &["tools"]),
+            ("check --set group.sc", &["group.scene="]),
+            ("await pick --answer-as white", &["white", "white2"]),
+            ("arm plot --scene markers --object b", &["blue"]),
+            ("say bo", &[]),
+            ("restart grounding ", &[]),
+        ] {
+            let mut found = offered(line);
+            found.sort();
+            assert_eq!(found, names, "{line}");
+        }
+    }
+
+    #[test]
+    fn scripts_ask_for_names() {
+        for shell in [Shell::Bash, Shell::Zsh, Shell::Fish] {
+            let mut bytes = Vec::new();
+            completions(shell, &mut Output::to(&mut bytes, false)).unwrap();
+            let script = String::from_utf8(bytes).unwrap();
+            assert!(script.contains("whichone complete --"), "{shell}");
+        }
     }
 }
