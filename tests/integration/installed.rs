@@ -137,7 +137,7 @@ fn shells_are_offered_the_names_of_the_running_group() {
     std::fs::create_dir(folder).unwrap();
     let name = installed.group.paths().name().as_str();
     assert_eq!(offers(&["status", "--group", ""]), format!("{name}\n"));
-    assert_eq!(offers(&["await", "pick", "--answer-as", "whi"]), "white\nwhite2\n");
+    assert_eq!(offers(&["await", "pick", "--answer-as", "whi"]), "white\nwhite2\nwhite3\n");
     // Bash itself, with the script that a package brings.
     let script = installed.must(&["completions", "bash"]).stdout;
     let ask = "COMP_WORDS=(whichone restart gro) COMP_CWORD=2; _whichone whichone gro restart; echo ${COMPREPLY[@]}";

@@ -266,7 +266,7 @@ mod tests {
         std::fs::write(file("whichone"), "").unwrap();
         assert_eq!(host_of(&file("whichone-arm")), Some(file("whichone")));
         assert!(
-            words(&file("whichone-arm")).contains("whichone\" \""),
+            words(&file("whichone-arm")).contains("whichone\"] \""),
             "its name is the argument 0"
         );
         for other in ["arm", "whichone", "whichone-arm/x"] {

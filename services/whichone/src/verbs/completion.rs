@@ -54,7 +54,7 @@ pub(super) fn completions(shell: Shell, out: &mut Output<'_>) -> Outcome {
 pub(super) fn complete(line: &[String], out: &mut Output<'_>) -> Outcome {
     let Some((word, before)) = line.split_last() else { return Ok(Exit::Ok) };
     // Bash makes two words of `--group=lab`, and a third of the sign.
-    let word = if word == "=" { "" } else { word };
+    let word = if word == "=" { "" } else { word.as_str() };
     let names = Line::read(before).names();
     for name in names.iter().filter(|name| name.starts_with(word)) {
         out.queue_line(name)?;
@@ -228,7 +228,7 @@ mod tests {
             ("scene check bo", &["bowls"]),
             ("export pomdp to", &["tools"]),
             ("check --set group.sc", &["group.scene="]),
-            ("await pick --answer-as white", &["white", "white2"]),
+            ("await pick --answer-as white", &["white", "white2", "white3"]),
             ("arm plot --scene markers --object b", &["blue"]),
             ("say bo", &[]),
             ("restart grounding ", &[]),
