@@ -22,6 +22,7 @@ mod full_log;
 mod full_memory;
 mod gateway;
 mod hearing;
+mod installed;
 mod isolation;
 mod journal_format;
 mod journal_loss;

@@ -1,6 +1,7 @@
 //! The command surface: every verb, its arguments and their help.
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 use clap::error::{ContextKind, ContextValue};
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -68,8 +69,21 @@ pub struct Cli {
 }
 
 /// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
-const WITHOUT_GROUP: [&str; 10] =
-    ["check", "conform", "scene", "completions", "belief", "ground", "plan", "arm", "fk", "ik"];
+const WITHOUT_GROUP: [&str; 13] = [
+    "check",
+    "conform",
+    "init",
+    "scene",
+    "completions",
+    "complete",
+    "man",
+    "belief",
+    "ground",
+    "plan",
+    "arm",
+    "fk",
+    "ik",
+];
 
 impl Cli {
     /// Returns the definition of the command line, from which help and completions are made.
@@ -157,6 +171,16 @@ pub enum Verb {
     Reload(ReloadArgs),
     /// Check a configuration: list every problem, or the services that would run.
     Check(CheckArgs),
+    /// Write the shipped configuration into a folder, to be edited: each key is explained there.
+    ///
+    /// A configuration is looked for in this order: `--config`, `$WHICHONE_CONFIG`, `./config`, `config` beside
+    /// the program or above it, `~/.config/whichone`, `/etc/whichone`, and last the shipped one, which is
+    /// built in.
+    Init {
+        /// The folder, which is created. Files that are there are not replaced.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
     /// Write, show, check or complete a scene file.
     Scene {
         /// Action.
@@ -232,10 +256,27 @@ pub enum Verb {
     /// List, verify or set aside the journals.
     Journal(JournalArgs),
     /// Print a completion script for a shell.
+    ///
+    /// It completes verbs and options; in bash, zsh and fish also the names of groups, services, scenes,
+    /// profiles, settings and objects, as the running group or the configuration has them.
     Completions {
         /// The shell.
         #[arg(value_enum)]
         shell: Shell,
+    },
+    /// Print the names that the last word of a command line may be, for those scripts.
+    #[command(hide = true)]
+    Complete {
+        /// The line so far, the word that is being written last.
+        #[arg(last = true, required = true)]
+        line: Vec<String>,
+    },
+    /// Write pages for `man`, one per verb.
+    #[command(hide = true)]
+    Man {
+        /// The folder of the pages, which is created.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
     },
     /// Check this machine for missing dependencies and suggest fixes.
     ///

@@ -1,6 +1,5 @@
 //! The verbs, a file each or a family a file.
 
-use clap_complete::{Shell, generate};
 use messages::MotionOrder;
 use service::control::Request;
 use service::group::GroupPaths;
@@ -10,7 +9,7 @@ use crate::batch;
 use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;
 use crate::output::Output;
-use service::exit::{Exit, Failure};
+use service::exit::Failure;
 
 mod arm;
 mod availability;
@@ -18,11 +17,13 @@ mod await_pick;
 mod chat;
 mod check;
 mod conform;
+mod completion;
 mod console;
 mod conversation;
 mod doctor;
 mod export;
 mod hearing;
+mod init;
 mod inspection;
 mod interrupt;
 mod leftovers;
@@ -88,7 +89,10 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Replay(args) => replay::replay(paths, &args, out),
         Verb::Scene { what } => scene::scene(what, out),
         Verb::Journal(args) => inspection::journal(&paths()?, &args, out),
-        Verb::Completions { shell } => completions(shell, out),
+        Verb::Completions { shell } => completion::completions(shell, out),
+        Verb::Complete { line } => completion::complete(&line, out),
+        Verb::Init { folder } => init::init(&folder, out),
+        Verb::Man { folder } => init::man(&folder, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
         Verb::Belief(args) => batch::belief(batch::open(&args)?, out),
         Verb::Ground(args) => {
@@ -110,14 +114,6 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
             batch::ik(&chain, batch::open(&args.input)?, out)
         }
     }
-}
-
-/// Prints the script that completes command lines in a shell.
-fn completions(shell: Shell, out: &mut Output<'_>) -> Outcome {
-    let mut script = Vec::new();
-    generate(shell, &mut Cli::definition(), "whichone", &mut script);
-    out.text(&String::from_utf8_lossy(&script))?;
-    Ok(Exit::Ok)
 }
 
 fn described_arm(args: &ArmArgs) -> Result<DescribedArm, Failure> {

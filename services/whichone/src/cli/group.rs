@@ -10,7 +10,8 @@ use super::talk::seconds;
 /// Selection of the configuration.
 #[derive(Clone, Debug, Default, Args)]
 pub struct ConfigArgs {
-    /// Folder of the configuration [default: ./config, else `config` beside the program].
+    /// Folder of the configuration [default: ./config, `config` beside the program, ~/.config/whichone,
+    /// /etc/whichone, else the built-in one].
     #[arg(long, value_name = "DIR", env = "WHICHONE_CONFIG", hide_env_values = true)]
     pub config: Option<PathBuf>,
     /// A profile from the folder `profiles` of the configuration.

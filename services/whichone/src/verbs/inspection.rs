@@ -176,7 +176,7 @@ impl Drop for Settings {
 
 /// The command line of a service's program with an inspection verb.
 pub(super) fn command(service: &str, verb: &str) -> Command {
-    let mut command = Command::new(launch::program_of(service));
+    let mut command = launch::command(launch::program_of(service));
     command.arg(verb);
     command
 }

@@ -37,7 +37,7 @@ fn check_scene(args: &SceneCheckArgs, out: &mut Output<'_>) -> Outcome {
 
 fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
     let path = if planning::is_word(&args.file) {
-        let scenes = paths::config_folder(&args.config)?.join("scenes");
+        let scenes = paths::own_config_folder(&args.config)?.join("scenes");
         scenes.join(&args.file).with_extension("toml")
     } else {
         args.file.clone()
