@@ -45,17 +45,17 @@ const CLOSE: Duration = Duration::from_secs(2);
 
 /// What is served, and where.
 #[derive(Clone, Debug)]
-pub struct Options {
+struct Options {
     /// The gateway's folder: people, sessions, audit.
-    pub folder: PathBuf,
+    folder: PathBuf,
     /// Groups of this machine.
-    pub groups: Vec<GroupName>,
+    groups: Vec<GroupName>,
     /// Keys of a person, for robots elsewhere.
-    pub keys: Option<PathBuf>,
+    keys: Option<PathBuf>,
     /// Where it listens.
-    pub listen: SocketAddr,
+    listen: SocketAddr,
     /// The address under which people reach it.
-    pub address: Option<Address>,
+    address: Option<Address>,
 }
 
 /// Everything that requests share.

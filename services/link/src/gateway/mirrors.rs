@@ -34,7 +34,7 @@ const END_PATIENCE: Duration = Duration::from_secs(8);
 
 /// All of them.
 #[derive(Debug)]
-pub struct Mirrors {
+pub(super) struct Mirrors {
     keys: PathBuf,
     home: PathBuf,
     running: Arc<Mutex<BTreeMap<Name, Mirror>>>,
@@ -51,7 +51,7 @@ struct Mirror {
 
 /// An open page of a robot.
 #[derive(Debug)]
-pub struct Used {
+pub(super) struct Used {
     robot: Name,
     running: Arc<Mutex<BTreeMap<Name, Mirror>>>,
 }
@@ -61,7 +61,7 @@ impl Mirrors {
     ///
     /// # Errors
     /// The folder cannot be made, or its path is too long.
-    pub fn new(keys: &Path, home: PathBuf) -> Result<Self, Failure> {
+    pub(super) fn new(keys: &Path, home: PathBuf) -> Result<Self, Failure> {
         let home = home_of_mirrors(home)?;
         make_private(&home).map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
         let keys = std::path::absolute(keys).unwrap_or_else(|_| keys.to_owned());
@@ -69,7 +69,7 @@ impl Mirrors {
     }
 
     /// Returns whether there is one of this robot.
-    pub fn runs(&self, robot: &Name) -> bool {
+    pub(super) fn runs(&self, robot: &Name) -> bool {
         lock(&self.running).contains_key(robot)
     }
 
@@ -77,7 +77,7 @@ impl Mirrors {
     ///
     /// # Errors
     /// It is not ready yet, or cannot be started.
-    pub async fn reach(&self, robot: &Name) -> Result<Console, Unreached> {
+    pub(super) async fn reach(&self, robot: &Name) -> Result<Console, Unreached> {
         let failed = |error: Failure| Unreached::Failed(error.to_string());
         let paths = self.paths(robot).map_err(failed)?;
         self.keep(robot, &paths).map_err(failed)?;
@@ -90,7 +90,7 @@ impl Mirrors {
     }
 
     /// Notes that a page is open until the result is dropped.
-    pub fn used(&self, robot: &Name) -> Used {
+    pub(super) fn used(&self, robot: &Name) -> Used {
         if let Some(mirror) = lock(&self.running).get_mut(robot) {
             mirror.pages += 1;
         }
@@ -140,7 +140,7 @@ impl Mirrors {
     }
 
     /// Ends those that nobody has used for a while.
-    pub async fn end_idle(&self) {
+    pub(super) async fn end_idle(&self) {
         let is_idle = |mirror: &Mirror| mirror.pages == 0 && mirror.used.elapsed() > IDLE_MAX;
         let mut idle = Vec::new();
         lock(&self.running).retain(|robot, mirror| {
@@ -163,7 +163,7 @@ impl Mirrors {
     }
 
     /// Ends all, and waits for them.
-    pub fn end(&self) {
+    pub(super) fn end(&self) {
         let all = std::mem::take(&mut *lock(&self.running));
         for (robot, mirror) in &all {
             if let Ok(paths) = self.paths(robot) {

@@ -43,7 +43,7 @@ const VIEWERS: [&str; 13] = [
 ];
 
 /// Returns why a path of a console, from its `/` on, is not for someone with this right; `None` if it is.
-pub fn denied(path: &str, right: Right) -> Option<&'static str> {
+pub(super) fn denied(path: &str, right: Right) -> Option<&'static str> {
     let first = path.trim_start_matches('/').split('/').next().unwrap_or_default();
     match first {
         "foxglove" => Some("the live view is served by the robot's own console only"),
@@ -57,7 +57,7 @@ pub fn denied(path: &str, right: Right) -> Option<&'static str> {
 ///
 /// # Errors
 /// The status and the reason for which there is no answer.
-pub async fn pass(
+pub(super) async fn pass(
     console: &Console,
     path_and_query: &str,
     headers: &HeaderMap,
@@ -84,7 +84,7 @@ pub async fn pass(
 }
 
 /// Reads something small from a console; `None` where that fails.
-pub async fn get(console: &Console, path: &str) -> Option<Vec<u8>> {
+pub(super) async fn get(console: &Console, path: &str) -> Option<Vec<u8>> {
     let read = async {
         let request = Request::get(path).header(header::HOST, &console.place);
         let response = ask(console, request).await.ok()?;

@@ -22,16 +22,16 @@ const MIRRORS: &str = "mirrors";
 
 /// A robot's console.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Console {
+pub(super) struct Console {
     /// Host and port.
-    pub place: String,
+    pub(super) place: String,
     /// The token that lets one in.
-    pub token: String,
+    pub(super) token: String,
 }
 
 /// Why a robot's console cannot be reached.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Unreached {
+pub(super) enum Unreached {
     /// The gateway does not know the robot.
     #[error("robot {0} is not connected")]
     Unknown(Name),
@@ -45,20 +45,20 @@ pub enum Unreached {
 
 /// A robot in the list.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Listed {
+pub(super) struct Listed {
     /// Its name.
-    pub robot: Name,
+    pub(super) robot: Name,
     /// What the person may do with it.
-    pub right: Right,
+    pub(super) right: Right,
     /// Whether it is there: `false` for one that the rights name and that is not connected.
-    pub connected: bool,
+    pub(super) connected: bool,
     /// What it says of itself; `None` while it is silent.
-    pub presence: Option<Presence>,
+    pub(super) presence: Option<Presence>,
 }
 
 /// All of them.
 #[derive(Debug)]
-pub struct Robots {
+pub(super) struct Robots {
     groups: BTreeMap<Name, GroupPaths>,
     remote: Option<(Feed, Mirrors)>,
 }
@@ -68,7 +68,11 @@ impl Robots {
     ///
     /// # Errors
     /// A group has no place, or the link's program cannot be started.
-    pub fn new(groups: &[GroupName], keys: Option<&Path>, folder: &Path) -> Result<Self, Failure> {
+    pub(super) fn new(
+        groups: &[GroupName],
+        keys: Option<&Path>,
+        folder: &Path,
+    ) -> Result<Self, Failure> {
         let place = |group: &GroupName| {
             let name = Name::new(group.as_str())
                 .map_err(|error| Failure::new(Exit::Usage, error.to_string()))?;
@@ -86,7 +90,7 @@ impl Robots {
     ///
     /// # Errors
     /// It cannot be reached yet, or at all.
-    pub async fn reach(&self, robot: &Name) -> Result<Console, Unreached> {
+    pub(super) async fn reach(&self, robot: &Name) -> Result<Console, Unreached> {
         if let Some(paths) = self.groups.get(robot) {
             return console(paths).ok_or_else(|| {
                 Unreached::Failed(format!(
@@ -104,26 +108,26 @@ impl Robots {
     }
 
     /// Notes that a page of the robot is open until the result is dropped.
-    pub fn used(&self, robot: &Name) -> Option<Used> {
+    pub(super) fn used(&self, robot: &Name) -> Option<Used> {
         self.remote.as_ref().map(|(_, mirrors)| mirrors.used(robot))
     }
 
     /// Ends mirrors that nobody has used for a while.
-    pub async fn tidy(&self) {
+    pub(super) async fn tidy(&self) {
         if let Some((_, mirrors)) = &self.remote {
             mirrors.end_idle().await;
         }
     }
 
     /// Ends every mirror.
-    pub fn end(&self) {
+    pub(super) fn end(&self) {
         if let Some((_, mirrors)) = &self.remote {
             mirrors.end();
         }
     }
 
     /// Lists the robots that a person may see.
-    pub async fn list(&self, people: &People, person: &Name) -> Vec<Listed> {
+    pub(super) async fn list(&self, people: &People, person: &Name) -> Vec<Listed> {
         let remote = self.remote.as_ref().map(|(feed, _)| feed.all()).unwrap_or_default();
         let named = people.iter().filter(|(name, _)| *name == person).flat_map(|(_, person)| {
             let robots = person.operator.iter().chain(&person.viewer);

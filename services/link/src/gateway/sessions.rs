@@ -12,11 +12,11 @@ use super::people::{People, hash};
 use crate::names::Name;
 
 /// The file in the gateway's folder.
-pub const FILE: &str = "sessions.json";
+pub(super) const FILE: &str = "sessions.json";
 /// Most sessions; the oldest gives way.
 const SESSIONS_MAX: usize = 512;
 /// Life of a session, seconds.
-pub const SESSION_S: u64 = 7 * 24 * 3_600;
+pub(super) const SESSION_S: u64 = 7 * 24 * 3_600;
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Session {
@@ -30,21 +30,21 @@ struct Session {
 
 /// All of them, oldest first.
 #[derive(Debug)]
-pub struct Sessions {
+pub(super) struct Sessions {
     file: PathBuf,
     open: Mutex<Vec<Session>>,
 }
 
 impl Sessions {
     /// Reads the file; one that cannot be read has none.
-    pub fn open(file: PathBuf) -> Self {
+    pub(super) fn open(file: PathBuf) -> Self {
         let text = read_private(&file).unwrap_or_default();
         let open = serde_json::from_str(&text).unwrap_or_default();
         Self { file, open: Mutex::new(open) }
     }
 
     /// Begins a session of the person with this secret; returns the person and the cookie's value.
-    pub fn begin(&self, people: &People, secret: &str) -> Option<(Name, String)> {
+    pub(super) fn begin(&self, people: &People, secret: &str) -> Option<(Name, String)> {
         let person = people.with_secret(secret)?.clone();
         let value = random_secret().ok()?;
         let session = Session {
@@ -63,7 +63,7 @@ impl Sessions {
     }
 
     /// Returns the person of a session.
-    pub fn person(&self, people: &People, value: &str) -> Option<Name> {
+    pub(super) fn person(&self, people: &People, value: &str) -> Option<Name> {
         let (cookie, now_s) = (hash(value), now_s());
         let open = self.lock();
         let mut known = open.iter().filter(|known| known.is_alive(people, now_s));
@@ -71,7 +71,7 @@ impl Sessions {
     }
 
     /// Ends a session.
-    pub fn end(&self, value: &str) {
+    pub(super) fn end(&self, value: &str) {
         let cookie = hash(value);
         let mut open = self.lock();
         open.retain(|known| known.cookie != cookie);

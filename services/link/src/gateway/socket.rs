@@ -25,7 +25,7 @@ use super::rules::{Answered, Order, Verdict, answered, judge, refused};
 use crate::names::Name;
 
 /// Largest frame of a page, bytes: the console's own limit.
-pub const FRAME_BYTES_MAX: usize = 64 << 10;
+pub(super) const FRAME_BYTES_MAX: usize = 64 << 10;
 /// Frames that wait in one direction. A console sends the newest of everything to a page that is slow.
 const QUEUE: usize = 8;
 /// Orders that wait for the audit.
@@ -42,7 +42,7 @@ const RIGHTS_EVERY: Duration = Duration::from_secs(1);
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// A socket to a console.
-pub type ConsoleSocket = WebSocketStream<TcpStream>;
+pub(super) type ConsoleSocket = WebSocketStream<TcpStream>;
 /// Close code and reason.
 type End = (u16, String);
 
@@ -50,7 +50,10 @@ type End = (u16, String);
 ///
 /// # Errors
 /// The console does not answer, or refuses.
-pub async fn open(console: &robots::Console, headers: &HeaderMap) -> Result<ConsoleSocket, String> {
+pub(super) async fn open(
+    console: &robots::Console,
+    headers: &HeaderMap,
+) -> Result<ConsoleSocket, String> {
     let text = |error: &dyn std::fmt::Display| format!("the robot's console: {error}");
     let request = format!("ws://{}/ws", console.place).into_client_request();
     let mut request = request.map_err(|error| text(&error))?;
@@ -75,7 +78,7 @@ pub async fn open(console: &robots::Console, headers: &HeaderMap) -> Result<Cons
 
 /// Whose page it is, and of which robot.
 #[derive(Debug)]
-pub struct Visit<'a> {
+pub(super) struct Visit<'a> {
     gateway: &'a Gateway,
     person: Name,
     robot: Name,
@@ -90,7 +93,7 @@ pub struct Visit<'a> {
 
 impl<'a> Visit<'a> {
     /// A page of `person`.
-    pub fn new(gateway: &'a Gateway, person: Name, robot: Name, right: Right) -> Self {
+    pub(super) fn new(gateway: &'a Gateway, person: Name, robot: Name, right: Right) -> Self {
         let number = gateway.visits.fetch_add(1, Ordering::Relaxed) + 1;
         Self {
             gateway,
@@ -105,7 +108,7 @@ impl<'a> Visit<'a> {
     }
 
     /// Serves the page until one side ends, or the person's rights change.
-    pub async fn serve(self, page: WebSocket, console: ConsoleSocket) {
+    pub(super) async fn serve(self, page: WebSocket, console: ConsoleSocket) {
         self.note("open", Outcome::Done, None, Some(self.right.word().to_owned()));
         let (mut page_out, mut page_in) = page.split();
         let (mut console_out, mut console_in) = console.split();

@@ -40,7 +40,7 @@ const LOGIN: &str = include_str!("../../page/login.html");
 type Shared = State<Arc<Gateway>>;
 
 /// Makes the routes.
-pub fn router(gateway: Arc<Gateway>) -> Router {
+pub(super) fn router(gateway: Arc<Gateway>) -> Router {
     Router::new()
         .route("/", get(list))
         .route("/_/robots", get(robots))
