@@ -71,7 +71,7 @@ const FAULTS: [(&str, &str, &str); 23] = [
 
 #[test]
 fn each_fault_of_a_grounder_is_found_by_its_rule() {
-    let broken = program("broken_grounder").display().to_string();
+    let broken = program("examples/broken_grounder").display().to_string();
     let test = |(fault, rule, what): (&str, &str, &str)| {
         let options = [
             ["--rule", rule],

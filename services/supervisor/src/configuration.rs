@@ -172,7 +172,9 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
         // Each recording holds the settings in force, and each mirror begins with them.
         Some(Service::Recorder | Service::Link) => (&Section::ALL, true),
         Some(Service::Ros2) => (&[Section::Ros2, Section::Arm], false),
-        Some(Service::Robot) | None => (&[Section::Speech, Section::Dialogue, Section::Arm], true),
+        Some(Service::Robot | Service::Other(_)) | None => {
+            (&[Section::Speech, Section::Dialogue, Section::Arm], true)
+        }
     };
     let texts = sections.iter().map(|&section| settings.section_text(section));
     let durations = decides.then(|| settings.durations_text());

@@ -1,8 +1,7 @@
 use messages::{
-    ActKind, Activity, ArmStatus, Hearing, PolicyView, PresentationState, Presented, Receipt,
-    ReceiptStatus, topics,
+    Activity, ArmStatus, Hearing, PolicyView, Presented, Receipt, ReceiptStatus, topics,
 };
-use scene::{Question, Scene};
+use scene::Scene;
 
 use super::TableScene;
 use crate::Time;

@@ -44,7 +44,7 @@ struct Watched {
 }
 
 /// A message of the service under test, or of another writer of the topic.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Written {
     pub(super) topic: Topic,
     pub(super) epoch: Epoch,

@@ -6,16 +6,14 @@ use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use messages::{
-    Code, Epoch, Incarnation, Intent, MotionCommand, Observation, Service, Utterance, topics,
-};
-use scene::{Reading, Scene, WordId};
-use service::bus::{Bus, Identity, Reader, WakeListener, Writer};
-use service::clock;
-use service::exit::{Exit, Failure};
-use service::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
-use service::notify::Notifier;
-use service::{Span, Time};
+use messages::{Code, Epoch, Incarnation, MotionCommand, Observation, Service, Utterance, topics};
+use runtime::bus::{Bus, Identity, Reader, WakeListener, Writer};
+use runtime::clock;
+use runtime::exit::{Exit, Failure};
+use runtime::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
+use runtime::notify::Notifier;
+use runtime::{Span, Time};
+use scene::{Intent, Reading, Scene, WordId};
 use whichone_sdk::grounding::{Grounded, Grounder, Heard, certain, observation};
 use whichone_sdk::{Hypothesis, Interpretation, Question, settings};
 
