@@ -19,7 +19,7 @@ fn dialogues() -> usize {
 const REQUESTS: [(&str, &[&str]); 4] = [
     ("get me the bowl", &["white", "white2", "white3", "metal", "metal2", "clear"]),
     ("the white bowl please", &["white", "white2", "white3"]),
-    ("I need the big metal bowl", &["metal2", "metal"]),
+    ("I need the big metal bowl", &["metal2"]),
     ("bring me the clear one", &["clear"]),
 ];
 

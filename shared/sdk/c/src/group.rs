@@ -42,7 +42,8 @@ struct Words {
 impl Words {
     fn read(paths: &GroupPaths) -> Self {
         let path = paths.run().join(WORDS_FILE);
-        let read = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()));
+        let read =
+            fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()));
         let Some(text) = or_complain(read) else { return Self::default() };
         let mut lines = text.lines();
         let key = lines.next().and_then(|line| u64::from_str_radix(line, 16).ok());
@@ -93,7 +94,8 @@ impl Group {
 
     fn say(&self, text: &str, patience: Span) -> Result<u64, String> {
         let Role::Client(client) = &self.role else {
-            return Err("a service does not speak to the robot; help: join the group as a client".to_owned());
+            return Err("a service does not speak to the robot; help: join the group as a client"
+                .to_owned());
         };
         let (writer, receipts) = client.submissions().map_err(|error| error.to_string())?;
         let sound = Sound::Text(text.to_owned());
@@ -158,7 +160,11 @@ pub extern "C" fn whichone_now_ns() -> u64 {
 /// # Safety
 /// `group` is null or joined; `words` is null, or ends with a zero.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn whichone_say(group: *const Group, words: *const c_char, seconds: f64) -> u64 {
+pub unsafe extern "C" fn whichone_say(
+    group: *const Group,
+    words: *const c_char,
+    seconds: f64,
+) -> u64 {
     // SAFETY: as the caller promises.
     let (Some(group), Some(words)) = (unsafe { (group.as_ref(), text(words)) }) else { return 0 };
     let patience = Span::from_s(seconds.clamp(0.0, 3600.0));

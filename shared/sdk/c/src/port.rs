@@ -81,7 +81,8 @@ impl<T: WireMessage> WriteBytes for Writer<T> {
 impl<T: Schema + DeserializeOwned + std::fmt::Debug> ReadBytes for EncodedReader<T> {
     fn take(&self, out: &mut [u8]) -> Result<Option<usize>, String> {
         // Bytes that are no message are rejected before C sees them.
-        let copied = self.take_with(|bytes| postcard::from_bytes::<T>(bytes).map(|_| copy(bytes, out)));
+        let copied =
+            self.take_with(|bytes| postcard::from_bytes::<T>(bytes).map(|_| copy(bytes, out)));
         copied.map_err(|error| error.to_string())?.transpose()
     }
 }
@@ -137,7 +138,10 @@ fn writer(bus: &Bus, topic: &'static Topic) -> Result<CWriter, String> {
 /// # Safety
 /// `group` is null or was returned by a function that joins one; `topic` is null or one of the header's.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn whichone_open_reader(group: *const Group, topic: *const CTopic) -> *mut CReader {
+pub unsafe extern "C" fn whichone_open_reader(
+    group: *const Group,
+    topic: *const CTopic,
+) -> *mut CReader {
     // SAFETY: as the caller promises.
     let (group, topic) = unsafe { (group.as_ref(), find(topic)) };
     let opened = group.and_then(|group| or_complain(topic.and_then(|it| reader(group.bus(), it))));
@@ -149,7 +153,10 @@ pub unsafe extern "C" fn whichone_open_reader(group: *const Group, topic: *const
 /// # Safety
 /// As [`whichone_open_reader`].
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn whichone_open_writer(group: *const Group, topic: *const CTopic) -> *mut CWriter {
+pub unsafe extern "C" fn whichone_open_writer(
+    group: *const Group,
+    topic: *const CTopic,
+) -> *mut CWriter {
     // SAFETY: as the caller promises.
     let (group, topic) = unsafe { (group.as_ref(), find(topic)) };
     let opened = group.and_then(|group| or_complain(topic.and_then(|it| writer(group.bus(), it))));
@@ -185,7 +192,11 @@ pub unsafe extern "C" fn whichone_close_writer(writer: *mut CWriter) {
 /// # Safety
 /// `reader` is null or open, and `message` has room for `size` bytes.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn whichone_take(reader: *const CReader, message: *mut u8, size: usize) -> isize {
+pub unsafe extern "C" fn whichone_take(
+    reader: *const CReader,
+    message: *mut u8,
+    size: usize,
+) -> isize {
     // SAFETY: as the caller promises.
     let Some(CReader(port, name)) = (unsafe { reader.as_ref() }) else { return -1 };
     if message.is_null() {
@@ -207,7 +218,11 @@ pub unsafe extern "C" fn whichone_take(reader: *const CReader, message: *mut u8,
 /// # Safety
 /// `writer` is null or open, and `message` has `size` bytes.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn whichone_send(writer: *const CWriter, message: *const u8, size: usize) -> bool {
+pub unsafe extern "C" fn whichone_send(
+    writer: *const CWriter,
+    message: *const u8,
+    size: usize,
+) -> bool {
     // SAFETY: as the caller promises.
     let Some(CWriter(port, name)) = (unsafe { writer.as_ref() }) else { return false };
     if message.is_null() {
@@ -215,5 +230,6 @@ pub unsafe extern "C" fn whichone_send(writer: *const CWriter, message: *const u
     }
     // SAFETY: as the caller promises.
     let bytes = unsafe { std::slice::from_raw_parts(message, size) };
-    or_complain(port.send(bytes).map_err(|error| format!("topic {name}: not sent: {error}"))).is_some()
+    or_complain(port.send(bytes).map_err(|error| format!("topic {name}: not sent: {error}")))
+        .is_some()
 }

@@ -56,7 +56,8 @@ impl Cycle for Loop<'_> {
 fn run(group: &mut Group, step: Step, context: *mut c_void) -> Result<(), Failure> {
     let usage = |what: String| Failure::new(Exit::Usage, what);
     let (name, lifecycle) = group.take_lifecycle().map_err(usage)?;
-    let service = Service::from_name(&name).ok_or_else(|| usage(format!("no topic wakes a service {name}")))?;
+    let service = Service::from_name(&name)
+        .ok_or_else(|| usage(format!("no topic wakes a service {name}")))?;
     let bus = group.bus();
     let listener = bus.wake_listener(service)?;
     let mut cycle = Loop { bus, listener, step, context, is_ending: false };
@@ -68,7 +69,11 @@ fn run(group: &mut Group, step: Step, context: *mut c_void) -> Result<(), Failur
 /// # Safety
 /// `group` is null or joined, and `step` may be called with `context`.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn whichone_run(group: *mut Group, step: Option<Step>, context: *mut c_void) -> c_int {
+pub unsafe extern "C" fn whichone_run(
+    group: *mut Group,
+    step: Option<Step>,
+    context: *mut c_void,
+) -> c_int {
     // SAFETY: as the caller promises; readers and writers do not refer to the group.
     let (Some(group), Some(step)) = (unsafe { group.as_mut() }, step) else { return 64 };
     match run(group, step, context) {
