@@ -116,6 +116,10 @@ pub struct Reach {
 const DISTANCE_MAX_M: f64 = 5.0;
 const EXTENT_MAX_M: f64 = 2.0;
 
+/// A scene without mistakes.
+const ANY_SCENE: &str = "name = 'any'\nnoun = 'thing'\n[[attributes]]\nname = 'kind'\nvalues = ['any']\n\
+                         [[objects]]\nname = 'any'\nattributes = { kind = 'any' }\n";
+
 impl Reach {
     /// Reads the arm's settings and the robot's description.
     ///
@@ -123,7 +127,7 @@ impl Reach {
     /// Every problem of the configuration.
     pub fn new(configuration: &Configuration) -> Result<Self, Diagnostics> {
         // The scene has no part in it: any one will do.
-        let scene = TextFile::new("scene", crate::new_scene("scene", ""));
+        let scene = TextFile::new("scene", ANY_SCENE);
         let Configuration { folder, profile, set } = configuration;
         let examined = Settings::examine(folder, profile.as_deref(), set, Some(scene));
         let settings = examined.report.verdict(examined.settings)?;
