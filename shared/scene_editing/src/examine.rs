@@ -255,7 +255,7 @@ mod tests {
         let found = reach.limbs(&object, &places, late).unwrap();
         assert_eq!(found[0].as_deref(), Ok("left"));
         assert_eq!(found[1].as_deref(), Ok("right"));
-        assert!(found[2].as_ref().unwrap_err().contains("missing"), "{found:?}");
+        assert!(found[2].as_ref().unwrap_err().contains("reach"), "{found:?}");
         let first = reach.limbs(&object, &places, Instant::now()).unwrap();
         assert_eq!(first.len(), 1);
         object.form = None;
