@@ -195,8 +195,8 @@ impl Reach {
 fn pose(object: &ObjectEntry) -> Option<ObjectPose> {
     let (xyz_m, size_m) = (object.xyz?, object.size?);
     let grasp_width_m = object.grasp_width?;
-    let lengths = size_m.iter().chain([&grasp_width_m]);
-    let are_lengths = lengths.clone().all(|m| *m > 0.0 && *m <= EXTENT_MAX_M);
+    let mut lengths = size_m.iter().chain([&grasp_width_m]);
+    let are_lengths = lengths.all(|m| *m > 0.0 && *m <= EXTENT_MAX_M);
     let is_near = xyz_m.iter().all(|m| m.abs() <= DISTANCE_MAX_M);
     let mass_is_right = object.mass_kg.is_none_or(|kg| kg > 0.0);
     (are_lengths && is_near && mass_is_right).then_some(ObjectPose {
