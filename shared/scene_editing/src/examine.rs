@@ -116,6 +116,10 @@ pub struct Reach {
 const DISTANCE_MAX_M: f64 = 5.0;
 const EXTENT_MAX_M: f64 = 2.0;
 
+/// A scene without mistakes.
+const ANY_SCENE: &str = "name = 'any'\nnoun = 'thing'\n[[attributes]]\nname = 'kind'\nvalues = ['any']\n\
+                         [[objects]]\nname = 'any'\nattributes = { kind = 'any' }\n";
+
 impl Reach {
     /// Reads the arm's settings and the robot's description.
     ///
@@ -123,7 +127,7 @@ impl Reach {
     /// Every problem of the configuration.
     pub fn new(configuration: &Configuration) -> Result<Self, Diagnostics> {
         // The scene has no part in it: any one will do.
-        let scene = TextFile::new("scene", crate::new_scene("scene", ""));
+        let scene = TextFile::new("scene", ANY_SCENE);
         let Configuration { folder, profile, set } = configuration;
         let examined = Settings::examine(folder, profile.as_deref(), set, Some(scene));
         let settings = examined.report.verdict(examined.settings)?;
@@ -191,8 +195,8 @@ impl Reach {
 fn pose(object: &ObjectEntry) -> Option<ObjectPose> {
     let (xyz_m, size_m) = (object.xyz?, object.size?);
     let grasp_width_m = object.grasp_width?;
-    let lengths = size_m.iter().chain([&grasp_width_m]);
-    let are_lengths = lengths.clone().all(|m| *m > 0.0 && *m <= EXTENT_MAX_M);
+    let mut lengths = size_m.iter().chain([&grasp_width_m]);
+    let are_lengths = lengths.all(|m| *m > 0.0 && *m <= EXTENT_MAX_M);
     let is_near = xyz_m.iter().all(|m| m.abs() <= DISTANCE_MAX_M);
     let mass_is_right = object.mass_kg.is_none_or(|kg| kg > 0.0);
     (are_lengths && is_near && mass_is_right).then_some(ObjectPose {
@@ -251,7 +255,7 @@ mod tests {
         let found = reach.limbs(&object, &places, late).unwrap();
         assert_eq!(found[0].as_deref(), Ok("left"));
         assert_eq!(found[1].as_deref(), Ok("right"));
-        assert!(found[2].as_ref().unwrap_err().contains("missing"), "{found:?}");
+        assert!(found[2].as_ref().unwrap_err().contains("reach"), "{found:?}");
         let first = reach.limbs(&object, &places, Instant::now()).unwrap();
         assert_eq!(first.len(), 1);
         object.form = None;

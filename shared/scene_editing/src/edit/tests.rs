@@ -213,7 +213,6 @@ proptest! {
         for steps in [steps, more] {
             disturb(&mut document, &steps);
             edit.apply(&document).unwrap();
-            document = edit.document().unwrap();
             // What is written is read again.
             document = SceneEdit::parse("s", &edit.text()).unwrap().document().unwrap();
         }
