@@ -95,9 +95,9 @@ impl<'a> Picture<'a> {
 /// Draws one frame.
 pub(super) fn draw(frame: &mut Frame<'_>, picture: &Picture<'_>, keyboard: &Keyboard) {
     let is_wide = frame.area().width >= WIDE;
-    let services = if is_wide { Vec::new() } else { vec![services_line(picture)] };
+    let below = if is_wide { Vec::new() } else { vec![services_line(picture)] };
     let rows = [
-        Constraint::Length(1 + services.len() as u16),
+        Constraint::Length(1 + below.len() as u16),
         Constraint::Min(2),
         Constraint::Length(2),
         Constraint::Length(1),
@@ -105,7 +105,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, picture: &Picture<'_>, keyboard: &Keyb
     ];
     let [head, body, arm, notice, keys] = Layout::vertical(rows).areas(frame.area());
     let mut lines = vec![head_line(picture)];
-    lines.extend(services);
+    lines.extend(below);
     frame.render_widget(Paragraph::new(lines), head);
     let mut dialogue = body;
     if is_wide {
