@@ -84,7 +84,7 @@ fn packages() -> Vec<Package> {
         .args(["tree", "--offline", "--locked", "--workspace", "--prefix", "none", "--no-dedupe"])
         .args([
             "--features",
-            "ros2/dds,link/zenoh",
+            "ros2/dds,link/zenoh,grounding/tls",
             "--edges",
             "normal,build,dev",
             "--format",

@@ -25,6 +25,7 @@ mod journals;
 mod link;
 mod live;
 mod metrics;
+mod model;
 mod own_voice;
 mod perception;
 mod physics;

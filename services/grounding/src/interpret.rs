@@ -5,25 +5,48 @@ use crate::Config;
 use messages::{AskedQuestion, Hypothesis, Interpretation, READINGS_MAX, WireError};
 use scene::{Doubt, Question, Reading, Role, UnknownWord};
 
-/// The interpretations for each of the questions asked and for none, most likely first. Each
-/// question's weights sum to 1.
-pub(crate) fn interpretations(
+/// The readings of an utterance in case it answers one question, or none.
+pub(crate) struct Slot {
+    /// The question's place among those that the utterance may answer; none for none.
+    pub(crate) place: Option<usize>,
+    /// The question; none also where it is of another scene.
+    pub(crate) question: Question,
+    /// The readings, likeliest first; their weights sum to 1.
+    pub(crate) readings: Vec<(f64, Reading)>,
+}
+
+impl Slot {
+    /// Readings for this question as a message has them.
+    pub(crate) fn interpretations(
+        &self,
+        readings: Vec<(f64, Reading)>,
+    ) -> impl Iterator<Item = Interpretation> + use<> {
+        let answers = self.place;
+        readings.into_iter().map(move |(weight, reading)| Interpretation {
+            weight,
+            answers,
+            reading,
+        })
+    }
+}
+
+/// Most readings for one of so many questions, none counted as one.
+pub(crate) fn at_most(slots: usize) -> usize {
+    READINGS_MAX / slots
+}
+
+/// The readings for each of the questions asked and for none.
+pub(crate) fn slots(
     config: &Config,
     heard: &[Hypothesis],
     asked: &[AskedQuestion],
-) -> Result<Vec<Interpretation>, WireError> {
-    let at_most = READINGS_MAX / (asked.len() + 1);
-    let mut meant = Vec::new();
-    for place in (0..asked.len()).map(Some).chain([None]) {
+) -> Result<Vec<Slot>, WireError> {
+    let at_most = at_most(asked.len() + 1);
+    let slot = |place: Option<usize>| {
         let question = place.map_or(Ok(Question::None), |at| question(config, &asked[at]))?;
-        let readings = readings(config, heard, question, at_most).into_iter();
-        meant.extend(readings.map(|(weight, reading)| Interpretation {
-            weight,
-            answers: place,
-            reading,
-        }));
-    }
-    Ok(meant)
+        Ok(Slot { place, question, readings: readings(config, heard, question, at_most) })
+    };
+    (0..asked.len()).map(Some).chain([None]).map(slot).collect()
 }
 
 /// The question in this scene; in another scene its numbers mean something else. Objects from perception
@@ -102,7 +125,7 @@ mod tests {
         let bowls = include_str!("../../../config/scenes/bowls.toml");
         let scene = Scene::from_toml("bowls", bowls).unwrap();
         let reader = Reader::new(&scene, Language::Careful);
-        Config { scene, reader }
+        Config { scene, reader, model: None }
     }
 
     fn heard(text: &str, weight: f64, confidence: &[f32]) -> Hypothesis {

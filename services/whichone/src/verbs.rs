@@ -7,7 +7,7 @@ use service::group::GroupPaths;
 
 use crate::Outcome;
 use crate::batch;
-use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, StudyVerb, Verb};
+use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, GroundArgs, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;
 use crate::output::Output;
 use service::exit::{Exit, Failure};
@@ -88,6 +88,9 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Completions { shell } => completions(shell, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
         Verb::Belief(args) => batch::belief(batch::open(&args)?, out),
+        Verb::Ground(GroundArgs { calibrate: Some(file), scene, config, .. }) => {
+            batch::calibrate(&planning::calibrator(&scene, &config)?, &file, out)
+        }
         Verb::Ground(args) => {
             let grounder = planning::grounder(&args)?;
             batch::ground(&grounder, batch::open(&args.input)?, out)

@@ -122,6 +122,21 @@ pub fn fit(cases: &[Case]) -> Calibration {
     Calibration { power: rounded(log_power.exp()), built_in: rounded(built_in) }
 }
 
+/// Mean log loss where the calibration of each fifth of the cases is fitted to the others: what to expect of
+/// utterances that are not in the set.
+pub fn held_out_loss(cases: &[Case]) -> f64 {
+    const PARTS: usize = 5;
+    let of_part = |part: usize| {
+        let split = |is_own: bool| -> Vec<Case> {
+            let numbered = cases.iter().enumerate();
+            numbered.filter(|(n, _)| (n % PARTS == part) == is_own).map(|it| it.1.clone()).collect()
+        };
+        let own = split(true);
+        log_loss(&own, fit(&split(false))) * own.len() as f64
+    };
+    (0..PARTS).map(of_part).sum::<f64>() / cases.len().max(1) as f64
+}
+
 fn penalised(cases: &[Case], log_power: f64, built_in: f64) -> f64 {
     let calibration = Calibration { power: log_power.exp(), built_in };
     let penalty = 0.5 * (log_power / PRIOR_LOG_SD).powi(2) / cases.len().max(1) as f64;

@@ -126,7 +126,8 @@ fn bearer(path: &Path) -> Result<String, ClientError> {
     let failed = |what: String| ClientError::Key { path: path.to_owned(), what };
     let text = config::read_file(path).map_err(|e| failed(e.to_string()))?;
     let key = text.trim();
-    if !(1..=KEY_BYTES_MAX).contains(&key.len()) || !key.bytes().all(|byte| byte.is_ascii_graphic()) {
+    if !(1..=KEY_BYTES_MAX).contains(&key.len()) || !key.bytes().all(|byte| byte.is_ascii_graphic())
+    {
         let what = "expected one line of at most 8192 printable ASCII characters without blanks";
         return Err(failed(what.to_owned()));
     }

@@ -15,6 +15,6 @@ pub mod stand_in;
 mod tests;
 
 pub use answer::{AnswerError, ModelReading, parse};
-pub use calibration::{Case, LOSS_FLOOR, calibrated, fit, log_loss};
+pub use calibration::{Case, LOSS_FLOOR, calibrated, fit, held_out_loss, log_loss};
 pub use client::{Client, ClientError};
 pub use prompt::{Prompt, utterance};

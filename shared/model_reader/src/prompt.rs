@@ -53,13 +53,8 @@ const INTENTS: [Intent; 18] = [
     Intent::AskWhether,
 ];
 /// Every response.
-const RESPONSES: [Response; 5] = [
-    Response::Yes,
-    Response::No,
-    Response::None,
-    Response::CannotTell,
-    Response::DoesNotMatter,
-];
+const RESPONSES: [Response; 5] =
+    [Response::Yes, Response::No, Response::None, Response::CannotTell, Response::DoesNotMatter];
 /// Every reference.
 const REFERENCES: [Reference; 8] = [
     Reference::None,

@@ -43,7 +43,8 @@ fn request_has_scene_words_questions_and_schema() {
         assert!(system.contains(part), "{part}");
     }
     assert_eq!(heard(&body), heard_text);
-    let user: Json = serde_json::from_str(body["messages"][1]["content"].as_str().unwrap()).unwrap();
+    let user: Json =
+        serde_json::from_str(body["messages"][1]["content"].as_str().unwrap()).unwrap();
     assert_eq!(user["questions"][0]["question"], 1);
     assert_eq!(user["questions"][0]["text"], "Is it white?");
     let schema = &body["response_format"]["json_schema"]["schema"];
@@ -118,7 +119,8 @@ fn fit_finds_overconfidence_and_a_better_reader() {
     };
     let overconfident: Vec<Case> = (0..50).map(|n| case(n % 5 != 0, false)).collect();
     let fitted = fit(&overconfident);
-    let share = 0.99_f64.powf(fitted.power) / (0.99_f64.powf(fitted.power) + 0.01_f64.powf(fitted.power));
+    let share =
+        0.99_f64.powf(fitted.power) / (0.99_f64.powf(fitted.power) + 0.01_f64.powf(fitted.power));
     assert!((share - 0.8).abs() < 0.03 && fitted.built_in < 0.02, "{fitted:?}: {share}");
     let before = log_loss(&overconfident, Calibration::NONE);
     assert!(log_loss(&overconfident, fitted) < before - 0.3);

@@ -109,6 +109,10 @@ impl<P: Program> Cycle for Loop<P> {
         Health::Working(self.node.pending_since())
     }
 
+    fn status(&self) -> Option<&str> {
+        self.node.status()
+    }
+
     fn shortage(&self) -> Option<&str> {
         let port_failure = self.port_failure.as_ref().map(|(what, _)| what.as_str());
         self.commit.is_short().then_some(SHORT_OF_DISK).or(port_failure)
