@@ -103,5 +103,9 @@ fn calibration_is_fitted_to_labelled_lines() {
     assert!(ended.stdout.contains("[model.calibration]\npower = "), "{ended:?}");
     let ended = calibrate(&[]);
     assert_eq!(ended.code, Some(78), "{ended:?}");
-    assert!(ended.stderr.contains("dialogue.model.model: missing"), "{}", ended.stderr);
+    assert!(
+        ended.stderr.contains("dialogue.model.url: the name of the model is missing"),
+        "{}",
+        ended.stderr
+    );
 }

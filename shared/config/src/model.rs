@@ -62,8 +62,8 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Option<LanguageModel> {
     }
     let Some(name) = name else {
         if !f.is_wrong("model") {
-            let help = "write the name under which the service at `url` knows it";
-            f.problem("model", "missing: a `url` needs the name of a model", help);
+            let help = "write `model = \"NAME\"` as the service at `url` knows it";
+            f.problem("url", "the name of the model is missing", help);
         }
         return None;
     };
