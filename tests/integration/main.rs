@@ -30,6 +30,7 @@ mod journals;
 mod link;
 mod live;
 mod metrics;
+mod model;
 mod own_voice;
 mod perception;
 mod physics;

@@ -6,7 +6,7 @@ use service::group::GroupPaths;
 
 use crate::Outcome;
 use crate::batch;
-use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, StudyVerb, Verb};
+use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, GroundArgs, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;
 use crate::output::Output;
 use service::exit::Failure;
@@ -95,6 +95,9 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Man { folder } => init::man(&folder, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
         Verb::Belief(args) => batch::belief(batch::open(&args)?, out),
+        Verb::Ground(GroundArgs { calibrate: Some(file), scene, config, .. }) => {
+            batch::calibrate(&planning::calibrator(&scene, &config)?, &file, out)
+        }
         Verb::Ground(args) => {
             let grounder = planning::grounder(&args)?;
             batch::ground(&grounder, batch::open(&args.input)?, out)

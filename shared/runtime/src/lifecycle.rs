@@ -90,6 +90,8 @@ pub struct Lifecycle {
     last_beat: Option<Time>,
     /// What the last beat said to be short.
     shortage: String,
+    /// What the operator's status was last given.
+    status: String,
     notifier: Notifier,
     /// Whether the last poll has found a signal or the end of the lifeline.
     is_called: bool,
@@ -129,6 +131,7 @@ impl Lifecycle {
             beat_every,
             last_beat: None,
             shortage: String::new(),
+            status: String::new(),
             notifier,
             is_called: false,
         })
@@ -158,6 +161,15 @@ impl Lifecycle {
     /// Notifies the supervisor that the service is ready.
     pub fn ready(&mut self) {
         self.notifier.say(concat!("X_VERSION=", env!("CARGO_PKG_VERSION"), "\nREADY=1"));
+    }
+
+    /// Gives the operator's status what the service says, if that has changed.
+    fn status(&mut self, status: Option<&str>) {
+        let status = status.unwrap_or_default();
+        if self.status != status {
+            self.notifier.say(&format!("STATUS={}", status.replace('\n', " ")));
+            self.status = status.to_owned();
+        }
     }
 
     /// Notifies the supervisor that the service is shutting down.
@@ -224,6 +236,11 @@ pub trait Cycle {
     /// Returns the health of the service: without heartbeats the supervisor restarts it.
     fn health(&mut self, now: Time) -> Health;
 
+    /// Returns what the operator's status says about the service.
+    fn status(&self) -> Option<&str> {
+        None
+    }
+
     /// Returns what the service waits for to go on, e.g. space on a disk: it is healthy, and a restart
     /// would not help.
     fn shortage(&self) -> Option<&str> {
@@ -264,6 +281,7 @@ pub fn drive(mut lifecycle: Lifecycle, cycle: &mut impl Cycle) -> Result<(), Fai
             cycle.shut_down();
         }
         let flow = cycle.pass(ready)?;
+        lifecycle.status(cycle.status());
         let now = clock::now();
         if let Health::Working(pending_since) = cycle.health(now) {
             lifecycle.beat(now, pending_since, cycle.shortage());

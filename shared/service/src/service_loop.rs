@@ -107,6 +107,10 @@ impl<P: Program> Cycle for Loop<P> {
         Health::Working(self.node.pending_since())
     }
 
+    fn status(&self) -> Option<&str> {
+        self.node.status()
+    }
+
     fn shortage(&self) -> Option<&str> {
         self.commit.is_short().then_some(SHORT_OF_DISK).or(self.port_failures.shortage())
     }

@@ -7,7 +7,7 @@ mod observation;
 mod process;
 mod worker;
 
-pub use observation::observation;
+pub use observation::{message, observation, put_readings};
 pub use process::{run, run_with};
 
 use messages::{AskedQuestion, Hypothesis, READINGS_MAX, Source, Utterance, WireError};

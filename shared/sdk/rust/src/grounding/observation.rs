@@ -4,7 +4,7 @@ use messages::{Fits, FixedText, Observation, Utterance, WireError, WireReading};
 use scene::Scene;
 
 use super::{Grounded, Grounder, Heard};
-use crate::Time;
+use crate::{Interpretation, Time};
 
 /// Returns the observation of the utterance by this grounder.
 ///
@@ -21,8 +21,8 @@ pub fn observation(
     Ok(message(utterance, &heard, scene, &grounded, now))
 }
 
-/// The message: what the utterance brings, and what it means.
-pub(super) fn message(
+/// Returns the message: what the utterance brings, and what it means.
+pub fn message(
     utterance: &Utterance,
     heard: &Heard,
     scene: &Scene,
@@ -42,22 +42,27 @@ pub(super) fn message(
         grounded_ns: now.ns(),
         ..Observation::default()
     };
-    let slots = observation.readings.iter_mut().zip(&grounded.interpretations);
-    let mut count = 0;
-    for (slot, interpretation) in slots {
-        let (wire, fits) = WireReading::new(interpretation);
-        if fits == Fits::Cut {
-            tracing::warn!(seq = utterance.seq, "more scene words than a message holds");
-        }
-        *slot = wire;
-        count += 1;
-    }
-    observation.reading_count = count;
+    put_readings(&mut observation, &grounded.interpretations);
     if let Some(word) = &grounded.unknown {
         observation.unknown = FixedText::truncated(&word.text);
         observation.unknown_role = word.role.into();
     }
     observation
+}
+
+/// Puts readings in place of those of an observation.
+pub fn put_readings(observation: &mut Observation, interpretations: &[Interpretation]) {
+    observation.readings = Observation::default().readings;
+    let mut count = 0;
+    for (slot, interpretation) in observation.readings.iter_mut().zip(interpretations) {
+        let (wire, fits) = WireReading::new(interpretation);
+        if fits == Fits::Cut {
+            tracing::warn!(seq = observation.seq, "more scene words than a message holds");
+        }
+        *slot = wire;
+        count += 1;
+    }
+    observation.reading_count = count;
 }
 
 /// Checks what a grounder has returned as the policy will.
