@@ -60,7 +60,7 @@ const FAULTS: [(&str, &str, &str); 23] = [
     (
         "trusts-its-input",
         "nonsense",
-        "expected it to run on after an utterance with 200 hypotheses",
+        "after an utterance with 200 hypotheses",
     ),
     ("believes-any-epoch", "foreign", "expected no answer to an utterance of epoch 8"),
     ("is-slow", "latency", "expected answers within 1.0 s"),

@@ -64,8 +64,9 @@ impl Grounder for FirstWord<'_> {
     }
 
     fn ground(&mut self, heard: &Heard, scene: &Scene) -> Grounded {
+        let fault = self.fault;
         let places = (0..heard.questions.len()).map(Some).chain([None]);
-        let places = places.filter(|place| self.fault != "ignores-questions" || place.is_none());
+        let places = places.filter(|place| fault != "ignores-questions" || place.is_none());
         let weight = if self.fault == "halves-weights" { 0.5 } else { 1.0 };
         let hypothesis = Hypothesis::certain("");
         let readings = places.map(|answers| {

@@ -225,7 +225,7 @@ fn judge(
     let places = (0..usize::from(said.asked_count)).map(Some).chain([None]);
     for place in places.filter(|place| !is_bare_gesture || place.is_none()) {
         let of_place = readings.iter().filter(|reading| reading.answers == place);
-        let sum: f64 = of_place.map(|reading| reading.weight).sum();
+        let sum = of_place.fold(0.0, |sum, reading| sum + reading.weight);
         if (sum - 1.0).abs() > WEIGHT_TOLERANCE {
             let place = place.map_or("no question".to_owned(), |at| format!("question {at}"));
             let what = format!("expected weights for {place} that sum to 1, found {sum}");
