@@ -31,7 +31,7 @@ const HEAD: &str = r#"/* Messages of the topics. Generated from the wire layout;
 const WIDTH: usize = 106;
 
 /// The header's text.
-pub fn text(model: &Model, docs: &Docs) -> String {
+pub(crate) fn text(model: &Model, docs: &Docs) -> String {
     let mut out = HEAD.to_owned();
     for (name, count) in model::BOUNDS {
         let _ = writeln!(out, "#define WHICHONE_{name} {count}u");

@@ -10,13 +10,13 @@ const SOURCES: [&str; 4] = ["messages/src", "perception/src", "dialogue/src", "s
 
 /// Documentation by type, and by type and field.
 #[derive(Debug, Default)]
-pub struct Docs {
+pub(crate) struct Docs {
     texts: HashMap<(String, String), String>,
 }
 
 impl Docs {
     /// Reads the sources.
-    pub fn read() -> Self {
+    pub(crate) fn read() -> Self {
         let mut docs = Self::default();
         for folder in SOURCES {
             let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
@@ -31,12 +31,12 @@ impl Docs {
     }
 
     /// The documentation of a type; empty if there is none.
-    pub fn of(&self, name: &str) -> String {
+    pub(crate) fn of(&self, name: &str) -> String {
         self.of_field(name, "")
     }
 
     /// The documentation of a field or variant.
-    pub fn of_field(&self, name: &str, field: &str) -> String {
+    pub(crate) fn of_field(&self, name: &str, field: &str) -> String {
         let name = ["", "Wire"]
             .iter()
             .find_map(|prefix| self.texts.get(&(format!("{prefix}{name}"), field.to_owned())));

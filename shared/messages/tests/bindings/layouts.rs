@@ -5,18 +5,18 @@ use messages::schema::{Field, Schema};
 use messages::*;
 
 /// Name, size, key and fields of a message type.
-pub struct Layout {
+pub(crate) struct Layout {
     /// Name on the wire.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// Name of the type in Rust, by which fields of other messages refer to it.
     #[allow(dead_code, reason = "only one of the tests that share this file uses it")]
-    pub rust: &'static str,
+    pub(crate) rust: &'static str,
     /// Bytes; 0 for an encoded payload.
-    pub size: usize,
+    pub(crate) size: usize,
     /// Structural key.
-    pub key: String,
+    pub(crate) key: String,
     /// Fields in order; of a payload, the types in it.
-    pub fields: Vec<Field>,
+    pub(crate) fields: Vec<Field>,
 }
 
 macro_rules! layouts {
@@ -32,7 +32,7 @@ macro_rules! layouts {
 }
 
 /// Messages of fixed layout, those first that others contain.
-pub fn structs() -> Vec<Layout> {
+pub(crate) fn structs() -> Vec<Layout> {
     layouts![
         Stamp,
         WireQuestion,
@@ -67,12 +67,12 @@ pub fn structs() -> Vec<Layout> {
 }
 
 /// Payloads in postcard.
-pub fn payloads() -> Vec<Layout> {
+pub(crate) fn payloads() -> Vec<Layout> {
     layouts![Injection, PolicyView, WorldView, TrajectoryView]
 }
 
 /// Payloads that the golden file does not list yet.
 #[allow(dead_code, reason = "only one of the tests that share this file uses it")]
-pub fn payloads_of_perception() -> Vec<Layout> {
+pub(crate) fn payloads_of_perception() -> Vec<Layout> {
     layouts![Sighting, TableView]
 }

@@ -10,7 +10,7 @@ use serde_reflection::{ContainerFormat, Format, FormatHolder, VariantFormat};
 use crate::layouts::{self, Layout};
 
 /// Bounds that the types of fields name.
-pub const BOUNDS: [(&str, usize); 13] = [
+pub(crate) const BOUNDS: [(&str, usize); 13] = [
     ("ASKED_MAX", ASKED_MAX),
     ("BASE_WORDS_MAX", BASE_WORDS_MAX),
     ("CHUNK_SAMPLES_MAX", CHUNK_SAMPLES_MAX),
@@ -28,7 +28,7 @@ pub const BOUNDS: [(&str, usize); 13] = [
 
 /// Type of a field of a fixed layout.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Type {
+pub(crate) enum Type {
     /// A number, by its name in Rust.
     Number(String),
     /// One byte that holds a code of this enum.
@@ -77,37 +77,37 @@ fn bound(text: &str) -> (usize, String) {
 
 /// A message of fixed layout.
 #[derive(Clone, Debug)]
-pub struct Struct {
+pub(crate) struct Struct {
     /// Name on the wire.
-    pub name: String,
+    pub(crate) name: String,
     /// Name in Rust.
-    pub rust: String,
+    pub(crate) rust: String,
     /// Bytes.
-    pub size: usize,
+    pub(crate) size: usize,
     /// Structural key.
-    pub key: String,
+    pub(crate) key: String,
     /// Name, offset and type of each field.
-    pub fields: Vec<(String, usize, Type)>,
+    pub(crate) fields: Vec<(String, usize, Type)>,
 }
 
 /// Everything that travels.
 #[derive(Debug)]
-pub struct Model {
+pub(crate) struct Model {
     /// Enums without data by name: their variants with codes, in order.
-    pub enums: BTreeMap<String, Vec<(String, u32)>>,
+    pub(crate) enums: BTreeMap<String, Vec<(String, u32)>>,
     /// Fixed layouts, those first that others contain.
-    pub structs: Vec<Struct>,
+    pub(crate) structs: Vec<Struct>,
     /// Types inside payloads, those first that others contain.
-    pub types: Vec<(String, ContainerFormat)>,
+    pub(crate) types: Vec<(String, ContainerFormat)>,
     /// Payloads with their keys.
-    pub payloads: Vec<(String, String)>,
+    pub(crate) payloads: Vec<(String, String)>,
     /// Topics.
-    pub topics: Vec<Topic>,
+    pub(crate) topics: Vec<Topic>,
 }
 
 impl Model {
     /// Reads the schemas of every message.
-    pub fn read() -> Self {
+    pub(crate) fn read() -> Self {
         let mut enums = BTreeMap::new();
         let structs = layouts::structs().iter().map(|it| fixed(it, &mut enums)).collect();
         let mut layouts = layouts::payloads();
@@ -197,12 +197,12 @@ fn is_plain_enum(
 }
 
 /// `PutBack` and `put_back` as constants: `PUT_BACK`.
-pub fn upper(name: &str) -> String {
+pub(crate) fn upper(name: &str) -> String {
     snake(name).to_ascii_uppercase()
 }
 
 /// `PutBack` as a variable: `put_back`.
-pub fn snake(name: &str) -> String {
+pub(crate) fn snake(name: &str) -> String {
     let mut text = String::new();
     for (i, letter) in name.char_indices() {
         if i > 0 && letter.is_ascii_uppercase() && !text.ends_with('_') {
@@ -214,7 +214,7 @@ pub fn snake(name: &str) -> String {
 }
 
 /// `put_back` as a type: `PutBack`.
-pub fn camel(name: &str) -> String {
+pub(crate) fn camel(name: &str) -> String {
     let mut text = String::new();
     for part in name.split('_') {
         let mut letters = part.chars();
@@ -225,7 +225,7 @@ pub fn camel(name: &str) -> String {
 }
 
 /// Breaks a text into lines of at most `width` characters.
-pub fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {

@@ -32,7 +32,7 @@ from ._fixed import Array, InvalidMessage, Message, Text, Topic, fixed_text
 const WIDTH: usize = 110;
 
 /// The module's text.
-pub fn text(model: &Model, docs: &Docs) -> String {
+pub(crate) fn text(model: &Model, docs: &Docs) -> String {
     let mut out = HEAD.to_owned();
     for (name, count) in model::BOUNDS {
         let _ = writeln!(out, "{name} = {count}");
