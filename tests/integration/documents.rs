@@ -25,7 +25,12 @@ const UP_FOR_TESTS: &str = r#"case "$1" in
 up | chat)
     verb=$1
     shift
-    set -- "$verb" --set speech.voice=print --set console.listen=127.0.0.1:0 --set arm.time_scale=60 "$@"
+    # The robots of profiles move in real time.
+    case " $* " in
+    *" --profile "*) ;;
+    *) set -- --set arm.time_scale=60 "$@" ;;
+    esac
+    set -- "$verb" --set speech.voice=print --set console.listen=127.0.0.1:0 "$@"
     case " $* " in
     *" --detach "* | " chat "*) ;;
     *) set -- "$@" --detach --wait ready --timeout 60 ;;
