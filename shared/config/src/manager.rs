@@ -6,7 +6,7 @@ use dialogue::{Confusion, Model, NotAConfusion};
 use language::Language;
 use scene::{Scene, StableHash};
 
-use crate::{Section, Settings};
+use crate::Settings;
 
 /// Error of building a dialogue manager from settings.
 #[derive(Debug, thiserror::Error)]
@@ -91,7 +91,7 @@ impl Settings {
         if planner != self.dialogue.planner {
             hash.text(planner);
         }
-        hash.text(&self.section_text(Section::Dialogue));
+        hash.text(&self.resolved.decision_text());
         hash.text(&self.scene_file().text);
         if self.durations.is_some() {
             hash.text(&self.durations_text());
