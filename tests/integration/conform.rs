@@ -57,11 +57,7 @@ const FAULTS: [(&str, &str, &str); 23] = [
     ("ignores-questions", "answers", "expected weights for question 0"),
     ("changes-its-mind", "repeats", "expected the same observation again"),
     ("answers-the-latest", "burst", "expected 16 observations"),
-    (
-        "trusts-its-input",
-        "nonsense",
-        "after an utterance with 200 hypotheses",
-    ),
+    ("trusts-its-input", "nonsense", "after an utterance with 200 hypotheses"),
     ("believes-any-epoch", "foreign", "expected no answer to an utterance of epoch 8"),
     ("is-slow", "latency", "expected answers within 1.0 s"),
     ("ignores-requests-to-end", "stop", "found it running"),

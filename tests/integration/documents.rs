@@ -5,6 +5,8 @@
 //! programs, or files, are there. `whichone up` and `scripts/run` start the built group, in the background, with a
 //! fast arm and without sound. A page that presumes a running group gets one (`PAGES`).
 
+#![allow(clippy::print_stdout, reason = "which blocks have run, and how long")]
+
 use std::fs;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
@@ -208,6 +210,10 @@ fn copy(from: &Path, to: &Path) {
     for entry in fs::read_dir(from).unwrap() {
         let path = entry.unwrap().path();
         let target = to.join(path.file_name().unwrap());
-        if path.is_dir() { copy(&path, &target) } else { drop(fs::copy(&path, &target).unwrap()) }
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            fs::copy(&path, &target).unwrap();
+        }
     }
 }

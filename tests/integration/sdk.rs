@@ -110,7 +110,7 @@ fn fifty_swaps_under_traffic_lose_nothing() {
         });
         while !done() && !talk.is_finished() {
             let number = swaps.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-            let command = if number % 2 == 0 { &spotter } else { &built_in };
+            let command = if number.is_multiple_of(2) { &spotter } else { &built_in };
             let ended = swap(&group, "grounding", &[command]);
             assert_eq!(ended.code, Some(0), "{ended:?}\n{}", group.logs());
             std::thread::sleep(Duration::from_millis(200));

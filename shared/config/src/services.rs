@@ -169,7 +169,10 @@ fn check_topics(services: &[ServiceConfig], f: &mut Fields<'_>) {
             let writer = Topic::named(topic).map(|topic| topic.writer);
             let of_clients = shipped().filter(|topic| topic.writer.is_none()).map(|it| it.name);
             let help = || {
-                format!("a topic of its own begins with `{own}`; of the others, {}", one_of(of_clients))
+                format!(
+                    "a topic of its own begins with `{own}`; of the others, {}",
+                    one_of(of_clients)
+                )
             };
             match writer {
                 Some(Some(writer)) if writer.name() != service.name => {

@@ -13,8 +13,8 @@ const PRIOR_LOG_SD: f64 = 1.0;
 const STEPS: usize = 25;
 const REFINEMENTS: usize = 4;
 
-/// Combines the readings of the model for one question with those of the built-in reader, whose weights sum to
-/// 1. Returns at most `at_most`, likeliest first; their weights sum to 1. Without readings of the model the
+/// Combines the readings of the model for one question with those of the built-in reader, whose weights add up
+/// to one. Returns at most `at_most`, likeliest first; their weights sum to 1. Without readings of the model the
 /// built-in reader's count.
 pub fn calibrated(
     calibration: Calibration,

@@ -142,7 +142,7 @@ fn put_type(
 ) {
     match format {
         ContainerFormat::NewTypeStruct(inner) => {
-            let _ = writeln!(out, "\n\n{name} = {}", hint(inner, model));
+            let _ = writeln!(out, "\n\n{name} = {}", hint(inner));
             let _ = writeln!(out, "{name}_ENCODING = {}", codec(inner, model));
         }
         ContainerFormat::Struct(fields) => {
@@ -156,7 +156,7 @@ fn put_type(
             put_doc(out, "    ", &docs.of(name));
             out.push('\n');
             for field in fields {
-                let _ = writeln!(out, "    {}: {}", field.name, hint(&field.value, model));
+                let _ = writeln!(out, "    {}: {}", field.name, hint(&field.value));
                 put_doc(out, "    ", &docs.of_field(name, &field.name));
             }
             if let Some(key) = key {
@@ -207,7 +207,7 @@ fn put_variant(
         out.push('\n');
     }
     for (field, format) in &fields {
-        let _ = writeln!(out, "    {field}: {}", hint(format, model));
+        let _ = writeln!(out, "    {field}: {}", hint(format));
         put_doc(out, "    ", &docs.of_field(of, field));
     }
 }
@@ -232,19 +232,19 @@ fn variant_fields(format: &VariantFormat) -> Vec<(String, Format)> {
 }
 
 /// The type of a value as an annotation.
-fn hint(format: &Format, model: &Model) -> String {
+fn hint(format: &Format) -> String {
     match format {
         Format::TypeName(name) => name.clone(),
         Format::Bool => "bool".to_owned(),
         Format::F32 | Format::F64 => "float".to_owned(),
         Format::Str | Format::Char => "str".to_owned(),
-        Format::Option(inner) => format!("{} | None", hint(inner, model)),
+        Format::Option(inner) => format!("{} | None", hint(inner)),
         Format::TupleArray { content, .. } if **content == Format::U8 => "bytes".to_owned(),
         Format::Seq(inner) | Format::TupleArray { content: inner, .. } => {
-            format!("list[{}]", hint(inner, model))
+            format!("list[{}]", hint(inner))
         }
         Format::Tuple(parts) => {
-            let parts: Vec<_> = parts.iter().map(|it| hint(it, model)).collect();
+            let parts: Vec<_> = parts.iter().map(hint).collect();
             format!("tuple[{}]", parts.join(", "))
         }
         _ => "int".to_owned(),

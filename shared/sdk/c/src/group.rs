@@ -27,6 +27,7 @@ pub struct Group {
 
 /// How a process takes part.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "a process has one")]
 enum Role {
     Client(Client),
     Service { bus: Bus, name: String, lifecycle: Option<Lifecycle>, _log: LogFlush },
