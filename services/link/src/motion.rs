@@ -181,8 +181,14 @@ impl Orders {
             MotionOrder::Resume => Order::Release(seen.ok_or("the robot's state is not known")?),
         };
         let request = Request { key, order };
-        self.current =
-            Some(Current { given_ns, request, due: now, way: Way::First, repeated: now, answer: None });
+        self.current = Some(Current {
+            given_ns,
+            request,
+            due: now,
+            way: Way::First,
+            repeated: now,
+            answer: None,
+        });
         Ok(None)
     }
 
