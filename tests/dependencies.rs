@@ -30,7 +30,8 @@ const EXCEPTIONS: [(&str, &str, &str); 1] =
     [("option-ext", "MPL-2.0", "dirs of zenoh brings it, unchanged; the default build lacks it")];
 
 /// Crates of which two versions are built, and who brings the older one.
-const DUPLICATES: [(&str, &str); 23] = [
+const DUPLICATES: [(&str, &str); 24] = [
+    ("base64", "axum's web sockets; ureq has the newer one"),
     ("cpufeatures", "sha1 of axum's web sockets"),
     ("darling", "enumset of iceoryx2; beside it zenoh's serde_with"),
     ("darling_core", "darling of enumset"),
@@ -84,7 +85,7 @@ fn packages() -> Vec<Package> {
         .args(["tree", "--offline", "--locked", "--workspace", "--prefix", "none", "--no-dedupe"])
         .args([
             "--features",
-            "ros2/dds,link/zenoh",
+            "ros2/dds,link/zenoh,grounding/tls",
             "--edges",
             "normal,build,dev",
             "--format",

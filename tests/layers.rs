@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 use std::process::Command;
 
 const SERVICES: [&str; 12] = [
@@ -56,11 +57,55 @@ fn messages_depend_on_no_configuration() {
     assert!(tree.contains("dialogue") && !tree.contains("config"), "{tree:?}");
 }
 
+/// What a program from outside is built on has neither configuration nor journal, and no shell of a service.
+#[test]
+fn sdk_links_little() {
+    let tree = tree("whichone-sdk", "99");
+    assert!(tree.contains("runtime") && tree.contains("messages"), "{tree:?}");
+    let heavy =
+        ["service", "config", "journal", "language", "tracing-subscriber", "flate2", "tokio"];
+    for absent in heavy {
+        assert!(!tree.contains(absent), "whichone-sdk depends on {absent}");
+    }
+}
+
 #[test]
 fn no_service_depends_on_a_service() {
-    for service in SERVICES {
+    for service in SERVICES.into_iter().filter(|service| *service != "whichone") {
         let direct = tree(service, "1");
         let found = SERVICES.iter().filter(|other| **other != service && direct.contains(**other));
         assert_eq!(found.count(), 0, "{service}: {direct:?}");
     }
+}
+
+/// The program `whichone` contains the services, its library knows none.
+#[test]
+fn command_line_uses_no_service() {
+    // The others are also names of verbs.
+    let crates =
+        ["speech", "grounding", "policy", "baxter", "ros1", "ros2", "recorder", "supervisor"];
+    let mut folders =
+        vec![PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../services/whichone/src"))];
+    let mut read = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            if path.extension().is_none_or(|ending| ending != "rs") || path.ends_with("hosted.rs") {
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).unwrap();
+            let of_service = |line: &str| {
+                let name = line.trim().strip_prefix("use ").and_then(|rest| rest.split_once("::"));
+                name.is_some_and(|(name, _)| crates.contains(&name))
+            };
+            let found: Vec<&str> = text.lines().filter(|line| of_service(line)).collect();
+            assert!(found.is_empty(), "{}: {found:?}", path.display());
+            read += 1;
+        }
+    }
+    assert!(read > 50, "{read} files");
 }

@@ -164,7 +164,10 @@ fn outputs_of_the_reducers_are_published_without_an_allocation() {
     assert_published_without_allocation(
         &shm.bus.reader::<Observation>(&topics::OBSERVATION).unwrap(),
         &mut shm.open::<_, GroundingShell>(),
-        || Box::new(Observation { seq: 7, ..Observation::default() }),
+        || {
+            let observation = Observation { seq: 7, ..Observation::default() };
+            grounding::Out::Observation(Box::new(observation))
+        },
     );
     assert_published_without_allocation(
         &shm.bus.reader::<RobotAct>(&topics::ACT).unwrap(),
@@ -190,7 +193,10 @@ fn fixed_messages_reach_the_reducers_without_a_copy_or_an_allocation() {
         &shm.bus.writer::<Utterance>(&topics::UTTERANCE).unwrap(),
         &mut grounding,
         |utterance| utterance.seq = 7,
-        |utterance, show| show(&utterance),
+        |input, show| {
+            let grounding::In::Utterance(utterance) = input else { return };
+            show(&utterance);
+        },
     );
     // A topic has one writer.
     drop(grounding);

@@ -12,23 +12,21 @@ import os
 import random
 import sys
 import time
-import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "docs/examples/python")]
+sys.path[:0] = [str(ROOT / "shared/sdk/python")]
 
-import iceoryx2 as iox2
 import mujoco
 import numpy as np
 
 from hand import named
 from limb import JOINTS
 from model import WALLS, placed
-from wire import Bond, Bus, Layout, put_text, text_of
+from whichone import messages as m
+from whichone.service import Service
 from world import BEAT_S, LIMBS, World
 
-LAYOUT = ROOT / "tests/golden/wire_layout.txt"
 BEAT_NS = round(BEAT_S * 1e9)
 # Simulated time that may be missing before it is left out, nanoseconds.
 BEHIND_MAX_NS = 500_000_000
@@ -47,16 +45,16 @@ def log(text):
     print(text, file=sys.stderr, flush=True)
 
 
-class Robot:
+class Robot(Service):
     """The service: topics on one side, the world on the other."""
 
-    def __init__(self, layout, conditions):
-        self.bus = bus = Bus(layout, "baxter")
-        with open(os.path.join(bus.root, "run", "settings.toml"), "rb") as file:
-            settings = tomllib.load(file)
+    name = "baxter"
+
+    def __init__(self, conditions):
+        super().__init__()
+        settings, bus = self.settings, self.bus
         self.arm = settings["arm"]
-        self.structs = layout.structs
-        self.records = open(os.path.join(bus.root, "log", "physics.jsonl"), "a", encoding="utf-8")
+        self.records = open(self.group.folder / "log" / "physics.jsonl", "a", encoding="utf-8")
         if "robot_srdf" not in settings:
             raise ValueError("the robot has no .srdf beside its .urdf; help: it names the groups and the "
                              "neutral posture")
@@ -68,7 +66,7 @@ class Robot:
         for item in objects:
             item["wall"] = conditions.walls
         self.world = World(urdf, srdf, objects, self.arm, self.report_pick, conditions)
-        self.file = Path(bus.root) / "physics.json"
+        self.file = self.group.folder / "physics.json"
         # The world goes on where it was if it is the same one.
         key = hashlib.sha256(self.world.text.encode()).hexdigest()
         self.key = [bus.epoch, key]
@@ -82,26 +80,19 @@ class Robot:
         self.open()
 
     def open(self):
-        bus = self.bus
-        reader = lambda name, kind: bus.topic(name, kind).subscriber_builder().create()
-        discard = iox2.BackpressureStrategy.DiscardData
-        writer = lambda name, kind: (
-            bus.topic(name, kind).publisher_builder().backpressure_strategy(discard).create())
-        self.drills = reader("robot/drill", "Drill")
-        self.joints, self.state = writer("robot/joint_states", "JointState"), writer(
-            "robot/state", "AssemblyState")
+        self.drills = self.reader("robot/drill")
+        self.joints, self.state = self.writer("robot/joint_states"), self.writer("robot/state")
         self.commands, self.feeds, self.ratios, self.fingers = {}, {}, {}, {}
         self.endpoints, self.grippers, self.properties = {}, {}, {}
         for limb in LIMBS:
             own, hand = f"robot/limb/{limb}", f"robot/end_effector/{limb}_gripper"
-            self.commands[limb] = reader(f"{own}/joint_command", "JointCommand")
-            self.feeds[limb] = reader(f"{own}/inverse_dynamics_command", "JointTrajectoryPoint")
-            self.ratios[limb] = reader(f"{own}/set_speed_ratio", "SpeedRatio")
-            self.fingers[limb] = reader(f"{hand}/command", "EndEffectorCommand")
-            self.endpoints[limb] = writer(f"{own}/endpoint_state", "EndpointState")
-            self.grippers[limb] = writer(f"{hand}/state", "EndEffectorState")
-            self.properties[limb] = writer(f"{hand}/properties", "EndEffectorProperties")
-        self.bell = bus.event("arm").notifier_builder().create()
+            self.commands[limb] = self.reader(f"{own}/joint_command")
+            self.feeds[limb] = self.reader(f"{own}/inverse_dynamics_command")
+            self.ratios[limb] = self.reader(f"{own}/set_speed_ratio")
+            self.fingers[limb] = self.reader(f"{hand}/command")
+            self.endpoints[limb] = self.writer(f"{own}/endpoint_state")
+            self.grippers[limb] = self.writer(f"{hand}/state")
+            self.properties[limb] = self.writer(f"{hand}/properties")
 
     def remember(self):
         try:
@@ -128,7 +119,7 @@ class Robot:
 
     def drain(self):
         """Takes the messages that have arrived."""
-        for drill in self.bus.receive(self.drills):
+        for drill in self.drills:
             if drill.key not in self.drilled:
                 self.drilled = [*self.drilled[-31:], drill.key]
                 log(f"drill {drill.kind}, amount {drill.amount:g}")
@@ -137,19 +128,19 @@ class Robot:
         obeys = self.world.assembly.enabled
         for limb in LIMBS:
             joints, hand = self.world.limbs[limb], self.world.hands[limb]
-            for ratio in self.bus.receive(self.ratios[limb]):
+            for ratio in self.ratios[limb]:
                 if obeys:
                     joints.set_speed_ratio(ratio.data)
-            for message in self.bus.receive(self.commands[limb]):
+            for message in self.commands[limb]:
                 if obeys:
-                    names = map(text_of, message.names[:message.len])
+                    names = map(str, message.names[:message.len])
                     self.attempt(joints.command, message.mode, list(zip(names, message.command)))
-            for point in self.bus.receive(self.feeds[limb]):
+            for point in self.feeds[limb]:
                 if obeys:
                     joints.feed_forward(point.velocities)
-            for message in self.bus.receive(self.fingers[limb]):
+            for message in self.fingers[limb]:
                 if obeys:
-                    words = (text_of(message.command), text_of(message.args), text_of(message.sender))
+                    words = (str(message.command), str(message.args), str(message.sender))
                     self.attempt(hand.command, *words, message.sequence)
 
     @staticmethod
@@ -162,25 +153,25 @@ class Robot:
     def publish(self, count, stamp):
         """Everything that is due in report number `count`; `stamp` is the time up to which the robot was
         simulated."""
-        self.bus.send(self.state, self.assembly())
+        self.state.send(self.assembly())
         simulated = self.arm["simulated"]
         if self.world.silent_s <= 0.0 and self.chance.random() >= simulated["loss"]:
             for state in self.joint_states(stamp, simulated["noise_rad"]):
-                self.bus.send(self.joints, state)
-            self.bell.notify()
+                self.joints.send(state, wake=False)
+            self.joints.wake()
         for limb in LIMBS:
-            self.bus.send(self.endpoints[limb], self.endpoint(limb, stamp))
+            self.endpoints[limb].send(self.endpoint(limb, stamp))
             if count % GRIPPER_EVERY == 0:
-                self.bus.send(self.grippers[limb], self.gripper(limb, stamp))
+                self.grippers[limb].send(self.gripper(limb, stamp))
             if count % PROPERTIES_EVERY == 0:
-                self.bus.send(self.properties[limb], self.properties_of(limb))
+                self.properties[limb].send(self.properties_of(limb))
         if count % REMEMBER_EVERY == REMEMBER_EVERY - 1:
             self.record()
 
     def assembly(self):
         own = self.world.assembly
         button = PRESSED if own.pressed else RELEASED if own.stopped else UNPRESSED
-        return self.structs["AssemblyState"](
+        return m.AssemblyState(
             ready=own.enabled, enabled=own.enabled, stopped=own.stopped, error=own.error,
             estop_button=button, estop_source=own.stopped)
 
@@ -199,9 +190,9 @@ class Robot:
     def joint_state(self, stamp, measured):
         names = tuple(measured)
         if names not in self.named:
-            self.named[names] = state = self.structs["JointState"](len=len(names))
+            self.named[names] = state = m.JointState(len=len(names))
             for n, name in enumerate(names):
-                put_text(state.name[n], name)
+                state.name[n].set(name)
         state, count = self.named[names], len(names)
         state.stamp_ns = stamp
         state.position[:count], state.velocity[:count], state.effort[:count] = zip(*measured.values())
@@ -210,7 +201,7 @@ class Robot:
     def endpoint(self, limb, stamp):
         """Pose and velocity of the gripper's tip; forces are not measured."""
         data, body = self.world.data, self.frame[limb]
-        state = self.structs["EndpointState"](stamp_ns=stamp)
+        state = m.EndpointState(stamp_ns=stamp)
         w, *xyz = data.xquat[body]
         state.pose[:] = [*data.xpos[body], *xyz, w]
         twist = np.zeros(6)
@@ -222,22 +213,22 @@ class Robot:
         hand = self.world.hands[limb]
         word, sender, sequence = hand.handled
         moving = bool(hand.goals)
-        state = self.structs["EndEffectorState"](
+        state = m.EndEffectorState(
             timestamp_ns=stamp, id=GRIPPER_ID, enabled=self.world.assembly.enabled,
             calibrated=hand.calibrated, ready=hand.calibrated and not moving, moving=moving,
             gripping=hand.gripping, missed=hand.missed, position=hand.percent(),
             force=100.0 * hand.force() / hand.strongest, command_sequence=sequence)
-        put_text(state.command, word)
-        put_text(state.command_sender, sender)
+        state.command.set(word)
+        state.command_sender.set(sender)
         return state
 
     def properties_of(self, limb):
-        properties = self.structs["EndEffectorProperties"](
+        properties = m.EndEffectorProperties(
             id=GRIPPER_ID, ui_type=ELECTRIC, has_calibration=1, controls_grip=1, senses_grip=1,
             controls_force=1, senses_force=1, controls_position=1, senses_position=1)
-        put_text(properties.manufacturer, "whichone")
-        put_text(properties.product, "electric gripper in MuJoCo")
-        put_text(properties.serial_number, limb)
+        properties.manufacturer.set("whichone")
+        properties.product.set("electric gripper in MuJoCo")
+        properties.serial_number.set(limb)
         return properties
 
     def catch_up(self, at):
@@ -257,10 +248,11 @@ class Robot:
             at += BEAT_NS
         return at
 
-    def serve(self, bond):
+    def serve(self):
         """Runs until it is asked to shut down; returns the exit code."""
-        at, count, ready = time.monotonic_ns(), 0, False
-        while not bond.ends():
+        at, count = time.monotonic_ns(), 0
+        self.supervised.say("READY=1")
+        while not self.ends:
             before, at = at, self.catch_up(at)
             if not self.world.is_sound():
                 log("the simulation has diverged; it starts again from its last record")
@@ -268,11 +260,10 @@ class Robot:
             if at > before:
                 self.publish(count, at)
                 count += 1
-            ready = ready or bond.say("READY=1\n")
-            bond.beat()
+            self.beat()
             time.sleep(max(0.0, (at + BEAT_NS - time.monotonic_ns()) / 1e9))
         self.record()
-        bond.say("STOPPING=1\n")
+        self.supervised.say("STOPPING=1")
         return 0
 
 
@@ -299,13 +290,13 @@ def conditions():
 
 
 def main():
-    chosen, bond = conditions(), Bond()
+    chosen = conditions()
     try:
-        robot = Robot(Layout(LAYOUT), chosen)
+        robot = Robot(chosen)
     except (ValueError, KeyError) as error:
         log(f"the robot or the scene cannot be simulated: {error}")
         return CONFIG
-    return robot.serve(bond)
+    return robot.serve()
 
 
 if __name__ == "__main__":

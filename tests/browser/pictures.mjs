@@ -9,6 +9,7 @@ import { CHROMIUM, CHROMIUM_FLAGS } from "./lib/chromium.mjs";
 import { Group } from "./lib/group.mjs";
 import { finish, press, rate, request, screen } from "./lib/participant.mjs";
 import { ROOT } from "./lib/program.mjs";
+import { checked, openEditor, sheet, thing } from "./lib/scene.mjs";
 import { t } from "./lib/strings.mjs";
 import { answerUntilPicked, nextDecision, type } from "./lib/talk.mjs";
 import { until } from "./lib/until.mjs";
@@ -81,8 +82,20 @@ async function dialogue() {
   await page.getByRole("button", { name: t("history.show") }).click();
   await page.locator(".story-one").nth(1).click();
   await take(page, "console-history");
+  await page.keyboard.press("Escape");
+  await editor(page);
   await page.context().close();
   await phone.context().close();
+}
+
+/** The scene editor with an object chosen and its reach. */
+async function editor(page) {
+  await openEditor(page);
+  await thing(page, "clear").click();
+  await checked(page);
+  await sheet(page).and(page.locator("[data-reach=known]")).waitFor({ timeout: 120_000 });
+  await take(page, "console-scene");
+  await page.keyboard.press("Escape");
 }
 
 /** The participants of a study, one of them with a phone, and what is found out by them. */

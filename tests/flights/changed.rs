@@ -4,8 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use grounding::GroundingNode;
 use grounding::shell::GroundingProgram;
+use grounding::{GroundingNode, In, Out};
 use messages::{Hypothesis, Observation, Utterance};
 use service::exit::Exit;
 use service::flight::{Head, Ring, Tap, list, replay};
@@ -35,13 +35,15 @@ fn flight_of_grounding(
         let now = Time(1_000_000_000 * (pass as u64 + 1));
         let mut utterance = Utterance { seq: pass as u64 + 1, ..Utterance::default() };
         utterance.set_hypotheses(&[Hypothesis::certain((*text).to_owned())]).unwrap();
-        let event = Event::Message(utterance.into());
+        let event = Event::Message(In::Utterance(utterance.into()));
         tap.event(&event, now);
         let mut honest = Effects::default();
         let mut stated: Effects<_, Never> = Effects::default();
         node.on(event, now, &mut honest);
         for mut output in honest.take_outputs() {
-            distort(pass, &mut output);
+            if let Out::Observation(observation) = &mut output {
+                distort(pass, observation);
+            }
             stated.publish(output);
         }
         tap.stated(&stated);
@@ -69,11 +71,11 @@ fn changed_output_is_reported_with_its_field_and_what_came_before() {
     let file = flight_of_grounding(folder.path(), &TEXTS, distort);
     let difference = replayed(&file, &[]).difference.unwrap();
     assert_eq!((difference.pass, difference.at_ns), (2, 2_000_000_000));
-    assert_eq!(difference.path, "outputs[0].readings[0].weight");
+    assert_eq!(difference.path, "outputs[0].Observation.readings[0].weight");
     assert_eq!(difference.recorded, 0.125);
     assert_eq!(difference.recomputed, 1.0);
     assert_eq!(difference.before.len(), 2);
-    let last = &difference.before[1]["event"]["Message"];
+    let last = &difference.before[1]["event"]["Message"]["Utterance"];
     assert_eq!(last["seq"], 2);
     assert!(last.to_string().contains("\"yes\""), "{last}");
 }

@@ -1,26 +1,53 @@
-//! The documentation's programs in Python in the grounding service's place.
+//! The Python package: its example grounders in the grounding service's place, its client, and its own tests.
 
-use whichone_tests::{Group, program};
+use std::process::Command;
+
+use rustix::process::Signal;
+use serde_json::Value;
+use whichone_tests::{Ended, Group, program, run};
 
 use crate::swap::swap;
+
+/// The package's folder.
+const PACKAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/sdk/python");
+/// Timeout of a program in Python, seconds.
+const PATIENCE_S: f64 = 90.0;
 
 /// The Python interpreter that has the iceoryx2 wheel: `$WHICHONE_PYTHON`, else `python3`.
 fn python() -> String {
     std::env::var("WHICHONE_PYTHON").unwrap_or_else(|_| "python3".to_owned())
 }
 
+/// The path of an example.
+fn example(name: &str) -> String {
+    format!("{PACKAGE}/examples/{name}.py")
+}
+
+/// The command of an example as a service, which finds the package where it is.
+pub(crate) fn service(name: &str) -> [String; 4] {
+    ["/usr/bin/env".to_owned(), format!("PYTHONPATH={PACKAGE}"), python(), example(name)]
+}
+
+/// Runs a client in Python for this group.
+fn client(group: &Group, words: &[&str]) -> Ended {
+    let mut command = Command::new(python());
+    command.env("WHICHONE_HOME", group.paths().home());
+    command.env("WHICHONE_GROUP", group.paths().name().as_str());
+    run(command.env("PYTHONPATH", PACKAGE).args(words), "", PATIENCE_S)
+}
+
 /// The service in Python that the documentation holds takes grounding's place under traffic.
 #[test]
 #[ignore = "needs python3 with iceoryx2"]
 fn example_in_python_replaces_grounding() {
-    let python = python();
-    let program_text = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/examples/python/grounding.py");
+    let command = service("grounding");
+    let command = command.each_ref().map(String::as_str);
     let group = Group::up(&[]);
     for object in ["metal2", "clear", "white3"] {
         group.say("get me the bowl");
         let talk = std::thread::scope(|scope| {
             let talk = scope.spawn(|| group.await_pick(Some(object)));
-            let ended = swap(&group, "grounding", &[&python, program_text]);
+            let ended = swap(&group, "grounding", &command);
             assert_eq!(ended.code, Some(0), "{ended:?}\n{}", group.logs());
             talk.join().expect("the dialogue")
         });
@@ -29,7 +56,7 @@ fn example_in_python_replaces_grounding() {
     let before = group.incarnation("grounding");
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
     assert_eq!(group.incarnation("grounding"), before, "it runs on\n{}", group.logs());
-    group.signal("grounding", rustix::process::Signal::KILL);
+    group.signal("grounding", Signal::KILL);
     group.wait_for_restart("grounding", before);
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
     let old = program("whichone-grounding").display().to_string();
@@ -53,6 +80,8 @@ if "sleep" in said:
     time.sleep(60)
 if "broken" in said:
     print("the clear one, I think")
+elif "foreign" in said:
+    print(json.dumps({"readings": [{"base": ["purple"]}]}))
 else:
     response = [word for word in said if word in ("yes", "no")][:1] or ["none"]
     base = [word for word in line("scene words") if word in said]
@@ -63,24 +92,94 @@ else:
 #[ignore = "needs python3 with iceoryx2"]
 fn external_program_replaces_grounding() {
     let python = python();
-    let by_program = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/examples/python/by_program.py");
     let group = Group::up(&[]);
     let folder = tempfile::tempdir().unwrap();
     let (stand_in, log) = (folder.path().join("stand_in.py"), folder.path().join("asked.txt"));
     std::fs::write(&stand_in, STAND_IN).unwrap();
     let asked = || std::fs::read_to_string(&log).unwrap();
     let paths = [&stand_in, &log].map(|path| path.display().to_string());
-    let command = [python.as_str(), by_program, &python, &paths[0], &paths[1]];
+    let service = service("by_program");
+    let mut command = service.each_ref().map(String::as_str).to_vec();
+    command.extend([&*python, &paths[0], &paths[1]]);
     assert_eq!(swap(&group, "grounding", &command).code, Some(0), "{}", group.logs());
     assert_eq!(group.fetch("the glassy one", "clear")["object"], "clear", "{}", group.logs());
     assert!(asked().contains("the glassy one\n"), "{}", asked());
     assert!(!group.logs().contains("word spotting"), "{}", group.logs());
     // A program that says nothing of use, or nothing in time, is done without.
-    for text in ["broken the clear bowl", "sleep the clear bowl"] {
+    for text in ["broken the clear bowl", "foreign the clear bowl", "sleep the clear bowl"] {
         assert_eq!(group.fetch(text, "clear")["object"], "clear", "{text}: {}", group.logs());
         assert!(asked().contains(text) && group.logs().contains("word spotting"), "{text}");
     }
     assert!(!group.logs().contains("Traceback"), "{}", group.logs());
     group.verify_journals();
     group.down();
+}
+
+/// Says, waits, stops and resumes, and prints what became of each.
+const CLIENT: &str = r#"
+import json, threading, time
+from whichone import Client, NoPick, NotStopped
+
+outcome = {}
+with Client() as robot:
+    outcome["number"] = robot.say("get me the clear bowl")
+    ended = robot.await_pick(timeout=60)
+    outcome["picked"] = [ended.name, ended.outcome.name]
+    robot.stop()
+    while not robot.look().arm.stopped:
+        time.sleep(0.01)
+    robot.resume()
+    while robot.look().arm.stopped:
+        time.sleep(0.01)
+    robot.say("thank you")
+    try:
+        robot.await_pick(timeout=60)
+    except NoPick as answer:
+        outcome["answer"] = str(answer)
+    belief = robot.look().belief
+    outcome["belief"] = [len(belief), round(sum(belief.values()), 6)]
+print(json.dumps(outcome))
+"#;
+
+#[test]
+#[ignore = "needs python3 with iceoryx2"]
+fn client_in_python_says_waits_and_stops() {
+    let group = Group::up(&[]);
+    let ended = client(&group, &["-c", CLIENT]);
+    assert_eq!(ended.code, Some(0), "{ended:?}\n{}", group.logs());
+    let outcome: Value = ended.json();
+    assert_eq!(outcome["picked"], serde_json::json!(["clear", "DELIVERED"]), "{outcome}");
+    assert_eq!(outcome["belief"], serde_json::json!([6, 1.0]), "{outcome}");
+    assert!(outcome["answer"].as_str().is_some_and(|text| !text.is_empty()), "{outcome}");
+    // The example answers the robot's questions.
+    let ended = client(&group, &[&example("client"), "get me the bowl", "--want", "white3"]);
+    assert!(ended.stdout.contains("delivered white3"), "{ended:?}\n{}", group.logs());
+    let ended = client(&group, &[&example("client"), "get me the bowl", "--want", "vase"]);
+    assert_eq!(ended.code, Some(2), "{ended:?}");
+    assert!(ended.stderr.contains("expected one of white, "), "{ended:?}");
+    let run = group.paths().run();
+    group.verify_journals();
+    group.must(&["down"]);
+    assert!(!run.exists());
+    let ended = client(&group, &["-c", "from whichone import Client; Client()"]);
+    assert!(ended.stderr.contains("is not running"), "{ended:?}");
+    assert!(ended.stderr.contains("help: start it with `whichone up"), "{ended:?}");
+}
+
+#[test]
+#[ignore = "needs python3 with iceoryx2"]
+fn package_in_python_passes_its_tests() {
+    let tests = format!("{PACKAGE}/tests");
+    let mut command = Command::new(python());
+    command.args(["-m", "unittest", "discover", "-s", &tests]).env("PYTHONPATH", PACKAGE);
+    let ended = run(&mut command, "", PATIENCE_S);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    // Started by hand, a service says how it is started.
+    let ended = run(
+        Command::new(python()).arg(example("grounding")).env("PYTHONPATH", PACKAGE),
+        "",
+        PATIENCE_S,
+    );
+    assert_eq!(ended.code, Some(64), "{ended:?}");
+    assert!(ended.stderr.contains("help: services are started by their supervisor"), "{ended:?}");
 }

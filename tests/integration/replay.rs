@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use grounding::GroundingNode;
 use grounding::shell::GroundingProgram;
+use grounding::{GroundingNode, In};
 use messages::{Hypothesis, Utterance};
 use recording::list::summary;
 use rustix::process::Signal;
@@ -109,7 +109,8 @@ fn flight_of_another_reader(folder: &Path) {
     for (seq, text) in [(1, "the white bowl"), (2, "anything but the white plastic one")] {
         let mut utterance = Utterance { seq, ..Utterance::default() };
         utterance.set_hypotheses(&[Hypothesis::certain(text.to_owned())]).unwrap();
-        let (event, mut effects) = (Event::Message(utterance.into()), Effects::default());
+        let (event, mut effects) =
+            (Event::Message(In::Utterance(utterance.into())), Effects::default());
         tap.event(&event, Time(seq * 1_000_000_000));
         node.on(event, Time(seq * 1_000_000_000), &mut effects);
         tap.stated(&effects);
@@ -127,8 +128,8 @@ fn replay_stops_at_the_first_difference_with_exit_code_70() {
     flight_of_another_reader(folder.path());
     let ended = replay(folder.path(), &[]);
     assert_eq!(ended.code, Some(70), "{ended:?}");
-    for part in ["grounding-", "outputs[0].readings[0]", "recorded ", "recomputed ", "events up to"]
-    {
+    let field = "outputs[0].Observation.readings[0]";
+    for part in ["grounding-", field, "recorded ", "recomputed ", "events up to"] {
         assert!(ended.stdout.contains(part), "{part}: {}", ended.stdout);
     }
     let report = replay(folder.path(), &["--json"]).json();

@@ -9,6 +9,7 @@ mod group;
 pub mod hammer;
 pub mod isolated;
 pub mod link;
+pub mod markdown;
 pub mod ros1;
 pub mod ros2;
 pub mod second_user;

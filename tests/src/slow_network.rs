@@ -66,7 +66,7 @@ struct State {
 impl Machine {
     /// Makes a machine with one device; returns it with the device.
     fn new(address: &'static str) -> (Self, File) {
-        let make = || {
+        let make = move || {
             // SAFETY: only the network of this thread is another one; descriptors and memory stay shared.
             #[allow(unsafe_code)]
             unsafe { rustix::thread::unshare_unsafe(UnshareFlags::NEWNET) }.expect("a namespace");

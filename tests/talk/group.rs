@@ -73,7 +73,7 @@ struct Saying {
 #[derive(Default)]
 struct Inboxes {
     speech: Vec<speech::In<'static>>,
-    grounding: Vec<messages::MessageRef<'static, messages::Utterance>>,
+    grounding: Vec<grounding::In<'static>>,
     policy: Vec<policy::In<'static>>,
     arm: Vec<arm::In<'static>>,
 }
@@ -174,9 +174,11 @@ impl Group {
         let outputs = self.speech.wake(speech, now, &mut self.faults);
         self.route_speech(outputs);
         let outputs = self.grounding.wake(grounding, now, &mut self.faults);
-        self.inboxes
-            .policy
-            .extend(outputs.into_iter().map(|it| policy::In::Observation(it.into())));
+        let observations = outputs.into_iter().filter_map(|it| match it {
+            grounding::Out::Observation(observation) => Some(observation),
+            grounding::Out::Ask(_) => None,
+        });
+        self.inboxes.policy.extend(observations.map(|it| policy::In::Observation(it.into())));
         let outputs = self.policy.wake(policy, now, &mut self.faults);
         self.route_policy(outputs);
         let outputs = self.arm.wake(arm, now, &mut self.faults);
@@ -186,7 +188,9 @@ impl Group {
     fn route_speech(&mut self, outputs: Vec<<SpeechNode as Node>::Out>) {
         for output in outputs {
             match output {
-                speech::Out::Utterance(utterance) => self.inboxes.grounding.push(utterance.into()),
+                speech::Out::Utterance(utterance) => {
+                    self.inboxes.grounding.push(grounding::In::Utterance(utterance.into()));
+                }
                 speech::Out::Presented(presented) => {
                     self.inboxes.policy.push(policy::In::Presented(presented));
                 }

@@ -14,12 +14,23 @@ pub mod robot;
 pub mod servo;
 pub mod shell;
 
+use std::process::ExitCode;
+
 use messages::robot::{Drill, Order, Report};
 use perception::{CameraSettings, Sighting};
 use robot::{Body, Robot};
 use scene::Scene;
 use serde::{Deserialize, Serialize};
 use service::{Effects, Event, Node, NodeError, Span, Time};
+
+/// Runs the program: a service of a group, or, with the name of a drill, fault injection into one that runs.
+pub fn run() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    match words.first().and_then(|word| fault_injection::kind(word)) {
+        Some(kind) => fault_injection::run(kind, &words[1..]),
+        None => service::service_loop::run::<shell::BaxterProgram>(),
+    }
+}
 
 /// Inputs of the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

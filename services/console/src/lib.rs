@@ -18,6 +18,7 @@ mod history;
 mod hub;
 mod live;
 mod metrics;
+mod scenes;
 mod server;
 mod service;
 mod study;

@@ -27,6 +27,7 @@ use crate::hub::outbound::{CameraSettings, PageSettings, VoiceSettings};
 use crate::hub::{Channels, Hub};
 use crate::live::{self, Live};
 use crate::metrics::Metrics;
+use crate::scenes::{Desk, Scenes};
 use crate::server::connections::Limits;
 use crate::server::web::Web;
 use crate::server::{Access, App};
@@ -90,9 +91,13 @@ impl Console {
         let channels = Channels { commands: commands.clone(), motions, restarts };
         let (limits, is_live_possible) = limits(settings.console.viewers_max);
         let history = History::start(paths).map_err(failed("history's thread"))?;
+        let in_force = settings.scene_file().text.clone();
+        let desk = Desk::new(paths.control_socket(), in_force, scenes_lock(settings));
+        let scenes = Scenes::start(desk).map_err(failed("scene editor's thread"))?;
         let session = random_secret().map_err(failed("session"))?;
         let app = Arc::new(App {
             history,
+            scenes,
             hub: Hub::new(channels, limits.viewers, handover, Metrics::new(paths.recordings())),
             live: Live::new(settings, paths.name().as_str(), &session, is_live_possible),
             access: access(settings, paths)?,
@@ -111,6 +116,18 @@ impl Console {
         let inbox = Inbox { commands: command_inbox, motions: motion_inbox };
         Ok(Self { app, bridge, inbox, wake_listener, web, is_ending: false })
     }
+}
+
+/// Why scenes are not changed from the page, if they are not.
+fn scenes_lock(settings: &Settings) -> Option<String> {
+    let why = match (settings.study.enabled, settings.console.edit_scenes) {
+        (true, _) => {
+            "a study is enabled, and its scene is part of it; help: set study.enabled = false"
+        }
+        (_, false) => "scenes are not edited here; help: set console.edit_scenes = true",
+        _ => return None,
+    };
+    Some(why.to_owned())
 }
 
 fn access(settings: &Settings, paths: &GroupPaths) -> Result<Access, Failure> {

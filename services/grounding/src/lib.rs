@@ -4,108 +4,117 @@
 //! judge which one that is. So every hypothesis is read as an answer to each question that it may
 //! answer, and to none.
 //!
-//! Stateless: an observation depends on the scene and the utterance alone, so this service can be
-//! killed or swapped at any moment and forgets nothing.
+//! A language model may read in place of the built-in reader (`dialogue.model`): its answers are events, observations
+//! keep the order of the utterances, and each is published in time.
+//!
+//! Nothing is needed after a restart: an observation depends on the scene, the utterance and the model alone, so
+//! this service can be killed or swapped at any moment and forgets nothing.
 
-mod interpret;
+mod io;
+mod model_queue;
+mod model_worker;
+mod rules;
 pub mod shell;
+mod slot;
 
-use interpret::interpretations;
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+mod tests;
+
+pub use io::{In, ModelAnswer, ModelRequest, Out};
+pub use model_queue::ModelUse;
+
 use language::Reader;
-use messages::{
-    Fits, FixedText, Interpretation, MessageRef, Observation, Utterance, WireError, WireReading,
-};
-use scene::{Reading, Scene};
+use messages::{Utterance, WireError};
+use model_queue::{ModelQueue, Read};
+use rules::Rules;
+use scene::Scene;
 use service::{Effects, Event, Never, Node, NodeError, Time};
+use whichone_sdk::grounding::{Grounder, Heard, message};
 
-/// The scene and its reader.
+/// The scene and its readers.
 pub struct Config {
     /// The scene.
     pub scene: Scene,
     /// Reads text with that scene's words.
     pub reader: Reader,
+    /// How the model is used, if there is one.
+    pub model: Option<ModelUse>,
 }
 
 /// Grounding as a reducer.
 pub struct GroundingNode {
     config: Config,
+    queue: Option<ModelQueue>,
 }
 
 impl Node for GroundingNode {
     type Config = Config;
-    type In<'a> = MessageRef<'a, Utterance>;
-    type Out = Box<Observation>;
+    type In<'a> = In<'a>;
+    type Out = Out;
     type Record = Never;
 
     fn recover(config: Config, _records: Vec<Never>) -> Result<Self, NodeError> {
-        Ok(Self { config })
+        let queue = config.model.clone().map(ModelQueue::new);
+        Ok(Self { config, queue })
     }
 
-    fn on(
-        &mut self,
-        event: Event<MessageRef<'_, Utterance>>,
-        now: Time,
-        fx: &mut Effects<Box<Observation>, Never>,
-    ) {
+    fn on(&mut self, event: Event<In<'_>>, now: Time, fx: &mut Effects<Out, Never>) {
+        let Self { config, queue } = self;
         match event {
-            Event::Message(utterance) => match self.read(&utterance, now) {
-                Ok(observation) => fx.publish(Box::new(observation)),
+            Event::Message(In::Utterance(utterance)) => match (config.read(&utterance, now), queue)
+            {
+                (Ok(read), Some(queue)) => queue.take(read, &config.scene, now, fx),
+                (Ok(read), None) => fx.publish(Out::Observation(read.observation)),
                 // Speech sends it again; a broken sender shows in its input age.
-                Err(error) => tracing::warn!(seq = utterance.seq, %error, "utterance refused"),
+                (Err(error), _) => tracing::warn!(seq = utterance.seq, %error, "utterance refused"),
             },
+            Event::Message(In::Answer(answer)) => {
+                if let Some(queue) = queue {
+                    queue.answer(answer, &config.scene, now, fx);
+                }
+            }
+            Event::Tick => {
+                if let Some(queue) = queue {
+                    queue.expire(now, fx);
+                }
+            }
             Event::Shutdown => fx.exit(),
-            Event::SetAside(_) | Event::Started | Event::Tick => {}
+            Event::SetAside(_) | Event::Started => {}
         }
     }
 
     fn deadline(&self) -> Option<Time> {
-        None
+        self.queue.as_ref()?.deadline()
+    }
+
+    fn pending_since(&self) -> Option<Time> {
+        self.queue.as_ref()?.pending_since()
+    }
+
+    fn status(&self) -> Option<&str> {
+        self.queue.as_ref()?.status()
     }
 
     fn checkpoint(&self) -> Option<Vec<u8>> {
-        Some(Vec::new())
+        self.queue.as_ref().map_or(Some(Vec::new()), ModelQueue::checkpoint)
     }
 
-    fn resume(config: Config, _checkpoint: &[u8]) -> Result<Self, NodeError> {
-        Self::recover(config, Vec::new())
+    fn resume(config: Config, checkpoint: &[u8]) -> Result<Self, NodeError> {
+        let resumed = |settings| {
+            ModelQueue::resumed(settings, checkpoint).ok_or_else(NodeError::foreign_checkpoint)
+        };
+        let queue = config.model.clone().map(resumed).transpose()?;
+        Ok(Self { config, queue })
     }
 }
 
-impl GroundingNode {
-    fn read(&self, utterance: &Utterance, now: Time) -> Result<Observation, WireError> {
-        let mut observation = Observation {
-            seq: utterance.seq,
-            asked: utterance.asked,
-            asked_count: utterance.asked_count,
-            source: utterance.source,
-            scene_key: self.config.scene.key(),
-            gesture: utterance.gesture.target_m()?.into(),
-            onset_ns: utterance.onset_ns,
-            end_ns: utterance.end_ns,
-            accepted_ns: utterance.accepted_ns,
-            grounded_ns: now.ns(),
-            ..Observation::default()
-        };
-        let heard = utterance.hypotheses()?;
-        let mut meant = if heard.is_empty() && utterance.gesture.target_m()?.is_some() {
-            // A pointing gesture without words: one reading, without a word.
-            vec![Interpretation { weight: 1.0, answers: None, reading: Reading::default() }]
-        } else {
-            interpretations(&self.config, &heard, utterance.asked()?)?
-        };
-        meant.truncate(observation.readings.len());
-        observation.reading_count = meant.len() as u8;
-        for (slot, interpretation) in observation.readings.iter_mut().zip(&meant) {
-            let (wire, fits) = WireReading::new(interpretation);
-            if fits == Fits::Cut {
-                tracing::warn!(seq = utterance.seq, "more scene words than a message holds");
-            }
-            *slot = wire;
-        }
-        if let Some(word) = heard.first().and_then(|best| interpret::unknown(&self.config, best)) {
-            observation.unknown = FixedText::truncated(&word.text);
-            observation.unknown_role = word.role.into();
-        }
-        Ok(observation)
+impl Config {
+    /// Reads an utterance with the built-in reader.
+    fn read(&self, utterance: &Utterance, now: Time) -> Result<Read, WireError> {
+        let heard = Heard::new(utterance, &self.scene)?;
+        let grounded = Rules(&self.reader).ground(&heard, &self.scene);
+        let observation = Box::new(message(utterance, &heard, &self.scene, &grounded, now));
+        Ok(Read { observation, heard, grounded })
     }
 }

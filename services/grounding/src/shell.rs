@@ -1,14 +1,19 @@
 //! Grounding's topics and configuration.
 
-use crate::{Config, GroundingNode};
-use config::Settings;
+use crate::io::{In, Out};
+use crate::model_worker::ModelWorker;
+use crate::{Config, GroundingNode, ModelUse};
+use config::{LanguageModel, Settings};
 use language::{Language, Reader as TextReader};
 use messages::Service;
-use messages::{MessageRef, Observation, Utterance, topics};
+use messages::{Observation, Utterance, topics};
+use model_reader::Client;
+use service::Span;
 use service::bus::{PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
+use service::worker_channel::DeviceSender;
 
 /// Grounding as a program. `--language paper|careful` overrides the setting, so that a group can
 /// be swapped from one reading to the other while it runs.
@@ -26,8 +31,18 @@ impl Program for GroundingProgram {
     fn config(environment: &Environment, settings: &Settings) -> Result<Config, Failure> {
         let language = language(&environment.arguments, settings.dialogue.language)?;
         let reader = TextReader::new(&settings.scene, language);
-        Ok(Config { scene: settings.scene.clone(), reader })
+        let model = model(language, settings).map(|model| ModelUse {
+            name: model.name.clone(),
+            timeout: Span::from_s(model.timeout.as_secs_f64()),
+            calibration: model.calibration,
+        });
+        Ok(Config { scene: settings.scene.clone(), reader, model })
     }
+}
+
+/// The model that is used: none for the paper's reading, which is that of its word lists.
+fn model(language: Language, settings: &Settings) -> Option<&LanguageModel> {
+    settings.dialogue.model.as_ref().filter(|_| language == Language::Careful)
 }
 
 fn language(arguments: &[String], configured: Language) -> Result<Language, Failure> {
@@ -42,26 +57,52 @@ fn language(arguments: &[String], configured: Language) -> Result<Language, Fail
     }
 }
 
-/// Grounding's topics.
+/// Grounding's topics and its model.
 #[derive(Debug)]
 pub struct GroundingShell {
     utterances: Reader<Utterance>,
     observations: Writer<Observation>,
+    model: Option<ModelWorker>,
+    inbox: DeviceSender<In<'static>>,
+    /// Answers in place of the model that did not fit into the inbox.
+    replies: Vec<In<'static>>,
 }
 
 impl Shell<GroundingNode> for GroundingShell {
-    fn open(context: &Context<'_, MessageRef<'static, Utterance>>) -> Result<Self, Failure> {
+    fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
+        let (settings, inbox) = (context.settings, context.devices.clone());
+        let language = language(&context.environment.arguments, settings.dialogue.language)?;
+        let model = model(language, settings).map(|model| {
+            let client = Client::new(model, &settings.scene)
+                .map_err(|error| Failure::new(Exit::Config, error.to_string()))?;
+            ModelWorker::start(client, inbox.clone())
+                .map_err(|error| Failure::new(Exit::NotReached, format!("thread: {error}")))
+        });
         Ok(Self {
             utterances: context.bus.reader(&topics::UTTERANCE)?,
             observations: context.bus.writer(&topics::OBSERVATION)?,
+            model: model.transpose()?,
+            inbox,
+            replies: Vec::new(),
         })
     }
 
-    fn drain(&mut self, take: &mut dyn FnMut(MessageRef<'_, Utterance>)) -> Result<(), PortError> {
-        self.utterances.drain(|utterance| take(utterance.into()))
+    fn drain(&mut self, take: &mut dyn FnMut(In<'_>)) -> Result<(), PortError> {
+        self.replies.drain(..).for_each(&mut *take);
+        self.utterances.drain(|utterance| take(In::Utterance(utterance.into())))
     }
 
-    fn publish(&mut self, observation: Box<Observation>) -> Result<(), PortError> {
-        self.observations.send(&observation)
+    fn publish(&mut self, output: Out) -> Result<(), PortError> {
+        match output {
+            Out::Observation(observation) => return self.observations.send(&observation),
+            Out::Ask(request) => {
+                let submitted = self.model.as_ref().map(|model| model.submit(request));
+                if let Some(Err(answer)) = submitted {
+                    // Without waiting: the main loop must not wait for itself.
+                    self.replies.extend(self.inbox.offer(In::Answer(answer)).err());
+                }
+            }
+        }
+        Ok(())
     }
 }

@@ -8,6 +8,7 @@ mod checkpoint;
 mod inspection;
 mod journal_record;
 mod perceived;
+pub mod planner;
 mod policy_cache;
 pub mod shell;
 mod view;

@@ -19,10 +19,19 @@ pub mod types;
 pub mod wire;
 pub mod xmlrpc;
 
+use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use service::exit::Exit;
+
 static REPLACED: AtomicBool = AtomicBool::new(false);
+
+/// Runs the service's program.
+pub fn run() -> ExitCode {
+    let code = service::service_loop::run::<bridge::Ros1Program>();
+    if was_replaced() { Exit::Config.code() } else { code }
+}
 
 /// Notes that the master has asked this node to end.
 fn replaced(reason: &str) {
@@ -33,7 +42,7 @@ fn replaced(reason: &str) {
 
 /// Returns whether the bridge ends because another node has taken its place. Restarted, it would take
 /// the place back, and so on.
-pub fn was_replaced() -> bool {
+fn was_replaced() -> bool {
     REPLACED.load(Ordering::Acquire)
 }
 

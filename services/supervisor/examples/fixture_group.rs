@@ -63,7 +63,7 @@ fn main() -> ExitCode {
     let paths = GroupPaths::resolve(&GroupName::new(&arguments[0]).unwrap()).unwrap();
     let file = PathBuf::from(&arguments[1]);
     let fresh = arguments.iter().any(|argument| argument == "--fresh");
-    match Supervisor::start(paths, Box::new(move || load(&file)), fresh) {
+    match Supervisor::start(paths, Box::new(move |scene| load(&file, scene)), fresh) {
         Ok(supervisor) => supervisor.run().code(),
         Err(error) => {
             tracing::error!("{error}");
@@ -72,7 +72,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn load(file: &std::path::Path) -> Result<Configuration, Vec<String>> {
+fn load(file: &std::path::Path, scene: Option<&str>) -> Result<Configuration, Vec<String>> {
     let text = std::fs::read_to_string(file).map_err(|error| vec![error.to_string()])?;
     let group: Group = serde_json::from_str(&text).map_err(|error| vec![error.to_string()])?;
     Ok(Configuration {
@@ -92,9 +92,10 @@ fn load(file: &std::path::Path) -> Result<Configuration, Vec<String>> {
                 files_kept: 2,
             },
         },
-        scene: "bowls".into(),
+        scene: scene.unwrap_or("bowls").into(),
         profile: None,
         directory: file.parent().unwrap().to_owned(),
+        set: Vec::new(),
         shared_memory_free_min_mib: group.shared_memory_free_min_mib,
         publish: Box::new(move |paths| std::fs::write(paths.run().join("published"), &text)),
     })

@@ -10,12 +10,13 @@ use messages::Service;
 use service::group::GroupPaths;
 use service::kept_settings;
 use service::launch::Options;
+use service::wakes::Wakes;
 
 pub use config::{Log, Restart, RestartLimits};
 
-/// Loads the configuration: at the start and on reload. On failure,
-/// every problem, one line each.
-pub type Load = Box<dyn FnMut() -> Result<Configuration, Vec<String>>>;
+/// Loads the configuration: at the start and on reload; with the scene that an operator has chosen since, if
+/// any. On failure, every problem, one line each.
+pub type Load = Box<dyn FnMut(Option<&str>) -> Result<Configuration, Vec<String>>>;
 
 /// Writes the settings for the services into the group's run folder, and keeps them beside the journals.
 pub type Publish = Box<dyn Fn(&GroupPaths) -> io::Result<()>>;
@@ -30,6 +31,8 @@ pub struct Configuration {
     pub profile: Option<String>,
     /// The folder that it was read from.
     pub directory: PathBuf,
+    /// Overrides of its values.
+    pub set: Vec<(String, String)>,
     /// Shared memory that must be free for the group to start, MiB.
     pub shared_memory_free_min_mib: u64,
     /// Publishes it to the services.
@@ -78,16 +81,29 @@ pub struct ServiceSpec {
 
 /// Reads the configuration folder that `options` name.
 pub fn from_settings(options: Options) -> Load {
-    Box::new(move || {
-        let loaded = preflight::load(&options.config, options.profile.as_deref(), &options.set);
-        match loaded {
-            Ok(settings) => Ok(configuration(settings, &options)),
+    Box::new(move |scene| {
+        let set = with_scene(&options.set, scene);
+        match preflight::load(&options.config, options.profile.as_deref(), &set) {
+            Ok(settings) => Ok(configuration(settings, &options, set)),
             Err(problems) => Err(problems.iter().map(ToString::to_string).collect()),
         }
     })
 }
 
-fn configuration(settings: Settings, options: &Options) -> Configuration {
+/// The overrides with another scene.
+fn with_scene(set: &[(String, String)], scene: Option<&str>) -> Vec<(String, String)> {
+    const KEY: &str = "group.scene";
+    let Some(scene) = scene else { return set.to_vec() };
+    let others = set.iter().filter(|(key, _)| key != KEY).cloned();
+    // A quoted text, so that a scene called `7` is not a number.
+    others.chain([(KEY.to_owned(), format!("{scene:?}"))]).collect()
+}
+
+fn configuration(
+    settings: Settings,
+    options: &Options,
+    set: Vec<(String, String)>,
+) -> Configuration {
     let group = &settings.group;
     Configuration {
         spec: GroupSpec {
@@ -98,13 +114,24 @@ fn configuration(settings: Settings, options: &Options) -> Configuration {
         scene: group.scene.clone(),
         profile: options.profile.clone(),
         directory: options.config.clone(),
+        set,
         shared_memory_free_min_mib: group.shared_memory_free_min_mib.into(),
         publish: Box::new(move |paths| {
             // Those in force change last, when nothing can fail any more.
             kept_settings::keep(paths, &settings)?;
+            wakes(&settings).save(paths)?;
+            settings.write_words(&paths.run())?;
             settings.write_snapshot(&paths.run())
         }),
     }
+}
+
+/// What wakes the services beside the table of topics.
+fn wakes(settings: &Settings) -> Wakes {
+    let services = settings.group.services.iter();
+    Wakes::new(services.flat_map(|service| {
+        service.reads.iter().map(|topic| (service.name.as_str(), topic.as_str()))
+    }))
 }
 
 fn service(service: &ServiceConfig, settings: &Settings) -> ServiceSpec {
@@ -145,7 +172,9 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
         // Each recording holds the settings in force, and each mirror begins with them.
         Some(Service::Recorder | Service::Link) => (&Section::ALL, true),
         Some(Service::Ros2) => (&[Section::Ros2, Section::Arm], false),
-        Some(Service::Robot) | None => (&[Section::Speech, Section::Dialogue, Section::Arm], true),
+        Some(Service::Robot | Service::Other(_)) | None => {
+            (&[Section::Speech, Section::Dialogue, Section::Arm], true)
+        }
     };
     let texts = sections.iter().map(|&section| settings.section_text(section));
     let durations = decides.then(|| settings.durations_text());
@@ -155,4 +184,20 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
         (name == Service::Console.name()).then(|| settings.group.recorder.sound.to_string());
     let texts = texts.chain(sound);
     texts.chain(durations).chain([settings.perception_text()]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chosen_scene_replaces_that_of_the_command_line() {
+        let set = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
+            pairs.iter().map(|(key, value)| ((*key).into(), (*value).into())).collect()
+        };
+        let given = set(&[("group.scene", "bowls"), ("arm.limb", "left")]);
+        assert_eq!(with_scene(&given, None), given);
+        let expected = set(&[("arm.limb", "left"), ("group.scene", "\"7\"")]);
+        assert_eq!(with_scene(&given, Some("7")), expected);
+    }
 }

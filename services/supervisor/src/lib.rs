@@ -9,6 +9,7 @@
 
 use std::time::Duration;
 
+pub mod cli;
 pub mod configuration;
 pub mod group;
 pub mod machine;

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, ErrorKind};
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use rustix::fs::{Access, access};
 use rustix::process::Pid;
@@ -15,6 +15,7 @@ use crate::before_exec;
 use crate::child::Child;
 use crate::lifeline::Lifeline;
 use service::exit::ProcessExit;
+use service::launch;
 
 /// A program could not be started.
 #[derive(Debug, Error)]
@@ -60,7 +61,7 @@ pub(crate) fn spawn(
 ) -> Result<Child, SpawnError> {
     let program = find_program(words, directory)?;
     let failed = |error| SpawnError::Io(program.clone(), error);
-    let mut command = Command::new(&program);
+    let mut command = launch::command(&program);
     command
         .args(&words[1..])
         .current_dir(directory)
@@ -82,7 +83,7 @@ pub(crate) fn spawn(
 }
 
 /// The path of a command's program: searched for beside this program and in `PATH` where it has no
-/// slash, else taken as seen from `directory`.
+/// slash, else taken as seen from `directory`. One that is absent may be run by the `whichone` beside it.
 pub(crate) fn find_program(command: &[String], directory: &Path) -> Result<PathBuf, SpawnError> {
     let program = command.first().filter(|name| !name.is_empty()).ok_or(SpawnError::Empty)?;
     if program.contains('/') {
@@ -90,22 +91,27 @@ pub(crate) fn find_program(command: &[String], directory: &Path) -> Result<PathB
         return match path.metadata() {
             Ok(meta) if meta.is_file() && is_executable(&path) => Ok(path),
             Ok(_) => Err(SpawnError::NotExecutable(path)),
+            Err(_) if launch::host_of(&path).is_some() => Ok(path),
             Err(_) => Err(SpawnError::Missing(path.display().to_string())),
         };
     }
-    let beside = std::env::current_exe().ok();
-    let beside = beside.and_then(|own| Some(own.parent()?.as_os_str().to_owned()));
+    let own = std::env::current_exe().ok();
+    let beside = own.and_then(|own| Some(own.parent()?.join(program)));
     let path = std::env::var_os("PATH").unwrap_or_default();
-    let mut folders = beside.iter().chain([&path]);
-    folders
-        .find_map(|folders| search(program, folders))
+    beside
+        .filter(|path| is_program(path) || launch::host_of(path).is_some())
+        .or_else(|| search(program, &path))
         .ok_or_else(|| SpawnError::Missing(program.clone()))
 }
 
 fn search(program: &str, path: &OsStr) -> Option<PathBuf> {
     std::env::split_paths(path)
         .map(|folder| folder.join(program))
-        .find(|candidate| candidate.is_file() && is_executable(candidate))
+        .find(|candidate| is_program(candidate))
+}
+
+fn is_program(path: &Path) -> bool {
+    path.is_file() && is_executable(path)
 }
 
 fn is_executable(path: &Path) -> bool {
@@ -150,5 +156,8 @@ mod tests {
         assert!(matches!(find(&["./none"], anywhere), Err(SpawnError::Missing(_))));
         let found = find(&["./plain"], folder.path());
         assert!(matches!(found, Err(SpawnError::NotExecutable(_))), "{found:?}");
+        std::fs::write(folder.path().join("whichone"), "").unwrap();
+        let hosted = folder.path().join("./whichone-arm");
+        assert_eq!(find(&["./whichone-arm"], folder.path()).unwrap(), hosted);
     }
 }

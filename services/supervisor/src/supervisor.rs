@@ -50,6 +50,8 @@ pub struct Supervisor {
     around: Surroundings,
     configuration: Configuration,
     load: Load,
+    /// The scene that an operator has chosen since the start.
+    scene: Option<String>,
     group: Group,
     services: Vec<Service>,
     admin: Option<Admin>,

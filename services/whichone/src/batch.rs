@@ -15,11 +15,13 @@ use crate::cli::InputArgs;
 use crate::output::Output;
 
 mod belief;
+mod calibrate;
 mod ground;
 mod kinematics;
 mod plan;
 
 pub use belief::belief;
+pub use calibrate::{Calibrator, calibrate};
 pub use ground::{Grounder, ground};
 pub use kinematics::{fk, ik};
 pub use plan::{Decider, Problem, plan};

@@ -1,6 +1,7 @@
 //! The command surface: every verb, its arguments and their help.
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 use clap::error::{ContextKind, ContextValue};
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -22,8 +23,8 @@ mod talk;
 pub use arm::{ArmPlotArgs, ArmVerb};
 pub use batch::{ArmArgs, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm};
 pub use group::{
-    CheckArgs, ConfigArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs,
-    SwapArgs, UpArgs, WaitFor,
+    CheckArgs, ConfigArgs, ConformArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs,
+    ServiceArgs, SwapArgs, UpArgs, WaitFor,
 };
 pub use link::LinkArgs;
 pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
@@ -45,6 +46,7 @@ pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
     version,
     subcommand_required = true,
     arg_required_else_help = true,
+    args_override_self = true,
     after_help = EXIT_CODES
 )]
 pub struct Cli {
@@ -67,8 +69,21 @@ pub struct Cli {
 }
 
 /// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
-const WITHOUT_GROUP: [&str; 9] =
-    ["check", "scene", "completions", "belief", "ground", "plan", "arm", "fk", "ik"];
+const WITHOUT_GROUP: [&str; 13] = [
+    "check",
+    "conform",
+    "init",
+    "scene",
+    "completions",
+    "complete",
+    "man",
+    "belief",
+    "ground",
+    "plan",
+    "arm",
+    "fk",
+    "ik",
+];
 
 impl Cli {
     /// Returns the definition of the command line, from which help and completions are made.
@@ -156,6 +171,16 @@ pub enum Verb {
     Reload(ReloadArgs),
     /// Check a configuration: list every problem, or the services that would run.
     Check(CheckArgs),
+    /// Write the shipped configuration into a folder, to be edited: each key is explained there.
+    ///
+    /// A configuration is looked for in this order: `--config`, `$WHICHONE_CONFIG`, `./config`, `config` beside
+    /// the program or above it, `~/.config/whichone`, `/etc/whichone`, and last the shipped one, which is
+    /// built in.
+    Init {
+        /// The folder, which is created. Files that are there are not replaced.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
     /// Write, show, check or complete a scene file.
     Scene {
         /// Action.
@@ -166,6 +191,12 @@ pub enum Verb {
     ///
     /// Rolls back to the old program if the new one does not become ready.
     Swap(SwapArgs),
+    /// Test a service of your own against the contract, in a group of its own.
+    ///
+    /// Prints a line for each rule: readiness, heartbeats, identity, topics, messages that make no sense,
+    /// restart, end; for a grounder also its answers, and their time. The exit code is 0 if every rule
+    /// holds. Nothing of it touches a running group.
+    Conform(ConformArgs),
     /// Say something to the robot.
     Say(SayArgs),
     /// Point at a place, as the user in front of the robot.
@@ -183,6 +214,9 @@ pub enum Verb {
     /// `speech.microphone.mode` other than `off`.
     Talk(TalkArgs),
     /// Show the belief, the dialogue, the arm and the services, live.
+    ///
+    /// Keys: q quits, s stops the arm's motion, r and Enter resume it, t types to the robot. Ctrl-S stops
+    /// motion also while you type.
     Watch(WatchArgs),
     /// Talk to the robot in this terminal; starts a group if none is running.
     Chat(ChatArgs),
@@ -222,10 +256,27 @@ pub enum Verb {
     /// List, verify or set aside the journals.
     Journal(JournalArgs),
     /// Print a completion script for a shell.
+    ///
+    /// It completes verbs and options; in bash, zsh and fish also the names of groups, services, scenes,
+    /// profiles, settings and objects, as the running group or the configuration has them.
     Completions {
         /// The shell.
         #[arg(value_enum)]
         shell: Shell,
+    },
+    /// Print the names that the last word of a command line may be, for those scripts.
+    #[command(hide = true)]
+    Complete {
+        /// The line so far, the word that is being written last.
+        #[arg(last = true, required = true)]
+        line: Vec<String>,
+    },
+    /// Write pages for `man`, one per verb.
+    #[command(hide = true)]
+    Man {
+        /// The folder of the pages, which is created.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
     },
     /// Check this machine for missing dependencies and suggest fixes.
     ///

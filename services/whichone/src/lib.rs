@@ -16,14 +16,17 @@ pub mod cli;
 pub mod described_arm;
 pub mod output;
 pub mod scene_file;
+pub mod shipped;
 
 pub mod verbs;
 
 /// Result of a verb: its exit code, or a failure to report.
 pub type Outcome = Result<Exit, Failure>;
 
-/// Runs the command line `arguments`, program name first, and returns the exit code of the process.
-pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
+/// Runs the command line `arguments`, program name first, and returns the exit code of the process. The
+/// configuration in `files` is built in.
+pub fn run(arguments: impl IntoIterator<Item = OsString>, files: shipped::Files) -> Exit {
+    shipped::provide(files);
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let json = arguments.iter().take_while(|word| *word != "--").any(|word| word == "--json");
     let cli = match Cli::parse_line(arguments) {

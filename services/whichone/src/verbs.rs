@@ -1,27 +1,29 @@
 //! The verbs, a file each or a family a file.
 
-use clap_complete::{Shell, generate};
 use messages::MotionOrder;
 use service::control::Request;
 use service::group::GroupPaths;
 
 use crate::Outcome;
 use crate::batch;
-use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, StudyVerb, Verb};
+use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, GroundArgs, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;
 use crate::output::Output;
-use service::exit::{Exit, Failure};
+use service::exit::Failure;
 
 mod arm;
 mod availability;
 mod await_pick;
 mod chat;
 mod check;
+mod completion;
+mod conform;
 mod console;
 mod conversation;
 mod doctor;
 mod export;
 mod hearing;
+mod init;
 mod inspection;
 mod interrupt;
 mod leftovers;
@@ -62,9 +64,10 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Release(args) => operate::on_service(&paths()?, Request::Release, args, out),
         Verb::Console(args) => console::console(&paths()?, &args, out),
         Verb::Logs(args) => logs::logs(&paths()?, &args, out),
-        Verb::Reload(args) => operate::reload(&paths()?, args.timeout, out),
+        Verb::Reload(args) => operate::reload(&paths()?, args, out),
         Verb::Check(args) => check::check(&args, out),
         Verb::Swap(args) => operate::swap(&paths()?, args, out),
+        Verb::Conform(args) => conform::conform(&args, out),
         Verb::Say(args) => speak::say(&paths()?, &args, out),
         Verb::Point(args) => speak::point(&paths()?, &args, out),
         Verb::Objects(args) => objects::objects(&paths()?, &args, out),
@@ -86,9 +89,15 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Replay(args) => replay::replay(paths, &args, out),
         Verb::Scene { what } => scene::scene(what, out),
         Verb::Journal(args) => inspection::journal(&paths()?, &args, out),
-        Verb::Completions { shell } => completions(shell, out),
+        Verb::Completions { shell } => completion::completions(shell, out),
+        Verb::Complete { line } => completion::complete(&line, out),
+        Verb::Init { folder } => init::init(&folder, out),
+        Verb::Man { folder } => init::man(&folder, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
         Verb::Belief(args) => batch::belief(batch::open(&args)?, out),
+        Verb::Ground(GroundArgs { calibrate: Some(file), scene, config, .. }) => {
+            batch::calibrate(&planning::calibrator(&scene, &config)?, &file, out)
+        }
         Verb::Ground(args) => {
             let grounder = planning::grounder(&args)?;
             batch::ground(&grounder, batch::open(&args.input)?, out)
@@ -108,14 +117,6 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
             batch::ik(&chain, batch::open(&args.input)?, out)
         }
     }
-}
-
-/// Prints the script that completes command lines in a shell.
-fn completions(shell: Shell, out: &mut Output<'_>) -> Outcome {
-    let mut script = Vec::new();
-    generate(shell, &mut Cli::definition(), "whichone", &mut script);
-    out.text(&String::from_utf8_lossy(&script))?;
-    Ok(Exit::Ok)
 }
 
 fn described_arm(args: &ArmArgs) -> Result<DescribedArm, Failure> {

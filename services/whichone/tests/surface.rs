@@ -83,3 +83,12 @@ fn group_is_listed_where_it_means_something_and_accepted_everywhere() {
 fn clap_definition_is_consistent() {
     Cli::definition().debug_assert();
 }
+
+/// Scripts give options of their own before those of their users.
+#[test]
+fn option_given_twice_has_its_last_value() {
+    let words = "whichone up --detach --wait ready --detach --timeout 5 --timeout 7";
+    let matches = Cli::definition().try_get_matches_from(words.split(' ')).unwrap();
+    let up = matches.subcommand_matches("up").unwrap();
+    assert_eq!(up.get_one::<std::time::Duration>("timeout").unwrap().as_secs(), 7);
+}

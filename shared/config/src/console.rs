@@ -30,6 +30,8 @@ pub struct Console {
     pub language: String,
     /// Origins, besides the console's own, whose pages may open the live view.
     pub foxglove_origins: Vec<String>,
+    /// Operators may save scene files from the page and put them into force.
+    pub edit_scenes: bool,
     /// A camera whose picture the page shows.
     pub camera: Option<Camera>,
 }
@@ -59,6 +61,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Console {
         handover: f.seconds("handover_s", 1.0..=300.0),
         language: language(f),
         foxglove_origins: foxglove_origins(f),
+        edit_scenes: f.flag("edit_scenes"),
         camera: camera(f),
     }
 }

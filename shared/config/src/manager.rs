@@ -6,7 +6,7 @@ use dialogue::{Confusion, Model, NotAConfusion};
 use language::Language;
 use scene::{Scene, StableHash};
 
-use crate::{Section, Settings};
+use crate::Settings;
 
 /// Error of building a dialogue manager from settings.
 #[derive(Debug, thiserror::Error)]
@@ -44,14 +44,14 @@ impl Settings {
     /// # Errors
     /// An unknown planner.
     pub fn manager_of_key(&self, settings_key: u64) -> Result<Manager, ManagerError> {
-        let mut known = registry::names().into_iter();
+        let mut known = registry::known().into_iter();
         let planner = known.find(|planner| self.manager_key(planner) == settings_key);
         self.manager_with(planner.unwrap_or(&self.dialogue.planner))
     }
 
     /// Returns whether the key is that of these settings, perhaps with another planner.
     pub fn makes_key(&self, settings_key: u64) -> bool {
-        registry::names().into_iter().any(|planner| self.manager_key(planner) == settings_key)
+        registry::known().into_iter().any(|planner| self.manager_key(planner) == settings_key)
     }
 
     /// Returns everything that the manager decides by, besides its planner.
@@ -91,7 +91,7 @@ impl Settings {
         if planner != self.dialogue.planner {
             hash.text(planner);
         }
-        hash.text(&self.section_text(Section::Dialogue));
+        hash.text(&self.resolved.decision_text());
         hash.text(&self.scene_file().text);
         if self.durations.is_some() {
             hash.text(&self.durations_text());

@@ -105,6 +105,17 @@ impl Resolved {
         text
     }
 
+    /// The section of the dialogue without the language model: it reads utterances and decides nothing, so that
+    /// journals stay those of one manager whichever model is used.
+    pub(crate) fn decision_text(&self) -> String {
+        let dialogue = self.tree.get(Section::Dialogue.name()).and_then(Node::as_table).cloned();
+        let text = dialogue.map(|mut dialogue| {
+            drop(dialogue.take("model"));
+            to_toml(&dialogue)
+        });
+        text.unwrap_or_default()
+    }
+
     pub(crate) fn perception_text(&self) -> String {
         let group = self.tree.get(Section::Group.name()).and_then(Node::as_table);
         let perception = group.and_then(|group| group.get("perception")).and_then(Node::as_table);

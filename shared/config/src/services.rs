@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use diagnostics::{Fields, Node, Report, Source, Table, suggestion};
-use messages::{SUPERVISOR, Service};
+use messages::{SUPERVISOR, Service, Topic, topics};
 use serde_json::json;
 
 use crate::files::one_of;
@@ -11,6 +11,8 @@ use crate::files::one_of;
 /// Defaults of a service.
 const EACH: &str = r#"
 after = []
+reads = []
+writes = []
 critical = false
 observer = false
 start_deadline_s = 10.0
@@ -34,6 +36,10 @@ pub struct ServiceConfig {
     /// Services that must be ready before this one is started for the first time. When the group
     /// stops, they are stopped only once this one has ended.
     pub after: Vec<String>,
+    /// Topics that wake this service, beside those of its own table.
+    pub reads: Vec<String>,
+    /// Topics that this service writes: those of clients, and its own, `NAME/…`.
+    pub writes: Vec<String>,
     /// Stop the whole group when this service is held.
     pub critical: bool,
     /// The group is whole and ready without this service.
@@ -85,6 +91,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Vec<ServiceConfig> {
         json!({ "propertyNames": { "pattern": format!("^[a-z0-9][a-z0-9-]{{0,{others}}}$") } })
     });
     check_order(&services, f);
+    check_topics(&services, f);
     services
 }
 
@@ -100,6 +107,8 @@ fn one(name: &str, f: &mut Fields<'_>) -> ServiceConfig {
         name: name.to_owned(),
         command,
         after: f.texts("after"),
+        reads: f.texts("reads"),
+        writes: f.texts("writes"),
         critical: f.flag("critical"),
         observer: f.flag("observer"),
         start_deadline: f.seconds("start_deadline_s", 0.1..=3600.0),
@@ -147,6 +156,45 @@ fn check_order(services: &[ServiceConfig], f: &mut Fields<'_>) {
         let names = cycle.iter().chain(&cycle[..1]).copied().collect::<Vec<_>>();
         let what = format!("these services wait for each other: {}", names.join(" after "));
         f.problem_at(&["services", cycle[0], "after"], what, "remove one of them from an `after`");
+    }
+}
+
+/// Reports topics that a service cannot write, and topics that it would read in vain.
+fn check_topics(services: &[ServiceConfig], f: &mut Fields<'_>) {
+    let shipped = || topics::ALL.iter().chain(&topics::robot::ALL);
+    for service in services {
+        for topic in &service.writes {
+            let key = ["services", &service.name, "writes"];
+            let own = format!("{}/", service.name);
+            let writer = Topic::named(topic).map(|topic| topic.writer);
+            let of_clients = shipped().filter(|topic| topic.writer.is_none()).map(|it| it.name);
+            let help = || {
+                format!(
+                    "a topic of its own begins with `{own}`; of the others, {}",
+                    one_of(of_clients)
+                )
+            };
+            match writer {
+                Some(Some(writer)) if writer.name() != service.name => {
+                    let what = format!("`{topic}` is written by {} alone", writer.name());
+                    f.problem_at(&key, what, help());
+                }
+                None if !topic.starts_with(&own) || topic.len() == own.len() => {
+                    f.problem_at(&key, format!("there is no topic `{topic}`"), help());
+                }
+                _ => {}
+            }
+        }
+    }
+    let own = services.iter().flat_map(|service| &service.writes).map(String::as_str);
+    let known: Vec<&str> = shipped().map(|topic| topic.name).chain(own).collect();
+    for service in services {
+        for missing in service.reads.iter().filter(|topic| !known.contains(&topic.as_str())) {
+            let otherwise = || one_of(known.iter().copied());
+            let help = suggestion(missing, known.iter().copied(), otherwise);
+            let key = ["services", &service.name, "reads"];
+            f.problem_at(&key, format!("no service writes a topic `{missing}`"), help);
+        }
     }
 }
 

@@ -17,6 +17,9 @@ use crate::{Dialogue, Settings, load};
 /// Name of the snapshot in a group's run folder.
 pub const SNAPSHOT_FILE: &str = "settings.toml";
 
+/// Name of the file beside it that holds the scene's key and words, for languages without a reader of TOML.
+pub const WORDS_FILE: &str = "scene.words";
+
 /// Largest snapshot, bytes: three files and the values of every section, with escapes.
 const SNAPSHOT_BYTES_MAX: u64 = 32 * FILE_BYTES_MAX;
 
@@ -52,6 +55,20 @@ impl Settings {
         let header = "# The settings in force. Edit the configuration folder instead.\n";
         let text = format!("{header}{}", self.snapshot());
         journal::replace_file(&run_dir.join(SNAPSHOT_FILE), text)
+    }
+
+    /// Writes the scene's key (16 hexadecimal digits) and its words into a group's run folder, each on a line of its
+    /// own; the number of a word in messages is its place, from 0.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn write_words(&self, run_dir: &Path) -> io::Result<()> {
+        let mut text = format!("{:016x}\n", self.scene.key());
+        for word in self.scene.words() {
+            text += word;
+            text.push('\n');
+        }
+        journal::replace_file(&run_dir.join(WORDS_FILE), text)
     }
 
     /// Reads the snapshot in a group's run folder, checked as the files were but for the arm's

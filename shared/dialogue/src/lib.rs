@@ -2,6 +2,42 @@
 //!
 //! This crate is pure: no IO, no clock, no threads. What it computes depends on its arguments
 //! alone, so that a replay believes and decides the same, bit for bit on the same build.
+//!
+//! # Example
+//!
+//! Two markers that differ in colour: the robot asks, hears "yes", and picks.
+//!
+//! ```
+//! use dialogue::{Action, Actions, Belief, Costs, DecisionProblem, Mode, Model, Params, Step, registry};
+//! use scene::{Question, Reading, Response, Scene};
+//!
+//! let scene = Scene::from_json(
+//!     "markers",
+//!     &serde_json::json!({
+//!         "objects": [
+//!             { "name": "left", "attributes": { "color": "red" } },
+//!             { "name": "right", "attributes": { "color": "blue" } },
+//!         ],
+//!         "values": { "color": ["red", "blue"] },
+//!     }),
+//! )?;
+//! let model = Model::new(&scene, Params::default());
+//! let actions = Actions { mode: Mode::Remote, attribute: true, which: false };
+//! let problem = DecisionProblem::new(&model, Costs::default(), actions);
+//! let mut planner = registry::planner("lookahead")?;
+//!
+//! let mut belief = Belief::uniform(2);
+//! let decision = planner.decide(&problem, &belief, Step::default());
+//! let Action::Ask(question @ Question::Attribute(..)) = decision.action else { panic!("{decision:?}") };
+//!
+//! // Equations (6) and (7): the answer is wrong with probability 0.01.
+//! belief.update(&model, question, &Reading { response: Response::Yes, ..Reading::default() });
+//! assert!((belief.probability(0.into()) - 0.99).abs() < 1e-9);
+//!
+//! let decision = planner.decide(&problem, &belief, Step { interaction: 1, step: 1 });
+//! assert_eq!(decision.action, Action::Pick(0.into()));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod action;
 mod announce;

@@ -1,5 +1,7 @@
 //! Planners by name.
 
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 use crate::Planner;
 use crate::planners::ALL;
 
@@ -15,22 +17,51 @@ pub struct UnknownPlanner {
     pub known: Vec<&'static str>,
 }
 
+/// Planners of the program that is built on this crate.
+static ADDED: Mutex<Vec<Entry>> = Mutex::new(Vec::new());
+
+fn added() -> MutexGuard<'static, Vec<Entry>> {
+    ADDED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// There is a planner of that name already.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is a planner \"{0}\" already; help: choose another name")]
+pub struct NameTaken(pub &'static str);
+
+/// Adds a planner of the program that is built on this crate, which calls it first of all.
+///
+/// # Errors
+/// Its name is taken.
+pub fn add(entry: Entry) -> Result<(), NameTaken> {
+    if known().contains(&entry.name) {
+        return Err(NameTaken(entry.name));
+    }
+    added().push(entry);
+    Ok(())
+}
+
+/// Returns the names of all planners, those that were added last.
+pub fn known() -> Vec<&'static str> {
+    names().into_iter().chain(added().iter().map(|entry| entry.name)).collect()
+}
+
 /// Makes the planner of that name.
 ///
 /// # Errors
 /// If there is none.
 pub fn planner(name: &str) -> Result<Box<dyn Planner + Send>, UnknownPlanner> {
-    let found = ALL.iter().find(|entry| entry.name == name);
-    let unknown = || UnknownPlanner { name: name.to_owned(), known: names().to_vec() };
+    let found = ALL.iter().copied().chain(added().iter().copied()).find(|it| it.name == name);
+    let unknown = || UnknownPlanner { name: name.to_owned(), known: known() };
     found.map(|entry| (entry.make)()).ok_or_else(unknown)
 }
 
-/// Returns every planner, the default first.
+/// Returns every planner of this crate, the default first.
 pub fn entries() -> [Entry; ALL.len()] {
     ALL
 }
 
-/// Returns the names of all planners, the default first.
+/// Returns the names of all planners of this crate, the default first.
 pub fn names() -> [&'static str; ALL.len()] {
     ALL.map(|entry| entry.name)
 }

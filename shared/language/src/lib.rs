@@ -22,6 +22,34 @@
 //!
 //! Words that belong to a scene come from the scene; the English of a dialogue is data in
 //! `vocabulary/`.
+//!
+//! # Example
+//!
+//! ```
+//! use language::{Language, Reader};
+//! use scene::{Question, Response, Scene};
+//!
+//! let scene = Scene::from_json(
+//!     "markers",
+//!     &serde_json::json!({
+//!         "objects": [
+//!             { "name": "left", "attributes": { "color": "red" } },
+//!             { "name": "right", "attributes": { "color": "blue" } },
+//!         ],
+//!         "values": { "color": ["red", "blue"] },
+//!     }),
+//! )?;
+//! let reader = Reader::new(&scene, Language::Careful);
+//!
+//! let reading = reader.read("no, the blue one please", Question::None);
+//! assert_eq!(reading.base, [scene.word_named("blue").ok_or("blue")?]);
+//! assert_eq!(reading.response, Response::No);
+//!
+//! // "not" excludes what it stands before.
+//! let reading = reader.read("not the red one", Question::None);
+//! assert_eq!(reading.excluded, [[scene.word_named("red").ok_or("red")?]]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod answer;
 mod asking_back;

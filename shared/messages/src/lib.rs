@@ -4,6 +4,26 @@
 //! decoding); payloads of variable size are postcard. Nothing here opens a topic, reads a clock or
 //! does any IO: that is the runtime's part. Values read from the wire are never trusted: every
 //! accessor that interprets a byte is checked and can fail.
+//!
+//! # Example
+//!
+//! An utterance as speech hands it to grounding, and the receiver's half of "in order, exactly once":
+//!
+//! ```
+//! use messages::inbox::{Inbox, Verdict};
+//! use messages::{Hypothesis, Utterance, UtteranceSeq};
+//!
+//! let mut utterance = Utterance { seq: 1, ..Utterance::default() };
+//! utterance.set_hypotheses(&[Hypothesis::certain("the white bowl")])?;
+//! assert_eq!(utterance.hypotheses()?[0].text, "the white bowl");
+//!
+//! let mut inbox = Inbox::default();
+//! assert_eq!(inbox.judge(UtteranceSeq(utterance.seq)), Verdict::Apply);
+//! inbox.advance();
+//! assert_eq!(inbox.judge(UtteranceSeq(1)), Verdict::Duplicate);
+//! assert_eq!(inbox.judge(UtteranceSeq(3)), Verdict::Early);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod definition;
 mod fixed;

@@ -1,7 +1,7 @@
 //! Payloads of variable size: postcard in a byte slice.
 
 use crate::schema::payloads;
-use crate::{Hypothesis, RequestKey};
+use crate::{Hypothesis, PresentationState, Presented, RequestKey};
 use dialogue::{ActKind, Action, Attributed, Ended, Outcome};
 use perception::{Change, Sighting};
 use scene::{ObjectId, Perceived, Question};
@@ -110,6 +110,20 @@ pub struct PolicyView {
     pub refused: u64,
     /// The planner that decides, by its name.
     pub planner: String,
+}
+
+impl PolicyView {
+    /// Returns prompt and presentation of the question in force, once it has been presented completely.
+    pub fn open_question(&self, presented: &Presented) -> Option<(u64, u32)> {
+        let Presented { prompt, presentation, state, .. } = *presented;
+        // "Say yes, and I will get the white bowl."
+        let is_confirmation = self.decision == ActKind::Say && self.question != Question::None;
+        let is_asked = self.interaction != 0
+            && (self.decision == ActKind::Ask || is_confirmation)
+            && prompt == self.prompt
+            && state == PresentationState::Ended;
+        is_asked.then_some((prompt, presentation))
+    }
 }
 
 /// A hand-over that can be refused for a while.

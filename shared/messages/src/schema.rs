@@ -6,6 +6,8 @@
 //! those of postcard payloads from their `Deserialize` implementation.
 
 use crate::definition::{Definition, json_schema};
+#[doc(hidden)]
+pub use serde_reflection;
 use serde_reflection::{Error, Registry};
 use std::borrow::Cow;
 
@@ -59,8 +61,12 @@ impl std::fmt::Display for SchemaKey {
     }
 }
 
+/// Name of the field of a schema that could not be traced.
+const UNTRACED: &str = "error";
+
 /// Returns the fields of a payload's schema: every type in it.
-pub(crate) fn payload_fields(types: Result<Registry, Error>) -> Vec<Field> {
+#[doc(hidden)]
+pub fn payload_fields(types: Result<Registry, Error>) -> Vec<Field> {
     let field = |name: String, ty: String| Field {
         name: name.into(),
         ty: ty.into(),
@@ -74,33 +80,37 @@ pub(crate) fn payload_fields(types: Result<Registry, Error>) -> Vec<Field> {
             .map(|(name, format)| field(name, serde_json::json!(format).to_string()))
             .collect(),
         // Found by the golden file's test, not by users: both sides of a topic still agree.
-        Err(error) => vec![field("error".to_owned(), error.to_string())],
+        Err(error) => vec![field(UNTRACED.to_owned(), error.to_string())],
     }
 }
 
 /// Returns the description of a payload.
-pub(crate) fn payload_definition(name: &str, types: Result<Registry, Error>) -> Definition {
+#[doc(hidden)]
+pub fn payload_definition(name: &str, types: Result<Registry, Error>) -> Definition {
     // Types that cannot be traced fail the golden file's test.
     Definition::JsonSchema(json_schema(name, &types.unwrap_or_default()))
 }
 
-/// Every type in a payload, or why it cannot be traced.
-macro_rules! traced {
-    ($payload:ident [$($enum:ty),*]) => {{
-        let types = || {
-            let config = serde_reflection::TracerConfig::default();
-            let mut tracer = serde_reflection::Tracer::new(config);
-            $(tracer.trace_simple_type::<$enum>()?;)*
-            tracer.trace_simple_type::<$payload>()?;
-            tracer.registry()
-        };
-        types()
-    }};
-}
-pub(crate) use traced;
-
-/// Derives the schemas of postcard payloads from their `Deserialize` implementations. The enums
-/// inside are listed, innermost first; one that is missing makes the golden file's test fail.
+/// Derives the schemas of payloads of variable size, for topics with messages of one's own, from their
+/// `Deserialize` implementations. The enums inside are listed, innermost first:
+///
+/// ```
+/// use messages::schema::Schema;
+/// use serde::{Deserialize, Serialize};
+///
+/// #[derive(Debug, Serialize, Deserialize)]
+/// enum Colour { Red, Blue }
+///
+/// #[derive(Debug, Serialize, Deserialize)]
+/// struct Label { object: u16, colour: Colour }
+///
+/// messages::payloads! { Label [Colour] }
+/// assert_eq!(Label::NAME, "Label");
+/// ```
+///
+/// An enum that is not listed makes the schema that of an error, which a test of the payload can find
+/// ([`is_traced`]).
+#[macro_export]
 macro_rules! payloads {
     ($($payload:ident [$($enum:ty),*])+) => {
         $(impl $crate::schema::Schema for $payload {
@@ -121,7 +131,30 @@ macro_rules! payloads {
         })+
     };
 }
-pub(crate) use payloads;
+pub use payloads;
+
+/// Every type in a payload, or why it cannot be traced.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! traced {
+    ($payload:ident [$($enum:ty),*]) => {{
+        let types = || {
+            let config = $crate::schema::serde_reflection::TracerConfig::default();
+            let mut tracer = $crate::schema::serde_reflection::Tracer::new(config);
+            $(tracer.trace_simple_type::<$enum>()?;)*
+            tracer.trace_simple_type::<$payload>()?;
+            tracer.registry()
+        };
+        types()
+    }};
+}
+#[doc(hidden)]
+pub use traced;
+
+/// Returns whether the types in the payload could be traced, as its schema requires.
+pub fn is_traced<T: Schema>() -> bool {
+    T::fields().iter().all(|field| field.name != UNTRACED)
+}
 
 /// Declares a wire struct: `#[repr(C)]`, copyable, zeroed by default, sendable without a copy, and
 /// with its schema and the check of its codes.

@@ -1,10 +1,12 @@
 //! The services of a group.
 
+use std::sync::{Mutex, PoisonError};
+
 /// Name of the process that starts the services, reserved for it.
 pub const SUPERVISOR: &str = "supervisor";
 
-/// A service whose program `whichone-NAME` ships with the others. Groups may have more services, which
-/// need a command.
+/// A service of a group. Those with a variant of their own have a program `whichone-NAME` that ships with the
+/// others; any other service has a command in the configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Service {
     /// Recognises and synthesises speech.
@@ -25,6 +27,8 @@ pub enum Service {
     Ros2,
     /// Links the group to operators elsewhere; optional.
     Link,
+    /// A service that does not ship with the others, by its name.
+    Other(&'static str),
 }
 
 impl Service {
@@ -50,14 +54,45 @@ impl Service {
             Self::Robot => "baxter",
             Self::Ros2 => "ros2",
             Self::Link => "link",
+            Self::Other(name) => name,
         }
     }
 
-    /// Returns the service with this name.
+    /// Returns the service with this name, whether it ships with the others or not. The names of the others are
+    /// kept for the life of the process, each once.
+    pub fn named(name: &str) -> Self {
+        static OTHERS: Mutex<Vec<&'static str>> = Mutex::new(Vec::new());
+        if let Some(service) = Self::from_name(name) {
+            return service;
+        }
+        let mut others = OTHERS.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = others.iter().find(|known| **known == name) {
+            return Self::Other(known);
+        }
+        let kept: &'static str = name.to_owned().leak();
+        others.push(kept);
+        Self::Other(kept)
+    }
+
+    /// Returns the shipped service with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::BUILT_IN
             .into_iter()
             .chain([Self::Robot, Self::Ros2, Self::Link])
             .find(|service| service.name() == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn services_have_one_identity_for_each_name() {
+        assert_eq!(Service::named("grounding"), Service::Grounding);
+        let label = Service::named(&String::from("label"));
+        assert_eq!((label, label.name()), (Service::Other("label"), "label"));
+        assert_eq!(Service::named("label"), label);
+        assert_eq!(Service::from_name("label"), None);
     }
 }

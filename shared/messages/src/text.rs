@@ -58,7 +58,7 @@ impl<const N: usize> FixedText<N> {
     ///
     /// # Errors
     /// More than `N` bytes.
-    pub(crate) fn from_raw(len: u32, used: &[u8]) -> Result<Self, TextTooLong> {
+    pub fn from_raw(len: u32, used: &[u8]) -> Result<Self, TextTooLong> {
         let mut bytes = [0; N];
         let slots = bytes.get_mut(..used.len());
         slots.ok_or(TextTooLong { bytes: used.len(), max: N })?.copy_from_slice(used);

@@ -38,10 +38,28 @@ pub struct Topic {
 }
 
 impl Topic {
-    /// Returns whether the topic is a state of which only the latest message counts, and which wakes
-    /// services: its writer repeats it, and wakes them when it has changed.
-    pub fn is_state(&self) -> bool {
-        self.buffer == 1 && !self.readers.is_empty()
+    /// A topic with one writer, of which readers see the latest message: a state. A service of a new kind states its own
+    /// topics with it, whose names begin with its own: `NAME/…`.
+    pub const fn new<T: Schema>(name: &'static str, writer: Option<Service>) -> Self {
+        Self {
+            name,
+            schema: T::key,
+            payload: T::NAME,
+            size: T::size,
+            definition: T::definition,
+            writer,
+            readers: &[],
+            writers_max: 1,
+            readers_max: READERS_MAX,
+            buffer: 1,
+            recorded: 8,
+            history: 1,
+        }
+    }
+
+    /// Returns the topic of this name that the shipped services and clients share.
+    pub fn named(name: &str) -> Option<Self> {
+        ALL.iter().chain(&robot::ALL).find(|topic| topic.name == name).copied()
     }
 
     /// Most unread messages that any reader holds.
@@ -65,20 +83,7 @@ const RECORDED_FAST: usize = 32;
 pub const WINDOW: usize = 16;
 
 const fn topic<T: Schema>(name: &'static str, writer: Option<Service>) -> Topic {
-    Topic {
-        name,
-        schema: T::key,
-        payload: T::NAME,
-        size: T::size,
-        definition: T::definition,
-        writer,
-        readers: &[],
-        writers_max: 1,
-        readers_max: READERS_MAX,
-        buffer: 1,
-        recorded: 8,
-        history: 1,
-    }
+    Topic::new::<T>(name, writer)
 }
 
 /// Clients to speech. The recorder is woken, too: a client may end before it looks the next time.

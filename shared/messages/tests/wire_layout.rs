@@ -1,70 +1,16 @@
 //! The wire layout is a contract with programs of other languages and builds: any change of it must
 //! be seen. `WHICHONE_BLESS=1 cargo test -p messages` rewrites the golden file.
 
-use messages::robot::*;
-use messages::schema::{Field, Schema};
+use layouts::{Layout, payloads, structs};
+use messages::schema::Field;
 use messages::topics::{self, Topic};
 use messages::*;
 use std::fmt::Write;
 
+#[path = "bindings/layouts.rs"]
+mod layouts;
+
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/wire_layout.txt");
-
-/// Name, size, key and fields of a message type.
-struct Layout {
-    name: &'static str,
-    size: usize,
-    key: String,
-    fields: Vec<Field>,
-}
-
-macro_rules! layouts {
-    ($($message:ty),+ $(,)?) => {
-        vec![$(Layout {
-            name: <$message>::NAME,
-            size: <$message>::size(),
-            key: <$message>::key().to_string(),
-            fields: <$message>::fields(),
-        }),+]
-    };
-}
-
-fn structs() -> Vec<Layout> {
-    layouts![
-        Stamp,
-        WireQuestion,
-        WireGesture,
-        AskedQuestion,
-        WireHypothesis,
-        WireReading,
-        Utterance,
-        Observation,
-        AppliedMark,
-        RobotAct,
-        Presented,
-        Activity,
-        Hearing,
-        Partial,
-        AudioChunk,
-        Receipt,
-        ArmStatus,
-        JointStates,
-        MotionCommand,
-        JointCommand,
-        JointState,
-        JointTrajectoryPoint,
-        SpeedRatio,
-        EndpointState,
-        EndEffectorCommand,
-        EndEffectorState,
-        EndEffectorProperties,
-        AssemblyState,
-        Drill,
-    ]
-}
-
-fn payloads() -> Vec<Layout> {
-    layouts![Injection, PolicyView, WorldView, TrajectoryView]
-}
 
 fn describe_topic(topic: &Topic, text: &mut String) {
     let writer = topic.writer.map_or("clients", |service| service.name());
@@ -82,7 +28,7 @@ fn describe_topic(topic: &Topic, text: &mut String) {
 }
 
 fn describe(layout: &Layout, text: &mut String) {
-    let Layout { name, size, key, fields } = layout;
+    let Layout { name, size, key, fields, .. } = layout;
     let _ = writeln!(text, "{name} size {size} schema {key}");
     for Field { name, ty, offset, size, .. } in fields {
         let _ = writeln!(text, "  {offset:>6} +{size:<6} {name}: {ty}");

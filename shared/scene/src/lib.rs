@@ -4,6 +4,38 @@
 //! text and report every problem of it at once. The types that language and dialogue share are here as
 //! well: [`Question`] (section 3.2 of the publication) and [`Reading`], an understood utterance
 //! (section 3.6).
+//!
+//! # Example
+//!
+//! ```
+//! use scene::Scene;
+//!
+//! let file = r#"
+//! name = "markers"
+//! noun = "marker"
+//! [[attributes]]
+//! name = "color"
+//! ask_yes_no = "Is it {value}?"
+//! values = ["red", { name = "blue", synonyms = ["navy"] }]
+//! [[objects]]
+//! name = "left"
+//! attributes = { color = "red" }
+//! [[objects]]
+//! name = "right"
+//! attributes = { color = "blue" }
+//! "#;
+//! let scene = Scene::from_toml("markers.toml", file)?;
+//! let (color, right) = (scene.attribute_named("color"), scene.object_named("right"));
+//! let (color, right) = (color.ok_or("color")?, right.ok_or("right")?);
+//! let blue = scene.value_named(color, "blue").ok_or("blue")?;
+//! assert!(scene.has(right, color, blue));
+//! assert_eq!(scene.describe(right), "blue marker");
+//!
+//! // Every problem comes with its place and a way out.
+//! let wrong = Scene::from_toml("markers.toml", &file.replace("\"red\" }", "\"green\" }"));
+//! assert!(wrong.is_err_and(|problems| problems.to_string().contains("green")));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod ambiguity;
 mod check;

@@ -21,8 +21,8 @@ use crate::Effects;
 use crate::exit::{Exit, Failure};
 use crate::journal_clock::JournalClock;
 use crate::storage;
-use crate::sync_time;
 use crate::worker_channel::{self, DeviceReceiver, DeviceSender};
+use runtime::sync_time;
 
 /// Interval at which a failed write is tried again.
 const RETRY_EVERY: Duration = Duration::from_millis(250);

@@ -67,6 +67,14 @@ pub enum Request {
         /// Timeout for their readiness, milliseconds.
         wait_ms: u64,
     },
+    /// Reloads the configuration with another scene, which stays in force for later reloads until the
+    /// group ends. Answered by [`Reply::Reloaded`].
+    UseScene {
+        /// As `group.scene`: the name of a scene of the configuration, or a path from its folder.
+        scene: String,
+        /// Timeout for the readiness of the restarted services, milliseconds.
+        wait_ms: u64,
+    },
     /// Stops the group in order. Answered by [`Reply::Down`] when nothing of it is left.
     Down,
 }
@@ -190,6 +198,10 @@ mod tests {
                 directory: "/home/me".into(),
             },
             r#"{"verb":"swap","service":"grounding","command":["python3","grounding.py"],"directory":"/home/me"}"#,
+        );
+        check_line(
+            Request::UseScene { scene: "tools".into(), wait_ms: 9 },
+            r#"{"verb":"use-scene","scene":"tools","wait_ms":9}"#,
         );
     }
 

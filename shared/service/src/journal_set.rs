@@ -35,7 +35,7 @@ use crate::exit::{Exit, Failure};
 use crate::group::GroupPaths;
 use crate::lifecycle::Environment;
 use crate::log_file::numbered;
-use crate::{SetAside, Span, clock};
+use crate::{SetAside, Span, clock, epoch};
 
 /// Numbers that each setting aside skips: more than a journal ever gives, so that a number which only a
 /// lost journal, a page or a client knew is never given again.
@@ -108,10 +108,7 @@ impl JournalSet {
             Err(_) => return Ok(None),
             Ok(text) => text,
         };
-        let read = text.split_once('\n').and_then(|(line, sum)| {
-            let is_whole = sum.trim() == checksum(line);
-            is_whole.then(|| serde_json::from_str(line).ok()).flatten()
-        });
+        let read = epoch::whole_line(&text).and_then(|line| serde_json::from_str(line).ok());
         let damaged = "expected the set of journals, found damage or another version";
         read.map(Some).ok_or_else(|| invalid(damaged))
     }
@@ -122,7 +119,7 @@ impl JournalSet {
     /// The file cannot be written.
     pub fn save(&self, paths: &GroupPaths) -> io::Result<()> {
         let line = serde_json::to_string(self)?;
-        journal::replace_file_synced(&paths.epoch_file(), format!("{line}\n{}\n", checksum(&line)))
+        journal::replace_file_synced(&paths.epoch_file(), epoch::with_checksum(&line))
     }
 
     /// Returns every journal that cannot be used.
@@ -331,12 +328,6 @@ fn new_folder(root: &Path) -> io::Result<PathBuf> {
             made => return made.map(|()| folder),
         }
     }
-}
-
-fn checksum(line: &str) -> String {
-    let mut hash = scene::StableHash::default();
-    hash.bytes(line.as_bytes());
-    format!("{:016x}", hash.value())
 }
 
 #[cfg(test)]

@@ -20,6 +20,12 @@ use thiserror::Error;
 use crate::control::{CallError, Reply, Request, call};
 use crate::log_file;
 
+/// The program that may contain all others.
+const HOST: &str = "whichone";
+
+/// What the name of a service's program begins with.
+pub const PREFIX: &str = "whichone-";
+
 /// Interval at which a starting supervisor is polled.
 const ASK_EVERY: Duration = Duration::from_millis(1);
 
@@ -113,17 +119,37 @@ pub fn program() -> PathBuf {
     program_of(SUPERVISOR)
 }
 
-/// Returns the program of a service: beside the running one, else from `PATH`.
+/// Returns the program of a service: beside the running one, where an installed `whichone` may stand in for
+/// it ([`host_of`]), else from `PATH`. Start it with [`command`].
 pub fn program_of(service: &str) -> PathBuf {
-    let name = format!("whichone-{service}");
+    let name = format!("{PREFIX}{service}");
     let beside = env::current_exe().ok().and_then(|own| Some(own.parent()?.join(&name)));
-    beside.filter(|path| path.is_file()).unwrap_or_else(|| name.into())
+    beside.filter(|path| path.is_file() || host_of(path).is_some()).unwrap_or_else(|| name.into())
+}
+
+/// Returns the program that runs in place of `program`, if that is absent: a build of `whichone` contains the
+/// services, and runs as the one whose name it is started under. So an installation is one file.
+pub fn host_of(program: &Path) -> Option<PathBuf> {
+    let name = program.file_name()?.to_str()?;
+    let is_name_alone = program.parent().is_none_or(|folder| folder.as_os_str().is_empty());
+    let host = program.with_file_name(HOST);
+    let is_hosted = !is_name_alone && name.starts_with(PREFIX) && !program.exists();
+    (is_hosted && host.is_file()).then_some(host)
+}
+
+/// The command that starts a program of the group, or `whichone` in its place.
+pub fn command(program: impl AsRef<Path>) -> Command {
+    let program = program.as_ref();
+    let Some(host) = host_of(program) else { return Command::new(program) };
+    let mut command = Command::new(host);
+    command.arg0(program);
+    command
 }
 
 /// Becomes the supervisor, whose program is at `program` (see [`program`]). Returns only if that
 /// fails.
 pub fn foreground(program: &Path, options: &Options, paths: &GroupPaths) -> LaunchError {
-    let error = command(program, options, paths).exec();
+    let error = supervisor(program, options, paths).exec();
     LaunchError::Io(program.to_owned(), error)
 }
 
@@ -140,7 +166,7 @@ pub fn detached(
     make_private(&paths.log())?;
     let path = paths.log_file(SUPERVISOR);
     let (log, log_from) = open_log(paths).map_err(|error| LaunchError::Io(path, error))?;
-    let process = command(program, options, paths)
+    let process = supervisor(program, options, paths)
         .arg("--detached")
         .stdin(Stdio::null())
         .stdout(Stdio::null())
@@ -150,8 +176,8 @@ pub fn detached(
     Ok(Launched { process, paths: paths.clone(), log_from })
 }
 
-fn command(program: &Path, options: &Options, paths: &GroupPaths) -> Command {
-    let mut command = Command::new(program);
+fn supervisor(program: &Path, options: &Options, paths: &GroupPaths) -> Command {
+    let mut command = command(program);
     command.args(options.arguments()).env(ENV_HOME, paths.home());
     command
 }
@@ -229,5 +255,25 @@ mod tests {
         let words = ["--group", "lab", "--config", "config", "--profile", "ci", "--set"];
         let words = words.into_iter().chain(["group.scene=tools", "--fresh"]);
         assert_eq!(options.arguments(), words.map(OsString::from).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn absent_program_of_the_group_is_run_by_the_one_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str| folder.path().join(name);
+        let words = |program: &Path| format!("{:?}", command(program));
+        assert_eq!(host_of(&file("whichone-arm")), None, "there is none");
+        std::fs::write(file("whichone"), "").unwrap();
+        assert_eq!(host_of(&file("whichone-arm")), Some(file("whichone")));
+        assert!(
+            words(&file("whichone-arm")).contains("whichone\"] \""),
+            "its name is the argument 0"
+        );
+        for other in ["arm", "whichone", "whichone-arm/x"] {
+            assert_eq!(host_of(&file(other)), None, "{other}");
+        }
+        std::fs::write(file("whichone-arm"), "").unwrap();
+        assert_eq!(host_of(&file("whichone-arm")), None, "it runs by its own file");
+        assert_eq!(host_of(Path::new("whichone-arm")), None, "a name is looked up in PATH");
     }
 }

@@ -1,42 +1,83 @@
 //! The shell: the only place that opens topics, reads clocks, takes signals and writes files for
-//! the services. iceoryx2 is reached through this crate alone.
+//! the services. What every process of a group needs, also one from outside, is in `runtime`, whose modules
+//! appear here, too.
+//!
+//! A service is a [`Node`]: a reducer from events to effects, which the main loop of [`service_loop`] recovers from
+//! its journal, feeds from its topics, and whose effects it carries out. Clients of a group are in [`client`].
+//!
+//! # Example
+//!
+//! A reducer that counts what it hears. Nothing is published before the record that backs it is durable.
+//!
+//! ```
+//! use service::{Effects, Event, Node, NodeError, Time};
+//!
+//! struct Counter(u64);
+//!
+//! impl Node for Counter {
+//!     type Config = ();
+//!     type In<'a> = String;
+//!     type Out = String;
+//!     type Record = u64;
+//!
+//!     fn recover(_: (), records: Vec<u64>) -> Result<Self, NodeError> {
+//!         Ok(Self(records.last().copied().unwrap_or(0)))
+//!     }
+//!
+//!     fn on(&mut self, event: Event<String>, _: Time, fx: &mut Effects<String, u64>) {
+//!         match event {
+//!             Event::Message(words) => {
+//!                 self.0 += 1;
+//!                 fx.append(self.0);
+//!                 fx.publish(format!("{words} is number {}", self.0));
+//!             }
+//!             Event::Shutdown => fx.exit(),
+//!             _ => {}
+//!         }
+//!     }
+//!
+//!     fn deadline(&self) -> Option<Time> {
+//!         None
+//!     }
+//! }
+//!
+//! let mut effects = Effects::default();
+//! let mut counter = Counter::recover((), vec![1, 2])?;
+//! counter.on(Event::Message("hello".to_owned()), Time(0), &mut effects);
+//! assert_eq!(effects.records(), [3]);
+//! assert_eq!(effects.take_outputs(), ["hello is number 3"]);
+//! # Ok::<(), NodeError>(())
+//! ```
 
 pub mod audio;
-pub mod bus;
-pub mod client;
-pub mod clock;
 mod commit;
 pub mod console_link;
 pub mod control;
 pub mod exit;
 pub mod flight;
-pub mod folders;
-pub mod group;
 pub mod inspection;
 mod journal_clock;
 pub mod journal_record;
 pub mod journal_set;
 pub mod kept_settings;
 pub mod launch;
-pub mod lifecycle;
 pub mod log_file;
 pub mod log_tail;
 pub mod logging;
-pub mod notify;
 pub mod printable;
 mod reducer;
 pub mod robot_topics;
 pub mod service_loop;
-pub mod shm_cleanup;
 pub mod status;
-pub mod stop_socket;
 pub mod storage;
-pub mod submission;
-mod sync_time;
 pub mod view;
 pub mod wall_time;
 pub mod worker_channel;
 
-pub use dialogue::time::{Span, Time};
 pub use journal::{replace_file, replace_file_synced};
 pub use reducer::{Effects, Event, Never, Node, NodeError, SetAside};
+pub use runtime::{Span, Time};
+pub use runtime::{
+    bus, client, clock, epoch, folders, group, lifecycle, notify, shm_cleanup, stop_socket,
+    submission, wakes,
+};

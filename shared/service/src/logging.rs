@@ -13,9 +13,13 @@ use std::fs::File;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::os::fd::{AsFd, OwnedFd};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
+use tracing::{Event, Subscriber};
 use tracing_subscriber::EnvFilter;
+use tracing_subscriber::fmt::format::{DefaultFields, Format, Json, Writer};
+use tracing_subscriber::fmt::{FmtContext, FormatEvent};
+use tracing_subscriber::registry::LookupSpan;
 
 /// Libraries that report every step of a connection, unless the filter says otherwise.
 const QUIET: &str = "rustdds=error,ros2_client=error,zenoh=error";
@@ -25,6 +29,9 @@ const CHUNK_BYTES: usize = 4096;
 const QUEUE_LEN: usize = 1024;
 /// Longest time for which the end of a program waits for its last lines.
 const FLUSH_MAX: Duration = Duration::from_secs(1);
+
+/// Whether lines are JSON objects: one log, one format.
+static JSON: AtomicBool = AtomicBool::new(false);
 
 /// Begins logging. `WHICHONE_LOG` holds the filter (`info`, `policy=debug`, …) and
 /// `WHICHONE_LOG_FORMAT=json` asks for one JSON object a line.
@@ -36,9 +43,10 @@ pub fn init() -> LogFlush {
         .unwrap_or_else(|_| EnvFilter::new(format!("{QUIET},info")));
     let colour = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     let json = std::env::var(ENV_LOG_FORMAT).is_ok_and(|format| format == "json");
+    JSON.store(json, Ordering::Relaxed);
     let nowhere = LogFlush(None);
     let Ok(stderr) = standard_error() else { return nowhere };
-    let Ok(queue) = Queue::start(LossyLog::new(stderr, json)) else { return nowhere };
+    let Ok(queue) = Queue::start(LossyLog::new(stderr)) else { return nowhere };
     let flush = LogFlush(Some(queue.jobs.clone()));
     let builder = tracing_subscriber::fmt()
         .with_env_filter(filter)
@@ -46,10 +54,48 @@ pub fn init() -> LogFlush {
         // The report of a failed write would itself be written, and its failure is a panic.
         .log_internal_errors(false)
         .with_ansi(colour)
-        .with_target(true);
+        .event_format(Lines::new());
     // A second call (tests in one process) leaves the first subscriber in place.
-    let _ = if json { builder.json().try_init() } else { builder.try_init() };
+    let _ = builder.try_init();
     flush
+}
+
+/// Changes the format of the lines that follow to what the configuration says: one JSON object a line, or text.
+/// `WHICHONE_LOG_FORMAT`, where it is set, counts more.
+pub fn set_json(json: bool) {
+    if std::env::var_os(ENV_LOG_FORMAT).is_none() {
+        JSON.store(json, Ordering::Relaxed);
+    }
+}
+
+/// Both formats of a line, of which [`JSON`] chooses one. Nothing opens spans, so neither writes any.
+struct Lines {
+    text: Format,
+    json: Format<Json>,
+}
+
+impl Lines {
+    fn new() -> Self {
+        let json = Format::default().json().with_current_span(false).with_span_list(false);
+        Self { text: Format::default(), json }
+    }
+}
+
+impl<S> FormatEvent<S, DefaultFields> for Lines
+where
+    S: Subscriber + for<'a> LookupSpan<'a>,
+{
+    fn format_event(
+        &self,
+        context: &FmtContext<'_, S, DefaultFields>,
+        writer: Writer<'_>,
+        event: &Event<'_>,
+    ) -> std::fmt::Result {
+        match JSON.load(Ordering::Relaxed) {
+            true => self.json.format_event(context, writer, event),
+            false => self.text.format_event(context, writer, event),
+        }
+    }
 }
 
 /// Waits when dropped, for a second at most, until the lines so far are written.
@@ -140,7 +186,6 @@ fn standard_error() -> io::Result<File> {
 
 /// A log that drops what cannot be written, and counts it.
 struct LossyLog {
-    json: bool,
     file: File,
     lost: Option<Lost>,
 }
@@ -154,8 +199,8 @@ struct Lost {
 }
 
 impl LossyLog {
-    fn new(file: File, json: bool) -> Self {
-        Self { json, file, lost: None }
+    fn new(file: File) -> Self {
+        Self { file, lost: None }
     }
 
     /// Counts lines that were lost before they came here.
@@ -170,7 +215,9 @@ impl LossyLog {
 
     /// Takes one line, written or not.
     fn write(&mut self, line: &[u8]) {
-        let notice = self.lost.as_ref().map(|lost| self.notice(lost)).unwrap_or_default();
+        let lost = self.lost.as_ref();
+        let notice = lost.map(|lost| notice(lost, JSON.load(Ordering::Relaxed)));
+        let notice = notice.unwrap_or_default();
         let bytes = [notice.as_bytes(), line].concat();
         let (written, error) = write_now(&mut self.file, &bytes);
         let Some(error) = error else {
@@ -185,16 +232,17 @@ impl LossyLog {
             torn: written > 0 || before.is_some_and(|lost| lost.torn),
         });
     }
+}
 
-    fn notice(&self, Lost { lines, error, torn }: &Lost) -> String {
-        let text = format!("{lines} log lines were lost: {error}");
-        let start = if *torn { "\n" } else { "" };
-        if self.json {
-            let line = serde_json::json!({ "level": "WARN", "fields": { "message": text } });
-            format!("{start}{line}\n")
-        } else {
-            format!("{start} WARN {text}\n")
-        }
+/// The line that reports losses.
+fn notice(Lost { lines, error, torn }: &Lost, json: bool) -> String {
+    let text = format!("{lines} log lines were lost: {error}");
+    let start = if *torn { "\n" } else { "" };
+    if json {
+        let line = serde_json::json!({ "level": "WARN", "fields": { "message": text } });
+        format!("{start}{line}\n")
+    } else {
+        format!("{start} WARN {text}\n")
     }
 }
 
@@ -230,7 +278,7 @@ mod tests {
     #[test]
     fn lines_that_find_no_room_are_dropped_counted_and_reported() {
         let (reader, writer) = pipe().unwrap();
-        let mut lossy = LossyLog::new(writer.into(), false);
+        let mut lossy = LossyLog::new(writer.into());
         let line = format!("{}\n", "x".repeat(999));
         // Far more than a pipe holds: each call returns although nobody reads.
         (0..1_000).for_each(|_| lossy.write(line.as_bytes()));
@@ -254,13 +302,13 @@ mod tests {
     #[test]
     fn full_device_and_closed_pipe_are_survived() {
         let full = File::options().write(true).open("/dev/full").unwrap();
-        let mut lossy = LossyLog::new(full, true);
+        let mut lossy = LossyLog::new(full);
         (0..3).for_each(|_| lossy.write(b"{}\n"));
-        let notice = lossy.notice(lossy.lost.as_ref().unwrap());
+        let notice = notice(lossy.lost.as_ref().unwrap(), true);
         assert!(notice.contains("\"3 log lines were lost: No space left"), "{notice}");
         let (reader, writer) = pipe().unwrap();
         drop(reader);
-        let mut lossy = LossyLog::new(writer.into(), false);
+        let mut lossy = LossyLog::new(writer.into());
         lossy.write(b"nobody reads\n");
         assert_eq!(lossy.lost.as_ref().unwrap().lines, 1);
     }
@@ -275,7 +323,7 @@ mod tests {
         ["1\n", "2\n", "3\n", "4\n"].into_iter().for_each(line);
         let dropped = Arc::clone(&queue.dropped);
         drop(queue);
-        write_all(LossyLog::new(writer.into(), false), &waiting, &dropped);
+        write_all(LossyLog::new(writer.into()), &waiting, &dropped);
         let mut text = String::new();
         File::from(reader).read_to_string(&mut text).unwrap();
         assert_eq!(text, " WARN 2 log lines were lost: operation would block\n1\n2\n");
@@ -284,7 +332,7 @@ mod tests {
     #[test]
     fn end_of_a_program_waits_for_its_last_lines() {
         let (reader, writer) = pipe().unwrap();
-        let queue = Queue::start(LossyLog::new(writer.into(), false)).unwrap();
+        let queue = Queue::start(LossyLog::new(writer.into())).unwrap();
         let flush = LogFlush(Some(queue.jobs.clone()));
         (&queue).write_all(b"the last line\n").unwrap();
         drop(flush);

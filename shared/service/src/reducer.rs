@@ -74,6 +74,11 @@ pub trait Node: Sized + 'static {
         None
     }
 
+    /// Returns what the operator's status says about the service, in a few words.
+    fn status(&self) -> Option<&str> {
+        None
+    }
+
     /// Returns whether the node can do its work. Until then its service is not reported ready.
     fn is_ready(&self) -> bool {
         true

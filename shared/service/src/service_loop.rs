@@ -8,11 +8,12 @@
 use crate::bus::{Bus, PortError, WakeListener};
 use crate::clock;
 use crate::commit::Commit;
-use crate::exit::{Exit, Failure};
+use crate::exit::Failure;
 use crate::flight::Tap;
 use crate::lifecycle::{Cycle, Health, Ready, Sources};
 use crate::worker_channel::DeviceReceiver;
 use crate::{Effects, Event, Node, Span, Time};
+use runtime::port_failures::PortFailures;
 use std::ops::ControlFlow;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -29,8 +30,6 @@ const PASS_EVENTS_MAX: usize = 256;
 const LOOK_EVERY: Span = Span::from_ms(500);
 /// The disk, as a service reports it to be short.
 const SHORT_OF_DISK: &str = "disk";
-/// Time that a topic may fail without a break before the service gives up: a restart may help then.
-const PORT_PATIENCE: Span = Span::from_ms(10_000);
 
 /// What devices hand over.
 type In<P> = <<P as Program>::Node as Node>::In<'static>;
@@ -62,8 +61,7 @@ struct Loop<P: Program> {
     tap: Tap,
     /// Failure of a topic in this pass.
     port_error: Option<PortError>,
-    /// Failure of a topic in the last pass, and since when passes have had one.
-    port_failure: Option<(String, Time)>,
+    port_failures: PortFailures,
     bus: Bus,
 }
 
@@ -94,7 +92,7 @@ impl<P: Program> Cycle for Loop<P> {
         self.port_error = self.take_in(is_urgent).err();
         self.commit()?;
         self.end_recorded_pass();
-        self.judge_ports()?;
+        self.port_failures.judge(self.port_error.take(), clock::now())?;
         // What waits for a full disk was never acknowledged, and is given up as by a kill.
         let is_done = self.commit.is_settled() || self.commit.is_short();
         let ends = self.effects.exits() && is_done;
@@ -109,9 +107,12 @@ impl<P: Program> Cycle for Loop<P> {
         Health::Working(self.node.pending_since())
     }
 
+    fn status(&self) -> Option<&str> {
+        self.node.status()
+    }
+
     fn shortage(&self) -> Option<&str> {
-        let port_failure = self.port_failure.as_ref().map(|(what, _)| what.as_str());
-        self.commit.is_short().then_some(SHORT_OF_DISK).or(port_failure)
+        self.commit.is_short().then_some(SHORT_OF_DISK).or(self.port_failures.shortage())
     }
 }
 
@@ -195,23 +196,5 @@ impl<P: Program> Loop<P> {
             let failure = self.shell.publish(output).err();
             self.port_error = self.port_error.take().or(failure);
         }
-    }
-
-    /// Bears with a failing topic for a while: shared memory or descriptors may be short, and what
-    /// moves has to be stopped all the same.
-    fn judge_ports(&mut self) -> Result<(), Failure> {
-        let Some(error) = self.port_error.take() else {
-            self.port_failure = None;
-            return Ok(());
-        };
-        let now = clock::now();
-        let (what, since) = self.port_failure.get_or_insert_with(|| {
-            tracing::error!(%error, "a topic fails; trying again");
-            (error.to_string(), now)
-        });
-        if now.since(*since) < PORT_PATIENCE {
-            return Ok(());
-        }
-        Err(Failure::new(Exit::NotReached, std::mem::take(what)))
     }
 }

@@ -27,6 +27,10 @@ pub struct GroupStatus {
     pub profile: Option<String>,
     /// The configuration's folder.
     pub config: PathBuf,
+    /// Overrides of configuration values: dotted key and value. None where the group follows the
+    /// configuration of another machine, as a mirror does.
+    #[serde(default)]
+    pub set: Option<Vec<(String, String)>>,
     /// Processes that services had left behind and that were killed, since the start.
     #[serde(rename = "strays_killed")]
     pub orphans_killed: u32,

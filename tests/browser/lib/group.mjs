@@ -1,6 +1,6 @@
 // A process group for one test: its own name, home, shared memory and port.
 
-import { mkdtemp, readdir, readFile, rm } from "node:fs/promises";
+import { cp, mkdtemp, readdir, readFile, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { ROOT, whichone } from "./program.mjs";
@@ -12,6 +12,7 @@ export class Group {
   constructor(home, name) {
     this.home = home;
     this.name = name;
+    this.config = join(ROOT, "config");
     this.url = "";
     this.token = "";
   }
@@ -20,11 +21,17 @@ export class Group {
    * Starts a group with the profile for tests and waits until it is ready.
    * @param {string[]} settings `key=value` each
    * @param {string} [name] what the group is called; one of its own where nothing is said
+   * @param {boolean} [ownConfig] a copy of the configuration, for a test that changes its files
    */
-  static async up(settings = [], name) {
+  static async up(settings = [], name = undefined, ownConfig = false) {
     const home = await mkdtemp(join(tmpdir(), "wb"));
     const own = `b${process.pid}-${home.slice(-6).toLowerCase()}`;
     const group = new Group(home, name ?? own);
+    if (ownConfig) {
+      const shipped = group.config;
+      group.config = join(home, "config");
+      await cp(shipped, group.config, { recursive: true });
+    }
     await group.#start(settings);
     return group;
   }
@@ -40,7 +47,7 @@ export class Group {
     // A busy machine's browser may take its time to answer.
     const patient = ["dialogue.turns.response_window_s=20.0", ...settings];
     const sets = patient.flatMap((setting) => ["--set", setting]);
-    await this.must(...up, "--config", join(ROOT, "config"), ...sets);
+    await this.must(...up, "--config", this.config, ...sets);
     const { console: url, token } = await this.json("console");
     Object.assign(this, { url, token });
   }
@@ -75,6 +82,11 @@ export class Group {
     const headers = { authorization: `Bearer ${this.token}` };
     const response = await fetch(new URL("/api/state", this.url), { headers });
     return response.json();
+  }
+
+  /** The text of a scene file of its configuration. @param {string} name */
+  scene(name) {
+    return readFile(join(this.config, "scenes", `${name}.toml`), "utf8");
   }
 
   /** What the supervisor says of one service. @param {string} name */

@@ -10,11 +10,14 @@ export const test = base.extend({
   /** Settings of the group, `key=value` each. */
   settings: [[], { option: true }],
 
+  /** Whether the group has a copy of the configuration, for a test that changes its files. */
+  ownConfig: [false, { option: true }],
+
   /** Errors that this test provokes: texts that may be among those that the page reports. */
   provoked: [[], { option: true }],
 
-  group: async ({ settings }, use) => {
-    const group = await Group.up(settings);
+  group: async ({ settings, ownConfig }, use) => {
+    const group = await Group.up(settings, undefined, ownConfig);
     await use(group);
     await group.down();
   },

@@ -43,6 +43,7 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
             directory: "/home/ada".into(),
         },
         Request::Reload { wait_ms: 1 },
+        Request::UseScene { scene: "tools".into(), wait_ms: 1 },
         Request::Down,
     ];
     let json = |request| serde_json::to_string(request).expect("a request is JSON");

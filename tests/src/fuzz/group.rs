@@ -6,8 +6,8 @@ use arm::shell::ArmProgram;
 use config::Settings;
 use grounding::shell::GroundingProgram;
 use messages::{
-    Activity, AppliedMark, ArmStatus, Injection, MessageRef, MotionCommand, Observation, Presented,
-    RequestKey, RobotAct, Sound, Utterance,
+    Activity, AppliedMark, ArmStatus, Injection, MotionCommand, Observation, Presented, RequestKey,
+    RobotAct, Sound, Utterance,
 };
 use policy::shell::PolicyProgram;
 use service::lifecycle::Environment;
@@ -101,7 +101,7 @@ pub(super) struct Group {
     pub(super) arm: Process<ArmProgram>,
     pub(super) latest: Latest,
     pub(super) to_speech: Vec<speech::In<'static>>,
-    pub(super) to_grounding: Vec<MessageRef<'static, Utterance>>,
+    pub(super) to_grounding: Vec<grounding::In<'static>>,
     pub(super) to_policy: Vec<policy::In<'static>>,
     pub(super) to_arm: Vec<arm::In<'static>>,
     now: Time,
@@ -188,7 +188,8 @@ impl Group {
         let outputs = self.speech.wake(inbox, now);
         outputs.into_iter().for_each(|output| self.speech_says(output));
         let inbox = std::mem::take(&mut self.to_grounding);
-        for observation in self.grounding.wake(inbox, now) {
+        for output in self.grounding.wake(inbox, now) {
+            let grounding::Out::Observation(observation) = output else { continue };
             self.latest.observation = *observation;
             self.to_policy.push(policy::In::Observation(observation.into()));
         }
@@ -208,7 +209,7 @@ impl Group {
         match output {
             speech::Out::Utterance(utterance) => {
                 self.latest.utterance = *utterance;
-                self.to_grounding.push(utterance.into());
+                self.to_grounding.push(grounding::In::Utterance(utterance.into()));
             }
             speech::Out::Presented(presented) => {
                 self.latest.presented = presented;

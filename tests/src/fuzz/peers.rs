@@ -46,7 +46,7 @@ fn forge(group: &mut Group, input: &mut Input<'_>) {
     match kind {
         0 => {
             if let Some(it) = forged(&latest.utterance, input) {
-                group.to_grounding.push(it.into());
+                group.to_grounding.push(grounding::In::Utterance(it.into()));
             }
         }
         1 => {

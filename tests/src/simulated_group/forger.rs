@@ -30,7 +30,7 @@ impl SimulatedGroup {
             insert(&mut self.inboxes.speech, forged, &mut rng);
         }
         if rng.uniform() < FORGED {
-            let forged = utterance(&mut rng).into();
+            let forged = grounding::In::Utterance(utterance(&mut rng).into());
             insert(&mut self.inboxes.grounding, forged, &mut rng);
         }
         if rng.uniform() < FORGED {

@@ -70,7 +70,7 @@ struct Decoding {
 #[derive(Default)]
 struct Inboxes {
     speech: Vec<speech::In<'static>>,
-    grounding: Vec<messages::MessageRef<'static, messages::Utterance>>,
+    grounding: Vec<grounding::In<'static>>,
     policy: Vec<policy::In<'static>>,
     arm: Vec<arm::In<'static>>,
 }

@@ -76,7 +76,8 @@ impl SimulatedGroup {
             let copies = self.faults.copies(self.now);
             match output {
                 speech::Out::Utterance(utterance) => {
-                    self.inboxes.grounding.extend(repeat_n(utterance.into(), copies));
+                    let input = grounding::In::Utterance(utterance.into());
+                    self.inboxes.grounding.extend(repeat_n(input, copies));
                 }
                 speech::Out::Receipt(receipt) => match &mut self.client {
                     Some(client) => client.publish(copies, |it| it.receipts.push(*receipt)),
@@ -135,9 +136,10 @@ impl SimulatedGroup {
         self.user.hear((&self.settings.scene, &self.model), presentation, times, ended);
     }
 
-    #[allow(clippy::vec_box, reason = "the node's own output type")]
-    pub(super) fn route_grounding(&mut self, outputs: Vec<Box<messages::Observation>>) {
-        for observation in outputs {
+    pub(super) fn route_grounding(&mut self, outputs: Vec<grounding::Out>) {
+        for output in outputs {
+            // These groups have no model.
+            let grounding::Out::Observation(observation) = output else { continue };
             for _ in 0..self.faults.copies(self.now) {
                 // The bus may hand over a doubled message out of turn.
                 self.inboxes.policy.insert(0, policy::In::Observation(observation.clone().into()));

@@ -28,6 +28,10 @@ const PATHS = {
   play: "M8 5.5v13l10.5-6.5z",
   close: "M6 6l12 12M18 6 6 18",
   above: "M12 3.5v9M8.5 9 12 12.5 15.5 9M4 16.5h16M6.5 20.5h11",
+  plus: "M12 5v14M5 12h14",
+  copy: "M8.5 8.5h11v11h-11zM5 15.5v-11h11",
+  redo: "M19 9h-9a5 5 0 0 0 0 10h6M15.5 5.5 19 9l-3.5 3.5",
+  scene: "M3.5 5h17v14h-17zM7 8.5h4.5V13H7zM15 14h2.5v2.5H15z",
   wide: "M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",
 };
 

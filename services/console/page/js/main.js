@@ -32,8 +32,9 @@ const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 const store = new Store();
 const role = wishedRole(location.search);
 document.documentElement.dataset.role = role;
+const session = sessionId(tabStorage());
 const link = connect({
-  session: sessionId(tabStorage()),
+  session,
   role,
   lastLine: () => store.resumeAfter,
 });
@@ -44,7 +45,7 @@ const wished = [await setLanguage(), ...navigator.languages];
 await loadStrings(chooseLanguage(location.search, keptLanguage(), wished));
 translate(document);
 
-const context = { link, store, t };
+const context = { link, store, t, session };
 mountActions(at("actions"), context);
 mountAlarm(at("alarm"), at("polite"), context);
 mountTurn(at("turn"), context);
@@ -56,7 +57,10 @@ mountTranscript(at("transcript"), context);
 mountSay(at("say"), context);
 mountControl(at("control"), context);
 mountTools(at("tools"), context);
-at("tools").prepend(toolButton("history", t("history.show"), "history", () => openHistory()));
+at("tools").prepend(
+  toolButton("scene", t("scene.show"), "scene", () => openScene()),
+  toolButton("history", t("history.show"), "history", () => openHistory()),
+);
 mountTabs(at("tabs"), at("page"), context);
 mountHealth(at("health"), context);
 store.subscribe("welcome", ({ group }) => {
@@ -93,6 +97,20 @@ async function openHistory(interaction) {
   } catch {
     history = null;
     notify(t("history.unavailable"));
+  }
+}
+
+/** @type {Promise<() => void>|null} */
+let scene = null;
+
+/** Opens the scene editor, which is loaded when it is wanted first. */
+async function openScene() {
+  try {
+    scene ??= import("./scene/index.js").then((part) => part.mountScene(context));
+    (await scene)();
+  } catch {
+    scene = null;
+    notify(t("scene.unavailable"));
   }
 }
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use messages::Service;
 use service::group::GroupPaths;
@@ -66,7 +66,7 @@ impl Followed {
 
     /// Has the service's program list its journal.
     fn list(&self, paths: &GroupPaths, file: PathBuf) -> std::io::Result<Vec<JournalLine>> {
-        let mut command = Command::new(launch::program_of(self.service.name()));
+        let mut command = launch::command(launch::program_of(self.service.name()));
         command.arg("journal").arg(file).args(["--json", "--since", &self.next.to_string()]);
         for folder in std::iter::once(paths.run()).chain(kept_settings::folders(paths)) {
             command.arg("--settings").arg(folder);

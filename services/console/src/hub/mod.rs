@@ -261,6 +261,17 @@ impl Hub {
         Ok(None)
     }
 
+    /// Checks that the page of a session is the operator's.
+    pub fn must_operate(&self, session: &str) -> Result<(), String> {
+        let control = self.control();
+        let operator = control.lease.operator();
+        let is_own = |operator| control.viewers.session(operator).as_deref() == Some(session);
+        if operator.is_some_and(is_own) {
+            return Ok(());
+        }
+        Err("this is for the page of the operator; help: take control first".to_owned())
+    }
+
     fn must_hold(&self, viewer: ViewerId) -> Result<(), String> {
         match self.control().lease.operator() {
             Some(operator) if operator == viewer => Ok(()),

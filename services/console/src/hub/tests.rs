@@ -99,6 +99,20 @@ fn hub_lets_only_the_operator_end_anothers_participation() {
 }
 
 #[test]
+fn hub_knows_the_operators_page_by_its_session() {
+    let Page { hub, .. } = hub();
+    assert!(hub.must_operate("").is_err(), "there is no operator");
+    let (one, _to_one) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
+    let (other, _to_other) = hub.join("", "b", Role::Viewer, Time(0)).unwrap();
+    assert!(hub.must_operate("a").is_ok());
+    assert!(hub.must_operate("b").unwrap_err().contains("take control first"));
+    hub.give_control(one, other).unwrap();
+    assert!(hub.must_operate("a").is_err() && hub.must_operate("b").is_ok());
+    hub.leave(other, Time(1));
+    assert!(hub.must_operate("b").is_err(), "its page is gone");
+}
+
+#[test]
 fn hub_gives_a_screen_no_control() {
     let Page { hub, .. } = hub();
     let (screen, _to_screen) = hub.join("", "a", Role::Screen, Time(0)).unwrap();

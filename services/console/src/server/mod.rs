@@ -25,6 +25,7 @@ use crate::history::History;
 use crate::hub::Hub;
 use crate::hub::outbound::PageSettings;
 use crate::live::Live;
+use crate::scenes::Scenes;
 pub use access::Access;
 use connections::{Gate, Of};
 pub use routes::page_asset;
@@ -38,6 +39,7 @@ pub struct App {
     pub hub: Hub,
     pub live: Live,
     pub history: Arc<History>,
+    pub scenes: Scenes,
     pub access: Access,
     pub group: String,
     pub settings: PageSettings,
@@ -84,6 +86,7 @@ fn router(app: Arc<App>) -> Router {
         .route("/robot.urdf", get(routes::urdf))
         .route("/voice/{line}", get(routes::voice))
         .merge(crate::study::routes())
+        .merge(crate::scenes::routes())
         .fallback(routes::asset)
         .layer(middleware::from_fn_with_state(Arc::clone(&app), admit))
         // The routes below are open without the token, or check it themselves.

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -22,6 +22,7 @@ const PAUSE: Duration = Duration::from_secs(2);
 /// A line of `whichone fleet --watch`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
+#[expect(clippy::large_enum_variant, reason = "one is held at a time")]
 pub enum Change {
     /// A robot is connected no more.
     Gone {
@@ -104,7 +105,7 @@ fn launch(keys: &Path) -> Result<Child, Failure> {
 }
 
 /// The link's program cannot be started.
-pub(super) fn missing(program: &PathBuf, error: &std::io::Error) -> Failure {
+pub(super) fn missing(program: &Path, error: &std::io::Error) -> Failure {
     let help = "help: robots elsewhere need it: `scripts/link build`";
     Failure::new(Exit::NotReached, format!("{}: {error}; {help}", program.display()))
 }

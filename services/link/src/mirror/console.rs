@@ -1,7 +1,7 @@
 //! The console of a mirrored group: a child process that is started again when it ends.
 
 use std::fs::OpenOptions;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 use messages::{Epoch, Service};
@@ -9,7 +9,7 @@ use rustix::io::FdFlags;
 use rustix::pipe::{PipeFlags, pipe_with};
 use rustix::process::{Pid, Signal, kill_process};
 use service::group::{self, GroupPaths};
-use service::launch::program_of;
+use service::launch;
 use std::os::fd::{AsRawFd, OwnedFd};
 
 /// Pause before it is started again.
@@ -67,7 +67,7 @@ impl Console {
     fn start(&self) -> std::io::Result<Child> {
         let log = self.paths.log_file(Service::Console.name());
         let log = OpenOptions::new().create(true).append(true).open(log)?;
-        Command::new(program_of(Service::Console.name()))
+        launch::command(launch::program_of(Service::Console.name()))
             .env(group::ENV_GROUP, self.paths.name().as_str())
             .env(group::ENV_HOME, self.paths.home())
             .env(group::ENV_SERVICE, Service::Console.name())

@@ -65,6 +65,7 @@ impl Known {
             scene: self.scene.clone(),
             profile: Some(format!("mirror of {}", self.robot)),
             config: self.config.clone(),
+            set: None,
             orphans_killed: 0,
             rss_kib: None,
             cpu_s: None,

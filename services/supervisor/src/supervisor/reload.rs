@@ -11,13 +11,15 @@ use crate::machine::{Event, HeldBecause, Wanted};
 use crate::schedule::Schedule;
 use crate::server::Client;
 use service::control::{Refusal, RefusalKind, Reply};
+use service::logging;
 
 impl Supervisor {
-    /// Reloads the configuration and restarts the affected services; or, where anything is wrong
-    /// with it, changes nothing at all.
+    /// Reloads the configuration, with another scene where `scene` names one, and restarts the affected
+    /// services; or, where anything is wrong with it, changes nothing at all.
     pub(super) fn reload(
         &mut self,
         client: Client,
+        scene: Option<String>,
         wait_ms: u64,
         now: Time,
     ) -> Result<(), Refusal> {
@@ -29,7 +31,8 @@ impl Supervisor {
             let message = "invalid configuration; nothing was changed".to_owned();
             Refusal { kind: RefusalKind::Config, message, details }
         };
-        let configuration = (self.load)().map_err(wrong)?;
+        let scene = scene.or_else(|| self.scene.clone());
+        let configuration = (self.load)(scene.as_deref()).map_err(wrong)?;
         self.check_same_services(&configuration.spec.services)?;
         let orderly = Schedule::new(&configuration.spec.services);
         orderly.map_err(|error| wrong(vec![error.to_string()]))?;
@@ -39,6 +42,7 @@ impl Supervisor {
         let adopted = self.group.adopt(&configuration.spec);
         adopted.map_err(|error| wrong(vec![error.to_string()]))?;
         let changed = self.put_into_force(configuration);
+        self.scene = scene;
         let restarted: Vec<usize> =
             changed.into_iter().filter(|&service| self.is_to_restart(service)).collect();
         let after = |&service: &usize| (service, self.group.machine(service).incarnation());
@@ -86,6 +90,7 @@ impl Supervisor {
             entry.spec = spec;
         }
         self.around.log = configuration.spec.log.clone();
+        logging::set_json(self.around.log.json);
         self.configuration = configuration;
         changed
     }

@@ -26,6 +26,7 @@ impl Supervisor {
             scene: self.configuration.scene.clone(),
             profile: self.configuration.profile.clone(),
             config: self.configuration.directory.clone(),
+            set: Some(self.configuration.set.clone()),
             orphans_killed: self.orphans_killed,
             rss_kib: procfs::rss_kib(me),
             cpu_s: procfs::process(me).map(|process| process.cpu_s),

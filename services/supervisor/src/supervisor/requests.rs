@@ -36,7 +36,10 @@ impl Supervisor {
                 let then = done("every service that is wanted is ready".into());
                 self.wait_for(client, Goal::Whole, wait_ms.max(1), then, now);
             }
-            Request::Reload { wait_ms } => self.reload(client, wait_ms, now)?,
+            Request::Reload { wait_ms } => self.reload(client, None, wait_ms, now)?,
+            Request::UseScene { scene, wait_ms } => {
+                self.reload(client, Some(scene), wait_ms, now)?;
+            }
             Request::Swap { service, command, directory } => {
                 let service = self.find(&service)?;
                 self.replace(client, service, command, directory, now)?;

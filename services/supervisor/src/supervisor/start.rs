@@ -11,6 +11,7 @@ use service::bus::BusError;
 use service::exit::Exit;
 use service::folders::{FolderError, make_private, make_root};
 use service::group::GroupPaths;
+use service::logging;
 use service::notify::Notifier;
 use service::shm_cleanup::{Admin, NoRoom, check_room, remove_leftovers};
 use thiserror::Error;
@@ -77,7 +78,8 @@ pub(super) fn start(
     fresh: bool,
 ) -> Result<Supervisor, StartError> {
     let started = Instant::now();
-    let configuration = load().map_err(StartError::Config)?;
+    let configuration = load(None).map_err(StartError::Config)?;
+    logging::set_json(configuration.spec.log.json);
     let group = Group::new(&configuration.spec)?;
     // It holds the lock that the other folders wait for.
     make_root(paths.root())?;
@@ -101,6 +103,7 @@ pub(super) fn start(
         around,
         configuration,
         load,
+        scene: None,
         group,
         services,
         admin: Some(admin),

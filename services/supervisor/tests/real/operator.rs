@@ -102,6 +102,18 @@ fn reload_of_invalid_configuration_changes_nothing() {
 }
 
 #[test]
+fn chosen_scene_stays_in_force_for_later_reloads() {
+    let description = |words: &[&str]| json!({ "services": [service("arm", words)] });
+    let group = Group::start_with(description(&["ready"]));
+    let scene = || group.status().scene;
+    assert_eq!(scene(), "bowls");
+    let reply = group.ask(&Request::UseScene { scene: "tools".into(), wait_ms: WAIT_MS });
+    assert_eq!((reply, scene()), (Reply::Reloaded { restarted: vec![] }, "tools".to_owned()));
+    group.ask(&Request::Reload { wait_ms: WAIT_MS });
+    assert_eq!(scene(), "tools");
+}
+
+#[test]
 fn reload_releases_a_service_that_rejected_its_configuration() {
     let description = |words: &[&str]| json!({ "services": [service("arm", words)] });
     let group = Group::start_with(description(&["exits", "78"]));

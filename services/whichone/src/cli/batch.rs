@@ -27,6 +27,10 @@ pub struct GroundArgs {
     /// configuration's].
     #[arg(long, value_parser = one_of(LANGUAGES))]
     pub language: Option<Language>,
+    /// Fit the calibration of the configured language model (dialogue.model) to the labelled lines of
+    /// this file, and print it with the log loss before and after, beside that of the built-in reader.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["input", "language"])]
+    pub calibrate: Option<PathBuf>,
     /// The configuration.
     #[command(flatten)]
     pub config: ConfigArgs,

@@ -10,7 +10,8 @@ use super::talk::seconds;
 /// Selection of the configuration.
 #[derive(Clone, Debug, Default, Args)]
 pub struct ConfigArgs {
-    /// Folder of the configuration [default: ./config, else `config` beside the program].
+    /// Folder of the configuration [default: ./config, `config` beside the program, ~/.config/whichone,
+    /// /etc/whichone, else the built-in one].
     #[arg(long, value_name = "DIR", env = "WHICHONE_CONFIG", hide_env_values = true)]
     pub config: Option<PathBuf>,
     /// A profile from the folder `profiles` of the configuration.
@@ -116,6 +117,9 @@ pub struct LogsArgs {
 /// Arguments of `reload`.
 #[derive(Debug, Args)]
 pub struct ReloadArgs {
+    /// Use another scene until the group ends: a name in `scenes` of the configuration, or a path from its folder.
+    #[arg(long, value_name = "NAME")]
+    pub scene: Option<String>,
     /// Timeout for the restarted services, seconds; 0 returns at once.
     #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]
     pub timeout: Duration,
@@ -145,7 +149,24 @@ pub struct SwapArgs {
     pub timeout: Duration,
 }
 
+/// Arguments of `conform`.
+#[derive(Debug, Args)]
+pub struct ConformArgs {
+    /// Kind of the service: its name in a group, e.g. grounding.
+    pub service: String,
+    /// The program to test, and its arguments.
+    #[arg(last = true, required = true, value_name = "COMMAND")]
+    pub command: Vec<String>,
+    /// Test this rule alone; may be repeated.
+    #[arg(long = "rule", value_name = "NAME")]
+    pub rules: Vec<String>,
+    /// The configuration whose scene and settings the service gets.
+    #[command(flatten)]
+    pub config: ConfigArgs,
+}
+
 pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
-    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, e.g. group.scene=tools")?;
+    let (key, value) =
+        text.split_once('=').ok_or("expected KEY=VALUE, e.g. dialogue.planner=entropy")?;
     Ok((key.trim().to_owned(), value.trim().to_owned()))
 }

@@ -88,6 +88,9 @@ pub struct WatchArgs {
     /// Print one snapshot and exit.
     #[arg(long)]
     pub once: bool,
+    /// Show text only, without keys; so it is, too, where input or output is no terminal.
+    #[arg(long)]
+    pub plain: bool,
 }
 
 /// Arguments of `chat`.

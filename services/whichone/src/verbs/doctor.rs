@@ -12,6 +12,7 @@ use service::console_link;
 use service::exit::{Exit, Failure};
 use service::group::{GroupName, GroupPaths};
 use service::inspection::{Condition, Finding};
+use service::launch;
 use service::shm_cleanup;
 
 use super::{inspection, leftovers, paths as locations, up};
@@ -69,13 +70,17 @@ fn line(finding: &Finding, style: Style) -> String {
     format!("{mark}  {:<16} {note}", finding.what)
 }
 
-/// Checks the programs of the group, beside this one.
+/// Checks the programs of the group, beside this one or in it.
 fn programs() -> Finding {
     let folder = env::current_exe().ok().and_then(|own| Some(own.parent()?.to_owned()));
     let folder = folder.unwrap_or_default();
     let names = Service::BUILT_IN.map(Service::name).into_iter().chain([SUPERVISOR]);
     let names = names.map(|name| format!("whichone-{name}"));
-    let missing: Vec<String> = names.filter(|name| !folder.join(name).is_file()).collect();
+    let is_there = |name: &String| {
+        let path = folder.join(name);
+        path.is_file() || launch::host_of(&path).is_some()
+    };
+    let missing: Vec<String> = names.filter(|name| !is_there(name)).collect();
     if missing.is_empty() {
         return Finding::good("programs", folder.display().to_string());
     }

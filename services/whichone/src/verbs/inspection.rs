@@ -121,13 +121,31 @@ fn verify(paths: &GroupPaths, service: Service) -> Result<Result<Verdict, Exit>,
 /// The command line of a service's program for its journal, with the settings in force and those of
 /// earlier runs.
 fn journal_command(paths: &GroupPaths, service: Service) -> Command {
-    let mut command = command(service.name(), "journal");
+    let mut command = configured(paths, service).map_or_else(
+        || command(service.name(), "journal"),
+        |program| {
+            let mut command = Command::new(program);
+            command.arg("journal");
+            command
+        },
+    );
     command.arg(paths.journal_file(service.name()));
     let running = Some(paths.run()).filter(|run| run.join(config::SNAPSHOT_FILE).is_file());
     for folder in running.into_iter().chain(kept_settings::folders(paths)) {
         command.arg("--settings").arg(folder);
     }
     command
+}
+
+/// Returns the program that the group has configured in the place of the shipped one: only it knows, say, its own
+/// planner.
+fn configured(paths: &GroupPaths, service: Service) -> Option<String> {
+    let folders = std::iter::once(paths.run()).chain(kept_settings::folders(paths));
+    let mut settings = folders.map(|folder| config::Settings::load_snapshot(&folder));
+    let settings = settings.find_map(Result::ok)?;
+    let mut services = settings.group.services.into_iter();
+    let command = services.find(|it| it.name == service.name())?.command?;
+    command.into_iter().next()
 }
 
 /// A snapshot of settings in a temporary folder.
@@ -158,7 +176,7 @@ impl Drop for Settings {
 
 /// The command line of a service's program with an inspection verb.
 pub(super) fn command(service: &str, verb: &str) -> Command {
-    let mut command = Command::new(launch::program_of(service));
+    let mut command = launch::command(launch::program_of(service));
     command.arg(verb);
     command
 }

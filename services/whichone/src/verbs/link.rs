@@ -3,12 +3,11 @@
 use std::ffi::OsString;
 use std::io::ErrorKind;
 use std::os::unix::process::CommandExt;
-use std::process::Command;
 
 use messages::Service;
 use service::exit::{Exit, Failure};
 use service::group::{ENV_GROUP, GroupName};
-use service::launch::program_of;
+use service::launch;
 
 use crate::cli::LinkArgs;
 
@@ -47,8 +46,8 @@ fn hand_over(
     arguments: Vec<OsString>,
     group: Option<&GroupName>,
 ) -> Failure {
-    let program = program_of(program);
-    let mut command = Command::new(&program);
+    let program = launch::program_of(program);
+    let mut command = launch::command(&program);
     command.args(arguments);
     if let Some(group) = group {
         command.env(ENV_GROUP, group.as_str());

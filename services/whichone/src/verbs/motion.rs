@@ -18,6 +18,10 @@ use crate::output::{Output, note};
 /// The service that carries out the orders.
 const ARM: &[Service] = &[Service::Arm];
 
+/// Note on a stop that the disk does not hold yet.
+pub(super) const NOT_DURABLE: &str = "the stop is not on the disk yet: it holds as long as the arm's service runs; \
+     help: free some space on the disk of the group's folder";
+
 /// State of the motion stop.
 #[derive(Serialize)]
 struct MotionStop {
@@ -33,14 +37,7 @@ pub(super) fn motion(
     timeout: Duration,
     out: &mut Output<'_>,
 ) -> Outcome {
-    let patience = Span::from_s(timeout.as_secs_f64());
-    let mut pending = Pending { paths, why: None };
-    let state = stop_socket::give(paths, order, patience, &mut |late| pending.keep_trying(late));
-    let state = state.map_err(|error| with_reason(error, paths))?;
-    if order == MotionOrder::Stop {
-        believe(&state)?;
-    }
-    let StopState { stopped, at_rest, durable, .. } = state;
+    let StopState { stopped, at_rest, durable, .. } = give(paths, order, timeout, note)?;
     if out.is_json() {
         out.json(&MotionStop { stopped, at_rest, durable })?;
     } else if stopped {
@@ -49,27 +46,43 @@ pub(super) fn motion(
         out.line("the arm may move")?;
     }
     if stopped && !durable {
-        note(
-            "the stop is not on the disk yet: it holds as long as the arm's service runs; \
-              help: free some space on the disk of the group's folder",
-        );
+        note(NOT_DURABLE);
     }
     Ok(Exit::Ok)
 }
 
+/// Latches or releases the motion stop, waits until the arm has confirmed it, and calls `report` if that
+/// takes long.
+pub(super) fn give(
+    paths: &GroupPaths,
+    order: MotionOrder,
+    timeout: Duration,
+    report: impl Fn(String),
+) -> Result<StopState, Failure> {
+    let patience = Span::from_s(timeout.as_secs_f64());
+    let mut pending = Pending { paths, report, why: None };
+    let state = stop_socket::give(paths, order, patience, &mut |late| pending.keep_trying(late));
+    let state = state.map_err(|error| with_reason(error, paths))?;
+    if order == MotionOrder::Stop {
+        believe(&state)?;
+    }
+    Ok(state)
+}
+
 /// An order that the arm has not answered.
-struct Pending<'a> {
+struct Pending<'a, R> {
     paths: &'a GroupPaths,
+    report: R,
     /// Receives why the arm's service does not run, or an end where it soon will.
     why: Option<Receiver<String>>,
 }
 
-impl Pending<'_> {
+impl<R: Fn(String)> Pending<'_, R> {
     /// Notifies the user once; returns false as soon as the supervisor says that the service stays away.
     /// It is asked on a thread of its own: one that hangs must not delay the order's repetitions.
     fn keep_trying(&mut self, late: &StopError) -> bool {
         let why = self.why.get_or_insert_with(|| {
-            note(format!("{late}; trying again"));
+            (self.report)(format!("{late}; trying again"));
             let (sender, why) = channel();
             let paths = self.paths.clone();
             thread::spawn(move || {

@@ -14,7 +14,7 @@ use service::status::GroupStatus;
 
 use super::{leftovers, words};
 use crate::Outcome;
-use crate::cli::{RestartArgs, ServiceArgs, SwapArgs};
+use crate::cli::{ReloadArgs, RestartArgs, ServiceArgs, SwapArgs};
 use crate::output::Output;
 
 /// Timeout of the supervisor's answer, beyond the requested wait.
@@ -53,9 +53,14 @@ pub(super) fn restart(paths: &GroupPaths, args: RestartArgs, out: &mut Output<'_
     order(paths, &Request::Restart { service, original, wait_ms: ms(timeout) }, timeout, out)
 }
 
-/// Reloads the configuration.
-pub(super) fn reload(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) -> Outcome {
-    order(paths, &Request::Reload { wait_ms: ms(timeout) }, timeout, out)
+/// Reloads the configuration, with another scene where one is named.
+pub(super) fn reload(paths: &GroupPaths, args: ReloadArgs, out: &mut Output<'_>) -> Outcome {
+    let (timeout, wait_ms) = (args.timeout, ms(args.timeout));
+    let request = match args.scene {
+        Some(scene) => Request::UseScene { scene, wait_ms },
+        None => Request::Reload { wait_ms },
+    };
+    order(paths, &request, timeout, out)
 }
 
 /// Replaces a service's program.

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use config::Settings;
 use service::exit::{Exit, Failure};
-use service::group::GroupPaths;
+use service::group::{GroupName, GroupPaths};
 
 use crate::cli::ConfigArgs;
+use crate::shipped;
 
 /// A file that marks a configuration folder.
 const MARK: &str = "group.toml";
@@ -29,25 +30,55 @@ pub(super) fn settings_in_force(
     settings(args)
 }
 
-/// Returns the absolute folder of the configuration: the named one, else `./config`, else `config`
-/// beside the program or one of the folders above it.
+/// The folder of the configuration of a whole machine.
+const SYSTEM: &str = "/etc/whichone";
+
+/// Returns the absolute folder of the configuration: the named one, else the first that exists of `./config`,
+/// `config` beside the program or one of the folders above it, `$XDG_CONFIG_HOME/whichone` and
+/// `/etc/whichone`, else the built-in one.
 pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, Failure> {
     if let Some(named) = args.config.as_ref().filter(|path| !path.as_os_str().is_empty()) {
         return Ok(absolute(named));
     }
-    find(&env::current_dir().unwrap_or_default(), env::current_exe().ok().as_deref())
-        .map(|found| absolute(&found))
-        .ok_or_else(|| {
+    let var = |key| env::var_os(key).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let own = var("XDG_CONFIG_HOME").or_else(|| Some(var("HOME")?.join(".config")));
+    let fixed = own.map(|own| own.join("whichone")).into_iter().chain([SYSTEM.into()]);
+    let here = env::current_dir().unwrap_or_default();
+    match find(&here, env::current_exe().ok().as_deref(), fixed) {
+        Some(found) => Ok(absolute(&found)),
+        None => built_in()?.ok_or_else(|| {
             let what = format!("no configuration found: ./config/{MARK} is missing");
             let help = "help: pass --config DIR or set WHICHONE_CONFIG";
             Failure::new(Exit::Config, format!("{what}; {help}"))
-        })
+        }),
+    }
 }
 
-fn find(here: &Path, program: Option<&Path>) -> Option<PathBuf> {
+/// As [`config_folder`], for new files of the user.
+pub(super) fn own_config_folder(args: &ConfigArgs) -> Result<PathBuf, Failure> {
+    let folder = config_folder(args)?;
+    if shipped::is_built_in(&folder) {
+        let what = "expected a configuration of your own, found the built-in one only";
+        let help = "`whichone init config` writes one to ./config, which counts from then on; or name a file";
+        return Err(Failure::new(Exit::Config, format!("{what}; help: {help}")));
+    }
+    Ok(folder)
+}
+
+/// The folder of the built-in configuration, which lies beside the groups' folders.
+fn built_in() -> Result<Option<PathBuf>, Failure> {
+    let name = GroupName::new(GroupName::DEFAULT)?;
+    shipped::folder(GroupPaths::resolve(&name)?.home())
+}
+
+fn find(
+    here: &Path,
+    program: Option<&Path>,
+    fixed: impl IntoIterator<Item = PathBuf>,
+) -> Option<PathBuf> {
     let beside = program.into_iter().flat_map(|program| program.ancestors().skip(1));
     let folders = std::iter::once(here).chain(beside).map(|folder| folder.join("config"));
-    folders.into_iter().find(|folder| folder.join(MARK).is_file())
+    folders.chain(fixed).find(|folder| folder.join(MARK).is_file())
 }
 
 /// The path is passed to other processes, which work in other folders.
@@ -71,14 +102,21 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let here = root.path().join("work");
         let program = root.path().join("checkout/target/release/whichone");
+        let fixed = [root.path().join("own/whichone"), root.path().join("etc/whichone")];
         std::fs::create_dir_all(&here).unwrap();
-        assert_eq!(find(&here, Some(&program)), None);
+        let found = |here: &Path| find(here, Some(&program), fixed.clone());
+        assert_eq!(found(&here), None);
+        for folder in fixed.iter().rev() {
+            std::fs::create_dir_all(folder).unwrap();
+            std::fs::write(folder.join(MARK), "").unwrap();
+            assert_eq!(found(&here).as_ref(), Some(folder));
+        }
         // A folder of that name that is something else.
         std::fs::create_dir_all(here.join("config")).unwrap();
         let beside = config_in(&root.path().join("checkout"));
-        assert_eq!(find(&here, Some(&program)), Some(beside));
+        assert_eq!(found(&here), Some(beside));
         let own = config_in(&here);
-        assert_eq!(find(&here, Some(&program)), Some(own));
-        assert_eq!(find(Path::new("/"), None), None);
+        assert_eq!(found(&here), Some(own));
+        assert_eq!(find(Path::new("/"), None, []), None);
     }
 }

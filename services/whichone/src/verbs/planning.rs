@@ -10,7 +10,7 @@ use scene::Scene;
 use service::exit::{Exit, Failure};
 
 use super::paths;
-use crate::batch::{Decider, Grounder, Problem};
+use crate::batch::{Calibrator, Decider, Grounder, Problem};
 use crate::cli::{ConfigArgs, GroundArgs, PlanArgs, ProblemArgs};
 use crate::scene_file;
 
@@ -40,6 +40,16 @@ pub(super) fn grounder(args: &GroundArgs) -> Result<Grounder, Failure> {
         None => Language::Careful,
     };
     Ok(Grounder::new(scene, language))
+}
+
+/// The calibrator of the configured language model for a scene.
+pub(super) fn calibrator(scene: &Path, config: &ConfigArgs) -> Result<Calibrator, Failure> {
+    let model = paths::settings(config)?.dialogue.model.ok_or_else(|| {
+        let help = "help: set dialogue.model.url and dialogue.model.model";
+        let what = "--calibrate: the configuration has no language model";
+        Failure::new(Exit::Config, format!("{what}; {help}"))
+    })?;
+    Calibrator::new(load_scene(scene, config)?, model)
 }
 
 /// The problem of a scene given by its file or by its name in the configuration. With `follows`, all

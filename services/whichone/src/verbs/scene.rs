@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use config::Settings;
 use diagnostics::{Diagnostics, TextFile};
+use scene_editing::SceneEdit;
 use serde_json::json;
 use service::exit::{Exit, Failure};
 
@@ -16,14 +17,8 @@ use crate::output::Output;
 use crate::scene_file;
 
 mod diff;
-mod edit;
 mod place;
 mod show;
-
-use edit::SceneEdit;
-
-/// The scene that `scene new` writes; `@NAME@` and `@SCHEMA@` are filled in, and places are added.
-const TEMPLATE: &str = include_str!("scene/template.toml");
 
 /// Executes an action.
 pub(super) fn scene(what: SceneVerb, out: &mut Output<'_>) -> Outcome {
@@ -42,7 +37,7 @@ fn check_scene(args: &SceneCheckArgs, out: &mut Output<'_>) -> Outcome {
 
 fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
     let path = if planning::is_word(&args.file) {
-        let scenes = paths::config_folder(&args.config)?.join("scenes");
+        let scenes = paths::own_config_folder(&args.config)?.join("scenes");
         scenes.join(&args.file).with_extension("toml")
     } else {
         args.file.clone()
@@ -52,9 +47,8 @@ fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
         return Err(Failure::new(Exit::Usage, what));
     }
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    let text = TEMPLATE
-        .replace("@NAME@", &toml_edit::Value::from(&*name).to_string())
-        .replace("@SCHEMA@", &schema_line(&path, &args.config)?);
+    let schema = scene_editing::schema_line(&path, &paths::config_folder(&args.config)?);
+    let text = scene_editing::new_scene(&name, &schema);
     let label = path.display().to_string();
     let mut edit = SceneEdit::parse(&label, &text)?;
     let placed = place::places(&mut edit, &label, &args.config)?;
@@ -75,18 +69,6 @@ fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
         out.line("  edit it, then: whichone scene place FILE --write; whichone scene check FILE")?;
     }
     Ok(Exit::Ok)
-}
-
-/// The line by which editors find the schema of a file, if the configuration has it.
-fn schema_line(path: &Path, config: &ConfigArgs) -> Result<String, Failure> {
-    const FILE: &str = "schemas/scene.json";
-    let folder = path.parent().unwrap_or(Path::new(""));
-    if folder.join("..").join(FILE).is_file() {
-        return Ok(format!("#:schema ../{FILE}\n"));
-    }
-    let schema = paths::config_folder(config)?.join(FILE);
-    let line = || format!("#:schema file://{}\n", schema.display());
-    Ok(if schema.is_file() { line() } else { String::new() })
 }
 
 /// Reads the scene that is named, with its path.
@@ -166,12 +148,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("mine.toml");
         // One object without a place, one out of reach, and a comment at each.
-        let (head, _) = TEMPLATE.split_once("\n[[objects]]").unwrap();
+        let template = scene_editing::new_scene("mine", "");
+        let (head, _) = template.split_once("\n[[objects]]").unwrap();
         let text = format!(
             "{}\n[[objects]] # first\nname = 'a'\nattributes = {{ kind = 'box' }}\nsize = [0.10, 0.03, 0.05]\n\
              grasp_width = 0.03 # thin\n\n[[objects]] # second\nname = 'b'\nattributes = {{ kind = 'cup' }}\n\
              xyz = [0.70, 1.4, -0.130] # far\nsize = [0.10, 0.03, 0.05]\ngrasp_width = 0.03\n",
-            head.replace("@NAME@", "'mine'").replace("@SCHEMA@", "")
+            head
         );
         fs::write(&file, &text).unwrap();
         let place = |write| {

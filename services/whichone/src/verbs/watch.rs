@@ -1,5 +1,6 @@
 //! `watch`: live view of belief, dialogue, arm and services.
 
+use std::io::{self, IsTerminal};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -14,6 +15,7 @@ use crate::Outcome;
 use crate::cli::WatchArgs;
 use crate::output::Output;
 
+mod dashboard;
 mod frame;
 mod model;
 
@@ -39,6 +41,9 @@ pub(super) fn watch(paths: &GroupPaths, args: &WatchArgs, out: &mut Output<'_>) 
     }
     let interrupt = Interrupt::listen()?;
     let screen = !out.is_json() && out.is_terminal();
+    if screen && !args.plain && io::stdin().is_terminal() {
+        return dashboard::run(&mut model, &interrupt, out.style()).map(|()| Exit::Ok);
+    }
     if screen {
         out.text(frame::BEGIN)?;
     }

@@ -2,6 +2,7 @@
 
 mod invalid;
 mod layering;
+mod reference;
 mod schemas;
 mod sections;
 mod snapshot;

@@ -18,7 +18,7 @@ mod descriptions;
 const SCENES_MD: &str = include_str!("../../../../docs/scenes.md");
 
 /// Every schema by the name of its file.
-fn schemas() -> BTreeMap<String, Json> {
+pub(super) fn schemas() -> BTreeMap<String, Json> {
     let mut all = BTreeMap::new();
     for section in Section::ALL {
         let name = section.name();

@@ -3,7 +3,18 @@
 use std::fs;
 
 use super::{Folder, shipped};
-use crate::{SNAPSHOT_FILE, Section, Settings};
+use crate::{SNAPSHOT_FILE, Section, Settings, WORDS_FILE};
+
+#[test]
+fn words_of_the_scene_are_lines_after_its_key() {
+    let settings = Settings::load(&shipped(), None, &[]).unwrap();
+    let run = tempfile::tempdir().unwrap();
+    settings.write_words(run.path()).unwrap();
+    let text = fs::read_to_string(run.path().join(WORDS_FILE)).unwrap();
+    let (key, words) = text.split_once('\n').unwrap();
+    assert_eq!(u64::from_str_radix(key, 16), Ok(settings.scene.key()));
+    assert_eq!(words.lines().collect::<Vec<_>>(), settings.scene.words());
+}
 
 #[test]
 fn a_snapshot_reads_back_equal() {

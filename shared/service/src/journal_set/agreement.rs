@@ -3,7 +3,7 @@
 //! its sender's does not. Where it does, one of them is older than the others: restored from a copy,
 //! or shortened.
 
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 
 use messages::Service;
 
@@ -11,7 +11,7 @@ use super::JournalSet;
 use crate::exit::{Exit, Failure};
 use crate::group::GroupPaths;
 use crate::inspection::{SharedFacts, Verdict};
-use crate::launch::program_of;
+use crate::launch;
 
 /// A journal that lacks what another one rests on.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -79,7 +79,7 @@ pub fn check_agreement(paths: &GroupPaths, set: &JournalSet) -> Result<(), Behin
 }
 
 fn start_reading(paths: &GroupPaths, service: Service) -> Option<Child> {
-    let mut command = Command::new(program_of(service.name()));
+    let mut command = launch::command(launch::program_of(service.name()));
     command.args(["journal", "--facts"]).arg(paths.journal_file(service.name()));
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
     command.spawn().ok()

@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use config::Settings;
 use journal::Journal;
+use runtime::port_failures::PortFailures;
 
 use super::{In, Loop, Program, Record, wall_ns};
 use crate::bus::{Bus, Identity, WakeListener};
@@ -88,7 +89,7 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
         effects: Effects::default(),
         tap,
         port_error: None,
-        port_failure: None,
+        port_failures: PortFailures::default(),
         bus,
     };
     if let Some(set_aside) = set_aside {

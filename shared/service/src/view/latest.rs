@@ -1,8 +1,7 @@
 use messages::{
-    ActKind, Activity, ArmStatus, Hearing, PolicyView, PresentationState, Presented, Receipt,
-    ReceiptStatus, topics,
+    Activity, ArmStatus, Hearing, PolicyView, Presented, Receipt, ReceiptStatus, topics,
 };
-use scene::{Question, Scene};
+use scene::Scene;
 
 use super::TableScene;
 use crate::Time;
@@ -148,15 +147,7 @@ impl Latest {
 
     /// Returns the question in force, once it has been presented completely.
     pub fn open_question(&self) -> Option<PromptId> {
-        let view = self.view.as_ref()?;
-        let Presented { prompt, presentation, state, .. } = self.presented;
-        // "Say yes, and I will get the white bowl."
-        let is_confirmation = view.decision == ActKind::Say && view.question != Question::None;
-        let is_asked = view.interaction != 0
-            && (view.decision == ActKind::Ask || is_confirmation)
-            && prompt == view.prompt
-            && state == PresentationState::Ended;
-        is_asked.then_some((prompt, presentation))
+        self.view.as_ref()?.open_question(&self.presented)
     }
 
     /// Returns the line that is being presented or was presented last, if it is still the robot's

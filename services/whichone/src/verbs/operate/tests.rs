@@ -74,12 +74,19 @@ fn refusal_is_printed_with_details_and_kind() {
 
 #[test]
 fn reload_lists_the_restarted_services() {
+    let args = |scene: Option<&str>| ReloadArgs {
+        scene: scene.map(str::to_owned),
+        timeout: Duration::ZERO,
+    };
     let reloaded = |names: Json| {
         let reply = json!({"reply": "reloaded", "restarted": names});
-        run(reply, false, |paths, out| reload(paths, Duration::ZERO, out)).1
+        run(reply, false, |paths, out| reload(paths, args(None), out)).1
     };
     assert!(reloaded(json!(["policy", "arm"])).ends_with("restarted: policy, arm\n"));
     assert!(reloaded(json!([])).ends_with("no service had to be restarted\n"));
+    let reply = json!({"reply": "reloaded", "restarted": []});
+    let (asked, ..) = run(reply, false, |paths, out| reload(paths, args(Some("tools")), out));
+    assert_eq!(asked, json!({"verb": "use-scene", "scene": "tools", "wait_ms": 0}));
 }
 
 #[test]

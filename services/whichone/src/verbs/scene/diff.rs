@@ -1,7 +1,7 @@
 //! Differences between two versions of a text, as `diff -U0` prints them.
 
 /// Returns the changed lines of `new` against `old`, for a file of that name: replaced lines one for one,
-/// and added lines, which is all that [`SceneEdit`](super::SceneEdit) does.
+/// and added lines, which is all that [`SceneEdit`](scene_editing::SceneEdit) does.
 pub(super) fn unified(file: &str, old: &str, new: &str) -> Vec<String> {
     let (old, new): (Vec<&str>, Vec<&str>) = (old.lines().collect(), new.lines().collect());
     let mut lines = vec![format!("--- {file}"), format!("+++ {file}")];

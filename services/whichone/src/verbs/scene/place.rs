@@ -2,10 +2,10 @@
 
 use diagnostics::TextFile;
 use preflight::{ArmSetup, Arrangement};
+use scene_editing::SceneEdit;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
-use super::edit::SceneEdit;
 use super::{diff, examine, load, read};
 use crate::Outcome;
 use crate::cli::{ConfigArgs, ScenePlaceArgs};

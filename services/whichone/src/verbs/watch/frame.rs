@@ -78,14 +78,31 @@ fn service(service: &ServiceStatus, style: Style) -> String {
 }
 
 fn dialogue(scene: &Scene, view: &PolicyView, style: Style, columns: usize) -> Vec<String> {
-    let mut lines = vec![match view.interaction {
+    let mut lines = vec![summary(view)];
+    lines.extend(belief(scene, &view.belief, style, columns));
+    lines.extend(reasons(scene, view, style, columns));
+    lines
+}
+
+/// The open interaction in a few words.
+pub(super) fn summary(view: &PolicyView) -> String {
+    match view.interaction {
         0 => "nothing is asked for".to_owned(),
         id => {
             let asked = scene::count(view.questions, "question");
             format!("interaction {id}: {asked} asked, {:.1} to come", view.expected_questions)
         }
-    }];
-    lines.extend(belief(scene, &view.belief, style, columns));
+    }
+}
+
+/// What stands behind the decision, and how the last interaction ended.
+pub(super) fn reasons(
+    scene: &Scene,
+    view: &PolicyView,
+    style: Style,
+    columns: usize,
+) -> Vec<String> {
+    let mut lines = Vec::new();
     if view.absent > 0.0 {
         lines.push(format!("  not here {:.1} %", view.absent * 100.0));
     }
@@ -114,8 +131,25 @@ fn dialogue(scene: &Scene, view: &PolicyView, style: Style, columns: usize) -> V
     lines
 }
 
+/// A belief as bars.
+pub(super) struct Bars {
+    /// One for each object that is shown, in the scene's order.
+    pub(super) bars: Vec<Bar>,
+    /// A line about the others.
+    pub(super) rest: Option<String>,
+}
+
+/// The bar of one object.
+pub(super) struct Bar {
+    /// Name and probability, as wide as the others'.
+    pub(super) label: String,
+    pub(super) bar: String,
+    /// No other object is more probable.
+    pub(super) is_best: bool,
+}
+
 /// A bar for each object, in the scene's order; of many only the most probable.
-fn belief(scene: &Scene, belief: &[f64], style: Style, columns: usize) -> Vec<String> {
+pub(super) fn bars(scene: &Scene, belief: &[f64], columns: usize) -> Bars {
     let mut shown: Vec<(usize, f64)> = belief.iter().copied().enumerate().collect();
     shown.sort_by(|a, b| b.1.total_cmp(&a.1));
     shown.truncate(OBJECTS_MAX);
@@ -125,18 +159,22 @@ fn belief(scene: &Scene, belief: &[f64], style: Style, columns: usize) -> Vec<St
     let length = columns.saturating_sub(widest + 12).clamp(5, BAR_MAX);
     let best = belief.iter().copied().fold(0.0, f64::max);
     let hidden = belief.len() - shown.len();
-    let mut lines: Vec<String> = shown
-        .into_iter()
-        .map(|(i, p)| {
-            let ink = if p >= best { Ink::Green } else { Ink::Cyan };
-            let bar = style.paint(ink, bar(p, length));
-            format!("  {:widest$} {:5.1} % {bar}", cut(name(i), widest), p * 100.0)
-        })
-        .collect();
-    if hidden > 0 {
-        lines.push(format!("  and {hidden} less probable ones"));
-    }
-    lines
+    let bar = |(i, p): (usize, f64)| Bar {
+        label: format!("  {:widest$} {:5.1} % ", cut(name(i), widest), p * 100.0),
+        bar: bar(p, length),
+        is_best: p >= best,
+    };
+    let rest = (hidden > 0).then(|| format!("  and {hidden} less probable ones"));
+    Bars { bars: shown.into_iter().map(bar).collect(), rest }
+}
+
+fn belief(scene: &Scene, belief: &[f64], style: Style, columns: usize) -> Vec<String> {
+    let Bars { bars, rest } = bars(scene, belief, columns);
+    let line = |Bar { label, bar, is_best }| {
+        let ink = if is_best { Ink::Green } else { Ink::Cyan };
+        format!("{label}{}", style.paint(ink, bar))
+    };
+    bars.into_iter().map(line).chain(rest).collect()
 }
 
 /// A bar of `p` times `length` characters, to an eighth of one.
@@ -160,7 +198,8 @@ fn said(model: &WatchModel, style: Style, columns: usize) -> Vec<String> {
     model.lines.said().into_iter().map(line).collect()
 }
 
-fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
+/// What the arm does.
+pub(super) fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
     let object = object_name(scene, arm.object).unwrap_or("?");
     let left = words::time(arm.remaining_s);
     let puts_back = arm.task == Task::PutBack;

@@ -1,5 +1,6 @@
 //! Model behind `watch`: the latest messages, the lines of the dialogue, and the group's status.
 
+use messages::Receipt;
 use scene::Scene;
 use service::clock;
 use service::group::GroupPaths;
@@ -41,11 +42,21 @@ impl WatchModel {
         latest.view.is_some() && latest.activity.is_some() && latest.arm.is_some()
     }
 
-    /// Takes in what has arrived.
-    pub(super) fn look(&mut self) -> Result<(), Failure> {
+    /// Takes in what has arrived. Returns the receipts among it.
+    pub(super) fn look(&mut self) -> Result<Vec<Receipt>, Failure> {
         let receipts = self.conversation.look()?;
         self.lines.take_in(self.conversation.latest(), &receipts);
-        Ok(())
+        Ok(receipts)
+    }
+
+    /// Says something to the robot.
+    pub(super) fn say(&mut self, text: &str) -> Result<(), Failure> {
+        self.conversation.say(text)
+    }
+
+    /// Returns true if the receipt is for something that was said here.
+    pub(super) fn is_own(&self, receipt: &Receipt) -> bool {
+        self.conversation.is_own(receipt)
     }
 
     /// Returns the serialisable view.

@@ -1,0 +1,114 @@
+//! The scene editor's HTTP endpoints. Reading is for everyone who may open the page; all else is for the page of
+//! the operator, which names its session.
+
+use std::sync::Arc;
+
+use axum::Router;
+use axum::body::Bytes;
+use axum::extract::{DefaultBodyLimit, Path, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::desk::Refusal;
+use crate::server::{Access, App};
+
+/// Largest request: a scene file twice, as its text and as a document.
+const BODY_MAX: usize = 32 << 20;
+
+/// The header with the session of the page.
+const SESSION: &str = "x-whichone-session";
+
+/// Everything below `/api/scenes` and `/api/editor`.
+pub fn routes() -> Router<Arc<App>> {
+    Router::new()
+        .route("/api/scenes", get(list))
+        .route("/api/scenes/{name}", get(open).put(save))
+        .route("/api/scenes/{name}/use", post(use_scene))
+        .route("/api/editor/new", get(new_scene))
+        .route("/api/editor/check", post(check))
+        .route("/api/editor/reach", post(reach))
+        .layer(DefaultBodyLimit::max(BODY_MAX))
+}
+
+type Answer = Result<Response, Refusal>;
+
+async fn list(State(app): State<Arc<App>>) -> Answer {
+    json(app.scenes.ask(|desk| desk.list()).await?)
+}
+
+async fn open(State(app): State<Arc<App>>, Path(name): Path<String>) -> Answer {
+    json(app.scenes.ask(move |desk| desk.open(&name)).await?)
+}
+
+async fn new_scene(State(app): State<Arc<App>>) -> Answer {
+    json(app.scenes.ask(|desk| desk.new_scene()).await?)
+}
+
+async fn check(State(app): State<Arc<App>>, headers: HeaderMap, body: Bytes) -> Answer {
+    must_operate(&app, &headers)?;
+    let draft = read(&body)?;
+    json(app.scenes.ask(move |desk| desk.check(&draft)).await?)
+}
+
+async fn reach(State(app): State<Arc<App>>, headers: HeaderMap, body: Bytes) -> Answer {
+    must_operate(&app, &headers)?;
+    let places = read(&body)?;
+    json(app.scenes.ask(move |desk| desk.reach(&places)).await?)
+}
+
+async fn save(
+    State(app): State<Arc<App>>,
+    Path(name): Path<String>,
+    headers: HeaderMap,
+    body: Bytes,
+) -> Answer {
+    must_operate(&app, &headers)?;
+    let saving = read(&body)?;
+    json(app.scenes.ask(move |desk| desk.save(&name, &saving)).await?)
+}
+
+async fn use_scene(
+    State(app): State<Arc<App>>,
+    Path(name): Path<String>,
+    headers: HeaderMap,
+) -> Answer {
+    must_operate(&app, &headers)?;
+    json(app.scenes.ask(move |desk| desk.use_scene(&name)).await?)
+}
+
+/// The request is of the operator's own page.
+fn must_operate(app: &App, headers: &HeaderMap) -> Result<(), Refusal> {
+    let refuse = |why: &str| Refusal::new(StatusCode::FORBIDDEN, why);
+    if !Access::is_own(headers) {
+        return Err(refuse("only the console's own pages may change scenes"));
+    }
+    let session = headers.get(SESSION).and_then(|session| session.to_str().ok());
+    app.hub.must_operate(session.unwrap_or_default()).map_err(|why| refuse(&why))
+}
+
+fn read<T: DeserializeOwned>(body: &Bytes) -> Result<T, Refusal> {
+    let wrong = |error| Refusal::new(StatusCode::BAD_REQUEST, format!("invalid request: {error}"));
+    serde_json::from_slice(body).map_err(wrong)
+}
+
+fn json(answer: impl Serialize) -> Answer {
+    let text = serde_json::to_string(&answer).map_err(|error| {
+        Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, format!("no answer: {error}"))
+    })?;
+    Ok(as_json(StatusCode::OK, text))
+}
+
+fn as_json(status: StatusCode, text: String) -> Response {
+    let kind = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
+    (status, kind, text).into_response()
+}
+
+impl IntoResponse for Refusal {
+    fn into_response(self) -> Response {
+        // It holds texts and numbers only.
+        as_json(self.status, serde_json::to_string(&self).unwrap_or_default())
+    }
+}

@@ -1,0 +1,37 @@
+//! `init`: the shipped configuration, to be edited. `man`: pages for `man`.
+
+use std::path::Path;
+
+use serde_json::json;
+use service::exit::{Exit, Failure};
+
+use crate::Outcome;
+use crate::cli::Cli;
+use crate::output::Output;
+use crate::shipped;
+
+/// Writes the shipped configuration into a folder.
+pub(super) fn init(folder: &Path, out: &mut Output<'_>) -> Outcome {
+    let files = shipped::write_into(folder)?;
+    if out.is_json() {
+        out.json(&json!({ "folder": folder, "files": files }))?;
+    } else {
+        let folder = folder.display();
+        out.line(format_args!("{folder}: {}", scene::count(files, "file")))?;
+        out.line("  the keys are explained in the files; group.toml names the scene")?;
+        out.line(format_args!("  check it: whichone check --config {folder}"))?;
+        out.line(format_args!("  start it: whichone up --config {folder}"))?;
+    }
+    Ok(Exit::Ok)
+}
+
+/// Writes a page for `man` per verb into a folder.
+pub(super) fn man(folder: &Path, out: &mut Output<'_>) -> Outcome {
+    std::fs::create_dir_all(folder)
+        .and_then(|()| clap_mangen::generate_to(Cli::definition(), folder))
+        .map_err(|error| Failure::file(folder, &error))?;
+    if !out.is_json() {
+        out.line(format_args!("{}: read them with `man -l`", folder.display()))?;
+    }
+    Ok(Exit::Ok)
+}

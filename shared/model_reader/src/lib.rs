@@ -1,0 +1,20 @@
+//! Reads utterances with a language model behind HTTP, in the chat-completions form: the prompt of a scene, the
+//! request, the strict reading of the answer, and the calibration of its weights.
+//!
+//! Only [`Client`] does IO; everything else is a function of its arguments, so that a replay needs no model.
+
+mod answer;
+mod calibration;
+mod client;
+mod prompt;
+#[cfg(any(test, feature = "stand_in"))]
+pub mod stand_in;
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+mod tests;
+
+pub use answer::{AnswerError, ModelReading, parse};
+pub use calibration::{Case, LOSS_FLOOR, calibrated, fit, held_out_loss, log_loss};
+pub use client::{Client, ClientError};
+pub use prompt::{Prompt, utterance};

@@ -1,0 +1,86 @@
+//! The main loop of a service in C.
+
+use std::ffi::{c_int, c_void};
+use std::ops::ControlFlow;
+
+use messages::Service;
+use service::bus::{Bus, WakeListener};
+use service::exit::{Exit, Failure};
+use service::lifecycle::{Cycle, Health, Ready, SOURCES_MAX, Sources, drive};
+use service::{Span, Time};
+
+use crate::complain;
+use crate::group::Group;
+
+/// Longest time between two steps.
+const STEP_EVERY: Span = Span::from_ms(500);
+
+/// Handles the messages that have arrived.
+pub type Step = unsafe extern "C" fn(*mut c_void);
+
+struct Loop<'a> {
+    bus: &'a Bus,
+    listener: WakeListener,
+    step: Step,
+    context: *mut c_void,
+    is_ending: bool,
+}
+
+impl Cycle for Loop<'_> {
+    fn listener(&self) -> &WakeListener {
+        &self.listener
+    }
+
+    fn wake(&self, now: Time) -> (Sources<'_>, Time) {
+        ([None; SOURCES_MAX], now + STEP_EVERY)
+    }
+
+    fn shut_down(&mut self) {
+        self.is_ending = true;
+    }
+
+    fn pass(&mut self, _ready: Ready) -> Result<ControlFlow<()>, Failure> {
+        if let Some(joined) = self.listener.take() {
+            self.bus.connect(joined);
+        }
+        // SAFETY: whoever runs the service promises that its step may be called with its context.
+        unsafe { (self.step)(self.context) };
+        Ok(if self.is_ending { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    }
+
+    fn health(&mut self, _now: Time) -> Health {
+        Health::Working(None)
+    }
+}
+
+fn run(group: &mut Group, step: Step, context: *mut c_void) -> Result<(), Failure> {
+    let usage = |what: String| Failure::new(Exit::Usage, what);
+    let (name, lifecycle) = group.take_lifecycle().map_err(usage)?;
+    let service = Service::from_name(&name)
+        .ok_or_else(|| usage(format!("no topic wakes a service {name}")))?;
+    let bus = group.bus();
+    let listener = bus.wake_listener(service)?;
+    let mut cycle = Loop { bus, listener, step, context, is_ending: false };
+    drive(lifecycle, &mut cycle)
+}
+
+/// Runs the service until it is asked to end. Returns the exit code of the program.
+///
+/// # Safety
+/// `group` is null or joined, and `step` may be called with `context`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn whichone_run(
+    group: *mut Group,
+    step: Option<Step>,
+    context: *mut c_void,
+) -> c_int {
+    // SAFETY: as the caller promises; readers and writers do not refer to the group.
+    let (Some(group), Some(step)) = (unsafe { group.as_mut() }, step) else { return 64 };
+    match run(group, step, context) {
+        Ok(()) => 0,
+        Err(failure) => {
+            complain(&failure);
+            c_int::from(failure.exit as u8)
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! The documents: no dead link, every page in the book, no command that does not exist.
+//!
+//! `integration::documents` runs the blocks of commands.
+
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use std::path::{Component, Path, PathBuf};
+
+use clap::Command;
+use whichone::cli::Cli;
+use whichone_tests::markdown::{Page, TOP, page, pages};
+
+/// The path without `.` and `..`.
+fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir => drop(plain.pop()),
+            Component::CurDir => {}
+            part => plain.push(part),
+        }
+    }
+    plain
+}
+
+fn dead_links(page: &Page) -> Vec<String> {
+    let folder = page.path.parent().unwrap();
+    let dead = |(line, target): (usize, String)| {
+        let report = |why: &str| Some(format!("{}:{line}: {target}: {why}", page.path.display()));
+        if ["http://", "https://", "mailto:"].iter().any(|scheme| target.starts_with(scheme)) {
+            return None;
+        }
+        let (file, anchor) = target.split_once('#').unwrap_or((&target, ""));
+        let path = if file.is_empty() { page.path.clone() } else { plain(&folder.join(file)) };
+        if !Path::new(TOP).join(&path).exists() {
+            return report("no such file");
+        }
+        let has_anchor = || whichone_tests::markdown::page(&path).anchors().contains(anchor);
+        if !anchor.is_empty() && !has_anchor() {
+            return report("no such heading");
+        }
+        None
+    };
+    page.links().into_iter().filter_map(dead).collect()
+}
+
+#[test]
+fn documents_have_no_dead_link() {
+    let pages = pages();
+    let links: usize = pages.iter().map(|page| page.links().len()).sum();
+    assert!(links > 100, "{links}");
+    let dead: Vec<String> = pages.iter().flat_map(dead_links).collect();
+    assert!(dead.is_empty(), "{}", dead.join("\n"));
+}
+
+#[test]
+fn dead_links_are_found() {
+    let text = "[a](README.md#no-such) [b](gone.md) [c](tests) [d](https://x.y) [e](#e)\n# E\n";
+    let dead = dead_links(&Page { path: "x.md".into(), text: text.to_owned() });
+    assert_eq!(dead.len(), 3, "{dead:?}");
+}
+
+/// A page that is in no table of contents is not found by readers.
+#[test]
+fn every_page_is_in_the_book_and_in_the_index() {
+    let index = |name: &str| {
+        let page = page(Path::new(name));
+        page.links().into_iter().map(|(_, target)| target).collect::<Vec<_>>()
+    };
+    let (summary, readme) = (index("docs/SUMMARY.md"), index("docs/README.md"));
+    for page in pages() {
+        let Ok(name) = page.path.strip_prefix("docs") else { continue };
+        let name = name.to_str().unwrap();
+        if ["SUMMARY.md", "README.md"].contains(&name) {
+            continue;
+        }
+        assert!(summary.iter().any(|it| it == name), "docs/SUMMARY.md has no line for {name}");
+        assert!(readme.iter().any(|it| it == name), "docs/README.md has no line for {name}");
+    }
+}
+
+/// Reports what does not exist of a command of the program: the verb, or an option.
+fn wrong_command(words: &[&str]) -> Option<String> {
+    let root = Cli::definition();
+    let mut path: Vec<&Command> = vec![&root];
+    for word in words.iter().take_while(|word| **word != "--") {
+        let at = *path.last().unwrap();
+        // Their own programs read the rest.
+        if ["link", "fleet"].contains(&at.get_name()) {
+            return None;
+        }
+        if let Some(option) = word.strip_prefix("--") {
+            let name = option.split('=').next().unwrap();
+            let has = |command: &&Command| {
+                command.get_arguments().any(|argument| argument.get_long() == Some(name))
+            };
+            if !path.iter().any(has) && !["help", "version"].contains(&name) {
+                return Some(format!("{} has no option --{name}", at.get_name()));
+            }
+        } else if let Some(verb) = at.find_subcommand(word) {
+            path.push(verb);
+        } else if path.len() == 1 && word.starts_with(char::is_lowercase) {
+            return Some(format!("no verb {word}"));
+        }
+    }
+    None
+}
+
+/// The words of each command `whichone …` in a line of a shell.
+fn commands(line: &str) -> Vec<Vec<&str>> {
+    let line = line.split(" #").next().unwrap();
+    let parts = line.split([';', '|', '(', ')']).flat_map(|part| part.split("&&"));
+    let words = parts.map(|part| {
+        let words = part.split_whitespace().take_while(|word| !word.starts_with(['<', '>', '…']));
+        words.collect::<Vec<_>>()
+    });
+    let is_ours = |words: &Vec<&str>| {
+        words.first().is_some_and(|word| *word == "whichone" || word.ends_with("/whichone"))
+    };
+    words.filter(is_ours).map(|words| words[1..].to_vec()).collect()
+}
+
+#[test]
+fn commands_in_the_documents_exist() {
+    let (mut wrong, mut count) = (Vec::new(), 0);
+    for page in pages() {
+        // What was done once stays in the changelog.
+        if page.path == Path::new("CHANGELOG.md") {
+            continue;
+        }
+        let blocks = page.blocks();
+        let blocks = blocks.iter().filter(|block| block.info.starts_with("sh"));
+        let lines = blocks.flat_map(|block| {
+            block.text.lines().enumerate().map(|(at, line)| (block.line + at + 1, line))
+        });
+        let indented = page.prose().into_iter().filter(|(_, line)| line.starts_with("    "));
+        for (line, text) in page.spans().into_iter().chain(lines).chain(indented) {
+            let place = format!("{}:{line}", page.path.display());
+            for words in commands(text) {
+                count += 1;
+                wrong.extend(wrong_command(&words).map(|why| format!("{place}: {why}")));
+            }
+            let script = text.split_whitespace().next().filter(|it| it.starts_with("scripts/"));
+            let is_gone = |script: &&str| !Path::new(TOP).join(script).exists();
+            wrong.extend(script.filter(is_gone).map(|it| format!("{place}: no script {it}")));
+        }
+    }
+    assert!(count > 150, "{count}");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn wrong_commands_are_found() {
+    let wrong = |line: &str| commands(line).iter().filter_map(|it| wrong_command(it)).count();
+    for right in [
+        "whichone say \"a; b\" --json | jq .",
+        "X=1 ls; whichone await pick --answer-as SERVICE",
+        "target/release/whichone down",
+        "whichone swap grounding -- python3 x.py --fast",
+        "whichone link init keys --router relay.example",
+    ] {
+        assert_eq!(wrong(right), 0, "{right}");
+    }
+    assert_eq!(wrong("whichone dance; whichone say --loud x"), 2);
+}
