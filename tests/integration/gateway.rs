@@ -169,9 +169,11 @@ fn gateway_outlives_its_robots_console() {
     group.wait_for_restart("console", before);
     let mut page = wait_for("the page again", 20.0, || Page::open(&here, &visitor(1)).ok());
     assert_eq!(page.ask("stop", &json!({}))["ok"], true);
-    group.down();
+    group.must(&["stop", "console"]);
     let (status, _, body) = http(&here, "GET", &format!("/{robot}/"), &[], "");
     assert!((500..=599).contains(&status), "{status} {body}");
+    assert!(gateway.end().success());
+    group.down();
 }
 
 /// What cannot be recorded is not ordered, but for a stop.
@@ -195,5 +197,6 @@ fn gateway_with_a_full_disk_stops_and_commands_nothing_else() {
         assert!(done["ok"] == false && why.contains("cannot be recorded"), "{done}");
     }
     assert_eq!(group.arm()["stopped"], true);
+    assert!(gateway.end().success());
     group.down();
 }

@@ -26,7 +26,7 @@ const KEPT_BACK: [&str; 6] =
     ["connection", "transfer-encoding", "upgrade", "set-cookie", "location", "www-authenticate"];
 
 /// First parts of paths that a viewer may read.
-const VIEWERS: [&str; 13] = [
+const VIEWERS: [&str; 12] = [
     "",
     "index.html",
     "history",
@@ -38,16 +38,17 @@ const VIEWERS: [&str; 13] = [
     "strings",
     "vendor",
     "icon.svg",
-    "api",
     "robot.urdf",
 ];
 
 /// Returns why a path of a console, from its `/` on, is not for someone with this right; `None` if it is.
 pub(super) fn denied(path: &str, right: Right) -> Option<&'static str> {
-    let first = path.trim_start_matches('/').split('/').next().unwrap_or_default();
+    let mut parts = path.trim_start_matches('/').split('/');
+    let first = parts.next().unwrap_or_default();
     match first {
         "foxglove" => Some("the live view is served by the robot's own console only"),
         "voice" => None,
+        "api" if matches!(parts.next(), Some("state" | "history")) => None,
         _ if right == Right::Operator || VIEWERS.contains(&first) => None,
         _ => Some("only operators of this robot may see this"),
     }
@@ -125,9 +126,15 @@ mod tests {
         {
             assert_eq!(denied(path, Right::Viewer), None, "{path}");
         }
-        for path in
-            ["/study", "/study/export.csv", "//study/export.csv", "/results", "/metrics", "/x"]
-        {
+        for path in [
+            "/study",
+            "/study/export.csv",
+            "//study/export.csv",
+            "/api/scenes",
+            "/results",
+            "/metrics",
+            "/x",
+        ] {
             assert!(denied(path, Right::Viewer).is_some(), "{path}");
             assert_eq!(denied(path, Right::Operator), None, "{path}");
         }

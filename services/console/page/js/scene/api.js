@@ -1,4 +1,6 @@
 // @ts-check
+import { addressOf } from "../place.js";
+
 /** A request that was refused, with every problem of the scene where that is why. */
 export class Refused extends Error {
   /** @param {number} status @param {{error?: string, problems?: any[], details?: string[]}} answer */
@@ -23,7 +25,7 @@ export function scenesApi(session) {
   async function ask(method, path, body, signal) {
     const headers = { "x-whichone-session": session, "content-type": "application/json" };
     const text = body === undefined ? null : JSON.stringify(body);
-    const response = await fetch(path, { method, headers, body: text, signal });
+    const response = await fetch(addressOf(path), { method, headers, body: text, signal });
     const answer = await response.json().catch(() => ({}));
     if (!response.ok) throw new Refused(response.status, answer);
     return answer;
