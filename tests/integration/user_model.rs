@@ -14,11 +14,13 @@ fn error_rate_is_learned_and_survives_a_restart() {
     let before = wait_for("the policy", 10.0, || group.dialogue()["person"]["epsilon"].as_f64());
     group.say("get me the bowl");
     // Something must be true of the wanted object: to deny everything is to err.
-    for _ in 0..30 {
-        let decision = wait_for("a decision", 10.0, || {
-            Some(group.dialogue()["decision"].clone()).filter(|decision| decision != "wait")
+    for said in 1..=30 {
+        let dialogue = wait_for("a decision on it", 10.0, || {
+            let dialogue = group.dialogue();
+            let is_applied = dialogue["applied"].as_u64() >= Some(said);
+            (is_applied && dialogue["decision"] != "wait").then_some(dialogue)
         });
-        if decision != "ask" {
+        if dialogue["decision"] != "ask" {
             break;
         }
         group.say("no");

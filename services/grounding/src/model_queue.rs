@@ -253,7 +253,8 @@ fn noise(best: &Hypothesis) -> f64 {
     doubt / best.word_confidence.len().max(1) as f64
 }
 
-/// Calibrated readings of the model, by question; the built-in reader's for questions that it passed over.
+/// Calibrated readings of the model, by question. For a question that it passed over the built-in reader's count;
+/// where these say nothing, what the model has read besides: the utterance may have come after that question.
 fn combined(
     calibration: Calibration,
     readings: &[ModelReading],
@@ -261,8 +262,13 @@ fn combined(
 ) -> Vec<Interpretation> {
     let most = at_most(waits.slots.len());
     let of_slot = |slot: &Slot| {
-        let own = readings.iter().filter(|it| it.question == slot.place);
-        let own: Vec<(f64, Reading)> = own.map(|it| (it.weight, it.reading.clone())).collect();
+        let of = |place| readings.iter().filter(move |it| it.question == place);
+        let mut own: Vec<&ModelReading> = of(slot.place).collect();
+        if own.is_empty() && slot.readings.iter().all(|(_, reading)| says_nothing(reading)) {
+            own = of(None).collect();
+        }
+        let own: Vec<(f64, Reading)> =
+            own.into_iter().map(|it| (it.weight, it.reading.clone())).collect();
         let mut all = calibrated(calibration, &own, &slot.readings, most);
         if !own.is_empty() {
             all.iter_mut().for_each(|(_, reading)| doubt(reading, slot, waits.noise));
@@ -270,6 +276,10 @@ fn combined(
         all
     };
     waits.slots.iter().flat_map(|slot| slot.interpretations(of_slot(slot))).collect()
+}
+
+fn says_nothing(reading: &Reading) -> bool {
+    reading.base.is_empty() && reading.excluded.is_empty() && reading.response == Response::None
 }
 
 /// Doubts a reading of the model, which sees no confidences: as the built-in reader doubts the same words and
