@@ -30,7 +30,7 @@ const EXCEPTIONS: [(&str, &str, &str); 1] =
     [("option-ext", "MPL-2.0", "dirs of zenoh brings it, unchanged; the default build lacks it")];
 
 /// Crates of which two versions are built, and who brings the older one.
-const DUPLICATES: [(&str, &str); 24] = [
+const DUPLICATES: [(&str, &str); 25] = [
     ("base64", "axum's web sockets; ureq has the newer one"),
     ("cpufeatures", "sha1 of axum's web sockets"),
     ("darling", "enumset of iceoryx2; beside it zenoh's serde_with"),
@@ -47,6 +47,7 @@ const DUPLICATES: [(&str, &str); 24] = [
     ("rand_chacha", "rand of zenoh"),
     ("rand_core", "rand of axum's web sockets"),
     ("shlex", "bindgen, to build iceoryx2"),
+    ("signal-hook", "crossterm of ratatui"),
     ("socket2", "zenoh"),
     ("spin", "flume of zenoh"),
     ("syn", "macros of crates that have not moved on: built, not linked"),

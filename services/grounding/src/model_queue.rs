@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use config::Calibration;
 use messages::{Hypothesis, Interpretation, Observation};
 use model_reader::{ModelReading, calibrated, parse, utterance};
-use scene::{Intent, Question, Reading, Response, Scene};
+use scene::{Intent, Question, Reading, Reference, Response, Scene};
 use serde::{Deserialize, Serialize};
 use service::{Effects, Never, Span, Time};
 
@@ -133,6 +133,12 @@ impl ModelQueue {
             Ok(readings) => {
                 let meant = combined(self.settings.calibration, &readings, &waits);
                 put_readings(&mut pending.observation, &meant);
+                if readings.iter().any(|it| has_content(&it.reading)) {
+                    // The word that the built-in reader does not know was understood.
+                    let Observation { unknown, unknown_role, .. } = Observation::default();
+                    pending.observation.unknown = unknown;
+                    pending.observation.unknown_role = unknown_role;
+                }
                 self.works();
             }
             Err(reason) => self.fails(reason, now),
@@ -227,6 +233,12 @@ fn is_for_model(Read { heard, grounded, .. }: &Read) -> bool {
     let best = grounded.interpretations.iter().find(|one| one.answers.is_none());
     let ends = |best: &Interpretation| matches!(best.reading.intent, Intent::Stop | Intent::Cancel);
     has_words && !best.is_some_and(ends)
+}
+
+/// Whether a reading says something about objects.
+fn has_content(reading: &Reading) -> bool {
+    let Reading { base, excluded, further, refers, .. } = reading;
+    !(base.is_empty() && excluded.is_empty() && further.is_empty()) || *refers != Reference::None
 }
 
 /// The questions of this scene, by their numbers.

@@ -109,6 +109,7 @@ fn answer_takes_the_place_of_the_built_in_readings() {
     let meant = meant(&observations[0]);
     assert_eq!(meant.iter().map(|it| it.weight).collect::<Vec<_>>(), [0.75, 0.25]);
     assert_eq!(words(&observations[0]), ["clear"]);
+    assert_eq!(observations[0].unknown.as_str().unwrap(), "");
     assert_eq!((node.status(), node.deadline()), (Some("model small answers"), None));
 }
 
@@ -135,6 +136,9 @@ fn built_in_reader_takes_the_place_of_what_is_late_or_wrong() {
     assert_eq!((found.len(), words(&found[0])), (1, vec!["white".to_owned()]));
     assert!(node.status().unwrap().contains("no answer within 1000 ms"), "{:?}", node.status());
     assert!(answer(&mut node, requests[0].ticket, Ok(wants(&["clear"])), ms(1101)).is_empty());
+    let (_, requests) = say(&mut node, utterance(11, "the wooden bowl"), ms(1150));
+    let found = answer(&mut node, requests[0].ticket, Ok(wants(&[])), ms(1151));
+    assert_eq!(found[0].unknown.as_str().unwrap(), "wooden", "neither knows it");
     let (_, requests) = say(&mut node, utterance(10, "the bowl"), ms(1200));
     assert_eq!(answer(&mut node, requests[0].ticket, Ok(wants(&["clear"])), ms(1201)).len(), 1);
     assert_eq!(node.status(), Some("model small answers"));

@@ -54,7 +54,7 @@ fn dashboard_shows_belief_dialogue_arm_and_services() {
     let notice = Notice::bad("not accepted: too long");
     let text = screen(100, 24, &Keyboard::Watching, Some(&notice)).join("\n");
     for part in [
-        "lab degraded, scene desk, up 1 min 1 s",
+        "lab degraded, scene scene, up 1 min 1 s",
         "white  25.0 %",
         "clear  75.0 % ████",
         "interaction 7",
