@@ -86,7 +86,7 @@ fn wrong_command(words: &[&str]) -> Option<String> {
     for word in words.iter().take_while(|word| **word != "--") {
         let at = *path.last().unwrap();
         // Their own programs read the rest.
-        if ["link", "fleet"].contains(&at.get_name()) {
+        if ["link", "fleet", "gateway"].contains(&at.get_name()) {
             return None;
         }
         if let Some(option) = word.strip_prefix("--") {

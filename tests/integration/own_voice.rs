@@ -75,8 +75,9 @@ fn stop_is_obeyed_while_a_long_recording_is_decoded_on_busy_cores() {
     let long = [words, vec![0; 16_000]].concat().repeat(8);
     let file = folder.path().join("long.wav");
     write_wav(&file, &long);
-    let load = Load::begin();
     std::thread::scope(|scope| {
+        // Within the scope: what fails here ends it before the scope waits for its thread.
+        let load = Load::begin();
         let listen = scope.spawn(|| group.call(&["listen", &file.display().to_string()]));
         page.until_part("hearing", |hearing| hearing["pending"] == 1);
         let seconds = stops_by_word(&group, &mut page);

@@ -80,8 +80,12 @@ test.describe("a scene that is there", () => {
     await thing(page, "white2").focus();
     await page.keyboard.press("ArrowLeft");
     await page.keyboard.press("Shift+ArrowUp");
-    await expect(sheet(page).getByLabel(t("scene.object.y"))).toHaveValue("1");
-    await expect(sheet(page).getByLabel(t("scene.object.x"))).toHaveValue("64.1");
+    await expect(sheet(page).getByRole("spinbutton", { name: t("scene.object.y") })).toHaveValue(
+      "1",
+    );
+    await expect(sheet(page).getByRole("spinbutton", { name: t("scene.object.x") })).toHaveValue(
+      "64.1",
+    );
     await expect(sheet(page).locator(".thing-state")).toContainText(
       /reach of the arm: \w+ · \d+ mm/,
     );
