@@ -205,5 +205,5 @@ fn own_settings(text: &str, paths: &GroupPaths, options: &Options) -> Result<Set
         ("speech.voice_dir", said.as_str()),
     ];
     let changes = changes.map(|(key, value)| (key.to_owned(), value.to_owned()));
-    Ok(Settings::from_snapshot("the robot's settings", text, &changes)?)
+    Ok(Settings::from_snapshot("the robot's settings", text, ("", &changes))?)
 }

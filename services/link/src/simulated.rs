@@ -321,7 +321,7 @@ impl Robot {
                     stopped,
                     at_rest: true,
                     durable: true,
-                    inhibit: messages::MotionInhibit::default(),
+                    inhibit: messages::MotionInhibit::None,
                 }))
             }
         };

@@ -41,8 +41,9 @@ test("an operator finds the robot in the list, and its page works in its folder"
   );
   const said = (await gateway.audit()).find(({ what }) => what === "say");
   expect(said).toMatchObject({ person: "ann", robot: group.name, text: "get me the bowl" });
-  await page.goto(`${gateway.url}${group.name}/history`);
-  await expect(page.getByText("get me the bowl").first()).toBeVisible();
+  await page.getByRole("button", { name: t("history.show") }).click();
+  const sheet = page.getByRole("dialog", { name: t("history.title") });
+  await expect(sheet).toContainText("get me the bowl");
 });
 
 test.describe("a viewer", () => {
@@ -65,11 +66,12 @@ test.describe("a viewer", () => {
     await page.goto(link);
     await page.getByRole("link", { name: group.name }).click();
     await expect(page.locator("#cards")).toContainText("bowl");
-    await page.keyboard.press("Escape");
-    await page.keyboard.press("Escape");
-    await until("the refused stop in the audit", async () =>
-      (await gateway.audit()).some(({ what, outcome }) => what === "stop" && outcome === "refused"),
-    );
+    await until("the refused stop in the audit", async () => {
+      await page.keyboard.press("Escape");
+      await page.keyboard.press("Escape");
+      const audit = await gateway.audit();
+      return audit.some(({ what, outcome }) => what === "stop" && outcome === "refused");
+    });
     expect((await group.state()).arm.stopped).toBe(false);
     const other = await page.goto(`${gateway.url}another/`);
     expect(other?.status()).toBe(403);
