@@ -79,10 +79,12 @@ fn gateway_gives_each_person_their_rights_and_records_orders() {
         assert_eq!(status, 200, "{body}");
         serde_json::from_str(&body).unwrap()
     };
-    let listed = list(&ann);
-    let row = &listed["robots"][0];
-    assert_eq!((&row["robot"], &row["right"]), (&json!(robot), &json!("operator")), "{listed}");
-    assert_eq!(row["presence"]["state"], "ready", "{listed}");
+    // The console polls the group's state once a second.
+    let row = wait_for("a ready robot in the list", 60.0, || {
+        let row = list(&ann)["robots"][0].clone();
+        (row["presence"]["state"] == "ready").then_some(row)
+    });
+    assert_eq!((&row["robot"], &row["right"]), (&json!(robot), &json!("operator")), "{row}");
     assert_eq!(list(&bob)["robots"][0]["right"], "viewer");
     let others = list(&eve);
     assert_eq!(others["robots"].as_array().map(Vec::len), Some(1), "{others}");

@@ -3,6 +3,8 @@
 use rustix::process::Signal;
 use serde_json::Value;
 use std::collections::HashMap;
+use std::ops::Deref;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use whichone_tests::{Group, wait_for};
 
@@ -10,8 +12,32 @@ const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear
 /// Longest time for an event on a busy machine, seconds.
 const PATIENCE_S: f64 = 60.0;
 
-/// A group whose robot is in MuJoCo; `options` are those of the robot.
-fn group(options: &[&str]) -> Group {
+/// A group whose robot is in MuJoCo.
+struct PhysicsGroup {
+    group: Group,
+    /// The engine takes most of a core: two at a time would run slower than the time of the arm.
+    _alone: MutexGuard<'static, ()>,
+}
+
+impl PhysicsGroup {
+    fn down(self) {
+        self.group.down();
+    }
+}
+
+impl Deref for PhysicsGroup {
+    type Target = Group;
+
+    fn deref(&self) -> &Group {
+        &self.group
+    }
+}
+
+/// Starts a group whose robot is in MuJoCo, once no other does; `options` are those of the robot.
+fn group(options: &[&str]) -> PhysicsGroup {
+    static ENGINE: Mutex<()> = Mutex::new(());
+    // A test that has failed leaves nothing behind.
+    let alone = ENGINE.lock().unwrap_or_else(PoisonError::into_inner);
     let python = std::env::var("WHICHONE_PHYSICS").expect("WHICHONE_PHYSICS names a Python");
     let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts/mujoco/robot.py");
     let words: Vec<&str> = [&*python, robot].into_iter().chain(options.iter().copied()).collect();
@@ -20,7 +46,7 @@ fn group(options: &[&str]) -> Group {
     let deadline = "group.services.baxter.start_deadline_s=60";
     let group = Group::up(&[&command, deadline, "arm.driver=baxter", "arm.time_scale=1.0"]);
     wait_for_arm(&group, "the robot is heard", |arm| arm["hindrance"] == "none");
-    group
+    PhysicsGroup { group, _alone: alone }
 }
 
 fn wait_for_arm(group: &Group, what: &str, holds: impl Fn(&Value) -> bool) {

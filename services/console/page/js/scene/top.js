@@ -27,7 +27,7 @@ const on = ([x, y]) => [-y * 1e3, -x * 1e3];
  * @param {object} does
  * @param {(n: number) => void} does.choose
  * @param {(n: number, change: (object: any) => void, what: string) => void} does.change
- * @param {() => void} does.settle a movement has ended
+ * @param {() => void} does.settle a movement begins or has ended
  */
 export function topView(t, { choose, change, settle }) {
   const layers = Object.fromEntries(
@@ -55,6 +55,8 @@ export function topView(t, { choose, change, settle }) {
     const [x, y] = at(event);
     const [ox, oy] = shown.document.objects[n].xyz;
     drag = { n, turns, dx: ox - x, dy: oy - y };
+    // What the keys have moved before is undone on its own.
+    settle();
     svg.setPointerCapture(event.pointerId);
     setAttribute(svg, "data-drag", true);
     event.preventDefault();
