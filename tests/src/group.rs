@@ -11,6 +11,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Timeout of a call of the command line, seconds.
 const CALL_S: f64 = 60.0;
+/// Timeout of a pick, seconds: on a busy machine the arm may have to halt and begin again.
+const PICK_S: f64 = 180.0;
 
 static NUMBER: AtomicU32 = AtomicU32::new(0);
 
@@ -129,9 +131,10 @@ impl Group {
     /// Waits for the interaction's outcome; with `answer_as`, a user who wants that object answers
     /// meanwhile.
     pub fn await_pick(&self, answer_as: Option<&str>) -> Value {
-        let mut words = vec!["await", "pick", "--json", "--timeout", "50"];
+        let timeout = PICK_S.to_string();
+        let mut words = vec!["await", "pick", "--json", "--timeout", &timeout];
         words.extend(answer_as.iter().flat_map(|object| ["--answer-as", object]));
-        self.call(&words).json()
+        run(&mut self.command(&words), "", PICK_S + CALL_S).json()
     }
 
     /// Asks for "the bowl" (or what `request` says) as a user who wants `object`, and returns the
