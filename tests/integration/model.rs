@@ -46,6 +46,8 @@ fn model_reads_what_the_built_in_reader_cannot_and_dialogues_go_on_without_it() 
     let _back = StandIn::start_at(address, reply).unwrap();
     group.say(RIDDLE);
     wait_for_status(&group, "model small answers");
+    let outcome = group.await_pick(Some("clear"));
+    assert_eq!(outcome["object"], "clear", "{outcome}");
     let log = group.must(&["logs", "grounding"]).stdout;
     // Once a minute at most, and not with each utterance.
     let warnings = log.matches("the built-in reader takes its place").count();
