@@ -1,6 +1,6 @@
 // Takes docs/pictures/console-*.png and study-*.png: the console as people see it, from real groups.
 //
-//   node tests/browser/pictures.mjs [FOLDER]
+//   node tests/browser/pictures.mjs [FOLDER [dialogue|editor|study]]
 
 import { join } from "node:path";
 import { chromium } from "@playwright/test";
@@ -15,6 +15,8 @@ import { answerUntilPicked, nextDecision, type } from "./lib/talk.mjs";
 import { until } from "./lib/until.mjs";
 
 const FOLDER = process.argv[2] ?? join(ROOT, "docs/pictures");
+/** The part to take; all without one. */
+const ONLY = process.argv[3];
 const DESKTOP = { width: 1440, height: 900 };
 const PHONE = { width: 390, height: 844 };
 const POLICIES = ["lookahead", "information-seeking"];
@@ -83,19 +85,20 @@ async function dialogue() {
   await page.locator(".story-one").nth(1).click();
   await take(page, "console-history");
   await page.keyboard.press("Escape");
-  await editor(page);
   await page.context().close();
   await phone.context().close();
 }
 
 /** The scene editor with an object chosen and its reach. */
-async function editor(page) {
+async function editor() {
+  const page = await open("/", DESKTOP, "light");
+  await page.getByText(t("control.mine")).waitFor();
   await openEditor(page);
   await thing(page, "clear").click();
   await checked(page);
   await sheet(page).and(page.locator("[data-reach=known]")).waitFor({ timeout: 120_000 });
   await take(page, "console-scene");
-  await page.keyboard.press("Escape");
+  await page.context().close();
 }
 
 /** The participants of a study, one of them with a phone, and what is found out by them. */
@@ -141,6 +144,7 @@ async function takePart(page, mark, picture) {
 }
 
 async function inGroup(settings, show) {
+  if (![undefined, show.name].includes(ONLY)) return;
   group = await Group.up(settings, "kitchen");
   try {
     await show();
@@ -151,6 +155,7 @@ async function inGroup(settings, show) {
 
 try {
   await inGroup(["arm.time_scale=1"], dialogue);
+  await inGroup([], editor);
   await inGroup(STUDY, study);
 } finally {
   await browser.close();
