@@ -14,11 +14,14 @@ fn error_rate_is_learned_and_survives_a_restart() {
     let before = wait_for("the policy", 10.0, || group.dialogue()["person"]["epsilon"].as_f64());
     group.say("get me the bowl");
     // Something must be true of the wanted object: to deny everything is to err.
-    for said in 1..=30 {
-        let dialogue = wait_for("a decision on it", 10.0, || {
-            let dialogue = group.dialogue();
-            let is_applied = dialogue["applied"].as_u64() >= Some(said);
-            (is_applied && dialogue["decision"] != "wait").then_some(dialogue)
+    for said_so_far in 1..=30 {
+        let dialogue = wait_for("a decision on it, and its presentation", 20.0, || {
+            let mut seen = group.must(&["watch", "--once", "--json"]).json();
+            let (dialogue, said) = (seen["dialogue"].take(), seen["said"].take());
+            let is_applied = dialogue["applied"].as_u64() >= Some(said_so_far);
+            // An answer before the question is presented is one to the question before.
+            let is_presented = said.as_array()?.last()?["text"] == dialogue["text"];
+            (is_applied && is_presented && dialogue["decision"] != "wait").then_some(dialogue)
         });
         if dialogue["decision"] != "ask" {
             break;
