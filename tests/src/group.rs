@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Timeout of a call of the command line, seconds.
 const CALL_S: f64 = 60.0;
-/// Timeout of a pick, seconds: on a busy machine the arm may have to halt and begin again.
-const PICK_S: f64 = 180.0;
+/// Timeout of a pick, seconds: on a busy machine the arm of a physics engine may have to halt and begin again.
+const PICK_S: f64 = 90.0;
 
 static NUMBER: AtomicU32 = AtomicU32::new(0);
 
