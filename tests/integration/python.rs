@@ -66,6 +66,27 @@ fn example_in_python_replaces_grounding() {
     group.down();
 }
 
+/// The example planner decides in the policy service, and its journal is verified with it.
+#[test]
+#[ignore = "needs python3 with iceoryx2"]
+fn example_planner_in_python_decides() {
+    let policy = ["whichone-policy".to_owned(), "--planner-program".to_owned()];
+    let command: Vec<String> = policy.into_iter().chain(service("planner")).collect();
+    let group = Group::up(&[&format!("group.services.policy.command={command:?}")]);
+    for object in ["metal2", "white"] {
+        let outcome = group.fetch("get me the bowl", object);
+        assert_eq!(
+            (&outcome["object"], &outcome["outcome"]),
+            (&object.into(), &"delivered".into())
+        );
+        assert!(outcome["questions"].as_u64() > Some(0), "{outcome}");
+    }
+    assert_eq!(group.dialogue()["planner"], "program");
+    assert!(!group.logs().contains("has not decided"), "{}", group.logs());
+    group.verify_journals();
+    group.down();
+}
+
 /// A stand-in for a language model. It knows a word that the built-in readers do not, logs its
 /// input, and gives invalid output or sleeps where the input says so.
 const STAND_IN: &str = r#"

@@ -1,6 +1,8 @@
 //! The policy's topics and configuration.
 
-use crate::{Config, In, Out, PolicyNode, inspection, journal_record, policy_cache};
+use crate::{
+    Config, In, Out, PolicyNode, inspection, journal_record, planner_program, policy_cache,
+};
 use config::{ManagerError, Settings};
 use dialogue::manager::Record;
 use messages::Service;
@@ -18,7 +20,7 @@ use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 
 /// The policy as a program. `--planner NAME` overrides the setting, so that a group can be swapped
-/// from one planner to another while it runs.
+/// from one planner to another while it runs; `--planner-program PROGRAM…` has a program decide.
 #[derive(Debug)]
 pub struct PolicyProgram;
 
@@ -26,7 +28,7 @@ impl Program for PolicyProgram {
     const SERVICE: Service = Service::Policy;
     const RECORD: Option<&'static str> = Some("policy/10");
     const ABOUT: &'static str = "maintains the belief over the objects and decides what to ask or do \
-                                 [--planner NAME]";
+                                 [--planner NAME | --planner-program PROGRAM [ARGUMENT...]]";
     type Node = PolicyNode;
     type Shell = PolicyShell;
 
@@ -46,6 +48,10 @@ impl Program for PolicyProgram {
         let perception = &settings.group.perception;
         let tracker = perception.enabled.then(|| perception.tracker.clone());
         Ok(Config { tracker, ..Config::from(manager) })
+    }
+
+    fn prepare(arguments: &[String]) -> Result<(), Failure> {
+        planner(arguments).map(|_| ())
     }
 
     fn recorded_at(record: &Record) -> Time {
@@ -85,8 +91,13 @@ fn planner(arguments: &[String]) -> Result<Option<&str>, Failure> {
             Ok(_) => Ok(Some(name)),
             Err(error) => Err(Failure::new(Exit::Usage, format!("--planner: {error}"))),
         },
+        [flag, command @ ..] if flag == "--planner-program" => {
+            planner_program::register(command)?;
+            Ok(Some(planner_program::NAME))
+        }
         other => {
-            let what = format!("invalid arguments {other:?}: expected --planner NAME");
+            let expected = "expected --planner NAME or --planner-program PROGRAM [ARGUMENT...]";
+            let what = format!("invalid arguments {other:?}: {expected}");
             Err(Failure::new(Exit::Usage, what))
         }
     }
@@ -173,7 +184,12 @@ mod tests {
     fn policy_arguments_name_the_planner() {
         assert_eq!(planner(&[]).unwrap(), None);
         assert_eq!(planner(&arguments(&["--planner", "entropy"])).unwrap(), Some("entropy"));
-        for wrong in [&["--planner"][..], &["--planner", "greedy"], &["--language", "paper"]] {
+        for wrong in [
+            &["--planner"][..],
+            &["--planner", "greedy"],
+            &["--language", "paper"],
+            &["--planner-program"],
+        ] {
             let failure = planner(&arguments(wrong)).unwrap_err();
             assert_eq!(failure.exit, Exit::Usage, "{wrong:?}");
             assert!(failure.to_string().contains("planner"), "{failure}");

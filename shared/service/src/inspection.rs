@@ -157,7 +157,9 @@ pub(crate) fn run<P: Program>(arguments: &[String]) -> Option<Exit> {
         _ => return None,
     };
     let mut out = BufWriter::new(io::stdout().lock());
-    let ended = inspect(&Request::parse(&arguments[1..]), &mut out)
+    let request = Request::parse(&arguments[1..]);
+    let ended = P::prepare(&request.arguments)
+        .and_then(|()| inspect(&request, &mut out))
         .and_then(|()| out.flush().map_err(Failure::output));
     Some(match ended {
         Ok(()) => Exit::Ok,
@@ -184,6 +186,8 @@ struct Request {
     since: Option<u64>,
     /// Settings that a replay changes.
     changes: Vec<(String, String)>,
+    /// Arguments of the service, after `--`.
+    arguments: Vec<String>,
 }
 
 impl Request {
@@ -200,6 +204,7 @@ impl Request {
                     let change = words.next().and_then(|word| word.split_once('='));
                     request.changes.extend(change.map(|(k, v)| (k.to_owned(), v.to_owned())));
                 }
+                "--" => request.arguments = words.by_ref().cloned().collect(),
                 "--settings" => request.settings.extend(words.next().map(PathBuf::from)),
                 file => request.file = file.into(),
             }

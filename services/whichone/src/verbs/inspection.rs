@@ -121,31 +121,35 @@ fn verify(paths: &GroupPaths, service: Service) -> Result<Result<Verdict, Exit>,
 /// The command line of a service's program for its journal, with the settings in force and those of
 /// earlier runs.
 fn journal_command(paths: &GroupPaths, service: Service) -> Command {
-    let mut command = configured(paths, service).map_or_else(
-        || command(service.name(), "journal"),
-        |program| {
-            let mut command = Command::new(program);
-            command.arg("journal");
-            command
-        },
-    );
-    command.arg(paths.journal_file(service.name()));
+    let configured = configured(paths, service).unwrap_or_default();
+    let (mut command, arguments) = match configured.split_first() {
+        Some((program, arguments)) => (launch::command(found(program)), arguments),
+        None => (launch::command(launch::program_of(service.name())), &[][..]),
+    };
+    command.arg("journal").arg(paths.journal_file(service.name()));
     let running = Some(paths.run()).filter(|run| run.join(config::SNAPSHOT_FILE).is_file());
     for folder in running.into_iter().chain(kept_settings::folders(paths)) {
         command.arg("--settings").arg(folder);
     }
+    if !arguments.is_empty() {
+        command.arg("--").args(arguments);
+    }
     command
 }
 
-/// Returns the program that the group has configured in the place of the shipped one: only it knows, say, its own
+/// The path of a program: one of this installation goes by its name.
+fn found(program: &str) -> PathBuf {
+    program.strip_prefix(launch::PREFIX).map_or_else(|| program.into(), launch::program_of)
+}
+
+/// Returns the command that the group has configured in the place of the shipped program: only it knows, say, its own
 /// planner.
-fn configured(paths: &GroupPaths, service: Service) -> Option<String> {
+fn configured(paths: &GroupPaths, service: Service) -> Option<Vec<String>> {
     let folders = std::iter::once(paths.run()).chain(kept_settings::folders(paths));
     let mut settings = folders.map(|folder| config::Settings::load_snapshot(&folder));
     let settings = settings.find_map(Result::ok)?;
     let mut services = settings.group.services.into_iter();
-    let command = services.find(|it| it.name == service.name())?.command?;
-    command.into_iter().next()
+    services.find(|it| it.name == service.name())?.command
 }
 
 /// A snapshot of settings in a temporary folder.

@@ -28,12 +28,13 @@ from .client import Client, NoPick, NotStopped, Refused, Snapshot
 from .grounding import Grounder, Heard, Hypothesis, Meaning, Reading, spot
 from .group import Group, GroupNotRunning
 from .messages import Intent, Reference, Response, Role
+from .planner import Decision, Planner, Problem, Question
 from .scene import Scene
 from .service import Service
 
 __version__ = "0.1.0"
 __all__ = [
-    "Bus", "Client", "Grounder", "Group", "GroupNotRunning", "Heard", "Hypothesis", "Intent", "InvalidMessage",
-    "Meaning", "NoPick", "NotStopped", "Reader", "Reading", "Reference", "Refused", "Response", "Role", "Scene",
+    "Bus", "Client", "Decision", "Grounder", "Group", "GroupNotRunning", "Heard", "Hypothesis", "Intent", "InvalidMessage",
+    "Meaning", "NoPick", "NotStopped", "Planner", "Problem", "Question", "Reader", "Reading", "Reference", "Refused", "Response", "Role", "Scene",
     "Service", "Snapshot", "Writer", "WrongSchema", "log", "messages", "spot",
 ]

@@ -41,6 +41,14 @@ pub trait Program: Sized {
         settings: &Settings,
     ) -> Result<<Self::Node as Node>::Config, Failure>;
 
+    /// Takes the arguments of the service that has written what is inspected.
+    ///
+    /// # Errors
+    /// Arguments that the service does not know.
+    fn prepare(_arguments: &[String]) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// Returns when a journal record was written.
     fn recorded_at(_record: &Record<Self>) -> Time {
         Time(0)

@@ -1,0 +1,364 @@
+//! A planner that is a program in any language: `whichone-policy --planner-program PROGRAM [ARGUMENT…]`.
+//!
+//! The program reads a line of JSON on standard input for each decision, a [`Request`], and answers with a line on standard
+//! output, a [`Reply`]. It ends at the end of its input. What it writes to standard error is in the service's log. Like every
+//! planner it decides by the request alone, so that a decision can be repeated from the journal.
+
+use std::io::{self, BufRead, BufReader, Write};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+use dialogue::registry::{self, Entry};
+use dialogue::{Action, Answer, Belief, Costs, Decision, DecisionProblem, Model, Planner, Step};
+use scene::{ObjectId, Question};
+use serde::{Deserialize, Serialize};
+use service::exit::{Exit, Failure};
+
+/// Name of the planner.
+pub const NAME: &str = "program";
+/// Planner that decides where the program does not, and that values its decisions.
+const FALLBACK: &str = "entropy";
+/// Time that a decision may take. The service sends no heartbeat meanwhile.
+const ANSWER_MAX: Duration = Duration::from_millis(1_500);
+
+/// The command line of the program.
+static COMMAND: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Adds the planner [`NAME`] to the registry; it runs this command line.
+///
+/// # Errors
+/// The command line is empty.
+pub(crate) fn register(command: &[String]) -> Result<(), Failure> {
+    if command.is_empty() {
+        let what =
+            "--planner-program: the program is missing; help: --planner-program python3 planner.py";
+        return Err(Failure::new(Exit::Usage, what));
+    }
+    *COMMAND.lock().unwrap_or_else(PoisonError::into_inner) = command.to_vec();
+    let about = "Asks a program.";
+    // Added once, whatever command it runs.
+    let _ = registry::add(Entry { name: NAME, about, make: || Box::new(ProgramPlanner::new()) });
+    Ok(())
+}
+
+/// What the program gets.
+#[derive(Debug, Serialize)]
+struct Request {
+    /// Number of the interaction, and of the decision in it: the only source of randomness.
+    interaction: u64,
+    step: u32,
+    /// Probability of each object, in the order of the scene, and of none of them where the scene may lack the wanted one.
+    belief: Vec<f64>,
+    /// Value of a right pick and of a wrong one (negative), of waiting, and the discount per action.
+    correct: f64,
+    wrong: f64,
+    wait: f64,
+    discount: f64,
+    questions: Vec<Candidate>,
+}
+
+/// A question that may be asked.
+#[derive(Debug, Serialize)]
+struct Candidate {
+    kind: &'static str,
+    /// Number of the attribute in the scene, of its value, and of the object, where the question has them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    attribute: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    value: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    object: Option<usize>,
+    /// Cost in the unit of the picks' values.
+    cost: f64,
+    /// For each answer, silence the last, its probability given each object.
+    answers: Vec<Vec<f64>>,
+}
+
+/// What the program answers: a question, a pick, or neither, which waits.
+#[derive(Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Reply {
+    /// Place in the questions.
+    ask: Option<usize>,
+    /// Number of the object.
+    pick: Option<usize>,
+    /// Expected return, if the program knows it.
+    value: Option<f64>,
+}
+
+impl Request {
+    fn new(
+        problem: &DecisionProblem<'_>,
+        questions: &[Question],
+        belief: &Belief,
+        step: Step,
+    ) -> Self {
+        let Costs { correct, wrong, discount, .. } = problem.costs;
+        Self {
+            interaction: step.interaction,
+            step: step.step,
+            belief: belief.probabilities(),
+            correct,
+            wrong: -wrong,
+            wait: problem.costs.wait_value(),
+            discount,
+            questions: questions.iter().map(|it| Candidate::new(problem, *it, belief)).collect(),
+        }
+    }
+}
+
+impl Candidate {
+    fn new(problem: &DecisionProblem<'_>, question: Question, belief: &Belief) -> Self {
+        let (kind, attribute, value, object) = match question {
+            Question::Attribute(k, v) => ("attribute", Some(k.index()), Some(v.index()), None),
+            Question::Which(k) => ("which", Some(k.index()), None, None),
+            Question::Point(i) => ("point", None, None, Some(i.index())),
+            Question::None => ("none", None, None, None),
+        };
+        let objects = || (0..belief.len()).map(ObjectId::from);
+        let likelihood = |answer: Answer| {
+            objects().map(|i| answer.probability(problem.model, question, i)).collect()
+        };
+        let answers =
+            Answer::possible(problem.model, question).into_iter().map(likelihood).collect();
+        Self { kind, attribute, value, object, cost: problem.cost(Action::Ask(question)), answers }
+    }
+}
+
+impl Reply {
+    /// The action that it names; an error says what was expected.
+    fn action(&self, model: &Model, questions: &[Question]) -> Result<Action, String> {
+        let beyond = |what: &str, count: usize, found: usize| {
+            format!("expected {what} from 0 to {}, found {found}", count.saturating_sub(1))
+        };
+        match (self.ask, self.pick) {
+            (None, None) => Ok(Action::Wait),
+            (Some(ask), None) => {
+                let question = questions.get(ask).copied().map(Action::Ask);
+                question.ok_or_else(|| beyond("a question", questions.len(), ask))
+            }
+            (None, Some(pick)) if pick < model.objects() => Ok(Action::Pick(pick.into())),
+            (None, Some(pick)) => Err(beyond("an object", model.objects(), pick)),
+            (Some(_), Some(_)) => Err("expected a question or a pick, found both".to_owned()),
+        }
+    }
+}
+
+/// The planner; the program is started with its first decision.
+struct ProgramPlanner {
+    fallback: Option<Box<dyn Planner + Send>>,
+    running: Option<Running>,
+}
+
+impl ProgramPlanner {
+    fn new() -> Self {
+        Self { fallback: registry::planner(FALLBACK).ok(), running: None }
+    }
+
+    /// Returns the program's action and its value.
+    fn ask(
+        &mut self,
+        request: &Request,
+        model: &Model,
+        questions: &[Question],
+    ) -> Result<(Action, Option<f64>), String> {
+        let line = serde_json::to_string(request).map_err(|error| error.to_string())?;
+        let running = match &mut self.running {
+            Some(running) => running,
+            none => none.insert(Running::start().map_err(|error| error.to_string())?),
+        };
+        let answer = running.ask(line)?;
+        let reply: Reply = serde_json::from_str(&answer).map_err(|error| {
+            format!("expected {{\"ask\": N}}, {{\"pick\": N}} or {{}}, found {answer:.80}: {error}")
+        })?;
+        Ok((reply.action(model, questions)?, reply.value.filter(|value| value.is_finite())))
+    }
+}
+
+impl Planner for ProgramPlanner {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
+        let questions = problem.questions();
+        let request = Request::new(problem, &questions, belief, step);
+        let known = self.fallback.as_mut().map(|planner| planner.decide(problem, belief, step));
+        let asked = self.ask(&request, problem.model, &questions);
+        let wait = problem.costs.wait_value();
+        let known = known.unwrap_or_else(|| Decision {
+            action: Action::Wait,
+            value: wait,
+            alternatives: Vec::new(),
+            expected_questions: 0.0,
+            bounds: None,
+        });
+        match asked {
+            Ok((action, value)) => chosen(known, action, value, wait),
+            Err(reason) => {
+                // It is started again with the next decision.
+                self.running = None;
+                tracing::warn!(reason, "the planner's program has not decided; {FALLBACK} does");
+                known
+            }
+        }
+    }
+}
+
+/// The decision for `action`: what `known` weighs is the alternative to it.
+fn chosen(known: Decision, action: Action, value: Option<f64>, wait: f64) -> Decision {
+    let Decision { mut alternatives, .. } = known;
+    alternatives.insert(0, (known.action, known.value));
+    let weighed = alternatives.iter().find(|(other, _)| *other == action).map(|it| it.1);
+    alternatives.retain(|(other, _)| *other != action);
+    alternatives.truncate(Decision::ALTERNATIVES_MAX);
+    let expected_questions = match action {
+        Action::Ask(_) => known.expected_questions.max(1.0),
+        Action::Wait | Action::Pick(_) => 0.0,
+    };
+    Decision {
+        action,
+        value: value.or(weighed).unwrap_or(wait),
+        alternatives,
+        expected_questions,
+        bounds: None,
+    }
+}
+
+/// The running program. A thread each writes to it and reads from it, so that a program that does neither cannot stop the service.
+struct Running {
+    program: Child,
+    requests: Sender<String>,
+    answers: Receiver<io::Result<String>>,
+}
+
+impl Running {
+    fn start() -> io::Result<Self> {
+        let command = COMMAND.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let Some((name, arguments)) = command.split_first() else {
+            return Err(io::Error::other("the planner's program is missing"));
+        };
+        let started =
+            Command::new(name).args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
+        let mut program =
+            started.map_err(|error| io::Error::new(error.kind(), format!("{name}: {error}")))?;
+        let (input, output) = (program.stdin.take(), program.stdout.take());
+        let (requests, lines) = bounded::<String>(1);
+        let (found, answers) = bounded(1);
+        std::thread::Builder::new().name("planner-in".to_owned()).spawn(move || {
+            let Some(mut input) = input else { return };
+            for line in lines {
+                if writeln!(input, "{line}").and_then(|()| input.flush()).is_err() {
+                    return;
+                }
+            }
+        })?;
+        std::thread::Builder::new().name("planner-out".to_owned()).spawn(move || {
+            let Some(output) = output else { return };
+            for line in BufReader::new(output).lines() {
+                if found.send(line).is_err() {
+                    return;
+                }
+            }
+        })?;
+        Ok(Self { program, requests, answers })
+    }
+
+    fn ask(&self, line: String) -> Result<String, String> {
+        let ended = || "the planner's program has ended".to_owned();
+        self.requests.try_send(line).map_err(|_| ended())?;
+        match self.answers.recv_timeout(ANSWER_MAX) {
+            Ok(answer) => answer.map_err(|error| error.to_string()),
+            Err(RecvTimeoutError::Timeout) => {
+                Err(format!("no answer in {} ms", ANSWER_MAX.as_millis()))
+            }
+            Err(RecvTimeoutError::Disconnected) => Err(ended()),
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended.
+        let _ = self.program.kill();
+        let _ = self.program.wait();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dialogue::{Actions, Params};
+    use scene::Scene;
+
+    fn model() -> Model {
+        let bowls = include_str!("../../../config/scenes/bowls.toml");
+        Model::new(&Scene::from_toml("bowls", bowls).unwrap(), Params::default())
+    }
+
+    /// The decision of a program in `sh`.
+    fn decision(script: &str) -> (Decision, Decision) {
+        let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let command: Vec<String> = ["sh", "-c", script].map(str::to_owned).to_vec();
+        register(&command).unwrap();
+        let model = model();
+        let problem = DecisionProblem::new(&model, Costs::default(), Actions::default());
+        let belief = Belief::uniform(model.hypotheses());
+        let decide =
+            |name| registry::planner(name).unwrap().decide(&problem, &belief, Step::default());
+        (decide(NAME), decide(FALLBACK))
+    }
+
+    /// The command is one for the whole process.
+    static ALONE: Mutex<()> = Mutex::new(());
+
+    #[test]
+    fn program_decides_with_its_value() {
+        let (pick, _) = decision(r#"read line; echo '{"pick": 2, "value": 7.5}'"#);
+        assert_eq!((pick.action, pick.value), (Action::Pick(2.into()), 7.5));
+        let (ask, known) = decision(r#"read line; echo '{"ask": 3}'"#);
+        let problem_questions = Actions::default().questions(&model());
+        assert_eq!(ask.action, Action::Ask(problem_questions[3]));
+        assert!(ask.alternatives.iter().all(|(action, _)| *action != ask.action), "{ask:?}");
+        assert!(ask.value <= known.value, "valued as the fallback does: {ask:?}");
+        let (wait, known) = decision("read line; echo '{}'");
+        assert_eq!(wait.action, Action::Wait);
+        assert_eq!(wait.alternatives[0], (known.action, known.value));
+    }
+
+    #[test]
+    fn program_sees_the_whole_problem() {
+        // Counted by the program: 16 questions, six objects, probabilities that sum to 1.
+        let script = r#"exec python3 -c '
+import json
+request = json.loads(input())
+ok = len(request["questions"]) == 16 and len(request["belief"]) == 6
+ok = ok and all(abs(sum(of) - 1) < 1e-12 for q in request["questions"] for of in zip(*q["answers"]))
+ok = ok and request["wrong"] < 0 < request["correct"] and request["step"] == 0
+print(json.dumps({"pick": 5} if ok else {}), flush=True)
+'"#;
+        if Command::new("python3").arg("--version").output().is_ok() {
+            assert_eq!(decision(script).0.action, Action::Pick(5.into()));
+        }
+    }
+
+    #[test]
+    fn program_that_does_not_decide_is_replaced() {
+        for script in [
+            "exit 1",
+            "read line",
+            "read line; echo nonsense",
+            r#"read line; echo '{"ask": 99}'"#,
+            r#"read line; echo '{"pick": 6}'"#,
+            r#"read line; echo '{"ask": 1, "pick": 1}'"#,
+            r#"read line; echo '{"buy": 1}'"#,
+            "exec sleep 60",
+        ] {
+            let (decided, known) = decision(script);
+            assert_eq!(decided, known, "{script}");
+        }
+        assert!(register(&[]).is_err());
+    }
+}
