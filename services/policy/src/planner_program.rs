@@ -1,7 +1,7 @@
 //! A planner that is a program in any language: `whichone-policy --planner-program PROGRAM [ARGUMENT…]`.
 //!
-//! The program reads a line of JSON on standard input for each decision, a [`Request`], and answers with a line on standard
-//! output, a [`Reply`]. It ends at the end of its input. What it writes to standard error is in the service's log. Like every
+//! The program writes the line `ready` once it is. Then it reads a line of JSON on standard input for each decision, a [`Request`],
+//! and answers with a line on standard output, a [`Reply`]. It ends at the end of its input. What it writes to standard error is in the service's log. Like every
 //! planner it decides by the request alone, so that a decision can be repeated from the journal.
 
 use std::io::{self, BufRead, BufReader, Write};
@@ -20,6 +20,10 @@ use service::exit::{Exit, Failure};
 pub const NAME: &str = "program";
 /// Planner that decides where the program does not, and that values its decisions.
 const FALLBACK: &str = "entropy";
+/// Time that the program may take to become ready, before the service is.
+const START_MAX: Duration = Duration::from_secs(5);
+/// What the program writes once it is ready.
+const READY: &str = "ready";
 /// Time that a decision may take. The service sends no heartbeat meanwhile.
 const ANSWER_MAX: Duration = Duration::from_millis(1_500);
 
@@ -146,7 +150,7 @@ impl Reply {
     }
 }
 
-/// The planner; the program is started with its first decision.
+/// The planner. The program is started with it, and again where it has failed.
 struct ProgramPlanner {
     fallback: Option<Box<dyn Planner + Send>>,
     running: Option<Running>,
@@ -154,7 +158,20 @@ struct ProgramPlanner {
 
 impl ProgramPlanner {
     fn new() -> Self {
-        Self { fallback: registry::planner(FALLBACK).ok(), running: None }
+        let mut planner = Self { fallback: registry::planner(FALLBACK).ok(), running: None };
+        planner.start();
+        if let Some(running) = &mut planner.running
+            && let Err(reason) = running.wait_ready(START_MAX)
+        {
+            tracing::warn!(reason, "the planner's program is not ready");
+        }
+        planner
+    }
+
+    fn start(&mut self) {
+        self.running = Running::start()
+            .inspect_err(|error| tracing::warn!(%error, "the planner's program cannot be started"))
+            .ok();
     }
 
     /// Returns the program's action and its value.
@@ -165,10 +182,8 @@ impl ProgramPlanner {
         questions: &[Question],
     ) -> Result<(Action, Option<f64>), String> {
         let line = serde_json::to_string(request).map_err(|error| error.to_string())?;
-        let running = match &mut self.running {
-            Some(running) => running,
-            none => none.insert(Running::start().map_err(|error| error.to_string())?),
-        };
+        let running = self.running.as_mut().ok_or("it has not been started")?;
+        running.wait_ready(ANSWER_MAX)?;
         let answer = running.ask(line)?;
         let reply: Reply = serde_json::from_str(&answer).map_err(|error| {
             format!("expected {{\"ask\": N}}, {{\"pick\": N}} or {{}}, found {answer:.80}: {error}")
@@ -198,9 +213,8 @@ impl Planner for ProgramPlanner {
         match asked {
             Ok((action, value)) => chosen(known, action, value, wait),
             Err(reason) => {
-                // It is started again with the next decision.
-                self.running = None;
                 tracing::warn!(reason, "the planner's program has not decided; {FALLBACK} does");
+                self.start();
                 known
             }
         }
@@ -232,6 +246,7 @@ struct Running {
     program: Child,
     requests: Sender<String>,
     answers: Receiver<io::Result<String>>,
+    is_ready: bool,
 }
 
 impl Running {
@@ -263,18 +278,32 @@ impl Running {
                 }
             }
         })?;
-        Ok(Self { program, requests, answers })
+        Ok(Self { program, requests, answers, is_ready: false })
+    }
+
+    /// Waits until it is ready.
+    fn wait_ready(&mut self, within: Duration) -> Result<(), String> {
+        if !self.is_ready {
+            match self.read(within)? {
+                line if line.trim() == READY => self.is_ready = true,
+                line => return Err(format!("expected `{READY}` first, found {line:.80}")),
+            }
+        }
+        Ok(())
     }
 
     fn ask(&self, line: String) -> Result<String, String> {
-        let ended = || "the planner's program has ended".to_owned();
-        self.requests.try_send(line).map_err(|_| ended())?;
-        match self.answers.recv_timeout(ANSWER_MAX) {
-            Ok(answer) => answer.map_err(|error| error.to_string()),
+        self.requests.try_send(line).map_err(|_| "it has ended".to_owned())?;
+        self.read(ANSWER_MAX)
+    }
+
+    fn read(&self, within: Duration) -> Result<String, String> {
+        match self.answers.recv_timeout(within) {
+            Ok(line) => line.map_err(|error| error.to_string()),
             Err(RecvTimeoutError::Timeout) => {
-                Err(format!("no answer in {} ms", ANSWER_MAX.as_millis()))
+                Err(format!("it has written nothing in {} ms", within.as_millis()))
             }
-            Err(RecvTimeoutError::Disconnected) => Err(ended()),
+            Err(RecvTimeoutError::Disconnected) => Err("it has ended".to_owned()),
         }
     }
 }
@@ -316,14 +345,14 @@ mod tests {
 
     #[test]
     fn program_decides_with_its_value() {
-        let (pick, _) = decision(r#"read line; echo '{"pick": 2, "value": 7.5}'"#);
+        let (pick, _) = decision(r#"echo ready; read line; echo '{"pick": 2, "value": 7.5}'"#);
         assert_eq!((pick.action, pick.value), (Action::Pick(2.into()), 7.5));
-        let (ask, known) = decision(r#"read line; echo '{"ask": 3}'"#);
+        let (ask, known) = decision(r#"echo ready; read line; echo '{"ask": 3}'"#);
         let problem_questions = Actions::default().questions(&model());
         assert_eq!(ask.action, Action::Ask(problem_questions[3]));
         assert!(ask.alternatives.iter().all(|(action, _)| *action != ask.action), "{ask:?}");
         assert!(ask.value <= known.value, "valued as the fallback does: {ask:?}");
-        let (wait, known) = decision("read line; echo '{}'");
+        let (wait, known) = decision("echo ready; read line; echo '{}'");
         assert_eq!(wait.action, Action::Wait);
         assert_eq!(wait.alternatives[0], (known.action, known.value));
     }
@@ -333,6 +362,7 @@ mod tests {
         // Counted by the program: 16 questions, six objects, probabilities that sum to 1.
         let script = r#"exec python3 -c '
 import json
+print("ready", flush=True)
 request = json.loads(input())
 ok = len(request["questions"]) == 16 and len(request["belief"]) == 6
 ok = ok and all(abs(sum(of) - 1) < 1e-12 for q in request["questions"] for of in zip(*q["answers"]))
@@ -348,13 +378,14 @@ print(json.dumps({"pick": 5} if ok else {}), flush=True)
     fn program_that_does_not_decide_is_replaced() {
         for script in [
             "exit 1",
-            "read line",
-            "read line; echo nonsense",
-            r#"read line; echo '{"ask": 99}'"#,
-            r#"read line; echo '{"pick": 6}'"#,
-            r#"read line; echo '{"ask": 1, "pick": 1}'"#,
-            r#"read line; echo '{"buy": 1}'"#,
-            "exec sleep 60",
+            "echo ready; read line",
+            "echo ready; read line; echo nonsense",
+            r#"echo ready; read line; echo '{"ask": 99}'"#,
+            r#"echo ready; read line; echo '{"pick": 6}'"#,
+            r#"echo ready; read line; echo '{"ask": 1, "pick": 1}'"#,
+            r#"echo ready; read line; echo '{"buy": 1}'"#,
+            r#"read line; echo '{"pick": 1}'"#,
+            "echo ready; exec sleep 60",
         ] {
             let (decided, known) = decision(script);
             assert_eq!(decided, known, "{script}");

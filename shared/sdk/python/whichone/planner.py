@@ -90,6 +90,7 @@ class Planner:
     def run(self) -> None:
         """Answers until the policy service ends. What is printed meanwhile is in its log."""
         answers, sys.stdout = sys.stdout, sys.stderr
+        print("ready", file=answers, flush=True)
         for line in sys.stdin:
             request = json.loads(line)
             questions = [
