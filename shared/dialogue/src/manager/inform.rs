@@ -9,7 +9,6 @@ use super::evidence::{Evidence, Mark};
 use super::line::{AboutObjects, Preface, Remark};
 use super::references::reference;
 use super::state::{Basis, Deferred, Interaction, Preference, State, Utterance};
-use crate::ActKind;
 use crate::time::Time;
 
 impl Manager {
@@ -62,7 +61,7 @@ impl Manager {
         let preference = self.concede(open, &heard.interpretations);
         let preface = match self.enqueue(state, &heard) {
             _ if is_refused => Preface::Sorry,
-            Preface::None => self.preface(&heard, state.act.kind),
+            Preface::None => self.preface(&heard),
             queued => queued,
         };
         self.retract(state, &heard);
@@ -181,14 +180,11 @@ impl Manager {
         takes_any || self.is_pointing(utterance) || !(is_answer || only_gesture)
     }
 
-    /// Returns what is said before the next question about an utterance that was not understood, or
-    /// that describes nothing.
-    fn preface(&self, heard: &Heard<'_>, standing: ActKind) -> Preface {
+    /// Returns what is said before the next question about an utterance with an unknown word, or that describes nothing. A
+    /// request that only repeats what is wanted ("the bowl") is understood: the question is put once more.
+    fn preface(&self, heard: &Heard<'_>) -> Preface {
         match heard.unknown {
             Some(word) => Preface::UnknownWord(word.clone()),
-            None if says_nothing(heard) && heard.gesture.is_none() && standing == ActKind::Ask => {
-                Preface::Remark(Remark::NotUnderstood)
-            }
             None => self.nothing_described(heard).map_or(Preface::None, Preface::Remark),
         }
     }
