@@ -9,7 +9,7 @@ use whichone_tests::{Ended, program, run};
 /// Longest test of one service, seconds.
 const LONGEST_S: f64 = 240.0;
 
-fn conform(service: &str, options: &[&str], command: &[&str]) -> Ended {
+pub(crate) fn conform(service: &str, options: &[&str], command: &[&str]) -> Ended {
     let config = concat!(env!("CARGO_MANIFEST_DIR"), "/../config");
     let mut call = Command::new(program("whichone"));
     call.args(["conform", service, "--json", "--config", config, "--profile", "ci"]);

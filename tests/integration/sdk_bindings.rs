@@ -6,6 +6,7 @@ use rustix::process::Signal;
 use serde_json::Value;
 use whichone_tests::{Group, program, run};
 
+use crate::conform::conform;
 use crate::python;
 use crate::swap::swap;
 
@@ -64,6 +65,21 @@ fn check_same_outcomes(command: &[&str]) {
 fn sdk_python_grounder_has_the_outcomes_of_the_built_in_one() {
     let command = python::service("grounding");
     check_same_outcomes(&command.each_ref().map(String::as_str));
+}
+
+#[test]
+#[ignore = "needs python3 with iceoryx2"]
+fn sdk_python_grounder_keeps_the_contract() {
+    let command = python::service("grounding");
+    let ended = conform("grounding", &[], &command.each_ref().map(String::as_str));
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+}
+
+#[test]
+fn sdk_c_grounder_keeps_the_contract() {
+    let (_out, grounder) = c_example("grounding");
+    let ended = conform("grounding", &[], &[&grounder]);
+    assert_eq!(ended.code, Some(0), "{ended:?}");
 }
 
 /// Compiles an example in C against the library of this build, into a folder of its own.

@@ -131,6 +131,11 @@ class Readings(unittest.TestCase):
         said.hypotheses[0].len = 9
         with self.assertRaises(InvalidMessage):
             heard(said, scene)
+        for weight in (float("nan"), float("inf"), -1.0):
+            said = utterance("bowl")
+            said.hypotheses[0].weight = weight
+            with self.assertRaises(InvalidMessage):
+                heard(said, scene)
 
     def test_doubts_follow_the_recogniser(self):
         scene = bowls()

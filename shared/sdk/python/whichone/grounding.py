@@ -103,6 +103,8 @@ def heard(utterance: m.Utterance, scene: Scene) -> Heard:
         words = text[it.start:it.start + it.len]
         if len(words) != it.len:
             raise m.InvalidMessage(f"utterance {utterance.seq}: a hypothesis ends after the text")
+        if not (math.isfinite(it.weight) and it.weight >= 0.0):
+            raise m.InvalidMessage(f"utterance {utterance.seq}: expected weights of 0 or more, found {it.weight}")
         doubts = [1.0 - sure / 255 for sure in it.confidence]
         hypotheses.append(Hypothesis(words.decode(errors="replace"), it.weight, doubts))
     questions = [it.question if it.scene == scene.key else m.WireQuestion()
@@ -242,10 +244,11 @@ class Grounder(Service):
             log(f"{error}; it counts as without content")
             words = Heard(utterance.seq, [], [], None)
             utterance.asked_count = min(utterance.asked_count, m.ASKED_MAX)
-        try:
-            return observation(utterance, self.ground(words), self.scene)
-        except Exception as error:
-            if self.ends:
-                raise
-            log(f"utterance {utterance.seq}: {type(error).__name__}: {error}; read by word spotting")
-            return observation(utterance, spot(words, self.scene), self.scene)
+        for read, instead in ((self.ground, "word spotting"), (lambda it: spot(it, self.scene), "no content")):
+            try:
+                return observation(utterance, read(words), self.scene)
+            except Exception as error:
+                if self.ends:
+                    raise
+                log(f"utterance {utterance.seq}: {type(error).__name__}: {error}; read as {instead}")
+        return observation(utterance, [], self.scene)
