@@ -20,6 +20,9 @@ step() {
 # Runs a command as the user ann.
 ann() { runuser -u ann -- env -C /home/ann HOME=/home/ann USER=ann PATH="$PATH" "$@"; }
 
+# Runs a command as ann, in the session that systemd keeps for her.
+user() { ann env XDG_RUNTIME_DIR="/run/user/$(id -u ann)" "$@"; }
+
 apt_install() { apt-get install -qq -y --no-install-recommends "$@"; }
 apt_remove() { apt-get "$1" -qq -y whichone; }
 

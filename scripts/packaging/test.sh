@@ -227,21 +227,31 @@ test_user() {
     with_debs "$folder"
     say "--- user"
     inside "$folder" <<'SCENARIO'
-apt_install ./whichone.deb
+snapshot before
+step "install" apt_install ./whichone.deb
 SCENARIO
     booted "$folder" <<'SCENARIO'
 id=$(id -u ann)
 loginctl enable-linger ann
 wait_until 30 test -S "/run/user/$id/systemd/private"
-user() { runuser -u ann -- env -C /home/ann HOME=/home/ann XDG_RUNTIME_DIR="/run/user/$id" "$@"; }
 step "start by systemctl --user" user systemctl --user --quiet enable --now whichone.service
 step "first fetch" fetch
 # A session that ends takes nothing with it, because ann lingers.
 systemd-run --quiet --wait --collect --property PAMName=login --uid ann true
 sleep 12
 ann whichone status
+SCENARIO
+    booted "$folder" <<'SCENARIO'
+step "ready after boot, nobody logged in" wait_until 60 ann whichone status
+ann whichone journal --verify
+step "another fetch" fetch
 user systemctl --user --quiet disable --now whichone.service
 check_nothing_runs
+loginctl disable-linger ann
+step "purge" apt_remove purge
+ann rm -r .local/state/whichone
+ann rmdir -p --ignore-fail-on-non-empty .local/state .config/systemd/user
+compare before
 SCENARIO
 }
 
