@@ -65,7 +65,7 @@ fn link_motion_stop_works_from_a_mirror() {
     let relay = Relay::start(&["--robot", "r1", "--operator", "ann"]);
     let robot = relay.robot_up("r1", &["arm.time_scale=1"]);
     let mirror = Mirror::start("r1", &relay.person("ann"));
-    mirror.group.say("get me the metal bowl");
+    mirror.group.say("get me the clear bowl");
     wait_for("a moving arm", 20.0, || (robot.arm()["moving"] == true).then_some(()));
     let began = Instant::now();
     let state = mirror.group.must(&["stop-motion", "--json"]).json();

@@ -24,7 +24,7 @@ const PAUSE: Duration = Duration::from_millis(5);
 /// Timeout of an answer.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> zenoh::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let mut next = || arguments.next().ok_or("expected KEYS ROBOT SEED SECONDS");
     let keys = PathBuf::from(next()?);

@@ -15,6 +15,7 @@ pub mod names;
 pub mod offset;
 pub mod presence;
 pub mod say;
+pub mod trouble;
 
 #[cfg(feature = "zenoh")]
 pub mod cli;

@@ -289,7 +289,7 @@ impl Stops<'_> {
     }
 
     fn start_pick(&self) {
-        self.mirror.must(&["say", "get me the metal bowl", "--timeout", "50"]);
+        self.mirror.must(&["say", "get me the clear bowl", "--timeout", "50"]);
         self.joints.wait_moving();
     }
 

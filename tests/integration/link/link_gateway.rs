@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use whichone_tests::console::{Page, Visitor, http};
 use whichone_tests::gateway::Gateway;
 use whichone_tests::link::Relay;
-use whichone_tests::wait_for;
+use whichone_tests::{Group, wait_for};
 
 #[test]
 #[ignore = "needs whichone-link, which scripts/link builds"]
@@ -12,7 +12,8 @@ fn robot_elsewhere_is_listed_and_commanded_through_the_gateway() {
     let relay = Relay::start(&["--robot", "r1", "--operator", "gate"]);
     let robot = relay.robot_up("r1", &[]);
     let keys = relay.person("gate").display().to_string();
-    let gateway = Gateway::start(robot.paths().home(), &["--keys", &keys]);
+    let elsewhere = Group::new();
+    let gateway = Gateway::start(elsewhere.paths().home(), &["--keys", &keys]);
     let secret = gateway.add("ann", &["--operator", "r1"]);
     let list = || -> Value {
         let (_, _, body) = http(&gateway.console("", &secret), "GET", "/_/robots", &[], "");

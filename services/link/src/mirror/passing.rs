@@ -27,6 +27,7 @@ use crate::offset::{Offset, age_ns};
 use crate::presence::Hello;
 use crate::say::{Outbound, PATIENCE, Receipts, Said, Sent};
 use crate::session::{request, request_at};
+use crate::trouble::Trouble;
 
 /// Longest sleep.
 const LOOK_EVERY: Span = Span::from_ms(10);
@@ -104,8 +105,7 @@ struct Passing<'a> {
     outbound: Outbound,
     /// The robot's link that is there, by its number.
     alive: Option<String>,
-    /// The latest trouble with frames, so that it is logged once.
-    trouble: Option<String>,
+    trouble: Trouble,
     voice_dir: Option<PathBuf>,
     line: Option<Line>,
     /// Sounds that are there, oldest first.
@@ -168,7 +168,7 @@ impl<'a> Passing<'a> {
             offset: Offset::default(),
             outbound: Outbound::default(),
             alive: None,
-            trouble: None,
+            trouble: Trouble::default(),
             voice_dir,
             line: None,
             lines: VecDeque::new(),
@@ -268,13 +268,14 @@ impl<'a> Passing<'a> {
         } else {
             inlets.pass(topic, bytes, now, offset)
         };
-        let trouble = passed.err().map(|error| error.to_string());
-        match &trouble {
-            None => lock(&self.known).heard = Some(Instant::now()),
-            Some(trouble) if self.trouble.is_none() => tracing::warn!(trouble, "robot not shown"),
-            Some(_) => return,
+        match passed {
+            Ok(()) => lock(&self.known).heard = Some(Instant::now()),
+            Err(error) => {
+                if let Some(frames) = self.trouble.count(now) {
+                    tracing::warn!(topic, frames, "robot not shown: {error}");
+                }
+            }
         }
-        self.trouble = trouble;
     }
 
     /// A line that has begun is shown once its sound is there, so that pages play it.
