@@ -328,7 +328,7 @@ fn replies(group: &Group, words: &[i16]) -> Vec<f64> {
                 (is_speaking && spoken_last(page) != before).then_some(())
             });
             let ms = ended.elapsed().as_secs_f64() * 1e3;
-            page.ask("start_over", &json!({}));
+            page.ask("say", &json!({ "text": "never mind" }));
             page.until_part("dialogue", |dialogue| dialogue["interaction"] == 0);
             page.until_part("speaking", |speaking| speaking["state"] != "speaking");
             ms
