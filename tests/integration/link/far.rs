@@ -328,9 +328,14 @@ fn replies(group: &Group, words: &[i16]) -> Vec<f64> {
                 (is_speaking && spoken_last(page) != before).then_some(())
             });
             let ms = ended.elapsed().as_secs_f64() * 1e3;
-            page.ask("start_over", &json!({}));
+            let asked = spoken_last(&page);
+            page.ask("say", &json!({ "text": "never mind" }));
             page.until_part("dialogue", |dialogue| dialogue["interaction"] == 0);
-            page.until_part("speaking", |speaking| speaking["state"] != "speaking");
+            // The answer to that is no question of the next round.
+            page.until("the end of the robot's answer", |page| {
+                let is_over = page.parts.get("speaking")?["state"] != "speaking";
+                (is_over && spoken_last(page) != asked).then_some(())
+            });
             ms
         })
         .collect()
