@@ -215,3 +215,22 @@ fn a_sound_that_never_ends_holds_nothing_back_for_ever() {
     node.on(Event::Tick, at(13), &mut effects);
     assert_eq!(node.state().act.kind, ActKind::Ask);
 }
+
+/// A recogniser's second thought: "get me the bowl", or perhaps "no".
+#[test]
+fn request_opens_an_interaction_although_another_wording_may_be_an_answer() {
+    let opens = |request: f64| {
+        let mut manager = manager_with("mixture");
+        let wordings = [(request, Reading::default()), (1.0 - request, answer(Response::No))];
+        let interpretations =
+            wordings.map(|(weight, reading)| Interpretation { weight, answers: None, reading });
+        let heard = Utterance {
+            interpretations: interpretations.to_vec(),
+            ..spoken(1, &[], 4.0, Response::No)
+        };
+        let nothing_said = manager.first();
+        manager.next(&nothing_said, &Cause::Utterance(heard), at(5)).open.is_some()
+    };
+    assert!(opens(0.9));
+    assert!(!opens(0.1), "an answer where nothing was asked");
+}

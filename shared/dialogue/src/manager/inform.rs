@@ -9,6 +9,7 @@ use super::evidence::{Evidence, Mark};
 use super::line::{AboutObjects, Preface, Remark};
 use super::references::reference;
 use super::state::{Basis, Deferred, Interaction, Preference, State, Utterance};
+use crate::Interpretation;
 use crate::time::Time;
 
 impl Manager {
@@ -172,11 +173,10 @@ impl Manager {
             .interpretations
             .iter()
             .any(|it| it.answers.is_none() && it.reading.refers == Reference::Any);
-        // An answer has no content where it is not taken for one; what has none anywhere is no answer.
+        // An answer has no content where it is not taken for one.
         let is_empty = |it: &Reading| *it == Reading::default();
         let is_answer = all.clone().all(|it| is_mere_answer(it) || is_empty(it));
-        let is_silent = all.len() > 0 && all.clone().all(is_empty);
-        let is_answer = is_answer && !is_silent;
+        let is_answer = is_answer && is_mostly_answer(&utterance.interpretations);
         takes_any || self.is_pointing(utterance) || !(is_answer || only_gesture)
     }
 
@@ -212,6 +212,17 @@ impl Manager {
 
 fn says_nothing(heard: &Heard) -> bool {
     heard.interpretations.iter().all(|(.., it)| *it == Reading::default())
+}
+
+/// Returns whether it is more likely an answer than something without content, where it may be taken for an answer.
+fn is_mostly_answer(interpretations: &[Interpretation]) -> bool {
+    let weight = |answers: Option<usize>, is_answer: bool| -> f64 {
+        let of_question = interpretations.iter().filter(|it| it.answers == answers);
+        let alike = of_question.filter(|it| is_mere_answer(&it.reading) == is_answer);
+        alike.map(|it| it.weight).sum()
+    };
+    let mut answers = interpretations.iter().filter(|it| is_mere_answer(&it.reading));
+    answers.any(|it| weight(it.answers, true) > weight(it.answers, false))
 }
 
 fn is_mere_answer(reading: &Reading) -> bool {
