@@ -9,7 +9,7 @@ mod inspection;
 mod journal_record;
 mod perceived;
 pub mod planner;
-pub mod planner_program;
+mod planner_program;
 mod policy_cache;
 pub mod shell;
 mod view;

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use service::exit::{Exit, Failure};
 
 /// Name of the planner.
-pub const NAME: &str = "program";
+pub(crate) const NAME: &str = "program";
 /// Planner that decides where the program does not, and that values its decisions.
 const FALLBACK: &str = "entropy";
 /// Time that the program may take to become ready, before the service is.
@@ -358,6 +358,7 @@ mod tests {
     }
 
     #[test]
+    #[ignore = "needs python3"]
     fn program_sees_the_whole_problem() {
         // Counted by the program: 16 questions, six objects, probabilities that sum to 1.
         let script = r#"exec python3 -c '
@@ -369,9 +370,7 @@ ok = ok and all(abs(sum(of) - 1) < 1e-12 for q in request["questions"] for of in
 ok = ok and request["wrong"] < 0 < request["correct"] and request["step"] == 0
 print(json.dumps({"pick": 5} if ok else {}), flush=True)
 '"#;
-        if Command::new("python3").arg("--version").output().is_ok() {
-            assert_eq!(decision(script).0.action, Action::Pick(5.into()));
-        }
+        assert_eq!(decision(script).0.action, Action::Pick(5.into()));
     }
 
     #[test]

@@ -68,8 +68,8 @@ impl Bench {
         JournalSet::new(EPOCH.0).save(&paths).map_err(failed)?;
         kept_settings::keep(&paths, &settings).map_err(failed)?;
         wakes(&settings).save(&paths).map_err(failed)?;
-        settings.write_snapshot(&paths.run()).map_err(failed)?;
         settings.write_words(&paths.run()).map_err(failed)?;
+        settings.write_snapshot(&paths.run()).map_err(failed)?;
         let admin = Admin::open(&paths, EPOCH)?;
         let (lifeline, alive) = pipe_with(PipeFlags::CLOEXEC).map_err(|e| failed(e.into()))?;
         // Only the reading end is inherited, by every process that is started from now on.
