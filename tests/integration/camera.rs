@@ -77,7 +77,7 @@ fn bowls_under_the_camera_are_fetched_from_where_people_put_them() {
     group.wait_for_decision("ask");
     group.drill(&["put", "white", FREE[0][0], FREE[0][1]]);
     let moved = wait_for_one(&group, "white", |it| is_at(it, FREE[0]));
-    assert_eq!(moved["name"], white["name"]);
+    assert_eq!(moved["name"], white["name"], "{}", group.logs());
     kill(&group, ["policy", "baxter"]);
     let outcome = group.await_pick(moved["name"].as_str());
     assert_delivered(&group, &outcome, &moved);

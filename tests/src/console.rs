@@ -17,7 +17,7 @@ use tungstenite::{Message, WebSocket, client};
 /// Timeout of one read of the socket.
 const LOOK: Duration = Duration::from_millis(20);
 /// Timeout of a wait.
-const PATIENCE: Duration = Duration::from_secs(20);
+const PATIENCE: Duration = Duration::from_secs(80);
 
 /// An open page.
 #[derive(Debug)]

@@ -1,18 +1,20 @@
 //! A process group for one test: its own name, home and shared memory.
 
 use crate::command::{Ended, program, run};
-use crate::wait_for;
+use crate::{wait_for, wait_for_or_none};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use service::group::{ENV_HOME, GroupName, GroupPaths};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc;
 
 /// Timeout of a call of the command line, seconds.
-const CALL_S: f64 = 60.0;
+const CALL_S: f64 = 120.0;
 /// Timeout of a pick, seconds: on a busy machine the arm of a physics engine may have to halt and begin again.
-const PICK_S: f64 = 90.0;
+const PICK_S: f64 = 180.0;
 
 static NUMBER: AtomicU32 = AtomicU32::new(0);
 
@@ -92,7 +94,7 @@ impl Group {
 
     fn launch(&self, options: &[&str]) -> Ended {
         let config = self.config.display().to_string();
-        let mut words = vec!["up", "--detach", "--wait", "ready", "--timeout", "40", "--config"];
+        let mut words = vec!["up", "--detach", "--wait", "ready", "--timeout", "90", "--config"];
         words.extend([config.as_str(), "--profile", "ci"]);
         words.extend(options);
         self.call(&words)
@@ -165,10 +167,34 @@ impl Group {
         self.must(&["watch", "--once", "--json"]).json()["dialogue"].take()
     }
 
+    /// Follows the group's state, as `watch` shows it, until `fact` returns a value, and returns it. One program
+    /// follows: on a busy machine one that is started for each look would miss what is short.
+    ///
+    /// # Panics
+    /// As [`wait_for`].
+    pub fn follow<T>(&self, what: &str, seconds: f64, fact: impl Fn(&mut Value) -> Option<T>) -> T {
+        let mut watch = self.command(&["watch", "--json"]);
+        let watch = watch.stdin(Stdio::null()).stdout(Stdio::piped()).spawn();
+        let mut watch = watch.unwrap_or_else(|e| panic!("whichone watch: {e}"));
+        let lines = BufReader::new(watch.stdout.take().expect("piped")).lines();
+        let (sender, states) = mpsc::channel();
+        let reader = std::thread::spawn(move || {
+            let states = lines.map_while(Result::ok).map(|line| serde_json::from_str(&line));
+            states.map_while(Result::ok).try_for_each(|state| sender.send(state)).is_ok()
+        });
+        let found =
+            wait_for_or_none(seconds, || states.try_iter().find_map(|mut it| fact(&mut it)));
+        watch.kill().expect("a child of ours");
+        watch.wait().expect("a child of ours");
+        drop(states);
+        reader.join().expect("a reader of ours");
+        found.unwrap_or_else(|| panic!("{what}: not within {seconds} s\n{}", self.logs()))
+    }
+
     /// Waits until the standing decision is `kind` (`ask`, `pick`, …) and returns the dialogue.
     pub fn wait_for_decision(&self, kind: &str) -> Value {
-        wait_for(&format!("the decision to {kind}"), 20.0, || {
-            Some(self.dialogue()).filter(|dialogue| dialogue["decision"] == kind)
+        self.follow(&format!("the decision to {kind}"), 20.0, |state| {
+            Some(state["dialogue"].take()).filter(|dialogue| dialogue["decision"] == kind)
         })
     }
 
