@@ -277,20 +277,27 @@ impl Group {
         assert!(processes.is_empty(), "processes are left: {processes:?}");
     }
 
-    /// Processes of this group: those with its home in their environment.
+    /// Command lines of this group's processes.
     pub fn processes(&self) -> Vec<String> {
+        let named = |pid: Pid| {
+            let line = std::fs::read(format!("/proc/{}/cmdline", pid.as_raw_nonzero()));
+            String::from_utf8_lossy(&line.unwrap_or_default()).replace('\0', " ")
+        };
+        self.pids().into_iter().map(named).filter(|line| !line.is_empty()).collect()
+    }
+
+    /// Processes of this group: those with its home in their environment.
+    fn pids(&self) -> Vec<Pid> {
         let mark = format!("{ENV_HOME}={}", self.home.path().display());
         let Ok(entries) = std::fs::read_dir("/proc") else { return Vec::new() };
-        let of_group = |path: &PathBuf| {
-            let environment = std::fs::read(path.join("environ")).unwrap_or_default();
+        let of_group = |pid: &Pid| {
+            let path = format!("/proc/{}/environ", pid.as_raw_nonzero());
+            let environment = std::fs::read(path).unwrap_or_default();
             environment.split(|&b| b == 0).any(|entry| entry == mark.as_bytes())
         };
-        let named = |path: PathBuf| {
-            let line = std::fs::read(path.join("cmdline")).unwrap_or_default();
-            String::from_utf8_lossy(&line).replace('\0', " ")
-        };
-        let paths = entries.filter_map(Result::ok).map(|entry| entry.path());
-        paths.filter(of_group).map(named).filter(|line| !line.is_empty()).collect()
+        let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        let pids = names.filter_map(|name| Pid::from_raw(name.parse().ok()?));
+        pids.filter(of_group).collect()
     }
 }
 
@@ -304,6 +311,10 @@ impl Drop for Group {
     fn drop(&mut self) {
         if self.is_up {
             let _ = self.command(&["down"]).output();
+            // A group that did not stop would start its services again and again without its folder.
+            for pid in self.pids() {
+                let _ = kill_process(pid, Signal::KILL);
+            }
         }
     }
 }
