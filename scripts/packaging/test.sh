@@ -153,7 +153,7 @@ took "from the sources to the first fetch" "$began"
 ann whichone down
 check_nothing_runs
 ann cargo uninstall --quiet whichone
-ann rm -rf .local/state/whichone .cargo/registry/src .cargo/.crates.toml .cargo/.crates2.json .cargo/.package-cache .cargo/.global-cache
+ann rm -r .local/state/whichone
 ann rmdir -p --ignore-fail-on-non-empty .local/state .cargo/bin
 compare before
 SCENARIO
