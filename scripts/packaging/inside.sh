@@ -79,12 +79,13 @@ check_nothing_runs() {
     [[ -z $left ]] || fail "shared memory is left: $left"
 }
 
-# snapshot NAME, compare NAME: every file, and the users, before and after. What apt, dpkg and the system itself
+# snapshot NAME, compare NAME: every file, and the users, before and after. What apt, dpkg, cargo and the system itself
 # write down is not the package's.
 listing() {
     find / -xdev \( -path /proc -o -path /sys -o -path /dev -o -path /run -o -path /root \
         -o -path /var/lib/dpkg -o -path /var/lib/apt -o -path /var/cache -o -path /var/log -o -path /var/tmp \
         -o -path /var/lib/systemd -o -path /etc/systemd/system/scenario.service -o -path /etc/systemd/system/default.target.wants \
+        -o -path /home/ann/.cargo/registry -o -path '/home/ann/.cargo/.*' \
         -o -path /etc/machine-id -o -name '*-' -path '/etc/*' \) -prune -o -print | sort
     cat /etc/passwd /etc/group
 }

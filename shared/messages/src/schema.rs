@@ -2,7 +2,7 @@
 //!
 //! iceoryx2 compares size, alignment and the type's name when a topic is opened, so a struct of the
 //! same size with other fields would pass. The schema key closes that gap: it is an attribute of
-//! every topic and each open requires it. Schemas are derived: those of structs by [`wire_struct`],
+//! every topic and each open requires it. Schemas are derived: those of structs by `wire_struct`,
 //! those of postcard payloads from their `Deserialize` implementation.
 
 use crate::definition::{Definition, json_schema};

@@ -2,7 +2,7 @@
 //! recover → open topics → ready → (wait, drain everything, decide, commit, beat)*.
 //!
 //! Durability comes before visibility: the records of a pass are durable before its outputs are
-//! published ([`crate::commit`]). The loop does not wait for the disk: meanwhile it publishes urgent
+//! published (`commit`). The loop does not wait for the disk: meanwhile it publishes urgent
 //! outputs and takes in further passes, as far as their number is bounded.
 
 use crate::bus::{Bus, PortError, WakeListener};

@@ -60,7 +60,7 @@ wire_struct! {
         aimed_act: u64,
         /// Attempt of the latest pick.
         attempt: u32,
-        /// [`ObjectId`] of the latest pick.
+        /// `ObjectId` of the latest pick.
         object: u32,
         /// [`PickPhase`] of the latest pick.
         phase: Code<PickPhase>,

@@ -174,7 +174,7 @@ fn checked_words(slots: &[u16], count: u8, known: usize) -> Result<Vec<WordId>, 
 wire_struct! {
     /// The interpretation of an utterance. Grounding to policy, one for each utterance.
     Observation = "Observation" {
-        /// The utterance's [`UtteranceSeq`].
+        /// The utterance's `UtteranceSeq`.
         seq: u64,
         /// Of the utterance.
         asked: [AskedQuestion; ASKED_MAX],

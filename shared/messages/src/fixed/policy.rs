@@ -11,7 +11,7 @@ use scene::{ObjectId, Question};
 wire_struct! {
     /// The highest utterance that the belief holds. Policy to speech.
     AppliedMark = "AppliedMark" {
-        /// [`UtteranceSeq`].
+        /// `UtteranceSeq`.
         seq: u64,
     }
 }
@@ -21,11 +21,11 @@ wire_codes!(ActKind { Wait = 0, Ask = 1, Say = 2, Pick = 3, Cancel = 4, PutBack 
 wire_struct! {
     /// The policy's standing decision. Policy to speech and arm, sent again until superseded.
     RobotAct = "RobotAct" {
-        /// [`ActId`].
+        /// `ActId`.
         act: u64,
         /// [`InteractionId`].
         interaction: u64,
-        /// [`PromptId`] of an `Ask` or `Say`.
+        /// `PromptId` of an `Ask` or `Say`.
         prompt: u64,
         /// Number of times the prompt has been requested: 1, and one more for each repetition.
         presentation: u32,

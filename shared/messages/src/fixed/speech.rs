@@ -30,7 +30,7 @@ impl PresentationState {
 wire_struct! {
     /// The latest prompt that was said. Speech to policy.
     Presented = "Presented" {
-        /// [`PromptId`].
+        /// `PromptId`.
         prompt: u64,
         /// When its sound began.
         started_ns: u64,

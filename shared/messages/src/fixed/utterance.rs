@@ -73,7 +73,7 @@ impl Hypothesis {
 wire_struct! {
     /// An accepted utterance. Speech to grounding.
     Utterance = "Utterance" {
-        /// [`UtteranceSeq`].
+        /// `UtteranceSeq`.
         seq: u64,
         /// The latest questions whose sound had begun when the utterance was accepted, newest
         /// first.
