@@ -152,13 +152,14 @@ impl Reply {
 
 /// The planner. The program is started with it, and again where it has failed.
 struct ProgramPlanner {
-    fallback: Option<Box<dyn Planner + Send>>,
+    fallback: Box<dyn Planner + Send>,
     running: Option<Running>,
 }
 
 impl ProgramPlanner {
     fn new() -> Self {
-        let mut planner = Self { fallback: registry::planner(FALLBACK).ok(), running: None };
+        let fallback = registry::planner(FALLBACK).expect("a planner of the crate itself");
+        let mut planner = Self { fallback, running: None };
         planner.start();
         if let Some(running) = &mut planner.running
             && let Err(reason) = running.wait_ready(START_MAX)
@@ -200,18 +201,9 @@ impl Planner for ProgramPlanner {
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
         let questions = problem.questions();
         let request = Request::new(problem, &questions, belief, step);
-        let known = self.fallback.as_mut().map(|planner| planner.decide(problem, belief, step));
-        let asked = self.ask(&request, problem.model, &questions);
-        let wait = problem.costs.wait_value();
-        let known = known.unwrap_or_else(|| Decision {
-            action: Action::Wait,
-            value: wait,
-            alternatives: Vec::new(),
-            expected_questions: 0.0,
-            bounds: None,
-        });
-        match asked {
-            Ok((action, value)) => chosen(known, action, value, wait),
+        let known = self.fallback.decide(problem, belief, step);
+        match self.ask(&request, problem.model, &questions) {
+            Ok((action, value)) => chosen(known, action, value, problem.costs.wait_value()),
             Err(reason) => {
                 tracing::warn!(reason, "the planner's program has not decided; {FALLBACK} does");
                 self.start();

@@ -10,7 +10,6 @@ use messages::Service;
 use service::group::GroupPaths;
 use service::kept_settings;
 use service::launch::Options;
-use service::wakes::Wakes;
 
 pub use config::{Log, Restart, RestartLimits};
 
@@ -116,22 +115,8 @@ fn configuration(
         directory: options.config.clone(),
         set,
         shared_memory_free_min_mib: group.shared_memory_free_min_mib.into(),
-        publish: Box::new(move |paths| {
-            // Those in force change last, when nothing can fail any more.
-            kept_settings::keep(paths, &settings)?;
-            wakes(&settings).save(paths)?;
-            settings.write_words(&paths.run())?;
-            settings.write_snapshot(&paths.run())
-        }),
+        publish: Box::new(move |paths| kept_settings::put_in_force(paths, &settings)),
     }
-}
-
-/// What wakes the services beside the table of topics.
-fn wakes(settings: &Settings) -> Wakes {
-    let services = settings.group.services.iter();
-    Wakes::new(services.flat_map(|service| {
-        service.reads.iter().map(|topic| (service.name.as_str(), topic.as_str()))
-    }))
 }
 
 fn service(service: &ServiceConfig, settings: &Settings) -> ServiceSpec {

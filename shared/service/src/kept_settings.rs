@@ -1,5 +1,5 @@
-//! The settings by which the journals were written, kept beside them: a journal can be listed and
-//! verified without saying how its group was started.
+//! The settings in force, which a group's services read, and those by which the journals were written, kept beside
+//! them: a journal can be listed and verified without saying how its group was started.
 
 use std::fs::{self, File};
 use std::io;
@@ -9,15 +9,36 @@ use std::time::SystemTime;
 use config::Settings;
 
 use crate::group::GroupPaths;
+use crate::wakes::Wakes;
 
 /// Number of settings that are kept.
 const KEPT: usize = 8;
+
+/// Writes everything that the services of a group read, and keeps the settings beside the journals. Those in force
+/// change last, when nothing can fail any more.
+///
+/// # Errors
+/// A folder cannot be written.
+pub fn put_in_force(paths: &GroupPaths, settings: &Settings) -> io::Result<()> {
+    keep(paths, settings)?;
+    wakes(settings).save(paths)?;
+    settings.write_words(&paths.run())?;
+    settings.write_snapshot(&paths.run())
+}
+
+/// What wakes the services beside the table of topics.
+fn wakes(settings: &Settings) -> Wakes {
+    let services = settings.group.services.iter();
+    Wakes::new(services.flat_map(|service| {
+        service.reads.iter().map(|topic| (service.name.as_str(), topic.as_str()))
+    }))
+}
 
 /// Keeps the settings, as the newest of a few.
 ///
 /// # Errors
 /// The folder cannot be written.
-pub fn keep(paths: &GroupPaths, settings: &Settings) -> io::Result<()> {
+fn keep(paths: &GroupPaths, settings: &Settings) -> io::Result<()> {
     let mut hash = scene::StableHash::default();
     hash.text(&settings.snapshot());
     let folder = paths.kept_settings().join(format!("{:016x}", hash.value()));

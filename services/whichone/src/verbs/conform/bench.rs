@@ -17,7 +17,6 @@ use service::group::{GroupName, GroupPaths};
 use service::journal_set::JournalSet;
 use service::kept_settings;
 use service::shm_cleanup::{Admin, remove_leftovers};
-use service::wakes::Wakes;
 
 /// Epoch of the group.
 pub(super) const EPOCH: Epoch = Epoch(7);
@@ -66,10 +65,7 @@ impl Bench {
         [paths.run(), paths.log(), paths.journal()].iter().try_for_each(|it| private(it))?;
         File::create(paths.alive_lock()).map_err(failed)?;
         JournalSet::new(EPOCH.0).save(&paths).map_err(failed)?;
-        kept_settings::keep(&paths, &settings).map_err(failed)?;
-        wakes(&settings).save(&paths).map_err(failed)?;
-        settings.write_words(&paths.run()).map_err(failed)?;
-        settings.write_snapshot(&paths.run()).map_err(failed)?;
+        kept_settings::put_in_force(&paths, &settings).map_err(failed)?;
         let admin = Admin::open(&paths, EPOCH)?;
         let (lifeline, alive) = pipe_with(PipeFlags::CLOEXEC).map_err(|e| failed(e.into()))?;
         // Only the reading end is inherited, by every process that is started from now on.
@@ -144,12 +140,4 @@ impl Drop for Bench {
         remove_leftovers(&self.paths);
         let _ = std::fs::remove_dir_all(self.paths.home());
     }
-}
-
-/// What wakes services beside the table of topics, by the configuration.
-fn wakes(settings: &Settings) -> Wakes {
-    let services = settings.group.services.iter();
-    Wakes::new(services.flat_map(|service| {
-        service.reads.iter().map(|topic| (service.name.as_str(), topic.as_str()))
-    }))
 }
