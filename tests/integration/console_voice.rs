@@ -41,6 +41,11 @@ impl Stream {
         Self { number, sent: 0, began: Instant::now(), began_ms }
     }
 
+    /// When a sample is taken.
+    pub(crate) fn at(&self, sample: usize) -> Instant {
+        self.began + Duration::from_secs_f64(sample as f64 / 16_000.0)
+    }
+
     pub(crate) fn ms(&self, sample: u64) -> f64 {
         self.began_ms + sample as f64 / 16.0
     }
@@ -57,7 +62,7 @@ impl Stream {
             let taken_ms = clock(self.ms(self.sent));
             page.send_raw(frame(self.number, flags, taken_ms, self.sent, piece));
             self.sent += piece.len() as u64;
-            let until = self.began + Duration::from_secs_f64(self.sent as f64 / 16_000.0);
+            let until = self.at(self.sent as usize);
             std::thread::sleep(until.saturating_duration_since(Instant::now()));
         }
     }

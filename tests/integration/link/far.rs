@@ -25,6 +25,8 @@ const CUTS_S: [u64; 2] = [10, 25];
 const COST_OVER: Duration = Duration::from_secs(20);
 /// Spoken requests here and there.
 const SPOKEN: u32 = 12;
+/// Level above which a sample is of a word.
+const LOUD: u16 = 300;
 /// Bar of a stop: two round trips and 50 ms.
 const STOP_BAR_MS: f64 = 250.0;
 
@@ -309,20 +311,21 @@ impl Stops<'_> {
     }
 }
 
-/// Speaks the words into the group's page, with the talk button held; returns the milliseconds from the end of speech to the
-/// page's first sound of the reply.
+/// Speaks the words into the group's page, with the talk button held; returns the milliseconds from the last loud sample to
+/// the page's first sound of the reply. The words end with some quiet, in which the robot may begin.
 fn replies(group: &Group, words: &[i16]) -> Vec<f64> {
     let mut page = group.page(&Visitor::operator(1));
     page.until_part("hearing", |hearing| hearing["recogniser"] == "ready");
     page.until_part("turn", |turn| turn["state"] != "down");
     let held = 2;
+    let last = words.iter().rposition(|sample| sample.unsigned_abs() > LOUD).expect("words");
     (1..=SPOKEN)
         .map(|number| {
             let before = spoken_last(&page);
             let mut stream = Stream::begin(&mut page, number);
             stream.send(&mut page, held, words, |ms| ms);
             stream.end(&mut page, held);
-            let ended = Instant::now();
+            let ended = stream.at(last);
             page.until("the sound of a question", |page| {
                 let is_speaking = page.parts.get("speaking")?["state"] == "speaking";
                 (is_speaking && spoken_last(page) != before).then_some(())
