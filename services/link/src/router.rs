@@ -13,7 +13,7 @@ use zenoh::{Config, Wait};
 use crate::identity::{AUTHORITY, Role, absolute};
 use crate::keyring::{Member, PORT, Ring, write_private};
 use crate::names::{Call, Keys, Name};
-use crate::session::{close, transport};
+use crate::session::{OPEN_MS, close, transport};
 
 const FILE: &str = "router.json";
 const PASSWORDS: &str = "passwords";
@@ -142,7 +142,11 @@ pub fn run(folder: &Path) -> Result<(), Failure> {
     }
     // Where the folder lies is known only here.
     let mut transport = transport(&folder);
-    transport["unicast"] = json!({ "max_sessions": SESSIONS_MAX, "accept_pending": 500 });
+    transport["unicast"] = json!({
+        "max_sessions": SESSIONS_MAX,
+        "accept_pending": SESSIONS_MAX,
+        "accept_timeout": OPEN_MS,
+    });
     let passwords = folder.join(PASSWORDS).display().to_string();
     transport["auth"] = json!({ "usrpwd": { "dictionary_file": passwords } });
     config["transport"] = transport;

@@ -10,11 +10,16 @@ use zenoh::qos::{CongestionControl, Priority};
 use zenoh::query::{Query, Reply};
 use zenoh::{Config, Session, Wait};
 
-use crate::identity::{AUTHORITY, CERTIFICATE, Identity, KEY, absolute};
+use crate::identity::{AUTHORITY, CERTIFICATE, Identity, KEY, Role, absolute};
 use crate::names::{Call, Keys};
 
 /// Time without any message after which a connection counts as lost, milliseconds.
 const LEASE_MS: u32 = 3_000;
+/// Time in which a robot or the router completes a connection, milliseconds. A router that was started again is asked by a
+/// whole fleet at once, and works on all of them in turns: with the library's 10 s, 1,000 robots give up before any is done.
+pub(crate) const OPEN_MS: u32 = 60_000;
+/// As [`OPEN_MS`], for a person, who waits for it, milliseconds.
+const PERSONS_OPEN_MS: u32 = 10_000;
 /// Bytes that are sent at once: an urgent message waits for no more than that.
 const BATCH_BYTES: u32 = 4_096;
 /// Timeout of the router's goodbye.
@@ -48,6 +53,8 @@ fn config(identity: &Identity, keys: &Path) -> Result<Config, Failure> {
     let mut transport = transport(&absolute(keys));
     let password = &identity.password;
     transport["auth"] = json!({ "usrpwd": { "user": identity.user(), "password": password } });
+    let open_ms = if identity.role == Role::Robot { OPEN_MS } else { PERSONS_OPEN_MS };
+    transport["unicast"] = json!({ "open_timeout": open_ms });
     let config = json!({
         "mode": "client",
         "connect": {
