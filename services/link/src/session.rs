@@ -16,7 +16,7 @@ use crate::names::{Call, Keys};
 /// Time without any message after which a connection counts as lost, milliseconds.
 const LEASE_MS: u32 = 3_000;
 /// Time in which a robot or the router completes a connection, milliseconds. A router that was started again is asked by a
-/// whole fleet at once, and works on all of them in turns: with the library's 10 s, 1,000 robots give up before any is done.
+/// whole fleet at once: with the library's 10 s none of 1,000 robots came back within 300 s (`scripts/fleet`).
 pub(crate) const OPEN_MS: u32 = 60_000;
 /// As [`OPEN_MS`], for a person, who waits for it, milliseconds.
 const PERSONS_OPEN_MS: u32 = 10_000;
