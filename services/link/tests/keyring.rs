@@ -6,7 +6,7 @@ use link::names::Name;
 use std::fs;
 
 fn name(text: &str) -> Name {
-    Name::new(text).unwrap()
+    Name::new(text).expect("a name")
 }
 
 #[test]
