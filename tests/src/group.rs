@@ -1,7 +1,7 @@
 //! A process group for one test: its own name, home and shared memory.
 
 use crate::command::{Ended, program, run};
-use crate::{wait_for, wait_for_or_none};
+use crate::{BUSY, wait_for, wait_for_or_none};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use service::group::{ENV_HOME, GroupName, GroupPaths};
@@ -188,7 +188,7 @@ impl Group {
         watch.wait().expect("a child of ours");
         drop(states);
         reader.join().expect("a reader of ours");
-        found.unwrap_or_else(|| panic!("{what}: not within {seconds} s\n{}", self.logs()))
+        found.unwrap_or_else(|| panic!("{what}: not within {BUSY} × {seconds} s\n{}", self.logs()))
     }
 
     /// Waits until the standing decision is `kind` (`ask`, `pick`, …) and returns the dialogue.
