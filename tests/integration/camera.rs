@@ -75,8 +75,6 @@ fn bowls_under_the_camera_are_fetched_from_where_people_put_them() {
     let white = of(&first, "white")[0];
     group.say("get me the bowl");
     group.wait_for_decision("ask");
-    // One that is moved just after its appearance gets another number (docs/perception.md).
-    std::thread::sleep(std::time::Duration::from_secs(2));
     group.drill(&["put", "white", FREE[0][0], FREE[0][1]]);
     let moved = wait_for_one(&group, "white", |it| is_at(it, FREE[0]));
     assert_eq!(moved["name"], white["name"], "{}", group.logs());

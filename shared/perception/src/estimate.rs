@@ -47,8 +47,9 @@ impl Estimate {
         }
     }
 
-    /// Takes in a detection. One that is more than `moved_m` away counts once as many in a row agree.
-    pub fn see(&mut self, detection: &Detection, moved_m: f64) {
+    /// Takes in a detection. One that is more than `moved_m` away counts once as many in a row agree; returns
+    /// whether the estimate is where the object was detected.
+    pub fn see(&mut self, detection: &Detection, moved_m: f64) -> bool {
         self.count = self.count.saturating_add(1);
         let gain = (1.0 / f64::from(self.count)).max(GAIN_MIN);
         blend(&mut self.classes, &detection.classes, gain);
@@ -61,15 +62,24 @@ impl Estimate {
         let seen = place(detection);
         if distance(&seen, &self.place) <= moved_m {
             self.away.clear();
-            return self.fuse(seen, variance(detection));
+            self.fuse(seen, variance(detection));
+            return true;
         }
         self.away.retain(|earlier| distance(earlier, &seen) <= moved_m);
         self.away.push(seen);
-        if self.away.len() >= MOVED_AFTER {
-            let away = std::mem::take(&mut self.away);
-            (self.place, self.variance) = (away[0], variance(detection));
-            away[1..].iter().for_each(|seen| self.fuse(*seen, variance(detection)));
+        if self.away.len() < MOVED_AFTER {
+            return false;
         }
+        let away = std::mem::take(&mut self.away);
+        (self.place, self.variance) = (away[0], variance(detection));
+        away[1..].iter().for_each(|seen| self.fuse(*seen, variance(detection)));
+        true
+    }
+
+    /// Moves it to where another estimate of the same object is.
+    pub fn move_to(&mut self, other: &Self) {
+        self.away.clear();
+        (self.place, self.variance) = (other.place, other.variance);
     }
 
     fn fuse(&mut self, seen: [f64; 4], noise: [f64; 4]) {

@@ -135,6 +135,49 @@ fn a_small_motion_is_estimated_and_not_reported_and_a_larger_one_is() {
     assert_eq!(it.numbers(), [6]);
 }
 
+/// Looks at an object that stands as far away as a detection may be err to both sides of that distance.
+#[test]
+fn an_object_that_was_moved_as_far_as_the_gate_keeps_its_number() {
+    let mut it = Scenery::new();
+    it.looks(3, &[seen("white", 0.7, 0.1)]);
+    for y in [0.203, 0.198, 0.202, 0.201] {
+        it.look(&[seen("white", 0.7, y)]);
+    }
+    assert_eq!(it.numbers(), [6]);
+    assert!((it.tracker.objects()[0].xyz[1] - 0.2).abs() < 0.005, "{:?}", it.tracker.objects());
+    // Where the object was is no candidate for the next motion, whichever of the two ended the first one.
+    it.looks(1, &[seen("white", 0.7, 0.1)]);
+    for y in [0.098, 0.102, 0.098, 0.2, 0.303, 0.298, 0.302, 0.301] {
+        it.look(&[seen("white", 0.7, y)]);
+        assert_eq!(it.numbers(), [6]);
+    }
+}
+
+proptest! {
+    /// However far it is moved, and however its looks err, the only one of its class stays what it was.
+    #[test]
+    fn the_only_one_of_its_class_keeps_its_number_wherever_it_is_moved_to(
+        moves in prop::collection::vec((0.03_f64..0.3, 0.0_f64..std::f64::consts::TAU), 1..4),
+        errors in prop::collection::vec(-0.006_f64..0.006, 200),
+    ) {
+        let mut it = Scenery::new();
+        let (mut x, mut y) = (0.7, 0.1);
+        let mut errors = errors.into_iter().cycle();
+        let mut error = || errors.next().unwrap();
+        it.looks(3, &[seen("white", x, y)]);
+        for (far, angle) in moves {
+            (x, y) = (x + far * angle.cos(), y + far * angle.sin());
+            for _ in 0..8 {
+                let look = seen("white", x + error(), y + error());
+                it.look(&[look]);
+                prop_assert_eq!(it.numbers(), [6]);
+            }
+            let [known_x, known_y, _] = it.tracker.objects()[0].xyz;
+            prop_assert!((known_x - x).hypot(known_y - y) < 0.03, "{:?}", it.tracker.objects());
+        }
+    }
+}
+
 #[test]
 fn the_only_one_of_its_class_keeps_its_number_over_any_distance_and_one_of_two_does_not() {
     let mut it = Scenery::new();

@@ -83,6 +83,7 @@ impl Tracker {
             track: None,
             // Looks that waited during a restart are older than it.
             seen: now - settings.age_max,
+            stood: now - settings.age_max,
             missed: Span(0),
             misses: 0,
         };

@@ -24,12 +24,10 @@ use crate::output::Output;
 /// Interval at which a change is sent until it is answered.
 const RESEND_EVERY: Duration = Duration::from_millis(200);
 
-/// The topics of a group's table.
-struct TableTopics {
-    sightings: EncodedWriter<Sighting>,
-    tables: EncodedReader<TableView>,
+/// The table of a group, as the policy shows it.
+struct Tables {
+    reader: EncodedReader<TableView>,
     latest: Option<TableView>,
-    _client: Client,
 }
 
 /// Lists or changes the objects.
@@ -40,15 +38,13 @@ pub(super) fn objects(paths: &GroupPaths, args: &ObjectsArgs, out: &mut Output<'
         return Err(Failure::new(Exit::Usage, perception::Refusal::Off.to_string()));
     }
     Availability::now(paths).require(Service::Policy)?;
-    let mut table = TableTopics {
-        sightings: client.bus().encoded_writer(&topics::SIGHTING)?,
-        tables: client.bus().encoded_reader(&topics::OBJECTS)?,
-        latest: None,
-        _client: client,
-    };
+    let reader = client.bus().encoded_reader(&topics::OBJECTS)?;
+    let mut tables = Tables { reader, latest: None };
+    // Who only looks writes nothing: each writer that comes and goes has the policy connect once more.
+    let sightings = || client.bus().encoded_writer(&topics::SIGHTING);
     let change = match args.what.as_ref().unwrap_or(&ObjectsVerb::List) {
-        ObjectsVerb::List => return list(&mut table, args.timeout, out),
-        ObjectsVerb::Feed => return feed(&table, out),
+        ObjectsVerb::List => return list(&mut tables, args.timeout, out),
+        ObjectsVerb::Feed => return feed(&sightings()?, out),
         ObjectsVerb::Add { class, place, values } => {
             let mut attributes: BTreeMap<String, Vec<(String, f64)>> = BTreeMap::new();
             for (attribute, value, p) in values {
@@ -67,8 +63,8 @@ pub(super) fn objects(paths: &GroupPaths, args: &ObjectsArgs, out: &mut Output<'
         }
         ObjectsVerb::Remove { object } => Change::Remove { object: object.clone() },
     };
-    let number = table.change(change, args.timeout)?;
-    let name = table.latest.as_ref().and_then(|view| {
+    let number = tables.change(&sightings()?, change, args.timeout)?;
+    let name = tables.latest.as_ref().and_then(|view| {
         let object = view.objects.iter().find(|it| it.known.number.0 == number);
         object.map(|object| object.known.name.clone())
     });
@@ -80,22 +76,27 @@ pub(super) fn objects(paths: &GroupPaths, args: &ObjectsArgs, out: &mut Output<'
     Ok(Exit::Ok)
 }
 
-impl TableTopics {
+impl Tables {
     fn look(&mut self) {
-        if let Some(view) = quiet(self.tables.latest()) {
+        if let Some(view) = quiet(self.reader.latest()) {
             self.latest = Some(view);
         }
     }
 
     /// Sends a change under one key until it is answered. Returns the object's number.
-    fn change(&mut self, change: Change, patience: Duration) -> Result<u16, Failure> {
+    fn change(
+        &mut self,
+        sightings: &EncodedWriter<Sighting>,
+        change: Change,
+        patience: Duration,
+    ) -> Result<u16, Failure> {
         let (source, frame) = ("hand".to_owned(), "base".to_owned());
         let sighting = Sighting { key: random_number(), source, frame, change };
         let (until, mut polling) = (Instant::now() + patience, Polling::default());
         let mut sent: Option<Instant> = None;
         while Instant::now() < until {
             if sent.is_none_or(|sent| sent.elapsed() >= RESEND_EVERY) {
-                quiet(self.sightings.send(&sighting).map(Some));
+                quiet(sightings.send(&sighting).map(Some));
                 sent = Some(Instant::now());
             }
             self.look();
@@ -112,14 +113,14 @@ impl TableTopics {
     }
 }
 
-fn list(table: &mut TableTopics, patience: Duration, out: &mut Output<'_>) -> Outcome {
+fn list(tables: &mut Tables, patience: Duration, out: &mut Output<'_>) -> Outcome {
     let (until, mut polling) = (Instant::now() + patience, Polling::default());
-    table.look();
-    while Instant::now() < until && table.latest.is_none() {
+    tables.look();
+    while Instant::now() < until && tables.latest.is_none() {
         polling.pause();
-        table.look();
+        tables.look();
     }
-    let Some(view) = &table.latest else {
+    let Some(view) = &tables.latest else {
         let what = "nothing from the policy; help: `whichone status`";
         return Err(Failure::new(Exit::NotReached, what));
     };
@@ -232,16 +233,15 @@ fn yes() -> bool {
 }
 
 /// Reports each line of standard input; a wrong one is told and skipped.
-fn feed(table: &TableTopics, out: &mut Output<'_>) -> Outcome {
+fn feed(sightings: &EncodedWriter<Sighting>, out: &mut Output<'_>) -> Outcome {
     let mut is_right = true;
     for (n, line) in std::io::stdin().lock().lines().enumerate() {
         let line = line.map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?;
         if line.trim().is_empty() {
             continue;
         }
-        let sent = sighting(&line, clock::now()).and_then(|sighting| {
-            table.sightings.send(&sighting).map_err(|error| error.to_string())
-        });
+        let sent = sighting(&line, clock::now())
+            .and_then(|sighting| sightings.send(&sighting).map_err(|error| error.to_string()));
         if let Err(error) = sent {
             is_right = false;
             out.json(&json!({ "line": n + 1, "error": error }))?;

@@ -54,8 +54,23 @@ impl Tracker {
             let span = before.map_or(Span(0), |before| at.since(before)).min(MISS_MAX);
             self.miss(source, &shown, hiding, span);
         }
-        self.candidates.retain(|candidate| at.since(candidate.seen) <= CANDIDATE_FOR);
+        self.drop_candidates(at);
         Ok(())
+    }
+
+    /// Drops the candidates that were not seen again, and those that have turned out to be a known object.
+    fn drop_candidates(&mut self, at: Time) {
+        let moved_m = self.settings.moved_m;
+        let is_known = |candidate: &Candidate| {
+            let class = likeliest(&candidate.estimate.classes);
+            self.tracks.iter().any(|track| {
+                track.stood == at
+                    && likeliest(&track.estimate.classes) == class
+                    && distance(&track.estimate.place, &candidate.estimate.place) <= moved_m
+            })
+        };
+        let is_kept = |it: &Candidate| at.since(it.seen) <= CANDIDATE_FOR && !is_known(it);
+        self.candidates.retain(is_kept);
     }
 
     /// Gives each detection to an object or a candidate. Returns the numbers of the objects shown.
@@ -151,14 +166,14 @@ impl Tracker {
         }
     }
 
-    /// Makes an object of a candidate: the only one of its class that has been missed since the candidate
-    /// was first seen has moved there; else it is a new one.
+    /// Makes an object of a candidate: the only one of its class that has not been seen in its place since the
+    /// candidate was first seen has moved there; else it is a new one.
     fn ripen(&mut self, candidate: usize, shown: &mut Vec<ObjectId>, at: Time) {
         let Candidate { estimate, track, source, since, .. } = self.candidates.remove(candidate);
         let class = likeliest(&estimate.classes).map(str::to_owned);
         let mut lost = self.tracks.iter_mut().filter(|it| {
             !it.object.taken
-                && it.seen < since
+                && it.stood < since
                 && it.object.seen_by.contains(&source)
                 && likeliest(&it.estimate.classes) == class.as_deref()
         });
@@ -168,9 +183,9 @@ impl Tracker {
         };
         let number = match moved {
             Some(moved) => {
-                moved.estimate.place = estimate.place;
-                moved.estimate.variance = estimate.variance;
-                (moved.seen, moved.missed, moved.misses) = (at, Span(0), 0);
+                moved.estimate.move_to(&estimate);
+                (moved.seen, moved.stood) = (at, at);
+                (moved.missed, moved.misses) = (Span(0), 0);
                 moved.track = track;
                 moved.report(self.settings.moved_m);
                 Some(moved.object.number)
@@ -209,8 +224,8 @@ impl Tracker {
             seen_by: Vec::new(),
             taken: false,
         };
-        let missed = Span(0);
-        self.tracks.push(Track { object, estimate, track, seen: at, missed, misses: 0 });
+        let (seen, stood, missed) = (at, at, Span(0));
+        self.tracks.push(Track { object, estimate, track, seen, stood, missed, misses: 0 });
         Some(number)
     }
 

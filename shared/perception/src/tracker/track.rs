@@ -18,6 +18,8 @@ pub(super) struct Track {
     /// Source and its name for the object; of those the latest.
     pub(super) track: Option<(String, String)>,
     pub(super) seen: Time,
+    /// When it was last seen where the estimate has it.
+    pub(super) stood: Time,
     pub(super) missed: Span,
     pub(super) misses: u32,
 }
@@ -33,7 +35,9 @@ pub(super) struct Candidate {
 
 impl Track {
     pub(super) fn see(&mut self, source: &str, detection: &Detection, moved_m: f64, at: Time) {
-        self.estimate.see(detection, moved_m);
+        if self.estimate.see(detection, moved_m) {
+            self.stood = at;
+        }
         (self.seen, self.missed, self.misses) = (at, Span(0), 0);
         if !detection.track.is_empty() {
             self.track = named(source, detection);
