@@ -54,8 +54,12 @@ fn main() -> ExitCode {
         return documents::write(reports);
     }
     let mut report = Report::new(documents::arguments());
-    (0..options.runs).for_each(|_| measure(&options, &mut report));
+    // What was measured before a part failed is reported.
+    let measured = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        (0..options.runs).for_each(|_| measure(&options, &mut report));
+    }));
     match report.write() {
+        Ok(()) if measured.is_err() => ExitCode::from(70),
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             report::print(&format!("target/bench: {error}"));

@@ -1,6 +1,5 @@
-import { tmpdir } from "node:os";
 import { defineConfig } from "@playwright/test";
-import { CHROMIUM, CHROMIUM_FLAGS } from "./lib/chromium.mjs";
+import { CHROMIUM_FLAGS, launchOptions } from "./lib/chromium.mjs";
 import { TARGET } from "./lib/program.mjs";
 
 // Each test starts a group and a browser of its own; two at a time fill two cores. The deadlines are for
@@ -21,10 +20,6 @@ export default defineConfig({
     locale: "en-US",
     trace: "retain-on-failure",
     screenshot: "only-on-failure",
-    launchOptions: {
-      executablePath: CHROMIUM,
-      args: CHROMIUM_FLAGS,
-      env: { ...process.env, TMPDIR: tmpdir() },
-    },
+    launchOptions: launchOptions(CHROMIUM_FLAGS),
   },
 });

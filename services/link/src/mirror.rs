@@ -59,8 +59,8 @@ enum Inbound {
     Receipts(messages::RequestKey, Vec<u8>),
     /// The request with these words has ended; without an answer where there were no receipts.
     WordsEnded(messages::RequestKey),
-    /// Sound of a line of the robot, by its file's name.
-    Line(String, Vec<u8>),
+    /// Sound of a line of the robot.
+    Line(Vec<u8>),
 }
 
 /// Why a mirrored group ends.
@@ -91,7 +91,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let keys = Keys::of(&options.robot);
     let (sender, inbox) =
         channel().map_err(|error| Failure::new(Exit::NotReached, format!("inbox: {error}")))?;
-    subscribe(&session, &keys, &sender)
+    subscribe(&session, &keys, &sender, options.console.is_some())
         .map_err(|error| Failure::new(Exit::NotReached, format!("subscriptions: {error}")))?;
     let link = Link { session, keys, sender, options: options.clone() };
     while let Some(hello) = link.hello(&inbox, &ended) {
@@ -167,8 +167,13 @@ impl Link {
     }
 }
 
-/// Subscribes to everything that the robot shows.
-fn subscribe(session: &Session, keys: &Keys, sender: &DeviceSender<Inbound>) -> zenoh::Result<()> {
+/// Subscribes to everything that the robot shows, and to its voice where somebody may listen.
+fn subscribe(
+    session: &Session,
+    keys: &Keys,
+    sender: &DeviceSender<Inbound>,
+    listens: bool,
+) -> zenoh::Result<()> {
     // What finds no room is shown a second later.
     let (own, main) = (keys.clone(), sender.clone());
     let on_state = move |sample: Sample| {
@@ -183,6 +188,14 @@ fn subscribe(session: &Session, keys: &Keys, sender: &DeviceSender<Inbound>) -> 
         let _ = main.offer(Inbound::Joints(sample.payload().to_bytes().into_owned()));
     };
     session.declare_subscriber(keys.joints()).callback(on_joints).background().wait()?;
+    if listens {
+        let main = sender.clone();
+        let on_line = move |sample: Sample| {
+            // What finds no room is asked for.
+            let _ = main.offer(Inbound::Line(sample.payload().to_bytes().into_owned()));
+        };
+        session.declare_subscriber(keys.line()).callback(on_line).background().wait()?;
+    }
     let main = sender.clone();
     let on_alive = move |sample: Sample| {
         let key = sample.key_expr().as_str();

@@ -151,6 +151,11 @@ impl Keys {
         format!("{}/call/*", self.0)
     }
 
+    /// Sound of what the robot begins to say.
+    pub fn line(&self) -> String {
+        format!("{}/line", self.0)
+    }
+
     /// Sound that a person streams to the robot.
     pub fn audio(&self) -> String {
         format!("{}/audio", self.0)

@@ -86,6 +86,8 @@ struct Robot {
     senders: Option<Senders>,
     presence: Presence,
     presence_sent: Option<Time>,
+    /// File of the line whose sound was sent last.
+    line_sent: String,
     is_ending: Arc<AtomicBool>,
 }
 
@@ -151,6 +153,7 @@ impl Robot {
             senders: None,
             presence,
             presence_sent: None,
+            line_sent: String::new(),
             is_ending,
         })
     }
@@ -170,6 +173,7 @@ impl Robot {
 
     /// Sends what has changed, to those who watch.
     fn send(&mut self, now: Time) {
+        self.send_line();
         let Some(senders) = &self.senders else { return };
         self.sources.send(senders, now);
         let presence = self.presence.clone().with(

@@ -40,6 +40,8 @@ mod waits;
 
 /// Polling period of sizes of logs and files of topics, which notify of no change.
 const TICK: Duration = Duration::from_secs(1);
+/// Interval at which the group's shared files are looked at: there are some fifty, which nobody ought to remove.
+const FILES_EVERY: Duration = Duration::from_secs(3);
 
 /// Delay of a pass after which the machine is assumed to have been suspended.
 const STANDSTILL: Duration = Duration::from_millis(500);
@@ -69,6 +71,8 @@ pub struct Supervisor {
     next_renewal: Time,
     last_pass: Time,
     next_tick: Time,
+    /// When the shared files are looked at next.
+    next_look: Time,
     reported_ready: bool,
     taken: File,
 }
@@ -174,7 +178,10 @@ impl Supervisor {
         self.init_system.beat("WATCHDOG=1");
         self.server.drop_slow(now);
         self.bound_logs();
-        self.check_topics(now);
+        if now >= self.next_look {
+            self.next_look = now + FILES_EVERY;
+            self.check_topics(now);
+        }
         if let Some(admin) = &self.admin {
             // Each client that was killed would keep its places among a topic's readers and writers.
             admin.clean_dead();

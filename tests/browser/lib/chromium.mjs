@@ -1,6 +1,7 @@
 // The browser that tests are run in: the system's own Chromium.
 
 import { existsSync } from "node:fs";
+import { tmpdir } from "node:os";
 
 /** Where Chromium is; the first of its usual places, or what WHICHONE_CHROMIUM says. */
 export const CHROMIUM = [
@@ -10,8 +11,8 @@ export const CHROMIUM = [
   "/usr/bin/google-chrome",
 ].find((path) => path && existsSync(path));
 
-/** Flags for a machine without a screen, a graphics card, or a way out. */
-export const CHROMIUM_FLAGS = [
+/** Flags for a machine without a screen or a way out. */
+const FLAGS = [
   "--no-sandbox",
   "--no-first-run",
   "--disable-quic",
@@ -19,9 +20,25 @@ export const CHROMIUM_FLAGS = [
   "--disable-component-update",
   "--disable-sync",
   "--disable-dev-shm-usage",
-  "--use-angle=swiftshader",
-  "--enable-unsafe-swiftshader",
 ];
+
+/** Flags with which the processor draws the picture, for want of a graphics card. */
+export const CHROMIUM_FLAGS = [...FLAGS, "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+/**
+ * Options of a browser with these flags.
+ * @param {string[]} args
+ */
+export const launchOptions = (args) => ({
+  executablePath: CHROMIUM,
+  args,
+  env: { ...process.env, TMPDIR: tmpdir() },
+});
+
+/** A browser in which words replace the picture, whose drawing takes most of the processor: for tests of anything else. */
+export const WITHOUT_PICTURE = {
+  launchOptions: launchOptions([...FLAGS, "--disable-gpu", "--disable-software-rasterizer"]),
+};
 
 /**
  * Flags of a microphone that plays a WAV file once, and is granted without a question.

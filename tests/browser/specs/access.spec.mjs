@@ -8,43 +8,45 @@ import { expect, test } from "../lib/test.mjs";
 const SIZES = { desktop: { width: 1440, height: 900 }, phone: { width: 390, height: 844 } };
 const THEMES = /** @type {const} */ (["light", "dark"]);
 
-for (const [size, viewport] of Object.entries(SIZES)) {
+/** Nothing is wrong with what is shown, in either theme. */
+async function expectAccessibleInThemes(page) {
   for (const colorScheme of THEMES) {
-    test.describe(`${size}, ${colorScheme}`, () => {
-      test.use({
-        viewport,
-        colorScheme,
-        provoked: ["WebSocket connection", "ERR_CONNECTION_REFUSED", "404"],
-      });
-
-      test("a dialogue, a stop and a lost link", async ({ console: page, group }) => {
-        await expect(page.getByText(t("control.mine"))).toBeAttached();
-        await expectAccessible(page);
-
-        await type(page, "get me the bowl");
-        const { text } = await nextDecision(group, 0);
-        await expect(question(page)).toContainText(text);
-        await expectAccessible(page);
-
-        await stopByKey(page);
-        await expectAccessible(page);
-
-        await group.must("stop", "console");
-        await expect(page.getByText(t("alarm.offline"))).toBeVisible();
-        await expectAccessible(page);
-      });
-
-      test("help, and the pages around it", async ({ console: page, group }) => {
-        await page.getByRole("button", { name: t("help.open") }).click();
-        await expect(page.getByRole("dialog", { name: t("help.title") })).toBeVisible();
-        await expectAccessible(page);
-        for (const path of ["/nowhere", "/login"]) {
-          await page.goto(group.link(path));
-          await expectAccessible(page);
-        }
-      });
-    });
+    await page.emulateMedia({ colorScheme });
+    await expectAccessible(page);
   }
+}
+
+for (const [size, viewport] of Object.entries(SIZES)) {
+  test.describe(size, () => {
+    test.use({ viewport, provoked: ["WebSocket connection", "ERR_CONNECTION_REFUSED", "404"] });
+
+    test("a dialogue, a stop and a lost link", async ({ console: page, group }) => {
+      await expect(page.getByText(t("control.mine"))).toBeAttached();
+      await expectAccessibleInThemes(page);
+
+      await type(page, "get me the bowl");
+      const { text } = await nextDecision(group, 0);
+      await expect(question(page)).toContainText(text);
+      await expectAccessibleInThemes(page);
+
+      await stopByKey(page);
+      await expectAccessibleInThemes(page);
+
+      await group.must("stop", "console");
+      await expect(page.getByText(t("alarm.offline"))).toBeVisible();
+      await expectAccessibleInThemes(page);
+    });
+
+    test("help, and the pages around it", async ({ console: page, group }) => {
+      await page.getByRole("button", { name: t("help.open") }).click();
+      await expect(page.getByRole("dialog", { name: t("help.title") })).toBeVisible();
+      await expectAccessibleInThemes(page);
+      for (const path of ["/nowhere", "/login"]) {
+        await page.goto(group.link(path));
+        await expectAccessibleInThemes(page);
+      }
+    });
+  });
 }
 
 test("the whole page can be reached and used by keyboard", async ({ console: page }) => {

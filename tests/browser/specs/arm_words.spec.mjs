@@ -1,13 +1,11 @@
 // A browser without WebGL: text replaces the drawing of the arm.
 
 import { arm, BROWSERS_BY_THREAD } from "../lib/arm.mjs";
-import { CHROMIUM, CHROMIUM_FLAGS } from "../lib/chromium.mjs";
+import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";
 
-const args = CHROMIUM_FLAGS.filter((flag) => !flag.includes("swiftshader"));
-args.push("--disable-gpu", "--disable-software-rasterizer");
-test.use({ launchOptions: { executablePath: CHROMIUM, args } });
+test.use(WITHOUT_PICTURE);
 
 for (const [thread, make] of Object.entries(BROWSERS_BY_THREAD)) {
   test(`words say what the arm does where the ${thread} would draw it`, async ({

@@ -4,11 +4,14 @@ import { spawn } from "node:child_process";
 import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { expectAccessible } from "../lib/axe.mjs";
+import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { program } from "../lib/program.mjs";
 import { t } from "../lib/strings.mjs";
 import { answerUntilPicked, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
 import { until } from "../lib/until.mjs";
+
+test.use(WITHOUT_PICTURE);
 
 // The console is killed, and the group goes down.
 test.use({ provoked: ["WebSocket connection", "ERR_CONNECTION_REFUSED"] });

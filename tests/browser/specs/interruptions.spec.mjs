@@ -1,5 +1,6 @@
 // What a page outlives.
 
+import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import {
   answerUntilPicked,
@@ -10,6 +11,8 @@ import {
   type,
 } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
+
+test.use(WITHOUT_PICTURE);
 
 // The browser itself reports a socket that cannot be opened.
 const LINK_LOST = ["WebSocket connection", "ERR_CONNECTION_REFUSED"];
@@ -25,15 +28,13 @@ test("a reload in the middle of a dialogue keeps its state", async ({ console: p
   await expectDelivered(page, group, "clear");
 });
 
-for (const service of ["speech", "grounding", "policy", "arm"]) {
-  test(`${service} is killed in the middle`, async ({ console: page, group }) => {
-    await type(page, "get me the bowl");
-    await nextDecision(group, 0);
-    await group.killAndWait(service);
-    await answerUntilPicked(page, group, "white");
-    await expectDelivered(page, group, "white");
-  });
-}
+test("the services are killed in the middle", async ({ console: page, group }) => {
+  await type(page, "get me the bowl");
+  await nextDecision(group, 0);
+  for (const service of ["speech", "grounding", "policy", "arm"]) await group.killAndWait(service);
+  await answerUntilPicked(page, group, "white");
+  await expectDelivered(page, group, "white");
+});
 
 test.describe("the console itself", () => {
   test.use({ provoked: LINK_LOST });

@@ -2,7 +2,7 @@
 
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { CHROMIUM, CHROMIUM_FLAGS, microphoneOf } from "../lib/chromium.mjs";
+import { CHROMIUM_FLAGS, launchOptions, microphoneOf } from "../lib/chromium.mjs";
 import { expect, test } from "../lib/test.mjs";
 import { ALOUD, hears, quiet, say, writeWav } from "../lib/voice.mjs";
 
@@ -10,7 +10,7 @@ const wav = join(tmpdir(), `whichone-voice-${process.pid}.wav`);
 
 test.use({ settings: ALOUD });
 const args = [...CHROMIUM_FLAGS, ...microphoneOf(wav)];
-test.use({ launchOptions: { executablePath: CHROMIUM, args } });
+test.use({ launchOptions: launchOptions(args) });
 
 test("hands-free speech is recognised with interim results", async ({ page, group }) => {
   const request = await say("get me the small white bowl");

@@ -22,6 +22,7 @@ use super::inlets::Inlets;
 use super::local::{INCARNATION, Local};
 use super::motion::{Event, Motion};
 use super::{End, Inbound, Link, SAID};
+use crate::line::{self, Line};
 use crate::names::Call;
 use crate::offset::{Offset, age_ns};
 use crate::presence::Hello;
@@ -81,7 +82,7 @@ impl Drop for WordsAsked {
 }
 
 /// A line of the robot that waits for its sound.
-struct Line {
+struct Waiting {
     file: String,
     presented: Presented,
     since: Time,
@@ -107,8 +108,8 @@ struct Passing<'a> {
     alive: Option<String>,
     trouble: Trouble,
     voice_dir: Option<PathBuf>,
-    line: Option<Line>,
-    /// Sounds that are there, oldest first.
+    line: Option<Waiting>,
+    /// Lines whose sound is there or is not waited for, oldest first.
     lines: VecDeque<String>,
     tended: Time,
 }
@@ -218,7 +219,7 @@ impl<'a> Passing<'a> {
             Inbound::Joints(bytes) => self.on_frame(topics::JOINTS.name, &bytes, now),
             Inbound::Receipts(key, bytes) => self.on_receipts(key, &bytes, now),
             Inbound::WordsEnded(key) => self.outbound.on_silence(key, now),
-            Inbound::Line(file, bytes) => self.on_line(&file, &bytes),
+            Inbound::Line(bytes) => self.on_line(&bytes),
             Inbound::Hello(bytes) => {
                 let new = postcard::from_bytes::<Hello>(&bytes);
                 return new.is_ok_and(|new| new != *self.hello);
@@ -278,9 +279,10 @@ impl<'a> Passing<'a> {
         }
     }
 
-    /// A line that has begun is shown once its sound is there, so that pages play it.
+    /// A line that has begun is shown once its sound is there, so that pages play it. The robot sends it before; it is
+    /// asked for where that was lost, or before this mirror's time.
     fn on_presented(&mut self, presented: Presented, now: Time) {
-        let file = format!("line-{}-{}.wav", presented.prompt, presented.presentation);
+        let file = line::file_of(&presented);
         let has_sound = self.voice_dir.is_none() || self.lines.contains(&file);
         if has_sound || !presented.state.get().has_begun() {
             self.line = None;
@@ -288,10 +290,10 @@ impl<'a> Passing<'a> {
         }
         let is_asked = self.line.as_ref().is_some_and(|line| line.file == file);
         let since = self.line.as_ref().filter(|_| is_asked).map_or(now, |line| line.since);
-        self.line = Some(Line { file: file.clone(), presented, since });
+        self.line = Some(Waiting { file: file.clone(), presented, since });
         if !is_asked {
-            let (name, sender) = (file.clone(), self.link.sender.clone());
-            let take = move |bytes| drop(sender.offer(Inbound::Line(name.clone(), bytes)));
+            let sender = self.link.sender.clone();
+            let take = move |bytes| drop(sender.offer(Inbound::Line(bytes)));
             let Link { session, keys, .. } = self.link;
             request(
                 session,
@@ -304,20 +306,21 @@ impl<'a> Passing<'a> {
         }
     }
 
-    fn on_line(&mut self, file: &str, sound: &[u8]) {
+    fn on_line(&mut self, bytes: &[u8]) {
         let Some(folder) = &self.voice_dir else { return };
+        let Some(Line { file, sound }) =
+            postcard::from_bytes(bytes).ok().filter(|it: &Line| line::is_file(&it.file))
+        else {
+            return tracing::debug!("unintelligible line ignored");
+        };
         // Whole as soon as it is there.
-        let (draft, path) = (folder.join("draft"), folder.join(file));
-        let written = std::fs::write(&draft, sound).and_then(|()| std::fs::rename(&draft, &path));
+        let (draft, path) = (folder.join("draft"), folder.join(&file));
+        let written =
+            std::fs::write(&draft, sound.file()).and_then(|()| std::fs::rename(&draft, &path));
         if let Err(error) = written {
             tracing::warn!(file, %error, "the sound of a line is not kept");
         }
-        self.lines.push_back(file.to_owned());
-        if self.lines.len() > LINES_KEPT
-            && let Some(oldest) = self.lines.pop_front()
-        {
-            let _ = std::fs::remove_file(folder.join(oldest));
-        }
+        self.note_line(file.clone());
         if self.line.as_ref().is_some_and(|line| line.file == file) {
             self.present();
         }
@@ -325,12 +328,23 @@ impl<'a> Passing<'a> {
 
     /// Shows the line that waits, with its sound or without.
     fn present(&mut self) {
-        if let Some(Line { file, presented, .. }) = self.line.take() {
-            if !self.lines.contains(&file) {
-                // It is not asked for again.
-                self.lines.push_back(file);
-            }
+        if let Some(Waiting { file, presented, .. }) = self.line.take() {
+            // It is not asked for again.
+            self.note_line(file);
             self.inlets.presented.write(&presented);
+        }
+    }
+
+    /// Notes a line whose sound is there or is not waited for, and forgets the oldest one.
+    fn note_line(&mut self, file: String) {
+        if self.lines.contains(&file) {
+            return;
+        }
+        self.lines.push_back(file);
+        if self.lines.len() > LINES_KEPT
+            && let Some((oldest, folder)) = self.lines.pop_front().zip(self.voice_dir.as_ref())
+        {
+            let _ = std::fs::remove_file(folder.join(oldest));
         }
     }
 

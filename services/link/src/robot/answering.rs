@@ -7,6 +7,7 @@ use service::clock;
 use zenoh::query::Query;
 
 use super::Robot;
+use crate::line::{self, Line, Packed};
 use crate::names::Call;
 use crate::offset::time_ns;
 use crate::presence::Hello;
@@ -23,7 +24,7 @@ impl Robot {
                 let settings = self.settings.snapshot();
                 postcard::to_stdvec(&Hello { version, epoch: self.epoch, settings }).ok()
             }
-            Call::Voice => self.line_of(&payload),
+            Call::Voice => self.asked_line(&payload),
             Call::Say => return self.on_said(query, &payload),
             Call::Motion => None,
         };
@@ -32,10 +33,30 @@ impl Robot {
         }
     }
 
-    /// The sound of one of the robot's lines, by its file's name.
-    fn line_of(&self, name: &[u8]) -> Option<Vec<u8>> {
-        let name = std::str::from_utf8(name).ok().filter(|name| is_line(name))?;
-        std::fs::read(self.settings.voice_dir(&self.paths.run())?.join(name)).ok()
+    /// Sends the sound of a line that begins, once, to those who listen.
+    pub(super) fn send_line(&mut self) {
+        let begun = self.sources.presented().filter(|it| it.state.get().has_begun());
+        let Some((file, senders)) = begun.map(line::file_of).zip(self.senders.as_ref()) else {
+            return;
+        };
+        if senders.is_line_watched() && self.line_sent != file {
+            if let Some(line) = self.line(&file) {
+                senders.line(&line);
+            }
+            self.line_sent = file;
+        }
+    }
+
+    /// One of the robot's lines, by its file's name.
+    fn line(&self, file: &str) -> Option<Line> {
+        let folder = self.settings.voice_dir(&self.paths.run())?;
+        let sound = Packed::of(std::fs::read(folder.join(file)).ok()?);
+        Some(Line { file: file.to_owned(), sound })
+    }
+
+    fn asked_line(&self, name: &[u8]) -> Option<Vec<u8>> {
+        let name = std::str::from_utf8(name).ok().filter(|name| line::is_file(name))?;
+        postcard::to_stdvec(&self.line(name)?).ok()
     }
 
     fn on_said(&mut self, query: Query, payload: &[u8]) {
@@ -126,10 +147,4 @@ impl Robot {
 fn sound_file(run: &Path, RequestKey(key): RequestKey) -> PathBuf {
     let key: String = key.iter().map(|byte| format!("{byte:02x}")).collect();
     run.join(format!("link-{key}.wav"))
-}
-
-/// Returns whether a text is the name of a line's file, and nothing else.
-fn is_line(name: &str) -> bool {
-    let numbers = name.strip_prefix("line-").and_then(|name| name.strip_suffix(".wav"));
-    numbers.is_some_and(|numbers| numbers.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-'))
 }

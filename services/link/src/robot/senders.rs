@@ -20,6 +20,7 @@ use zenoh::{Session, Wait};
 
 use super::{Inbound, motion};
 use crate::identity::Identity;
+use crate::line::Line;
 use crate::mirrored::TOPICS;
 use crate::names::{Call, Keys, call_of};
 use crate::presence::Presence;
@@ -33,6 +34,7 @@ const WATCHED_EVERY: Duration = Duration::from_millis(250);
 const GROUP: &str = "group";
 const MOTION: &str = "motion";
 const PRESENCE: &str = "presence";
+const LINE: &str = "line";
 
 /// What sends needs to connect.
 pub(super) struct Connecting {
@@ -85,6 +87,8 @@ impl Connecting {
         });
         let mut states = states.collect::<zenoh::Result<Vec<_>>>()?;
         states.push((PRESENCE, publisher(&session, keys.presence(), Priority::DataLow)?));
+        // In one stream with the state that shows the line, so that it is there before it is shown.
+        states.push((LINE, publisher(&session, keys.line(), Priority::Data)?));
         let joints = publisher(&session, keys.joints(), Priority::DataLow)?;
         let states = Outlet::start("states", states)?;
         let joints = Outlet::start("joints", vec![(topics::JOINTS.name, joints)])?;
@@ -146,7 +150,7 @@ impl Senders {
         self.states
             .is_watched
             .iter()
-            .any(|(name, is)| *name != PRESENCE && is.load(Ordering::Relaxed))
+            .any(|(name, is)| ![PRESENCE, LINE].contains(name) && is.load(Ordering::Relaxed))
     }
 
     /// Returns whether anybody sees this topic.
@@ -164,6 +168,16 @@ impl Senders {
         if self.states.is_watched_at(GROUP) {
             self.states.send(GROUP, serde_json::to_vec(status).unwrap_or_default());
         }
+    }
+
+    /// Returns whether anybody hears what the robot says.
+    pub(super) fn is_line_watched(&self) -> bool {
+        self.states.is_watched_at(LINE)
+    }
+
+    /// Sends the sound of what the robot begins to say.
+    pub(super) fn line(&self, line: &Line) {
+        self.states.send(LINE, postcard::to_stdvec(line).unwrap_or_default());
     }
 
     /// Says that the robot is there.

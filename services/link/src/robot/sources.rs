@@ -70,10 +70,11 @@ impl<T: Mirrored> AnySource for Source<T> {
     }
 }
 
-/// All of them. Policy and arm are also read for the presence.
+/// All of them. Policy and arm are also read for the presence, and lines for their sound.
 pub(super) struct TopicSources {
     view: Source<PolicyView>,
     status: Source<ArmStatus>,
+    presented: Source<Presented>,
     others: Vec<Box<dyn AnySource>>,
 }
 
@@ -87,7 +88,6 @@ impl TopicSources {
         }
         let mut others: Vec<Box<dyn AnySource>> = vec![
             Box::new(fixed::<Receipt>(bus, start)?),
-            Box::new(fixed::<Presented>(bus, start)?),
             Box::new(fixed::<Activity>(bus, start)?),
             Box::new(fixed::<Hearing>(bus, start)?),
             Box::new(fixed::<Partial>(bus, start)?),
@@ -100,12 +100,14 @@ impl TopicSources {
         if settings.group.perception.enabled {
             others.push(Box::new(encoded::<TableView>(bus, start)?));
         }
-        Ok(Self { view: encoded(bus, start)?, status: fixed(bus, start)?, others })
+        let (view, status, presented) =
+            (encoded(bus, start)?, fixed(bus, start)?, fixed(bus, start)?);
+        Ok(Self { view, status, presented, others })
     }
 
     fn all(&mut self) -> impl Iterator<Item = &mut dyn AnySource> {
-        let Self { view, status, others } = self;
-        let first: [&mut dyn AnySource; 2] = [status, view];
+        let Self { view, status, presented, others } = self;
+        let first: [&mut dyn AnySource; 3] = [status, presented, view];
         first.into_iter().chain(others.iter_mut().map(|it| &mut **it as &mut dyn AnySource))
     }
 
@@ -128,6 +130,10 @@ impl TopicSources {
 
     pub(super) fn view(&self) -> Option<&PolicyView> {
         self.view.latest.as_ref()
+    }
+
+    pub(super) fn presented(&self) -> Option<&Presented> {
+        self.presented.latest.as_ref()
     }
 
     pub(super) fn status(&self) -> Option<&ArmStatus> {

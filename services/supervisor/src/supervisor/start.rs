@@ -120,6 +120,7 @@ pub(super) fn start(
         next_renewal: now,
         last_pass: now,
         next_tick: now + TICK,
+        next_look: now,
         reported_ready: false,
         taken,
     };

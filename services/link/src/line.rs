@@ -1,0 +1,203 @@
+//! A line of the robot on its way to mirrors: the sound of what it says, at a quarter of its file's size.
+//!
+//! At 2 Mbit/s a question's file takes a quarter of a second, for which its listener would wait. IMA ADPCM (IMA Digital Audio
+//! Focus and Technical Working Groups, Recommended Practices, revision 3.00, 1992) needs four bits a sample and no look ahead.
+
+use std::io::Cursor;
+
+use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
+use messages::Presented;
+use serde::{Deserialize, Serialize};
+
+/// Step sizes.
+const STEPS: [i32; 89] = [
+    7, 8, 9, 10, 11, 12, 13, 14, 16, 17, 19, 21, 23, 25, 28, 31, 34, 37, 41, 45, 50, 55, 60, 66,
+    73, 80, 88, 97, 107, 118, 130, 143, 157, 173, 190, 209, 230, 253, 279, 307, 337, 371, 408, 449,
+    494, 544, 598, 658, 724, 796, 876, 963, 1060, 1166, 1282, 1411, 1552, 1707, 1878, 2066, 2272,
+    2499, 2749, 3024, 3327, 3660, 4026, 4428, 4871, 5358, 5894, 6484, 7132, 7845, 8630, 9493,
+    10442, 11487, 12635, 13899, 15289, 16818, 18500, 20350, 22385, 24623, 27086, 29794, 32767,
+];
+/// Change of the step after each magnitude.
+const CHANGES: [i8; 8] = [-1, -1, -1, -1, 2, 4, 6, 8];
+
+/// What is sent of a line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Line {
+    /// Name of its file.
+    pub file: String,
+    /// What it sounds like.
+    pub sound: Packed,
+}
+
+/// The sound in a WAV file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Packed {
+    /// One channel of 16 bits.
+    Adpcm {
+        /// Samples per second.
+        rate_hz: u32,
+        /// Two samples a byte, the earlier one in its low half.
+        codes: Vec<u8>,
+    },
+    /// Any other file, as it is.
+    File(Vec<u8>),
+}
+
+/// Returns the name of the file with the sound of a line.
+pub fn file_of(presented: &Presented) -> String {
+    format!("line-{}-{}.wav", presented.prompt, presented.presentation)
+}
+
+/// Returns whether a text is the name of a line's file, and nothing else.
+pub fn is_file(name: &str) -> bool {
+    let numbers = name.strip_prefix("line-").and_then(|name| name.strip_suffix(".wav"));
+    numbers.is_some_and(|numbers| numbers.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-'))
+}
+
+impl Packed {
+    /// Packs a file.
+    pub fn of(file: Vec<u8>) -> Self {
+        Self::adpcm(&file).unwrap_or(Self::File(file))
+    }
+
+    fn adpcm(file: &[u8]) -> Option<Self> {
+        let reader = WavReader::new(Cursor::new(file)).ok()?;
+        let WavSpec { channels, sample_rate, bits_per_sample, sample_format } = reader.spec();
+        if (channels, bits_per_sample, sample_format) != (1, 16, SampleFormat::Int) {
+            return None;
+        }
+        let samples: Vec<i16> = reader.into_samples().collect::<Result<_, _>>().ok()?;
+        let mut coder = Coder::default();
+        let byte = |pair: &[i16]| {
+            pair.iter()
+                .enumerate()
+                .fold(0, |byte, (n, sample)| byte | coder.code(*sample) << (4 * n))
+        };
+        Some(Self::Adpcm { rate_hz: sample_rate, codes: samples.chunks(2).map(byte).collect() })
+    }
+
+    /// Returns the file.
+    pub fn file(self) -> Vec<u8> {
+        match self {
+            Self::Adpcm { rate_hz, codes } => wav(rate_hz, &codes).unwrap_or_default(),
+            Self::File(file) => file,
+        }
+    }
+}
+
+fn wav(sample_rate: u32, codes: &[u8]) -> Result<Vec<u8>, hound::Error> {
+    let (channels, bits_per_sample, sample_format) = (1, 16, SampleFormat::Int);
+    let spec = WavSpec { channels, sample_rate, bits_per_sample, sample_format };
+    let mut file = Cursor::new(Vec::new());
+    let mut writer = WavWriter::new(&mut file, spec)?;
+    let mut coder = Coder::default();
+    for code in codes.iter().flat_map(|byte| [byte & 15, byte >> 4]) {
+        writer.write_sample(coder.sample(code))?;
+    }
+    writer.finalize()?;
+    Ok(file.into_inner())
+}
+
+/// What both ends know of the samples so far.
+#[derive(Clone, Copy, Default)]
+struct Coder {
+    predicted: i32,
+    step: usize,
+}
+
+impl Coder {
+    /// Codes a sample: its sign, then its distance from the predicted one in eighths of two steps.
+    fn code(&mut self, sample: i16) -> u8 {
+        let off = i32::from(sample) - self.predicted;
+        let magnitude = (off.abs() * 4 / STEPS[self.step]).min(7);
+        let code = if off < 0 { magnitude + 8 } else { magnitude } as u8;
+        self.sample(code);
+        code
+    }
+
+    /// Returns the sample of a code.
+    fn sample(&mut self, code: u8) -> i16 {
+        let (magnitude, step) = (i32::from(code & 7), STEPS[self.step]);
+        let off = (2 * magnitude + 1) * step / 8;
+        let moved = if code & 8 == 0 { self.predicted + off } else { self.predicted - off };
+        let sample = moved.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
+        self.predicted = sample.into();
+        let step = self.step.saturating_add_signed(CHANGES[usize::from(code & 7)].into());
+        self.step = step.min(STEPS.len() - 1);
+        sample
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(samples: &[i16]) -> Vec<u8> {
+        let (channels, bits_per_sample, sample_format) = (1, 16, SampleFormat::Int);
+        let spec = WavSpec { channels, sample_rate: 22_050, bits_per_sample, sample_format };
+        let mut file = Cursor::new(Vec::new());
+        let mut writer = WavWriter::new(&mut file, spec).unwrap();
+        samples.iter().for_each(|sample| writer.write_sample(*sample).unwrap());
+        writer.finalize().unwrap();
+        file.into_inner()
+    }
+
+    fn samples(file: &[u8]) -> Vec<i16> {
+        let reader = WavReader::new(file).unwrap();
+        assert_eq!(reader.spec().sample_rate, 22_050);
+        reader.into_samples().map(Result::unwrap).collect()
+    }
+
+    /// A vowel: harmonics of 120 Hz up to 3 kHz that become weaker, in syllables.
+    fn voice() -> Vec<i16> {
+        let at = |n: i32| {
+            let t = f64::from(n) / 22_050.0;
+            let of =
+                |k: i32| (t * std::f64::consts::TAU * 120.0 * f64::from(k)).sin() / f64::from(k);
+            let syllable = (t * std::f64::consts::TAU * 4.0).sin().max(0.0);
+            (8_000.0 * syllable * (1..=25).map(of).sum::<f64>()) as i16
+        };
+        (0..22_050).map(at).collect()
+    }
+
+    #[test]
+    fn a_line_is_a_quarter_of_its_file_and_sounds_as_it() {
+        let said = voice();
+        let packed = Packed::of(file(&said));
+        let bytes = postcard::to_stdvec(&packed).unwrap().len();
+        assert!(bytes * 100 < file(&said).len() * 26, "{bytes}");
+        let heard = samples(&packed.file());
+        assert_eq!(heard.len(), said.len());
+        let power = |of: &mut dyn Iterator<Item = f64>| of.map(|it| it * it).sum::<f64>();
+        let signal = power(&mut said.iter().map(|it| f64::from(*it)));
+        let noise = power(&mut said.iter().zip(&heard).map(|(a, b)| f64::from(*a) - f64::from(*b)));
+        let db = 10.0 * (signal / noise).log10();
+        assert!(db > 20.0, "{db} dB");
+    }
+
+    #[test]
+    fn the_loudest_sounds_stay_in_range() {
+        let said: Vec<i16> =
+            (0..999).map(|n| if n % 7 < 3 { i16::MIN } else { i16::MAX }).collect();
+        let heard = samples(&Packed::of(file(&said)).file());
+        assert_eq!(heard.len(), 1_000, "two a byte");
+    }
+
+    #[test]
+    fn other_files_travel_as_they_are() {
+        for other in [b"RIFF".to_vec(), Vec::new(), [&file(&[1, 2])[..30], &[9]].concat()] {
+            assert_eq!(Packed::of(other.clone()), Packed::File(other.clone()));
+            assert_eq!(Packed::of(other.clone()).file(), other);
+        }
+    }
+
+    #[test]
+    fn names_of_lines_lead_nowhere_else() {
+        let presented = Presented { prompt: 12, presentation: 1, ..Presented::default() };
+        assert_eq!(file_of(&presented), "line-12-1.wav");
+        assert!(is_file("line-12-1.wav"));
+        for other in ["", "line-.txt", "line-../x.wav", "/line-1.wav", "line-1.wav/../x"] {
+            assert!(!is_file(other), "{other}");
+        }
+    }
+}
