@@ -32,8 +32,10 @@ BEAT_NS = round(BEAT_S * 1e9)
 BEHIND_MAX_NS = 500_000_000
 # Most beats between two reports of the joints.
 BEATS_MAX = 20
-# Reports between two states of a gripper, between two of its properties, and between two records of the world.
-GRIPPER_EVERY, PROPERTIES_EVERY, REMEMBER_EVERY = 2, 100, 20
+# Reports between two states of a gripper, and between two of its properties.
+GRIPPER_EVERY, PROPERTIES_EVERY = 2, 100
+# Time between two records of the world, seconds: of the clock, as a machine that stands still makes few reports.
+REMEMBER_EVERY_S = 0.2
 # Deviation of measured velocities over that of positions, 1/s: they come from differences.
 VELOCITY_NOISE = 25.0
 UNPRESSED, PRESSED, _, RELEASED = range(4)
@@ -76,7 +78,7 @@ class Robot(Service):
                       for limb in LIMBS}
         # Joint states with the names of their joints, by these.
         self.named = {}
-        self.drilled, self.warned = [], 0.0
+        self.drilled, self.warned, self.recorded = [], 0.0, 0.0
         self.open()
 
     def open(self):
@@ -110,6 +112,7 @@ class Robot(Service):
         part = self.file.with_suffix(".part")
         part.write_text(json.dumps([self.key, self.world.remembered()]), encoding="utf-8")
         os.replace(part, self.file)
+        self.recorded = time.monotonic()
 
     def report_pick(self, record):
         """Writes the record of a pick for whoever judges it."""
@@ -165,7 +168,7 @@ class Robot(Service):
                 self.grippers[limb].send(self.gripper(limb, stamp))
             if count % PROPERTIES_EVERY == 0:
                 self.properties[limb].send(self.properties_of(limb))
-        if count % REMEMBER_EVERY == REMEMBER_EVERY - 1:
+        if time.monotonic() - self.recorded >= REMEMBER_EVERY_S:
             self.record()
 
     def assembly(self):
