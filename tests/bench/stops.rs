@@ -56,7 +56,8 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
         return crate::report::print("without root: stops on a full disk are left out");
     }
     // On a disk as small as this one nothing would ever be recorded, and a service without its recording is not whole.
-    let settings = ["arm.time_scale=1.0", "recorder.free_min_mib=0", "flight.free_min_mib=0"];
+    let settings =
+        ["arm.time_scale=1.0", "group.recorder.free_min_mib=0", "group.flight.free_min_mib=0"];
     for (name, kills_arm) in [("full disk", false), ("full disk, then the arm killed", true)] {
         let SmallGroup { group, disk } = SmallGroup::up(&settings);
         let stopped = Stopped { name, group: &group, picks, kills_arm };
