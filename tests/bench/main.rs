@@ -54,12 +54,15 @@ fn main() -> ExitCode {
         return documents::write(reports);
     }
     let mut report = Report::new(documents::arguments());
-    // What was measured before a part failed is reported.
+    // What was measured before a part failed is printed, and is no report that documents are compared with.
     let measured = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
         (0..options.runs).for_each(|_| measure(&options, &mut report));
     }));
+    if measured.is_err() {
+        report::print(&report.text());
+        return ExitCode::from(70);
+    }
     match report.write() {
-        Ok(()) if measured.is_err() => ExitCode::from(70),
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             report::print(&format!("target/bench: {error}"));

@@ -150,7 +150,7 @@ impl Report {
     }
 
     /// All figures in one table, and the tables of figures below it.
-    fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let heads = ["figure", "runs", "p50", "p99", "max", "unit", "ratio of p50 to peer", "note"];
         let row = |f: &Figure| {
             let peer = f.peer.as_ref();

@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use link::identity::{Identity, Role};
+use link::line::{Line, Packed};
 use link::mirrored::TOPICS;
 use link::motion::{Order, Request, Seen};
 use link::names::{Call, Keys, Name};
@@ -55,7 +56,7 @@ fn ask(session: &Session, robot: &Keys, dice: &mut Dice) -> zenoh::Result<()> {
         let payload = match call {
             Call::Say => dice.words(),
             Call::Motion => dice.order(),
-            Call::Voice => dice.file_name(),
+            Call::Line => dice.file_name(),
             Call::Presence | Call::Hello => dice.bytes(200),
         };
         request(session, robot, call, payload, PATIENCE, drop);
@@ -63,14 +64,14 @@ fn ask(session: &Session, robot: &Keys, dice: &mut Dice) -> zenoh::Result<()> {
     session.put(robot.audio(), dice.bytes(5_000)).wait()
 }
 
-/// One round of a robot: every state, joints and presence.
+/// One round of a robot: every state, joints, presence, and lines.
 fn publish(session: &Session, robot: &Keys, dice: &mut Dice) -> zenoh::Result<()> {
     let states = TOPICS.into_iter().chain(["group", "motion", "no/such/topic"]);
     let keys = states.map(|name| robot.state(name)).chain([robot.joints(), robot.presence()]);
     for key in keys {
         session.put(key, dice.bytes(600)).wait()?;
     }
-    Ok(())
+    session.put(robot.line(), dice.line()).wait()
 }
 
 /// A small generator, so that a failure is repeated by its seed.
@@ -135,6 +136,19 @@ impl Dice {
             _ => return self.bytes(60),
         };
         let bytes = postcard::to_stdvec(&Request { key: self.key(), order }).unwrap_or_default();
+        if self.roll(2) == 0 { bytes } else { self.changed(bytes) }
+    }
+
+    /// Lines: those that can be read have rates of no sound, or lead elsewhere.
+    fn line(&mut self) -> Vec<u8> {
+        let names = ["line-1-1.wav", "line-1-99999999999999999999.wav", "../settings.toml", ""];
+        let file = names[self.roll(names.len() as u64) as usize].to_owned();
+        let rate_hz = [0, 1, 16_000, u32::MAX][self.roll(4) as usize];
+        let sound = match self.roll(3) {
+            0 => Packed::File(self.bytes(2_000)),
+            _ => Packed::Adpcm { rate_hz, codes: self.bytes(2_000) },
+        };
+        let bytes = postcard::to_stdvec(&Line { file, sound }).unwrap_or_default();
         if self.roll(2) == 0 { bytes } else { self.changed(bytes) }
     }
 

@@ -4,6 +4,7 @@
 //! Focus and Technical Working Groups, Recommended Practices, revision 3.00, 1992) needs four bits a sample and no look ahead.
 
 use std::io::Cursor;
+use std::ops::RangeInclusive;
 
 use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
 use messages::Presented;
@@ -17,6 +18,10 @@ const STEPS: [i32; 89] = [
     2499, 2749, 3024, 3327, 3660, 4026, 4428, 4871, 5358, 5894, 6484, 7132, 7845, 8630, 9493,
     10442, 11487, 12635, 13899, 15289, 16818, 18500, 20350, 22385, 24623, 27086, 29794, 32767,
 ];
+/// Sample rates, hertz. Others, 0 among them, are of no sound.
+const RATES_HZ: RangeInclusive<u32> = 1_000..=192_000;
+/// Largest line, bytes: five minutes of speech.
+const BYTES_MAX: usize = 4 << 20;
 /// Change of the step after each magnitude.
 const CHANGES: [i8; 8] = [-1, -1, -1, -1, 2, 4, 6, 8];
 
@@ -51,7 +56,26 @@ pub fn file_of(presented: &Presented) -> String {
 /// Returns whether a text is the name of a line's file, and nothing else.
 pub fn is_file(name: &str) -> bool {
     let numbers = name.strip_prefix("line-").and_then(|name| name.strip_suffix(".wav"));
-    numbers.is_some_and(|numbers| numbers.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-'))
+    let is_number = |text: &str| {
+        (1..=20).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit())
+    };
+    let parts = numbers.and_then(|numbers| numbers.split_once('-'));
+    parts.is_some_and(|(prompt, presentation)| is_number(prompt) && is_number(presentation))
+}
+
+impl Line {
+    /// Returns the bytes that travel; `None` for more than a mirror takes.
+    pub fn encode(&self) -> Option<Vec<u8>> {
+        postcard::to_stdvec(self).ok().filter(|bytes| bytes.len() <= BYTES_MAX)
+    }
+
+    /// Returns the name of the file, and its contents. Another version, and whoever has a robot's keys, may have sent anything.
+    pub fn decode(bytes: &[u8]) -> Option<(String, Vec<u8>)> {
+        let bytes = Some(bytes).filter(|bytes| bytes.len() <= BYTES_MAX)?;
+        let Self { file, sound } = postcard::from_bytes(bytes).ok()?;
+        is_file(&file).then_some(())?;
+        Some((file, sound.file()?))
+    }
 }
 
 impl Packed {
@@ -63,7 +87,8 @@ impl Packed {
     fn adpcm(file: &[u8]) -> Option<Self> {
         let reader = WavReader::new(Cursor::new(file)).ok()?;
         let WavSpec { channels, sample_rate, bits_per_sample, sample_format } = reader.spec();
-        if (channels, bits_per_sample, sample_format) != (1, 16, SampleFormat::Int) {
+        let is_plain = (channels, bits_per_sample, sample_format) == (1, 16, SampleFormat::Int);
+        if !is_plain || !RATES_HZ.contains(&sample_rate) {
             return None;
         }
         let samples: Vec<i16> = reader.into_samples().collect::<Result<_, _>>().ok()?;
@@ -76,11 +101,14 @@ impl Packed {
         Some(Self::Adpcm { rate_hz: sample_rate, codes: samples.chunks(2).map(byte).collect() })
     }
 
-    /// Returns the file.
-    pub fn file(self) -> Vec<u8> {
+    /// Returns the file; `None` for what is no sound.
+    fn file(self) -> Option<Vec<u8>> {
         match self {
-            Self::Adpcm { rate_hz, codes } => wav(rate_hz, &codes).unwrap_or_default(),
-            Self::File(file) => file,
+            Self::Adpcm { rate_hz, codes } if RATES_HZ.contains(&rate_hz) => {
+                wav(rate_hz, &codes).ok()
+            }
+            Self::Adpcm { .. } => None,
+            Self::File(file) => Some(file),
         }
     }
 }
@@ -106,7 +134,7 @@ struct Coder {
 }
 
 impl Coder {
-    /// Codes a sample: its sign, then its distance from the predicted one in eighths of two steps.
+    /// Codes a sample: its sign, then its distance from the predicted one in quarters of a step.
     fn code(&mut self, sample: i16) -> u8 {
         let off = i32::from(sample) - self.predicted;
         let magnitude = (off.abs() * 4 / STEPS[self.step]).min(7);
@@ -166,7 +194,7 @@ mod tests {
         let packed = Packed::of(file(&said));
         let bytes = postcard::to_stdvec(&packed).unwrap().len();
         assert!(bytes * 100 < file(&said).len() * 26, "{bytes}");
-        let heard = samples(&packed.file());
+        let heard = samples(&packed.file().unwrap());
         assert_eq!(heard.len(), said.len());
         let power = |of: &mut dyn Iterator<Item = f64>| of.map(|it| it * it).sum::<f64>();
         let signal = power(&mut said.iter().map(|it| f64::from(*it)));
@@ -179,15 +207,36 @@ mod tests {
     fn the_loudest_sounds_stay_in_range() {
         let said: Vec<i16> =
             (0..999).map(|n| if n % 7 < 3 { i16::MIN } else { i16::MAX }).collect();
-        let heard = samples(&Packed::of(file(&said)).file());
+        let heard = samples(&Packed::of(file(&said)).file().unwrap());
         assert_eq!(heard.len(), 1_000, "two a byte");
+        let signs = said.iter().zip(&heard).filter(|(a, b)| a.signum() == b.signum()).count();
+        assert!(signs > 950, "{signs}");
+        assert_eq!(samples(&Packed::of(file(&[])).file().unwrap()), []);
+        assert_eq!(samples(&Packed::of(file(&[0])).file().unwrap()).len(), 2);
+    }
+
+    #[test]
+    fn what_is_no_line_is_none() {
+        let line = |file: &str, sound| Line { file: file.to_owned(), sound }.encode();
+        let sound = |rate_hz| Packed::Adpcm { rate_hz, codes: vec![0x17; 9] };
+        let file = Line::decode(&line("line-1-1.wav", sound(16_000)).unwrap()).unwrap();
+        assert_eq!(file.0, "line-1-1.wav");
+        for rate_hz in [0, 999, 192_001, u32::MAX] {
+            assert_eq!(Line::decode(&line("line-1-1.wav", sound(rate_hz)).unwrap()), None);
+        }
+        assert_eq!(Line::decode(&line("../x", sound(16_000)).unwrap()), None);
+        assert_eq!(Line::decode(b"RIFF and so on"), None);
+        let long = Packed::File(vec![0; BYTES_MAX]);
+        assert_eq!(line("line-1-1.wav", long.clone()), None);
+        let long = postcard::to_stdvec(&Line { file: "line-1-1.wav".to_owned(), sound: long });
+        assert_eq!(Line::decode(&long.unwrap()), None);
     }
 
     #[test]
     fn other_files_travel_as_they_are() {
         for other in [b"RIFF".to_vec(), Vec::new(), [&file(&[1, 2])[..30], &[9]].concat()] {
             assert_eq!(Packed::of(other.clone()), Packed::File(other.clone()));
-            assert_eq!(Packed::of(other.clone()).file(), other);
+            assert_eq!(Packed::of(other.clone()).file(), Some(other));
         }
     }
 
@@ -196,7 +245,9 @@ mod tests {
         let presented = Presented { prompt: 12, presentation: 1, ..Presented::default() };
         assert_eq!(file_of(&presented), "line-12-1.wav");
         assert!(is_file("line-12-1.wav"));
-        for other in ["", "line-.txt", "line-../x.wav", "/line-1.wav", "line-1.wav/../x"] {
+        for other in
+            ["", "line-1-1.txt", "line-../x.wav", "/line-1-1.wav", "line-1.wav", "line--.wav"]
+        {
             assert!(!is_file(other), "{other}");
         }
     }

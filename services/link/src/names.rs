@@ -77,7 +77,7 @@ pub enum Call {
     /// What a mirror needs to know first.
     Hello,
     /// Sound of one of the robot's lines.
-    Voice,
+    Line,
     /// Words of a person.
     Say,
     /// An order to the motion stop.
@@ -86,14 +86,14 @@ pub enum Call {
 
 impl Call {
     /// Every one.
-    pub const ALL: [Self; 5] = [Self::Presence, Self::Hello, Self::Voice, Self::Say, Self::Motion];
+    pub const ALL: [Self; 5] = [Self::Presence, Self::Hello, Self::Line, Self::Say, Self::Motion];
 
     /// Last part of its key.
     pub fn name(self) -> &'static str {
         match self {
             Self::Presence => "presence",
             Self::Hello => "hello",
-            Self::Voice => "voice",
+            Self::Line => "line",
             Self::Say => "say",
             Self::Motion => "motion",
         }
@@ -101,7 +101,7 @@ impl Call {
 
     /// Returns whether it only reads, so that a viewer may make it.
     pub fn only_reads(self) -> bool {
-        matches!(self, Self::Presence | Self::Hello | Self::Voice)
+        matches!(self, Self::Presence | Self::Hello | Self::Line)
     }
 }
 

@@ -88,6 +88,8 @@ struct Robot {
     presence_sent: Option<Time>,
     /// File of the line whose sound was sent last.
     line_sent: String,
+    /// The latest line, by its file's name, as it travels.
+    line: Option<(String, Vec<u8>)>,
     is_ending: Arc<AtomicBool>,
 }
 
@@ -154,6 +156,7 @@ impl Robot {
             presence,
             presence_sent: None,
             line_sent: String::new(),
+            line: None,
             is_ending,
         })
     }

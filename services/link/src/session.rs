@@ -134,7 +134,7 @@ pub fn request(
     let priority = match call {
         Call::Motion => Priority::RealTime,
         Call::Say => Priority::InteractiveLow,
-        Call::Presence | Call::Hello | Call::Voice => Priority::DataHigh,
+        Call::Presence | Call::Hello | Call::Line => Priority::DataHigh,
     };
     request_at(session, keys, (call, priority), payload, timeout, take);
 }

@@ -275,7 +275,7 @@ impl Robot {
             }
             Call::Say => self.hear(&postcard::from_bytes(&payload).ok()?),
             Call::Motion => self.obey(&postcard::from_bytes(&payload).ok()?),
-            Call::Voice => None,
+            Call::Line => None,
         }
     }
 

@@ -38,7 +38,7 @@ mod requests;
 mod start;
 mod waits;
 
-/// Polling period of sizes of logs and files of topics, which notify of no change.
+/// Polling period of sizes of logs and of processes that are dead, which notify of no change.
 const TICK: Duration = Duration::from_secs(1);
 /// Interval at which the group's shared files are looked at: there are some fifty, which nobody ought to remove.
 const FILES_EVERY: Duration = Duration::from_secs(3);

@@ -153,6 +153,44 @@ fn an_object_that_was_moved_as_far_as_the_gate_keeps_its_number() {
     }
 }
 
+#[test]
+fn an_object_that_was_seen_beside_another_one_is_not_it() {
+    // One slides while another one is put down.
+    let mut it = Scenery::new();
+    it.looks(3, &[seen("white", 0.7, 0.1)]);
+    for y in [0.13, 0.16, 0.19] {
+        it.look(&[seen("white", 0.7, y), seen("white", 0.7, -0.3)]);
+    }
+    it.look(&[seen("white", 0.7, -0.3)]);
+    it.looks(3, &[seen("white", 0.7, 0.19), seen("white", 0.7, -0.3)]);
+    assert_eq!(it.numbers(), [6, 7]);
+    assert!((it.tracker.objects()[0].xyz[1] - 0.19).abs() < 0.01, "{:?}", it.tracker.objects());
+    // The slid one is missed in the look in which the new one is there.
+    let mut it = Scenery::new();
+    it.looks(3, &[seen("white", 0.7, 0.1)]);
+    for y in [0.13, 0.16] {
+        it.look(&[seen("white", 0.7, y), seen("white", 0.7, -0.3)]);
+    }
+    it.look(&[seen("white", 0.7, -0.3)]);
+    assert_eq!(it.numbers(), [6, 7]);
+    // One of two is moved while the other one is pushed.
+    let mut it = Scenery::new();
+    it.looks(3, &[seen("white", 0.7, 0.1), seen("white", 0.7, -0.2)]);
+    for y in [0.13, 0.16, 0.19] {
+        it.look(&[seen("white", 0.7, y), seen("white", 0.4, -0.6)]);
+    }
+    assert_eq!(it.numbers(), [6, 7]);
+    assert!((it.tracker.objects()[1].xyz[1] + 0.6).abs() < 1e-9, "{:?}", it.tracker.objects());
+}
+
+#[test]
+fn two_of_a_class_side_by_side_are_two() {
+    let mut it = Scenery::new();
+    it.looks(3, &[seen("white", 0.7, 0.1)]);
+    it.looks(3, &[seen("white", 0.7, 0.1), seen("white", 0.7, 0.118)]);
+    assert_eq!(it.numbers(), [6, 7]);
+}
+
 proptest! {
     /// However far it is moved, and however its looks err, the only one of its class stays what it was.
     #[test]

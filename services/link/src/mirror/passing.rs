@@ -298,7 +298,7 @@ impl<'a> Passing<'a> {
             request(
                 session,
                 keys,
-                Call::Voice,
+                Call::Line,
                 file.into_bytes(),
                 Duration::from_nanos(PATIENCE.0),
                 take,
@@ -308,15 +308,14 @@ impl<'a> Passing<'a> {
 
     fn on_line(&mut self, bytes: &[u8]) {
         let Some(folder) = &self.voice_dir else { return };
-        let Some(Line { file, sound }) =
-            postcard::from_bytes(bytes).ok().filter(|it: &Line| line::is_file(&it.file))
-        else {
-            return tracing::debug!("unintelligible line ignored");
+        let Some((file, sound)) = Line::decode(bytes) else {
+            return tracing::warn!(
+                "the robot's voice is unintelligible; help: install the same version on both machines"
+            );
         };
         // Whole as soon as it is there.
         let (draft, path) = (folder.join("draft"), folder.join(&file));
-        let written =
-            std::fs::write(&draft, sound.file()).and_then(|()| std::fs::rename(&draft, &path));
+        let written = std::fs::write(&draft, sound).and_then(|()| std::fs::rename(&draft, &path));
         if let Err(error) = written {
             tracing::warn!(file, %error, "the sound of a line is not kept");
         }

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use messages::{AudioChunk, RequestKey, Sound};
+use messages::{AudioChunk, PresentationState, RequestKey, Sound};
 use service::clock;
 use zenoh::query::Query;
 
 use super::Robot;
+use super::senders::Senders;
 use crate::line::{self, Line, Packed};
 use crate::names::Call;
 use crate::offset::time_ns;
@@ -24,7 +25,7 @@ impl Robot {
                 let settings = self.settings.snapshot();
                 postcard::to_stdvec(&Hello { version, epoch: self.epoch, settings }).ok()
             }
-            Call::Voice => self.asked_line(&payload),
+            Call::Line => self.asked_line(&payload),
             Call::Say => return self.on_said(query, &payload),
             Call::Motion => None,
         };
@@ -35,28 +36,37 @@ impl Robot {
 
     /// Sends the sound of a line that begins, once, to those who listen.
     pub(super) fn send_line(&mut self) {
-        let begun = self.sources.presented().filter(|it| it.state.get().has_begun());
-        let Some((file, senders)) = begun.map(line::file_of).zip(self.senders.as_ref()) else {
+        let said =
+            self.sources.presented().filter(|it| it.state.get() == PresentationState::Speaking);
+        let Some(file) = said.map(line::file_of).filter(|file| self.line_sent != *file) else {
             return;
         };
-        if senders.is_line_watched() && self.line_sent != file {
-            if let Some(line) = self.line(&file) {
-                senders.line(&line);
+        if self.senders.as_ref().is_some_and(Senders::is_line_watched) {
+            let line = self.line(&file);
+            if let Some((line, senders)) = line.zip(self.senders.as_ref()) {
+                senders.line(line);
             }
             self.line_sent = file;
         }
     }
 
-    /// One of the robot's lines, by its file's name.
-    fn line(&self, file: &str) -> Option<Line> {
+    /// One of the robot's lines, by its file's name. The latest is kept: every mirror may ask for it.
+    fn line(&mut self, file: &str) -> Option<Vec<u8>> {
+        if let Some((known, bytes)) = &self.line
+            && known == file
+        {
+            return Some(bytes.clone());
+        }
         let folder = self.settings.voice_dir(&self.paths.run())?;
         let sound = Packed::of(std::fs::read(folder.join(file)).ok()?);
-        Some(Line { file: file.to_owned(), sound })
+        let bytes = Line { file: file.to_owned(), sound }.encode()?;
+        self.line = Some((file.to_owned(), bytes.clone()));
+        Some(bytes)
     }
 
-    fn asked_line(&self, name: &[u8]) -> Option<Vec<u8>> {
+    fn asked_line(&mut self, name: &[u8]) -> Option<Vec<u8>> {
         let name = std::str::from_utf8(name).ok().filter(|name| line::is_file(name))?;
-        postcard::to_stdvec(&self.line(name)?).ok()
+        self.line(name)
     }
 
     fn on_said(&mut self, query: Query, payload: &[u8]) {

@@ -1,5 +1,5 @@
-//! The connection to the router, and the threads that send. Each has a bounded queue; what finds no room is dropped, as it is
-//! said again a second later.
+//! The connection to the router, and the threads that send. Each has a bounded queue; what finds no room is dropped, as states
+//! are sent again a second later, and lines are asked for.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -20,7 +20,6 @@ use zenoh::{Session, Wait};
 
 use super::{Inbound, motion};
 use crate::identity::Identity;
-use crate::line::Line;
 use crate::mirrored::TOPICS;
 use crate::names::{Call, Keys, call_of};
 use crate::presence::Presence;
@@ -176,8 +175,8 @@ impl Senders {
     }
 
     /// Sends the sound of what the robot begins to say.
-    pub(super) fn line(&self, line: &Line) {
-        self.states.send(LINE, postcard::to_stdvec(line).unwrap_or_default());
+    pub(super) fn line(&self, line: Vec<u8>) {
+        self.states.send(LINE, line);
     }
 
     /// Says that the robot is there.

@@ -58,7 +58,7 @@ impl Tracker {
         Ok(())
     }
 
-    /// Drops the candidates that were not seen again, and those that have turned out to be a known object.
+    /// Drops the candidates that were not seen again, and those in whose place a known object was seen instead.
     fn drop_candidates(&mut self, at: Time) {
         let moved_m = self.settings.moved_m;
         let is_known = |candidate: &Candidate| {
@@ -69,7 +69,8 @@ impl Tracker {
                     && distance(&track.estimate.place, &candidate.estimate.place) <= moved_m
             })
         };
-        let is_kept = |it: &Candidate| at.since(it.seen) <= CANDIDATE_FOR && !is_known(it);
+        let is_kept =
+            |it: &Candidate| it.seen == at || at.since(it.seen) <= CANDIDATE_FOR && !is_known(it);
         self.candidates.retain(is_kept);
     }
 
@@ -148,6 +149,7 @@ impl Tracker {
                     source: source.to_owned(),
                     since: at,
                     seen: at,
+                    beside: shown.clone(),
                 });
             }
             if self.settings.appear > 1 {
@@ -159,6 +161,7 @@ impl Tracker {
         if candidate.seen == at {
             return;
         }
+        candidate.note_beside(shown);
         candidate.estimate.see(detection, self.settings.moved_m);
         (candidate.seen, candidate.track) = (at, named(source, detection));
         if candidate.estimate.count >= self.settings.appear {
@@ -166,14 +169,16 @@ impl Tracker {
         }
     }
 
-    /// Makes an object of a candidate: the only one of its class that has not been seen in its place since the
-    /// candidate was first seen has moved there; else it is a new one.
+    /// Makes an object of a candidate: the only one of its class that was neither seen in its place since the
+    /// candidate was first seen, nor beside it, has moved there; else it is a new one.
     fn ripen(&mut self, candidate: usize, shown: &mut Vec<ObjectId>, at: Time) {
-        let Candidate { estimate, track, source, since, .. } = self.candidates.remove(candidate);
+        let Candidate { estimate, track, source, since, beside, .. } =
+            self.candidates.remove(candidate);
         let class = likeliest(&estimate.classes).map(str::to_owned);
         let mut lost = self.tracks.iter_mut().filter(|it| {
             !it.object.taken
                 && it.stood < since
+                && !beside.contains(&it.object.number)
                 && it.object.seen_by.contains(&source)
                 && likeliest(&it.estimate.classes) == class.as_deref()
         });

@@ -1,7 +1,7 @@
 //! One object that is followed, and one that may yet be.
 
 use dialogue::time::{Span, Time};
-use scene::Perceived;
+use scene::{ObjectId, Perceived};
 
 use super::CHANCE_STEP;
 use crate::Detection;
@@ -31,6 +31,16 @@ pub(super) struct Candidate {
     pub(super) source: String,
     pub(super) since: Time,
     pub(super) seen: Time,
+    /// Objects that a look showed beside it: it is none of them.
+    pub(super) beside: Vec<ObjectId>,
+}
+
+impl Candidate {
+    pub(super) fn note_beside(&mut self, shown: &[ObjectId]) {
+        let new = shown.iter().filter(|it| !self.beside.contains(it)).copied();
+        let new: Vec<ObjectId> = new.collect();
+        self.beside.extend(new);
+    }
 }
 
 impl Track {
