@@ -211,7 +211,7 @@ mod tests {
         assert_eq!(heard.len(), 1_000, "two a byte");
         let signs = said.iter().zip(&heard).filter(|(a, b)| a.signum() == b.signum()).count();
         assert!(signs > 950, "{signs}");
-        assert_eq!(samples(&Packed::of(file(&[])).file().unwrap()), []);
+        assert!(samples(&Packed::of(file(&[])).file().unwrap()).is_empty());
         assert_eq!(samples(&Packed::of(file(&[0])).file().unwrap()).len(), 2);
     }
 
