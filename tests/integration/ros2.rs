@@ -35,6 +35,8 @@ with_peers! {
     killed_peer_harms_nothing_and_the_next_one_sees_everything
 }
 
+/// More than the interval of the node's figures.
+const DIAGNOSTICS_EVERY: Duration = Duration::from_millis(1_500);
 /// Settings for the objects that the program's detectors see.
 const OBJECTS: &[&str] = &[
     "group.perception.enabled=true",
@@ -286,7 +288,15 @@ fn flood_of_words_is_refused_and_harms_nothing(implementation: Implementation) {
     assert_eq!(group.incarnation("ros2"), incarnation, "{}", group.logs());
     let grown_kib = rss_kib().saturating_sub(before_kib);
     assert!(grown_kib < 32 << 10, "{grown_kib} KiB");
+    // Words that were not lost on the way are accepted or refused; a cancellation may come before them.
+    let mut taken = 0;
     wait_for("the flood is over", 60.0, || {
+        std::thread::sleep(DIAGNOSTICS_EVERY);
+        let seen = peer.wait_for("figures", |seen| figure(seen, "refused") > 0);
+        let now = figure(&seen, "refused") + figure(&seen, "accepted");
+        (std::mem::replace(&mut taken, now) == now).then_some(())
+    });
+    wait_for("no request of the flood is open", 60.0, || {
         let answer = peer.tell("call cancel");
         (answer["success"] == false && answer["message"] == "no request is open").then_some(())
     });
