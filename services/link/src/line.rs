@@ -18,12 +18,12 @@ const STEPS: [i32; 89] = [
     2499, 2749, 3024, 3327, 3660, 4026, 4428, 4871, 5358, 5894, 6484, 7132, 7845, 8630, 9493,
     10442, 11487, 12635, 13899, 15289, 16818, 18500, 20350, 22385, 24623, 27086, 29794, 32767,
 ];
-/// Sample rates, hertz. Others, 0 among them, are of no sound.
-const RATES_HZ: RangeInclusive<u32> = 1_000..=192_000;
-/// Largest line, bytes: five minutes of speech.
-const BYTES_MAX: usize = 4 << 20;
 /// Change of the step after each magnitude.
 const CHANGES: [i8; 8] = [-1, -1, -1, -1, 2, 4, 6, 8];
+/// Sample rates, hertz. Others, 0 among them, are of no sound.
+const RATES_HZ: RangeInclusive<u32> = 1_000..=192_000;
+/// Largest line, bytes: more than five minutes of speech.
+const BYTES_MAX: usize = 4 << 20;
 
 /// What is sent of a line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -86,9 +86,8 @@ impl Packed {
 
     fn adpcm(file: &[u8]) -> Option<Self> {
         let reader = WavReader::new(Cursor::new(file)).ok()?;
-        let WavSpec { channels, sample_rate, bits_per_sample, sample_format } = reader.spec();
-        let is_plain = (channels, bits_per_sample, sample_format) == (1, 16, SampleFormat::Int);
-        if !is_plain || !RATES_HZ.contains(&sample_rate) {
+        let rate_hz = reader.spec().sample_rate;
+        if reader.spec() != plain(rate_hz) || !RATES_HZ.contains(&rate_hz) {
             return None;
         }
         let samples: Vec<i16> = reader.into_samples().collect::<Result<_, _>>().ok()?;
@@ -98,14 +97,16 @@ impl Packed {
                 .enumerate()
                 .fold(0, |byte, (n, sample)| byte | coder.code(*sample) << (4 * n))
         };
-        Some(Self::Adpcm { rate_hz: sample_rate, codes: samples.chunks(2).map(byte).collect() })
+        Some(Self::Adpcm { rate_hz, codes: samples.chunks(2).map(byte).collect() })
     }
 
     /// Returns the file; `None` for what is no sound.
     fn file(self) -> Option<Vec<u8>> {
         match self {
             Self::Adpcm { rate_hz, codes } if RATES_HZ.contains(&rate_hz) => {
-                wav(rate_hz, &codes).ok()
+                let mut coder = Coder::default();
+                let codes = codes.iter().flat_map(|byte| [byte & 15, byte >> 4]);
+                wav(rate_hz, codes.map(|code| coder.sample(code))).ok()
             }
             Self::Adpcm { .. } => None,
             Self::File(file) => Some(file),
@@ -113,14 +114,17 @@ impl Packed {
     }
 }
 
-fn wav(sample_rate: u32, codes: &[u8]) -> Result<Vec<u8>, hound::Error> {
+/// The file that is packed and unpacked: one channel of 16 bits.
+fn plain(sample_rate: u32) -> WavSpec {
     let (channels, bits_per_sample, sample_format) = (1, 16, SampleFormat::Int);
-    let spec = WavSpec { channels, sample_rate, bits_per_sample, sample_format };
+    WavSpec { channels, sample_rate, bits_per_sample, sample_format }
+}
+
+fn wav(rate_hz: u32, samples: impl Iterator<Item = i16>) -> Result<Vec<u8>, hound::Error> {
     let mut file = Cursor::new(Vec::new());
-    let mut writer = WavWriter::new(&mut file, spec)?;
-    let mut coder = Coder::default();
-    for code in codes.iter().flat_map(|byte| [byte & 15, byte >> 4]) {
-        writer.write_sample(coder.sample(code))?;
+    let mut writer = WavWriter::new(&mut file, plain(rate_hz))?;
+    for sample in samples {
+        writer.write_sample(sample)?;
     }
     writer.finalize()?;
     Ok(file.into_inner())
@@ -161,13 +165,7 @@ mod tests {
     use super::*;
 
     fn file(samples: &[i16]) -> Vec<u8> {
-        let (channels, bits_per_sample, sample_format) = (1, 16, SampleFormat::Int);
-        let spec = WavSpec { channels, sample_rate: 22_050, bits_per_sample, sample_format };
-        let mut file = Cursor::new(Vec::new());
-        let mut writer = WavWriter::new(&mut file, spec).unwrap();
-        samples.iter().for_each(|sample| writer.write_sample(*sample).unwrap());
-        writer.finalize().unwrap();
-        file.into_inner()
+        wav(22_050, samples.iter().copied()).unwrap()
     }
 
     fn samples(file: &[u8]) -> Vec<i16> {

@@ -11,10 +11,8 @@ import { answerUntilPicked, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
 import { until } from "../lib/until.mjs";
 
-test.use(WITHOUT_PICTURE);
-
 // The console is killed, and the group goes down.
-test.use({ provoked: ["WebSocket connection", "ERR_CONNECTION_REFUSED"] });
+test.use({ ...WITHOUT_PICTURE, provoked: ["WebSocket connection", "ERR_CONNECTION_REFUSED"] });
 
 const sheetOf = (page) => page.getByRole("dialog", { name: t("history.title") });
 const show = (page) => page.getByRole("button", { name: t("history.show") }).click();

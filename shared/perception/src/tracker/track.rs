@@ -37,9 +37,11 @@ pub(super) struct Candidate {
 
 impl Candidate {
     pub(super) fn note_beside(&mut self, shown: &[ObjectId]) {
-        let new = shown.iter().filter(|it| !self.beside.contains(it)).copied();
-        let new: Vec<ObjectId> = new.collect();
-        self.beside.extend(new);
+        for number in shown {
+            if !self.beside.contains(number) {
+                self.beside.push(*number);
+            }
+        }
     }
 }
 
