@@ -82,7 +82,11 @@ pub struct ServiceSpec {
 pub fn from_settings(options: Options) -> Load {
     Box::new(move |scene| {
         let set = with_scene(&options.set, scene);
-        match preflight::load(&options.config, options.profile.as_deref(), &set) {
+        let paths = GroupPaths::resolve(&options.group);
+        let is_known = |settings: &Settings| {
+            paths.as_ref().is_ok_and(|paths| kept_settings::are_checked(paths, settings))
+        };
+        match preflight::load_known(&options.config, options.profile.as_deref(), &set, is_known) {
             Ok(settings) => Ok(configuration(settings, &options, set)),
             Err(problems) => Err(problems.iter().map(ToString::to_string).collect()),
         }
@@ -115,7 +119,11 @@ fn configuration(
         directory: options.config.clone(),
         set,
         shared_memory_free_min_mib: group.shared_memory_free_min_mib.into(),
-        publish: Box::new(move |paths| kept_settings::put_in_force(paths, &settings)),
+        publish: Box::new(move |paths| {
+            kept_settings::put_in_force(paths, &settings)?;
+            kept_settings::note_checked(paths, &settings);
+            Ok(())
+        }),
     }
 }
 

@@ -6,6 +6,7 @@ use std::io::Read;
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
+use rustix::param::page_size;
 use rustix::process::Pid;
 
 /// Clock ticks per second in `/proc`. Fixed by the kernel's interface at 100 on every architecture
@@ -29,6 +30,8 @@ pub(crate) struct Process {
     pub(crate) group: i32,
     /// Processor time used, seconds.
     pub(crate) cpu_s: f64,
+    /// Resident memory, KiB.
+    pub(crate) rss_kib: u64,
 }
 
 /// All processes that exist. One that comes or goes meanwhile may or may not be among them.
@@ -47,13 +50,6 @@ pub(crate) fn process(pid: Pid) -> Option<Process> {
     let mut file = File::open(format!("/proc/{pid}/stat")).ok()?;
     let length = file.read(&mut line).ok()?;
     parse_stat(&String::from_utf8_lossy(&line[..length]))
-}
-
-/// Resident memory of a process, KiB.
-pub(crate) fn rss_kib(pid: Pid) -> Option<u64> {
-    let status = fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
-    line.split_whitespace().next()?.parse().ok()
 }
 
 /// The environment that a process was started with; empty if it may not be read.
@@ -81,7 +77,7 @@ impl Environment {
     }
 }
 
-/// `pid (name) state ppid pgrp … utime stime …`; the name may hold spaces and parentheses.
+/// `pid (name) state ppid pgrp … utime stime … rss …`; the name may hold spaces and parentheses.
 fn parse_stat(line: &str) -> Option<Process> {
     let (pid, rest) = line.split_once(" (")?;
     let (name, rest) = rest.rsplit_once(") ")?;
@@ -94,6 +90,7 @@ fn parse_stat(line: &str) -> Option<Process> {
         parent: fields.get(1)?.parse().ok()?,
         group: fields.get(2)?.parse().ok()?,
         cpu_s: (ticks(11)? + ticks(12)?) / TICKS_PER_S,
+        rss_kib: fields.get(21)?.parse::<u64>().ok()? * (page_size() as u64 >> 10),
     })
 }
 
@@ -103,7 +100,7 @@ mod tests {
 
     #[test]
     fn procfs_stat_line_with_special_characters_is_parsed() {
-        let line = "42 (a (b) c) S 7 9 9 0 -1 4194560 1 0 0 0 150 50 0 0 20 0 1 0 100 0 0";
+        let line = "42 (a (b) c) S 7 9 9 0 -1 4194560 1 0 0 0 150 50 0 0 20 0 1 0 100 0 3";
         let expected = Process {
             pid: Pid::from_raw(42).unwrap(),
             name: "a (b) c".into(),
@@ -111,6 +108,7 @@ mod tests {
             parent: 7,
             group: 9,
             cpu_s: 2.0,
+            rss_kib: 3 * page_size() as u64 / 1024,
         };
         assert_eq!(parse_stat(line), Some(expected));
         assert_eq!(parse_stat("42 (a"), None);
@@ -125,7 +123,7 @@ mod tests {
             rustix::process::getppid().map(|p| p.as_raw_nonzero().get())
         );
         assert!(!found.is_zombie);
-        assert!(rss_kib(me).unwrap() > 100);
+        assert!(found.rss_kib > 100);
         let file = tempfile::NamedTempFile::new().unwrap();
         let path = file.path().canonicalize().unwrap();
         assert!(has_open(me, &path));

@@ -1,8 +1,10 @@
 //! The settings in force, which a group's services read, and those by which the journals were written, kept beside
-//! them: a journal can be listed and verified without saying how its group was started.
+//! them: a journal can be listed and verified without saying how its group was started, and a start need not check
+//! again what the same program has checked before.
 
 use std::fs::{self, File};
 use std::io;
+use std::os::unix::fs::MetadataExt;
 use std::path::PathBuf;
 use std::time::SystemTime;
 
@@ -13,6 +15,8 @@ use crate::wakes::Wakes;
 
 /// Number of settings that are kept.
 const KEPT: usize = 8;
+/// The file beside kept settings that names the program which has checked them.
+const CHECKED_FILE: &str = "checked";
 
 /// Writes everything that the services of a group read, and keeps the settings beside the journals. Those in force
 /// change last, when nothing can fail any more.
@@ -39,9 +43,7 @@ fn wakes(settings: &Settings) -> Wakes {
 /// # Errors
 /// The folder cannot be written.
 fn keep(paths: &GroupPaths, settings: &Settings) -> io::Result<()> {
-    let mut hash = scene::StableHash::default();
-    hash.text(&settings.snapshot());
-    let folder = paths.kept_settings().join(format!("{:016x}", hash.value()));
+    let folder = folder(paths, settings);
     fs::create_dir_all(&folder)?;
     if !folder.join(config::SNAPSHOT_FILE).is_file()
         && let Err(error) = settings.write_snapshot(&folder)
@@ -52,6 +54,34 @@ fn keep(paths: &GroupPaths, settings: &Settings) -> io::Result<()> {
     }
     File::open(&folder)?.set_modified(SystemTime::now())?;
     folders(paths).into_iter().skip(KEPT).try_for_each(fs::remove_dir_all)
+}
+
+/// The folder in which these settings are kept.
+fn folder(paths: &GroupPaths, settings: &Settings) -> PathBuf {
+    let mut hash = scene::StableHash::default();
+    hash.text(&settings.snapshot());
+    paths.kept_settings().join(format!("{:016x}", hash.value()))
+}
+
+/// Returns true if this very program has noted that these settings passed every check.
+pub fn are_checked(paths: &GroupPaths, settings: &Settings) -> bool {
+    let noted = fs::read_to_string(folder(paths, settings).join(CHECKED_FILE));
+    noted.is_ok_and(|noted| own_program().is_some_and(|own| own == noted))
+}
+
+/// Notes that settings which are kept have passed every check of this program.
+pub fn note_checked(paths: &GroupPaths, settings: &Settings) {
+    let Some(own) = own_program() else { return };
+    if let Err(error) = fs::write(folder(paths, settings).join(CHECKED_FILE), own) {
+        tracing::debug!(%error, "settings not noted as checked; the next start checks them again");
+    }
+}
+
+/// What tells this program from one that may check differently: its file.
+fn own_program() -> Option<String> {
+    let file = fs::metadata("/proc/self/exe").ok()?;
+    let (version, bytes) = (env!("CARGO_PKG_VERSION"), file.len());
+    Some(format!("{version} {bytes} {} {}.{:09}\n", file.ino(), file.mtime(), file.mtime_nsec()))
 }
 
 /// Folders with the kept settings, newest first.
@@ -94,5 +124,24 @@ mod tests {
         assert_eq!(folders(&paths).len(), KEPT);
         let newest = Settings::load_snapshot(&folders(&paths)[0]).unwrap();
         assert_eq!(newest.dialogue.turns.repeats_max, 5);
+    }
+
+    #[test]
+    fn settings_are_checked_once_noted_by_this_program() {
+        let home = tempfile::tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &GroupName::new("lab").unwrap()).unwrap();
+        let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+        let settings = |set: &[(String, String)]| Settings::load(&config, None, set).unwrap();
+        let (ours, others) = (settings(&[]), settings(&[("arm.limb".into(), "left".into())]));
+        note_checked(&paths, &ours);
+        assert!(!are_checked(&paths, &ours), "they are not kept");
+        keep(&paths, &ours).unwrap();
+        note_checked(&paths, &ours);
+        assert!(are_checked(&paths, &ours));
+        keep(&paths, &others).unwrap();
+        assert!(!are_checked(&paths, &others));
+        let noted = folder(&paths, &ours).join(CHECKED_FILE);
+        fs::write(&noted, "0.0.1 1 1 1.000000000\n").unwrap();
+        assert!(!are_checked(&paths, &ours), "noted by another program");
     }
 }

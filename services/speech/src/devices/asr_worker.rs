@@ -18,7 +18,7 @@ use messages::EarState;
 use crate::devices::recogniser::{Backend, Ensemble, Gate, Recogniser, SecondOpinion};
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::SegmenterOptions;
-use crate::devices::worker_thread::{QueueError, WorkerThread};
+use crate::devices::worker_thread::{QueueError, WorkerThread, in_background};
 use crate::{In, RecognitionInput};
 use early::EarlyResults;
 use worker::{Channels, Worker};
@@ -73,7 +73,7 @@ impl AsrWorker {
         let backend = Backend::of(speech, work);
         let model = speech.whisper_model.clone();
         let open = move || {
-            let gate = Gate::new(&scene, score_min);
+            let gate = in_background(|| Gate::new(&scene, score_min));
             let (first, unpronounceable) =
                 backend.open(&scene).map_err(|error| error.to_string())?;
             let second = model.map(|model| SecondOpinion::start(model, scene));

@@ -1,5 +1,6 @@
-//! A thread that owns a device.
+//! A thread that owns a device, and work that gives way to all else.
 
+use std::panic;
 use std::thread::{self, JoinHandle};
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
@@ -8,6 +9,26 @@ use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 pub(crate) struct WorkerThread<T> {
     queue: Option<Sender<T>>,
     thread: Option<JoinHandle<()>>,
+}
+
+/// Niceness of loading beside services that start: a third of their share of a processor where both want it all.
+const LOADING: i32 = 5;
+
+/// Lowers the priority of this thread, and of the threads and processes that it starts from now on.
+pub(crate) fn lower_priority(niceness: i32) {
+    // A thread may always do so for itself.
+    let _ = rustix::process::nice(niceness);
+}
+
+/// Returns what `work` returns, which is done at a lower priority. It must start no thread or process that lasts:
+/// a priority is not raised again.
+pub(crate) fn in_background<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let quietly = || {
+        lower_priority(LOADING);
+        work()
+    };
+    let done = thread::scope(|scope| scope.spawn(quietly).join());
+    done.unwrap_or_else(|cause| panic::resume_unwind(cause))
 }
 
 /// Error of queueing work.
@@ -57,5 +78,23 @@ impl<T> Drop for WorkerThread<T> {
             // A panic of the thread has been logged.
             let _ = thread.join();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn niceness() -> i32 {
+        rustix::process::getpriority_process(Some(rustix::thread::gettid())).unwrap()
+    }
+
+    #[test]
+    fn work_in_background_lowers_its_own_priority_only() {
+        let own = niceness();
+        assert_eq!(in_background(niceness), (own + LOADING).min(19));
+        assert_eq!(niceness(), own);
+        let failed = panic::catch_unwind(|| in_background(|| panic!("by the test")));
+        assert_eq!(failed.unwrap_err().downcast_ref(), Some(&"by the test"));
     }
 }

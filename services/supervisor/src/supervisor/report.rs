@@ -15,7 +15,7 @@ use service::status::{GroupStatus, LastExit, ServiceStatus};
 impl Supervisor {
     /// The group at this moment.
     pub(super) fn status(&self, now: Time) -> GroupStatus {
-        let me = getpid();
+        let me = procfs::process(getpid());
         GroupStatus {
             name: self.around.paths.name().to_string(),
             state: self.group.state(),
@@ -28,8 +28,8 @@ impl Supervisor {
             config: self.configuration.directory.clone(),
             set: Some(self.configuration.set.clone()),
             orphans_killed: self.orphans_killed,
-            rss_kib: procfs::rss_kib(me),
-            cpu_s: procfs::process(me).map(|process| process.cpu_s),
+            rss_kib: me.as_ref().map(|process| process.rss_kib),
+            cpu_s: me.map(|process| process.cpu_s),
             services: (0..self.services.len()).map(|s| self.service_status(s, now)).collect(),
         }
     }
@@ -39,6 +39,7 @@ impl Supervisor {
         let machine = self.group.machine(service);
         let running = entry.running.as_ref();
         let pid = running.map(|running| running.child.pid());
+        let process = pid.and_then(procfs::process);
         let state = machine.state();
         let log_tail = match state {
             ServiceState::Failed | ServiceState::Short => entry.log_tail(&self.around.paths),
@@ -65,8 +66,8 @@ impl Supervisor {
             swapped: entry.swapped.as_ref().map(|command| command.words.clone()),
             last_exit: entry.ended.as_ref().map(|ended| last_exit(ended, now)),
             log_tail,
-            rss_kib: pid.and_then(procfs::rss_kib),
-            cpu_s: pid.and_then(procfs::process).map(|process| process.cpu_s),
+            rss_kib: process.as_ref().map(|process| process.rss_kib),
+            cpu_s: process.map(|process| process.cpu_s),
         }
     }
 

@@ -30,15 +30,16 @@ use iceoryx2_cal::named_concept::{
     NamedConceptDoesExistError, NamedConceptListError, NamedConceptMgmt,
     NamedConceptPathHintRemoveError, NamedConceptRemoveError, Path,
 };
-use rustix::fs::{FallocateFlags, Stat, fallocate, fstat, lstat};
+use rustix::fs::{
+    AtFlags, FallocateFlags, FileType, Mode, OFlags, RawDir, Stat, fallocate, fstat, lstat, open,
+    statat,
+};
 use rustix::io::Errno;
 use rustix::process::geteuid;
 use std::fmt::{self, Debug};
-use std::fs::{DirEntry, Metadata};
 use std::marker::PhantomData;
 use std::mem::{MaybeUninit, size_of};
 use std::os::fd::BorrowedFd;
-use std::os::unix::{ffi::OsStrExt, fs::MetadataExt};
 use std::ptr::NonNull;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
@@ -46,6 +47,8 @@ use std::time::{Duration, Instant};
 
 /// Polling interval of a segment that its creator has not completed yet.
 const LOOK_EVERY: Duration = Duration::from_millis(1);
+/// Room for the entries that one system call returns, bytes: those of a group or two.
+const LISTING_BYTES: usize = 64 << 10;
 /// Bytes of a block as the operating system counts them.
 const BLOCK: u64 = 512;
 
@@ -324,6 +327,31 @@ fn reserve(memory: &SharedMemory) -> Result<(), SegmentError> {
     }
 }
 
+/// Returns the names of this user's files in shared memory that are named so.
+///
+/// iceoryx2 lists them for each port of a dead process, and other groups' segments, of which there may be many,
+/// lie in the same folder: nothing is allocated for those.
+fn own_files(is_named: impl Fn(&[u8]) -> bool) -> rustix::io::Result<Vec<FileName>> {
+    let own = geteuid().as_raw();
+    let folder = open(SHM, OFlags::RDONLY | OFlags::DIRECTORY | OFlags::CLOEXEC, Mode::empty())?;
+    let mut space = Vec::with_capacity(LISTING_BYTES);
+    let mut entries = RawDir::new(&folder, space.spare_capacity_mut());
+    let mut files = Vec::new();
+    while let Some(entry) = entries.next() {
+        let entry = entry?;
+        let name = entry.file_name();
+        if !is_named(name.to_bytes()) {
+            continue;
+        }
+        // One that is gone by now is none.
+        let Ok(stat) = statat(&folder, name, AtFlags::SYMLINK_NOFOLLOW) else { continue };
+        if FileType::from_raw_mode(stat.st_mode).is_file() && stat.st_uid == own {
+            files.extend(FileName::new(name.to_bytes()).ok());
+        }
+    }
+    Ok(files)
+}
+
 impl<T: Content> Abandonable for Segment<T> {
     #[allow(unsafe_code)]
     unsafe fn abandon_in_place(this: NonNull<Self>) {
@@ -364,19 +392,10 @@ impl<T: Content> NamedConceptMgmt for Segment<T> {
     /// Lists the owner's segments only: iceoryx2 takes a name that begins like one and does not go on
     /// like one, which any user can make, for a defect and panics.
     fn list_cfg(config: &Configuration<T>) -> Result<Vec<FileName>, NamedConceptListError> {
-        let own = geteuid().as_raw();
-        let is_own = |file: &Metadata| file.is_file() && file.uid() == own;
-        // By name first: other groups' segments, of which there may be many, are not looked at.
         let (prefix, suffix) = (config.get_prefix().as_bytes(), config.get_suffix().as_bytes());
-        let is_named = |entry: &DirEntry| {
-            let name = entry.file_name();
-            name.as_bytes().starts_with(prefix) && name.as_bytes().ends_with(suffix)
-        };
-        let entries = std::fs::read_dir(SHM).map_err(|_| NamedConceptListError::InternalError)?;
-        let entries = entries.flatten().filter(is_named);
-        let entries = entries.filter(|entry| entry.metadata().is_ok_and(|file| is_own(&file)));
-        let names = entries.filter_map(|entry| FileName::new(entry.file_name().as_bytes()).ok());
-        Ok(names.filter_map(|name| config.extract_name_from_file(&name)).collect())
+        let is_named = |name: &[u8]| name.starts_with(prefix) && name.ends_with(suffix);
+        let files = own_files(is_named).map_err(|_| NamedConceptListError::InternalError)?;
+        Ok(files.iter().filter_map(|file| config.extract_name_from_file(file)).collect())
     }
 
     #[allow(unsafe_code)]

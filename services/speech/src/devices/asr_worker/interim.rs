@@ -7,6 +7,7 @@ use crossbeam_channel::{Receiver, Sender};
 
 use crate::In;
 use crate::devices::recogniser::{InterimDecoder, InterimDecoderOpener};
+use crate::devices::worker_thread::lower_priority;
 
 /// Blocks of samples that may wait: more than a second.
 pub(super) const BLOCKS_MAX: usize = 4;
@@ -19,8 +20,7 @@ pub(super) fn run(
     blocks: &Receiver<(u64, Vec<i16>)>,
     events: &Sender<In<'static>>,
 ) {
-    // Without the permission it runs at normal priority.
-    let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), NICENESS);
+    lower_priority(NICENESS);
     let Some(decoder) = open() else { return };
     let mut utterance = OngoingUtterance { decoder, sound: 0, text: String::new() };
     for (sound, samples) in blocks {

@@ -16,6 +16,8 @@ use std::path::Path;
 
 use scene::Scene;
 
+use crate::devices::worker_thread::in_background;
+
 pub use command::{Command, CommandOptions};
 pub use ensemble::{Ensemble, Heard, SecondView, is_voice};
 pub use first_view::FirstView;
@@ -135,7 +137,8 @@ impl Backend {
     ) -> Result<(Box<dyn Recogniser>, Vec<String>), RecogniserUnavailable> {
         Ok(match self {
             Self::PocketSphinx(options) => {
-                let recogniser = PocketSphinx::open(scene, options)?;
+                // Half of what a start of the group costs, and nobody has spoken yet.
+                let recogniser = in_background(|| PocketSphinx::open(scene, options))?;
                 let unpronounceable = recogniser.unpronounceable().to_vec();
                 (Box::new(recogniser), unpronounceable)
             }

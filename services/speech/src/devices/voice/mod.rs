@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, SendError, Sender, TryRecvError, unbounded};
 
 use crate::devices::child_process::End;
-use crate::devices::worker_thread::{QueueError, WorkerThread};
+use crate::devices::worker_thread::{QueueError, WorkerThread, in_background};
 use crate::{PlaybackEvent, PlaybackState};
 pub use options::{VoiceMode, VoiceOptions};
 pub use player::Player;
@@ -80,7 +80,7 @@ impl Voice {
         let current = Arc::clone(&generation);
         let thread = WorkerThread::start(WAITING_MAX, move |prompts| {
             let mut synthesiser = Synthesiser::new(&options);
-            let output = choose(&options, &mut synthesiser);
+            let output = in_background(|| choose(&options, &mut synthesiser));
             let (mode, cache) = (options.mode, options.audio_dir.as_deref().and_then(cache));
             // Without a receiver of its events the voice has no more to do.
             if events.send(VoiceEvent::Output(output.clone())).is_ok() {
