@@ -105,6 +105,7 @@ fn service(service: Service) -> ServiceSpec {
     ServiceSpec {
         name: service.name,
         command: service.command,
+        is_shipped: false,
         after: service.after,
         critical: service.critical,
         start_deadline: Duration::from_millis(service.start_ms),

@@ -57,6 +57,8 @@ pub struct ServiceSpec {
     pub name: String,
     /// Program and arguments. A program without a slash is looked for in `PATH`.
     pub command: Vec<String>,
+    /// True if the program is the one that is shipped.
+    pub is_shipped: bool,
     /// Services that must be ready before this one is started for the first time.
     pub after: Vec<String>,
     /// True if the whole group stops in order when this service is given up.
@@ -131,6 +133,7 @@ fn service(service: &ServiceConfig, settings: &Settings) -> ServiceSpec {
     ServiceSpec {
         name: service.name.clone(),
         command: service.command.clone().unwrap_or_else(|| vec![beside(&service.name)]),
+        is_shipped: service.command.is_none(),
         after: service.after.clone(),
         critical: service.critical,
         observer: service.observer,

@@ -90,6 +90,11 @@ impl Service {
         Self { spec, swapped: None, running: None, ended: None, log_from: 0 }
     }
 
+    /// Returns true if its program is the one that is shipped.
+    pub(crate) fn is_shipped(&self) -> bool {
+        self.spec.is_shipped && self.swapped.is_none()
+    }
+
     /// Starts incarnation `incarnation`.
     pub(crate) fn spawn(
         &mut self,

@@ -43,6 +43,9 @@ const TICK: Duration = Duration::from_secs(1);
 /// Interval at which the group's shared files are looked at: there are some fifty, which nobody ought to remove.
 const FILES_EVERY: Duration = Duration::from_secs(3);
 
+/// Time until a restart before which the cleanup is left to it: both then go on side by side.
+const SOON: Duration = Duration::from_millis(20);
+
 /// Delay of a pass after which the machine is assumed to have been suspended.
 const STANDSTILL: Duration = Duration::from_millis(500);
 
@@ -57,6 +60,8 @@ pub struct Supervisor {
     group: Group,
     services: Vec<Service>,
     admin: Option<Admin>,
+    /// Whether a process has ended whose shared memory is still to be removed.
+    is_unclean: bool,
     server: Server,
     signals: Signals,
     init_system: Notifier,
@@ -106,6 +111,9 @@ impl Supervisor {
                 self.tick(now);
             }
             self.settle(now);
+            if self.is_unclean && !self.group.restarts_before(now + SOON) {
+                self.clean();
+            }
         }
     }
 
@@ -182,13 +190,19 @@ impl Supervisor {
             self.next_look = now + FILES_EVERY;
             self.check_topics(now);
         }
-        if let Some(admin) = &self.admin {
-            // Each client that was killed would keep its places among a topic's readers and writers.
-            admin.clean_dead();
-            if self.group.state() == service::status::GroupState::Ready {
-                admin.keep_spare();
-            }
+        // Each client that was killed would keep its places among a topic's readers and writers.
+        self.clean();
+        if let Some(admin) = &self.admin
+            && self.group.state() == service::status::GroupState::Ready
+        {
+            admin.keep_spare();
         }
+    }
+
+    /// Removes the shared memory of processes that have ended.
+    fn clean(&mut self) {
+        self.is_unclean = false;
+        self.admin.iter().for_each(Admin::clean_dead);
     }
 
     fn listen(&mut self, service: usize, now: Time) {
@@ -209,7 +223,19 @@ impl Supervisor {
             return self.services[service].signal(effect);
         }
         let incarnation = self.group.machine(service).incarnation();
-        if let Err(exit) = self.services[service].spawn(incarnation, &self.around, now) {
+        // Its topics have room for one writer: the predecessor goes first, from shared memory, too. The shipped
+        // programs load meanwhile.
+        let is_held_back = self.is_unclean
+            && self.services[service].is_shipped()
+            && self.admin.as_ref().is_some_and(Admin::hold_back);
+        if self.is_unclean && !is_held_back {
+            self.clean();
+        }
+        let spawned = self.services[service].spawn(incarnation, &self.around, now);
+        if is_held_back {
+            self.clean();
+        }
+        if let Err(exit) = spawned {
             // A start that failed is never followed by another one at once.
             let effect = self.group.on(service, Event::Exited(exit), now);
             debug_assert_eq!(effect, None);
@@ -217,17 +243,15 @@ impl Supervisor {
         }
     }
 
-    /// Reaps a service's ended process, cleans up after it, and only then starts its successor.
+    /// Reaps a service's ended process and has its successor started.
     fn reap(&mut self, service: usize) {
         self.listen(service, self.now());
         let failure = self.group.machine(service).failure();
         let has_left_behind = self.note_left_behind(service);
         let ended_at = self.now();
         let Some(exit) = self.services[service].reap(failure, ended_at) else { return };
-        if let Some(admin) = &self.admin {
-            admin.clean_dead();
-            admin.make_way();
-        }
+        self.is_unclean = true;
+        self.admin.iter().for_each(Admin::make_way);
         if has_left_behind {
             self.clear_orphans();
         }

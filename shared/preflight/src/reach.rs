@@ -1,8 +1,12 @@
 //! Reachability of the objects of a scene.
 
+use std::num::NonZero;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::{iter, panic, thread};
+
 use config::{CostsFrom, Settings};
 use diagnostics::{Diagnostic, Report};
-use manipulation::{GraspError, ObjectPose, PlanError, PlanSettings, check_reachable};
+use manipulation::{GraspError, Limb, ObjectPose, PlanError, PlanSettings, check_reachable};
 use scene::{Form, Placement};
 
 use crate::{ArmSetup, Arrangement};
@@ -40,7 +44,7 @@ pub(crate) fn check(
     if has_planned {
         return;
     }
-    let found = check_reachable(&setup.robot, &poses, setup.limb, &setup.plan);
+    let found = reachable(setup, &poses, &setup.plan);
     if found.iter().all(Result::is_ok) {
         return;
     }
@@ -68,6 +72,30 @@ pub(crate) fn check(
     if let Some(error) = hand_over {
         report.add(hand_over_problem(settings, &error));
     }
+}
+
+/// Returns for each object the limb that can fetch it among the others; all processors look for them.
+fn reachable(
+    setup: &ArmSetup,
+    poses: &[ObjectPose],
+    plan: &PlanSettings,
+) -> Vec<Result<Limb, PlanError>> {
+    let next = AtomicUsize::new(0);
+    let look = || {
+        let mine = iter::from_fn(|| {
+            Some(next.fetch_add(1, Ordering::Relaxed)).filter(|i| *i < poses.len())
+        });
+        let check = |i| (i, check_reachable(&setup.robot, poses, i, setup.limb, plan));
+        mine.map(check).collect::<Vec<_>>()
+    };
+    let threads = thread::available_parallelism().map_or(1, NonZero::get).min(poses.len());
+    let mut found: Vec<_> = thread::scope(|scope| {
+        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(look)).collect();
+        let joined = threads.into_iter().map(|thread| thread.join());
+        joined.flat_map(|found| found.unwrap_or_else(|cause| panic::resume_unwind(cause))).collect()
+    });
+    found.sort_by_key(|(i, _)| *i);
+    found.into_iter().map(|(_, found)| found).collect()
 }
 
 /// Most objects for which a better place is searched: each takes a second or so.
@@ -241,7 +269,7 @@ fn reachable_elsewhere(poses: &[ObjectPose], setup: &ArmSetup) -> Vec<bool> {
         return vec![false; poses.len()];
     }
     let plan = PlanSettings { hand_over_xyz_m, ..setup.plan };
-    check_reachable(&setup.robot, poses, setup.limb, &plan).iter().map(Result::is_ok).collect()
+    reachable(setup, poses, &plan).iter().map(Result::is_ok).collect()
 }
 
 fn hand_over_problem(settings: &Settings, error: &PlanError) -> Diagnostic {

@@ -2,6 +2,7 @@
 //! folder so that groups never see each other.
 
 use crate::group::{GroupPaths, ShmName};
+use crate::shm_cleanup::await_cleanup;
 use crate::wakes::Wakes;
 use iceoryx2::prelude::*;
 use messages::schema::Schema;
@@ -179,6 +180,10 @@ impl Bus {
         let place = place.map_err(|error| {
             BusError::ipc(&paths.shm_name_file().display().to_string(), error.to_string())
         })?;
+        let is_service = identity.incarnation.0 > 0 || Service::from_name(name).is_some();
+        if is_service {
+            await_cleanup(paths);
+        }
         let config = config(&place)?;
         let node_name =
             NodeName::new(name).map_err(|e| BusError::ipc("node name", format!("{e:?}")))?;
@@ -189,7 +194,6 @@ impl Bus {
                 .signal_handling_mode(SignalHandlingMode::Disabled)
                 .create::<Ipc>()
         })?;
-        let is_service = identity.incarnation.0 > 0 || Service::from_name(name).is_some();
         let joins = if is_service { Joined::Service } else { Joined::Client };
         let (notifiers, writers) = (RefCell::default(), RefCell::default());
         let (paths, wakes) = (paths.clone(), Wakes::load(paths));

@@ -33,7 +33,7 @@ impl Polling {
     /// Sleeps until the next look is due.
     pub fn pause(&mut self) {
         std::thread::sleep(self.pause);
-        self.pause = (self.pause * 5 / 4).min(POLL_EVERY.1);
+        self.pause = (self.pause * 9 / 8).min(POLL_EVERY.1);
     }
 }
 

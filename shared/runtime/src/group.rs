@@ -239,6 +239,12 @@ impl GroupPaths {
         self.root.join("alive.lock")
     }
 
+    /// Held by the supervisor while it removes what a dead service left in shared memory, for which its successor
+    /// waits.
+    pub fn cleanup_lock(&self) -> PathBuf {
+        self.run().join("cleanup.lock")
+    }
+
     /// The supervisor's control socket.
     pub fn control_socket(&self) -> PathBuf {
         self.run().join("control.sock")

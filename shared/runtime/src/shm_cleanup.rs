@@ -6,7 +6,8 @@ use crate::folders::make_private;
 use crate::group::{GroupPaths, SHM, ShmName};
 use iceoryx2::prelude::{CallbackProgression, Node, NodeState};
 use messages::Epoch;
-use rustix::fs::{FallocateFlags, fallocate};
+use rustix::fs::{FallocateFlags, FlockOperation, fallocate, flock};
+use rustix::io::Errno;
 use rustix::process::geteuid;
 use std::fs::{self, DirBuilder, File};
 use std::io::{self, ErrorKind};
@@ -34,6 +35,8 @@ pub struct Admin {
     /// What every process of the group opens.
     shared: Vec<SharedFile>,
     spare: File,
+    /// Locked while a successor has to wait for the cleanup.
+    cleanup: File,
 }
 
 /// A file in shared memory as it was made: one that is cut short or was made again is not the one that
@@ -95,6 +98,7 @@ impl Admin {
         let place = create_place(paths).map_err(failed)?;
         let spare = File::create_new(place.folder().join("spare")).map_err(failed)?;
         fallocate(&spare, FallocateFlags::empty(), 0, SPARE).map_err(|e| failed(e.into()))?;
+        let cleanup = File::create(paths.cleanup_lock()).map_err(failed)?;
         let identity = Identity { epoch, ..Identity::default() };
         let bus = Bus::open(paths, messages::SUPERVISOR, identity)?;
         let topics = Topics::create(&bus)?;
@@ -103,13 +107,20 @@ impl Admin {
         // A folder's size says nothing.
         let folder = SharedFile::now(place.folder()).map(|it| SharedFile { bytes: 0, ..it });
         let shared = files.chain(folder).collect();
-        Ok(Self { bus, _topics: topics, paths: paths.clone(), place, shared, spare })
+        Ok(Self { bus, _topics: topics, paths: paths.clone(), place, shared, spare, cleanup })
     }
 
-    /// Removes what dead processes left behind.
+    /// Lets services that start wait before they open topics, until [`Self::clean_dead`] has made room for them. So
+    /// a successor can load while its predecessor's memory is removed. Returns false if that is not possible.
+    pub fn hold_back(&self) -> bool {
+        flock(&self.cleanup, FlockOperation::NonBlockingLockExclusive).is_ok()
+    }
+
+    /// Removes what dead processes left behind, and lets waiting services go on.
     pub fn clean_dead(&self) {
         let state = self.bus.node().blocking_cleanup_dead_nodes(CLEANUP_PATIENCE);
         tracing::trace!(?state, "cleaned up after dead processes");
+        let _ = flock(&self.cleanup, FlockOperation::Unlock);
     }
 
     /// Frees the memory that is kept for restarts. Called after each reap, before the successor is
@@ -137,6 +148,13 @@ impl Admin {
         [is_named, is_filled].into_iter().all(unless_gone)
             && self.shared.iter().map(SharedFile::is_whole).all(unless_gone)
     }
+}
+
+/// Waits until the supervisor holds nobody back.
+pub(crate) fn await_cleanup(paths: &GroupPaths) {
+    // A group without a supervisor has no such file. A lock ends with its holder.
+    let Ok(file) = File::open(paths.cleanup_lock()) else { return };
+    while flock(&file, FlockOperation::LockShared) == Err(Errno::INTR) {}
 }
 
 fn is_gone(error: &io::Error) -> bool {
@@ -208,4 +226,40 @@ fn entries(prefix: &str) -> impl Iterator<Item = PathBuf> {
     let all = fs::read_dir(SHM).into_iter().flatten().flatten();
     all.filter(move |entry| entry.file_name().to_string_lossy().starts_with(prefix))
         .map(|entry| entry.path())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+mod tests {
+    use super::*;
+    use crate::group::GroupName;
+    use messages::Incarnation;
+    use std::sync::mpsc;
+
+    #[test]
+    fn service_that_is_held_back_joins_after_the_cleanup() {
+        let home = tempfile::tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &GroupName::new("held").unwrap()).unwrap();
+        let admin = Admin::open(&paths, Epoch(1)).unwrap();
+        let (joined, news) = mpsc::channel();
+        let join = |incarnation: u32| {
+            let identity = Identity { epoch: Epoch(1), incarnation: Incarnation(incarnation) };
+            Bus::open(&paths, "policy", identity).unwrap();
+            joined.send(incarnation).unwrap();
+        };
+        std::thread::scope(|scope| {
+            scope.spawn(|| join(1)).join().unwrap();
+            assert_eq!(news.recv(), Ok(1), "nobody is held back");
+            assert!(admin.hold_back());
+            scope.spawn(|| join(2));
+            // Clients do not wait for a service that starts.
+            Bus::open(&paths, "client", Identity { epoch: Epoch(1), ..Identity::default() })
+                .unwrap();
+            assert!(news.recv_timeout(Duration::from_millis(100)).is_err());
+            admin.clean_dead();
+            assert_eq!(news.recv(), Ok(2));
+        });
+        drop(admin);
+        remove_leftovers(&paths);
+    }
 }

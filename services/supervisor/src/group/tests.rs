@@ -22,6 +22,7 @@ pub(crate) fn service(name: &str, after: &[&str]) -> ServiceSpec {
     ServiceSpec {
         name: name.into(),
         command: vec!["true".into()],
+        is_shipped: false,
         after: after.iter().map(|&name| name.into()).collect(),
         critical: false,
         observer: false,
@@ -119,6 +120,21 @@ fn observer_neither_delays_nor_degrades_its_group() {
     group.on(1, CRASH, NOW);
     settle(&mut group);
     assert_eq!(group.state(), GroupState::Degraded, "the others count as before");
+}
+
+#[test]
+fn restart_is_foreseen_while_a_service_pauses_before_it() {
+    let mut group = group(CHAIN);
+    up(&mut group);
+    let later = NOW + Duration::from_secs(60);
+    assert!(!group.restarts_before(later), "all run");
+    assert_eq!(group.on(1, CRASH, NOW), Some(Effect::Spawn));
+    assert!(!group.restarts_before(later), "the first restart is at once");
+    assert_eq!(group.on(1, CRASH, NOW), None);
+    let at = group.machine(1).restarts_at().unwrap();
+    assert!(!group.restarts_before(at) && group.restarts_before(later));
+    assert_eq!(group.settle(at), Some((1, Effect::Spawn)));
+    assert!(!group.restarts_before(later), "it has been started");
 }
 
 #[test]

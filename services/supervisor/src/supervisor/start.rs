@@ -107,6 +107,7 @@ pub(super) fn start(
         group,
         services,
         admin: Some(admin),
+        is_unclean: false,
         server,
         signals,
         init_system,

@@ -92,21 +92,21 @@ pub(crate) fn cheapest<'a>(
 /// Progress from which on a longer search may help: the grasp itself and its lift are possible.
 const BEYOND_HOLD: usize = 5;
 
-/// For each object, the limb that can fetch it from the neutral posture among the others, or why
-/// none can: what a scene is checked for before anything moves. Ways between are not searched.
+/// The limb that can fetch object `i` from the neutral posture among the others: what a scene is checked for before
+/// anything moves. Ways between are not searched.
+///
+/// # Errors
+/// As [`fetching_limb`].
 pub fn check_reachable(
     robot: &Robot,
     objects: &[ObjectPose],
+    i: usize,
     limb: Option<Limb>,
     settings: &PlanSettings,
-) -> Vec<Result<Limb, PlanError>> {
-    let cuboids: Vec<Cuboid> = objects.iter().map(ObjectPose::cuboid).collect();
-    let check = |i: usize| {
-        let mut others = cuboids.clone();
-        others.remove(i);
-        fetching_limb(robot, &objects[i], limb, &others, settings)
-    };
-    (0..objects.len()).map(check).collect()
+) -> Result<Limb, PlanError> {
+    let mut others: Vec<Cuboid> = objects.iter().map(ObjectPose::cuboid).collect();
+    others.remove(i);
+    fetching_limb(robot, &objects[i], limb, &others, settings)
 }
 
 /// The limb that can fetch one object from the neutral posture among `others`; see

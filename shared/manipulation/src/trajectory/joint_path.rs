@@ -1,5 +1,7 @@
 //! Ways through joint space that touch nothing.
 
+use std::iter;
+
 use crate::kinematics::limb::{Joints, distance};
 use crate::kinematics::limits::PositionLimits;
 use crate::random::Random;
@@ -34,11 +36,11 @@ pub(crate) fn simple(
     if line_clear(from, to, clear) {
         return Some(vec![*from, *to]);
     }
-    via_postures
-        .iter()
-        .filter(|via| line_clear(from, via, clear) && line_clear(via, to, clear))
-        .min_by(|a, b| length(&[*from, **a, *to]).total_cmp(&length(&[*from, **b, *to])))
-        .map(|via| vec![*from, *via, *to])
+    let mut ways: Vec<[Joints; 3]> = via_postures.iter().map(|via| [*from, *via, *to]).collect();
+    ways.sort_by(|a, b| length(a).total_cmp(&length(b)));
+    let is_clear =
+        |[from, via, to]: &[Joints; 3]| line_clear(from, via, clear) && line_clear(via, to, clear);
+    ways.into_iter().find(is_clear).map(Vec::from)
 }
 
 /// Returns the same, found by growing random trees from both ends (RRT-Connect, Kuffner and LaValle
@@ -58,13 +60,28 @@ pub(crate) fn blocking<G>(
     to: &Joints,
     blocked: &impl Fn(&Joints) -> Option<G>,
 ) -> Option<G> {
-    let steps = (largest_change(from, to) / CHECK_RAD).ceil().max(1.0) as usize;
+    let steps = steps(from, to);
     (0..=steps).find_map(|k| blocked(&mix(from, to, k as f64 / steps as f64)))
 }
 
-/// Returns whether `clear` holds along the straight line, both ends included.
+/// Returns whether `clear` holds along the straight line, both ends included. The postures between them are looked at
+/// from the middle on, ever closer: where a line is blocked, it mostly is over a good part of its length.
 fn line_clear(from: &Joints, to: &Joints, clear: &impl Fn(&Joints) -> bool) -> bool {
-    blocking(from, to, &|q| (!clear(q)).then_some(())).is_none()
+    let steps = steps(from, to);
+    let is_clear = |k: usize| clear(&mix(from, to, k as f64 / steps as f64));
+    let strides = iter::successors(Some(steps.next_power_of_two()), |stride| Some(stride / 2));
+    let mut strides = strides.take_while(|stride| *stride > 0);
+    is_clear(0)
+        && is_clear(steps)
+        && strides.all(|stride| {
+            // Odd multiples: the even ones were those of a longer stride.
+            (stride..steps).step_by(2 * stride).all(is_clear)
+        })
+}
+
+/// Steps of a straight line between the postures that are looked at.
+fn steps(from: &Joints, to: &Joints) -> usize {
+    (largest_change(from, to) / CHECK_RAD).ceil().max(1.0) as usize
 }
 
 /// Returns the largest change of any joint, radians.
@@ -200,6 +217,24 @@ mod tests {
 
     const FROM: Joints = [-0.5, 0.5, 0.0, 1.0, 0.0, 0.5, 0.0];
     const TO: Joints = [1.0, 0.5, 0.0, 1.0, 0.0, 0.5, 0.0];
+
+    #[test]
+    fn every_posture_of_a_line_is_looked_at_once() {
+        for steps in 1..40_usize {
+            let to = [(steps as f64 - 0.5) * CHECK_RAD, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let looked = std::cell::RefCell::new(Vec::new());
+            let clear = |q: &Joints| {
+                looked.borrow_mut().push(q[0]);
+                true
+            };
+            assert!(line_clear(&[0.0; 7], &to, &clear));
+            let mut looked = looked.into_inner();
+            looked.sort_by(f64::total_cmp);
+            assert_eq!((looked.len(), looked[0], looked[steps]), (steps + 1, 0.0, to[0]));
+            let gaps = looked.windows(2).map(|pair| pair[1] - pair[0]);
+            assert!(gaps.into_iter().all(|gap| gap > 0.0 && gap <= CHECK_RAD), "{looked:?}");
+        }
+    }
 
     #[test]
     fn the_direct_line_is_preferred() {

@@ -22,6 +22,8 @@ use std::rc::Rc;
 
 /// First guess at the size of a payload, bytes; it grows as needed.
 const BYTES: usize = 4096;
+/// The same for clients, of which most say a sentence and end: their memory has room for dozens of payloads.
+const CLIENT_BYTES: usize = 1024;
 /// Largest payload, bytes.
 const BYTES_MAX: usize = 16 << 20;
 
@@ -33,12 +35,13 @@ impl Bus {
     pub fn encoded_writer<T: Schema>(&self, topic: &Topic) -> Result<EncodedWriter<T>, BusError> {
         let service = open_topic!(self, topic, [u8])?;
         let name = topic.name;
+        let bytes = if topic.writer.is_some() { BYTES } else { CLIENT_BYTES };
         let publisher = Renewed::new(name, move |failing| {
             create(name, || {
                 service
                     .publisher_builder()
                     .max_loaned_samples(1)
-                    .initial_max_slice_len(BYTES)
+                    .initial_max_slice_len(bytes)
                     .allocation_strategy(AllocationStrategy::PowerOfTwo)
                     .backpressure_strategy(BackpressureStrategy::DiscardData)
                     .set_degradation_handler(failing.handler())
