@@ -7,7 +7,7 @@ use std::io::Cursor;
 use std::ops::RangeInclusive;
 
 use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
-use messages::Presented;
+use messages::SoundFile;
 use serde::{Deserialize, Serialize};
 
 /// Step sizes.
@@ -48,33 +48,17 @@ pub enum Packed {
     File(Vec<u8>),
 }
 
-/// Returns the name of the file with the sound of a line.
-pub fn file_of(presented: &Presented) -> String {
-    format!("line-{}-{}.wav", presented.prompt, presented.presentation)
-}
-
-/// Returns whether a text is the name of a line's file, and nothing else.
-pub fn is_file(name: &str) -> bool {
-    let numbers = name.strip_prefix("line-").and_then(|name| name.strip_suffix(".wav"));
-    let is_number = |text: &str| {
-        (1..=20).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit())
-    };
-    let parts = numbers.and_then(|numbers| numbers.split_once('-'));
-    parts.is_some_and(|(prompt, presentation)| is_number(prompt) && is_number(presentation))
-}
-
 impl Line {
     /// Returns the bytes that travel; `None` for more than a mirror takes.
     pub fn encode(&self) -> Option<Vec<u8>> {
         postcard::to_stdvec(self).ok().filter(|bytes| bytes.len() <= BYTES_MAX)
     }
 
-    /// Returns the name of the file, and its contents. Another version, and whoever has a robot's keys, may have sent anything.
-    pub fn decode(bytes: &[u8]) -> Option<(String, Vec<u8>)> {
+    /// Returns the file and its contents. Another version, and whoever has a robot's keys, may have sent anything.
+    pub fn decode(bytes: &[u8]) -> Option<(SoundFile, Vec<u8>)> {
         let bytes = Some(bytes).filter(|bytes| bytes.len() <= BYTES_MAX)?;
         let Self { file, sound } = postcard::from_bytes(bytes).ok()?;
-        is_file(&file).then_some(())?;
-        Some((file, sound.file()?))
+        Some((SoundFile::parse(&file)?, sound.file()?))
     }
 }
 
@@ -218,7 +202,7 @@ mod tests {
         let line = |file: &str, sound| Line { file: file.to_owned(), sound }.encode();
         let sound = |rate_hz| Packed::Adpcm { rate_hz, codes: vec![0x17; 9] };
         let file = Line::decode(&line("line-1-1.wav", sound(16_000)).unwrap()).unwrap();
-        assert_eq!(file.0, "line-1-1.wav");
+        assert_eq!(file.0.to_string(), "line-1-1.wav");
         for rate_hz in [0, 999, 192_001, u32::MAX] {
             assert_eq!(Line::decode(&line("line-1-1.wav", sound(rate_hz)).unwrap()), None);
         }
@@ -235,18 +219,6 @@ mod tests {
         for other in [b"RIFF".to_vec(), Vec::new(), [&file(&[1, 2])[..30], &[9]].concat()] {
             assert_eq!(Packed::of(other.clone()), Packed::File(other.clone()));
             assert_eq!(Packed::of(other.clone()).file(), Some(other));
-        }
-    }
-
-    #[test]
-    fn names_of_lines_lead_nowhere_else() {
-        let presented = Presented { prompt: 12, presentation: 1, ..Presented::default() };
-        assert_eq!(file_of(&presented), "line-12-1.wav");
-        assert!(is_file("line-12-1.wav"));
-        for other in
-            ["", "line-1-1.txt", "line-../x.wav", "/line-1-1.wav", "line-1.wav", "line--.wav"]
-        {
-            assert!(!is_file(other), "{other}");
         }
     }
 }

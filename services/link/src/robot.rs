@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use config::Settings;
-use messages::{AudioChunk, Injection, Receipt, Service, topics};
+use messages::{AudioChunk, Injection, Receipt, Service, SoundFile, topics};
 use service::bus::{EncodedWriter, Reader, WakeListener, Writer};
 use service::client::{Client, random_number};
 use service::control::{Watched, watch_supervisor};
@@ -87,9 +87,9 @@ struct Robot {
     presence: Presence,
     presence_sent: Option<Time>,
     /// File of the line whose sound was sent last.
-    line_sent: String,
-    /// The latest line, by its file's name, as it travels.
-    line: Option<(String, Vec<u8>)>,
+    line_sent: Option<SoundFile>,
+    /// The latest line, by its file, as it travels.
+    line: Option<(SoundFile, Vec<u8>)>,
     is_ending: Arc<AtomicBool>,
 }
 
@@ -155,7 +155,7 @@ impl Robot {
             senders: None,
             presence,
             presence_sent: None,
-            line_sent: String::new(),
+            line_sent: None,
             line: None,
             is_ending,
         })

@@ -21,7 +21,7 @@ use config::Settings;
 use crossbeam_channel::Receiver;
 use messages::{
     Activity, AppliedMark, ArmStatus, AudioChunk, EarState, Hearing, Injection, MotionCommand,
-    Partial, Presented, Receipt, RobotAct, Service, Utterance, topics,
+    Partial, Presented, Receipt, RobotAct, Service, SoundFile, Utterance, topics,
 };
 use service::bus::{EncodedReader, PortError, Reader, Writer};
 use service::exit::Failure;
@@ -131,8 +131,8 @@ impl SpeechShell {
 
     fn speak(&self, PlaybackRequest { playback, prompt, presentation, text }: &PlaybackRequest) {
         self.voice.interrupt();
-        let name = format!("{prompt}-{presentation}");
-        if let Err(error) = self.voice.speak(*playback, &name, text) {
+        let file = SoundFile { prompt: prompt.0, presentation: *presentation };
+        if let Err(error) = self.voice.speak(*playback, file, text) {
             tracing::warn!("prompt not spoken: the voice is {error}");
         }
     }

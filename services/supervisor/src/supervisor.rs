@@ -43,6 +43,8 @@ const TICK: Duration = Duration::from_secs(1);
 /// Interval at which the group's shared files are looked at: there are some fifty, which nobody ought to remove.
 const FILES_EVERY: Duration = Duration::from_secs(3);
 
+/// Longest interval at which dead clients are looked for; as long as there are clients, it is each tick.
+const CLEANUP_EVERY: Duration = Duration::from_secs(10);
 /// Time until a restart before which the cleanup is left to it: both then go on side by side.
 const SOON: Duration = Duration::from_millis(20);
 
@@ -78,6 +80,8 @@ pub struct Supervisor {
     next_tick: Time,
     /// When the shared files are looked at next.
     next_look: Time,
+    /// When dead clients are looked for next, even if there seem to be none.
+    next_cleanup: Time,
     reported_ready: bool,
     taken: File,
 }
@@ -191,12 +195,21 @@ impl Supervisor {
             self.check_topics(now);
         }
         // Each client that was killed would keep its places among a topic's readers and writers.
-        self.clean();
+        if now >= self.next_cleanup || self.has_clients() {
+            self.next_cleanup = now + CLEANUP_EVERY;
+            self.clean();
+        }
         if let Some(admin) = &self.admin
             && self.group.state() == service::status::GroupState::Ready
         {
             admin.keep_spare();
         }
+    }
+
+    /// Returns true if processes have joined that it has not started, which may have been killed.
+    fn has_clients(&self) -> bool {
+        let own = 1 + self.services.iter().filter(|service| service.running.is_some()).count();
+        self.admin.as_ref().is_some_and(|admin| admin.joined() > own)
     }
 
     /// Removes the shared memory of processes that have ended.

@@ -159,8 +159,8 @@ pub(crate) fn config(name: &ShmName) -> Result<Config, BusError> {
     let folder = name.folder();
     let root = Path::new(folder.as_os_str().as_encoded_bytes());
     config.global.set_root_path(&root.map_err(|_| bad("iceoryx2 folder"))?);
-    // Only the supervisor cleans up after the dead: right after it has reaped them, before it
-    // starts a successor. Others would race it at every start.
+    // Only the supervisor cleans up after the dead: right after it has reaped them, before a
+    // successor opens topics. Others would race it at every start.
     config.global.node.cleanup_dead_nodes_on_creation = false;
     config.global.node.cleanup_dead_nodes_on_destruction = false;
     config.global.service.cleanup_dead_nodes_on_open = false;

@@ -9,8 +9,10 @@ use messages::Epoch;
 use rustix::fs::{FallocateFlags, FlockOperation, fallocate, flock};
 use rustix::io::Errno;
 use rustix::process::geteuid;
+use std::ffi::OsStr;
 use std::fs::{self, DirBuilder, File};
 use std::io::{self, ErrorKind};
+use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -114,6 +116,13 @@ impl Admin {
     /// a successor can load while its predecessor's memory is removed. Returns false if that is not possible.
     pub fn hold_back(&self) -> bool {
         flock(&self.cleanup, FlockOperation::NonBlockingLockExclusive).is_ok()
+    }
+
+    /// Returns the number of processes that have joined the group and not left it, be they dead.
+    pub fn joined(&self) -> usize {
+        let nodes = fs::read_dir(self.place.folder().join("nodes")).into_iter().flatten().flatten();
+        let is_monitor = |name: &OsStr| name.as_bytes().ends_with(b".node_monitor");
+        nodes.filter(|entry| is_monitor(&entry.file_name())).count()
     }
 
     /// Removes what dead processes left behind, and lets waiting services go on.
@@ -250,6 +259,7 @@ mod tests {
         std::thread::scope(|scope| {
             scope.spawn(|| join(1)).join().unwrap();
             assert_eq!(news.recv(), Ok(1), "nobody is held back");
+            assert_eq!(admin.joined(), 1, "the supervisor");
             assert!(admin.hold_back());
             scope.spawn(|| join(2));
             // Clients do not wait for a service that starts.

@@ -14,7 +14,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use config::Settings;
 use messages::{
     Injection, InteractionId, JointStates, Observation, Outcome, Partial, RobotAct, Service,
-    TrajectoryView, WorldView, topics,
+    SoundFile, TrajectoryView, WorldView, topics,
 };
 use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, Reader};
 use service::client::Client;
@@ -31,7 +31,6 @@ use crate::hub::{Hub, ViewerId};
 use crate::live::feed::Feed;
 use crate::metrics::Tally;
 use crate::server::App;
-use crate::server::routes::sound_file;
 use crate::study::Study;
 use crate::view_model::{Now, Transcript, ViewModel};
 use crate::voice::Voice;
@@ -203,9 +202,9 @@ impl Bridge {
         acts.iter().for_each(|act| model.on_act(act));
         arrived.activity.into_iter().for_each(|activity| model.on_activity(activity));
         if let Some(presented) = arrived.presented {
-            let line = format!("line-{}-{}.wav", presented.prompt, presented.presentation);
-            let sound = self.voice_dir.as_deref().and_then(|folder| sound_file(folder, &line));
-            model.on_presented(presented, sound.is_some_and(|file| file.is_file()), now);
+            let file = SoundFile::of(&presented).to_string();
+            let has_sound = self.voice_dir.as_ref().is_some_and(|dir| dir.join(file).is_file());
+            model.on_presented(presented, has_sound, now);
         }
         if let Some(hearing) = arrived.hearing {
             tally.on_hearing(&hearing, metrics);

@@ -1,6 +1,5 @@
 //! Responses to single requests.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -10,6 +9,7 @@ use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{ConnectInfo, Path, Query, State};
 use axum::http::{HeaderMap, Method, Response, StatusCode, Uri, header};
 use axum::response::{AppendHeaders, IntoResponse, Redirect};
+use messages::SoundFile;
 use serde::{Deserialize, Serialize};
 use service::Span;
 use service::clock;
@@ -200,9 +200,10 @@ pub(super) async fn urdf(State(app): State<Arc<App>>) -> Response<Body> {
 
 pub(super) async fn voice(State(app): State<Arc<App>>, Path(line): Path<String>) -> Response<Body> {
     let none = || (StatusCode::NOT_FOUND, "sound not found\n").into_response();
-    let Some(file) = app.voice_dir.as_deref().and_then(|folder| sound_file(folder, &line)) else {
+    let (Some(folder), Some(file)) = (&app.voice_dir, SoundFile::parse(&line)) else {
         return none();
     };
+    let file = folder.join(file.to_string());
     let read = tokio::task::spawn_blocking(move || {
         let small = std::fs::metadata(&file).is_ok_and(|file| file.len() <= SOUND_MAX);
         small.then(|| std::fs::read(file).ok()).flatten()
@@ -214,16 +215,6 @@ pub(super) async fn voice(State(app): State<Arc<App>>, Path(line): Path<String>)
         }
         _ => none(),
     }
-}
-
-/// Returns the file of a line: `line-PROMPT-PRESENTATION.wav` only.
-pub fn sound_file(folder: &std::path::Path, line: &str) -> Option<PathBuf> {
-    let numbers = line.strip_prefix("line-")?.strip_suffix(".wav")?;
-    let (prompt, presentation) = numbers.split_once('-')?;
-    let number = |text: &str| {
-        (1..=20).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit())
-    };
-    (number(prompt) && number(presentation)).then(|| folder.join(line))
 }
 
 pub(super) async fn asset(method: Method, uri: Uri, headers: HeaderMap) -> Response<Body> {
@@ -328,26 +319,6 @@ pub fn form_field(form: &str, name: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path as FilePath;
-
-    #[test]
-    fn routes_serve_sounds_of_lines_only() {
-        let folder = FilePath::new("/f");
-        assert_eq!(sound_file(folder, "line-12-1.wav"), Some(PathBuf::from("/f/line-12-1.wav")));
-        for bad in [
-            "line-1.wav",
-            "line-1-2",
-            "line--1.wav",
-            "line-1-2-3.wav",
-            "line-a-1.wav",
-            "../line-1-1.wav",
-            "line-../1-1.wav",
-            "line-1-1.wav/..",
-            "",
-        ] {
-            assert_eq!(sound_file(folder, bad), None, "{bad}");
-        }
-    }
 
     #[test]
     fn history_refuses_what_is_not_a_part_of_it() {

@@ -7,7 +7,9 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use config::Settings;
-use messages::{AudioChunk, Injection, Presented, Receipt, ReceiptStatus, Service, Sound, topics};
+use messages::{
+    AudioChunk, Injection, Presented, Receipt, ReceiptStatus, Service, Sound, SoundFile, topics,
+};
 use service::bus::{Bus, EncodedReader, Identity, Joined, Reader, WakeListener};
 use service::exit::{Exit, Failure};
 use service::status::GroupStatus;
@@ -22,7 +24,7 @@ use super::inlets::Inlets;
 use super::local::{INCARNATION, Local};
 use super::motion::{Event, Motion};
 use super::{End, Inbound, Link, SAID};
-use crate::line::{self, Line};
+use crate::line::Line;
 use crate::names::Call;
 use crate::offset::{Offset, age_ns};
 use crate::presence::Hello;
@@ -83,7 +85,7 @@ impl Drop for WordsAsked {
 
 /// A line of the robot that waits for its sound.
 struct Waiting {
-    file: String,
+    file: SoundFile,
     presented: Presented,
     since: Time,
 }
@@ -110,7 +112,7 @@ struct Passing<'a> {
     voice_dir: Option<PathBuf>,
     line: Option<Waiting>,
     /// Lines whose sound is there or is not waited for, oldest first.
-    lines: VecDeque<String>,
+    lines: VecDeque<SoundFile>,
     tended: Time,
 }
 
@@ -282,7 +284,7 @@ impl<'a> Passing<'a> {
     /// A line that has begun is shown once its sound is there, so that pages play it. The robot sends it before; it is
     /// asked for where that was lost, or before this mirror's time.
     fn on_presented(&mut self, presented: Presented, now: Time) {
-        let file = line::file_of(&presented);
+        let file = SoundFile::of(&presented);
         let has_sound = self.voice_dir.is_none() || self.lines.contains(&file);
         if has_sound || !presented.state.get().has_begun() {
             self.line = None;
@@ -290,7 +292,7 @@ impl<'a> Passing<'a> {
         }
         let is_asked = self.line.as_ref().is_some_and(|line| line.file == file);
         let since = self.line.as_ref().filter(|_| is_asked).map_or(now, |line| line.since);
-        self.line = Some(Waiting { file: file.clone(), presented, since });
+        self.line = Some(Waiting { file, presented, since });
         if !is_asked {
             let sender = self.link.sender.clone();
             let take = move |bytes| drop(sender.offer(Inbound::Line(bytes)));
@@ -299,7 +301,7 @@ impl<'a> Passing<'a> {
                 session,
                 keys,
                 Call::Line,
-                file.into_bytes(),
+                file.to_string().into_bytes(),
                 Duration::from_nanos(PATIENCE.0),
                 take,
             );
@@ -314,12 +316,12 @@ impl<'a> Passing<'a> {
             );
         };
         // Whole as soon as it is there.
-        let (draft, path) = (folder.join("draft"), folder.join(&file));
+        let (draft, path) = (folder.join("draft"), folder.join(file.to_string()));
         let written = std::fs::write(&draft, sound).and_then(|()| std::fs::rename(&draft, &path));
         if let Err(error) = written {
-            tracing::warn!(file, %error, "the sound of a line is not kept");
+            tracing::warn!(%file, %error, "the sound of a line is not kept");
         }
-        self.note_line(file.clone());
+        self.note_line(file);
         if self.line.as_ref().is_some_and(|line| line.file == file) {
             self.present();
         }
@@ -335,7 +337,7 @@ impl<'a> Passing<'a> {
     }
 
     /// Notes a line whose sound is there or is not waited for, and forgets the oldest one.
-    fn note_line(&mut self, file: String) {
+    fn note_line(&mut self, file: SoundFile) {
         if self.lines.contains(&file) {
             return;
         }
@@ -343,7 +345,7 @@ impl<'a> Passing<'a> {
         if self.lines.len() > LINES_KEPT
             && let Some((oldest, folder)) = self.lines.pop_front().zip(self.voice_dir.as_ref())
         {
-            let _ = std::fs::remove_file(folder.join(oldest));
+            let _ = std::fs::remove_file(folder.join(oldest.to_string()));
         }
     }
 

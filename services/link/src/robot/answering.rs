@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use messages::{AudioChunk, PresentationState, RequestKey, Sound};
+use messages::{AudioChunk, PresentationState, RequestKey, Sound, SoundFile};
 use service::clock;
 use zenoh::query::Query;
 
 use super::Robot;
 use super::senders::Senders;
-use crate::line::{self, Line, Packed};
+use crate::line::{Line, Packed};
 use crate::names::Call;
 use crate::offset::time_ns;
 use crate::presence::Hello;
@@ -38,35 +38,35 @@ impl Robot {
     pub(super) fn send_line(&mut self) {
         let said =
             self.sources.presented().filter(|it| it.state.get() == PresentationState::Speaking);
-        let Some(file) = said.map(line::file_of).filter(|file| self.line_sent != *file) else {
+        let Some(file) = said.map(SoundFile::of).filter(|file| self.line_sent != Some(*file))
+        else {
             return;
         };
         if self.senders.as_ref().is_some_and(Senders::is_line_watched) {
-            let line = self.line(&file);
+            let line = self.line(file);
             if let Some((line, senders)) = line.zip(self.senders.as_ref()) {
                 senders.line(line);
             }
-            self.line_sent = file;
+            self.line_sent = Some(file);
         }
     }
 
-    /// One of the robot's lines, by its file's name. The latest is kept: every mirror may ask for it.
-    fn line(&mut self, file: &str) -> Option<Vec<u8>> {
+    /// One of the robot's lines, by its file. The latest is kept: every mirror may ask for it.
+    fn line(&mut self, file: SoundFile) -> Option<Vec<u8>> {
         if let Some((known, bytes)) = &self.line
-            && known == file
+            && *known == file
         {
             return Some(bytes.clone());
         }
         let folder = self.settings.voice_dir(&self.paths.run())?;
-        let sound = Packed::of(std::fs::read(folder.join(file)).ok()?);
-        let bytes = Line { file: file.to_owned(), sound }.encode()?;
-        self.line = Some((file.to_owned(), bytes.clone()));
+        let sound = Packed::of(std::fs::read(folder.join(file.to_string())).ok()?);
+        let bytes = Line { file: file.to_string(), sound }.encode()?;
+        self.line = Some((file, bytes.clone()));
         Some(bytes)
     }
 
     fn asked_line(&mut self, name: &[u8]) -> Option<Vec<u8>> {
-        let name = std::str::from_utf8(name).ok().filter(|name| line::is_file(name))?;
-        self.line(name)
+        self.line(SoundFile::parse(std::str::from_utf8(name).ok()?)?)
     }
 
     fn on_said(&mut self, query: Query, payload: &[u8]) {

@@ -21,6 +21,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, SendError, Sender, TryRecvError, unbounded};
+use messages::SoundFile;
 
 use crate::devices::child_process::End;
 use crate::devices::worker_thread::{QueueError, WorkerThread, in_background};
@@ -67,8 +68,8 @@ pub struct Voice {
 struct Prompt {
     playback: u64,
     generation: u64,
-    /// Its name in the cache.
-    name: String,
+    /// Its file in the cache.
+    file: SoundFile,
     text: String,
 }
 
@@ -94,14 +95,13 @@ impl Voice {
         (Self { generation, thread }, happened)
     }
 
-    /// Queues a prompt. `playback` identifies it in the events, `name` in the cache.
+    /// Queues a prompt. `playback` identifies it in the events, `file` is its sound's in the cache.
     ///
     /// # Errors
     /// If [`WAITING_MAX`] prompts wait already, or the thread is gone.
-    pub fn speak(&self, playback: u64, name: &str, text: &str) -> Result<(), QueueError> {
+    pub fn speak(&self, playback: u64, file: SoundFile, text: &str) -> Result<(), QueueError> {
         let generation = self.generation.load(Ordering::SeqCst);
-        let (name, text) = (name.to_owned(), text.to_owned());
-        self.thread.offer(Prompt { playback, generation, name, text })
+        self.thread.offer(Prompt { playback, generation, file, text: text.to_owned() })
     }
 
     /// Interrupts the current prompt and cancels those that wait.
@@ -238,7 +238,7 @@ impl Speaker {
 
     fn store(&mut self, prompt: &Prompt, sound: &Sound) {
         let Some(cache) = &mut self.cache else { return };
-        if let Err(error) = cache.store(&prompt.name, &sound.file) {
+        if let Err(error) = cache.store(prompt.file, &sound.file) {
             tracing::warn!(%error, "prompt audio not cached");
         }
     }

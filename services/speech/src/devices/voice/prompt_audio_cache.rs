@@ -5,10 +5,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use messages::{SoundFile, sound_file};
+
 /// Cached prompts; a typical dialogue has a tenth of it.
 pub const CACHED_MAX: usize = 64;
-/// Prefix of the cached files.
-const PREFIX: &str = "line-";
 
 /// The folder. Files of an earlier run count, and are removed first.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ impl PromptAudioCache {
         let mut found = Vec::new();
         for entry in fs::read_dir(folder)? {
             let entry = entry?;
-            if entry.file_name().to_string_lossy().starts_with(PREFIX) {
+            if entry.file_name().to_string_lossy().starts_with(sound_file::PREFIX) {
                 found.push((entry.metadata()?.modified()?, entry.path()));
             }
         }
@@ -35,10 +35,10 @@ impl PromptAudioCache {
         })
     }
 
-    /// Stores the audio of a prompt as `line-NAME.wav`, atomically.
-    pub(super) fn store(&mut self, name: &str, sound: &Path) -> io::Result<()> {
-        let part = self.folder.join(format!("{PREFIX}{name}.part"));
-        let file = self.folder.join(format!("{PREFIX}{name}.wav"));
+    /// Stores the audio of a prompt, atomically.
+    pub(super) fn store(&mut self, name: SoundFile, sound: &Path) -> io::Result<()> {
+        let file = self.folder.join(name.to_string());
+        let part = file.with_extension("part");
         fs::copy(sound, &part)?;
         fs::rename(&part, &file)?;
         self.files.retain(|known| *known != file);
@@ -73,16 +73,17 @@ mod tests {
         let to = folder.path().join("kept");
         let mut cache = PromptAudioCache::open(&to).unwrap();
         fs::write(to.join("mine.wav"), b"").unwrap();
-        (0..CACHED_MAX).for_each(|n| cache.store(&format!("{n:03}"), &sound).unwrap());
-        cache.store("000", &sound).unwrap();
+        let name = |prompt| SoundFile { prompt, presentation: 1 };
+        (0..CACHED_MAX as u64).for_each(|prompt| cache.store(name(prompt), &sound).unwrap());
+        cache.store(name(0), &sound).unwrap();
         assert_eq!(names(&to).len(), CACHED_MAX + 1, "an equal name replaces the file");
         let mut cache = PromptAudioCache::open(&to).unwrap();
-        cache.store("100", &sound).unwrap();
-        cache.store("101", &sound).unwrap();
+        cache.store(name(100), &sound).unwrap();
+        cache.store(name(101), &sound).unwrap();
         let left = names(&to);
         assert_eq!(left.len(), CACHED_MAX + 1);
         assert!(PromptAudioCache::open(Path::new("/dev/null/cache")).is_err());
-        let last = ["line-100.wav", "line-101.wav", "mine.wav"];
+        let last = ["line-100-1.wav", "line-101-1.wav", "mine.wav"];
         assert!(last.iter().all(|name| left.iter().any(|l| l == name)), "{left:?}");
     }
 }

@@ -15,6 +15,9 @@ const SOUND_SAMPLES: usize = 3_200;
 const SOUND: Duration = Duration::from_millis(200);
 
 /// Programs that stand in for espeak-ng and a player.
+/// The file of a prompt where it does not matter.
+const FILE: SoundFile = SoundFile { prompt: 1, presentation: 1 };
+
 struct Stage {
     folder: TempDir,
     options: VoiceOptions,
@@ -70,7 +73,7 @@ fn voice_synthesises_foreseen_prompts_while_it_is_silent_and_only_once() {
         thread::sleep(Duration::from_millis(5));
     }
     // The third was begun, so the second is there.
-    voice.speak(1, "1-1", "Is it white?").unwrap();
+    voice.speak(1, FILE, "Is it white?").unwrap();
     assert_eq!([events.next(), events.next()], [(1, Started), (1, Ended)]);
     assert_eq!(spoken().lines().filter(|words| *words == "Is it white?").count(), 1);
 }
@@ -117,7 +120,7 @@ fn voice_prints_prompts_or_shows_them_without_a_sound_card() {
         let VoiceOutput::Text { reason } = output else { panic!("{output:?}") };
         assert!(reason.contains(expected), "{reason}");
         for playback in [7, 8] {
-            voice.speak(playback, "a", "Which bowl would you like?").unwrap();
+            voice.speak(playback, FILE, "Which bowl would you like?").unwrap();
             assert_eq!(events.next(), (playback, Started));
             assert_eq!(events.next(), (playback, Ended));
         }
@@ -129,7 +132,7 @@ fn voice_plays_a_prompt_to_its_end() {
     let stage = Stage::new(VoiceMode::Auto, "echo \"$1\" >> \"$(dirname \"$0\")/played\"");
     let (voice, events, output) = stage.start();
     assert!(matches!(output, VoiceOutput::Aloud(_)));
-    voice.speak(1, "a", "Is it white?").unwrap();
+    voice.speak(1, FILE, "Is it white?").unwrap();
     assert_eq!((events.next(), events.next()), ((1, Started), (1, Ended)));
     let played = fs::read_to_string(stage.folder.path().join("played")).unwrap();
     assert!(played.ends_with("work/sentence-001.wav\n"), "{played}");
@@ -139,13 +142,13 @@ fn voice_plays_a_prompt_to_its_end() {
 fn voice_interruption_ends_the_current_prompt_and_cancels_the_next() {
     let stage = Stage::new(VoiceMode::Auto, ENDLESS);
     let (voice, events, _) = stage.start();
-    voice.speak(1, "a", "Is it white?").unwrap();
-    voice.speak(2, "a", "Is it small?").unwrap();
+    voice.speak(1, FILE, "Is it white?").unwrap();
+    voice.speak(2, FILE, "Is it small?").unwrap();
     assert_eq!(events.next(), (1, Started));
     let start = Instant::now();
     voice.interrupt();
     assert_eq!((events.next(), events.next()), ((1, Interrupted), (2, Interrupted)));
-    voice.speak(3, "a", "Is it big?").unwrap();
+    voice.speak(3, FILE, "Is it big?").unwrap();
     assert_eq!(events.next(), (3, Started));
     drop(voice);
     assert_eq!(events.next(), (3, Interrupted), "dropped");
@@ -158,14 +161,14 @@ fn voice_reports_failures_of_synthesis_and_player() {
     let mut stage = Stage::new(VoiceMode::Aloud, "exit 0");
     stage.options.program = Program::EspeakNg("/nonexistent/espeak-ng".into());
     let (voice, events, _) = stage.start();
-    voice.speak(1, "a", "Is it white?").unwrap();
+    voice.speak(1, FILE, "Is it white?").unwrap();
     let error = events.failure();
     assert!(error.contains("install the package espeak-ng"), "{error}");
     let breaking = "case \"$1\" in *silence.wav) ;; *) echo unplugged >&2; exit 1 ;; esac";
     let stage = Stage::new(VoiceMode::Auto, breaking);
     let (voice, events, _) = stage.start();
     for playback in [1, 2] {
-        voice.speak(playback, "a", "Is it white?").unwrap();
+        voice.speak(playback, FILE, "Is it white?").unwrap();
         assert_eq!(events.next(), (playback, Started));
         assert!(events.failure().contains("unplugged"));
     }
@@ -179,7 +182,7 @@ fn voice_prompt_lasts_as_long_as_its_audio() {
         stage.options.players = players.unwrap_or(stage.options.players);
         let (voice, events, output) = stage.start();
         assert!(matches!(output, VoiceOutput::Aloud(_)));
-        voice.speak(1, "a", "Is it white?").unwrap();
+        voice.speak(1, FILE, "Is it white?").unwrap();
         assert_eq!(events.next(), (1, Started));
         let began = Instant::now();
         assert_eq!(events.next(), (1, Ended));
@@ -194,12 +197,12 @@ fn voice_caches_audio_under_its_name() {
     let cache = stage.folder.path().join("cache");
     stage.options.audio_dir = Some(cache.clone());
     let (voice, events, _) = stage.start();
-    for (playback, name, text) in
-        [(1, "1-1", "Is it white?"), (2, "1-2", "Is it white?"), (3, "2-1", "No")]
-    {
-        voice.speak(playback, name, text).unwrap();
+    let prompts = [(1, (1, 1), "Is it white?"), (2, (1, 2), "Is it white?"), (3, (2, 1), "No")];
+    for (playback, (prompt, presentation), text) in prompts {
+        let file = SoundFile { prompt, presentation };
+        voice.speak(playback, file, text).unwrap();
         assert_eq!(events.next(), (playback, Started));
-        assert!(cache.join(format!("line-{name}.wav")).is_file(), "cached before playback");
+        assert!(cache.join(file.to_string()).is_file(), "cached before playback");
         assert_eq!(events.next(), (playback, Ended));
     }
     let work = fs::read_dir(stage.folder.path().join("work")).unwrap();
@@ -214,7 +217,7 @@ fn voice_cancels_synthesis_and_silent_playback() {
     let mut stage = Stage::new(VoiceMode::Auto, "exit 0");
     stage.options.players = none();
     let (voice, events, _) = stage.start();
-    voice.speak(1, "a", "Is it white?").unwrap();
+    voice.speak(1, FILE, "Is it white?").unwrap();
     assert_eq!(events.next(), (1, Started));
     voice.interrupt();
     assert_eq!(events.next(), (1, Interrupted));
@@ -223,7 +226,7 @@ fn voice_cancels_synthesis_and_silent_playback() {
     let program = script(&stage.folder.path().join("slow"), &slow).display().to_string();
     stage.options.program = Program::Command(vec![program, "{wav}".into(), "{text}".into()]);
     let (voice, events, _) = stage.start();
-    voice.speak(1, "a", "Is it white?").unwrap();
+    voice.speak(1, FILE, "Is it white?").unwrap();
     voice.interrupt();
     assert_eq!(events.next(), (1, Interrupted));
 }
