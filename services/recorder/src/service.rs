@@ -21,11 +21,8 @@ use service::folders::make_private;
 use service::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
 use service::{Span, Time, clock, service_loop};
 
-/// Intervals between two looks at all topics: while one of them is fast, of which its buffer holds three times as much;
-/// and else, of which it holds half as much again where the topic becomes fast meanwhile.
-const LOOK_EVERY: (Span, Span) = (Span::from_ms(100), Span::from_ms(200));
-/// Messages in one look from which on a topic is fast: the joints of an arm at rest have five at most.
-const FAST: usize = 8;
+/// Interval between two looks at all topics. Their buffers hold three times as much.
+const LOOK_EVERY: Span = Span::from_ms(100);
 /// Seconds before the end of the newest recording from which on a message may not be in it.
 const UNFLUSHED_S: f64 = 1.0;
 
@@ -95,15 +92,10 @@ impl Recorder {
     /// Takes what has arrived on all topics; it is dropped while nothing is recorded.
     fn look(&mut self, now: Time) {
         let Self { reader, ring, .. } = self;
-        let (fast, slow) = LOOK_EVERY;
-        let is_fast = match ring.clock() {
-            Some(clock) => reader.look(now, clock, &mut |sample| ring.write(sample, now)) >= FAST,
-            None => {
-                reader.skip();
-                false
-            }
-        };
-        self.next_look = now + if is_fast { fast } else { slow };
+        match ring.clock() {
+            Some(clock) => reader.look(now, clock, &mut |sample| ring.write(sample, now)),
+            None => reader.skip(),
+        }
     }
 
     fn tend(&mut self, now: Time) {
@@ -174,6 +166,7 @@ impl Cycle for Recorder {
         // Clients wake it: what they sent is gone when they end.
         if now >= self.next_look || ready.by_wake || self.is_ending {
             self.look(now);
+            self.next_look = now + LOOK_EVERY;
             // At the end, too: what was logged in the last second.
             if now >= self.next_tend || self.is_ending {
                 self.tend(now);

@@ -43,9 +43,9 @@ const TICK: Duration = Duration::from_secs(1);
 /// Interval at which the group's shared files are looked at: there are some fifty, which nobody ought to remove.
 const FILES_EVERY: Duration = Duration::from_secs(3);
 
-/// Longest interval at which dead clients are looked for; as long as there are clients, it is each tick.
-const CLEANUP_EVERY: Duration = Duration::from_secs(10);
-/// Time until a restart before which the cleanup is left to it: both then go on side by side.
+/// Dead clients are looked for at least this often, and at each tick while there are clients.
+const CLEANUP_EVERY: Duration = Duration::from_secs(3);
+/// A restart that is due within this time takes the cleanup along, so that both go on side by side.
 const SOON: Duration = Duration::from_millis(20);
 
 /// Delay of a pass after which the machine is assumed to have been suspended.

@@ -29,7 +29,7 @@ impl SoundFile {
         let numbers = name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?;
         let (prompt, presentation) = numbers.split_once('-')?;
         let file = Self { prompt: prompt.parse().ok()?, presentation: presentation.parse().ok()? };
-        // A number may be written in several ways, `+1` among them, a file has one name.
+        // A number may be written in several ways, `+1` among them; a file has one name.
         (file.to_string() == name).then_some(file)
     }
 }

@@ -31,7 +31,7 @@ pub struct Topic {
     pub readers_max: usize,
     /// Unread messages that a reader holds; the oldest gives way.
     pub buffer: usize,
-    /// Unread messages that the recorder holds, if more: it looks five to ten times a second.
+    /// Unread messages that the recorder holds, if more: it looks ten times a second.
     pub recorded: usize,
     /// Messages that a late reader still gets.
     pub history: usize,

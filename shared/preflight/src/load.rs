@@ -23,8 +23,8 @@ pub fn load(
     load_with_scene(dir, profile, overrides, None)
 }
 
-/// Does the same as [`load`], but for the check of the arm's reach where `is_known` says that these settings have
-/// passed it before: it takes most of the time.
+/// Does the same as [`load`], but skips the check of the arm's reach, which takes most of the time, if `is_known` says
+/// that these settings have passed it before.
 ///
 /// # Errors
 /// As [`load`].

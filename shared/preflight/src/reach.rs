@@ -11,6 +11,9 @@ use scene::{Form, Placement};
 
 use crate::{ArmSetup, Arrangement};
 
+/// Niceness of threads that help to check the reach.
+const NICENESS: i32 = 10;
+
 /// Most objects with a place. The plans that are tried grow with the square of their number: this
 /// many take seconds. Objects without a place are not planned, so that their number is not limited.
 const PLACED_MAX: usize = 256;
@@ -74,25 +77,34 @@ pub(crate) fn check(
     }
 }
 
-/// Returns for each object the limb that can fetch it among the others; all processors look for them.
+/// Returns for each object the limb that can fetch it among the others. The objects are divided among all processors; all
+/// but this thread give way to others, an arm that moves during a reload among them.
 fn reachable(
     setup: &ArmSetup,
     poses: &[ObjectPose],
     plan: &PlanSettings,
 ) -> Vec<Result<Limb, PlanError>> {
     let next = AtomicUsize::new(0);
-    let look = || {
+    let look = || -> Vec<_> {
         let mine = iter::from_fn(|| {
             Some(next.fetch_add(1, Ordering::Relaxed)).filter(|i| *i < poses.len())
         });
         let check = |i| (i, check_reachable(&setup.robot, poses, i, setup.limb, plan));
-        mine.map(check).collect::<Vec<_>>()
+        mine.map(check).collect()
+    };
+    let help = || {
+        let _ = rustix::process::nice(NICENESS);
+        look()
     };
     let threads = thread::available_parallelism().map_or(1, NonZero::get).min(poses.len());
     let mut found: Vec<_> = thread::scope(|scope| {
-        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(look)).collect();
-        let joined = threads.into_iter().map(|thread| thread.join());
-        joined.flat_map(|found| found.unwrap_or_else(|cause| panic::resume_unwind(cause))).collect()
+        // Without a thread it takes longer.
+        let start = |_| thread::Builder::new().spawn_scoped(scope, help).ok();
+        let helpers: Vec<_> = (1..threads).filter_map(start).collect();
+        let own = look();
+        let joined = helpers.into_iter().map(|helper| helper.join());
+        let theirs = joined.flat_map(|it| it.unwrap_or_else(|cause| panic::resume_unwind(cause)));
+        own.into_iter().chain(theirs).collect()
     });
     found.sort_by_key(|(i, _)| *i);
     found.into_iter().map(|(_, found)| found).collect()

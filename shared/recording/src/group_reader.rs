@@ -125,14 +125,12 @@ impl GroupReader {
         painter.begin(now, clock, &mut |shown| picture(&shown, numbers, show));
     }
 
-    /// Takes what has arrived on all topics. Returns the messages of the topic that had most.
-    pub fn look(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) -> usize {
+    /// Takes what has arrived on all topics.
+    pub fn look(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) {
         let Self { topics, painter, numbers, buffer, .. } = self;
-        let (mut failure, mut most) = (None, 0);
+        let mut failure = None;
         for Source { topic, channel, reader, since } in topics.iter() {
-            let mut messages = 0;
             let taken = reader.drain(&mut |stamp, message| {
-                messages += 1;
                 let sent = sent(stamp, now);
                 if sent < *since {
                     return;
@@ -157,11 +155,9 @@ impl GroupReader {
                 painter.on_message(topic, (sent, clock), message, &mut show_picture);
             });
             failure = failure.or(taken.err());
-            most = most.max(messages);
         }
         painter.show_scene(now, clock, &mut |shown| picture(&shown, numbers, show));
         self.judge(failure);
-        most
     }
 
     /// Shows the lines that were added to the services' logs.

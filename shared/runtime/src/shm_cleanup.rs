@@ -100,7 +100,8 @@ impl Admin {
         let place = create_place(paths).map_err(failed)?;
         let spare = File::create_new(place.folder().join("spare")).map_err(failed)?;
         fallocate(&spare, FallocateFlags::empty(), 0, SPARE).map_err(|e| failed(e.into()))?;
-        let cleanup = File::create(paths.cleanup_lock()).map_err(failed)?;
+        let cleanup = File::create(paths.cleanup_lock())
+            .map_err(|error| BusError::ipc("lock of the cleanup", error.to_string()))?;
         let identity = Identity { epoch, ..Identity::default() };
         let bus = Bus::open(paths, messages::SUPERVISOR, identity)?;
         let topics = Topics::create(&bus)?;
@@ -112,13 +113,16 @@ impl Admin {
         Ok(Self { bus, _topics: topics, paths: paths.clone(), place, shared, spare, cleanup })
     }
 
-    /// Lets services that start wait before they open topics, until [`Self::clean_dead`] has made room for them. So
-    /// a successor can load while its predecessor's memory is removed. Returns false if that is not possible.
+    /// Makes starting services wait before they open topics, until [`Self::clean_dead`] has made room for them: a
+    /// successor loads while its predecessor's memory is removed. Returns false if that is not possible.
     pub fn hold_back(&self) -> bool {
-        flock(&self.cleanup, FlockOperation::NonBlockingLockExclusive).is_ok()
+        let inode = |found: io::Result<fs::Metadata>| found.map(|file| file.ino()).ok();
+        // Nobody waits for a file that somebody has removed.
+        inode(self.cleanup.metadata()) == inode(fs::metadata(self.paths.cleanup_lock()))
+            && flock(&self.cleanup, FlockOperation::NonBlockingLockExclusive).is_ok()
     }
 
-    /// Returns the number of processes that have joined the group and not left it, be they dead.
+    /// Returns the number of processes that have joined the group and not left it, dead ones included.
     pub fn joined(&self) -> usize {
         let nodes = fs::read_dir(self.place.folder().join("nodes")).into_iter().flatten().flatten();
         let is_monitor = |name: &OsStr| name.as_bytes().ends_with(b".node_monitor");
@@ -269,6 +273,8 @@ mod tests {
             admin.clean_dead();
             assert_eq!(news.recv(), Ok(2));
         });
+        fs::remove_file(paths.cleanup_lock()).unwrap();
+        assert!(!admin.hold_back(), "nobody would wait");
         drop(admin);
         remove_leftovers(&paths);
     }

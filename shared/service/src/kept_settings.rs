@@ -71,17 +71,24 @@ pub fn are_checked(paths: &GroupPaths, settings: &Settings) -> bool {
 
 /// Notes that settings which are kept have passed every check of this program.
 pub fn note_checked(paths: &GroupPaths, settings: &Settings) {
-    let Some(own) = own_program() else { return };
-    if let Err(error) = fs::write(folder(paths, settings).join(CHECKED_FILE), own) {
+    let (Some(own), file) = (own_program(), folder(paths, settings).join(CHECKED_FILE)) else {
+        return;
+    };
+    if fs::read_to_string(&file).is_ok_and(|noted| noted == own) {
+        return;
+    }
+    if let Err(error) = fs::write(file, own) {
         tracing::debug!(%error, "settings not noted as checked; the next start checks them again");
     }
 }
 
-/// What tells this program from one that may check differently: its file.
+/// Identifies this program's file: another build may check differently. Its times of change, unlike those of
+/// modification, are not set by who installs it.
 fn own_program() -> Option<String> {
     let file = fs::metadata("/proc/self/exe").ok()?;
-    let (version, bytes) = (env!("CARGO_PKG_VERSION"), file.len());
-    Some(format!("{version} {bytes} {} {}.{:09}\n", file.ino(), file.mtime(), file.mtime_nsec()))
+    let (device, inode, bytes) = (file.dev(), file.ino(), file.len());
+    let (s, ns) = (file.ctime(), file.ctime_nsec());
+    Some(format!("{} {device} {inode} {bytes} {s}.{ns:09}\n", env!("CARGO_PKG_VERSION")))
 }
 
 /// Folders with the kept settings, newest first.
@@ -141,7 +148,7 @@ mod tests {
         keep(&paths, &others).unwrap();
         assert!(!are_checked(&paths, &others));
         let noted = folder(&paths, &ours).join(CHECKED_FILE);
-        fs::write(&noted, "0.0.1 1 1 1.000000000\n").unwrap();
+        fs::write(&noted, "0.0.1 1 1 1 1.000000000\n").unwrap();
         assert!(!are_checked(&paths, &ours), "noted by another program");
     }
 }

@@ -327,7 +327,7 @@ fn reserve(memory: &SharedMemory) -> Result<(), SegmentError> {
     }
 }
 
-/// Returns the names of this user's files in shared memory that are named so.
+/// Returns the names of this user's files in shared memory that `is_named` accepts.
 ///
 /// iceoryx2 lists them for each port of a dead process, and other groups' segments, of which there may be many,
 /// lie in the same folder: nothing is allocated for those.

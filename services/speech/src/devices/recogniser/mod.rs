@@ -137,7 +137,7 @@ impl Backend {
     ) -> Result<(Box<dyn Recogniser>, Vec<String>), RecogniserUnavailable> {
         Ok(match self {
             Self::PocketSphinx(options) => {
-                // Half of what a start of the group costs, and nobody has spoken yet.
+                // A good part of what a start of the group costs; what is said meanwhile waits.
                 let recogniser = in_background(|| PocketSphinx::open(scene, options))?;
                 let unpronounceable = recogniser.unpronounceable().to_vec();
                 (Box::new(recogniser), unpronounceable)

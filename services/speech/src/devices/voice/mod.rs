@@ -24,7 +24,7 @@ use crossbeam_channel::{Receiver, SendError, Sender, TryRecvError, unbounded};
 use messages::SoundFile;
 
 use crate::devices::child_process::End;
-use crate::devices::worker_thread::{QueueError, WorkerThread, in_background};
+use crate::devices::worker_thread::{QueueError, WorkerThread};
 use crate::{PlaybackEvent, PlaybackState};
 pub use options::{VoiceMode, VoiceOptions};
 pub use player::Player;
@@ -81,7 +81,7 @@ impl Voice {
         let current = Arc::clone(&generation);
         let thread = WorkerThread::start(WAITING_MAX, move |prompts| {
             let mut synthesiser = Synthesiser::new(&options);
-            let output = in_background(|| choose(&options, &mut synthesiser));
+            let output = choose(&options, &mut synthesiser);
             let (mode, cache) = (options.mode, options.audio_dir.as_deref().and_then(cache));
             // Without a receiver of its events the voice has no more to do.
             if events.send(VoiceEvent::Output(output.clone())).is_ok() {

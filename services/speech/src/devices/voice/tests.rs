@@ -14,10 +14,10 @@ const SOUND_SAMPLES: usize = 3_200;
 /// The same.
 const SOUND: Duration = Duration::from_millis(200);
 
-/// Programs that stand in for espeak-ng and a player.
 /// The file of a prompt where it does not matter.
 const FILE: SoundFile = SoundFile { prompt: 1, presentation: 1 };
 
+/// Programs that stand in for espeak-ng and a player.
 struct Stage {
     folder: TempDir,
     options: VoiceOptions,
