@@ -57,6 +57,8 @@ fn serve(arguments: Vec<String>) -> Result<(), Failure> {
     let lifecycle = Lifecycle::begin(&environment.paths)?;
     let settings = Settings::load_snapshot(&environment.paths.run())?;
     let mut console = Console::open(&environment, &settings)?;
+    // The main loop counts as well until its first pass, which may come after the first visitor.
+    console.app.hub.alive(clock::now());
     console.web.try_to_listen(clock::now());
     drive(lifecycle, &mut console)
 }
