@@ -40,11 +40,9 @@ mod waits;
 
 /// Polling period of sizes of logs and of processes that are dead, which notify of no change.
 const TICK: Duration = Duration::from_secs(1);
-/// Interval at which the group's shared files are looked at: there are some fifty, which nobody ought to remove.
-const FILES_EVERY: Duration = Duration::from_secs(3);
-
-/// Dead clients are looked for at least this often, and at each tick while there are clients.
-const CLEANUP_EVERY: Duration = Duration::from_secs(3);
+/// Interval at which the group's shared files are looked at (there are some fifty, which nobody ought to remove), and
+/// dead clients are looked for even if there seem to be none.
+const LOOK_EVERY: Duration = Duration::from_secs(3);
 /// A restart that is due within this time takes the cleanup along, so that both go on side by side.
 const SOON: Duration = Duration::from_millis(20);
 
@@ -78,10 +76,8 @@ pub struct Supervisor {
     next_renewal: Time,
     last_pass: Time,
     next_tick: Time,
-    /// When the shared files are looked at next.
+    /// See [`LOOK_EVERY`].
     next_look: Time,
-    /// When dead clients are looked for next, even if there seem to be none.
-    next_cleanup: Time,
     reported_ready: bool,
     taken: File,
 }
@@ -190,13 +186,13 @@ impl Supervisor {
         self.init_system.beat("WATCHDOG=1");
         self.server.drop_slow(now);
         self.bound_logs();
-        if now >= self.next_look {
-            self.next_look = now + FILES_EVERY;
+        let is_look_due = now >= self.next_look;
+        if is_look_due {
+            self.next_look = now + LOOK_EVERY;
             self.check_topics(now);
         }
         // Each client that was killed would keep its places among a topic's readers and writers.
-        if now >= self.next_cleanup || self.has_clients() {
-            self.next_cleanup = now + CLEANUP_EVERY;
+        if is_look_due || self.has_clients() {
             self.clean();
         }
         if let Some(admin) = &self.admin

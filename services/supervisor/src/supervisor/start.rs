@@ -122,7 +122,6 @@ pub(super) fn start(
         last_pass: now,
         next_tick: now + TICK,
         next_look: now,
-        next_cleanup: now,
         reported_ready: false,
         taken,
     };
