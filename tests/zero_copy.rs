@@ -8,11 +8,11 @@ use baxter::shell::BaxterShell;
 use grounding::shell::GroundingShell;
 use messages::robot::{JointCommand, Order};
 use messages::{
-    Epoch, Incarnation, JointStates, Observation, RobotAct, Service, Utterance, topics,
+    Epoch, Incarnation, JointStates, Observation, RobotAct, Service, Utterance, WireMessage, topics,
 };
 use policy::shell::PolicyShell;
 use service::Node;
-use service::bus::{Bus, Identity, Reader, WireMessage, Writer};
+use service::bus::{Bus, Identity, Reader, Writer};
 use service::group::{GroupName, GroupPaths};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Shell};

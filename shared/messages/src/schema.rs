@@ -6,6 +6,7 @@
 //! those of postcard payloads from their `Deserialize` implementation.
 
 use crate::definition::{Definition, json_schema};
+use crate::layout::Layout;
 #[doc(hidden)]
 pub use serde_reflection;
 use serde_reflection::{Error, Registry};
@@ -34,8 +35,8 @@ pub trait Schema {
     /// Returns the fields in order; of a postcard payload, the types in it.
     fn fields() -> Vec<Field>;
 
-    /// Returns the size of the struct in bytes, 0 for a postcard payload.
-    fn size() -> usize;
+    /// Returns the layout of the struct, none for a postcard payload.
+    fn layout() -> Option<Layout>;
 
     /// Returns its description for programs that do not share this code.
     fn definition() -> Definition;
@@ -125,8 +126,8 @@ macro_rules! payloads {
                 $crate::schema::payload_definition(Self::NAME, types)
             }
 
-            fn size() -> usize {
-                0
+            fn layout() -> Option<$crate::layout::Layout> {
+                None
             }
         })+
     };
@@ -207,8 +208,8 @@ macro_rules! wire_struct {
                 },)+]
             }
 
-            fn size() -> usize {
-                std::mem::size_of::<Self>()
+            fn layout() -> Option<$crate::layout::Layout> {
+                Some($crate::layout::Layout::of::<Self>())
             }
 
             fn definition() -> $crate::definition::Definition {

@@ -5,6 +5,7 @@
 //! poll.
 
 use crate::definition::Definition;
+use crate::layout::Layout;
 use crate::schema::{Schema, SchemaKey};
 use crate::*;
 
@@ -17,8 +18,8 @@ pub struct Topic {
     pub schema: fn() -> SchemaKey,
     /// Name of the payload type.
     pub payload: &'static str,
-    /// Bytes of a message; 0 for a byte slice.
-    pub size: fn() -> usize,
+    /// Layout of a message; none for encoded payloads.
+    pub layout: fn() -> Option<Layout>,
     /// Description of the payload for programs that do not share this code.
     pub definition: fn() -> Definition,
     /// The writer; clients if none is named.
@@ -45,7 +46,7 @@ impl Topic {
             name,
             schema: T::key,
             payload: T::NAME,
-            size: T::size,
+            layout: T::layout,
             definition: T::definition,
             writer,
             readers: &[],

@@ -44,7 +44,7 @@ pub enum OpenError {
 struct Source {
     topic: &'static Topic,
     channel: ChannelId,
-    reader: Box<dyn AnyReader>,
+    reader: AnyReader,
     /// Messages that were sent before are left out.
     since: Time,
 }
@@ -139,10 +139,10 @@ impl GroupReader {
                 let at_ns = clock.wall_ns(sent);
                 let mut show_data = |data: &[u8]| show(Sample { channel, sequence, at_ns, data });
                 match message {
-                    AnyMessage::Fixed(bytes, _) => {
+                    AnyMessage::Fixed(message) => {
                         buffer.clear();
                         buffer.extend(CDR_HEADER);
-                        buffer.extend(bytes);
+                        buffer.extend(message.bytes());
                         show_data(buffer);
                     }
                     AnyMessage::Encoded(bytes) => match payload::to_json(topic, bytes) {

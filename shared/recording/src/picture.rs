@@ -1,9 +1,9 @@
 //! The group as viewers draw it: robot, objects with the belief as colour, planned path, dialogue, logs.
 
-use std::any::Any;
 use std::path::PathBuf;
 
 use config::Settings;
+use messages::layout::FixedMessage;
 use messages::topics::{self, Topic};
 use messages::{
     AudioChunk, JOINT_STATE_NAMES, PolicyView, Receipt, ReceiptStatus, RobotAct, TableView,
@@ -110,7 +110,7 @@ impl Painter {
     ) {
         let wall_ns = clock.wall_ns(sent);
         match message {
-            AnyMessage::Fixed(_, message) => self.on_fixed(message, (sent, clock), show),
+            AnyMessage::Fixed(message) => self.on_fixed(message, (sent, clock), show),
             AnyMessage::Encoded(bytes) if is(topic, &topics::VIEW) => {
                 let view: Option<PolicyView> = decoded(bytes);
                 if let Some(view) = view {
@@ -148,30 +148,30 @@ impl Painter {
 
     fn on_fixed(
         &mut self,
-        message: &dyn Any,
+        message: FixedMessage<'_>,
         (sent, clock): (Monotonic, WallClock),
         show: &mut dyn FnMut(Shown),
     ) {
         let wall_ns = clock.wall_ns(sent);
-        if let Some(states) = message.downcast_ref::<messages::JointStates>() {
+        if let Some(states) = message.get::<messages::JointStates>() {
             if self.is_due(states, sent) {
                 let measured = Time::at(clock.wall_ns(Monotonic(states.at_ns)));
                 show((Picture::Joints, wall_ns, json(&self.joint_states(states, measured))));
                 self.shown_joints = Some((*states, sent));
             }
-        } else if let Some(receipt) = message.downcast_ref::<Receipt>() {
+        } else if let Some(receipt) = message.get::<Receipt>() {
             let is_heard = receipt.status == ReceiptStatus::Accepted;
             if let Some(text) = receipt.note.as_str().ok().filter(|_| is_heard) {
                 show((Picture::Dialogue, wall_ns, json(&line("user", text, wall_ns))));
             }
-        } else if let Some(act) = message.downcast_ref::<RobotAct>() {
+        } else if let Some(act) = message.get::<RobotAct>() {
             let prompt = (act.prompt, act.presentation);
             let text = act.text.as_str().ok().filter(|text| !text.is_empty());
             if let Some(text) = text.filter(|_| act.prompt != 0 && prompt != self.said) {
                 self.said = prompt;
                 show((Picture::Dialogue, wall_ns, json(&line("robot", text, wall_ns))));
             }
-        } else if let Some(chunk) = message.downcast_ref::<AudioChunk>() {
+        } else if let Some(chunk) = message.get::<AudioChunk>() {
             let bytes: Vec<u8> = chunk.sound().iter().flat_map(|it| it.to_le_bytes()).collect();
             let sound = RawAudio {
                 timestamp: Time::at(clock.wall_ns(Monotonic(chunk.taken_ns))),

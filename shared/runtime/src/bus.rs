@@ -5,18 +5,19 @@ use crate::group::{GroupPaths, ShmName};
 use crate::shm_cleanup::await_cleanup;
 use crate::wakes::Wakes;
 use iceoryx2::prelude::*;
-use messages::schema::Schema;
 use messages::topics::{self, Topic};
-use messages::{Epoch, Incarnation, Service, Stamp, WireField};
+use messages::{Epoch, Incarnation, Service, Stamp};
 use std::cell::{Cell, RefCell};
 use std::rc::{Rc, Weak};
 
 mod any;
 mod encoded;
+mod fixed;
 mod gate;
 mod open;
-mod ports;
+mod port;
 mod raw;
+mod receiver;
 mod renewed;
 mod segment;
 mod segment_error;
@@ -28,9 +29,9 @@ mod wake;
 
 pub use any::{AnyMessage, AnyReader, lost};
 pub use encoded::{EncodedReader, EncodedWriter};
+pub use fixed::{Reader, Writer};
 pub use gate::rejected;
 pub use open::Topics;
-pub use ports::{Reader, Writer};
 pub use raw::{RawReader, RawWriter};
 pub use segment_error::SegmentError;
 pub use sleeper::Woken;
@@ -262,15 +263,4 @@ impl Stamps {
         self.0.set(stamp);
         stamp
     }
-}
-
-/// A message of fixed layout.
-pub trait WireMessage:
-    Schema + WireField + ZeroCopySend + Copy + PartialEq + std::fmt::Debug + 'static
-{
-}
-
-impl<T: Schema + WireField + ZeroCopySend + Copy + PartialEq + std::fmt::Debug + 'static>
-    WireMessage for T
-{
 }

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use iceoryx2::prelude::ZeroCopySend;
+use messages::layout::Layout;
 use messages::schema::{Field, Schema};
 use messages::topics::{self, Topic};
 use messages::{
@@ -60,8 +61,8 @@ impl Schema for OtherMark {
         Vec::new()
     }
 
-    fn size() -> usize {
-        8
+    fn layout() -> Option<Layout> {
+        Some(Layout::of::<Self>())
     }
 
     fn definition() -> messages::definition::Definition {
@@ -75,10 +76,21 @@ fn topic_rejects_a_struct_of_equal_size_with_other_fields() {
     let bus = shm.join(1, 1);
     let _writer = bus.writer::<AppliedMark>(&topics::MARK).unwrap();
     let other = Topic { schema: OtherMark::key, ..topics::MARK };
-    assert_eq!(OtherMark::size(), AppliedMark::size());
+    assert_eq!(size_of::<OtherMark>(), size_of::<AppliedMark>());
     let error = shm.join(1, 1).reader::<OtherMark>(&other).unwrap_err();
     let BusError::Schema { topic, ours, .. } = &error else { panic!("{error}") };
     assert_eq!((topic.as_str(), ours), (topics::MARK.name, &OtherMark::key().to_string()));
+}
+
+#[test]
+fn topic_is_not_opened_for_messages_of_another_type() {
+    let shm = Shm::new();
+    let bus = shm.join(1, 1);
+    let expected = "expected messages AppliedMark, found Presented";
+    let error = bus.writer::<Presented>(&topics::MARK).unwrap_err().to_string();
+    assert!(error.contains(expected), "{error}");
+    let error = bus.reader::<Presented>(&topics::MARK).unwrap_err().to_string();
+    assert!(error.contains(expected), "{error}");
 }
 
 #[test]
@@ -287,9 +299,9 @@ fn any_reader_takes_every_topic_with_its_bytes_and_sequence_numbers() {
     (1..=most + 2).for_each(|seq| writer.send(&AppliedMark { seq }).unwrap());
     let mut taken = Vec::new();
     let mut take = |stamp: &messages::Stamp, message: AnyMessage<'_>| {
-        let AnyMessage::Fixed(bytes, message) = message else { panic!("{message:?}") };
-        let mark = message.downcast_ref::<AppliedMark>().unwrap();
-        assert_eq!(bytes, mark.seq.to_le_bytes());
+        let AnyMessage::Fixed(message) = message else { panic!("{message:?}") };
+        let mark = message.get::<AppliedMark>().unwrap();
+        assert_eq!(message.bytes(), mark.seq.to_le_bytes());
         taken.push((u64::from(stamp.sequence), mark.seq));
     };
     marks.drain(&mut take).unwrap();

@@ -2,13 +2,13 @@
 //! its own.
 
 use crate::Time;
-use crate::bus::{Bus, BusError, PortError, Reader, WireMessage, Writer};
-use messages::Topic;
+use crate::bus::{Bus, BusError, PortError, Reader, Writer};
 use messages::robot::{
     AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, EndpointState,
     JointCommand, JointState, JointTrajectoryPoint, Order, Report, SpeedRatio,
 };
 use messages::topics::robot;
+use messages::{Topic, WireMessage};
 
 /// Readers of orders and writers of reports; pairs are left and right.
 #[derive(Debug)]

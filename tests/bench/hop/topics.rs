@@ -185,8 +185,8 @@ impl Schema for Blob<'_> {
         Vec::new()
     }
 
-    fn size() -> usize {
-        0
+    fn layout() -> Option<messages::layout::Layout> {
+        None
     }
 
     fn definition() -> Definition {

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use messages::{
     Activity, ArmStatus, Hearing, JointStates, Observation, Partial, PolicyView, Presented,
-    Receipt, RobotAct, TableView, TrajectoryView, WorldView,
+    Receipt, RobotAct, TableView, TrajectoryView, WireMessage, WorldView,
 };
 use serde::Serialize;
 use service::Time;
-use service::bus::{Bus, BusError, EncodedWriter, PortError, WireMessage, Writer};
+use service::bus::{Bus, BusError, EncodedWriter, PortError, Writer};
 
 use crate::frame::{self, FrameError, Incoming};
 use crate::mirrored::Mirrored;

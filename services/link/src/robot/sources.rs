@@ -3,10 +3,10 @@
 use config::Settings;
 use messages::{
     Activity, ArmStatus, Hearing, JointStates, Observation, Partial, PolicyView, Presented,
-    Receipt, RobotAct, TableView, TrajectoryView, WorldView,
+    Receipt, RobotAct, TableView, TrajectoryView, WireMessage, WorldView,
 };
 use service::Time;
-use service::bus::{Bus, BusError, EncodedReader, PortError, Reader, WireMessage};
+use service::bus::{Bus, BusError, EncodedReader, PortError, Reader};
 
 use super::senders::Senders;
 use crate::frame::Outgoing;

@@ -24,7 +24,7 @@ macro_rules! layouts {
         vec![$(Layout {
             name: <$message>::NAME,
             rust: stringify!($message),
-            size: <$message>::size(),
+            size: <$message>::layout().map_or(0, |layout| layout.size),
             key: <$message>::key().to_string(),
             fields: <$message>::fields(),
         }),+]

@@ -1,5 +1,5 @@
 use super::*;
-use messages::{ActKind, FixedText, MotionPhase, PhaseWay};
+use messages::{ActKind, FixedText, MotionPhase, PhaseWay, WireMessage};
 use serde_json::Value;
 use std::path::Path;
 
@@ -30,8 +30,8 @@ fn send(painter: &mut Painter, topic: &Topic, at: u64, payload: &impl Serialize)
     shown.into_iter().map(|(.., value)| value).collect()
 }
 
-fn send_fixed<T: 'static>(painter: &mut Painter, at: u64, message: &T) -> Vec<Value> {
-    let message = AnyMessage::Fixed(&[], message);
+fn send_fixed<T: WireMessage>(painter: &mut Painter, at: u64, message: &T) -> Vec<Value> {
+    let message = AnyMessage::Fixed(FixedMessage::of(message));
     let topic = &topics::JOINTS;
     let shown = collect(|show| painter.on_message(topic, (Monotonic(at), CLOCK), message, show));
     shown.into_iter().map(|(.., value)| value).collect()

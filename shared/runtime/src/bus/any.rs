@@ -1,13 +1,12 @@
 //! Readers of any topic, for programs that look at all of them.
 
-use super::open::of_type;
-use super::{Bus, BusError, EncodedReader, PortError, Reader, WireMessage};
-use messages::schema::Schema;
+use super::gate::reject;
+use super::receiver::Receiver;
+use super::{Bus, BusError, PortError};
+use messages::Stamp;
+use messages::layout::{FixedMessage, Layout};
 use messages::topics::Topic;
-use messages::{PolicyView, Stamp};
-use std::any::Any;
 use std::cell::Cell;
-use std::fmt::Debug;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Messages that this process's readers of any topic have lost.
@@ -22,20 +21,10 @@ pub fn lost() -> u64 {
 /// A message of any topic, where it lies in shared memory.
 #[derive(Clone, Copy, Debug)]
 pub enum AnyMessage<'a> {
-    /// Of fixed layout: its bytes, and the message for those who know its type.
-    Fixed(&'a [u8], &'a dyn Any),
+    /// Of fixed layout.
+    Fixed(FixedMessage<'a>),
     /// A payload in postcard; nothing has decoded it yet.
     Encoded(&'a [u8]),
-}
-
-/// Reads a topic without knowing its type.
-pub trait AnyReader: Debug {
-    /// Hands over the messages that wait, oldest first, with their stamps. It ends even where a writer
-    /// sends as fast as it is read.
-    ///
-    /// # Errors
-    /// iceoryx2 lost its connection to a writer.
-    fn drain(&self, take: &mut dyn FnMut(&Stamp, AnyMessage<'_>)) -> Result<(), PortError>;
 }
 
 impl Bus {
@@ -43,28 +32,49 @@ impl Bus {
     ///
     /// # Errors
     /// As [`Bus::writer`].
-    pub fn any_reader(&self, topic: &Topic) -> Result<Box<dyn AnyReader>, BusError> {
-        let buffer = topic.buffer_max();
+    pub fn any_reader(&self, topic: &Topic) -> Result<AnyReader, BusError> {
+        let receiver = Receiver::open(self, topic, topic.buffer_max())?;
+        self.greet(topic);
         let numbers = (topic.writers_max == 1).then(Cell::default);
-        Ok(of_type!(topic,
-        T => Box::new(Counted { reader: self.buffered_reader::<T>(topic, buffer)?, numbers }),
-        // The type matters only to those who decode.
-        else Box::new(Counted {
-            reader: self.buffered_encoded_reader::<PolicyView>(topic, buffer)?,
-            numbers,
-        })))
+        Ok(AnyReader { receiver, layout: (topic.layout)(), numbers })
     }
 }
 
-/// A reader that counts what it has lost.
+/// Reads a topic without knowing its type, and counts what it has lost.
 #[derive(Debug)]
-struct Counted<R> {
-    reader: R,
+pub struct AnyReader {
+    receiver: Receiver,
+    /// Layout of the topic's messages, unless they are encoded.
+    layout: Option<Layout>,
     /// Incarnation and number of the latest message, where there is one writer.
     numbers: Option<Cell<(u32, u32)>>,
 }
 
-impl<R> Counted<R> {
+impl AnyReader {
+    /// Hands over the messages that wait, oldest first, with their stamps. It ends even where a writer
+    /// sends as fast as it is read.
+    ///
+    /// # Errors
+    /// iceoryx2 lost its connection to a writer.
+    pub fn drain(&self, take: &mut dyn FnMut(&Stamp, AnyMessage<'_>)) -> Result<(), PortError> {
+        for _ in 0..self.receiver.pending_max {
+            let Some(received) = self.receiver.take()? else { break };
+            let (stamp, bytes) = (received.stamp(), received.bytes());
+            let message = match &self.layout {
+                Some(layout) => FixedMessage::checked(layout, bytes).map(AnyMessage::Fixed),
+                None => Ok(AnyMessage::Encoded(bytes)),
+            };
+            match message {
+                Ok(message) => {
+                    self.count_lost(stamp);
+                    take(stamp, message);
+                }
+                Err(error) => reject(self.receiver.topic, &error),
+            }
+        }
+        Ok(())
+    }
+
     /// Counts the messages between the latest one and this one.
     fn count_lost(&self, stamp: &Stamp) {
         let Some(numbers) = &self.numbers else { return };
@@ -81,34 +91,6 @@ impl<R> Counted<R> {
 fn lost_between(before: (u32, u32), next: (u32, u32)) -> u32 {
     let is_counted = before.0 == next.0 && before.1 != 0;
     if is_counted { next.1.saturating_sub(before.1.saturating_add(1)) } else { 0 }
-}
-
-impl<T: WireMessage> AnyReader for Counted<Reader<T>> {
-    fn drain(&self, take: &mut dyn FnMut(&Stamp, AnyMessage<'_>)) -> Result<(), PortError> {
-        self.reader.drain_stamped(|message, stamp| {
-            self.count_lost(stamp);
-            take(stamp, AnyMessage::Fixed(bytes(message), message));
-        })
-    }
-}
-
-impl<T: Schema + Debug> AnyReader for Counted<EncodedReader<T>> {
-    fn drain(&self, take: &mut dyn FnMut(&Stamp, AnyMessage<'_>)) -> Result<(), PortError> {
-        self.reader.drain_stamped(|payload, stamp| {
-            self.count_lost(stamp);
-            take(stamp, AnyMessage::Encoded(payload));
-            Ok(())
-        })
-    }
-}
-
-pub(super) fn bytes<T: WireMessage>(message: &T) -> &[u8] {
-    // SAFETY: a message of fixed layout has no padding (the test of the wire layout checks each), so that
-    // every byte of it is initialised.
-    #[allow(unsafe_code)]
-    unsafe {
-        std::slice::from_raw_parts(std::ptr::from_ref(message).cast(), size_of::<T>())
-    }
 }
 
 #[cfg(test)]

@@ -1,47 +1,93 @@
-//! The sending end of a topic: its port, and the wake-ups of its readers.
+//! The sending end of a topic, whatever its messages: its port, and the wake-ups of its readers.
 
+use super::open::{notifiers, open_topic};
+use super::port::{Loan, SendPort};
 use super::renewed::Renewed;
 use super::wake::WakeNotifier;
-use super::{Bus, Connect, PortError};
+use super::{Bus, BusError, Connect, PortError, Stamps, create, segment_error};
+use iceoryx2::port::LoanError;
 use iceoryx2::port::update_connections::UpdateConnections;
+use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};
+use messages::topics::Topic;
 use std::fmt::Debug;
+use std::mem::MaybeUninit;
 use std::rc::Rc;
+
+/// First guess at the size of an encoded payload, bytes; it grows as needed.
+const BYTES: usize = 4096;
+/// The same for clients, of which most say a sentence and end: their memory has room for dozens of payloads.
+const CLIENT_BYTES: usize = 1024;
 
 /// The port of a writer, with the notifiers of the services that read its topic.
 #[derive(Debug)]
-pub(super) struct Sender<P> {
-    topic: &'static str,
-    port: Renewed<P>,
+pub(super) struct Sender {
+    pub(super) topic: &'static str,
+    port: Renewed<SendPort>,
     readers: Vec<Rc<WakeNotifier>>,
+    stamps: Stamps,
 }
 
-impl<P: UpdateConnections + Debug + 'static> Sender<P> {
-    /// Creates it, known to the bus from now on.
-    pub(super) fn open(
-        bus: &Bus,
-        topic: &'static str,
-        port: Renewed<P>,
-        readers: Vec<Rc<WakeNotifier>>,
-    ) -> Rc<Self> {
-        let sender = Rc::new(Self { topic, port, readers });
+impl Sender {
+    /// Opens the topic for a writer, known to the bus from now on.
+    pub(super) fn open(bus: &Bus, topic: &Topic) -> Result<Rc<Self>, BusError> {
+        let service = open_topic(bus, topic)?;
+        let name = topic.name;
+        let (slots, strategy) = match (topic.layout)() {
+            Some(_) => (1, AllocationStrategy::Static),
+            None if topic.writer.is_some() => (BYTES, AllocationStrategy::PowerOfTwo),
+            None => (CLIENT_BYTES, AllocationStrategy::PowerOfTwo),
+        };
+        let port = Renewed::new(name, move |failing| {
+            create(name, || {
+                service
+                    .publisher_builder()
+                    .max_loaned_samples(1)
+                    .initial_max_slice_len(slots)
+                    .allocation_strategy(strategy)
+                    .backpressure_strategy(BackpressureStrategy::DiscardData)
+                    .set_degradation_handler(failing.handler())
+                    .create()
+            })
+        })?;
+        let readers = notifiers(bus, topic)?;
+        let sender = Rc::new(Self { topic: name, port, readers, stamps: bus.stamps() });
         let known: Rc<dyn Connect> = Rc::clone(&sender) as _;
         bus.writers.borrow_mut().push(Rc::downgrade(&known));
-        sender
+        Ok(sender)
     }
 
-    /// Sends something through the port.
+    /// Returns whether a service is woken by a message.
+    pub(super) fn wakes(&self) -> bool {
+        !self.readers.is_empty()
+    }
+
+    /// Sends what `fill` writes into the memory of a message: every byte of it, unless it fails. The message has
+    /// `slots` bytes; one of fixed layout is one slot. Nobody is woken.
     ///
     /// # Errors
-    /// The port could not be made again, or `send` fails.
-    pub(super) fn with<T>(
+    /// The port could not be made again, `fill` fails, or iceoryx2 cannot send; inside, there is no memory.
+    pub(super) fn send(
         &self,
-        send: impl FnOnce(&P) -> Result<T, PortError>,
-    ) -> Result<T, PortError> {
-        self.port.with(send)
+        slots: usize,
+        fill: impl FnOnce(&mut [MaybeUninit<u8>]) -> Result<(), PortError>,
+    ) -> Result<Result<(), LoanError>, PortError> {
+        self.port.with(|port| {
+            segment_error::take();
+            let mut loan = match Loan::take(port, slots) {
+                Ok(loan) => loan,
+                Err(error) => return Ok(Err(error)),
+            };
+            loan.stamp(self.stamps.next());
+            fill(loan.memory())?;
+            // SAFETY: filled without an error, every byte has been written.
+            #[allow(unsafe_code)]
+            let sent = unsafe { loan.send() };
+            sent.map(|_| Ok(())).map_err(|e| PortError::new(self.topic, format!("{e:?}")))
+        })
     }
 }
 
-impl<P: UpdateConnections + Debug> Connect for Sender<P> {
+impl Connect for Sender {
     fn connect(&self) {
         let connected = self.port.with(|port| {
             let connected = port.update_connections();

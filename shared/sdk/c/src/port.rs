@@ -2,6 +2,7 @@
 
 use std::mem::MaybeUninit;
 
+use messages::layout::{self, WireMessage};
 use messages::schema::Schema;
 use messages::topics::Topic;
 use messages::{
@@ -11,7 +12,7 @@ use messages::{
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use service::bus::{Bus, EncodedReader, EncodedWriter, Reader, WireMessage, Writer};
+use service::bus::{Bus, EncodedReader, EncodedWriter, Reader, Writer};
 
 use crate::topic::{CTopic, find};
 use crate::{complain, group::Group, or_complain};
@@ -50,13 +51,7 @@ fn copy(bytes: &[u8], out: &mut [u8]) -> Result<usize, String> {
 
 impl<T: WireMessage> ReadBytes for Reader<T> {
     fn take(&self, out: &mut [u8]) -> Result<Option<usize>, String> {
-        let copied = self.take(|message| {
-            // SAFETY: a message of fixed layout has no padding, so that every byte of it is initialised.
-            let bytes = unsafe {
-                std::slice::from_raw_parts(std::ptr::from_ref(message).cast(), size_of::<T>())
-            };
-            copy(bytes, out)
-        });
+        let copied = self.take(|message| copy(layout::bytes(message), out));
         copied.map_err(|error| error.to_string())?.transpose()
     }
 }

@@ -1,11 +1,12 @@
 use messages::{
-    Activity, ArmStatus, Hearing, PolicyView, Presented, Receipt, ReceiptStatus, topics,
+    Activity, ArmStatus, Hearing, PolicyView, Presented, Receipt, ReceiptStatus, WireMessage,
+    topics,
 };
 use scene::Scene;
 
 use super::TableScene;
 use crate::Time;
-use crate::bus::{Bus, BusError, EncodedReader, PortError, Reader, WireMessage};
+use crate::bus::{Bus, BusError, EncodedReader, PortError, Reader};
 
 /// A prompt and which presentation of it.
 pub type PromptId = (u64, u32);

@@ -39,7 +39,7 @@ pub(super) struct Bench {
 /// A topic that is read whoever writes it.
 struct Watched {
     topic: Topic,
-    reader: Box<dyn RawReader>,
+    reader: RawReader,
 }
 
 /// A message of the service under test, or of another writer of the topic.

@@ -125,10 +125,8 @@ pub(super) fn malformed(test: &mut Test<'_>) -> Result<Kept, Broken> {
 
 /// Bytes that are no message of the topic.
 fn junk(topic: &Topic) -> Vec<(&'static str, Vec<u8>)> {
-    let len = match (topic.size)() {
-        0 => 64,
-        size => size,
-    };
+    let layout = (topic.layout)();
+    let len = layout.map_or(64, |layout| layout.size);
     let mut noise = 0x9E37_79B9_7F4A_7C15_u64;
     let mut random = |_| {
         noise ^= noise << 13;
@@ -141,7 +139,7 @@ fn junk(topic: &Topic) -> Vec<(&'static str, Vec<u8>)> {
         ("random bytes", (0..len).map(&mut random).collect()),
         ("random bytes again", (0..len).map(&mut random).collect()),
     ];
-    if (topic.size)() == 0 {
+    if layout.is_none() {
         junk.push(("an empty payload", Vec::new()));
         junk.push(("an oversized payload", (0..OVERSIZED_BYTES).map(random).collect()));
     }
