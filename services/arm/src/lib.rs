@@ -52,9 +52,15 @@ use serde::{Deserialize, Serialize};
 use service::stop_socket::{Caller, StopState};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use state::{ArmState, Cause, Record};
+use std::process::ExitCode;
 use std::sync::Arc;
 use trajectory_view::MotionView;
 use world::World;
+
+/// Runs the program: a service of a group, or an inspection of its records.
+pub fn run() -> ExitCode {
+    service::service_loop::run::<shell::ArmProgram>()
+}
 
 /// Inputs of the arm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -15,7 +15,7 @@ use service::{Span, Time};
 /// Interval of an unchanged status.
 const STATUS_EVERY: Span = Span::from_ms(250);
 /// Shortest interval of the joint states of an arm at rest, which repeat themselves.
-const REST_EVERY: Span = Span::from_ms(50);
+const REST_EVERY: Span = Span::from_ms(100);
 /// Interval of the world view while the arm moves, and while it stands.
 const WORLD_EVERY: (Span, Span) = (Span::from_ms(100), Span::from_ms(1_000));
 

@@ -30,7 +30,13 @@ use model_queue::{ModelQueue, Read};
 use rules::Rules;
 use scene::Scene;
 use service::{Effects, Event, Never, Node, NodeError, Time};
+use std::process::ExitCode;
 use whichone_sdk::grounding::{Grounder, Heard, message};
+
+/// Runs the program: a service of a group, or an inspection of its records.
+pub fn run() -> ExitCode {
+    service::service_loop::run::<shell::GroundingProgram>()
+}
 
 /// The scene and its readers.
 pub struct Config {

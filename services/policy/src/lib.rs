@@ -28,6 +28,12 @@ use messages::{
 use perceived::Perceived;
 use serde::{Deserialize, Serialize};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
+use std::process::ExitCode;
+
+/// Runs the program: a service of a group, or an inspection of its records.
+pub fn run() -> ExitCode {
+    service::service_loop::run::<shell::PolicyProgram>()
+}
 
 /// Interval at which the standing decision is sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);

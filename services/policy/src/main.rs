@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    service::service_loop::run::<policy::shell::PolicyProgram>()
+    policy::run()
 }

@@ -27,6 +27,7 @@ use messages::UtteranceSeq;
 use prompt_player::PromptPlayer;
 use record::Record;
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
+use std::process::ExitCode;
 use stream_events::StreamEvent;
 use utterance_intake::UtteranceIntake;
 
@@ -37,6 +38,11 @@ pub use io::{
     RecognitionInput,
 };
 pub use messages::Hypothesis;
+
+/// Runs the program: a service of a group, or an inspection of its records.
+pub fn run() -> ExitCode {
+    service::service_loop::run::<shell::SpeechProgram>()
+}
 
 /// Interval at which everything not yet superseded is sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);

@@ -8,7 +8,6 @@ use std::process::ExitCode;
 use messages::{SUPERVISOR, Service};
 use service::exit::{Exit, Failure};
 use service::launch::PREFIX;
-use service::service_loop;
 use whichone::output::print_error;
 
 /// A program of the group.
@@ -41,10 +40,10 @@ fn program(name: &str) -> Option<Program> {
         SUPERVISOR => supervisor::cli::run,
         ROS1 => ros1::run,
         _ => match Service::from_name(name)? {
-            Service::Speech => service_loop::run::<speech::shell::SpeechProgram>,
-            Service::Grounding => service_loop::run::<grounding::shell::GroundingProgram>,
-            Service::Policy => service_loop::run::<policy::shell::PolicyProgram>,
-            Service::Arm => service_loop::run::<arm::shell::ArmProgram>,
+            Service::Speech => speech::run,
+            Service::Grounding => grounding::run,
+            Service::Policy => policy::run,
+            Service::Arm => arm::run,
             Service::Console => console::run,
             Service::Recorder => recorder::run,
             Service::Robot => baxter::run,

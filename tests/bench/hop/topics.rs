@@ -28,10 +28,13 @@ const LARGE: [Topic; 2] = [
     Topic { name: "bench/ping/large", readers: &[Service::Policy], ..topics::OBSERVATION },
     Topic { name: "bench/pong/large", readers: &[Service::Speech], ..topics::OBSERVATION },
 ];
-const ENCODED: [Topic; 2] = [
-    Topic { name: "bench/ping/bytes", schema: Blob::key, payload: Blob::NAME, ..FIXED[0] },
-    Topic { name: "bench/pong/bytes", schema: Blob::key, payload: Blob::NAME, ..FIXED[1] },
-];
+const ENCODED: [Topic; 2] =
+    [encoded("bench/ping/bytes", &FIXED[0]), encoded("bench/pong/bytes", &FIXED[1])];
+
+const fn encoded(name: &'static str, like: &Topic) -> Topic {
+    let (readers, buffer) = (like.readers, like.buffer);
+    Topic { readers, buffer, ..Topic::new::<Blob<'_>>(name, like.writer) }
+}
 
 /// A group's shared memory.
 pub(super) struct Group {

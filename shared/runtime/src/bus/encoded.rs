@@ -1,6 +1,7 @@
 //! Readers and writers of topics whose payloads are postcard in a byte slice.
 
 use super::gate::reject;
+use super::open::has_messages;
 use super::receiver::Receiver;
 use super::segment_error::{self, SegmentError};
 use super::sender::Sender;
@@ -23,6 +24,7 @@ impl Bus {
     /// # Errors
     /// As [`Bus::writer`].
     pub fn encoded_writer<T: Schema>(&self, topic: &Topic) -> Result<EncodedWriter<T>, BusError> {
+        has_messages::<T>(topic)?;
         let sender = Sender::open(self, topic)?;
         let (is_view, is_short) = (topic.writer.is_some(), Cell::new(false));
         Ok(EncodedWriter { is_view, is_short, sender, _payload: PhantomData })
@@ -33,6 +35,7 @@ impl Bus {
     /// # Errors
     /// As [`Bus::writer`].
     pub fn encoded_reader<T: Schema>(&self, topic: &Topic) -> Result<EncodedReader<T>, BusError> {
+        has_messages::<T>(topic)?;
         let receiver = Receiver::open(self, topic, topic.buffer)?;
         self.greet(topic);
         Ok(EncodedReader { receiver, _payload: PhantomData })

@@ -4,6 +4,7 @@
 //! matters.
 
 use super::gate::reject;
+use super::open::has_messages;
 use super::receiver::Receiver;
 use super::sender::Sender;
 use super::{Bus, BusError, Connect, PortError};
@@ -39,17 +40,6 @@ impl Bus {
         self.greet(topic);
         Ok(Reader { receiver, _message: PhantomData })
     }
-}
-
-/// Fails if the topic has other messages.
-fn has_messages<T: WireMessage>(topic: &Topic) -> Result<(), BusError> {
-    if topic.payload == T::NAME {
-        return Ok(());
-    }
-    Err(BusError::ipc(
-        topic.name,
-        format!("expected messages {}, found {}", topic.payload, T::NAME),
-    ))
 }
 
 /// Writes a fixed-layout topic.

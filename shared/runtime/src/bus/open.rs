@@ -9,6 +9,8 @@ use iceoryx2::service::builder::publish_subscribe::{
     PublishSubscribeOpenError, PublishSubscribeOpenOrCreateError,
 };
 use iceoryx2::service::port_factory::event::PortFactory;
+use messages::layout::Layout;
+use messages::schema::Schema;
 use messages::topics::{self, NODES_MAX, Topic};
 use std::rc::Rc;
 
@@ -32,6 +34,16 @@ pub(super) fn open_topic(bus: &Bus, topic: &Topic) -> Result<TopicPorts, BusErro
         .enable_safe_overflow(true);
     let builder = port::with_layout(builder, (topic.layout)()).map_err(failed)?;
     builder.open_or_create_with_attributes(&required).map_err(|error| refused(topic, &error))
+}
+
+/// Fails unless the topic has messages of this type and layout: its ports would take their bytes for others.
+pub(super) fn has_messages<T: Schema>(topic: &Topic) -> Result<(), BusError> {
+    let size = |layout: Option<Layout>| layout.map(|layout| layout.size);
+    if topic.payload == T::NAME && size((topic.layout)()) == size(T::layout()) {
+        return Ok(());
+    }
+    let cause = format!("expected messages {}, found {}", topic.payload, T::NAME);
+    Err(BusError::ipc(topic.name, cause))
 }
 
 fn schema_attribute(topic: &Topic) -> Result<AttributeVerifier, String> {
