@@ -43,6 +43,18 @@ pub(crate) fn processes() -> Vec<Process> {
         .collect()
 }
 
+/// This process's children, also those that it has inherited, for which all processes need not be looked through.
+/// `None` where the kernel does not list them. None is missed as long as the caller is who reaps them.
+pub(crate) fn children() -> Option<Vec<Pid>> {
+    let mut children = Vec::new();
+    for thread in fs::read_dir("/proc/self/task").ok()? {
+        let listed = fs::read_to_string(thread.ok()?.path().join("children")).ok()?;
+        let numbers = listed.split_whitespace().map(|number| number.parse().ok());
+        children.extend(numbers.map(|number| Pid::from_raw(number?)).collect::<Option<Vec<_>>>()?);
+    }
+    Some(children)
+}
+
 /// One process, if it exists.
 pub(crate) fn process(pid: Pid) -> Option<Process> {
     // The kernel hands out the whole line at once; there may be many processes to ask for.
@@ -129,6 +141,21 @@ mod tests {
         assert!(has_open(me, &path));
         drop(file);
         assert!(!has_open(me, &path));
+    }
+
+    #[test]
+    fn children_are_listed_until_they_are_reaped() {
+        let mut child = std::process::Command::new("sleep").arg("60").spawn().unwrap();
+        let pid = Pid::from_child(&child);
+        let is_listed = || children().unwrap().contains(&pid);
+        assert!(is_listed());
+        child.kill().unwrap();
+        while !process(pid).unwrap().is_zombie {
+            std::thread::yield_now();
+        }
+        assert!(is_listed(), "it waits to be reaped");
+        child.wait().unwrap();
+        assert!(!is_listed());
     }
 
     #[test]

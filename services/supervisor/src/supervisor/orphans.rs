@@ -23,6 +23,10 @@ impl Supervisor {
     /// service started and did not end is a child of this process now, or a descendant of one.
     pub(super) fn note_left_behind(&mut self, service: usize) -> bool {
         let Some(running) = &self.services[service].running else { return true };
+        let children = procfs::children();
+        if children.is_some_and(|all| all.into_iter().all(|child| self.is_of_service(child))) {
+            return false;
+        }
         let leader = running.child.pid();
         let group = leader.as_raw_nonzero().get();
         let all = procfs::processes();
@@ -83,13 +87,20 @@ impl Supervisor {
 
     /// Children of this process that are not the process of a service.
     fn orphans(&self) -> Vec<Process> {
-        procfs::processes().into_iter().filter(|process| self.is_orphan(process)).collect()
+        let all = procfs::children().map_or_else(procfs::processes, |children| {
+            children.into_iter().filter_map(procfs::process).collect()
+        });
+        all.into_iter().filter(|process| self.is_orphan(process)).collect()
     }
 
     fn is_orphan(&self, process: &Process) -> bool {
+        process.parent == getpid().as_raw_nonzero().get() && !self.is_of_service(process.pid)
+    }
+
+    /// Returns true if this is the process of a service that has not been reaped.
+    fn is_of_service(&self, pid: Pid) -> bool {
         let mut running = self.services.iter().filter_map(|service| service.running.as_ref());
-        process.parent == getpid().as_raw_nonzero().get()
-            && !running.any(|running| running.child.pid() == process.pid)
+        running.any(|running| running.child.pid() == pid)
     }
 
     /// Returns true if a running incarnation started the process: some programs
