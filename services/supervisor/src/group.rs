@@ -169,11 +169,6 @@ impl Group {
         self.machines.iter().filter_map(Machine::deadline).min()
     }
 
-    /// Returns true if a service that has ended is to be started again before then.
-    pub fn restarts_before(&self, then: Time) -> bool {
-        self.machines.iter().filter_map(Machine::restarts_at).any(|at| at < then)
-    }
-
     /// Moves all deadlines of live services: the supervisor stood still for `by`.
     pub fn postpone(&mut self, by: Time) {
         for machine in &mut self.machines {

@@ -121,11 +121,6 @@ impl Machine {
         }
     }
 
-    /// Returns the time of its restart, if it pauses before one.
-    pub fn restarts_at(&self) -> Option<Time> {
-        matches!(self.state, State::Backoff { .. }).then_some(self.deadline).flatten()
-    }
-
     /// Returns the reason for holding it, if it is held.
     pub fn held_because(&self) -> Option<HeldBecause> {
         match self.state {

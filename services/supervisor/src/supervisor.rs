@@ -43,8 +43,6 @@ const TICK: Duration = Duration::from_secs(1);
 /// Interval at which the group's shared files are looked at (there are some fifty, which nobody ought to remove), and
 /// dead clients are looked for even if there seem to be none.
 const LOOK_EVERY: Duration = Duration::from_secs(3);
-/// A restart that is due within this time takes the cleanup along, so that both go on side by side.
-const SOON: Duration = Duration::from_millis(20);
 
 /// Delay of a pass after which the machine is assumed to have been suspended.
 const STANDSTILL: Duration = Duration::from_millis(500);
@@ -60,8 +58,8 @@ pub struct Supervisor {
     group: Group,
     services: Vec<Service>,
     admin: Option<Admin>,
-    /// Whether a process has ended whose shared memory is still to be removed.
-    is_unclean: bool,
+    /// Whether the removal of shared memory of processes that have ended has begun, and perhaps not ended.
+    is_cleanup_begun: bool,
     server: Server,
     signals: Signals,
     init_system: Notifier,
@@ -111,9 +109,6 @@ impl Supervisor {
                 self.tick(now);
             }
             self.settle(now);
-            if self.is_unclean && !self.group.restarts_before(now + SOON) {
-                self.clean();
-            }
         }
     }
 
@@ -210,7 +205,7 @@ impl Supervisor {
 
     /// Removes the shared memory of processes that have ended.
     fn clean(&mut self) {
-        self.is_unclean = false;
+        self.is_cleanup_begun = false;
         self.admin.iter().for_each(Admin::clean_dead);
     }
 
@@ -233,17 +228,11 @@ impl Supervisor {
         }
         let incarnation = self.group.machine(service).incarnation();
         // Its topics have room for one writer: the predecessor goes first, from shared memory, too. The shipped
-        // programs load meanwhile.
-        let is_held_back = self.is_unclean
-            && self.services[service].is_shipped()
-            && self.admin.as_ref().is_some_and(Admin::hold_back);
-        if self.is_unclean && !is_held_back {
+        // programs wait for the cleanup that has begun, after they have loaded.
+        if self.is_cleanup_begun && !self.services[service].is_shipped() {
             self.clean();
         }
         let spawned = self.services[service].spawn(incarnation, &self.around, now);
-        if is_held_back {
-            self.clean();
-        }
         if let Err(exit) = spawned {
             // A start that failed is never followed by another one at once.
             let effect = self.group.on(service, Event::Exited(exit), now);
@@ -259,8 +248,11 @@ impl Supervisor {
         let has_left_behind = self.note_left_behind(service);
         let ended_at = self.now();
         let Some(exit) = self.services[service].reap(failure, ended_at) else { return };
-        self.is_unclean = true;
         self.admin.iter().for_each(Admin::make_way);
+        self.is_cleanup_begun = self.admin.as_ref().is_some_and(Admin::begin_cleanup);
+        if !self.is_cleanup_begun {
+            self.clean();
+        }
         if has_left_behind {
             self.clear_orphans();
         }

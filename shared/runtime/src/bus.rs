@@ -1,8 +1,8 @@
 //! The group's shared memory: one iceoryx2 node per process, opened with the group's own prefix and
 //! folder so that groups never see each other.
 
+use crate::cleaner::await_cleanup;
 use crate::group::{GroupPaths, ShmName};
-use crate::shm_cleanup::await_cleanup;
 use crate::wakes::Wakes;
 use iceoryx2::prelude::*;
 use messages::topics::{self, Topic};

@@ -5,6 +5,7 @@
 //! it with few dependencies (`whichone-sdk`). iceoryx2 is reached through this crate alone.
 
 pub mod bus;
+mod cleaner;
 pub mod client;
 pub mod clock;
 pub mod epoch;

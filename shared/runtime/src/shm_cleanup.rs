@@ -2,12 +2,12 @@
 //! dead processes, and removal.
 
 use crate::bus::{Bus, BusError, Identity, Ipc, Topics, config};
+use crate::cleaner::Cleaner;
 use crate::folders::make_private;
 use crate::group::{GroupPaths, SHM, ShmName};
 use iceoryx2::prelude::{CallbackProgression, Node, NodeState};
 use messages::Epoch;
-use rustix::fs::{FallocateFlags, FlockOperation, fallocate, flock};
-use rustix::io::Errno;
+use rustix::fs::{FallocateFlags, fallocate};
 use rustix::process::geteuid;
 use std::ffi::OsStr;
 use std::fs::{self, DirBuilder, File};
@@ -17,8 +17,8 @@ use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Timeout for another process that is cleaning up.
-const CLEANUP_PATIENCE: Duration = Duration::from_millis(200);
+/// Timeout for another process or thread that is cleaning up.
+pub(crate) const CLEANUP_PATIENCE: Duration = Duration::from_millis(200);
 
 /// Memory kept for restarts, bytes: a successor needs its connections before its peers let go of
 /// those of its predecessor.
@@ -37,8 +37,7 @@ pub struct Admin {
     /// What every process of the group opens.
     shared: Vec<SharedFile>,
     spare: File,
-    /// Locked while a successor has to wait for the cleanup.
-    cleanup: File,
+    cleaner: Cleaner,
 }
 
 /// A file in shared memory as it was made: one that is cut short or was made again is not the one that
@@ -100,8 +99,8 @@ impl Admin {
         let place = create_place(paths).map_err(failed)?;
         let spare = File::create_new(place.folder().join("spare")).map_err(failed)?;
         fallocate(&spare, FallocateFlags::empty(), 0, SPARE).map_err(|e| failed(e.into()))?;
-        let cleanup = File::create(paths.cleanup_lock())
-            .map_err(|error| BusError::ipc("lock of the cleanup", error.to_string()))?;
+        let cleaner = Cleaner::start(paths.cleanup_lock(), config(&place)?)
+            .map_err(|error| BusError::ipc("cleanup", error.to_string()))?;
         let identity = Identity { epoch, ..Identity::default() };
         let bus = Bus::open(paths, messages::SUPERVISOR, identity)?;
         let topics = Topics::create(&bus)?;
@@ -110,16 +109,13 @@ impl Admin {
         // A folder's size says nothing.
         let folder = SharedFile::now(place.folder()).map(|it| SharedFile { bytes: 0, ..it });
         let shared = files.chain(folder).collect();
-        Ok(Self { bus, _topics: topics, paths: paths.clone(), place, shared, spare, cleanup })
+        Ok(Self { bus, _topics: topics, paths: paths.clone(), place, shared, spare, cleaner })
     }
 
-    /// Makes starting services wait before they open topics, until [`Self::clean_dead`] has made room for them: a
-    /// successor loads while its predecessor's memory is removed. Returns false if that is not possible.
-    pub fn hold_back(&self) -> bool {
-        let inode = |found: io::Result<fs::Metadata>| found.map(|file| file.ino()).ok();
-        // Nobody waits for a file that somebody has removed.
-        inode(self.cleanup.metadata()) == inode(fs::metadata(self.paths.cleanup_lock()))
-            && flock(&self.cleanup, FlockOperation::NonBlockingLockExclusive).is_ok()
+    /// Begins to remove what dead processes left behind. Until that is done, services that start wait before they open
+    /// topics: a successor loads meanwhile. Returns false if they would not wait; then nothing has begun.
+    pub fn begin_cleanup(&self) -> bool {
+        self.cleaner.begin()
     }
 
     /// Returns the number of processes that have joined the group and not left it, dead ones included.
@@ -129,11 +125,10 @@ impl Admin {
         nodes.filter(|entry| is_monitor(&entry.file_name())).count()
     }
 
-    /// Removes what dead processes left behind, and lets waiting services go on.
+    /// Removes what dead processes left behind, after what has begun.
     pub fn clean_dead(&self) {
         let state = self.bus.node().blocking_cleanup_dead_nodes(CLEANUP_PATIENCE);
         tracing::trace!(?state, "cleaned up after dead processes");
-        let _ = flock(&self.cleanup, FlockOperation::Unlock);
     }
 
     /// Frees the memory that is kept for restarts. Called after each reap, before the successor is
@@ -161,13 +156,6 @@ impl Admin {
         [is_named, is_filled].into_iter().all(unless_gone)
             && self.shared.iter().map(SharedFile::is_whole).all(unless_gone)
     }
-}
-
-/// Waits until the supervisor holds nobody back.
-pub(crate) fn await_cleanup(paths: &GroupPaths) {
-    // A group without a supervisor has no such file. A lock ends with its holder.
-    let Ok(file) = File::open(paths.cleanup_lock()) else { return };
-    while flock(&file, FlockOperation::LockShared) == Err(Errno::INTR) {}
 }
 
 fn is_gone(error: &io::Error) -> bool {
@@ -250,7 +238,7 @@ mod tests {
     use std::sync::mpsc;
 
     #[test]
-    fn service_that_is_held_back_joins_after_the_cleanup() {
+    fn service_that_starts_during_the_cleanup_joins_after_it() {
         let home = tempfile::tempdir().unwrap();
         let paths = GroupPaths::in_home(home.path(), &GroupName::new("held").unwrap()).unwrap();
         let admin = Admin::open(&paths, Epoch(1)).unwrap();
@@ -264,17 +252,18 @@ mod tests {
             scope.spawn(|| join(1)).join().unwrap();
             assert_eq!(news.recv(), Ok(1), "nobody is held back");
             assert_eq!(admin.joined(), 1, "the supervisor");
-            assert!(admin.hold_back());
+            // Two cleanups, of which the second has not ended.
+            assert!(admin.cleaner.hold_back() && admin.begin_cleanup());
             scope.spawn(|| join(2));
             // Clients do not wait for a service that starts.
             Bus::open(&paths, "client", Identity { epoch: Epoch(1), ..Identity::default() })
                 .unwrap();
             assert!(news.recv_timeout(Duration::from_millis(100)).is_err());
-            admin.clean_dead();
+            admin.cleaner.let_go();
             assert_eq!(news.recv(), Ok(2));
         });
         fs::remove_file(paths.cleanup_lock()).unwrap();
-        assert!(!admin.hold_back(), "nobody would wait");
+        assert!(!admin.begin_cleanup(), "nobody would wait");
         drop(admin);
         remove_leftovers(&paths);
     }

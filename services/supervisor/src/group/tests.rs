@@ -123,21 +123,6 @@ fn observer_neither_delays_nor_degrades_its_group() {
 }
 
 #[test]
-fn restart_is_foreseen_while_a_service_pauses_before_it() {
-    let mut group = group(CHAIN);
-    up(&mut group);
-    let later = NOW + Duration::from_secs(60);
-    assert!(!group.restarts_before(later), "all run");
-    assert_eq!(group.on(1, CRASH, NOW), Some(Effect::Spawn));
-    assert!(!group.restarts_before(later), "the first restart is at once");
-    assert_eq!(group.on(1, CRASH, NOW), None);
-    let at = group.machine(1).restarts_at().unwrap();
-    assert!(!group.restarts_before(at) && group.restarts_before(later));
-    assert_eq!(group.settle(at), Some((1, Effect::Spawn)));
-    assert!(!group.restarts_before(later), "it has been started");
-}
-
-#[test]
 fn service_that_crashes_while_stopping_is_not_restarted() {
     let mut group = group(CHAIN);
     up(&mut group);

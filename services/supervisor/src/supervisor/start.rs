@@ -107,7 +107,7 @@ pub(super) fn start(
         group,
         services,
         admin: Some(admin),
-        is_unclean: false,
+        is_cleanup_begun: false,
         server,
         signals,
         init_system,

@@ -1,0 +1,129 @@
+//! The supervisor's thread that removes shared memory of dead processes, beside the start of their successors.
+
+use crate::bus::Ipc;
+use crate::group::GroupPaths;
+use crate::shm_cleanup::CLEANUP_PATIENCE;
+use iceoryx2::prelude::{CallbackProgression, Config, Node, NodeState};
+use rustix::fs::{FlockOperation, flock};
+use rustix::io::Errno;
+use std::fs::{self, File};
+use std::io;
+use std::os::unix::fs::MetadataExt;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::thread::{self, JoinHandle};
+
+/// Room for the stack of the thread, bytes. iceoryx2 keeps configurations and names on it.
+const STACK_BYTES: usize = 2 << 20;
+
+/// The thread, and the lock for which starting services wait.
+#[derive(Debug)]
+pub(crate) struct Cleaner {
+    gate: Arc<Gate>,
+    requests: Option<mpsc::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// A file that is locked while any cleanup goes on.
+#[derive(Debug)]
+struct Gate {
+    path: PathBuf,
+    file: File,
+    /// Cleanups that have begun and not ended.
+    begun: Mutex<usize>,
+}
+
+impl Gate {
+    fn hold_back(&self) -> bool {
+        let mut begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
+        let inode = |found: io::Result<fs::Metadata>| found.map(|file| file.ino()).ok();
+        // Nobody waits for a file that somebody has removed.
+        let is_locked = inode(self.file.metadata()) == inode(fs::metadata(&self.path))
+            && flock(&self.file, FlockOperation::NonBlockingLockExclusive).is_ok();
+        *begun += usize::from(is_locked);
+        is_locked
+    }
+
+    fn let_go(&self) {
+        let mut begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
+        *begun = begun.saturating_sub(1);
+        if *begun == 0 {
+            let _ = flock(&self.file, FlockOperation::Unlock);
+        }
+    }
+}
+
+impl Cleaner {
+    /// Starts the thread, which removes what `config` finds.
+    ///
+    /// # Errors
+    /// The lock's file cannot be written, or there is no thread.
+    pub(crate) fn start(lock: PathBuf, config: Config) -> io::Result<Self> {
+        let file = File::create(&lock)?;
+        let gate = Arc::new(Gate { path: lock, file, begun: Mutex::default() });
+        let (requests, inbox) = mpsc::channel();
+        let work = {
+            let gate = Arc::clone(&gate);
+            move || {
+                for () in inbox {
+                    clean(&config);
+                    gate.let_go();
+                }
+            }
+        };
+        let thread = thread::Builder::new().name("cleaner".into()).stack_size(STACK_BYTES);
+        let thread = Some(thread.spawn(work)?);
+        Ok(Self { gate, requests: Some(requests), thread })
+    }
+
+    /// Begins a cleanup, for which starting services wait. Returns false if they would not.
+    pub(crate) fn begin(&self) -> bool {
+        if !self.gate.hold_back() {
+            return false;
+        }
+        let is_asked = self.requests.as_ref().is_some_and(|it| it.send(()).is_ok());
+        if !is_asked {
+            self.gate.let_go();
+        }
+        is_asked
+    }
+
+    #[cfg(test)]
+    pub(crate) fn hold_back(&self) -> bool {
+        self.gate.hold_back()
+    }
+
+    #[cfg(test)]
+    pub(crate) fn let_go(&self) {
+        self.gate.let_go();
+    }
+}
+
+impl Drop for Cleaner {
+    fn drop(&mut self) {
+        self.requests = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+fn clean(config: &Config) {
+    let listed = Node::<Ipc>::list(config, |state| {
+        if let NodeState::Dead(view) = state {
+            let removed = view.blocking_remove_stale_resources(CLEANUP_PATIENCE);
+            tracing::trace!(?removed, "cleaned up after a dead process");
+        }
+        CallbackProgression::Continue
+    });
+    if let Err(error) = listed {
+        tracing::debug!(?error, "dead processes are looked for with the next cleanup");
+    }
+}
+
+/// Waits, as a service that starts, until no cleanup goes on.
+pub(crate) fn await_cleanup(paths: &GroupPaths) {
+    // A group without a supervisor has no such file. A lock ends with its holder.
+    let Ok(file) = File::open(paths.cleanup_lock()) else { return };
+    while flock(&file, FlockOperation::LockShared) == Err(Errno::INTR) {}
+}
