@@ -97,7 +97,7 @@ pub(crate) fn check(
         let durations = measured.filter(|_| report.count() == 0).and_then(|(node, source)| {
             snapshot::read_durations(node, &dialogue, &scene, &source, &mut report)
         });
-        let resolved = Resolved { tree, scene: file, robot };
+        let resolved = Resolved { tree, scene: file, robot, snapshot: None };
         Settings {
             group,
             dialogue,

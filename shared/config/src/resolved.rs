@@ -90,6 +90,8 @@ pub(crate) struct Resolved {
     pub(crate) tree: Table,
     pub(crate) scene: TextFile,
     pub(crate) robot: RobotFiles,
+    /// The text of the snapshot from which they were read, if they were.
+    pub(crate) snapshot: Option<String>,
 }
 
 impl Resolved {

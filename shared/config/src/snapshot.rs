@@ -17,6 +17,9 @@ use crate::{Dialogue, Settings, load};
 /// Name of the snapshot in a group's run folder.
 pub const SNAPSHOT_FILE: &str = "settings.toml";
 
+/// First line of the file.
+const HEADER: &str = "# The settings in force. Edit the configuration folder instead.\n";
+
 /// Name of the file beside it that holds the scene's key and words, for languages without a reader of TOML.
 pub const WORDS_FILE: &str = "scene.words";
 
@@ -36,7 +39,10 @@ impl Settings {
     /// The snapshot's text: every value of every section, the scene's and the robot's files as
     /// they were read, and how long the robot takes for what it does.
     pub fn snapshot(&self) -> String {
-        let Resolved { tree, scene, robot } = &self.resolved;
+        let Resolved { tree, scene, robot, snapshot } = &self.resolved;
+        if let Some(text) = snapshot {
+            return text.clone();
+        }
         let mut tree = tree.clone();
         put_file(&mut tree, SCENE, scene);
         put_file(&mut tree, URDF, &robot.urdf);
@@ -52,8 +58,7 @@ impl Settings {
     /// # Errors
     /// The folder cannot be written.
     pub fn write_snapshot(&self, run_dir: &Path) -> io::Result<()> {
-        let header = "# The settings in force. Edit the configuration folder instead.\n";
-        let text = format!("{header}{}", self.snapshot());
+        let text = format!("{HEADER}{}", self.snapshot());
         journal::replace_file(&run_dir.join(SNAPSHOT_FILE), text)
     }
 
@@ -85,7 +90,9 @@ impl Settings {
             report.add(Diagnostic::new(label, "", "no such file", "start the group"));
             return report.verdict(None);
         };
-        Self::from_snapshot(&label, &text, ("", &[]))
+        let mut settings = Self::from_snapshot(&label, &text, ("", &[]))?;
+        settings.resolved.snapshot = text.strip_prefix(HEADER).map(str::to_owned);
+        Ok(settings)
     }
 
     /// Reads a snapshot's text, which is called `label` in problems, with changes as in [`Settings::load`],

@@ -59,12 +59,12 @@ pub fn confusion(scene: &Scene) -> Vec<Vec<f64>> {
 }
 
 /// The forms of each word of the scene, its name first, as sounds.
-fn forms(scene: &Scene) -> Vec<Vec<Vec<char>>> {
+fn forms(scene: &Scene) -> Vec<Vec<Vec<Sound>>> {
     let mut forms = vec![Vec::new(); scene.words().len()];
     for value in scene.attributes().iter().flat_map(|attribute| &attribute.values) {
         for text in std::iter::once(&value.name).chain(&value.synonyms) {
             let sounds = sounds(text);
-            let known: &mut Vec<Vec<char>> = &mut forms[value.word.index()];
+            let known: &mut Vec<Vec<Sound>> = &mut forms[value.word.index()];
             if !known.contains(&sounds) {
                 known.push(sounds);
             }
@@ -73,15 +73,37 @@ fn forms(scene: &Scene) -> Vec<Vec<Vec<char>>> {
     forms
 }
 
-/// The sounds of a text, consonants in capitals, vowels in small letters.
-fn sounds(text: &str) -> Vec<char> {
+/// One sound, with what the comparison of many rows needs of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Sound {
+    /// A consonant in capitals, a vowel in small letters.
+    heard: char,
+    is_vowel: bool,
+    /// Cost of deleting or inserting it.
+    loss: f64,
+    /// Which consonants are made like it.
+    made: Option<usize>,
+}
+
+impl Sound {
+    fn new(heard: char) -> Self {
+        const ALIKE: [&str; 4] = ["PTK", "SXF0J", "MN", "LRW"];
+        let is_vowel = heard.is_lowercase();
+        let is_faint = is_vowel || matches!(heard, 'H' | 'W' | 'Y');
+        let made = ALIKE.iter().position(|made| made.contains(heard));
+        Self { heard, is_vowel, loss: if is_faint { 0.4 } else { 0.7 }, made }
+    }
+}
+
+/// The sounds of a text.
+fn sounds(text: &str) -> Vec<Sound> {
     let text = normalise(text);
     let mut all: Vec<char> = Vec::new();
     for token in &Tokens::of(&text).words {
         word_sounds(token.word, &mut all);
     }
     all.truncate(SOUNDS_MAX);
-    all
+    all.into_iter().map(Sound::new).collect()
 }
 
 fn word_sounds(word: &str, all: &mut Vec<char>) {
@@ -116,7 +138,7 @@ fn word_sounds(word: &str, all: &mut Vec<char>) {
 }
 
 /// Returns the distance of the nearest forms of two words, 0 for the same sounds.
-fn distance(one: &[Vec<char>], other: &[Vec<char>]) -> f64 {
+fn distance(one: &[Vec<Sound>], other: &[Vec<Sound>]) -> f64 {
     let rarity = |form: usize| if form == 0 { 0.0 } else { SYNONYM };
     let pairs = one.iter().enumerate().flat_map(|(n, one)| {
         other.iter().enumerate().map(move |(m, other)| relative(one, other) + rarity(n) + rarity(m))
@@ -125,45 +147,39 @@ fn distance(one: &[Vec<char>], other: &[Vec<char>]) -> f64 {
 }
 
 /// The cost of turning one row of sounds into the other, by the mean cost of the rows.
-fn relative(one: &[char], other: &[char]) -> f64 {
-    let whole = |row: &[char]| row.iter().map(|&sound| loss(sound)).sum::<f64>();
+fn relative(one: &[Sound], other: &[Sound]) -> f64 {
+    let whole = |row: &[Sound]| row.iter().map(|sound| sound.loss).sum::<f64>();
     let mean = (whole(one) + whole(other)) / 2.0;
     if mean > 0.0 { edits(one, other) / mean } else { 0.0 }
 }
 
 /// The weighted edit distance (Wagner and Fischer 1974).
-fn edits(one: &[char], other: &[char]) -> f64 {
+fn edits(one: &[Sound], other: &[Sound]) -> f64 {
     let mut row: Vec<f64> = std::iter::once(0.0)
-        .chain(other.iter().scan(0.0, |sum, &sound| {
-            *sum += loss(sound);
+        .chain(other.iter().scan(0.0, |sum, sound| {
+            *sum += sound.loss;
             Some(*sum)
         }))
         .collect();
-    for &a in one {
+    for a in one {
         let mut diagonal = row[0];
-        row[0] += loss(a);
-        for (at, &b) in other.iter().enumerate() {
-            let best = (diagonal + swap(a, b)).min(row[at] + loss(b)).min(row[at + 1] + loss(a));
+        row[0] += a.loss;
+        for (at, b) in other.iter().enumerate() {
+            let best = (diagonal + swap(a, b)).min(row[at] + b.loss).min(row[at + 1] + a.loss);
             diagonal = std::mem::replace(&mut row[at + 1], best);
         }
     }
     row.last().copied().unwrap_or(0.0)
 }
 
-/// Returns the cost of deleting or inserting a sound.
-fn loss(sound: char) -> f64 {
-    if sound.is_lowercase() || matches!(sound, 'H' | 'W' | 'Y') { 0.4 } else { 0.7 }
-}
-
 /// Returns the cost of substituting one sound for another.
-fn swap(a: char, b: char) -> f64 {
-    const ALIKE: [&str; 4] = ["PTK", "SXF0J", "MN", "LRW"];
-    match (a.is_lowercase(), b.is_lowercase()) {
-        _ if a == b => 0.0,
+fn swap(a: &Sound, b: &Sound) -> f64 {
+    match (a.is_vowel, b.is_vowel) {
+        _ if a.heard == b.heard => 0.0,
         (true, true) => 0.4,
-        (false, false) if ALIKE.iter().any(|made| made.contains(a) && made.contains(b)) => 0.5,
+        (false, false) if a.made.is_some() && a.made == b.made => 0.5,
         (false, false) => 1.0,
-        _ => loss(a) + loss(b),
+        _ => a.loss + b.loss,
     }
 }
 

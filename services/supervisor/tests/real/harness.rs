@@ -109,11 +109,15 @@ impl Group {
         self.run_as(command);
     }
 
-    /// Starts this supervisor for the group, which has been stopped, and waits until it listens.
+    /// Starts this supervisor for the group, which has been stopped, and waits until it listens. A group that cannot
+    /// live may be down before it is asked.
     pub(crate) fn run_as(&mut self, mut command: Command) {
         let supervisor = command.spawn().unwrap();
+        let pid = supervisor.id();
         self.earlier.extend(self.supervisor.replace(supervisor));
-        wait_for("the supervisor to listen", || self.call(&Request::Ping).ok());
+        wait_for("the supervisor to listen", || {
+            (self.call(&Request::Ping).is_ok() || !is_alive(pid)).then_some(())
+        });
     }
 
     /// The command that starts a supervisor for the group.

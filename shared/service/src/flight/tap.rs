@@ -50,9 +50,14 @@ impl Tap {
         tap.head = Some(head.clone());
         let (jobs, waiting) = bounded(WAITING_MAX);
         let long_files = Arc::clone(&tap.long_files);
-        let started = Writer::create(ring, head, long_files).and_then(|writer| {
-            let thread = std::thread::Builder::new().name("flight".into());
-            thread.spawn(move || writer.run(&waiting))
+        let (service, started_wall_ns) = (head.service.clone(), head.started_wall_ns);
+        let thread = std::thread::Builder::new().name("flight".into());
+        // The deletion of an old flight may take half a second, for which no start waits.
+        let started = thread.spawn(move || {
+            match Writer::create(ring, service, started_wall_ns, long_files) {
+                Ok(writer) => writer.run(&waiting),
+                Err(error) => tracing::warn!(%error, "this start is not recorded"),
+            }
         });
         match started {
             Ok(thread) => (tap.jobs, tap.thread) = (Some(jobs), Some(thread)),

@@ -11,7 +11,7 @@ use crossbeam_channel::Receiver;
 use flate2::{Compress, Compression, FlushCompress};
 
 use super::reader::Flight;
-use super::{FORMAT, FRAME_HEAD, Head, MAGIC, file_name, is_of};
+use super::{FORMAT, FRAME_HEAD, MAGIC, file_name, is_of};
 use crate::exit::Failure;
 use crate::storage;
 
@@ -157,13 +157,18 @@ impl Writer {
     ///
     /// # Errors
     /// It cannot be created, or there is no space for it.
-    pub(super) fn create(ring: Ring, head: &Head, long_files: Arc<AtomicU64>) -> io::Result<Self> {
+    pub(super) fn create(
+        ring: Ring,
+        service: String,
+        started_wall_ns: u64,
+        long_files: Arc<AtomicU64>,
+    ) -> io::Result<Self> {
         crate::folders::make_private(&ring.folder).map_err(io::Error::other)?;
-        let (path, file) = ring.new_file(&head.service, head.started_wall_ns)?;
+        let (path, file) = ring.new_file(&service, started_wall_ns)?;
         let bytes = start().len() as u64;
         Ok(Self {
             ring,
-            service: head.service.clone(),
+            service,
             files: 0,
             long_files,
             path,
