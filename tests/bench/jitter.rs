@@ -13,7 +13,7 @@ use whichone_tests::Group;
 /// Duration of each measurement.
 const WATCHED: Duration = Duration::from_secs(10);
 /// The intervals that are promised of an arm at rest and of one that moves, milliseconds.
-const NOMINAL_MS: (f64, f64) = (50.0, 10.0);
+const NOMINAL_MS: (f64, f64) = (100.0, 10.0);
 /// Polling interval of the topic, which holds the last sixteen joint states.
 const LOOK_EVERY: Duration = Duration::from_millis(30);
 

@@ -1,7 +1,8 @@
 //! The running supervisor: one thread that waits for events and handles them.
 //!
 //! It never waits for a service or a client. What takes time is bounded file work: the cleanup of
-//! shared memory after a process has ended, and a look through `/proc` for what it left behind.
+//! shared memory after a process has ended, mostly on a thread of its own, and a look through `/proc` for what a
+//! service left behind.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -249,12 +250,12 @@ impl Supervisor {
         let ended_at = self.now();
         let Some(exit) = self.services[service].reap(failure, ended_at) else { return };
         self.admin.iter().for_each(Admin::make_way);
+        if has_left_behind {
+            self.clear_orphans();
+        }
         self.is_cleanup_begun = self.admin.as_ref().is_some_and(Admin::begin_cleanup);
         if !self.is_cleanup_begun {
             self.clean();
-        }
-        if has_left_behind {
-            self.clear_orphans();
         }
         self.give(service, Event::Exited(exit), self.now());
         self.report_rest(service);

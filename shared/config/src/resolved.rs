@@ -90,7 +90,7 @@ pub(crate) struct Resolved {
     pub(crate) tree: Table,
     pub(crate) scene: TextFile,
     pub(crate) robot: RobotFiles,
-    /// The text of the snapshot from which they were read, if they were.
+    /// The text of the snapshot in force that they were read from; only `load_snapshot` sets it.
     pub(crate) snapshot: Option<String>,
 }
 

@@ -8,14 +8,16 @@ use iceoryx2::prelude::ZeroCopySend;
 use std::fmt::Debug;
 use std::mem::MaybeUninit;
 
-/// A message of fixed layout: numbers and codes, so that any bytes of its size are a value of it until its codes are
-/// checked, and without padding, so that all of its bytes are written.
-pub trait WireMessage:
+/// A message of fixed layout.
+///
+/// # Safety
+/// It is made of numbers and codes, so that any bytes of its size are a value of it until its codes are checked, and
+/// has no padding, so that all of its bytes are written.
+#[allow(unsafe_code)]
+pub unsafe trait WireMessage:
     Schema + WireField + ZeroCopySend + Copy + PartialEq + Debug + 'static
 {
 }
-
-impl<T: Schema + WireField + ZeroCopySend + Copy + PartialEq + Debug + 'static> WireMessage for T {}
 
 /// Layout of a message, for those who know its topic only.
 #[derive(Clone, Copy, Debug)]

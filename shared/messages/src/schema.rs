@@ -217,6 +217,13 @@ macro_rules! wire_struct {
             }
         }
 
+        // The sizes of its fields add up to its own: there is no padding.
+        const _: () = assert!(0 $(+ size_of::<$ty>())+ == size_of::<$name>());
+
+        // SAFETY: fields are numbers, codes, arrays of these and other such structs; and see above.
+        #[allow(unsafe_code)]
+        unsafe impl $crate::layout::WireMessage for $name {}
+
         impl $crate::wire::WireField for $name {
             const CHECKED: bool = false $(|| <$ty as $crate::wire::WireField>::CHECKED)+;
 

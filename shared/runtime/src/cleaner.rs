@@ -1,4 +1,6 @@
 //! The supervisor's thread that removes shared memory of dead processes, beside the start of their successors.
+//!
+//! Services that start wait for a locked file, which is unlocked when no cleanup goes on, even after a panic.
 
 use crate::bus::Ipc;
 use crate::group::GroupPaths;
@@ -10,32 +12,41 @@ use std::fs::{self, File};
 use std::io;
 use std::os::unix::fs::MetadataExt;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 use std::thread::{self, JoinHandle};
+use std::time::Duration;
 
 /// Room for the stack of the thread, bytes. iceoryx2 keeps configurations and names on it.
 const STACK_BYTES: usize = 2 << 20;
 
+/// Longest wait for a cleanup, which takes milliseconds.
+const PATIENCE: Duration = Duration::from_secs(2);
+
 /// The thread, and the lock for which starting services wait.
 #[derive(Debug)]
 pub(crate) struct Cleaner {
-    gate: Arc<Gate>,
+    lock: Arc<CleanupLock>,
     requests: Option<mpsc::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 /// A file that is locked while any cleanup goes on.
 #[derive(Debug)]
-struct Gate {
+struct CleanupLock {
     path: PathBuf,
     file: File,
     /// Cleanups that have begun and not ended.
     begun: Mutex<usize>,
+    ended: Condvar,
 }
 
-impl Gate {
+impl CleanupLock {
+    fn begun(&self) -> MutexGuard<'_, usize> {
+        self.begun.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn hold_back(&self) -> bool {
-        let mut begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut begun = self.begun();
         let inode = |found: io::Result<fs::Metadata>| found.map(|file| file.ino()).ok();
         // Nobody waits for a file that somebody has removed.
         let is_locked = inode(self.file.metadata()) == inode(fs::metadata(&self.path))
@@ -45,11 +56,21 @@ impl Gate {
     }
 
     fn let_go(&self) {
-        let mut begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut begun = self.begun();
         *begun = begun.saturating_sub(1);
         if *begun == 0 {
             let _ = flock(&self.file, FlockOperation::Unlock);
+            self.ended.notify_all();
         }
+    }
+}
+
+/// A cleanup that ends with it.
+struct Begun<'a>(&'a CleanupLock);
+
+impl Drop for Begun<'_> {
+    fn drop(&mut self) {
+        self.0.let_go();
     }
 }
 
@@ -60,42 +81,50 @@ impl Cleaner {
     /// The lock's file cannot be written, or there is no thread.
     pub(crate) fn start(lock: PathBuf, config: Config) -> io::Result<Self> {
         let file = File::create(&lock)?;
-        let gate = Arc::new(Gate { path: lock, file, begun: Mutex::default() });
+        let (begun, ended) = (Mutex::default(), Condvar::default());
+        let lock = Arc::new(CleanupLock { path: lock, file, begun, ended });
         let (requests, inbox) = mpsc::channel();
         let work = {
-            let gate = Arc::clone(&gate);
+            let lock = Arc::clone(&lock);
             move || {
                 for () in inbox {
+                    let _begun = Begun(&lock);
                     clean(&config);
-                    gate.let_go();
                 }
             }
         };
         let thread = thread::Builder::new().name("cleaner".into()).stack_size(STACK_BYTES);
         let thread = Some(thread.spawn(work)?);
-        Ok(Self { gate, requests: Some(requests), thread })
+        Ok(Self { lock, requests: Some(requests), thread })
     }
 
     /// Begins a cleanup, for which starting services wait. Returns false if they would not.
     pub(crate) fn begin(&self) -> bool {
-        if !self.gate.hold_back() {
+        if !self.lock.hold_back() {
             return false;
         }
         let is_asked = self.requests.as_ref().is_some_and(|it| it.send(()).is_ok());
         if !is_asked {
-            self.gate.let_go();
+            self.lock.let_go();
         }
         is_asked
     }
 
+    /// Waits until every cleanup that has begun has ended, and not for ever.
+    pub(crate) fn await_end(&self) {
+        let begun = self.lock.begun();
+        let waited = self.lock.ended.wait_timeout_while(begun, PATIENCE, |begun| *begun > 0);
+        drop(waited);
+    }
+
     #[cfg(test)]
     pub(crate) fn hold_back(&self) -> bool {
-        self.gate.hold_back()
+        self.lock.hold_back()
     }
 
     #[cfg(test)]
     pub(crate) fn let_go(&self) {
-        self.gate.let_go();
+        self.lock.let_go();
     }
 }
 

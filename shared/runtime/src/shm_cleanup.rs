@@ -30,6 +30,8 @@ const MANAGEMENT: &str = "global_mgmt";
 /// The supervisor's handle to the group's shared memory.
 #[derive(Debug)]
 pub struct Admin {
+    /// Ends before the memory is let go of.
+    cleaner: Cleaner,
     bus: Bus,
     _topics: Topics,
     paths: GroupPaths,
@@ -37,7 +39,6 @@ pub struct Admin {
     /// What every process of the group opens.
     shared: Vec<SharedFile>,
     spare: File,
-    cleaner: Cleaner,
 }
 
 /// A file in shared memory as it was made: one that is cut short or was made again is not the one that
@@ -125,8 +126,9 @@ impl Admin {
         nodes.filter(|entry| is_monitor(&entry.file_name())).count()
     }
 
-    /// Removes what dead processes left behind, after what has begun.
+    /// Removes what dead processes left behind, after the cleanups that have begun.
     pub fn clean_dead(&self) {
+        self.cleaner.await_end();
         let state = self.bus.node().blocking_cleanup_dead_nodes(CLEANUP_PATIENCE);
         tracing::trace!(?state, "cleaned up after dead processes");
     }

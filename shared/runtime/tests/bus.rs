@@ -48,6 +48,10 @@ struct OtherMark {
     utterance: u64,
 }
 
+// SAFETY: one number.
+#[allow(unsafe_code)]
+unsafe impl messages::WireMessage for OtherMark {}
+
 impl messages::WireField for OtherMark {
     fn ros2() -> messages::definition::FieldType {
         messages::definition::FieldType::default()

@@ -68,9 +68,12 @@ impl<T: Schema> EncodedWriter<T> {
         if length > BYTES_MAX {
             return Err(self.failed(format!("{length} bytes, {BYTES_MAX} at most")));
         }
-        let sent = self.sender.send(length, |memory| {
+        let write = |memory: &mut [MaybeUninit<u8>]| {
             postcard::serialize_with_flavor(payload, Unwritten(memory)).map_err(failed)
-        })?;
+        };
+        // SAFETY: a rest that is not written is an error.
+        #[allow(unsafe_code)]
+        let sent = unsafe { self.sender.send(length, write)? };
         match sent {
             Ok(()) => {
                 self.is_short.set(false);

@@ -82,12 +82,15 @@ impl<T: WireMessage> Writer<T> {
     ) -> Result<(), PortError> {
         let mut state = None;
         let failed = |cause| PortError::new(self.sender.topic, cause);
-        let sent = self.sender.send(1, |bytes| {
+        let write = |bytes: &mut [MaybeUninit<u8>]| {
             let slot = layout::slot(bytes).ok_or_else(|| failed("not its layout".to_owned()))?;
             let message = fill(slot);
             state = self.latest.as_ref().map(|_| *message);
             Ok(())
-        })?;
+        };
+        // SAFETY: the message fills its slot and has no padding.
+        #[allow(unsafe_code)]
+        let sent = unsafe { self.sender.send(1, write)? };
         sent.map_err(|error| failed(format!("{error:?}")))?;
         if self.is_news(state) {
             self.sender.wake_readers();

@@ -43,7 +43,7 @@ pub(super) fn has_messages<T: Schema>(topic: &Topic) -> Result<(), BusError> {
         return Ok(());
     }
     let cause = format!("expected messages {}, found {}", topic.payload, T::NAME);
-    Err(BusError::ipc(topic.name, cause))
+    Err(BusError::Ipc { what: topic.name.to_owned(), cause })
 }
 
 fn schema_attribute(topic: &Topic) -> Result<AttributeVerifier, String> {

@@ -7,6 +7,7 @@ use super::{Bus, BusError, Connect, PortError};
 use messages::Stamp;
 use messages::topics::Topic;
 use std::iter;
+use std::mem::MaybeUninit;
 use std::rc::Rc;
 
 impl Bus {
@@ -51,11 +52,14 @@ impl RawWriter {
     /// iceoryx2 is out of memory.
     pub fn send(&self, bytes: &[u8]) -> Result<(), PortError> {
         let slots = if self.is_fixed { 1 } else { bytes.len() };
-        let sent = self.sender.send(slots, |memory| {
+        let write = |memory: &mut [MaybeUninit<u8>]| {
             let bytes = bytes.iter().copied().chain(iter::repeat(0));
             memory.iter_mut().zip(bytes).for_each(|(slot, byte)| _ = slot.write(byte));
             Ok(())
-        })?;
+        };
+        // SAFETY: there are bytes for all of the memory.
+        #[allow(unsafe_code)]
+        let sent = unsafe { self.sender.send(slots, write)? };
         sent.map_err(|error| PortError::new(self.sender.topic, format!("{error:?}")))?;
         self.sender.wake_readers();
         Ok(())

@@ -61,12 +61,16 @@ impl Sender {
         !self.readers.is_empty()
     }
 
-    /// Sends what `fill` writes into the memory of a message: every byte of it, unless it fails. The message has
-    /// `slots` bytes; one of fixed layout is one slot. Nobody is woken.
+    /// Sends what `fill` writes into the memory of a message, which has `slots` bytes; one of fixed layout is one
+    /// slot. Nobody is woken.
     ///
     /// # Errors
     /// The port could not be made again, `fill` fails, or iceoryx2 cannot send; inside, there is no memory.
-    pub(super) fn send(
+    ///
+    /// # Safety
+    /// `fill` writes every byte, or fails.
+    #[allow(unsafe_code)]
+    pub(super) unsafe fn send(
         &self,
         slots: usize,
         fill: impl FnOnce(&mut [MaybeUninit<u8>]) -> Result<(), PortError>,
@@ -79,8 +83,7 @@ impl Sender {
             };
             loan.stamp(self.stamps.next());
             fill(loan.memory())?;
-            // SAFETY: filled without an error, every byte has been written.
-            #[allow(unsafe_code)]
+            // SAFETY: filled without an error, every byte has been written, as the caller promises.
             let sent = unsafe { loan.send() };
             sent.map(|_| Ok(())).map_err(|e| PortError::new(self.topic, format!("{e:?}")))
         })
