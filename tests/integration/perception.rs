@@ -14,7 +14,7 @@ fn add(group: &Group, class: &str, [x, y]: [&str; 2]) -> String {
 }
 
 fn names(group: &Group) -> Vec<String> {
-    let table = group.must(&["objects", "--json"]).json();
+    let table = group.must(&["objects", "--json", "--timeout=30"]).json();
     let objects = table["objects"].as_array().unwrap();
     objects.iter().map(|object| object["name"].as_str().unwrap().to_owned()).collect()
 }

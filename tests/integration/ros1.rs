@@ -220,7 +220,7 @@ fn ros1_bridge_whose_name_is_taken_ends_and_says_why() {
 
 /// What is on the table by likeliest class, with its name and place.
 fn table(group: &Group) -> BTreeMap<String, (String, [f64; 3])> {
-    let table = group.must(&["objects", "--json"]).json();
+    let table = group.must(&["objects", "--json", "--timeout=30"]).json();
     let of = |object: &Value| {
         let classes = object["classes"].as_object()?.keys().next()?.clone();
         let axis = |n: usize| object["xyz"][n].as_f64();
@@ -268,7 +268,7 @@ fn ros1_objects_of_detectors_and_markers_are_fetched_by_request() {
     pause();
     group.signal("baxter", Signal::CONT);
     wait_for("old looks are refused", 20.0, || {
-        let table = group.must(&["objects", "--json"]).json();
+        let table = group.must(&["objects", "--json", "--timeout=30"]).json();
         table["refusal"].as_str()?.contains("s old").then_some(())
     });
     camera.signal(Signal::CONT);
@@ -297,7 +297,7 @@ fn ros1_objects_in_an_unknown_frame_are_refused_with_the_reason() {
     let mut camera = ros.camera();
     camera.tell(r#"{ "ar_markers": [[7, 0.1, 0.4, -0.12]] }"#);
     wait_for("the refusal", 40.0, || {
-        let table = group.must(&["objects", "--json"]).json();
+        let table = group.must(&["objects", "--json", "--timeout=30"]).json();
         let refusal = table["refusal"].as_str()?;
         (refusal.contains("unknown frame `lens`") && refusal.contains("/ar_pose_marker"))
             .then_some(())

@@ -57,7 +57,7 @@ fn ros2_cyclone_objects_of_detectors_and_markers_are_fetched_by_request() {
     // Old images first: they are refused, and nothing appears.
     let old = r#"{ "age_s": 5.0, "ar_markers": [[7, 0.1, 0.4, -0.12]] }"#;
     peer.tell(&format!("see {old}"));
-    let table = || group.must(&["objects", "--json"]).json();
+    let table = || group.must(&["objects", "--json", "--timeout=30"]).json();
     wait_for("refusal of old looks", 40.0, || {
         table()["refusal"].as_str()?.contains("old").then_some(())
     });
