@@ -1,8 +1,8 @@
 //! The supervisor of a process group: starts its services in order, watches, restarts and stops
 //! them, and answers the operator.
 //!
-//! One thread, beside one that removes dead processes' shared memory, one poll, and nothing in it ever waits for a service: datagrams come in, signals go
-//! out. Of a service there are never two incarnations at once, it is never started more often than
+//! One thread, one poll, and nothing in it ever waits for a service: datagrams come in, signals go
+//! out. A second thread removes the shared memory of dead processes. Of a service there are never two incarnations at once, it is never started more often than
 //! its limits allow, and when the group is down no process of it is left. What to do is decided by
 //! pure state ([`machine`], [`group`], [`swap`]); the rest carries it out.
 //!

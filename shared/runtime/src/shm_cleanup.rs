@@ -254,7 +254,7 @@ mod tests {
             scope.spawn(|| join(1)).join().unwrap();
             assert_eq!(news.recv(), Ok(1), "nobody is held back");
             assert_eq!(admin.joined(), 1, "the supervisor");
-            // Two cleanups, of which the second has not ended.
+            // Two cleanups: the thread ends its own, the other one goes on.
             assert!(admin.cleaner.hold_back() && admin.begin_cleanup());
             scope.spawn(|| join(2));
             // Clients do not wait for a service that starts.
