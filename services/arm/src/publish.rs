@@ -12,7 +12,7 @@ use messages::{ActId, ArmStatus, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 
-/// Interval of an unchanged status.
+/// Interval of an unchanged status; that of a standing arm goes out with the joint states that follow.
 const STATUS_EVERY: Span = Span::from_ms(250);
 /// Shortest interval of the joint states of an arm at rest, which repeat themselves.
 const REST_EVERY: Span = Span::from_ms(100);
@@ -82,20 +82,9 @@ impl Publisher {
         }
     }
 
-    /// Returns the next publication time of a standing arm, of its joints alone where the rest waits for
-    /// the disk. A moving one is stepped more often anyway.
-    pub(crate) fn deadline(&self, activity: Activity, only_joints: bool) -> Time {
-        let joints_due = self.joints_due(activity);
-        if only_joints {
-            return joints_due;
-        }
-        let world = self.published.world_sent.map_or(Time(0), |sent| sent + WORLD_EVERY.1);
-        joints_due.min(self.published.status_due).min(world)
-    }
-
-    /// Returns when a model's joint states are due. At rest they are rarer, once the rest itself has been
-    /// published.
-    fn joints_due(&self, activity: Activity) -> Time {
+    /// Returns when a model's joint states are due, with which a standing arm publishes the rest. At rest they are rarer,
+    /// once the rest itself has been published.
+    pub(crate) fn joints_due(&self, activity: Activity) -> Time {
         let rests = activity == Activity::AtRest && self.published.shows_rest;
         let every = if rests { self.joints_every.max(REST_EVERY) } else { self.joints_every };
         self.published.joints_were_due + every

@@ -21,8 +21,8 @@ use service::folders::make_private;
 use service::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
 use service::{Span, Time, clock, service_loop};
 
-/// Interval between two looks at all topics. Their buffers hold three times as much.
-const LOOK_EVERY: Span = Span::from_ms(100);
+/// Intervals between two looks at all topics while much is sent, and otherwise. Buffers hold what is sent meanwhile.
+const LOOK_EVERY: (Span, Span) = (Span::from_ms(100), Span::from_ms(250));
 /// Seconds before the end of the newest recording from which on a message may not be in it.
 const UNFLUSHED_S: f64 = 1.0;
 
@@ -89,12 +89,16 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Takes what has arrived on all topics; it is dropped while nothing is recorded.
-    fn look(&mut self, now: Time) {
+    /// Takes what has arrived on all topics; it is dropped while nothing is recorded. Returns whether the next look
+    /// should come soon.
+    fn look(&mut self, now: Time) -> bool {
         let Self { reader, ring, .. } = self;
         match ring.clock() {
             Some(clock) => reader.look(now, clock, &mut |sample| ring.write(sample, now)),
-            None => reader.skip(),
+            None => {
+                reader.skip();
+                false
+            }
         }
     }
 
@@ -165,8 +169,9 @@ impl Cycle for Recorder {
         let now = clock::now();
         // Clients wake it: what they sent is gone when they end.
         if now >= self.next_look || ready.by_wake || self.is_ending {
-            self.look(now);
-            self.next_look = now + LOOK_EVERY;
+            // What clients have sent is answered soon.
+            let soon = self.look(now) || ready.by_wake;
+            self.next_look = now + if soon { LOOK_EVERY.0 } else { LOOK_EVERY.1 };
             // At the end, too: what was logged in the last second.
             if now >= self.next_tend || self.is_ending {
                 self.tend(now);

@@ -196,15 +196,33 @@ fn add_open(model: &Model, k: AttributeId, v: ValueId, doubt: f64, log: &mut [f6
     }
     let constant = open.own.ln();
     let others = [open.other, open.lacking].map(|p| p.ln() - constant);
-    for (entry, &value) in log.iter_mut().zip(column) {
-        *entry += match (value, model.chances(k, value)) {
-            (Model::LACKS | Model::UNKNOWN, _) => others[1],
-            (_, Some(chances)) => open.mixture(chances[v.index()]).ln() - constant,
-            (own, None) if own == v.0 => 0.0,
-            _ => others[0],
-        };
-    }
+    let known = |value| match value {
+        Model::LACKS | Model::UNKNOWN => others[1],
+        own if own == v.0 => 0.0,
+        _ => others[0],
+    };
+    add_by_value(model, k, log, known, |chances| open.mixture(chances[v.index()]).ln() - constant);
     constant
+}
+
+/// Adds to every entry what follows from the hypothesis's value of attribute `k`: `known` of its entry in the
+/// column, or `in_doubt` of the probabilities of its values.
+fn add_by_value(
+    model: &Model,
+    k: AttributeId,
+    log: &mut [f64],
+    known: impl Fn(u16) -> f64,
+    in_doubt: impl Fn(&[f64]) -> f64,
+) {
+    let entries = log.iter_mut().zip(model.column(k));
+    if model.is_doubtful(k) {
+        for (entry, &value) in entries {
+            *entry += model.chances(k, value).map_or_else(|| known(value), &in_doubt);
+        }
+    } else {
+        // Without a search in each step the compiler takes several at a time.
+        entries.for_each(|(entry, &value)| *entry += known(value));
+    }
 }
 
 /// An error rate of one half says nothing, and is what a doubt of 1 comes to.
@@ -231,13 +249,10 @@ fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut 
             right + if model.has(ObjectId(0), k, v) { if_true } else { if_false }
         }
         Question::Attribute(k, v) => {
-            for (entry, &value) in log.iter_mut().zip(model.column(k)) {
-                *entry += match model.chances(k, value) {
-                    Some(chances) => mixture(chances[v.index()], if_true, if_false),
-                    None if value == v.0 => if_true,
-                    None => if_false,
-                };
-            }
+            let known = |value| if value == v.0 { if_true } else { if_false };
+            add_by_value(model, k, log, known, |chances| {
+                mixture(chances[v.index()], if_true, if_false)
+            });
             if let Some(absent) = model.absent() {
                 let unknown = model.unknown_yes(k);
                 let unknown_share = params.p_l * if yes { unknown } else { 1.0 - unknown };

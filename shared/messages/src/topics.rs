@@ -32,7 +32,7 @@ pub struct Topic {
     pub readers_max: usize,
     /// Unread messages that a reader holds; the oldest gives way.
     pub buffer: usize,
-    /// Unread messages that the recorder holds, if more: it looks ten times a second.
+    /// Unread messages that the recorder holds, if more: it looks four to ten times a second.
     pub recorded: usize,
     /// Messages that a late reader still gets.
     pub history: usize,
@@ -216,6 +216,7 @@ pub mod robot {
     pub const JOINT_STATES: Topic = Topic {
         readers: &[Service::Arm],
         buffer: WINDOW,
+        recorded: 3 * RECORDED_FAST,
         ..measured::<JointState>("robot/joint_states")
     };
     /// Robot to arm.

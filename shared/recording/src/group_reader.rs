@@ -125,12 +125,15 @@ impl GroupReader {
         painter.begin(now, clock, &mut |shown| picture(&shown, numbers, show));
     }
 
-    /// Takes what has arrived on all topics.
-    pub fn look(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) {
+    /// Takes what has arrived on all topics. Returns whether a buffer was more than a quarter full, so that the next look
+    /// should not come later than this one.
+    pub fn look(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) -> bool {
         let Self { topics, painter, numbers, buffer, .. } = self;
-        let mut failure = None;
+        let (mut failure, mut is_filling) = (None, false);
         for Source { topic, channel, reader, since } in topics.iter() {
+            let mut pending = 0;
             let taken = reader.drain(&mut |stamp, message| {
+                pending += 1;
                 let sent = sent(stamp, now);
                 if sent < *since {
                     return;
@@ -154,10 +157,12 @@ impl GroupReader {
                 let mut show_picture = |shown| picture(&shown, numbers, show);
                 painter.on_message(topic, (sent, clock), message, &mut show_picture);
             });
+            is_filling |= 4 * pending > topic.buffer_max();
             failure = failure.or(taken.err());
         }
         painter.show_scene(now, clock, &mut |shown| picture(&shown, numbers, show));
         self.judge(failure);
+        is_filling
     }
 
     /// Shows the lines that were added to the services' logs.

@@ -15,6 +15,7 @@ mod encoded;
 mod fixed;
 mod gate;
 mod open;
+mod own_files;
 mod port;
 mod raw;
 mod receiver;

@@ -4,7 +4,6 @@
 
 use crate::bus::Ipc;
 use crate::group::GroupPaths;
-use crate::shm_cleanup::CLEANUP_PATIENCE;
 use iceoryx2::prelude::{CallbackProgression, Config, Node, NodeState};
 use rustix::fs::{FlockOperation, flock};
 use rustix::io::Errno;
@@ -18,6 +17,9 @@ use std::time::Duration;
 
 /// Room for the stack of the thread, bytes. iceoryx2 keeps configurations and names on it.
 const STACK_BYTES: usize = 2 << 20;
+
+/// Timeout for another process that is cleaning up.
+const OTHERS_PATIENCE: Duration = Duration::from_millis(200);
 
 /// Longest wait for a cleanup, which takes milliseconds.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -137,10 +139,11 @@ impl Drop for Cleaner {
     }
 }
 
-fn clean(config: &Config) {
+/// Removes the shared memory of dead processes.
+pub(crate) fn clean(config: &Config) {
     let listed = Node::<Ipc>::list(config, |state| {
         if let NodeState::Dead(view) = state {
-            let removed = view.blocking_remove_stale_resources(CLEANUP_PATIENCE);
+            let removed = view.blocking_remove_stale_resources(OTHERS_PATIENCE);
             tracing::trace!(?removed, "cleaned up after a dead process");
         }
         CallbackProgression::Continue

@@ -1,11 +1,10 @@
 //! Shared memory of a group, as managed by the supervisor: creation, checks, cleanup after
 //! dead processes, and removal.
 
-use crate::bus::{Bus, BusError, Identity, Ipc, Topics, config};
-use crate::cleaner::Cleaner;
+use crate::bus::{Bus, BusError, Identity, Topics, config};
+use crate::cleaner::{self, Cleaner};
 use crate::folders::make_private;
 use crate::group::{GroupPaths, SHM, ShmName};
-use iceoryx2::prelude::{CallbackProgression, Node, NodeState};
 use messages::Epoch;
 use rustix::fs::{FallocateFlags, fallocate};
 use rustix::process::geteuid;
@@ -15,10 +14,6 @@ use std::io::{self, ErrorKind};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-/// Timeout for another process or thread that is cleaning up.
-pub(crate) const CLEANUP_PATIENCE: Duration = Duration::from_millis(200);
 
 /// Memory kept for restarts, bytes: a successor needs its connections before its peers let go of
 /// those of its predecessor.
@@ -129,8 +124,7 @@ impl Admin {
     /// Removes what dead processes left behind, after the cleanups that have begun.
     pub fn clean_dead(&self) {
         self.cleaner.await_end();
-        let state = self.bus.node().blocking_cleanup_dead_nodes(CLEANUP_PATIENCE);
-        tracing::trace!(?state, "cleaned up after dead processes");
+        cleaner::clean(self.bus.node().config());
     }
 
     /// Frees the memory that is kept for restarts. Called after each reap, before the successor is
@@ -191,12 +185,7 @@ pub fn create_place(paths: &GroupPaths) -> io::Result<ShmName> {
 pub fn remove_leftovers(paths: &GroupPaths) -> Vec<PathBuf> {
     let place = paths.shm_name().ok();
     if let Some(config) = place.as_ref().and_then(|place| config(place).ok()) {
-        let _ = Node::<Ipc>::list(&config, |state| {
-            if let NodeState::Dead(view) = state {
-                let _ = view.try_remove_stale_resources();
-            }
-            CallbackProgression::Continue
-        });
+        cleaner::clean(&config);
     }
     let folder = place.map(|place| place.folder());
     let left = leftovers(paths);
@@ -238,6 +227,7 @@ mod tests {
     use crate::group::GroupName;
     use messages::Incarnation;
     use std::sync::mpsc;
+    use std::time::Duration;
 
     #[test]
     fn service_that_starts_during_the_cleanup_joins_after_it() {

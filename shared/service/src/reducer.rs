@@ -157,8 +157,13 @@ impl<Out, Record> Effects<Out, Record> {
 
     /// Returns whether nothing is stated.
     pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Returns how much is stated: records, outputs, and the exit.
+    pub fn len(&self) -> usize {
         let Self { records, urgent, outputs, exit, .. } = self;
-        records.is_empty() && urgent.is_empty() && outputs.is_empty() && !exit
+        records.len() + urgent.len() + outputs.len() + usize::from(*exit)
     }
 
     /// Returns the records.

@@ -46,9 +46,12 @@ fn feed<N: Node>(
     event: Event<N::In<'_>>,
     effects: &mut Effects<N::Out, N::Record>,
 ) {
-    let now = clock::now();
+    let (now, stated, is_tick) = (clock::now(), effects.len(), matches!(event, Event::Tick));
     tap.event(&event, now);
     node.on(event, now, effects);
+    if !is_tick && effects.len() > stated {
+        tap.note_effect();
+    }
 }
 
 struct Loop<P: Program> {

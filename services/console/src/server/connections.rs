@@ -144,9 +144,11 @@ impl Connections {
         Self { open: Mutex::default(), others_max }
     }
 
-    /// Ends connections whose time is over.
-    pub fn tick(&self, now: Time) {
-        self.open().iter().filter(|open| open.is_expired(now)).for_each(|open| open.close());
+    /// Ends connections whose time is over. Returns whether there are any connections.
+    pub fn tick(&self, now: Time) -> bool {
+        let open = self.open();
+        open.iter().filter(|open| open.is_expired(now)).for_each(|open| open.close());
+        !open.is_empty()
     }
 
     /// Admits a new connection; where there are too many, the oldest unproven one gives way, or else the

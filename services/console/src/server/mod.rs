@@ -30,8 +30,8 @@ pub use access::Access;
 use connections::{Gate, Of};
 pub use routes::page_asset;
 
-/// Interval of the server's progress reports.
-const PROGRESS_EVERY: Duration = Duration::from_millis(250);
+/// Intervals of the server's progress reports while somebody is connected, and otherwise.
+const PROGRESS_EVERY: (Duration, Duration) = (Duration::from_millis(250), Duration::from_secs(1));
 
 /// State and files that the server serves.
 #[derive(Debug)]
@@ -56,13 +56,12 @@ pub async fn serve(gate: Gate, app: Arc<App>) -> std::io::Result<()> {
     let mut ending = app.hub.ending();
     let (beating, table) = (Arc::clone(&app), Arc::clone(&gate.table));
     let progress = tokio::spawn(async move {
-        let mut beat = tokio::time::interval(PROGRESS_EVERY);
         loop {
-            beat.tick().await;
             beating.hub.progress.fetch_add(1, Ordering::Relaxed);
             let now = service::clock::now();
             beating.hub.tick(now);
-            table.tick(now);
+            let (connected, alone) = PROGRESS_EVERY;
+            tokio::time::sleep(if table.tick(now) { connected } else { alone }).await;
         }
     });
     let router = router(app).into_make_service_with_connect_info::<Of>();

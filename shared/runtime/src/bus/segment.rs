@@ -6,6 +6,7 @@
 //! - No segment is open to another user, and none of another user is used.
 //! - Every open ends within its timeout, whatever has become of the file.
 
+use super::own_files::own_files;
 use super::segment_error::{self, SegmentError};
 use crate::group::SHM;
 use iceoryx2::prelude::SemanticString;
@@ -30,10 +31,7 @@ use iceoryx2_cal::named_concept::{
     NamedConceptDoesExistError, NamedConceptListError, NamedConceptMgmt,
     NamedConceptPathHintRemoveError, NamedConceptRemoveError, Path,
 };
-use rustix::fs::{
-    AtFlags, FallocateFlags, FileType, Mode, OFlags, RawDir, Stat, fallocate, fstat, lstat, open,
-    statat,
-};
+use rustix::fs::{FallocateFlags, Stat, fallocate, fstat, lstat};
 use rustix::io::Errno;
 use rustix::process::geteuid;
 use std::fmt::{self, Debug};
@@ -47,8 +45,6 @@ use std::time::{Duration, Instant};
 
 /// Polling interval of a segment that its creator has not completed yet.
 const LOOK_EVERY: Duration = Duration::from_millis(1);
-/// Room for the entries that one system call returns, bytes: those of a group or two.
-const LISTING_BYTES: usize = 64 << 10;
 /// Bytes of a block as the operating system counts them.
 const BLOCK: u64 = 512;
 
@@ -331,31 +327,6 @@ fn reserve(memory: &SharedMemory) -> Result<(), SegmentError> {
             Err(_) => return Err(SegmentError::room(bytes)),
         }
     }
-}
-
-/// Returns the names of this user's files in shared memory that `is_named` accepts.
-///
-/// iceoryx2 lists them for each port of a dead process, and other groups' segments, of which there may be many,
-/// lie in the same folder: nothing is allocated for those.
-fn own_files(is_named: impl Fn(&[u8]) -> bool) -> rustix::io::Result<Vec<FileName>> {
-    let own = geteuid().as_raw();
-    let folder = open(SHM, OFlags::RDONLY | OFlags::DIRECTORY | OFlags::CLOEXEC, Mode::empty())?;
-    let mut space = Vec::with_capacity(LISTING_BYTES);
-    let mut entries = RawDir::new(&folder, space.spare_capacity_mut());
-    let mut files = Vec::new();
-    while let Some(entry) = entries.next() {
-        let entry = entry?;
-        let name = entry.file_name();
-        if !is_named(name.to_bytes()) {
-            continue;
-        }
-        // One that is gone by now is none.
-        let Ok(stat) = statat(&folder, name, AtFlags::SYMLINK_NOFOLLOW) else { continue };
-        if FileType::from_raw_mode(stat.st_mode).is_file() && stat.st_uid == own {
-            files.extend(FileName::new(name.to_bytes()).ok());
-        }
-    }
-    Ok(files)
 }
 
 impl<T: Content> Abandonable for Segment<T> {
