@@ -9,7 +9,7 @@ use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
 use whichone_tests::{DIALOGUE_CHANNELS, Group, run, wait_for};
 
-/// Real time enough for ten looks a second to see each change, and no demand on the disk.
+/// Real time enough for four to ten looks a second to see each change, and no demand on the disk.
 const SETTINGS: [&str; 2] = ["arm.time_scale=10.0", "group.recorder.free_min_mib=0"];
 
 fn recorded_group() -> Group {

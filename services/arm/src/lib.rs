@@ -195,7 +195,7 @@ impl Node for ArmNode {
     }
 
     fn deadline(&self) -> Option<Time> {
-        let due = self.publisher.joints_due(self.activity());
+        let due = self.publisher.deadline(self.activity(), self.unsynced);
         if self.urgent || self.driver.is_fresh() {
             return Some(Time(0));
         }

@@ -12,7 +12,7 @@ use messages::{ActId, ArmStatus, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 
-/// Interval of an unchanged status; that of a standing arm goes out with the joint states that follow.
+/// Interval of an unchanged status. That of a standing arm waits for the next joint states, so that both wake it once.
 const STATUS_EVERY: Span = Span::from_ms(250);
 /// Shortest interval of the joint states of an arm at rest, which repeat themselves.
 const REST_EVERY: Span = Span::from_ms(100);
@@ -82,9 +82,18 @@ impl Publisher {
         }
     }
 
-    /// Returns when a model's joint states are due, with which a standing arm publishes the rest. At rest they are rarer,
-    /// once the rest itself has been published.
-    pub(crate) fn joints_due(&self, activity: Activity) -> Time {
+    /// Returns the next publication time of a standing arm, of its joints alone where status and world wait for the disk.
+    /// A moving one is stepped more often anyway.
+    pub(crate) fn deadline(&self, activity: Activity, only_joints: bool) -> Time {
+        let joints_due = self.joints_due(activity);
+        // Status and world go out with the joint states, unless these are rare.
+        let latest = self.published.status_due + REST_EVERY;
+        if only_joints { joints_due } else { joints_due.min(latest) }
+    }
+
+    /// Returns when a model's joint states are due. At rest they are rarer, once the rest itself has been
+    /// published.
+    fn joints_due(&self, activity: Activity) -> Time {
         let rests = activity == Activity::AtRest && self.published.shows_rest;
         let every = if rests { self.joints_every.max(REST_EVERY) } else { self.joints_every };
         self.published.joints_were_due + every

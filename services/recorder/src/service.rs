@@ -21,7 +21,7 @@ use service::folders::make_private;
 use service::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
 use service::{Span, Time, clock, service_loop};
 
-/// Intervals between two looks at all topics while much is sent, and otherwise. Buffers hold what is sent meanwhile.
+/// Intervals between two looks at all topics: while much is sent, and otherwise.
 const LOOK_EVERY: (Span, Span) = (Span::from_ms(100), Span::from_ms(250));
 /// Seconds before the end of the newest recording from which on a message may not be in it.
 const UNFLUSHED_S: f64 = 1.0;

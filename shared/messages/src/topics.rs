@@ -78,7 +78,7 @@ pub const SERVICES_MAX: usize = 10;
 pub const CLIENTS_MAX: usize = 16;
 /// Processes that have a topic open at a time.
 pub const NODES_MAX: usize = 48;
-/// Unread messages that the recorder holds of a topic with 100 messages a second.
+/// Unread messages that the recorder holds of a topic with 100 messages a second, where it looks ten times a second.
 const RECORDED_FAST: usize = 32;
 /// Utterances that are on their way at a time; the buffers of their topics hold them all.
 pub const WINDOW: usize = 16;
@@ -177,7 +177,8 @@ pub const STATUS: Topic = Topic {
 pub const JOINTS: Topic = Topic {
     readers: &[Service::Ros2],
     buffer: WINDOW,
-    recorded: RECORDED_FAST,
+    // A motion may begin just after a look at a group at rest.
+    recorded: 2 * RECORDED_FAST,
     ..topic::<JointStates>("arm/joints", Some(Service::Arm))
 };
 /// Arm to clients.
@@ -216,7 +217,9 @@ pub mod robot {
     pub const JOINT_STATES: Topic = Topic {
         readers: &[Service::Arm],
         buffer: WINDOW,
+        // Body and two fingers.
         recorded: 3 * RECORDED_FAST,
+        readers_max: SERVICES_MAX,
         ..measured::<JointState>("robot/joint_states")
     };
     /// Robot to arm.

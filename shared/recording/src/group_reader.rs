@@ -125,8 +125,8 @@ impl GroupReader {
         painter.begin(now, clock, &mut |shown| picture(&shown, numbers, show));
     }
 
-    /// Takes what has arrived on all topics. Returns whether a buffer was more than a quarter full, so that the next look
-    /// should not come later than this one.
+    /// Takes what has arrived on all topics. Returns whether a buffer was more than an eighth full: then the next look should
+    /// come soon.
     pub fn look(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) -> bool {
         let Self { topics, painter, numbers, buffer, .. } = self;
         let (mut failure, mut is_filling) = (None, false);
@@ -157,7 +157,7 @@ impl GroupReader {
                 let mut show_picture = |shown| picture(&shown, numbers, show);
                 painter.on_message(topic, (sent, clock), message, &mut show_picture);
             });
-            is_filling |= 4 * pending > topic.buffer_max();
+            is_filling |= 8 * pending > topic.buffer_max();
             failure = failure.or(taken.err());
         }
         painter.show_scene(now, clock, &mut |shown| picture(&shown, numbers, show));

@@ -18,7 +18,7 @@ use std::time::Duration;
 /// Room for the stack of the thread, bytes. iceoryx2 keeps configurations and names on it.
 const STACK_BYTES: usize = 2 << 20;
 
-/// Timeout for another process that is cleaning up.
+/// Timeout for another process or thread that is cleaning up.
 const OTHERS_PATIENCE: Duration = Duration::from_millis(200);
 
 /// Longest wait for a cleanup, which takes milliseconds.

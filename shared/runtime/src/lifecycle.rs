@@ -23,10 +23,10 @@ const ORPHAN_GRACE: Duration = Duration::from_secs(15);
 /// Timeout for what a service needs of others to be ready. One that is held or stopped keeps nobody
 /// from it: the service is then reported ready, and goes on when the other one returns.
 const READY_PATIENCE: Span = Span::from_ms(1_000);
-/// Most time between two heartbeats of a service that is awake.
+/// Longest time between two heartbeats of a service that is awake.
 const BEAT_MAX: Span = Span::from_ms(1_000);
-/// Share of that time that a heartbeat may be late, for a service that is soon awake anyway.
-const LATE_SHARE: u64 = 8;
+/// The part of it, one eighth, by which a heartbeat may be late, for a service that is soon awake anyway.
+const LATE_PART: u64 = 8;
 
 /// The environment that the supervisor has set for this process.
 #[derive(Clone, Debug)]
@@ -201,7 +201,7 @@ impl Lifecycle {
 
     /// Returns when a service that sleeps has to send its next heartbeat.
     pub fn next_beat(&self, now: Time) -> Time {
-        let late = Span(self.beat_every.0 / LATE_SHARE);
+        let late = Span(self.beat_every.0 / LATE_PART);
         self.last_beat.map_or(now, |last| last + self.beat_every + late)
     }
 }

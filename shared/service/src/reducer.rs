@@ -157,13 +157,8 @@ impl<Out, Record> Effects<Out, Record> {
 
     /// Returns whether nothing is stated.
     pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// Returns how much is stated: records, outputs, and the exit.
-    pub fn len(&self) -> usize {
         let Self { records, urgent, outputs, exit, .. } = self;
-        records.len() + urgent.len() + outputs.len() + usize::from(*exit)
+        records.is_empty() && urgent.is_empty() && outputs.is_empty() && !exit
     }
 
     /// Returns the records.

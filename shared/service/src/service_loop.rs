@@ -46,12 +46,9 @@ fn feed<N: Node>(
     event: Event<N::In<'_>>,
     effects: &mut Effects<N::Out, N::Record>,
 ) {
-    let (now, stated, is_tick) = (clock::now(), effects.len(), matches!(event, Event::Tick));
+    let now = clock::now();
     tap.event(&event, now);
     node.on(event, now, effects);
-    if !is_tick && effects.len() > stated {
-        tap.note_effect();
-    }
 }
 
 struct Loop<P: Program> {

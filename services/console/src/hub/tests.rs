@@ -82,6 +82,16 @@ fn hub_reserves_a_place_for_an_operator() {
 }
 
 #[test]
+fn hub_gives_control_to_who_joins_after_the_operator_has_been_away_too_long() {
+    let Page { hub, .. } = hub();
+    let (one, _frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
+    hub.leave(one, Time(0));
+    let back = Time(0) + lease::RELOAD;
+    let (next, _more) = hub.join("", "b", Role::Operator, back).unwrap();
+    assert_eq!(hub.control().lease.operator(), Some(next));
+}
+
+#[test]
 fn hub_lets_only_the_operator_end_anothers_participation() {
     let Page { hub, commands, .. } = hub();
     let (one, _to_one) = hub.join("", "a", Role::Operator, Time(0)).unwrap();

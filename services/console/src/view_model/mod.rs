@@ -60,7 +60,7 @@ pub enum DialogueEvent {
     Heard(Box<Receipt>),
 }
 
-/// Silence of the arm's service, which publishes four times a second, after which the arm's state is unknown.
+/// Silence of the arm's service, which publishes three to four times a second, after which the arm's state is unknown.
 const ARM_SILENCE: Span = Span::from_ms(2_000);
 
 /// Everything that pages show, at one moment.

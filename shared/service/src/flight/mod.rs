@@ -10,8 +10,8 @@
 //! stream  Head | Beginning | Entry*                                        (postcard)
 //! ```
 //!
-//! A frame holds a pass, after those of the last half second in which nothing but time had an effect. It is written as
-//! soon as the pass is over and is never synced: what a killed process has done beyond that is in the file, what a
+//! A frame holds a pass, after those of the last half second in which only time passed. It is written as soon
+//! as the pass is over and is never synced: what a killed process has done beyond that is in the file, what a
 //! machine without power has done may not be.
 
 mod difference;

@@ -14,8 +14,8 @@ use crate::{Effects, Event, Span, Time};
 /// Passes that may wait for the disk. The loop never waits: a flight with a gap could not be replayed, so
 /// with more than that the recording ends.
 const WAITING_MAX: usize = 1024;
-/// How long passes are kept in which nothing but time had an effect, so that they are written together, and up to which
-/// size, bytes.
+/// How long passes in which nothing but time passed are kept, so that they are written together, and up
+/// to which size, bytes.
 const ROUTINE_KEPT: Span = Span::from_ms(500);
 const ROUTINE_BYTES_MAX: usize = 4096;
 
@@ -36,7 +36,7 @@ pub struct Tap {
     span: Option<(Time, Time)>,
     /// Whether the present pass has an event.
     has_events: bool,
-    /// Whether anything but time had an effect in them.
+    /// Whether more happened in them than time passing.
     is_eventful: bool,
     #[cfg(test)]
     handed_over: usize,
@@ -94,13 +94,9 @@ impl Tap {
     /// Records an event just before the node is given it.
     pub fn event<In: Serialize>(&mut self, event: &Event<In>, now: Time) {
         self.has_events = true;
+        self.is_eventful |= !matches!(event, Event::Tick);
         self.span = Some((self.span.map_or(now, |(first, _)| first), now));
         self.add(&Entry::<_, ()>::Event(now, event));
-    }
-
-    /// Notes that an event had an effect, other than that of time.
-    pub fn note_effect(&mut self) {
-        self.is_eventful = true;
     }
 
     /// Records that the node was told of durable records.
@@ -116,7 +112,7 @@ impl Tap {
         }
     }
 
-    /// Ends a pass. It is written now if it has a record or anything but time had an effect.
+    /// Ends a pass. It is written now, unless nothing but time passed in it.
     pub fn end_pass(&mut self) {
         self.has_events = false;
         let is_old = self.span.is_some_and(|(first, last)| last >= first + ROUTINE_KEPT);
