@@ -98,11 +98,10 @@ pub fn plan_return(
     let place = ([at.x, at.y, at.z], at.z - BELOW_TIP_M);
     let scene = PlanningScene::new(robot, limb, arms, others, place, settings)?;
     let way = home(&scene, &scene.q, Search::Yes)?;
-    let stage = Stage {
-        phase: Phase::Return,
-        motion: scene.motion(HOME, &way)?,
-        width_m: (scene.open_m(), scene.open_m()),
-    };
+    // An arm that was stopped beside something gets away from it slowly rather than not at all.
+    let motion = scene.motion(HOME, &way).or_else(|_| scene.creeping(HOME, &way))?;
+    let width_m = (scene.open_m(), scene.open_m());
+    let stage = Stage { phase: Phase::Return, motion, width_m };
     Ok(Timeline::new(scene.limb, vec![stage]))
 }
 

@@ -245,9 +245,27 @@ impl<'a> PlanningScene<'a> {
         at: &'static str,
         waypoints: &[Joints],
     ) -> Result<Trajectory, PlanError> {
+        self.motion_in(&MANNERS, at, waypoints)
+    }
+
+    /// Returns the motion through `waypoints` that needs the least room: a tenth of the speed.
+    pub(crate) fn creeping(
+        &self,
+        at: &'static str,
+        waypoints: &[Joints],
+    ) -> Result<Trajectory, PlanError> {
+        self.motion_in(&[CREEPING], at, waypoints)
+    }
+
+    fn motion_in(
+        &self,
+        manners: &[(f64, f64)],
+        at: &'static str,
+        waypoints: &[Joints],
+    ) -> Result<Trajectory, PlanError> {
         let limb = self.limb;
         let mut gap = None;
-        for (blend_rad, speed_ratio) in MANNERS {
+        for &(blend_rad, speed_ratio) in manners {
             let limits = self.limits.at_speed_ratio(speed_ratio);
             let motion = Trajectory::through(waypoints, blend_rad, &limits)?;
             gap = self.blocked_during(&motion);
@@ -314,6 +332,7 @@ impl Look<'_> {
 /// joint distance, at so large a share of the speed. Wide ones are passed without a stop; at sharp
 /// ones the arm all but stops.
 const MANNERS: [(f64, f64); 3] = [(0.15, 1.0), (0.005, 1.0), (0.005, 0.35)];
+const CREEPING: (f64, f64) = (0.005, 0.1);
 
 /// Room that a fast motion needs around it, twice over, metres.
 const ROUTE_M: f64 = 0.03;
