@@ -137,7 +137,7 @@ fn preface(scene: &Scene, preface: &Preface) -> String {
         Preface::Sorry => "Sorry. ".to_owned(),
         Preface::Left(objects) => {
             let count = remarks::number(objects.len());
-            format!("There are {count}: {}. ", remarks::list(objects))
+            format!("There are {count}: {}. ", remarks::list(objects, "and"))
         }
     }
 }

@@ -53,6 +53,17 @@ fn the_next_pick_has_a_key_of_its_own() {
 }
 
 #[test]
+fn another_object_named_in_full_is_fetched_without_a_question() {
+    let mut manager = manager();
+    let (state, pick, _) = fetching(&mut manager);
+    let changed = remark(&mut manager, &state, words(&["clear"]));
+    assert_eq!(changed.act.kind, ActKind::Cancel);
+    let after = manager.next(&changed, &left(pick), at(3));
+    let (_, next) = after.act.pick.expect("nothing to ask");
+    assert_eq!(settings().scene.object(next).name, "clear");
+}
+
+#[test]
 fn an_object_ruled_out_in_words_is_denied_too() {
     let mut manager = manager();
     let (state, ..) = fetching(&mut manager);

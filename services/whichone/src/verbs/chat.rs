@@ -6,6 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use messages::{MotionOrder, Receipt, ReceiptStatus};
+use scene::ObjectId;
 use serde_json::json;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -55,6 +56,7 @@ fn talk(paths: &GroupPaths, interrupt: &Interrupt, out: &mut Output<'_>) -> Outc
                 "" => {}
                 "quit" | "exit" => return Ok(Exit::Ok),
                 "resume" => chat.resume()?,
+                "go on" | "continue" if chat.is_stopped() => chat.resume()?,
                 words => chat.conversation.say(words)?,
             },
             Err(TryRecvError::Empty) => thread::sleep(LOOK_EVERY * 2),
@@ -100,14 +102,17 @@ impl<'a, 'b> Chat<'a, 'b> {
         }
         let scene = self.conversation.scene();
         let noun = scene.noun();
-        let objects: Vec<String> =
-            (0..scene.objects().len()).map(|i| scene.describe(i.into())).take(12).collect();
+        let objects: Vec<ObjectId> =
+            (0..scene.objects().len()).map(ObjectId::from).take(12).collect();
         let Some(first) = objects.first() else {
             note("Nothing is known to be on the table yet; quit ends.");
             return Ok(());
         };
-        note(format_args!("There are: {}.", objects.join(", ")));
-        note(format_args!("Ask for a {noun}, e.g. \"get me the {first}\"; quit ends."));
+        let first = scene.describe(*first);
+        note(format_args!("Here are {}.", scene.list(&objects, "and")));
+        note(format_args!(
+            "Ask for a {noun}, e.g. \"get me the {first}\"; after a motion stop resume goes on; quit ends."
+        ));
         Ok(())
     }
 
@@ -169,6 +174,11 @@ impl<'a, 'b> Chat<'a, 'b> {
         }
         let sentence = await_pick::sentence(&last);
         self.out.line(self.out.style().paint(Ink::Dim, format!("({sentence})")))
+    }
+
+    /// Returns whether the motion stop is latched.
+    fn is_stopped(&self) -> bool {
+        self.conversation.latest().arm.is_some_and(|arm| arm.stopped != 0)
     }
 
     fn resume(&mut self) -> Result<(), Failure> {

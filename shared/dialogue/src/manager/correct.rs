@@ -38,8 +38,9 @@ impl Manager {
         }
     }
 
-    /// Takes back words that the user replaces by others of the same attribute: "a mug", and then "make
-    /// it a cup". Only where both are certain: what is misheard replaces nothing.
+    /// Takes back words that the user replaces: by others of the same attribute ("a mug", and then "make
+    /// it a cup"), or by a description that fits objects to none of which they apply ("the white one in the cabinet", and
+    /// then "the clear one"). Only where both are certain: what is misheard replaces nothing.
     pub(super) fn retract(&self, state: &mut State, heard: &Heard<'_>) {
         let Some((_, reading)) = likeliest(&heard.interpretations) else { return };
         if state.open.is_none() || reading.base.is_empty() || reading.doubt != Doubt::default() {
@@ -48,9 +49,16 @@ impl Manager {
         let (scene, model) = (&self.setup.scene, &self.setup.model);
         let of = |word: WordId| model.meanings(word).iter().map(|(k, _)| *k);
         let said: Vec<AttributeId> = reading.base.iter().flat_map(|word| of(*word)).collect();
+        let objects = (0..scene.objects().len()).map(ObjectId::from);
+        let fits = |i: &ObjectId| reading.base.iter().all(|word| model.has_word(*i, *word));
+        let fitting: Vec<ObjectId> = objects.filter(fits).collect();
         let is_replaced = |name: &String| {
             let word = scene.word_named(name).filter(|word| !reading.base.contains(word));
-            word.is_some_and(|word| of(word).any(|k| said.contains(&k)))
+            word.is_some_and(|word| {
+                let applies = |i: &ObjectId| model.has_word(*i, word);
+                of(word).any(|k| said.contains(&k))
+                    || !fitting.is_empty() && !fitting.iter().any(applies)
+            })
         };
         let Some(mut open) = state.open.take() else { return };
         let mut is_changed = false;

@@ -102,7 +102,9 @@ pub(super) fn group(scene: &Scene, words: &[String], plural_of: Option<&[ObjectI
         all.filter(|value| words.contains(&value.name))
     };
     let of = |role: Role| values().filter(move |value: &&Value| value.role() == role);
-    let qualities = of(Role::Quality).map(|value| value.name.clone());
+    let mut qualities: Vec<String> = of(Role::Quality).map(|value| value.name.clone()).collect();
+    // As `Scene::describe` has them: the scene's first attribute is nearest to the noun.
+    qualities.reverse();
     let kind = of(Role::Kind).next().map_or(scene.noun(), |value| value.name.as_str());
     let noun = match plural_of {
         None => kind.to_owned(),
@@ -110,7 +112,7 @@ pub(super) fn group(scene: &Scene, words: &[String], plural_of: Option<&[ObjectI
         Some(objects) => scene.plural_nouns(objects),
     };
     let places = of(Role::Place).map(|value| value.spoken.clone());
-    let parts: Vec<String> = qualities.chain([noun]).chain(places).collect();
+    let parts: Vec<String> = qualities.into_iter().chain([noun]).chain(places).collect();
     parts.join(" ")
 }
 
@@ -143,7 +145,7 @@ fn why(reason: &Reason) -> String {
     match reason {
         Reason::Between(objects) => match &objects[..] {
             [] | [_] => "Because I want to be sure.".to_owned(),
-            more => format!("Because it could be {}.", list(more)),
+            more => format!("Because it could be {}.", list(more, "or")),
         },
         Reason::Said(words) => format!("Because you said {}.", joined(words)),
         Reason::Likeliest => "Because it seems the likeliest one.".to_owned(),
@@ -152,7 +154,7 @@ fn why(reason: &Reason) -> String {
 }
 
 /// "the red mug, the blue mug and 3 more"
-pub(super) fn list(descriptions: &[String]) -> String {
+pub(super) fn list(descriptions: &[String], conjunction: &str) -> String {
     let mut items: Vec<String> = Vec::new();
     let mut length = 0;
     for description in descriptions {
@@ -163,14 +165,18 @@ pub(super) fn list(descriptions: &[String]) -> String {
         }
         items.push(format!("the {description}"));
     }
-    joined(&items)
+    joined_with(&items, conjunction)
 }
 
 fn joined(items: &[String]) -> String {
+    joined_with(items, "and")
+}
+
+fn joined_with(items: &[String], conjunction: &str) -> String {
     match items {
         [] => String::new(),
         [one] => one.clone(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+        [first @ .., last] => format!("{} {conjunction} {last}", first.join(", ")),
     }
 }
 
