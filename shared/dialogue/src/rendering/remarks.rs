@@ -97,14 +97,11 @@ fn about_objects(scene: &Scene, asked: AboutObjects, words: &[String], names: &[
 
 /// "red cups on the shelf": what the words describe; in plural for these objects, or else one.
 pub(super) fn group(scene: &Scene, words: &[String], plural_of: Option<&[ObjectId]>) -> String {
-    let values = || {
-        let all = scene.attributes().iter().flat_map(|attribute| &attribute.values);
-        all.filter(|value| words.contains(&value.name))
-    };
-    let of = |role: Role| values().filter(move |value: &&Value| value.role() == role);
-    let mut qualities: Vec<String> = of(Role::Quality).map(|value| value.name.clone()).collect();
-    // As `Scene::describe` has them: the scene's first attribute is nearest to the noun.
-    qualities.reverse();
+    // As `Scene::describe` has them: the qualities of the first attribute are nearest to the noun.
+    let values = scene.attributes().iter().rev().flat_map(|attribute| &attribute.values);
+    let said: Vec<&Value> = values.filter(|value| words.contains(&value.name)).collect();
+    let of = |role: Role| said.iter().filter(move |value| value.role() == role);
+    let qualities = of(Role::Quality).map(|value| value.name.clone());
     let kind = of(Role::Kind).next().map_or(scene.noun(), |value| value.name.as_str());
     let noun = match plural_of {
         None => kind.to_owned(),
@@ -112,7 +109,7 @@ pub(super) fn group(scene: &Scene, words: &[String], plural_of: Option<&[ObjectI
         Some(objects) => scene.plural_nouns(objects),
     };
     let places = of(Role::Place).map(|value| value.spoken.clone());
-    let parts: Vec<String> = qualities.into_iter().chain([noun]).chain(places).collect();
+    let parts: Vec<String> = qualities.chain([noun]).chain(places).collect();
     parts.join(" ")
 }
 
