@@ -2,9 +2,10 @@
 //! them, and answers the operator.
 //!
 //! One thread, one poll, and nothing in it ever waits for a service: datagrams come in, signals go
-//! out. A second thread removes the shared memory of dead processes. Of a service there are never two incarnations at once, it is never started more often than
-//! its limits allow, and when the group is down no process of it is left. What to do is decided by
-//! pure state ([`machine`], [`group`], [`swap`]); the rest carries it out.
+//! out. A second thread removes the shared memory of dead processes. Of a service there are never
+//! two incarnations at once, it is never started more often than its limits allow, and when the group
+//! is down no process of it is left. What to do is decided by pure state ([`machine`], [`group`],
+//! [`swap`]); the rest carries it out.
 //!
 
 use std::time::Duration;

@@ -120,11 +120,11 @@ fn courtesy(tags: &[Tag<'_>]) -> Option<Intent> {
         And But When Possessive AskHelp
     ];
     const STRANGE_MAX: usize = 2;
-    // "No, thanks" where nothing was asked.
-    let declines = |tag: &Tag<'_>| tag.is(Class::No) && tag.word == "no";
-    let thanks_no = |tag: &Tag<'_>| declines(tag) && matches!(tag.last, "thanks" | "you");
+    // "No, thanks", or "no thanks", which is one phrase.
+    let no = |tag: &Tag<'_>| tag.is(Class::No) && tag.word == "no";
+    let no_thanks = |tag: &Tag<'_>| no(tag) && matches!(tag.last, "thanks" | "you");
     let strange = tags.iter().filter(|tag| tag.is_unknown()).count();
-    let beside = |tag: &Tag<'_>| tag.is_any(BESIDE) || tag.is_unknown() || declines(tag);
+    let beside = |tag: &Tag<'_>| tag.is_any(BESIDE) || tag.is_unknown() || no(tag);
     let said = |words: &[&str]| {
         tags.iter().any(|tag| tag.is(Class::Courtesy) && words.contains(&tag.word))
     };
@@ -132,7 +132,7 @@ fn courtesy(tags: &[Tag<'_>]) -> Option<Intent> {
         None
     } else if said(&["thanks", "thank", "thx", "ty", "cheers", "many", "much", "ta"])
         || said(&["i", "that"])
-        || tags.iter().any(thanks_no)
+        || tags.iter().any(no_thanks)
     {
         Some(Intent::Thank)
     } else if strange == 0 && said(&["goodbye", "bye", "see", "farewell"]) {

@@ -248,7 +248,7 @@ impl<'a> PlanningScene<'a> {
         self.motion_in(&MANNERS, at, waypoints)
     }
 
-    /// Returns the motion through `waypoints` that needs the least room: a tenth of the speed.
+    /// As [`PlanningScene::motion`], at a tenth of the speed, where that is better than no motion at all.
     pub(crate) fn creeping(
         &self,
         at: &'static str,
@@ -332,6 +332,7 @@ impl Look<'_> {
 /// joint distance, at so large a share of the speed. Wide ones are passed without a stop; at sharp
 /// ones the arm all but stops.
 const MANNERS: [(f64, f64); 3] = [(0.15, 1.0), (0.005, 1.0), (0.005, 0.35)];
+/// The variant of the last resort: it needs the least room, and ten times as long.
 const CREEPING: (f64, f64) = (0.005, 0.1);
 
 /// Room that a fast motion needs around it, twice over, metres.
