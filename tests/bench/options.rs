@@ -27,7 +27,7 @@ pub(crate) struct Options {
     /// Only certified bounds on hard scenes against time; --quick: on one of each size
     #[arg(long)]
     pub(crate) bounds: bool,
-    /// Seconds of processor time that a scene of --bounds gets at last, and again on the way
+    /// Seconds that a scene of --bounds gets at last
     /// [60; 5 among all parts or with --quick]
     #[arg(long, value_name = "N")]
     seconds: Option<f64>,

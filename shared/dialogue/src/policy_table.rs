@@ -71,7 +71,7 @@ impl DecisionProblem<'_> {
     /// outlive the program.
     pub fn key(&self) -> u64 {
         /// To be raised with every change of how decisions are found.
-        const EDITION: u64 = 1;
+        const EDITION: u64 = 2;
         let costs = &self.costs;
         let amounts = [
             (costs.wait_s, costs.attribute_s),

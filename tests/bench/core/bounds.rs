@@ -1,7 +1,6 @@
 //! Certified bounds on hard scenes, which do not meet, against time.
 
 use super::scenes::{YES_NO, drawn};
-use crate::arm::thread_s;
 use crate::report::{Report, print};
 use dialogue::{Belief, Costs, DecisionProblem, Lookahead, Optimal, Planner, Step, evaluate};
 use std::time::Instant;
@@ -10,29 +9,32 @@ use std::time::Instant;
 const OBJECTS: [usize; 2] = [50, 100];
 /// How many scenes of a size there are.
 const DRAWS: u64 = 10;
-/// Seconds of processor time that a column allows.
+/// Seconds that a column allows.
 const SECONDS: [f64; 5] = [1.0, 5.0, 15.0, 30.0, 60.0];
-/// Beliefs of the search in the first attempt, and of the easier problem that bounds it from above for each of
-/// them; the next attempt may look at twice as many.
-const FIRST: usize = 1_000;
-const EASIER: usize = 20;
-/// Most beliefs of the search: each takes one to four kilobytes.
-const SEARCHED_MAX: usize = 100_000;
+/// Beliefs of the search before a plan is improved.
+const SEARCHED: usize = 4_000;
+/// Beliefs that the plan is improved with in the first attempt.
+const FIRST: usize = 2_000;
+/// Beliefs of the easier problem, which bounds the value from above, for each of them.
+const EASIER: usize = 10;
+/// An attempt is expected to take this share of the time that its column allows.
+const EXPECTED: f64 = 0.8;
+/// Most beliefs that the plan is improved with: each takes one to four kilobytes.
+const PLAN_MAX: usize = 250_000;
 /// Dialogues less probable than this are cut short in the value of `lookahead`.
 const CUT: f64 = 1e-5;
 
 /// What an attempt has shown.
 struct Attempt {
-    /// Beliefs that the search could look at.
-    searched: usize,
+    /// Beliefs that the plan might be improved with, but for [`PLAN_MAX`].
+    beliefs: usize,
     lower: f64,
     upper: f64,
     processor_s: f64,
     elapsed_s: f64,
 }
 
-/// Measures with at most `limit_s` seconds of processor time for an attempt, and that many again for those
-/// before it.
+/// Measures with at most about `limit_s` seconds for an attempt.
 pub(crate) fn measure(report: &mut Report, limit_s: f64, quick: bool) {
     let columns: Vec<f64> = SECONDS.into_iter().filter(|seconds| *seconds <= limit_s).collect();
     let mut heads = vec!["objects × attributes, scene".to_owned()];
@@ -45,7 +47,7 @@ pub(crate) fn measure(report: &mut Report, limit_s: f64, quick: bool) {
         let model = drawn(objects, 5, draw);
         let problem = DecisionProblem::new(&model, Costs::SECONDS, YES_NO);
         let mut row = vec![format!("{objects} × 5, {draw}")];
-        let attempts = attempts(&problem, columns.last().copied().unwrap_or(limit_s));
+        let attempts = attempts(&problem, &columns);
         row.extend(columns.iter().map(|seconds| cell(&attempts, *seconds)));
         let belief = Belief::uniform(objects);
         let value = evaluate(&mut Lookahead::default(), &problem, &belief, CUT).value;
@@ -55,51 +57,56 @@ pub(crate) fn measure(report: &mut Report, limit_s: f64, quick: bool) {
     }
     let note = format!(
         "Bounds on the value of the best policy at the uniform belief, their gap, and the seconds of \
-         processor / elapsed that took, on one thread; beside it the value of `lookahead`, dialogues less \
-         probable than {CUT:e} cut short. Yes/no questions, costs in seconds. Each attempt begins anew \
-         with twice the beliefs; a column has the best that those of at most its seconds have shown."
+         processor / elapsed that took, on two threads; beside it the value of `lookahead`, dialogues less \
+         probable than {CUT:e} cut short. Yes/no questions, costs in seconds. Each column has an attempt that begins \
+         anew, with as many beliefs as are expected to fit, and shows the best of those that have ended in time."
     );
     report.table("Certified bounds on hard scenes", note, heads, rows);
 }
 
-/// Attempts with more and more beliefs, the last of them expected to end in time.
-fn attempts(problem: &DecisionProblem<'_>, limit_s: f64) -> Vec<Attempt> {
-    let mut attempts: Vec<Attempt> = Vec::new();
-    for doubled in 0.. {
-        let searched = FIRST << doubled;
-        let before_s = attempts.last().map_or(0.0, |attempt| attempt.processor_s);
-        if attempts.len() > 1 && before_s * 2.0 > limit_s || is_exhausted(&attempts) {
-            break;
+/// A first attempt, and one for each column.
+fn attempts(problem: &DecisionProblem<'_>, columns: &[f64]) -> Vec<Attempt> {
+    let mut attempts = vec![attempt(problem, FIRST)];
+    for seconds in columns {
+        let last = &attempts[attempts.len() - 1];
+        let beliefs = last.beliefs as f64 * EXPECTED * seconds / last.elapsed_s;
+        if beliefs as usize > last.beliefs && !is_exhausted(&attempts) {
+            attempts.push(attempt(problem, beliefs as usize));
         }
-        attempts.push(attempt(problem, searched));
     }
     attempts
 }
 
-/// Returns whether twice the beliefs have shown nothing more, with all the memory that the search may have.
+/// Returns whether more beliefs have shown nothing more, with all the memory that the plan may have.
 fn is_exhausted(attempts: &[Attempt]) -> bool {
     let Some([before, last]) = attempts.last_chunk() else { return false };
     let bounds = |attempt: &Attempt| (attempt.lower, attempt.upper);
-    before.searched >= SEARCHED_MAX && bounds(before) == bounds(last)
+    before.beliefs >= PLAN_MAX && bounds(before) == bounds(last)
 }
 
 fn attempt(problem: &DecisionProblem<'_>, beliefs: usize) -> Attempt {
     let mut planner = Optimal::default();
     // No gap is close enough: what is measured is how far the bounds can be tightened.
     planner.tolerance = 0.0;
-    let searched = beliefs.min(SEARCHED_MAX);
-    planner.beliefs_max = searched;
-    planner.certify_max = beliefs * EASIER;
+    planner.beliefs_max = SEARCHED;
+    planner.plan_max = beliefs.min(PLAN_MAX);
+    planner.easier_max = beliefs * EASIER;
     let belief = Belief::uniform(problem.model.objects());
-    let (begun, used) = (Instant::now(), thread_s());
+    let (begun, used) = (Instant::now(), process_s());
     let bounds = planner.decide(problem, &belief, Step::default()).bounds;
     let (lower, upper) = bounds.unwrap_or((f64::NAN, f64::NAN));
-    let (processor_s, elapsed_s) = (thread_s() - used, begun.elapsed().as_secs_f64());
-    Attempt { searched, lower, upper, processor_s, elapsed_s }
+    let (processor_s, elapsed_s) = (process_s() - used, begun.elapsed().as_secs_f64());
+    Attempt { beliefs, lower, upper, processor_s, elapsed_s }
+}
+
+/// Seconds of processor that this process has used.
+fn process_s() -> f64 {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }
 
 fn cell(attempts: &[Attempt], seconds: f64) -> String {
-    let mut within = attempts.iter().filter(|attempt| attempt.processor_s <= seconds);
+    let mut within = attempts.iter().filter(|attempt| attempt.elapsed_s <= seconds);
     let Some(first) = within.next() else { return "–".to_owned() };
     let (mut lower, mut upper, mut last) = (first.lower, first.upper, first);
     for attempt in within {

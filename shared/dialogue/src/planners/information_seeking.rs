@@ -79,7 +79,7 @@ fn follow(problem: &DecisionProblem<'_>, belief: &Belief) -> Decision {
     searched(problem, belief, |reduced| Effort {
         beliefs_max: affordable(reduced, WORK_MAX).clamp(1, FOLLOWED_MAX),
         tolerance: 1e-4 * stake,
-        certify_max: 0,
+        certify: None,
     })
 }
 

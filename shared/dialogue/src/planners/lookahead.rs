@@ -62,7 +62,7 @@ impl Planner for Lookahead {
         searched(problem, belief, |reduced: &Reduced| Effort {
             beliefs_max: self.beliefs_max.min(work(reduced)),
             tolerance: self.tolerance * stake,
-            certify_max: 0,
+            certify: None,
         })
     }
 }

@@ -1,6 +1,6 @@
 //! `optimal`: the search of `lookahead` run until the value is certified, and remembered.
 
-use crate::planning::{Effort, Reduced};
+use crate::planning::{Certify, Effort, Reduced};
 use crate::{Belief, Decision, DecisionProblem, Planner, PolicyTable, Step, evaluate};
 
 use super::Entry;
@@ -26,8 +26,10 @@ pub struct Optimal {
     /// Gap between the bounds at which the value counts as known, as a share of what is at stake
     /// in a pick.
     pub tolerance: f64,
-    /// Most beliefs to look at for certifying a smaller gap where that one is not reached.
-    pub certify_max: usize,
+    /// Where that gap is not reached: most further beliefs to look at for a better plan.
+    pub plan_max: usize,
+    /// There too: most beliefs of an easier problem to look at for an upper bound.
+    pub easier_max: usize,
     table: PolicyTable,
 }
 
@@ -36,14 +38,15 @@ impl Default for Optimal {
         Self {
             beliefs_max: 50_000,
             tolerance: 2e-6,
-            certify_max: 100_000,
+            plan_max: 30_000,
+            easier_max: 100_000,
             table: PolicyTable::default(),
         }
     }
 }
 
-/// How much work one decision may be, in classes looked at times attributes: under two seconds of
-/// one core, most of it spent on scenes of 20 objects and more.
+/// How much work the search for one decision may be, and that for a better plan as much again, in classes looked at
+/// times attributes: under two seconds of one core each, most of it spent on scenes of 20 objects and more.
 const WORK_MAX: usize = 150_000_000;
 /// Fewest beliefs that are looked at, however large the scene.
 const BELIEFS_MIN: usize = 200;
@@ -61,10 +64,14 @@ fn stands_for(belief: &Belief, key: &[i64]) -> Belief {
 impl Optimal {
     fn solve(&self, problem: &DecisionProblem<'_>, belief: &Belief) -> Decision {
         let stake = problem.costs.correct + problem.costs.wrong;
-        searched(problem, belief, |reduced: &Reduced| Effort {
-            beliefs_max: self.beliefs_max.min(affordable(reduced, WORK_MAX).max(BELIEFS_MIN)),
-            tolerance: self.tolerance * stake,
-            certify_max: self.certify_max,
+        searched(problem, belief, |reduced: &Reduced| {
+            let affordable = affordable(reduced, WORK_MAX).max(BELIEFS_MIN);
+            let plan_max = self.plan_max.min(affordable);
+            Effort {
+                beliefs_max: self.beliefs_max.min(affordable),
+                tolerance: self.tolerance * stake,
+                certify: Some(Certify { plan_max, easier_max: self.easier_max }),
+            }
         })
     }
 }
@@ -95,7 +102,7 @@ impl Planner for Optimal {
         let quick = |reduced: &Reduced| Effort {
             beliefs_max: affordable(reduced, SMALL_WORK_MAX).max(1),
             tolerance,
-            certify_max: 0,
+            certify: None,
         };
         let bounds = searched(problem, &stands_for(belief, &belief.key()), quick).bounds;
         if bounds.is_some_and(|(lower, upper)| upper - lower <= tolerance) {

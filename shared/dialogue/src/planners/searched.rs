@@ -1,6 +1,9 @@
 //! A decision from searching the beliefs that questions lead to.
 
-use crate::planning::{Bound, Effort, Move, Reduced, Revealed, Search, Value};
+use std::panic::resume_unwind;
+use std::thread;
+
+use crate::planning::{Bound, Certify, Effort, Move, Reduced, Revealed, Search, Value};
 use crate::{Action, Belief, Decision, DecisionProblem};
 
 use super::{alternatives, stop};
@@ -36,23 +39,31 @@ pub(super) fn searched(
     }
 }
 
-/// Upper bound on the value. Where the search leaves the bounds apart, the plan is rolled out and the
-/// easier problem is searched.
+/// Upper bound on the value. Where the search leaves the bounds apart, the plan is rolled out and improved, while
+/// another thread searches the easier problem. Both do the same work however long it takes.
 fn certify(
     search: &mut Search<'_>,
     reduced: &Reduced,
     problem: &DecisionProblem<'_>,
     effort: Effort,
 ) -> f64 {
-    if effort.certify_max == 0 || search.root().value.gap() <= effort.tolerance {
+    let is_solved = search.root().value.gap() <= effort.tolerance;
+    let Some(Certify { plan_max, easier_max }) = effort.certify.filter(|_| !is_solved) else {
         return search.root().value.upper;
-    }
-    search.roll_out(effort.beliefs_max + effort.certify_max);
+    };
+    let beliefs_max = search.len() + plan_max;
+    search.roll_out(beliefs_max);
+    let enough = search.root().value.lower + effort.tolerance;
+    let easier = || {
+        let easier = Revealed::of(reduced, &problem.costs);
+        easier.map_or(f64::INFINITY, |mut easier| easier.upper(easier_max, enough))
+    };
+    let upper = thread::scope(|scope| {
+        let thread = thread::Builder::new().spawn_scoped(scope, easier);
+        search.improve(beliefs_max);
+        thread.map_or_else(|_| easier(), |it| it.join().unwrap_or_else(|e| resume_unwind(e)))
+    });
     let Value { lower, upper: searched, .. } = search.root().value;
-    let enough = lower + effort.tolerance;
-    let revealed = Revealed::of(reduced, &problem.costs);
-    let upper =
-        revealed.map_or(f64::INFINITY, |mut easier| easier.upper(effort.certify_max, enough));
     searched.min(upper).max(lower)
 }
 

@@ -25,4 +25,4 @@ pub(crate) use one_step_lookahead::{Choice, OneStepEvaluator, OneStepLookahead};
 pub(crate) use outcome::outcomes;
 pub(crate) use reduced::Reduced;
 pub(crate) use revealed::Revealed;
-pub(crate) use search::{Effort, Move, Search};
+pub(crate) use search::{Certify, Effort, Move, Search};

@@ -16,6 +16,7 @@
 use std::collections::HashMap;
 
 use super::channel::{Channel, Query};
+use super::partition::Partition;
 use super::reduced::Reduced;
 use super::told::{Kind, Split, Told};
 use crate::{Costs, Rng};
@@ -49,9 +50,12 @@ struct Known {
 /// "Is it of that block?"
 #[derive(Debug)]
 struct Question<'a> {
+    partition: usize,
     blocks: &'a [u16],
     block: u16,
     channel: &'a Channel,
+    /// Logarithms of the probabilities of a right and of a wrong answer.
+    log: [f64; 2],
     /// Sums of these, less those of denied questions, tell beliefs apart.
     code: u128,
 }
@@ -114,12 +118,17 @@ impl<'a> Revealed<'a> {
         let mut rng = Rng::new(0xc0de);
         let mut code = || u128::from(rng.next_u64()) << 64 | u128::from(rng.next_u64());
         let question = |query: &Query| match *query {
-            Query::Is { partition, block } => Some(Question {
-                blocks: &reduced.partition(partition).blocks,
-                block,
-                channel: reduced.channel(*query),
-                code: code(),
-            }),
+            Query::Is { partition, block } => {
+                let channel = reduced.channel(*query);
+                Some(Question {
+                    partition: usize::from(partition),
+                    blocks: &reduced.partition(partition).blocks,
+                    block,
+                    channel,
+                    log: [channel.own.ln(), channel.other.ln()],
+                    code: code(),
+                })
+            }
             _ => None,
         };
         let questions: Vec<_> = reduced.queries.iter().map(question).collect::<Option<_>>()?;
@@ -272,30 +281,45 @@ impl<'a> Revealed<'a> {
         picked.max(self.costs.wait_value())
     }
 
+    /// Probability of every block of every partition.
+    fn blocks(&self, mass: &[f64]) -> Vec<Vec<f64>> {
+        let of = |partition: &Partition| {
+            let mut blocks = vec![0.0; partition.values.len()];
+            for (block, mass) in partition.blocks.iter().zip(mass) {
+                blocks[usize::from(*block)] += mass;
+            }
+            blocks
+        };
+        self.reduced.partitions.iter().map(of).collect()
+    }
+
     fn look_ahead(&self, at: &State) -> Vec<Outlook> {
         let total: f64 = at.left.iter().map(|class| at.entry(*class).0).sum();
+        let blocks = self.blocks(&at.mass);
         let mut outlooks = Vec::with_capacity(self.questions.len());
         for (index, question) in self.questions.iter().enumerate() {
             let Channel { own, other, price, .. } = *question.channel;
-            let says = question.blocks.iter().zip(&at.mass);
-            let yes: f64 =
-                says.filter(|(block, _)| **block == question.block).map(|(_, m)| m).sum();
+            let yes = blocks[question.partition][usize::from(question.block)];
             let split = self.told[0].split(yes.clamp(0.0, 1.0));
-            let (logs, mut wrong) = ([own.ln(), other.ln()], 0.0);
-            let mut sides = [(0.0, 0.0); 2];
+            let [own_log, other_log] = question.log;
+            // Of the right answer of each side, and of the wrong one: likelihood, probability, and what it adds to the
+            // logarithm of a class.
+            let right = [0, 1].map(|side| (own, split.heard[side], own_log - split.log[side]));
+            let wrong = [1, 0].map(|said| (other, split.heard[said], other_log - split.log[said]));
+            let (mut misheard, mut sides) = (0.0, [(0.0, 0.0); 2]);
             for &class in &at.left {
                 let ((mass, log), side) = (at.entry(class), question.side(usize::from(class)));
-                let after = |likelihood: f64, added: f64, heard: usize| {
-                    let x = mass * likelihood / split.heard[heard];
-                    self.told_of(class).value(x, log + added - split.log[heard])
+                let told = self.told_of(class);
+                let after = |(likelihood, heard, added): (f64, f64, f64)| {
+                    told.value_after(mass * likelihood, heard, log + added)
                 };
                 sides[side].0 += mass;
-                sides[side].1 += mass * after(own, logs[0], side);
-                wrong += mass * after(other, logs[1], 1 - side);
+                sides[side].1 += mass * after(right[side]);
+                misheard += mass * after(wrong[side]);
             }
             let right = sides[0].1 + sides[1].1;
             let paid = sides[0].0 * split.compensation[0] + sides[1].0 * split.compensation[1];
-            let value = price.pay((own * right + other * wrong) / total) + paid / total;
+            let value = price.pay((own * right + other * misheard) / total) + paid / total;
             let sides = sides.map(|(mass, right)| Side {
                 share: mass / total,
                 right: right / mass.max(f64::MIN_POSITIVE),
@@ -311,7 +335,8 @@ impl<'a> Revealed<'a> {
         let question = &self.questions[outlook.question];
         let Channel { own, other, .. } = *question.channel;
         let scale = [own, other].map(|likelihood| likelihood / outlook.split.heard[side]);
-        let logs = scale.map(f64::ln);
+        let log = outlook.split.log[side];
+        let logs = question.log.map(|answer| answer - log);
         let of = |class: usize| usize::from(question.side(class) != side);
         let mass = at.mass.iter().enumerate().map(|(class, m)| m * scale[of(class)]).collect();
         let log = at.log.iter().enumerate().map(|(class, log)| log + logs[of(class)]).collect();

@@ -5,6 +5,8 @@
 //! tree of dialogues. Every node keeps a certified lower and upper bound, and an estimate between
 //! them that leads the search when it cannot close the bounds.
 
+mod plan;
+
 use std::collections::HashMap;
 
 use super::bound::{Bound, Value};
@@ -21,8 +23,17 @@ pub(crate) struct Effort {
     pub(crate) beliefs_max: usize,
     /// Gap between the bounds at which the value counts as known.
     pub(crate) tolerance: f64,
-    /// Where the search leaves a larger gap: most beliefs to look at for certifying a smaller one.
-    pub(crate) certify_max: usize,
+    /// What to do where the search leaves a larger gap.
+    pub(crate) certify: Option<Certify>,
+}
+
+/// How long to bring the bounds together where the search does not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Certify {
+    /// Most further beliefs to look at for a better plan.
+    pub(crate) plan_max: usize,
+    /// Most beliefs of an easier problem to look at for an upper bound.
+    pub(crate) easier_max: usize,
 }
 
 /// The graph of beliefs searched so far; the first node is the belief that is decided about.
@@ -86,10 +97,6 @@ const BRANCHES_MAX: usize = 48;
 const BARREN_MAX: u32 = 32;
 /// No plan asks that often; a guard against cycles of answers that cancel out.
 const DEPTH_MAX: usize = 64;
-/// Dialogues less probable than this are not rolled out: together they are worth some hundredths.
-const UNLIKELY: f64 = 3e-6;
-/// How often plans are rolled out: two or three times in practice.
-const ROLL_OUTS_MAX: usize = 8;
 
 impl<'a> Search<'a> {
     /// A search that has looked one step ahead from the belief itself.
@@ -108,6 +115,11 @@ impl<'a> Search<'a> {
     /// The belief that is decided about.
     pub(crate) fn root(&self) -> &Node {
         &self.nodes[0]
+    }
+
+    /// How many beliefs were looked at.
+    pub(crate) fn len(&self) -> usize {
+        self.nodes.len()
     }
 
     /// Another belief.
@@ -132,39 +144,6 @@ impl<'a> Search<'a> {
                 barren += 1;
             }
         }
-    }
-
-    /// Follows the plan that looks best through every dialogue that is at all likely, so that the lower
-    /// bound is what the plan achieves, and does so again while that makes a better plan look best.
-    /// Looks at `beliefs_max` beliefs in all at most.
-    pub(crate) fn roll_out(&mut self, beliefs_max: usize) {
-        for _ in 0..ROLL_OUTS_MAX {
-            let before = self.root().value.lower;
-            self.roll_out_from(0, 1.0, 0, beliefs_max);
-            if self.root().value.lower <= before {
-                break;
-            }
-        }
-    }
-
-    fn roll_out_from(&mut self, node: usize, reached: f64, depth: usize, beliefs_max: usize) {
-        if reached < UNLIKELY || depth >= DEPTH_MAX || self.nodes.len() >= beliefs_max {
-            return;
-        }
-        let Some(leading) = self.nodes[node].leading(Lead::Expectation) else { return };
-        let branch = &self.nodes[node].branches[leading];
-        if branch.value.estimate <= self.nodes[node].stop {
-            return;
-        }
-        let discount = branch.price.discount;
-        if branch.answers.is_empty() {
-            self.follow(node, leading);
-        }
-        for answer in 0..self.nodes[node].branches[leading].answers.len() {
-            let (probability, next) = self.nodes[node].branches[leading].answers[answer];
-            self.roll_out_from(next, reached * probability * discount, depth + 1, beliefs_max);
-        }
-        self.back_up(node, leading);
     }
 
     /// Goes down along the leading questions and the most doubtful answers to a question that has

@@ -274,7 +274,7 @@ fn searching_only_tightens_the_bounds() {
         let mut before = search.root().value;
         let tolerance = 1e-6 * problem.costs.correct;
         for beliefs_max in [2, 8, 32, 128] {
-            search.run(Effort { beliefs_max, tolerance, certify_max: 0 });
+            search.run(Effort { beliefs_max, tolerance, certify: None });
             let after = search.root().value;
             assert!(after.lower >= before.lower && after.upper <= before.upper, "{label}");
             assert!(after.lower <= after.upper, "{label}");
@@ -282,6 +282,41 @@ fn searching_only_tightens_the_bounds() {
             before = after;
         }
     });
+}
+
+/// A better plan is still no better than the best one, and rolling it out again gains nothing.
+#[test]
+fn improving_raises_the_lower_bound_up_to_the_value() {
+    for_many_problems(77, |problem, _, reduced, label| {
+        let bound = Bound::new(reduced, &problem.costs);
+        let tolerance = 1e-6 * problem.costs.correct;
+        let mut solved = Search::new(reduced, &bound);
+        solved.run(Effort { beliefs_max: 1_000, tolerance, certify: None });
+        let mut search = Search::new(reduced, &bound);
+        search.roll_out(300);
+        let rolled_out = search.root().value;
+        search.improve(600);
+        let improved = search.root().value;
+        assert!(improved.lower >= rolled_out.lower, "{label}");
+        assert!(improved.lower <= solved.root().value.upper + 1e-9, "{label}");
+        assert!(improved.upper >= solved.root().value.lower - 1e-9, "{label}");
+    });
+}
+
+/// Where the bounds stay apart, the plan beats the one-step `lookahead` by what its first questions are worth.
+#[test]
+fn improving_finds_a_better_plan_on_a_hard_scene() {
+    let model =
+        Model::new(&random_scene(&mut Rng::new(78), 30, &[6, 6, 6, 6], 0), Params::default());
+    let problem = problem(&model, Actions { which: false, ..REMOTE }, Costs::SECONDS);
+    let reduced = Reduced::new(&problem, &Belief::uniform(30));
+    let bound = Bound::new(&reduced, &problem.costs);
+    let mut search = Search::new(&reduced, &bound);
+    search.roll_out(5_000);
+    let before = search.root().value.lower;
+    search.improve(20_000);
+    let after = search.root().value.lower;
+    assert!(after > before + 0.05, "{before} to {after}");
 }
 
 /// How many beliefs it takes to know the value of the six bowls.
@@ -298,7 +333,7 @@ fn the_bowls_are_solved_in_few_beliefs() {
         let reduced = Reduced::new(&problem, &Belief::uniform(6));
         let bound = Bound::new(&reduced, &problem.costs);
         let mut search = Search::new(&reduced, &bound);
-        search.run(Effort { beliefs_max, tolerance: 5e-4, certify_max: 0 });
+        search.run(Effort { beliefs_max, tolerance: 5e-4, certify: None });
         assert!(search.root().value.gap() <= 5e-4, "{actions:?} {:?}", search.root().value);
     }
 }
@@ -311,7 +346,7 @@ fn a_search_that_tolerates_nothing_ends() {
     let reduced = Reduced::new(&problem, &Belief::uniform(6));
     let bound = Bound::new(&reduced, &problem.costs);
     let mut search = Search::new(&reduced, &bound);
-    search.run(Effort { beliefs_max: usize::MAX, tolerance: 0.0, certify_max: 0 });
+    search.run(Effort { beliefs_max: usize::MAX, tolerance: 0.0, certify: None });
     assert!(search.root().value.gap() < 1e-6, "{:?}", search.root().value);
 }
 
@@ -330,7 +365,7 @@ fn revealed_errors_bound_the_value() {
         let bound = Bound::new(reduced, &problem.costs);
         let mut search = Search::new(reduced, &bound);
         let tolerance = 1e-6 * problem.costs.correct;
-        search.run(Effort { beliefs_max: 1_000, tolerance, certify_max: 0 });
+        search.run(Effort { beliefs_max: 1_000, tolerance, certify: None });
         let lower = search.root().value.lower;
         let mut before = f64::INFINITY;
         for (beliefs_max, enough) in

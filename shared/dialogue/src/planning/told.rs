@@ -75,6 +75,13 @@ struct Step {
     compensation: f64,
 }
 
+/// What the questions of a cell were worth when they were last looked at, from its own range of yes on. They
+/// only fall from sweep to sweep, so most need no second look.
+struct Asked {
+    worth: Vec<f64>,
+    best: usize,
+}
+
 /// Cells per octave of the odds `x / (1 − x)`, as a power of two.
 const CELL_BITS: u64 = 5;
 /// Octaves below and above even odds.
@@ -112,8 +119,9 @@ impl Told {
         let rest = (0..CELLS).map(|cell| costs.correct - price * span(cell)[0].ln()).collect();
         let mut told = Self { stakes, rest };
         let steps: Vec<Step> = (0..CELLS).map(|cell| stakes.step(span(cell))).collect();
+        let mut asked: Vec<Asked> = (0..CELLS).map(Asked::before_the_first_sweep).collect();
         for _ in 0..SWEEPS_MAX {
-            if told.sweep(&steps)? < 1e-3 * cost {
+            if told.sweep(&steps, &mut asked)? < 1e-3 * cost {
                 break;
             }
         }
@@ -122,7 +130,17 @@ impl Told {
 
     /// `w(x)`, given the logarithm too.
     pub(super) fn value(&self, x: f64, log: f64) -> f64 {
-        cell(x).map_or(self.stakes.costs.correct, |cell| self.stakes.price * log + self.rest[cell])
+        self.value_at(cell(x), log)
+    }
+
+    /// The same for `x = joint / heard`, where `joint` is the probability of class and answer.
+    pub(super) fn value_after(&self, joint: f64, heard: f64, log: f64) -> f64 {
+        let odds = joint / (heard - joint).max(f64::MIN_POSITIVE);
+        self.value_at(cell_of(odds), log)
+    }
+
+    fn value_at(&self, cell: Option<usize>, log: f64) -> f64 {
+        cell.map_or(self.stakes.costs.correct, |cell| self.stakes.price * log + self.rest[cell])
     }
 
     /// `κ` of a class whose probability has that logarithm.
@@ -136,14 +154,14 @@ impl Told {
 
     /// Lowers every cell to what follows from the others; the largest change, or none if a cell would
     /// rise.
-    fn sweep(&mut self, steps: &[Step]) -> Option<f64> {
+    fn sweep(&mut self, steps: &[Step], asked: &mut [Asked]) -> Option<f64> {
         let mut change = 0.0_f64;
-        for cell in (0..CELLS).rev() {
+        for (cell, asked) in asked.iter_mut().enumerate().rev() {
             let span = span(cell);
             // The classes of its side are at least as probable as the class itself.
             let surest = steps[cell].yes[1];
-            let asked = steps[cell..].iter().map(|step| self.asked(span, surest, step));
-            let value = asked.fold(self.stakes.stop(span), f64::max);
+            let of = |step: usize| self.asked(span, surest, &steps[cell + step]);
+            let value = asked.best(of).max(self.stakes.stop(span));
             let before = self.rest[cell];
             if value > before + ROUNDING {
                 return None;
@@ -180,6 +198,27 @@ impl Told {
         let greatest = self.rest.iter().enumerate().map(of_cell).fold(costs.correct, f64::max);
         let after = channel.price.pay(greatest);
         steps.iter().all(|step| after + step.compensation <= costs.correct)
+    }
+}
+
+impl Asked {
+    fn before_the_first_sweep(cell: usize) -> Self {
+        Self { worth: vec![f64::INFINITY; CELLS - cell], best: 0 }
+    }
+
+    /// What the best question is worth now.
+    fn best(&mut self, now: impl Fn(usize) -> f64) -> f64 {
+        let mut greatest = now(self.best);
+        self.worth[self.best] = greatest;
+        for (step, worth) in self.worth.iter_mut().enumerate() {
+            if *worth > greatest {
+                *worth = now(step);
+                if *worth > greatest {
+                    (greatest, self.best) = (*worth, step);
+                }
+            }
+        }
+        greatest
     }
 }
 
@@ -231,7 +270,10 @@ const FIRST: u64 = ((1023 - OCTAVES[0]) as u64) << CELL_BITS;
 
 /// The cell of a probability: odds that agree in their leading bits share one.
 fn cell(x: f64) -> Option<usize> {
-    let odds = x / (1.0 - x).max(f64::MIN_POSITIVE);
+    cell_of(x / (1.0 - x).max(f64::MIN_POSITIVE))
+}
+
+fn cell_of(odds: f64) -> Option<usize> {
     let cell = (odds.to_bits() >> SHIFT).checked_sub(FIRST)?;
     Some((cell as usize).min(CELLS - 1))
 }

@@ -1,0 +1,126 @@
+//! A better plan where the search cannot close the bounds, by policy iteration on the beliefs that the plan leads to.
+//!
+//! The plan asks at each belief what is estimated to be best. Rolled out, a question's estimate is what the plan
+//! achieves, and that of a question which was never followed is still a guess one step ahead, often too low by more
+//! than the two differ. So at the beliefs that the plan is likely to lead to, the questions that look best are all
+//! followed and the plan is rolled out after each; the best becomes the plan. That is repeated while it gains
+//! anything, then with more questions.
+
+use super::{DEPTH_MAX, Lead, Search};
+
+/// Dialogues less probable than this are not rolled out: together they are worth some hundredths.
+const UNLIKELY: f64 = 3e-6;
+/// How often a plan is rolled out: two or three times in practice.
+const ROLL_OUTS_MAX: usize = 8;
+/// Beliefs that are reached less probably keep the question that is estimated to be best.
+const RARE: f64 = 1e-3;
+/// How many questions are compared at a belief, at first and at last.
+const COMPARED: std::ops::RangeInclusive<usize> = 2..=8;
+/// What a repetition has to gain for another one, as a share of the value.
+const GAIN_MIN: f64 = 1e-5;
+
+/// The plan as far as it is followed: a belief, and how probably the plan leads there, discounted.
+#[derive(Clone, Copy)]
+struct Reached {
+    node: usize,
+    probability: f64,
+    depth: usize,
+}
+
+const ROOT: Reached = Reached { node: 0, probability: 1.0, depth: 0 };
+
+impl Search<'_> {
+    /// Follows the plan that looks best through every dialogue that is at all likely, so that the lower
+    /// bound is what the plan achieves, and does so again while that makes a better plan look best.
+    /// Looks at `beliefs_max` beliefs in all at most.
+    pub(crate) fn roll_out(&mut self, beliefs_max: usize) {
+        for _ in 0..ROLL_OUTS_MAX {
+            let before = self.root().value.lower;
+            self.roll_out_from(ROOT, beliefs_max);
+            if self.root().value.lower <= before {
+                break;
+            }
+        }
+    }
+
+    /// Looks for a better plan than the one that was rolled out. Looks at `beliefs_max` beliefs in all at most.
+    pub(crate) fn improve(&mut self, beliefs_max: usize) {
+        for compared in COMPARED {
+            loop {
+                let before = self.root().value.lower;
+                self.improve_from(ROOT, compared, beliefs_max);
+                let gain = self.root().value.lower - before;
+                if gain <= GAIN_MIN * before.abs() {
+                    break;
+                }
+            }
+        }
+    }
+
+    fn roll_out_from(&mut self, at: Reached, beliefs_max: usize) {
+        if at.probability < UNLIKELY || self.is_end(at, beliefs_max) {
+            return;
+        }
+        if let Some(branch) = self.planned(at.node) {
+            self.take(at, branch, beliefs_max, Self::roll_out_from);
+        }
+    }
+
+    fn improve_from(&mut self, at: Reached, compared: usize, beliefs_max: usize) {
+        if at.probability < RARE || self.is_end(at, beliefs_max) || self.planned(at.node).is_none()
+        {
+            return;
+        }
+        for branch in self.nodes[at.node].most_promising(compared) {
+            self.take(at, branch, beliefs_max, Self::roll_out_from);
+        }
+        if let Some(branch) = self.planned(at.node) {
+            self.take(at, branch, beliefs_max, |search, next, beliefs_max| {
+                search.improve_from(next, compared, beliefs_max);
+            });
+        }
+    }
+
+    fn is_end(&self, at: Reached, beliefs_max: usize) -> bool {
+        at.depth >= DEPTH_MAX || self.nodes.len() >= beliefs_max
+    }
+
+    /// The move of the plan; none where it stops.
+    fn planned(&self, node: usize) -> Option<usize> {
+        let node = &self.nodes[node];
+        let leading = node.leading(Lead::Expectation)?;
+        (node.branches[leading].value.estimate > node.stop).then_some(leading)
+    }
+
+    /// Makes a move, goes on after each answer, and takes the move's value from there.
+    fn take(
+        &mut self,
+        at: Reached,
+        branch: usize,
+        beliefs_max: usize,
+        go_on: impl Fn(&mut Self, Reached, usize),
+    ) {
+        if self.nodes[at.node].branches[branch].answers.is_empty() {
+            self.follow(at.node, branch);
+        }
+        let discount = self.nodes[at.node].branches[branch].price.discount;
+        for answer in 0..self.nodes[at.node].branches[branch].answers.len() {
+            let (probability, node) = self.nodes[at.node].branches[branch].answers[answer];
+            let probability = at.probability * probability * discount;
+            go_on(self, Reached { node, probability, depth: at.depth + 1 }, beliefs_max);
+        }
+        self.back_up(at.node, branch);
+    }
+}
+
+impl super::Node {
+    /// The moves of the greatest estimates that can be better than what is achieved.
+    fn most_promising(&self, count: usize) -> Vec<usize> {
+        let can_be_better = |branch: &usize| self.branches[*branch].value.upper > self.value.lower;
+        let mut moves: Vec<usize> = (0..self.branches.len()).filter(can_be_better).collect();
+        let estimate = |branch: &usize| self.branches[*branch].value.estimate;
+        moves.sort_by(|a, b| estimate(b).total_cmp(&estimate(a)));
+        moves.truncate(count);
+        moves
+    }
+}
