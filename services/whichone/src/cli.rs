@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::error::{ContextKind, ContextValue};
-use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Arg, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
 use diagnostics::nearest;
 use service::group::{ENV_GROUP, GroupName};
@@ -69,11 +69,13 @@ pub struct Cli {
 }
 
 /// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
-const WITHOUT_GROUP: [&str; 13] = [
+const WITHOUT_GROUP: [&str; 15] = [
     "check",
     "conform",
+    "export",
     "init",
     "scene",
+    "study",
     "completions",
     "complete",
     "man",
@@ -85,22 +87,25 @@ const WITHOUT_GROUP: [&str; 13] = [
     "ik",
 ];
 
+/// The argument `--group` of a program.
+fn group_argument(program: &Command) -> Arg {
+    let is_group = |argument: &&Arg| argument.get_id() == "group";
+    program.get_arguments().find(is_group).expect("an argument of every verb").clone()
+}
+
+/// The argument `--group` for what means a group although its verb does not: recordings, journals and flights, and the
+/// results of a study with people.
+fn listed_group() -> Arg {
+    group_argument(&Cli::command())
+}
+
 impl Cli {
     /// Returns the definition of the command line, from which help and completions are made.
     pub fn definition() -> Command {
         let command = Self::command();
-        let group = command.get_arguments().find(|argument| argument.get_id() == "group");
-        let listed = group.expect("an argument of every verb").clone();
+        let group = group_argument(&command).hide(true);
         command.mut_subcommands(|verb| match verb.get_name() {
-            // The results of a study with people are a group's.
-            "study" => verb
-                .arg(listed.clone().hide(true))
-                .mut_subcommands(|report| report.arg(listed.clone())),
-            // So are recordings, journals and flights.
-            "export" => verb
-                .arg(listed.clone().hide(true))
-                .mut_subcommand("mcap", |mcap| mcap.arg(listed.clone())),
-            name if WITHOUT_GROUP.contains(&name) => verb.arg(listed.clone().hide(true)),
+            name if WITHOUT_GROUP.contains(&name) => verb.arg(group.clone()),
             _ => verb,
         })
     }
@@ -142,8 +147,10 @@ const EXIT_CODES: &str = "\
 Exit codes: 0 success; 1 goal not reached; 64 usage error; 70 broken invariant; 74 storage error;
 78 configuration error.";
 
-/// Verbs of the program.
+/// Verbs of the program. The arguments of a verb are made when it is used: those of all of them take half a
+/// millisecond, a tenth of a `say`.
 #[derive(Debug, Subcommand)]
+#[command(defer = true)]
 pub enum Verb {
     /// Start the group and run it until Ctrl-C or `whichone down`.
     Up(UpArgs),

@@ -42,7 +42,7 @@ pub use wake::{Joined, WakeListener, WakeNotifier};
 /// A process's access to the group's topics. Not shared between threads.
 #[derive(Debug)]
 pub struct Bus {
-    node: Node<Ipc>,
+    node: Rc<Node<Ipc>>,
     identity: Identity,
     paths: GroupPaths,
     /// Services that are woken beyond the topics' own table.
@@ -196,6 +196,7 @@ impl Bus {
                 .signal_handling_mode(SignalHandlingMode::Disabled)
                 .create::<Ipc>()
         })?;
+        let node = Rc::new(node);
         let joins = if is_service { Joined::Service } else { Joined::Client };
         let (notifiers, writers) = (RefCell::default(), RefCell::default());
         let (paths, wakes) = (paths.clone(), Wakes::load(paths));
@@ -224,13 +225,17 @@ impl Bus {
         }
     }
 
-    /// Returns the notifier of a service, which is opened once.
+    /// Returns the notifier of a service, which is opened once: that of a client with its first wake-up, which comes
+    /// after its message.
     fn notifier(&self, service: Service) -> Result<Rc<WakeNotifier>, BusError> {
         let is_of = |(of, _): &&(Service, _)| *of == service;
         if let Some((_, notifier)) = self.notifiers.borrow().iter().find(is_of) {
             return Ok(Rc::clone(notifier));
         }
-        let notifier = Rc::new(WakeNotifier::open(self, service)?);
+        let notifier = Rc::new(match self.joins {
+            Joined::Client => WakeNotifier::open_later(self, service),
+            Joined::Service => WakeNotifier::open(self, service)?,
+        });
         self.notifiers.borrow_mut().push((service, Rc::clone(&notifier)));
         Ok(notifier)
     }

@@ -14,7 +14,10 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 /// First and longest pause of a client that polls.
-const POLL_EVERY: (Duration, Duration) = (Duration::from_micros(200), Duration::from_millis(2));
+const POLL_EVERY: (Duration, Duration) = (Duration::from_micros(100), Duration::from_millis(2));
+
+/// Most bytes of an [`Injection`] beside its sound: a key, two times and a number.
+const INJECTION_BYTES: usize = 16 + 3 * 10;
 
 /// Pauses of a client that polls topics: short at first, because services answer within a millisecond
 /// or two, then longer.
@@ -101,8 +104,27 @@ impl Client {
     /// # Errors
     /// They cannot be opened.
     pub fn submissions(&self) -> Result<(EncodedWriter<Injection>, Reader<Receipt>), BusError> {
+        self.submissions_of(None)
+    }
+
+    /// Opens the topics by which [`deliver`] submits this sound alone, which takes half a millisecond less.
+    ///
+    /// # Errors
+    /// They cannot be opened.
+    pub fn submission(
+        &self,
+        sound: &Sound,
+    ) -> Result<(EncodedWriter<Injection>, Reader<Receipt>), BusError> {
+        let bytes = postcard::serialize_with_flavor(sound, postcard::ser_flavors::Size::default());
+        self.submissions_of(bytes.ok().map(|bytes| bytes + INJECTION_BYTES))
+    }
+
+    fn submissions_of(
+        &self,
+        bytes_max: Option<usize>,
+    ) -> Result<(EncodedWriter<Injection>, Reader<Receipt>), BusError> {
         let receipts = self.bus.reader(&topics::RECEIPT)?;
-        Ok((self.bus.encoded_writer(&topics::INJECTION)?, receipts))
+        Ok((self.bus.encoded_writer_of(&topics::INJECTION, bytes_max)?, receipts))
     }
 }
 

@@ -9,10 +9,11 @@ use messages::topics::{self, Topic};
 use messages::{
     AppliedMark, Epoch, Incarnation, Injection, PolicyView, Presented, RequestKey, Service, Sound,
 };
-use runtime::Span;
 use runtime::bus::{AnyMessage, Bus, BusError, Identity, Joined, WakeListener};
+use runtime::client::Client;
 use runtime::group::{GroupName, GroupPaths};
 use runtime::shm_cleanup;
+use runtime::{Span, epoch};
 
 /// A group's shared memory for one test; removed with it.
 struct Shm {
@@ -197,6 +198,23 @@ fn encoded_bytes_are_read_where_they_lie_and_invalid_ones_are_skipped() {
     };
     assert_eq!(reader.take_with(decode).unwrap().as_deref(), Some("second"));
     assert_eq!(reader.take_with(decode).unwrap(), None);
+}
+
+#[test]
+fn submission_has_room_for_its_sound_whatever_its_size() {
+    let shm = Shm::new();
+    let speech = shm.join(1, 0);
+    std::fs::write(shm.paths.epoch_file(), epoch::with_checksum(r#"{"epoch":1}"#)).unwrap();
+    let reader = speech.encoded_reader::<Injection>(&topics::INJECTION).unwrap();
+    for size in [0, 10, 100_000] {
+        let sound = Sound::Text("a".repeat(size));
+        let client = Client::join(&shm.paths).unwrap();
+        let (writer, _receipts) = client.submission(&sound).unwrap();
+        let (key, most) = (RequestKey([u8::MAX; 16]), u64::MAX);
+        let injection = Injection { key, onset_ns: most, end_ns: most, seen_prompt: most, sound };
+        writer.send(&injection).unwrap();
+        assert_eq!(reader.latest().unwrap(), Some(injection));
+    }
 }
 
 /// The first writer was read until it had nothing left, so one that kept sending was the only one heard.

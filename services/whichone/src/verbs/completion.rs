@@ -169,7 +169,8 @@ impl Line {
 
 /// Returns the option that a word is, if the next word is its value.
 fn takes_value(word: &str) -> Option<String> {
-    let definition = Cli::definition();
+    let mut definition = Cli::definition();
+    definition.build();
     let mut commands = vec![&definition];
     while let Some(command) = commands.pop() {
         let named = |argument: &&clap::Arg| {

@@ -93,7 +93,7 @@ fn give_said(
 ) -> Outcome {
     let services = Availability::request(paths);
     let client = Client::join(paths)?;
-    let (injections, receipts) = client.submissions()?;
+    let (injections, receipts) = client.submission(&sound)?;
     let services = services.wait();
     services.require(Service::Speech)?;
     let mut lookout = Lookout::with_shortages();

@@ -24,8 +24,20 @@ impl Bus {
     /// # Errors
     /// As [`Bus::writer`].
     pub fn encoded_writer<T: Schema>(&self, topic: &Topic) -> Result<EncodedWriter<T>, BusError> {
+        self.encoded_writer_of(topic, None)
+    }
+
+    /// Writes a topic of encoded payloads of at most so many bytes each; a larger one is an error.
+    ///
+    /// # Errors
+    /// As [`Bus::writer`].
+    pub(crate) fn encoded_writer_of<T: Schema>(
+        &self,
+        topic: &Topic,
+        bytes_max: Option<usize>,
+    ) -> Result<EncodedWriter<T>, BusError> {
         has_messages::<T>(topic)?;
-        let sender = Sender::open(self, topic)?;
+        let sender = Sender::open(self, topic, bytes_max)?;
         let (is_view, is_short) = (topic.writer.is_some(), Cell::new(false));
         Ok(EncodedWriter { is_view, is_short, sender, _payload: PhantomData })
     }

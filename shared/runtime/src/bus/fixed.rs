@@ -24,7 +24,7 @@ impl Bus {
     /// Another schema, too many writers, or an error of iceoryx2.
     pub fn writer<T: WireMessage>(&self, topic: &Topic) -> Result<Writer<T>, BusError> {
         has_messages::<T>(topic)?;
-        let sender = Sender::open(self, topic)?;
+        let sender = Sender::open(self, topic, None)?;
         // A state of which only the latest message counts is repeated, and wakes when it has changed.
         let latest = (topic.buffer == 1 && sender.wakes()).then(Cell::default);
         Ok(Writer { sender, latest })

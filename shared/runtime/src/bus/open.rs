@@ -87,7 +87,7 @@ impl Topics {
         let topics = topics.map(|topic| open_topic(bus, topic)).collect::<Result<_, _>>()?;
         let mut woken = topics::woken();
         woken.extend(bus.wakes.services().into_iter().filter(|it| !topics::woken().contains(it)));
-        let notifiers = woken.into_iter().map(|service| wake::open(bus, service));
+        let notifiers = woken.into_iter().map(|service| wake::open(bus.node(), service));
         Ok(Self { _topics: topics, _notifiers: notifiers.collect::<Result<_, _>>()? })
     }
 }

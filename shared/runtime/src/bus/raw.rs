@@ -17,7 +17,7 @@ impl Bus {
     /// As [`Bus::writer`].
     pub fn raw_writer(&self, topic: &Topic) -> Result<RawWriter, BusError> {
         let is_fixed = (topic.layout)().is_some();
-        Ok(RawWriter { sender: Sender::open(self, topic)?, is_fixed })
+        Ok(RawWriter { sender: Sender::open(self, topic, None)?, is_fixed })
     }
 
     /// Reads a topic without judging anything, for tests of the service that writes it.

@@ -28,14 +28,20 @@ pub(super) struct Sender {
 }
 
 impl Sender {
-    /// Opens the topic for a writer, known to the bus from now on.
-    pub(super) fn open(bus: &Bus, topic: &Topic) -> Result<Rc<Self>, BusError> {
+    /// Opens the topic for a writer, known to the bus from now on. Where the most bytes of a message are known, its
+    /// memory is not added to: that costs both ends a table of 288 KiB at once.
+    pub(super) fn open(
+        bus: &Bus,
+        topic: &Topic,
+        bytes_max: Option<usize>,
+    ) -> Result<Rc<Self>, BusError> {
         let service = open_topic(bus, topic)?;
         let name = topic.name;
-        let (slots, strategy) = match (topic.layout)() {
-            Some(_) => (1, AllocationStrategy::Static),
-            None if topic.writer.is_some() => (BYTES, AllocationStrategy::PowerOfTwo),
-            None => (CLIENT_BYTES, AllocationStrategy::PowerOfTwo),
+        let (slots, strategy) = match ((topic.layout)(), bytes_max) {
+            (Some(_), _) => (1, AllocationStrategy::Static),
+            (None, Some(most)) => (most, AllocationStrategy::Static),
+            (None, None) if topic.writer.is_some() => (BYTES, AllocationStrategy::PowerOfTwo),
+            (None, None) => (CLIENT_BYTES, AllocationStrategy::PowerOfTwo),
         };
         let port = Renewed::new(name, move |failing| {
             create(name, || {

@@ -10,7 +10,9 @@ use iceoryx2::prelude::*;
 use iceoryx2::service::port_factory::event::PortFactory;
 use messages::Service;
 use messages::topics::NODES_MAX;
+use std::cell::OnceCell;
 use std::os::fd::BorrowedFd;
+use std::rc::Rc;
 
 /// Listens for wake-ups of one service.
 #[derive(Debug)]
@@ -46,17 +48,25 @@ impl Joined {
 /// Wakes one service.
 #[derive(Debug)]
 pub struct WakeNotifier {
+    service: Service,
+    node: Rc<Node<Ipc>>,
+    /// None where it could not be opened.
+    port: OnceCell<Option<Port>>,
+}
+
+/// An open notifier.
+#[derive(Debug)]
+struct Port {
     notifier: Notifier<Ipc>,
     _topic: PortFactory<Ipc>,
 }
 
-pub(super) fn open(bus: &Bus, service: Service) -> Result<PortFactory<Ipc>, BusError> {
+pub(super) fn open(node: &Node<Ipc>, service: Service) -> Result<PortFactory<Ipc>, BusError> {
     let name = format!("wake/{}", service.name());
     let service_name =
         ServiceName::new(&name).map_err(|e| BusError::ipc(&name, format!("{e:?}")))?;
     create(&name, || {
-        bus.node()
-            .service_builder(&service_name)
+        node.service_builder(&service_name)
             .event()
             // Each wake-up looks at every number up to it.
             .event_id_max_value(Joined::Service.event().as_value())
@@ -73,7 +83,7 @@ impl Bus {
     /// # Errors
     /// iceoryx2 fails.
     pub fn wake_listener(&self, service: Service) -> Result<WakeListener, BusError> {
-        let topic = open(self, service)?;
+        let topic = open(&self.node, service)?;
         let listener = create(service.name(), || topic.listener_builder().create())?;
         let sleeper = create(service.name(), || Sleeper::new(borrow(listener.file_descriptor())))?;
         Ok(WakeListener { sleeper, listener, _topic: topic })
@@ -106,15 +116,31 @@ impl WakeListener {
 }
 
 impl WakeNotifier {
+    /// Opens it now.
+    ///
+    /// # Errors
+    /// iceoryx2 fails.
     pub(super) fn open(bus: &Bus, service: Service) -> Result<Self, BusError> {
-        let topic = open(bus, service)?;
-        let notifier = create(service.name(), || topic.notifier_builder().create())?;
-        Ok(Self { notifier, _topic: topic })
+        let port = OnceCell::from(Some(Port::open(&bus.node, service)?));
+        Ok(Self { service, node: Rc::clone(&bus.node), port })
+    }
+
+    /// Opens it with its first wake-up.
+    pub(super) fn open_later(bus: &Bus, service: Service) -> Self {
+        Self { service, node: Rc::clone(&bus.node), port: OnceCell::new() }
+    }
+
+    fn notifier(&self) -> Option<&Notifier<Ipc>> {
+        let open = || {
+            let opened = Port::open(&self.node, self.service);
+            opened.inspect_err(|error| tracing::debug!(%error, "wake-ups not opened")).ok()
+        };
+        self.port.get_or_init(open).as_ref().map(|port| &port.notifier)
     }
 
     /// Wakes the service, if it is there. A failure is harmless: the service polls as well.
     pub(super) fn notify(&self) {
-        if let Err(error) = self.notifier.notify() {
+        if let Some(Err(error)) = self.notifier().map(Notifier::notify) {
             tracing::debug!(?error, "wake-up not delivered");
         }
     }
@@ -122,8 +148,17 @@ impl WakeNotifier {
     /// Asks the service for the latest messages of its topics. A failure is harmless: they come with
     /// its next ones.
     pub(super) fn greet(&self, joins: Joined) {
-        if let Err(error) = self.notifier.notify_with_custom_event_id(joins.event()) {
+        let greet = |it: &Notifier<Ipc>| it.notify_with_custom_event_id(joins.event());
+        if let Some(Err(error)) = self.notifier().map(greet) {
             tracing::debug!(?error, "greeting not delivered");
         }
+    }
+}
+
+impl Port {
+    fn open(node: &Node<Ipc>, service: Service) -> Result<Self, BusError> {
+        let topic = open(node, service)?;
+        let notifier = create(service.name(), || topic.notifier_builder().create())?;
+        Ok(Self { notifier, _topic: topic })
     }
 }
