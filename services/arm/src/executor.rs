@@ -5,6 +5,7 @@ use manipulation::{Limb, State, Trajectory};
 use messages::{MotionInhibit, MotionPhase, PickId, PickPhase};
 use scene::ObjectId;
 use std::collections::VecDeque;
+use std::fmt;
 
 /// A motion that ends faster than this flows into the next step, rad/s.
 const FLOWS_RAD_S: f64 = 1e-6;
@@ -18,6 +19,16 @@ pub(crate) enum Purpose {
     Aim(ObjectId),
     /// Bring a limb to rest.
     Return,
+}
+
+impl fmt::Display for Purpose {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Pick(id) => write!(f, "pick {id}"),
+            Self::Aim(object) => write!(f, "aim at object {}", object.0),
+            Self::Return => f.write_str("return"),
+        }
+    }
 }
 
 /// Steps of one limb in order, each beginning where the one before ends.

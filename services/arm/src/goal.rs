@@ -137,10 +137,10 @@ impl ArmNode {
         let steps: Vec<String> = program
             .steps
             .iter()
-            .map(|step| format!("{:?} {:.2} s", step.kind, step.motion.duration_s()))
+            .map(|step| format!("{} {:.2} s", step.kind, step.motion.duration_s()))
             .collect();
         let (purpose, limb) = (program.purpose, program.limb);
-        tracing::info!(?purpose, %limb, seconds, steps = steps.join(", "), "planned");
+        tracing::info!(%purpose, %limb, seconds, steps = steps.join(", "), "planned");
         self.aimed = None;
         if purpose != Purpose::Return {
             self.plan_failures.from_rest = None;
@@ -182,7 +182,7 @@ impl ArmNode {
                 self.plan_failures.retry_rest = Some(now + RETRY_EVERY);
             }
             _ if from_rest => {
-                tracing::info!(?purpose, %refusal, "not from here; the arm goes to rest first");
+                tracing::info!(%purpose, %refusal, "not from here; the arm goes to rest first");
                 self.plan_failures.from_rest = Some(purpose);
                 self.urgent = true;
             }

@@ -72,12 +72,12 @@ impl ArmNode {
                 if task == Task::PutBack && !self.state.gone.contains(&object) {
                     self.state.gone.push(object);
                 }
-                tracing::info!(?id, object = object.0, ?task, "pick accepted");
+                tracing::info!(%id, object = object.0, ?task, "pick accepted");
                 self.record(Cause::Ordered, now, fx);
             }
             Order::Conflict if is_new => {
                 tracing::error!(
-                    ?id,
+                    %id,
                     object = object.0,
                     "pick id already used with another object or task"
                 );
@@ -104,7 +104,7 @@ impl ArmNode {
             Order::Accept => {
                 let cancelled = (PickPhase::Done, PickOutcome::Cancelled);
                 self.take_on((id, object, Task::Fetch), cancelled);
-                tracing::info!(?id, "pick cancelled before its order arrived");
+                tracing::info!(%id, "pick cancelled before its order arrived");
                 self.record(Cause::Ordered, now, fx);
             }
             Order::Busy | Order::Obsolete | Order::Conflict => {}

@@ -265,7 +265,12 @@ impl Service {
         let Running { child, incarnation, killed, shortage, .. } = self.running.take()?;
         let exit = child.reap();
         let ended = Ended { incarnation, exit, failure, killed, at: now, error: None, shortage };
-        tracing::info!(service = self.spec.name, incarnation, "ended: {}", ended.text());
+        let (service, text) = (&self.spec.name, ended.text());
+        if exit.is_clean() && !killed && failure.is_none() {
+            tracing::info!(service, incarnation, "ended: {text}");
+        } else {
+            tracing::warn!(service, incarnation, "ended: {text}");
+        }
         self.ended = Some(ended);
         Some(exit)
     }

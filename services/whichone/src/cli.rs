@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::error::{ContextKind, ContextValue};
-use clap::{Arg, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Args, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
 use diagnostics::nearest;
 use service::group::{ENV_GROUP, GroupName};
@@ -50,6 +50,17 @@ pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
     after_help = EXIT_CODES
 )]
 pub struct Cli {
+    /// What every verb has.
+    #[command(flatten)]
+    pub common: Common,
+    /// The verb.
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+/// Arguments of every verb.
+#[derive(Debug, Args)]
+pub struct Common {
     /// Name of the group; each group is a robot of its own.
     #[arg(
         long,
@@ -63,19 +74,45 @@ pub struct Cli {
     /// Print JSON instead of text.
     #[arg(long, global = true)]
     pub json: bool,
-    /// The verb.
+}
+
+/// The program with few verbs, those whose time is felt: the arguments of all the others take a tenth of the time of a
+/// `say` to define.
+#[derive(Debug, Parser)]
+#[command(args_override_self = true, disable_help_flag = true)]
+struct QuickCli {
+    #[command(flatten)]
+    common: Common,
     #[command(subcommand)]
-    pub verb: Verb,
+    verb: QuickVerb,
+}
+
+#[derive(Debug, Subcommand)]
+enum QuickVerb {
+    Say(SayArgs),
+    Status,
+    StopMotion(MotionArgs),
+    ResumeMotion(MotionArgs),
+}
+
+impl From<QuickCli> for Cli {
+    fn from(QuickCli { common, verb }: QuickCli) -> Self {
+        let verb = match verb {
+            QuickVerb::Say(args) => Verb::Say(args),
+            QuickVerb::Status => Verb::Status,
+            QuickVerb::StopMotion(args) => Verb::StopMotion(args),
+            QuickVerb::ResumeMotion(args) => Verb::ResumeMotion(args),
+        };
+        Self { common, verb }
+    }
 }
 
 /// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
-const WITHOUT_GROUP: [&str; 15] = [
+const WITHOUT_GROUP: [&str; 13] = [
     "check",
     "conform",
-    "export",
     "init",
     "scene",
-    "study",
     "completions",
     "complete",
     "man",
@@ -87,25 +124,22 @@ const WITHOUT_GROUP: [&str; 15] = [
     "ik",
 ];
 
-/// The argument `--group` of a program.
-fn group_argument(program: &Command) -> Arg {
-    let is_group = |argument: &&Arg| argument.get_id() == "group";
-    program.get_arguments().find(is_group).expect("an argument of every verb").clone()
-}
-
-/// The argument `--group` for what means a group although its verb does not: recordings, journals and flights, and the
-/// results of a study with people.
-fn listed_group() -> Arg {
-    group_argument(&Cli::command())
-}
-
 impl Cli {
     /// Returns the definition of the command line, from which help and completions are made.
     pub fn definition() -> Command {
         let command = Self::command();
-        let group = group_argument(&command).hide(true);
+        let group = command.get_arguments().find(|argument| argument.get_id() == "group");
+        let listed = group.expect("an argument of every verb").clone();
         command.mut_subcommands(|verb| match verb.get_name() {
-            name if WITHOUT_GROUP.contains(&name) => verb.arg(group.clone()),
+            // The results of a study with people are a group's.
+            "study" => verb
+                .arg(listed.clone().hide(true))
+                .mut_subcommands(|report| report.arg(listed.clone())),
+            // So are recordings, journals and flights.
+            "export" => verb
+                .arg(listed.clone().hide(true))
+                .mut_subcommand("mcap", |mcap| mcap.arg(listed.clone())),
+            name if WITHOUT_GROUP.contains(&name) => verb.arg(listed.clone().hide(true)),
             _ => verb,
         })
     }
@@ -116,6 +150,10 @@ impl Cli {
     /// A usage error, or a request for help or the version.
     pub fn parse_line(line: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
         let line: Vec<OsString> = line.into_iter().collect();
+        // Help and errors are those of the whole program.
+        if let Ok(quick) = QuickCli::try_parse_from(&line) {
+            return Ok(quick.into());
+        }
         let mut definition = Self::definition();
         let matches = definition.try_get_matches_from_mut(&line);
         let matches = matches.map_err(|error| with_nearest_verb(error, &line, &definition))?;
@@ -147,10 +185,8 @@ const EXIT_CODES: &str = "\
 Exit codes: 0 success; 1 goal not reached; 64 usage error; 70 broken invariant; 74 storage error;
 78 configuration error.";
 
-/// Verbs of the program. The arguments of a verb are made when it is used: those of all of them take half a
-/// millisecond, a tenth of a `say`.
+/// Verbs of the program.
 #[derive(Debug, Subcommand)]
-#[command(defer = true)]
 pub enum Verb {
     /// Start the group and run it until Ctrl-C or `whichone down`.
     Up(UpArgs),

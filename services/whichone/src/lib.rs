@@ -43,7 +43,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, files: shipped::Files)
             return exit;
         }
     };
-    let mut out = Output::standard(cli.json);
+    let mut out = Output::standard(cli.common.json);
     let ended = verbs::run(cli, &mut out).and_then(|exit| out.flush().map(|()| exit));
     drop(out);
     ended.unwrap_or_else(|failure| {

@@ -52,7 +52,7 @@ pub use await_pick::{TruthfulUser, Waiting};
 /// # Errors
 /// The verb failed.
 pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
-    let paths = || GroupPaths::resolve(&cli.group);
+    let paths = || GroupPaths::resolve(&cli.common.group);
     match cli.verb {
         Verb::Up(args) => up::up(&paths()?, &args, out),
         Verb::Down(args) => operate::down(&paths()?, args.timeout, out),
@@ -82,8 +82,8 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::ResumeMotion(args) => {
             motion::motion(&paths()?, MotionOrder::Resume, args.timeout, out)
         }
-        Verb::Link(args) => Err(link::link(&cli.group, args)),
-        Verb::Fleet(args) => Err(link::fleet(args, cli.json)),
+        Verb::Link(args) => Err(link::link(&cli.common.group, args)),
+        Verb::Fleet(args) => Err(link::fleet(args, cli.common.json)),
         Verb::Gateway(args) => Err(link::gateway(args)),
         Verb::Record { what } => record::record(&paths()?, what, out),
         Verb::Replay(args) => replay::replay(paths, &args, out),

@@ -3,6 +3,8 @@
 
 use std::path::Path;
 
+use clap::FromArgMatches;
+use clap::error::ErrorKind;
 use whichone::cli::Cli;
 
 /// The help of every verb, one below the other.
@@ -75,7 +77,33 @@ fn group_is_listed_where_it_means_something_and_accepted_everywhere() {
         ["study report --group lab", "ground --scene x --group lab", "--group lab ground --scene x"]
     {
         let line = ["whichone"].into_iter().chain(line.split(' ')).map(Into::into);
-        assert_eq!(Cli::parse_line(line).unwrap().group.as_str(), "lab");
+        assert_eq!(Cli::parse_line(line).unwrap().common.group.as_str(), "lab");
+    }
+}
+
+/// Verbs whose time is felt are parsed by a definition of their own.
+#[test]
+fn quick_verbs_are_parsed_as_the_whole_program_would() {
+    let parsed = |line: &str| Cli::parse_line(line.split(' ').map(Into::into));
+    for line in [
+        "whichone say the clear bowl --timeout 3 --json --group lab",
+        "whichone --group lab --json say --timeout 5 --timeout 3 the clear bowl",
+        "whichone --group lab status --json",
+        "whichone stop-motion --json --group lab",
+        "whichone --json resume-motion --group lab --timeout 3",
+    ] {
+        let quick = parsed(line).unwrap();
+        let whole = Cli::definition().try_get_matches_from(line.split(' ')).unwrap();
+        let whole = Cli::from_arg_matches(&whole).unwrap();
+        assert_eq!(format!("{quick:?}"), format!("{whole:?}"), "{line}");
+        assert_eq!((quick.common.group.as_str(), quick.common.json), ("lab", true), "{line}");
+    }
+    for (line, kind) in [
+        ("whichone say --help", ErrorKind::DisplayHelp),
+        ("whichone --version", ErrorKind::DisplayVersion),
+        ("whichone status now", ErrorKind::UnknownArgument),
+    ] {
+        assert_eq!(parsed(line).unwrap_err().kind(), kind, "{line}");
     }
 }
 

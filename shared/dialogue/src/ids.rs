@@ -1,6 +1,8 @@
 //! Identifiers of the dialogue. Each is assigned once, by the service that owns it, and made durable
 //! before its first use, so that a restart never assigns one twice.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 macro_rules! id {
@@ -55,4 +57,11 @@ pub struct PickId {
     /// 1 for the first order. Another follows only where the previous one ended without a grasp,
     /// because the scene changed or the user wants another object, or to put an object back.
     pub attempt: u32,
+}
+
+/// "3.1": the first order of interaction 3.
+impl fmt::Display for PickId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}.{}", self.interaction.0, self.attempt)
+    }
 }

@@ -255,3 +255,21 @@ pub enum MotionPhase {
     /// Straight down to that place.
     Lower,
 }
+
+impl std::fmt::Display for MotionPhase {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Clear => "clear",
+            Self::Approach => "approach",
+            Self::Close => "close",
+            Self::Lift => "lift",
+            Self::HandOver => "hand over",
+            Self::Release => "release",
+            Self::Aim => "aim",
+            Self::Return => "return",
+            Self::Take => "take",
+            Self::CarryBack => "carry back",
+            Self::Lower => "lower",
+        })
+    }
+}

@@ -8,6 +8,7 @@ mod gap;
 mod quality;
 mod reading;
 pub(crate) mod scenes;
+mod study;
 mod update;
 
 use crate::report::Report;
@@ -40,6 +41,7 @@ pub(crate) fn measure(report: &mut Report, effort: Effort) {
     decide::measure(report, effort);
     update::measure(report, effort);
     reading::measure(report);
+    study::measure(report, effort);
     gap::measure(report, effort);
     quality::measure(report, effort);
 }

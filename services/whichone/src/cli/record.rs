@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use clap::{Args, Subcommand};
 
+use super::ProblemArgs;
 use super::talk::seconds;
-use super::{ProblemArgs, listed_group};
 
 /// What `record` does.
 #[derive(Debug, Subcommand)]
@@ -66,7 +66,6 @@ pub struct PomdpArgs {
 
 /// Arguments of `export mcap`.
 #[derive(Debug, Args)]
-#[command(arg(listed_group()))]
 pub struct McapArgs {
     /// A recording, a journal, a flight, or a folder of one kind [default: the recordings of the group].
     ///

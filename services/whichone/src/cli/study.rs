@@ -9,7 +9,6 @@ use evaluation::simulation::UserKind;
 
 use super::batch::{ProblemArgs, planner_names};
 use super::group::ConfigArgs;
-use super::listed_group;
 
 /// Arguments of `study`.
 #[derive(Clone, Debug, Args)]
@@ -102,7 +101,6 @@ pub enum StudyVerb {
 
 /// Arguments of `study report`.
 #[derive(Clone, Debug, Args)]
-#[command(arg(listed_group()))]
 pub struct ReportArgs {
     /// Folder of the data [default: the group's].
     pub folder: Option<PathBuf>,

@@ -169,8 +169,7 @@ impl Line {
 
 /// Returns the option that a word is, if the next word is its value.
 fn takes_value(word: &str) -> Option<String> {
-    let mut definition = Cli::definition();
-    definition.build();
+    let definition = Cli::definition();
     let mut commands = vec![&definition];
     while let Some(command) = commands.pop() {
         let named = |argument: &&clap::Arg| {

@@ -61,7 +61,7 @@ fn down(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     if out.is_json() {
         out.json(&Down { name, state: "down", services: [] })?;
     } else {
-        out.line(format_args!("group {name} is not running; start it with: whichone up"))?;
+        out.line(CallError::NoGroup(name.to_string()))?;
     }
     Ok(Exit::NotReached)
 }

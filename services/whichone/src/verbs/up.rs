@@ -103,7 +103,17 @@ fn start(
     let mut launched = launch::detached(&launch::program(), options, paths)?;
     launched.wait_listening(EARLIER_SERVICES).map_err(|error| explained(error, config))?;
     let Some(timeout) = wait else { return Ok("services are starting".to_owned()) };
-    Ok(launch::wait_ready(paths, timeout)?)
+    launch::wait_ready(paths, timeout).map_err(|error| not_ready(error, paths))
+}
+
+/// Returns why not everything is ready, and what becomes of the group.
+fn not_ready(error: LaunchError, paths: &GroupPaths) -> Failure {
+    if !is_running(paths).unwrap_or(false) {
+        return error.into();
+    }
+    let name = paths.name();
+    let left = "help: `whichone status` shows its state, `whichone down` stops it";
+    Failure::new(error.exit(), format!("{error}; group {name} keeps running; {left}"))
 }
 
 /// Returns why a supervisor has ended. It checks the configuration, whose problems are printed here

@@ -119,7 +119,7 @@ pub(super) fn reasons(
             .map(|(a, value)| format!("{} {value:.1}", rendering::action(scene, *a)))
             .collect();
         if !others.is_empty() {
-            let text = cut(&format!("  before {}", others.join(" · ")), columns);
+            let text = cut(&format!("  alternatives: {}", others.join(" · ")), columns);
             lines.push(style.paint(Ink::Dim, text).to_string());
         }
     }

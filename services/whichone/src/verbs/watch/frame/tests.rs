@@ -48,7 +48,7 @@ fn watch_frame_shows_the_dialogue_with_reasons() {
     assert_eq!(lines[0], "interaction 4: 1 question asked, 0.4 to come");
     assert_eq!(
         lines[3..],
-        ["decision: ask (value 41.26, best 41.20 to 41.30)", "  before pick o0 -25.0"]
+        ["decision: ask (value 41.26, best 41.20 to 41.30)", "  alternatives: pick o0 -25.0"]
     );
 }
 
