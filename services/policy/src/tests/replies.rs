@@ -13,7 +13,7 @@ fn about(intent: Intent, said: &[&str]) -> Reading {
     Reading { intent, ..words(said) }
 }
 
-const TALK: [Intent; 15] = [
+const TALK: [Intent; 17] = [
     Intent::None,
     Intent::Stop,
     Intent::Cancel,
@@ -29,6 +29,8 @@ const TALK: [Intent; 15] = [
     Intent::AskHelp,
     Intent::Greet,
     Intent::Thank,
+    Intent::Chore,
+    Intent::StopAndCancel,
 ];
 
 /// At rest, while a question stands, while the arm fetches, and while a pick is called off.
