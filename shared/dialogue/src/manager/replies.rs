@@ -86,7 +86,7 @@ impl Manager {
         // "is the marker long or short": no marker is both.
         let (values, base): (Vec<WordId>, Vec<WordId>) =
             reading.base.iter().partition(|word| self.is_rivalled(**word, &reading.base));
-        let is_choice = intent == Intent::AskWhether && !values.is_empty();
+        let is_choice = intent == Intent::AskWhich && !values.is_empty();
         let asked_of =
             if is_choice { Reading { base, ..reading.clone() } } else { reading.clone() };
         let described = (0..scene.objects().len()).filter(|i| self.fits(&asked_of, (*i).into()));

@@ -142,7 +142,7 @@ pub(super) fn group(scene: &Scene, words: &[String], plural_of: Option<&[ObjectI
     parts.join(" ")
 }
 
-/// "It is on the shelf.", "One is short, and one is long."
+/// "It is on the shelf.", "One is short and one is long."
 fn values(
     scene: &Scene,
     objects: &[ObjectId],
