@@ -33,6 +33,8 @@ pub(crate) enum Action {
     SayAfresh(String),
     /// Says it as soon as the robot has announced what it fetches.
     SayDuringFetch(String),
+    /// Says it when the robot is about to let go of what it fetches.
+    SayBeforeHandOver(String),
     Silence,
     StopMotion,
     ResumeMotion,
@@ -167,6 +169,7 @@ fn read_line(case: &mut Case, word: &str, rest: &str, place: &str) {
         ("you", _) => Action::Say(text),
         ("afresh", _) => Action::SayAfresh(text),
         ("meanwhile", _) => Action::SayDuringFetch(text),
+        ("late", _) => Action::SayBeforeHandOver(text),
         ("wants", _) => Action::Want(text),
         ("silence", "") => Action::Silence,
         ("stop", "") => Action::StopMotion,

@@ -76,11 +76,16 @@ impl<'a> Person<'a> {
             self.go_on(seen);
         }
         let step = self.case.steps.get(self.next);
-        if let Some(Action::SayDuringFetch(text)) = step.map(|step| &step.action)
-            && seen.is_fetching
-        {
-            let announced = seen.picks.last().is_some_and(|(at, ..)| now >= *at + PROTEST);
-            return announced.then(|| self.perform(now, seen, Some(text.clone())));
+        if seen.is_fetching {
+            let announced = || seen.picks.last().is_some_and(|(at, ..)| now >= *at + PROTEST);
+            let due = match step.map(|step| &step.action) {
+                Some(Action::SayDuringFetch(text)) => Some((text, announced())),
+                Some(Action::SayBeforeHandOver(text)) => Some((text, seen.is_handing_over)),
+                _ => None,
+            };
+            if let Some((text, is_due)) = due {
+                return is_due.then(|| self.perform(now, seen, Some(text.clone())));
+            }
         }
         if !self.is_at_rest(now, seen) {
             return None;
@@ -101,6 +106,7 @@ impl<'a> Person<'a> {
             Action::AnswerUntilFetching
             | Action::AnswerUntilDelivered
             | Action::SayDuringFetch(_)
+            | Action::SayBeforeHandOver(_)
             | Action::Want(_) => self.answer(now, seen),
             Action::Say(text) | Action::SayAfresh(text) => {
                 Some(self.perform(now, seen, Some(text.clone())))

@@ -231,7 +231,11 @@ fn is_same(known: &Observation, new: &Observation) -> bool {
 fn is_for_model(Read { heard, grounded, .. }: &Read) -> bool {
     let has_words = heard.hypotheses.first().is_some_and(|best| !best.text.trim().is_empty());
     let best = grounded.interpretations.iter().find(|one| one.answers.is_none());
-    let ends = |best: &Interpretation| matches!(best.reading.intent, Intent::Stop | Intent::Cancel);
+    let ends = |best: &Interpretation| {
+        let Reading { intent, excluded, .. } = &best.reading;
+        matches!(intent, Intent::Stop | Intent::StopAndCancel)
+            || *intent == Intent::Cancel && excluded.is_empty()
+    };
     has_words && !best.is_some_and(ends)
 }
 

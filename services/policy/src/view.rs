@@ -20,7 +20,7 @@ pub(crate) fn act(manager: &Manager, state: &State) -> RobotAct {
         prompt: act.prompt.0,
         presentation: act.presentation,
         kind: act.kind.code(),
-        question: numbered(scene, answerable(state)).into(),
+        question: numbered(scene, answerable(manager, state)).into(),
         object: act.pick.map_or(0, |(_, object)| scene.number(object).0.into()),
         attempt: act.pick.map_or(0, |(pick, _)| pick.attempt),
         decided_ns: act.decided.ns(),
@@ -50,24 +50,27 @@ fn number(scene: &Scene, object: ObjectId) -> ObjectId {
 }
 
 /// Returns the question that waits for an answer: that of the act, or whether what was decided while
-/// the motion stop was latched shall start.
-fn asked(state: &State) -> Question {
+/// the motion stop was latched, or is offered instead of something else, shall start.
+fn asked(manager: &Manager, state: &State) -> Question {
     let act = &state.act;
-    let confirmable = || state.confirmable(act.prompt).or_else(|| state.goes_back(act.prompt));
+    let confirmable = || {
+        let decided = state.confirmable(act.prompt).or_else(|| state.goes_back(act.prompt));
+        decided.or_else(|| manager.offered(state))
+    };
     let confirmable = (act.kind == ActKind::Say).then(confirmable).flatten();
     confirmable.map_or(act.question, Question::Point)
 }
 
 /// Returns the question as which the act's line can be answered: "I will get the white bowl" can be
 /// denied like "this one?", also after the hand-over.
-fn answerable(state: &State) -> Question {
+fn answerable(manager: &Manager, state: &State) -> Question {
     let act = &state.act;
     let deniable = match (act.kind, act.pick) {
         (ActKind::Pick | ActKind::PutBack, Some((_, object))) => Some(object),
-        (ActKind::Say, _) => state.refusable(act.prompt),
+        (ActKind::Say, _) => manager.offered(state).or_else(|| state.refusable(act.prompt)),
         _ => None,
     };
-    deniable.map_or_else(|| asked(state), Question::Point)
+    deniable.map_or_else(|| asked(manager, state), Question::Point)
 }
 
 /// Returns what was handed over last, while it can be refused.
@@ -106,7 +109,7 @@ pub(crate) fn view(manager: &Manager, state: &State, rejected: u64) -> PolicyVie
         absent,
         person: manager.user_params(state),
         objects,
-        question: numbered(scene, asked(state)),
+        question: numbered(scene, asked(manager, state)),
         prompt: state.act.prompt.0,
         text: rendering::text(manager.scene(), &state.act),
         decision: state.act.kind,

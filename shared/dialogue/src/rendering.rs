@@ -44,7 +44,8 @@ pub fn text(scene: &Scene, act: &Act) -> String {
         Content::PickEnded(object, outcome) => pick_ended(object, *outcome),
         Content::Remark(it) => remarks::text(scene, it, act.kind),
         Content::Correcting | Content::Cancelled => "All right.".to_owned(),
-        Content::CallingOff => "I will leave it where it was.".to_owned(),
+        // Whether the arm can still leave it turns out only when the pick ends.
+        Content::CallingOff => "All right, if it is not too late.".to_owned(),
         Content::Keeping => "It stays with you, unless I already hold it.".to_owned(),
         Content::Forgotten => "I have lost a part of my memory; please ask me again.".to_owned(),
         Content::NotHere => {

@@ -75,7 +75,9 @@ impl ClauseAnalysis<'_> {
         let ends_in_value = || {
             let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) || tag.is_role(Role::Kind);
             let noun = rest.iter().position(is_noun);
-            noun.is_some_and(|at| at + 1 < rest.len() && rest[at + 1..].iter().all(Tag::is_value))
+            // "is it long or short"
+            let says = |tag: &Tag<'_>| tag.is_value() || tag.is(Class::Or);
+            noun.is_some_and(|at| at + 1 < rest.len() && rest[at + 1..].iter().all(says))
         };
         subject.is(Class::Determiner)
             && (ends_in_value()

@@ -25,6 +25,10 @@ pub(crate) struct Clause {
     pub(crate) topic: Topic,
     /// Names something to fetch, even something that the scene does not have.
     pub(crate) requests: bool,
+    /// Orders something else than to fetch.
+    pub(crate) chore: bool,
+    /// States something of a thing, and asks for none.
+    pub(crate) states: bool,
     /// Values that describe something else.
     pub(crate) distractors: Vec<usize>,
 }

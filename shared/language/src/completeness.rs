@@ -70,7 +70,7 @@ impl CompletenessJudge {
         }
         let reading = self.reader.read(text, question);
         match reading.intent {
-            Intent::Stop => Completeness::Complete,
+            Intent::Stop | Intent::StopAndCancel => Completeness::Complete,
             Intent::Inform => self.judge_content(spoken, &reading, question),
             Intent::Cancel
             | Intent::StartOver

@@ -16,6 +16,8 @@
 //! F. Mosteller and C. Youtz, "Quantifying probabilistic expressions", Statistical Science 5(1),
 //! 1990.
 
+use scene::Role;
+
 use crate::clauses::{Clause, Topic};
 use crate::lexicon::Sense;
 use crate::tagger::Tag;
@@ -116,6 +118,12 @@ pub(crate) fn hedge(tags: &mut [Tag<'_>], clauses: &[Clause]) {
                 .or((n + 1 < clauses.len() && continues(&clauses[n + 1])).then_some(n + 1)),
         };
         let beside = beside.map_or(0..0, |n| clauses[n].span.clone());
+        let place = beside.clone().rfind(|at| tags[*at].is_role(Role::Place));
+        let beside = match place {
+            // "the white one on the counter, I think": it is the place that is not certain.
+            Some(at) if at < clause.span.start => at..at + 1,
+            _ => beside,
+        };
         for at in clause.span.clone().chain(beside) {
             tags[at].sure = tags[at].sure.min(sure);
         }

@@ -5,6 +5,7 @@ use scene::{Intent, Role};
 use crate::clauses::{Clause, Topic};
 use crate::content::Content;
 use crate::question_words::QuestionWords;
+use crate::questions::fetches_it;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 
@@ -22,15 +23,15 @@ pub(crate) fn intent(
     let says_nothing = content.base.is_empty() && content.excluded.is_empty();
     let spoken = if code { clauses.len().min(1) } else { clauses.len() };
     let commands = |class| clauses[..spoken].iter().any(|clause| commands(tags, clause, class));
-    if commands(Class::Stop) || is_only_wait(tags) {
+    let withdraws = commands(Class::Cancel) || commands(Class::Withdraw) || puts_off(tags);
+    let declines = |new| clauses.iter().any(|clause| declines(tags, clause, new));
+    if commands(Class::Stop) && says_nothing && (withdraws || declines(true)) {
+        Intent::StopAndCancel
+    } else if commands(Class::Stop) || is_only_wait(tags) {
         Intent::Stop
     } else if commands(Class::StartOver) {
         Intent::StartOver
-    } else if says_nothing
-        && (commands(Class::Cancel)
-            || commands(Class::Withdraw)
-            || content.answers.is_empty() && clauses.iter().any(|clause| declines(tags, clause)))
-    {
+    } else if says_nothing && (withdraws || (new || content.answers.is_empty()) && declines(new)) {
         Intent::Cancel
     } else if says_nothing && (commands(Class::Repeat) || is_only_huh(tags)) {
         Intent::Repeat
@@ -40,10 +41,14 @@ pub(crate) fn intent(
         || clauses.iter().any(|clause| puts_back(tags, clause))
     {
         Intent::PutBack
+    } else if is_chore(tags, clauses) {
+        Intent::Chore
     } else if let Some(courtesy) =
         courtesy(tags).filter(|_| says_nothing && (new || content.answers.is_empty()))
     {
         courtesy
+    } else if new && content.base.is_empty() && !says_nothing && refuses(tags, clauses) {
+        Intent::Cancel
     } else if !says_nothing || informs(tags, clauses, content) {
         Intent::Inform
     } else {
@@ -73,12 +78,15 @@ pub(crate) fn commands(tags: &[Tag<'_>], clause: &Clause, class: Class) -> bool 
     }
 }
 
-/// "I don't want a bowl any more", "forget about the bowl": what is declined is any of them.
-fn declines(tags: &[Tag<'_>], clause: &Clause) -> bool {
+/// "I don't want a bowl any more", "forget about the bowl": what is declined is any of them. `new`: said
+/// in answer to nothing, so that "I don't want it" is no denial.
+fn declines(tags: &[Tag<'_>], clause: &Clause, new: bool) -> bool {
     let tags = &tags[clause.span.clone()];
     let denies = tags.iter().any(|tag| tag.is(Class::Not));
     let fetches = tags.iter().any(|tag| tag.is_any(classes![Fetch Want]) || tag.word == "forget");
-    let noun = tags.iter().any(|tag| tag.is(Class::Head) && !tag.word.starts_with("one"));
+    let noun = tags
+        .iter()
+        .any(|tag| tag.is(Class::Head) && !tag.word.starts_with("one") || new && tag.is(Class::It));
     let plain = tags.iter().all(|tag| {
         !tag.is_unknown()
             && !tag.is_any(classes![Pointer Other Unlisted Ordinal Attribute Preposition Landmark])
@@ -93,17 +101,51 @@ fn puts_it_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
         && !tags.iter().any(described)
 }
 
-/// "put the red mug back", but not "put it back on".
+/// "put the red mug back", "put the red mug back on the shelf", but not "put it back on".
 fn puts_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
     let [verb, rest @ ..] = after_leads(&tags[clause.span.clone()]) else { return false };
     let Some(back) = rest.iter().position(|tag| tag.word == "back") else { return false };
     let things = classes![Determiner Pointer Possessive It Head];
-    let count = |tags: &[Tag<'_>]| tags.iter().filter(|tag| tag.is_value()).count();
+    let after = &rest[back + 1..];
+    let in_place = classes![Courtesy Filler Preposition Determiner];
+    let says_place = after.iter().any(|tag| tag.is_role(Role::Place))
+        && after.iter().all(|tag| tag.is_role(Role::Place) || tag.is_any(in_place))
+        && after.iter().all(|tag| tag.word != "from");
     matches!(verb.word, "put" | "take" | "bring" | "return")
         && rest[..back].iter().all(|tag| tag.is_value() || tag.is_any(things))
         && rest[..back].iter().any(|tag| tag.is_value() || tag.is_any(classes![Pointer It Head]))
-        && rest[back + 1..].iter().all(|tag| tag.is_any(classes![Courtesy Filler]))
-        && count(tags) == count(&rest[..back])
+        && (says_place || after.iter().all(|tag| tag.is_any(classes![Courtesy Filler])))
+}
+
+/// "wash the clear bowl", but not "wash it and bring it to me".
+fn is_chore(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
+    let fetches = |clause: &Clause| {
+        !clause.chore && tags[clause.span.clone()].iter().any(|tag| tag.is(Class::Fetch))
+    };
+    clauses.iter().any(|clause| clause.chore)
+        && !clauses.iter().any(fetches)
+        && !fetches_it(tags, clauses)
+}
+
+/// "the clear bowl is in the cabinet", and nothing else of our things.
+pub(crate) fn is_statement(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
+    let is_beside = |clause: &Clause| {
+        let tags = &tags[clause.span.clone()];
+        clause.topic == Topic::Off || tags.iter().all(|tag| tag.is_any(classes![Filler Courtesy]))
+    };
+    clauses.iter().any(|clause| clause.states)
+        && clauses.iter().all(|clause| clause.states || is_beside(clause))
+}
+
+/// "don't get me the clear bowl", "I don't want the white ones": nothing is asked for.
+fn refuses(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
+    let is_denied = |clause: &Clause| {
+        let tags = &tags[clause.span.clone()];
+        let verb = tags.iter().position(|tag| tag.is_any(classes![Fetch Want]))?;
+        Some(tags[..verb].iter().any(|tag| tag.is(Class::Not)))
+    };
+    let mut asking = clauses.iter().filter_map(is_denied).peekable();
+    !fetches_it(tags, clauses) && asking.peek().is_some() && asking.all(|is_denied| is_denied)
 }
 
 /// What is said after words that say nothing.
@@ -163,6 +205,17 @@ fn is_only_wait(tags: &[Tag<'_>]) -> bool {
     let wait = |tag: &Tag<'_>| tag.is(Class::Repair) && tag.word == "wait";
     tags.iter().any(wait)
         && tags.iter().all(|tag| wait(tag) || tag.is_any(classes![Filler Courtesy]))
+}
+
+/// "not now", "later", "not yet", and nothing else.
+fn puts_off(tags: &[Tag<'_>]) -> bool {
+    let says = |tag: &&Tag<'_>| !tag.is_any(classes![Filler Courtesy No]);
+    let said: Vec<&Tag<'_>> = tags.iter().filter(says).collect();
+    match said[..] {
+        [one] => one.word == "later" || (one.word, one.last) == ("not", "yet"),
+        [not, now] => not.is(Class::Not) && now.last == "now",
+        _ => false,
+    }
 }
 
 /// "what", "sorry", "huh", and nothing else.

@@ -12,7 +12,7 @@
 //! | normalise | `normalise.rs` | plain lower-case text |
 //! | tokenise | `tokens.rs` | words and the pauses between them |
 //! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `relations.rs`, `spelling.rs`, `phonetics.rs`, `vocabulary/`) | value or class of each word or phrase |
-//! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`) | the parts that are about the objects |
+//! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`, `errands.rs`, `statements.rs`) | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
 //! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
 //! | readings | `parsed.rs` (`hedges.rs`) | alternative readings with weights and doubts |
@@ -58,6 +58,7 @@ mod confusion;
 mod content;
 mod disambiguate;
 mod distractors;
+mod errands;
 mod extractor;
 mod hedges;
 mod indifference;
@@ -79,6 +80,7 @@ mod references;
 mod relations;
 mod repair;
 mod spelling;
+mod statements;
 mod tagger;
 mod token_class;
 mod tokens;

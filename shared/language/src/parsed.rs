@@ -54,20 +54,20 @@ impl ParsedUtterance<'_> {
         reading
     }
 
-    /// How many beside the first, of what is described: "both cups", "two red mugs", "all the cars",
-    /// "the socks, both of them".
+    /// How many beside the first, of what is described: "both cups", "two red mugs", "three bowls",
+    /// "all the cars", "the socks, both of them".
     fn more_of_them(&self) -> Option<usize> {
         let request = self.intent == Intent::Inform
             && matches!(self.asked, QuestionWords::Nothing)
             && self.content.excluded.is_empty();
-        let value = self.content.base.first().filter(|_| request)?;
+        let (first, last) = self.described().filter(|_| request)?;
         let lead = |tag: &&Tag<'_>| {
             tag.is_value() || tag.is_any(classes![Determiner Possessive Preposition])
         };
-        let before = self.tags[..value.at].iter().rposition(|tag| !lead(&tag));
-        let is_led = before.is_some_and(|at| at + 1 < value.at);
+        let before = self.tags[..first].iter().rposition(|tag| !lead(&tag));
+        let is_led = before.is_some_and(|at| at + 1 < first);
         let count = before.map(|at| &self.tags[at]).filter(|tag| tag.is(Class::Quantifier));
-        let last = &self.tags[self.content.base.last()?.at..];
+        let last = &self.tags[last..];
         let of_them = last.windows(3).find(|three| {
             three[0].is(Class::Quantifier) && three[1].word == "of" && three[2].is(Class::It)
         });
@@ -75,6 +75,8 @@ impl ParsedUtterance<'_> {
         match count.word {
             "both" | "two" => Some(1),
             "three" => Some(2),
+            "four" => Some(3),
+            "five" => Some(4),
             "all" if is_led || of_them.is_some() => {
                 let words: Vec<WordId> = self.content.base.iter().map(|it| it.word).collect();
                 let more = self.questions.described(&words).saturating_sub(1);
@@ -82,6 +84,17 @@ impl ParsedUtterance<'_> {
             }
             _ => None,
         }
+    }
+
+    /// Places of the first and the last word that describe what is wanted, or else of its noun.
+    fn described(&self) -> Option<(usize, usize)> {
+        if let [first, ..] = &self.content.base[..] {
+            return Some((first.at, self.content.base.last()?.at));
+        }
+        let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) && !tag.word.starts_with("one");
+        let mut requests = self.clauses.iter().filter(|clause| clause.requests);
+        let noun = requests.find_map(|it| it.span.clone().find(|at| is_noun(&self.tags[*at])))?;
+        Some((noun, noun))
     }
 
     fn reading_of(&self, base: &[Asserted<'_>]) -> Reading {

@@ -20,7 +20,9 @@ pub(crate) fn question<'a>(tags: &[Tag<'a>], clauses: &[Clause]) -> (Intent, Con
     let intent = first.map_or(Intent::AskBack, |clause| {
         kind(&tags[clause.span.clone()], !content.base.is_empty())
     });
-    (intent, content)
+    // "is it long or short" asks which of them.
+    let is_choice = intent == Intent::AskWhether && content.alternatives;
+    (if is_choice { Intent::AskWhich } else { intent }, content)
 }
 
 /// "have you seen my red pen? bring it please": what was asked about is asked for.

@@ -8,7 +8,7 @@ use crate::content::Content;
 use crate::extractor::extract;
 use crate::hedges::hedge;
 use crate::indifference::{indifference, is_of_attribute};
-use crate::intent::{intent, is_side_talk};
+use crate::intent::{intent, is_side_talk, is_statement};
 use crate::lexicon::Lexicon;
 use crate::normalise::normalise;
 use crate::paper::WordSpotter;
@@ -77,7 +77,8 @@ impl Reader {
 
     /// Returns whether the words tell the robot to stop.
     pub fn is_stop(&self, text: &str) -> bool {
-        self.read(text, Question::None).intent == Intent::Stop
+        let intent = self.read(text, Question::None).intent;
+        matches!(intent, Intent::Stop | Intent::StopAndCancel)
     }
 
     /// Returns the attribute and object words in an utterance that the scene lacks, for the robot's
@@ -87,8 +88,9 @@ impl Reader {
             Language::Paper => Vec::new(),
             Language::Careful => {
                 let text = normalise(text);
-                let parsed = self.parse(&Tokens::of(&text), Question::None);
-                unknown_words(&parsed.tags, &parsed.clauses)
+                let tokens = Tokens::of(&text);
+                let parsed = self.parse(&tokens, Question::None);
+                unknown_words(&tokens, &parsed.tags, &parsed.clauses)
             }
         }
     }
@@ -123,26 +125,27 @@ impl Reader {
         hedge(&mut tags, &clauses);
         let asked = self.questions.asked(last_question);
         let mut content = extract(&tags, &clauses, asked);
-        let side_talk =
-            content.base.is_empty() && content.excluded.is_empty() && is_side_talk(&tags, &clauses);
-        if side_talk {
+        let new = matches!(asked, QuestionWords::Nothing);
+        let refers = reference(&tags, &clauses, asked);
+        let says_nothing = content.base.is_empty() && content.excluded.is_empty();
+        let is_statement = new && refers == Reference::None && is_statement(&tags, &clauses);
+        let is_aside = is_statement || says_nothing && is_side_talk(&tags, &clauses);
+        if is_aside {
             content = Content::default();
         }
-        let refers = reference(&tags, &clauses, asked);
         let careless = indifference(&tags, &clauses, asked);
         let response = response(&content, &tags, asked, careless);
         let refers = match (refers, response.0, careless) {
             (Reference::None, Response::DoesNotMatter, Some(at))
                 if !is_of_attribute(&tags, at)
-                    && (!matches!(asked, QuestionWords::Nothing)
-                        || clauses.iter().any(|clause| clause.requests)) =>
+                    && (!new || clauses.iter().any(|clause| clause.requests)) =>
             {
                 Reference::Any
             }
             (refers, ..) => refers,
         };
         let mut intent = match intent(&tags, &clauses, &content, asked, tokens.code) {
-            Intent::Inform if side_talk => Intent::None,
+            Intent::Inform if is_aside => Intent::None,
             Intent::None if response.0 == Response::DoesNotMatter => Intent::Inform,
             Intent::None if refers != Reference::None => Intent::Inform,
             // "the same again"

@@ -17,6 +17,8 @@ pub(crate) struct Tag<'a> {
     pub(crate) gap: Gap,
     /// Its first word.
     pub(crate) word: &'a str,
+    /// Place of its first word in the utterance.
+    pub(crate) at: usize,
     /// Its last word; the first one again where it has one only.
     pub(crate) last: &'a str,
     /// Stands in the lexicon as it was said or typed.
@@ -48,8 +50,8 @@ impl<'a> Found<'a> {
 
 /// Doubts of taking a word for another, judged.
 pub(crate) mod doubts {
-    /// One slip of the finger, and no other value as near.
-    pub(crate) const SLIP: f64 = 0.05;
+    /// One slip of the finger in a word that means nothing else, and no other value as near.
+    pub(crate) const SLIP: f64 = 0.02;
     /// An everyday word one slip away, where a value belongs.
     pub(crate) const EVERYDAY: f64 = 0.3;
     /// The same consonants, where a value belongs.
@@ -59,15 +61,15 @@ pub(crate) mod doubts {
 }
 
 impl<'a> Tag<'a> {
-    /// The tag of the first of `tokens`.
-    fn of(tokens: &[Token<'a>], found: &Found<'a>) -> Self {
-        let run = &tokens[..found.words.min(tokens.len())];
+    /// The tag of the token at `at`.
+    fn of(tokens: &[Token<'a>], at: usize, found: &Found<'a>) -> Self {
+        let run = &tokens[at..tokens.len().min(at + found.words)];
         let least = run.iter().map(|token| token.confidence).fold(1.0, f32::min);
-        let Token { word, gap, .. } = tokens[0];
+        let Token { word, gap, .. } = tokens[at];
         let last = run.last().map_or(word, |token| token.word);
         let exact = found.doubt == 0.0;
         let (sense, sure) = (found.sense, found.sure);
-        let mut tag = Self { sense, gap, word, last, exact, doubt: 0.0, sure };
+        let mut tag = Self { sense, gap, word, at, last, exact, doubt: 0.0, sure };
         tag.add_doubt(1.0 - f64::from(least));
         tag.add_doubt(found.doubt);
         tag
@@ -150,7 +152,7 @@ pub(crate) fn tag<'a>(lexicon: &'a Lexicon, tokens: &[Token<'a>]) -> Vec<Tag<'a>
     while at < tokens.len() {
         let described = tags.last().is_some_and(|tag| tag.is_value() || tag.is(Class::Determiner));
         let found = find(lexicon, tokens, at, described);
-        let tag = Tag::of(&tokens[at..], &found);
+        let tag = Tag::of(tokens, at, &found);
         tags.push(tag);
         tags.extend(found.second.map(|sense| Tag { sense, gap: Gap::Glued, ..tag }));
         at += found.words;

@@ -48,8 +48,9 @@ pub(crate) fn classify(
     let distractors = analysis.distractors();
     let topic = analysis.topic(injected, distractors.len());
     let requests = topic == Topic::On && analysis.requests();
+    let (chore, states) = (!injected && analysis.is_chore(&distractors), analysis.states());
     let distractors = distractors.iter().map(|at| span.start + at).collect();
-    Clause { span, topic, requests, distractors }
+    Clause { span, topic, requests, chore, states, distractors }
 }
 
 impl<'a> ClauseAnalysis<'a> {
@@ -95,28 +96,6 @@ impl<'a> ClauseAnalysis<'a> {
             && self.values > 0
             && self.has(classes![Fetch Want])
             && !self.has(classes![Injection])
-    }
-
-    /// An errand with strange things, or with nothing but places.
-    fn is_unrelated_errand(&self) -> bool {
-        let places = self.clause.iter().filter(|tag| tag.is_role(Role::Place)).count();
-        self.is_errand() && (self.unknown > 0 || self.values == places) && !self.has(classes![Head])
-    }
-
-    /// "put it on the table", "empty the dishwasher": an order, but not to fetch.
-    pub(crate) fn is_errand(&self) -> bool {
-        const OBJECTS: &[Class] = classes![Determiner Possessive It Pointer];
-        let orders = |(at, tag): (usize, &Tag<'_>)| {
-            let before = at.checked_sub(1).map(|before| &self.clause[before]);
-            let is_noun = before.is_some_and(|before| {
-                before.is_value() || before.is_any(classes![Determiner First])
-            });
-            let has_object = self.next(at).is_some_and(|next| {
-                next.is_any(OBJECTS) || next.is_unknown() || tag.word == "clear"
-            });
-            tag.is(Class::Put) && has_object && !is_noun
-        };
-        self.clause.iter().enumerate().any(orders)
     }
 
     fn is_other_language(&self) -> bool {

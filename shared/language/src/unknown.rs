@@ -1,31 +1,87 @@
-//! Words for things and qualities that the scene does not have.
+//! Words for things, qualities and relations that the scene does not have.
 
-use scene::{Role, UnknownWord};
+use std::ops::Range;
+
+use scene::{Reference, Role, UnknownWord};
 
 use crate::clauses::{Clause, Topic};
+use crate::references::by_size;
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
+use crate::tokens::Tokens;
 use crate::vocabulary::is_unlisted_quality;
 
 /// Most words of a compound.
 const COMPOUND_MAX: usize = 3;
 
+/// Most words of a landmark that are repeated: "the small white cup".
+const LANDMARK_MAX: usize = 4;
+
 /// Attribute and object words that the scene does not have, for the robot's reply.
-pub(crate) fn unknown_words(tags: &[Tag<'_>], clauses: &[Clause]) -> Vec<UnknownWord> {
+pub(crate) fn unknown_words(
+    tokens: &Tokens<'_>,
+    tags: &[Tag<'_>],
+    clauses: &[Clause],
+) -> Vec<UnknownWord> {
     let mut words: Vec<UnknownWord> = Vec::new();
     for clause in clauses.iter().filter(|clause| clause.topic != Topic::Off) {
-        for at in clause.span.clone() {
-            let asked = clause.requests || clause.topic == Topic::AskBack;
-            if !(tags[at].is(Class::Unlisted) || asked && is_in_noun_phrase(tags, at)) {
+        let asked = clause.requests || clause.topic == Topic::AskBack;
+        let mut rest = clause.span.clone();
+        while let Some(at) = rest.next() {
+            let word = if let Some(relation) = relation(&tags[..clause.span.end], at) {
+                rest.start = relation.end;
+                UnknownWord { text: said(tokens, tags, relation), role: Role::Place }
+            } else if tags[at].is(Class::Unlisted) || asked && is_in_noun_phrase(tags, at) {
+                named(tokens, tags, at)
+            } else {
                 continue;
-            }
-            let word = named(tags, at);
+            };
             if !words.contains(&word) {
                 words.push(word);
             }
         }
     }
     words
+}
+
+/// "next to the cup", "on the left", "third": where an object is among others.
+fn relation(tags: &[Tag<'_>], at: usize) -> Option<Range<usize>> {
+    const ALONG: [&str; 4] = ["same", "along", "together", "around"];
+    const NOUN_PHRASE: &[Class] =
+        classes![Determiner Pointer Possessive Quantifier Head One Unlisted Second];
+    let tag = &tags[at];
+    if tag.is(Class::Landmark) && !ALONG.contains(&tag.word) {
+        let in_phrase = |tag: &&Tag<'_>| {
+            !tag.pauses() && (tag.is_value() || tag.is_unknown() || tag.is_any(NOUN_PHRASE))
+        };
+        let noun = tags[at + 1..].iter().take(LANDMARK_MAX).take_while(in_phrase).count();
+        return Some(at..at + 1 + noun);
+    }
+    (tag.is(Class::Ordinal) && is_counted(tags, at)).then_some(at..at + 1)
+}
+
+/// "the third bowl", "the one on the left", but not "first the bowl" and "the next one".
+fn is_counted(tags: &[Tag<'_>], at: usize) -> bool {
+    const SPOKEN_OF: [&str; 6] = ["last", "next", "previous", "former", "latter", "final"];
+    let tag = &tags[at];
+    if tag.word != tag.last {
+        // "on the left", "number two", but not "the right one", which may be the wanted one.
+        return tag.word != "right";
+    }
+    let is_led = before(tags, at).is_some_and(|it| it.is_any(classes![Determiner Possessive]));
+    // "the top shelf" is a place.
+    let is_part = after(tags, at).is_some_and(|next| next.is_role(Role::Place));
+    let is_known = SPOKEN_OF.contains(&tag.word) || by_size(tag.word) != Reference::None;
+    is_led && !is_part && !is_known
+}
+
+/// The words of some tags.
+fn said(tokens: &Tokens<'_>, tags: &[Tag<'_>], range: Range<usize>) -> String {
+    let begin = tags[range.start].at;
+    let end = tags.get(range.end).map_or(tokens.words.len(), |tag| tag.at);
+    // Two tags may come from one word.
+    let words = tokens.words[begin..end.max(begin + 1)].iter().map(|token| token.word);
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// An unknown word where a value or noun belongs: "the purpure one", "get me a foobar".
@@ -39,15 +95,13 @@ fn is_in_noun_phrase(tags: &[Tag<'_>], at: usize) -> bool {
 }
 
 /// The word with those that it forms a compound with, and what it is.
-fn named(tags: &[Tag<'_>], at: usize) -> UnknownWord {
+fn named(tokens: &Tokens<'_>, tags: &[Tag<'_>], at: usize) -> UnknownWord {
     let mut last = at;
-    let mut text = whole(&tags[at]);
     while last - at + 1 < COMPOUND_MAX
         && tags[last].is_unknown()
         && after(tags, last).is_some_and(Tag::is_unknown)
     {
         last += 1;
-        text = format!("{text} {}", whole(&tags[last]));
     }
     let describes = after(tags, last).is_some_and(|next| {
         next.is_any(classes![Head Unlisted Attribute]) || next.is_unknown() || next.is_value()
@@ -68,10 +122,5 @@ fn named(tags: &[Tag<'_>], at: usize) -> UnknownWord {
     } else {
         Role::Kind
     };
-    UnknownWord { text, role }
-}
-
-/// The words of a tag as far as it keeps them.
-fn whole(tag: &Tag<'_>) -> String {
-    if tag.word == tag.last { tag.word.to_owned() } else { format!("{} {}", tag.word, tag.last) }
+    UnknownWord { text: said(tokens, tags, at..last + 1), role }
 }

@@ -235,6 +235,8 @@ wire_codes! {
         PutBack = 15,
         Leave = 16,
         AskWhether = 17,
+        Chore = 18,
+        StopAndCancel = 19,
     }
 }
 wire_codes! {

@@ -23,8 +23,8 @@ one group of two).
 - response: the answer to the question: yes, no, none, cannot_tell (\"I don't know\"), does_not_matter (\"any of \
 them\"). Without a question: none.
 - intent: inform, or none where nothing is meant for the robot; stop, cancel, repeat, start_over, ask_back and the \
-others for what their names say. With ask_count, ask_which, ask_whether, ask_where and put_back, base and excluded \
-describe the objects asked about or put back.
+others for what their names say; chore where the robot shall do something else than fetch (\"wash the bowl\"). With \
+ask_count, ask_which, ask_whether, ask_where, put_back and chore, base and excluded describe the objects concerned.
 - refers: other (\"the other one\"), same (\"the same again\"), smaller, larger, smallest, largest, any; else none.
 - further: groups of values, one for each further object asked for (\"the red mug and the white cup\").
 
@@ -32,7 +32,7 @@ The scene:
 ";
 
 /// Every intent, in its order.
-const INTENTS: [Intent; 18] = [
+const INTENTS: [Intent; 20] = [
     Intent::Inform,
     Intent::None,
     Intent::Stop,
@@ -51,6 +51,8 @@ const INTENTS: [Intent; 18] = [
     Intent::PutBack,
     Intent::Leave,
     Intent::AskWhether,
+    Intent::Chore,
+    Intent::StopAndCancel,
 ];
 /// Every response.
 const RESPONSES: [Response; 5] =

@@ -71,9 +71,10 @@ pub fn reading_to_json(scene: &Scene, reading: &Reading) -> Json {
     let words = |ids: &[crate::WordId]| -> Vec<&str> {
         ids.iter().map(|w| scene.words()[w.index()].as_str()).collect()
     };
-    // What a question is asked of, or what is to be put back, is not what is wanted.
-    let intent = published_intent(reading.intent);
-    let wants = intent != Intent::AskBack && reading.intent != Intent::PutBack;
+    // What a question is asked of, or what is to be put back or washed, is not what is wanted.
+    let intent = published_intent(reading);
+    let is_other = matches!(reading.intent, Intent::PutBack | Intent::Chore);
+    let wants = intent != Intent::AskBack && !is_other;
     // The published format has one description, of all that is wanted.
     let said = std::iter::once(&reading.base).chain(&reading.further).filter(|_| wants);
     let base: Vec<crate::WordId> = said.flatten().copied().collect();
@@ -94,9 +95,11 @@ fn published_response(response: Response) -> Response {
     }
 }
 
-/// The published format has one intent for all questions to the robot.
-fn published_intent(intent: Intent) -> Intent {
-    match intent {
+/// The published format has one intent for all questions to the robot, and fewer others.
+fn published_intent(reading: &Reading) -> Intent {
+    match reading.intent {
+        Intent::Cancel if !reading.excluded.is_empty() => Intent::Inform,
+        Intent::StopAndCancel => Intent::Stop,
         Intent::AskCount
         | Intent::AskWhich
         | Intent::AskWhether
@@ -104,7 +107,9 @@ fn published_intent(intent: Intent) -> Intent {
         | Intent::AskWhy
         | Intent::AskStatus
         | Intent::AskHelp => Intent::AskBack,
-        Intent::Greet | Intent::Thank | Intent::PutBack | Intent::Leave => Intent::None,
+        Intent::Greet | Intent::Thank | Intent::PutBack | Intent::Leave | Intent::Chore => {
+            Intent::None
+        }
         other => other,
     }
 }

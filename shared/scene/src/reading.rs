@@ -35,7 +35,7 @@ pub enum Intent {
     None,
     /// Stop moving at once.
     Stop,
-    /// Withdraw the request.
+    /// Withdraw the request; with excluded groups, only what they describe ("don't get me the red one").
     Cancel,
     /// Repeat the question.
     Repeat,
@@ -65,6 +65,10 @@ pub enum Intent {
     Leave,
     /// Ask whether there is an object that the words describe ("is there a red mug?").
     AskWhether,
+    /// Have the robot do something else than fetch ("wash the bowl").
+    Chore,
+    /// Stop moving at once, and withdraw the request ("stop, I don't want it").
+    StopAndCancel,
 }
 
 /// An object that an utterance points to by what was spoken of.

@@ -118,7 +118,8 @@ enum whichone_intent {
     WHICHONE_INTENT_NONE = 1,
     /** Stop moving at once. */
     WHICHONE_INTENT_STOP = 2,
-    /** Withdraw the request. */
+    /** Withdraw the request; with excluded groups, only what they describe ("don't get me the red one").
+    */
     WHICHONE_INTENT_CANCEL = 3,
     /** Repeat the question. */
     WHICHONE_INTENT_REPEAT = 4,
@@ -148,6 +149,10 @@ enum whichone_intent {
     WHICHONE_INTENT_LEAVE = 16,
     /** Ask whether there is an object that the words describe ("is there a red mug?"). */
     WHICHONE_INTENT_ASK_WHETHER = 17,
+    /** Have the robot do something else than fetch ("wash the bowl"). */
+    WHICHONE_INTENT_CHORE = 18,
+    /** Stop moving at once, and withdraw the request ("stop, I don't want it"). */
+    WHICHONE_INTENT_STOP_AND_CANCEL = 19,
 };
 
 /** State of the microphone of the robot's computer. */
@@ -603,7 +608,7 @@ WHICHONE_ASSERT(offsetof(whichone_reading_t, excluded_count) == 397, "offset of 
 WHICHONE_ASSERT(offsetof(whichone_reading_t, further_count) == 398, "offset of Reading.further_count");
 WHICHONE_ASSERT(offsetof(whichone_reading_t, reserved) == 399, "offset of Reading.reserved");
 #define WHICHONE_READING_TYPE "Reading"
-#define WHICHONE_READING_SCHEMA "40a64a2ab963a1d4"
+#define WHICHONE_READING_SCHEMA "07c4f2ab175b43b3"
 
 /** An accepted utterance. Speech to grounding. */
 typedef struct whichone_utterance {
@@ -698,7 +703,7 @@ WHICHONE_ASSERT(offsetof(whichone_observation_t, reserved) == 276, "offset of Ob
 WHICHONE_ASSERT(offsetof(whichone_observation_t, readings) == 280, "offset of Observation.readings");
 WHICHONE_ASSERT(offsetof(whichone_observation_t, unknown) == 13080, "offset of Observation.unknown");
 #define WHICHONE_OBSERVATION_TYPE "Observation"
-#define WHICHONE_OBSERVATION_SCHEMA "9eb3ba88f6df6e0e"
+#define WHICHONE_OBSERVATION_SCHEMA "ee8b2a9dabad2445"
 
 /** The highest utterance that the belief holds. Policy to speech. */
 typedef struct whichone_applied_mark {

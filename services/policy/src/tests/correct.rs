@@ -1,6 +1,8 @@
 //! What is said while the arm fetches.
 
-use super::{answer, at, belief, delivered, first, manager, remark, reply, settings, typed, words};
+use super::{
+    answer, at, belief, delivered, first, manager, remark, reply, settings, text, typed, words,
+};
 use dialogue::manager::{Cause, Manager, State};
 use messages::{ActKind, Outcome, PickId, PickOutcome};
 use scene::{Intent, ObjectId, Reading, Response};
@@ -124,8 +126,28 @@ fn what_has_arrived_already_is_handed_over() {
     let mut manager = manager();
     let (state, pick, object) = fetching(&mut manager);
     let denied = reply(&mut manager, &state, answer(Response::No));
-    let ended = manager.next(&denied, &delivered(pick), at(3)).ended.expect("it has ended");
-    assert_eq!((ended.object, ended.outcome), (Some(object), Outcome::Delivered));
+    let after = manager.next(&denied, &delivered(pick), at(3));
+    let ended = after.ended.as_ref().expect("it has ended");
+    assert_eq!((ended.object, ended.outcome), (Some(object), Outcome::Refused));
+    let said = text(&after);
+    assert!(
+        said.starts_with("It was too late to leave the ") && said.contains("Here it is. "),
+        "{said}"
+    );
+    let open = after.open.as_ref().expect("another one is wanted");
+    assert!(open.belief().probability(object) < 1e-3);
+}
+
+#[test]
+fn what_was_not_wanted_any_more_is_handed_over_with_these_words() {
+    let mut manager = manager();
+    let (state, pick, _) = fetching(&mut manager);
+    let never_mind = Reading { intent: Intent::Cancel, ..Reading::default() };
+    let withdrawn = remark(&mut manager, &state, never_mind);
+    let after = manager.next(&withdrawn, &delivered(pick), at(3));
+    let said = text(&after);
+    assert!(said.starts_with("It was too late to leave the "), "{said}");
+    assert!(after.open.is_none());
 }
 
 #[test]

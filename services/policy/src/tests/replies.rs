@@ -13,7 +13,7 @@ fn about(intent: Intent, said: &[&str]) -> Reading {
     Reading { intent, ..words(said) }
 }
 
-const TALK: [Intent; 15] = [
+const TALK: [Intent; 17] = [
     Intent::None,
     Intent::Stop,
     Intent::Cancel,
@@ -29,7 +29,13 @@ const TALK: [Intent; 15] = [
     Intent::AskHelp,
     Intent::Greet,
     Intent::Thank,
+    Intent::Chore,
+    Intent::StopAndCancel,
 ];
+
+fn cancels(intent: Intent) -> bool {
+    matches!(intent, Intent::Cancel | Intent::StopAndCancel)
+}
 
 /// At rest, while a question stands, while the arm fetches, and while a pick is called off.
 fn situations(manager: &mut Manager) -> Vec<State> {
@@ -62,7 +68,7 @@ fn an_answer_changes_no_order() {
     let mut manager = manager();
     let [_, _, fetching, leaving] = &situations(&mut manager)[..] else { panic!("four") };
     for state in [fetching, leaving] {
-        for it in TALK.into_iter().filter(|it| *it != Intent::Cancel) {
+        for it in TALK.into_iter().filter(|it| !cancels(*it)) {
             let after = remark(&mut manager, state, intent(it));
             assert_eq!(
                 (after.act.kind, after.act.pick),
@@ -110,6 +116,12 @@ fn questions_about_the_scene_are_answered_from_it() {
     assert!(whether.starts_with("Yes, I see the "), "{whether}");
     let not = ask(about(Intent::AskWhether, &["white", "metallic"]));
     assert_eq!(not, "No, there are no white metallic bowls here.");
+    let which = ask(about(Intent::AskWhich, &["clear", "small", "big"]));
+    assert_eq!(which, "It is big.");
+    let which = ask(about(Intent::AskWhich, &["white", "small", "big"]));
+    assert_eq!(which, "Two are small and one is big.");
+    let only = ask(about(Intent::Chore, &["clear"]));
+    assert_eq!(only, "I can only fetch things and put them back. Shall I get the clear bowl?");
     assert_eq!(ask(about(Intent::AskWhere, &["clear"])), "It is on the counter.");
     assert!(ask(intent(Intent::AskHelp)).contains("for example: the "));
     assert_eq!(ask(intent(Intent::Greet)), "Hello! What would you like?");
@@ -131,7 +143,7 @@ fn no_question_is_put_twice_in_the_same_words() {
     let mut manager = manager();
     let mut state = first(&mut manager, words(&["metallic"]));
     let mut said = vec![text(&state)];
-    for reading in TALK.into_iter().filter(|it| !matches!(it, Intent::Cancel | Intent::StartOver)) {
+    for reading in TALK.into_iter().filter(|it| !cancels(*it) && *it != Intent::StartOver) {
         let wished = reading == Intent::Repeat;
         state = remark(&mut manager, &state, intent(reading));
         assert_eq!(state.act.kind, ActKind::Ask);

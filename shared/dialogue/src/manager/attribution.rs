@@ -39,7 +39,7 @@ impl Manager {
     /// Divides an utterance among its presentations: a share for each, and last one for none. Those
     /// of other interactions get no share. The result is also noted in the state, to be published.
     pub(super) fn attribute(&self, state: &mut State, utterance: &Utterance) -> Vec<f64> {
-        let put = |put| candidate(state, put);
+        let put = |put| self.candidate(state, put);
         let known: Vec<Option<Candidate>> = utterance.presentations.iter().map(put).collect();
         let candidates: Vec<Candidate> = known.iter().flatten().copied().collect();
         let Shares { questions, none } = self.shares(state, utterance, &candidates);
@@ -77,6 +77,37 @@ impl Manager {
         }
     }
 
+    /// Returns a presentation as a candidate for an answer; none for another interaction's.
+    fn candidate(&self, state: &State, put: &Presentation) -> Option<Candidate> {
+        self.question(state, put.prompt)?;
+        let before = || state.handed_over.as_ref().map(|before| &before.interaction);
+        let prompt = state.open.as_ref().or_else(before).and_then(|open| open.prompt(put.prompt));
+        Some(Candidate {
+            began_s: seconds(put.began),
+            ended_s: put.ended.map_or(seconds(put.began) + QUESTION_S, seconds),
+            complete: put.complete,
+            answered_s: prompt.and_then(|prompt| prompt.answered).map(seconds),
+        })
+    }
+
+    /// Returns the question of a prompt of the open interaction. That an object is being fetched can be
+    /// denied, like "this one?".
+    fn question(&self, state: &State, prompt: PromptId) -> Option<Question> {
+        if let Some(object) = state.goes_back(prompt) {
+            return Some(Question::Point(object));
+        }
+        let Some(open) = &state.open else {
+            let offered = self.offered(state).filter(|_| prompt == state.act.prompt);
+            return offered.map(Question::Point).or_else(|| answered_after(state, prompt));
+        };
+        if let (ActKind::Pick, Some((_, object))) = (state.act.kind, state.act.pick)
+            && open.announced.contains(&prompt)
+        {
+            return Some(Question::Point(object));
+        }
+        open.prompt(prompt).map(|prompt| prompt.question)
+    }
+
     /// Returns how soon this user answers.
     fn reaction(&self, state: &State, typed: bool) -> Reaction {
         let (known, configured) = if typed {
@@ -103,7 +134,7 @@ impl Manager {
             }
             // An answer to another interaction's question says nothing about this one's object.
             let put = interpretation.answers.map(|at| utterance.presentations[at].prompt);
-            let question = put.and_then(|put| question(state, put)).unwrap_or_default();
+            let question = put.and_then(|put| self.question(state, put)).unwrap_or_default();
             let reading = content(&interpretation.reading);
             match all.iter_mut().find(|(_, q, r)| *q == question && *r == *reading) {
                 Some((sum, ..)) => *sum += weight,
@@ -167,36 +198,9 @@ fn content(reading: &Reading) -> std::borrow::Cow<'_, Reading> {
     use std::borrow::Cow;
     match reading.intent {
         Intent::Inform => Cow::Borrowed(reading),
+        Intent::Cancel if !reading.excluded.is_empty() => Cow::Borrowed(reading),
         _ => Cow::Owned(Reading::default()),
     }
-}
-
-/// Returns a presentation as a candidate for an answer; none for another interaction's.
-fn candidate(state: &State, put: &Presentation) -> Option<Candidate> {
-    question(state, put.prompt)?;
-    let before = || state.handed_over.as_ref().map(|before| &before.interaction);
-    let prompt = state.open.as_ref().or_else(before).and_then(|open| open.prompt(put.prompt));
-    Some(Candidate {
-        began_s: seconds(put.began),
-        ended_s: put.ended.map_or(seconds(put.began) + QUESTION_S, seconds),
-        complete: put.complete,
-        answered_s: prompt.and_then(|prompt| prompt.answered).map(seconds),
-    })
-}
-
-/// Returns the question of a prompt of the open interaction. That an object is being fetched can be
-/// denied, like "this one?".
-fn question(state: &State, prompt: PromptId) -> Option<Question> {
-    if let Some(object) = state.goes_back(prompt) {
-        return Some(Question::Point(object));
-    }
-    let Some(open) = &state.open else { return answered_after(state, prompt) };
-    if let (ActKind::Pick, Some((_, object))) = (state.act.kind, state.act.pick)
-        && open.announced.contains(&prompt)
-    {
-        return Some(Question::Point(object));
-    }
-    open.prompt(prompt).map(|prompt| prompt.question)
 }
 
 /// Returns the question of a prompt after a hand-over: that this object was handed over can be denied.

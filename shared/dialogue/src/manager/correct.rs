@@ -7,9 +7,10 @@ use super::Manager;
 use super::acts::call_off;
 use super::attribution::{Heard, PLAIN};
 use super::concede::likeliest;
+use super::evidence::Mark;
 use super::line::{Content, Preface};
 use super::references::reference;
-use super::state::{Basis, State};
+use super::state::{Basis, State, Utterance};
 use crate::ActKind;
 use crate::time::Time;
 
@@ -101,6 +102,18 @@ impl Manager {
     /// Returns whether every one of the words is true of the object.
     fn describes(&self, words: &[WordId], object: ObjectId) -> bool {
         !words.is_empty() && words.iter().all(|word| self.setup.model.has_word(object, *word))
+    }
+
+    /// Decides again once an object was handed over that was called off too late for another one.
+    pub(super) fn fetch_wanted(&mut self, state: &mut State, preface: Preface, at: Time) {
+        let Some(refused) = Self::refuse_last(state, at) else { return };
+        let (seq, not) = (state.applied, Mark::Not(refused.picked.clone()));
+        let said = Utterance { seq, accepted: at, ..Utterance::default() };
+        self.open_like(state, &said, refused);
+        if let Some(open) = &mut state.open {
+            self.take_in(open, Heard { mark: Some(not), ..Heard::default() });
+        }
+        self.decide(state, Basis { preface, utterance: seq, ..Basis::default() }, at);
     }
 
     /// Decides again once the arm has left the object that was not wanted.

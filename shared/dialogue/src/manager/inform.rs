@@ -1,6 +1,6 @@
 //! Content of an utterance about the wanted object.
 
-use scene::{AttributeId, Question, Reading, Reference, Response, Role, WordId};
+use scene::{Question, Reading, Reference, Response, Role};
 
 use super::Manager;
 use super::attribution::Heard;
@@ -29,7 +29,8 @@ impl Manager {
         let mut is_refused = false;
         if state.open.is_none() {
             let is_request = self.is_request(utterance);
-            let mut spoken_of = self.resolve(state, &heard);
+            let mut spoken_of =
+                self.accepted(state, &heard).or_else(|| self.resolve(state, &heard));
             if let Some(refusal) = self.refusal(state, &heard) {
                 if spoken_of.is_none() {
                     return self.reopen(state, utterance, (heard, refusal), at);
@@ -83,6 +84,14 @@ impl Manager {
         if !utterance.more {
             self.decide_deferred(state, at);
         }
+    }
+
+    /// Returns the object that the robot has just offered to fetch, where that is accepted.
+    fn accepted(&self, state: &State, heard: &Heard<'_>) -> Option<Mark> {
+        let offered = self.offered(state)?;
+        let (_, question, reading) = heard.interpretations.first()?;
+        let accepts = *question == Question::Point(offered) && reading.response == Response::Yes;
+        (accepts && self.fits(reading, offered)).then(|| self.one_of(&[offered]))
     }
 
     /// Opens an interaction with what is known of its object: what was spoken of, or refused.
@@ -192,15 +201,9 @@ impl Manager {
     /// "There are no blue cups here.": each word is the scene's, but no object has all of them.
     fn nothing_described(&self, heard: &Heard<'_>) -> Option<Remark> {
         let (_, reading) = likeliest(&heard.interpretations)?;
-        let model = &self.setup.model;
-        let is_rival = |one: &WordId, other: &WordId| {
-            let shares =
-                |(k, _): &(AttributeId, _)| model.meanings(*other).iter().any(|(l, _)| l == k);
-            one != other && model.meanings(*one).iter().any(shares)
-        };
         let base = &reading.base;
-        let is_consistent = !base.iter().any(|one| base.iter().any(|other| is_rival(one, other)));
-        let is_described = (0..model.objects()).any(|i| self.fits(reading, i.into()));
+        let is_consistent = !base.iter().any(|word| self.is_rivalled(*word, base));
+        let is_described = (0..self.setup.model.objects()).any(|i| self.fits(reading, i.into()));
         let words = self.setup.scene.words();
         (base.len() > 1 && is_consistent && !is_described).then(|| Remark::Objects {
             asked: AboutObjects::Which,
@@ -226,5 +229,7 @@ fn is_mostly_answer(interpretations: &[Interpretation]) -> bool {
 }
 
 fn is_mere_answer(reading: &Reading) -> bool {
-    reading.response != Response::None && reading.base.is_empty() && reading.excluded.is_empty()
+    let Reading { response, base, excluded, further, .. } = reading;
+    let describes = !(base.is_empty() && excluded.is_empty() && further.is_empty());
+    *response != Response::None && !describes
 }

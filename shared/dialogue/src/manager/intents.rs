@@ -38,7 +38,16 @@ impl Manager {
             // Talk that is not meant for the robot stays without an answer.
             Intent::None if !utterance.typed => {}
             Intent::None => self.reply(state, Remark::NotUnderstood, at),
+            // "Don't get me the red one": another one may be wanted.
+            Intent::Cancel if excludes(utterance) => match state.open {
+                Some(_) => self.inform(state, utterance, &shares, at),
+                None => self.reply(state, Remark::AllRight, at),
+            },
             Intent::Cancel => self.cancel(state, at),
+            Intent::StopAndCancel => {
+                self.cancel(state, at);
+                self.reply(state, Remark::Stopped, at);
+            }
             Intent::Repeat if state.act.line.content != Content::Silence => repeat(state, at),
             Intent::StartOver => {
                 self.start_over(state, at);
@@ -114,6 +123,12 @@ impl Manager {
         }
         self.ask_wanted(state, at);
     }
+}
+
+/// Returns whether it withdraws only what it describes.
+fn excludes(utterance: &Utterance) -> bool {
+    let mut readings = utterance.interpretations.iter().map(|it| &it.reading);
+    readings.any(|it| it.intent == Intent::Cancel && !it.excluded.is_empty())
 }
 
 /// Returns the shares of an utterance that answers nothing.

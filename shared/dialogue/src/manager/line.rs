@@ -72,6 +72,11 @@ pub enum Remark {
     AllRight,
     /// The scene has nothing of this kind.
     Unknown(UnknownWord),
+    /// Nothing but fetching and putting back can be done. The name of the object that is offered to be
+    /// fetched, if there is one.
+    OnlyFetches(Option<String>),
+    /// The object of that description is handed over: it was called off too late.
+    TooLate(String),
     /// Nothing is being done.
     Idle,
     /// Nothing was handed over that could be put back.
@@ -108,6 +113,8 @@ pub enum AboutObjects {
     Where,
     /// Whether there are any.
     Whether,
+    /// Which of several values of an attribute they have; the words are these values.
+    Either,
 }
 
 /// Reason of what the robot does.

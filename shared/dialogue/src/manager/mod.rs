@@ -377,7 +377,18 @@ impl Manager {
             self.hand_over_from_table(state, &open.picked, true);
         }
         let description = self.description(object);
-        let content = Content::PickEnded(description.clone(), outcome);
+        let is_called_off = state.act.kind == ActKind::Cancel;
+        let (content, preface) = match outcome {
+            PickOutcome::Delivered if is_called_off => {
+                let remark = Remark::TooLate(description);
+                (Content::Remark(remark.clone()), Preface::Remark(remark))
+            }
+            _ => {
+                let preface = Preface::PickEnded(description.clone(), outcome);
+                (Content::PickEnded(description, outcome), preface)
+            }
+        };
+        let corrected = delivered.as_ref().is_some_and(|open| open.corrected);
         let queue = std::mem::take(&mut state.queue);
         self.close(state, ends_as, at, content);
         if let Some(interaction) = &delivered {
@@ -393,9 +404,10 @@ impl Manager {
         if goes_on.contains(&outcome) {
             state.queue = queue;
         }
-        let preface = Preface::PickEnded(description, outcome);
         if state.putting_back.is_some() {
             self.put_back_in_turn(state, (preface, outcome), at);
+        } else if corrected {
+            self.fetch_wanted(state, preface, at);
         } else if !state.queue.is_empty() {
             self.serve_queue(state, preface, at);
         }

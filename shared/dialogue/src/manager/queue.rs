@@ -1,11 +1,11 @@
 //! Requests for several objects: one after the other.
 
-use scene::{Question, Reading, WordId};
+use scene::{ObjectId, Question, Reading, WordId};
 
 use super::Manager;
 use super::attribution::Heard;
 use super::evidence::Mark;
-use super::line::Preface;
+use super::line::{AboutObjects, Preface, Remark};
 use super::state::{Basis, Interaction, Preference, State, Utterance};
 use crate::time::Time;
 
@@ -25,8 +25,20 @@ impl Manager {
         if further.is_empty() {
             return Preface::None;
         }
+        let first = names(&reading.base);
+        let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
+        let fitting: Vec<ObjectId> = objects.filter(|i| self.fits(reading, *i)).collect();
+        let is_alike = further.iter().all(|words| *words == first);
+        if is_alike && (1..=further.len()).contains(&fitting.len()) {
+            // "two red mugs", of which there is one.
+            state.queue.extend(further.into_iter().skip(1).take(fitting.len() - 1));
+            let objects =
+                fitting.iter().map(|i| self.setup.scene.object(*i).name.clone()).collect();
+            let asked = AboutObjects::Count;
+            return Preface::Remark(Remark::Objects { asked, words: first, objects });
+        }
         state.queue.extend(further.iter().cloned());
-        Preface::InTurn([vec![names(&reading.base)], further].concat())
+        Preface::InTurn([vec![first], further].concat())
     }
 
     /// Turns to the next object of the queue once a pick has ended, where the arm is fit for it.

@@ -65,8 +65,10 @@ impl Manager {
     /// Returns the objects that the robot has just listed, where a request without a kind of thing
     /// fits one of them: "where is the red mug?" … "bring it".
     pub(super) fn listed(&self, state: &State, heard: &Heard<'_>) -> Option<Mark> {
-        let Content::Remark(Remark::Objects { objects, .. }) = &state.act.line.content else {
-            return None;
+        let objects = match &state.act.line.content {
+            Content::Remark(Remark::Objects { objects, .. }) => &objects[..],
+            Content::Remark(Remark::OnlyFetches(Some(object))) => std::slice::from_ref(object),
+            _ => return None,
         };
         let (.., reading) = heard.interpretations.first().filter(|_| heard.unknown.is_none())?;
         let scene = &self.setup.scene;
@@ -80,7 +82,7 @@ impl Manager {
         (!names_kind && !meant.is_empty()).then(|| self.one_of(&meant))
     }
 
-    fn one_of(&self, objects: &[ObjectId]) -> Mark {
+    pub(super) fn one_of(&self, objects: &[ObjectId]) -> Mark {
         let name = |i: &ObjectId| self.setup.scene.object(*i).name.clone();
         Mark::OneOf(objects.iter().map(name).collect())
     }

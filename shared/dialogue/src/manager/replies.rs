@@ -3,7 +3,7 @@
 use scene::{Intent, ObjectId, Reading, WordId};
 
 use super::Manager;
-use super::line::{AboutObjects, Reason, Remark};
+use super::line::{AboutObjects, Content, Reason, Remark};
 use super::state::{Interaction, State, Utterance};
 use crate::ActKind;
 
@@ -28,7 +28,7 @@ impl Manager {
             Intent::Greet => Remark::Greeting,
             Intent::Leave => Remark::Goodbye,
             Intent::Thank => Remark::Welcome,
-            Intent::Stop => Remark::Stopped,
+            Intent::Stop | Intent::StopAndCancel => Remark::Stopped,
             Intent::AskStatus if state.stopped => Remark::Stopped,
             Intent::AskHelp => Remark::Help,
             Intent::AskBack => Remark::Inventory,
@@ -37,6 +37,7 @@ impl Manager {
             Intent::AskWhether => self.objects(said, intent, AboutObjects::Whether),
             Intent::AskWhere => self.objects(said, intent, AboutObjects::Where),
             Intent::AskWhy => Remark::Why(self.reason(state)),
+            Intent::Chore => Remark::OnlyFetches(self.fetched_instead(state, said)),
             _ => self.status(state),
         }
     }
@@ -57,16 +58,45 @@ impl Manager {
         }
     }
 
+    /// Returns the name of the one object that is to be washed or the like: it can be fetched instead, where
+    /// nothing else is under way.
+    fn fetched_instead(&self, state: &State, said: &Utterance) -> Option<String> {
+        if state.open.is_some() || state.ordered().is_some() {
+            return None;
+        }
+        let reading = likeliest(said, Intent::Chore).filter(|it| !it.base.is_empty())?;
+        let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
+        let described: Vec<ObjectId> = objects.filter(|i| self.fits(reading, *i)).collect();
+        let [object] = described[..] else { return None };
+        Some(self.setup.scene.object(object).name.clone())
+    }
+
+    /// Returns the object that the standing line offers to fetch.
+    pub fn offered(&self, state: &State) -> Option<ObjectId> {
+        match &state.act.line.content {
+            Content::Remark(Remark::OnlyFetches(Some(name))) => self.setup.scene.object_named(name),
+            _ => None,
+        }
+    }
+
     /// Returns the objects that the likeliest reading with that intent describes.
     fn objects(&self, said: &Utterance, intent: Intent, asked: AboutObjects) -> Remark {
-        let fits = said.interpretations.iter().filter(|it| it.reading.intent == intent);
-        let best = fits.reduce(|best, next| if next.weight > best.weight { next } else { best });
         let scene = &self.setup.scene;
-        let Some(reading) = best.map(|best| &best.reading) else { return Remark::Inventory };
-        let described = (0..scene.objects().len()).filter(|i| self.fits(reading, (*i).into()));
-        let objects = described.map(|i| scene.objects()[i].name.clone()).collect();
+        let Some(reading) = likeliest(said, intent) else { return Remark::Inventory };
+        // "is the marker long or short": no marker is both.
+        let (values, base): (Vec<WordId>, Vec<WordId>) =
+            reading.base.iter().partition(|word| self.is_rivalled(**word, &reading.base));
+        let is_choice = intent == Intent::AskWhich && !values.is_empty();
+        let asked_of =
+            if is_choice { Reading { base, ..reading.clone() } } else { reading.clone() };
+        let described = (0..scene.objects().len()).filter(|i| self.fits(&asked_of, (*i).into()));
+        let objects: Vec<String> = described.map(|i| scene.objects()[i].name.clone()).collect();
+        let (asked, words) = match is_choice && !objects.is_empty() {
+            true => (AboutObjects::Either, values),
+            false => (asked, asked_of.base),
+        };
         let name = |word: &WordId| scene.words()[word.index()].clone();
-        Remark::Objects { asked, words: reading.base.iter().map(name).collect(), objects }
+        Remark::Objects { asked, words: words.iter().map(name).collect(), objects }
     }
 
     /// Returns whether the words of a reading describe the object.
@@ -74,6 +104,14 @@ impl Manager {
         let has = |word: &WordId| self.setup.model.has_word(object, *word);
         let is_excluded = |group: &Vec<WordId>| !group.is_empty() && group.iter().all(has);
         reading.base.iter().all(has) && !reading.excluded.iter().any(is_excluded)
+    }
+
+    /// Returns whether another of the words is a value of the same attribute.
+    pub(super) fn is_rivalled(&self, word: WordId, words: &[WordId]) -> bool {
+        let meanings = |word: WordId| self.setup.model.meanings(word).iter();
+        let shares =
+            |other: WordId| meanings(word).any(|(k, _)| meanings(other).any(|(l, _)| k == l));
+        words.iter().any(|other| *other != word && shares(*other))
     }
 
     fn reason(&mut self, state: &State) -> Reason {
@@ -91,6 +129,13 @@ impl Manager {
             words => Reason::Said(words),
         }
     }
+}
+
+/// Returns the likeliest reading with that intent.
+fn likeliest(said: &Utterance, intent: Intent) -> Option<&Reading> {
+    let fits = said.interpretations.iter().filter(|it| it.reading.intent == intent);
+    let best = fits.reduce(|best, next| if next.weight > best.weight { next } else { best });
+    best.map(|best| &best.reading)
 }
 
 /// Returns the scene's words that were said, each once.

@@ -7,6 +7,7 @@ pub fn reading(scene: &Scene, reading: &Reading) -> String {
         Intent::Inform => None,
         Intent::None => return "nothing for me".to_owned(),
         Intent::Stop => Some("stop"),
+        Intent::StopAndCancel => Some("stop, never mind"),
         Intent::Cancel => Some("never mind"),
         Intent::Repeat => Some("say that again"),
         Intent::StartOver => Some("start over"),
@@ -22,6 +23,7 @@ pub fn reading(scene: &Scene, reading: &Reading) -> String {
         Intent::Leave => Some("a farewell"),
         Intent::Thank => Some("thanks"),
         Intent::PutBack => Some("put it back"),
+        Intent::Chore => Some("something else than to fetch"),
     };
     let response = match reading.response {
         Response::Yes => Some("yes"),

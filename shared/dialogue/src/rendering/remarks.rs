@@ -1,6 +1,6 @@
 //! English of the robot's remarks: answers to what the user asks.
 
-use scene::{ObjectId, Role, Scene, Value};
+use scene::{Attribute, ObjectId, Role, Scene, Value};
 
 use crate::ActKind;
 use crate::manager::{AboutObjects, Reason, Remark};
@@ -34,7 +34,9 @@ pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
         Remark::NothingToPutBack => "I have nothing to put back.".to_owned(),
         Remark::Idle => "I am waiting.".to_owned(),
         Remark::Fetching(object) => format!("I am getting the {object}."),
-        Remark::Leaving(object) => format!("I am leaving the {object}."),
+        Remark::Leaving(object) => format!("I leave the {object}, if it is not too late."),
+        Remark::TooLate(object) => format!("It was too late to leave the {object}. Here it is."),
+        Remark::OnlyFetches(offered) => only_fetches(scene, offered.as_deref()),
         Remark::PuttingBack(object) => format!("I am putting the {object} back."),
         Remark::PutBackInTurn(fetched, object) => {
             format!("I am getting the {fetched}. Then I will put the {object} back.")
@@ -42,8 +44,18 @@ pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
         Remark::Objects { asked, words, objects } => about_objects(scene, *asked, words, objects),
         Remark::Why(reason) => why(reason),
     };
-    let invites = matches!(remark, Remark::Greeting | Remark::Idle) && kind == ActKind::Say;
+    let invites = matches!(remark, Remark::Greeting | Remark::Idle | Remark::OnlyFetches(None));
+    let invites = invites && kind == ActKind::Say;
     if invites { format!("{text} What would you like?") } else { text }
+}
+
+/// "I can only fetch things and put them back. Shall I get the red mug?"
+fn only_fetches(scene: &Scene, offered: Option<&str>) -> String {
+    let only = "I can only fetch things and put them back.";
+    match offered.and_then(|name| scene.object_named(name)) {
+        Some(object) => format!("{only} Shall I get the {}?", scene.describe(object)),
+        None => only.to_owned(),
+    }
 }
 
 /// "You can say what you want, for example: the red mug."
@@ -56,10 +68,22 @@ pub(super) fn example(scene: &Scene) -> String {
 pub(super) fn inventory(scene: &Scene) -> String {
     let values = scene.attributes().iter().filter(|k| k.values.len() > 1).map(|k| {
         let names: Vec<&str> = k.values.iter().map(|v| v.name.as_str()).collect();
-        format!("{} {}", k.name, names.join(" or "))
+        format!("{} {}", word_for(k), names.join(" or "))
     });
     let values: Vec<String> = values.collect();
     format!("I see {} {}: {}.", scene.objects().len(), all_nouns(scene), values.join(", "))
+}
+
+/// The word for an attribute in the scene's own question for it: "colour" of "What colour is it?".
+fn word_for(attribute: &Attribute) -> &str {
+    let asks = |word: &&String| {
+        let mut words = attribute.ask_which.iter().flat_map(|question| question.split(' '));
+        words.any(|said| said.eq_ignore_ascii_case(word))
+    };
+    std::iter::once(&attribute.name)
+        .chain(&attribute.synonyms)
+        .find(asks)
+        .unwrap_or(&attribute.name)
 }
 
 /// "mugs and cups": everything that there is.
@@ -84,7 +108,12 @@ fn about_objects(scene: &Scene, asked: AboutObjects, words: &[String], names: &[
     match (asked, &objects[..]) {
         (AboutObjects::Whether, []) => format!("No, there are no {group} here."),
         (_, []) => format!("There are no {group} here."),
-        (AboutObjects::Where, _) => places(scene, &objects),
+        (AboutObjects::Where, _) => {
+            values(scene, &objects, "somewhere here", |_, value| value.role() == Role::Place)
+        }
+        (AboutObjects::Either, _) => values(scene, &objects, "neither", |attribute, _| {
+            attribute.values.iter().filter(|value| words.contains(&value.name)).count() > 1
+        }),
         (AboutObjects::Whether, _) => format!("Yes, I see {}.", listed().unwrap_or(group)),
         (AboutObjects::Which, _) => format!("I see {}.", listed().unwrap_or(group)),
         (AboutObjects::Count, [one]) => format!("There is one: the {}.", scene.describe(*one)),
@@ -113,28 +142,33 @@ pub(super) fn group(scene: &Scene, words: &[String], plural_of: Option<&[ObjectI
     parts.join(" ")
 }
 
-/// "It is on the shelf.", "One is on the shelf, and one is in the drawer."
-fn places(scene: &Scene, objects: &[ObjectId]) -> String {
-    let place = |object: &ObjectId| -> Option<&str> {
+/// "It is on the shelf.", "One is short and one is long."
+fn values(
+    scene: &Scene,
+    objects: &[ObjectId],
+    unknown: &str,
+    is_asked: impl Fn(&Attribute, &Value) -> bool,
+) -> String {
+    let value = |object: &ObjectId| -> Option<&str> {
         let values = scene.attributes().iter().zip(&scene.object(*object).values);
-        let mut values = values.filter_map(|(k, v)| Some(&k.values[(*v)?.index()]));
-        values.find(|value| value.role() == Role::Place).map(|value| value.spoken.as_str())
+        let mut values = values.filter_map(|(k, v)| Some((k, &k.values[(*v)?.index()])));
+        values.find(|(k, value)| is_asked(k, value)).map(|(_, value)| value.spoken.as_str())
     };
-    let mut by_place: Vec<(&str, usize)> = Vec::new();
-    for place in objects.iter().map(|object| place(object).unwrap_or("somewhere here")) {
-        match by_place.iter_mut().find(|(known, _)| *known == place) {
+    let mut by_value: Vec<(&str, usize)> = Vec::new();
+    for value in objects.iter().map(|object| value(object).unwrap_or(unknown)) {
+        match by_value.iter_mut().find(|(known, _)| *known == value) {
             Some((_, count)) => *count += 1,
-            None => by_place.push((place, 1)),
+            None => by_value.push((value, 1)),
         }
     }
-    if let ([(place, _)], [_]) = (&by_place[..], objects) {
-        return format!("It is {place}.");
+    if let ([(value, _)], [_]) = (&by_value[..], objects) {
+        return format!("It is {value}.");
     }
-    let clause = |(place, count): &(&str, usize)| {
+    let clause = |(value, count): &(&str, usize)| {
         let verb = if *count == 1 { "is" } else { "are" };
-        format!("{} {verb} {place}", number(*count))
+        format!("{} {verb} {value}", number(*count))
     };
-    let clauses: Vec<String> = by_place.iter().map(clause).collect();
+    let clauses: Vec<String> = by_value.iter().map(clause).collect();
     format!("{}.", capitalised(&joined(&clauses)))
 }
 
@@ -205,6 +239,23 @@ mod tests {
         let scene = Scene::from_toml("s", &format!("{head}values = [\"red\"]\n{mugs}")).unwrap();
         let names: Vec<String> = (0..count).map(|n| format!("m{n}")).collect();
         about_objects(&scene, AboutObjects::Count, &["red".to_owned()], &names)
+    }
+
+    #[test]
+    fn attributes_are_named_as_the_scenes_questions_name_them() {
+        let attribute = "name = \"color\"\nsynonyms = [\"colour\"]\nvalues = [\"red\", \"blue\"]";
+        let mug = |color: &str| {
+            format!("[[objects]]\nname = \"{color}\"\nattributes = {{ color = \"{color}\" }}\n")
+        };
+        let asked = |question: &str| {
+            let head = format!("name = \"s\"\nnoun = \"mug\"\n[[attributes]]\n{attribute}\n");
+            let mugs = mug("red") + &mug("blue");
+            let text = format!("{head}ask_which = \"{question}\"\n{mugs}");
+            inventory(&Scene::from_toml("s", &text).unwrap())
+        };
+        assert_eq!(asked("What colour is it?"), "I see 2 mugs: colour red or blue.");
+        assert_eq!(asked("What color is it?"), "I see 2 mugs: color red or blue.");
+        assert_eq!(asked("Red or blue?"), "I see 2 mugs: color red or blue.");
     }
 
     #[test]

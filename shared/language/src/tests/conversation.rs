@@ -4,6 +4,8 @@
 //! One utterance a line: `scene ? question : text => meaning`. The meaning lists words said, `-a+b` for
 //! a group ruled out, the response (`yes`, `no`, `cannot_tell`, `does_not_matter`), `!intent`,
 //! `@reference`, and after a `;` the words of each further object. `_` is a blank inside a value.
+//!
+//! The lines from "orders other than to fetch" on were written before the code for them: 36 of the first 66 were misread then.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

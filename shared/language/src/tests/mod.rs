@@ -145,6 +145,20 @@ fn reader_names_unknown_words() {
         ("bring me the frobnitz", vec!["frobnitz"]),
         ("the white one", vec![]),
         ("my phone is ringing", vec![]),
+        ("the one on the left", vec!["on the left"]),
+        ("the left one", vec!["left"]),
+        ("bring me the third bowl please", vec!["third"]),
+        ("the second bowl from the left", vec!["second", "from the left"]),
+        ("the white bowl next to the cup", vec!["next to the cup"]),
+        ("the clear bowl behind the white one", vec!["behind the white one"]),
+        ("the bowl between the mugs", vec!["between the mugs"]),
+        ("the bowl in front of the toaster", vec!["in front of the toaster"]),
+        ("first the white bowl, then the clear one", vec![]),
+        ("the clear bowl, then the next one", vec![]),
+        ("the smallest one", vec![]),
+        ("the bowl near you", vec!["near you"]),
+        ("right, the clear one", vec![]),
+        ("first of all I need the clear bowl", vec![]),
     ] {
         let words = reader.unknown_words(text).into_iter().map(|word| word.text);
         assert_eq!(words.collect::<Vec<_>>(), unknown, "{text}");

@@ -124,7 +124,7 @@ class Intent(IntEnum):
     STOP = 2
     """Stop moving at once."""
     CANCEL = 3
-    """Withdraw the request."""
+    """Withdraw the request; with excluded groups, only what they describe ('don't get me the red one')."""
     REPEAT = 4
     """Repeat the question."""
     START_OVER = 5
@@ -153,6 +153,10 @@ class Intent(IntEnum):
     """Take leave."""
     ASK_WHETHER = 17
     """Ask whether there is an object that the words describe ('is there a red mug?')."""
+    CHORE = 18
+    """Have the robot do something else than fetch ('wash the bowl')."""
+    STOP_AND_CANCEL = 19
+    """Stop moving at once, and withdraw the request ('stop, I don't want it')."""
 
 
 class MicrophoneState(IntEnum):
@@ -554,7 +558,7 @@ class WireReading(Message):
 
     wire_name = "Reading"
     wire_size = 400
-    schema_key = "40a64a2ab963a1d4"
+    schema_key = "07c4f2ab175b43b3"
     weight: float
     """Probability among the readings for the same question; they sum to 1."""
     base_doubt: Array[float]
@@ -664,7 +668,7 @@ class Observation(Message):
 
     wire_name = "Observation"
     wire_size = 13144
-    schema_key = "9eb3ba88f6df6e0e"
+    schema_key = "ee8b2a9dabad2445"
     seq: int
     """The utterance's `UtteranceSeq`."""
     asked: Array[AskedQuestion]
