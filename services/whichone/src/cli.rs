@@ -359,3 +359,19 @@ pub enum Verb {
     /// Read poses of an arm's last link, one JSON object per line, and print joint positions.
     Ik(ArmArgs),
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn verbs_whose_time_is_felt_have_a_definition_of_their_own() {
+        for line in
+            ["say the clear bowl", "--group lab status --json", "stop-motion", "resume-motion"]
+        {
+            let line = std::iter::once("whichone").chain(line.split(' '));
+            assert!(QuickCli::try_parse_from(line.clone()).is_ok(), "{line:?}");
+        }
+        assert!(QuickCli::try_parse_from(["whichone", "up"]).is_err());
+    }
+}

@@ -8,6 +8,7 @@ use super::attribution::share_of;
 use super::concede::Conceded;
 use super::line::{Content, Remark};
 use super::put_back::{Progress, PuttingBack};
+use super::replies::likeliest;
 use super::state::{State, Utterance};
 use crate::time::Time;
 use crate::{ActKind, Interpretation, Outcome};
@@ -127,8 +128,7 @@ impl Manager {
 
 /// Returns whether it withdraws only what it describes.
 fn excludes(utterance: &Utterance) -> bool {
-    let mut readings = utterance.interpretations.iter().map(|it| &it.reading);
-    readings.any(|it| it.intent == Intent::Cancel && !it.excluded.is_empty())
+    likeliest(utterance, Intent::Cancel).is_some_and(|reading| !reading.excluded.is_empty())
 }
 
 /// Returns the shares of an utterance that answers nothing.

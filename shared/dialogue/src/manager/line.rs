@@ -51,7 +51,7 @@ pub enum Preface {
     Left(Vec<String>),
 }
 
-/// A remark that answers the user without a decision.
+/// A remark that answers the user without a decision. Journals hold its position in this list: new ones come last.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Remark {
     /// The motion stop is latched.
@@ -72,11 +72,6 @@ pub enum Remark {
     AllRight,
     /// The scene has nothing of this kind.
     Unknown(UnknownWord),
-    /// Nothing but fetching and putting back can be done. The name of the object that is offered to be
-    /// fetched, if there is one.
-    OnlyFetches(Option<String>),
-    /// The object of that description is handed over: it was called off too late.
-    TooLate(String),
     /// Nothing is being done.
     Idle,
     /// Nothing was handed over that could be put back.
@@ -100,6 +95,11 @@ pub enum Remark {
     },
     /// What speaks for the objects in question.
     Why(Reason),
+    /// Nothing but fetching and putting back can be done. The name of the object that is offered to be
+    /// fetched, if there is one.
+    OnlyFetches(Option<String>),
+    /// The object of that description is handed over: it was called off too late.
+    TooLate(String),
 }
 
 /// A question of the user about the scene.

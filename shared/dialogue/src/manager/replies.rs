@@ -3,6 +3,7 @@
 use scene::{Intent, ObjectId, Reading, WordId};
 
 use super::Manager;
+use super::hand_over::HandedOver;
 use super::line::{AboutObjects, Content, Reason, Remark};
 use super::state::{Interaction, State, Utterance};
 use crate::ActKind;
@@ -59,7 +60,7 @@ impl Manager {
     }
 
     /// Returns the name of the one object that is to be washed or the like: it can be fetched instead, where
-    /// nothing else is under way.
+    /// nothing else is under way and the user does not have it.
     fn fetched_instead(&self, state: &State, said: &Utterance) -> Option<String> {
         if state.open.is_some() || state.ordered().is_some() {
             return None;
@@ -68,7 +69,10 @@ impl Manager {
         let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
         let described: Vec<ObjectId> = objects.filter(|i| self.fits(reading, *i)).collect();
         let [object] = described[..] else { return None };
-        Some(self.setup.scene.object(object).name.clone())
+        let name = &self.setup.scene.object(object).name;
+        let has_it = state.with_user.as_ref().is_some_and(|it| it.name == *name)
+            || state.handed_over.as_ref().and_then(HandedOver::object) == Some(object);
+        (!has_it).then(|| name.clone())
     }
 
     /// Returns the object that the standing line offers to fetch.
@@ -132,7 +136,7 @@ impl Manager {
 }
 
 /// Returns the likeliest reading with that intent.
-fn likeliest(said: &Utterance, intent: Intent) -> Option<&Reading> {
+pub(super) fn likeliest(said: &Utterance, intent: Intent) -> Option<&Reading> {
     let fits = said.interpretations.iter().filter(|it| it.reading.intent == intent);
     let best = fits.reduce(|best, next| if next.weight > best.weight { next } else { best });
     best.map(|best| &best.reading)

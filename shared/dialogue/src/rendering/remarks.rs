@@ -77,7 +77,10 @@ pub(super) fn inventory(scene: &Scene) -> String {
 /// The word for an attribute in the scene's own question for it: "colour" of "What colour is it?".
 fn word_for(attribute: &Attribute) -> &str {
     let asks = |word: &&String| {
-        let mut words = attribute.ask_which.iter().flat_map(|question| question.split(' '));
+        let mut words = attribute
+            .ask_which
+            .iter()
+            .flat_map(|question| question.split(|c: char| !c.is_alphanumeric()));
         words.any(|said| said.eq_ignore_ascii_case(word))
     };
     std::iter::once(&attribute.name)

@@ -50,8 +50,7 @@ impl Joined {
 pub struct WakeNotifier {
     service: Service,
     node: Rc<Node<Ipc>>,
-    /// None where it could not be opened.
-    port: OnceCell<Option<Port>>,
+    port: OnceCell<Port>,
 }
 
 /// An open notifier.
@@ -121,7 +120,7 @@ impl WakeNotifier {
     /// # Errors
     /// iceoryx2 fails.
     pub(super) fn open(bus: &Bus, service: Service) -> Result<Self, BusError> {
-        let port = OnceCell::from(Some(Port::open(&bus.node, service)?));
+        let port = OnceCell::from(Port::open(&bus.node, service)?);
         Ok(Self { service, node: Rc::clone(&bus.node), port })
     }
 
@@ -130,12 +129,18 @@ impl WakeNotifier {
         Self { service, node: Rc::clone(&bus.node), port: OnceCell::new() }
     }
 
+    /// The open notifier. Each wake-up tries to open one that is not.
     fn notifier(&self) -> Option<&Notifier<Ipc>> {
-        let open = || {
-            let opened = Port::open(&self.node, self.service);
-            opened.inspect_err(|error| tracing::debug!(%error, "wake-ups not opened")).ok()
-        };
-        self.port.get_or_init(open).as_ref().map(|port| &port.notifier)
+        if self.port.get().is_none() {
+            match Port::open(&self.node, self.service) {
+                Ok(port) => self.port.set(port).ok()?,
+                Err(error) => {
+                    tracing::warn!(service = self.service.name(), %error, "not woken: it looks by itself");
+                    return None;
+                }
+            }
+        }
+        self.port.get().map(|port| &port.notifier)
     }
 
     /// Wakes the service, if it is there. A failure is harmless: the service polls as well.

@@ -16,8 +16,25 @@ const ROLL_OUTS_MAX: usize = 8;
 const RARE: f64 = 1e-3;
 /// How many questions are compared at a belief, at first and at last.
 const COMPARED: std::ops::RangeInclusive<usize> = 2..=8;
-/// What a repetition has to gain for another one, as a share of the value.
-const GAIN_MIN: f64 = 1e-5;
+/// What a repetition has to gain for another one, as a share of the gap between the bounds.
+const GAIN_MIN: f64 = 1e-4;
+/// Beliefs that are passed for each one that may be looked at: what is known is passed quickly, but over many paths.
+const PASSED: usize = 200;
+
+/// How much work is left.
+#[derive(Clone, Copy)]
+struct Work {
+    /// Most beliefs to look at in all.
+    beliefs_max: usize,
+    /// Most beliefs to pass.
+    passes: usize,
+}
+
+impl Work {
+    fn new(beliefs_max: usize) -> Self {
+        Self { beliefs_max, passes: beliefs_max.saturating_mul(PASSED) }
+    }
+}
 
 /// The plan as far as it is followed: a belief, and how probably the plan leads there, discounted.
 #[derive(Clone, Copy)]
@@ -34,9 +51,10 @@ impl Search<'_> {
     /// bound is what the plan achieves, and does so again while that makes a better plan look best.
     /// Looks at `beliefs_max` beliefs in all at most.
     pub(crate) fn roll_out(&mut self, beliefs_max: usize) {
+        let mut work = Work::new(beliefs_max);
         for _ in 0..ROLL_OUTS_MAX {
             let before = self.root().value.lower;
-            self.roll_out_from(ROOT, beliefs_max);
+            self.roll_out_from(ROOT, &mut work);
             if self.root().value.lower <= before {
                 break;
             }
@@ -45,44 +63,44 @@ impl Search<'_> {
 
     /// Looks for a better plan than the one that was rolled out. Looks at `beliefs_max` beliefs in all at most.
     pub(crate) fn improve(&mut self, beliefs_max: usize) {
+        let mut work = Work::new(beliefs_max);
         for compared in COMPARED {
             loop {
-                let before = self.root().value.lower;
-                self.improve_from(ROOT, compared, beliefs_max);
-                let gain = self.root().value.lower - before;
-                if gain <= GAIN_MIN * before.abs() {
+                let before = self.root().value;
+                self.improve_from(ROOT, compared, &mut work);
+                if self.root().value.lower - before.lower <= GAIN_MIN * before.gap() {
                     break;
                 }
             }
         }
     }
 
-    fn roll_out_from(&mut self, at: Reached, beliefs_max: usize) {
-        if at.probability < UNLIKELY || self.is_end(at, beliefs_max) {
+    fn roll_out_from(&mut self, at: Reached, work: &mut Work) {
+        if at.probability < UNLIKELY || self.is_end(at, work) {
             return;
         }
         if let Some(branch) = self.planned(at.node) {
-            self.take(at, branch, beliefs_max, Self::roll_out_from);
+            self.take(at, branch, work, Self::roll_out_from);
         }
     }
 
-    fn improve_from(&mut self, at: Reached, compared: usize, beliefs_max: usize) {
-        if at.probability < RARE || self.is_end(at, beliefs_max) || self.planned(at.node).is_none()
-        {
+    fn improve_from(&mut self, at: Reached, compared: usize, work: &mut Work) {
+        if at.probability < RARE || self.is_end(at, work) || self.planned(at.node).is_none() {
             return;
         }
         for branch in self.nodes[at.node].most_promising(compared) {
-            self.take(at, branch, beliefs_max, Self::roll_out_from);
+            self.take(at, branch, work, Self::roll_out_from);
         }
         if let Some(branch) = self.planned(at.node) {
-            self.take(at, branch, beliefs_max, |search, next, beliefs_max| {
-                search.improve_from(next, compared, beliefs_max);
+            self.take(at, branch, work, |search, next, work| {
+                search.improve_from(next, compared, work);
             });
         }
     }
 
-    fn is_end(&self, at: Reached, beliefs_max: usize) -> bool {
-        at.depth >= DEPTH_MAX || self.nodes.len() >= beliefs_max
+    fn is_end(&self, at: Reached, work: &mut Work) -> bool {
+        work.passes = work.passes.saturating_sub(1);
+        at.depth >= DEPTH_MAX || self.nodes.len() >= work.beliefs_max || work.passes == 0
     }
 
     /// The move of the plan; none where it stops.
@@ -97,8 +115,8 @@ impl Search<'_> {
         &mut self,
         at: Reached,
         branch: usize,
-        beliefs_max: usize,
-        go_on: impl Fn(&mut Self, Reached, usize),
+        work: &mut Work,
+        go_on: impl Fn(&mut Self, Reached, &mut Work),
     ) {
         if self.nodes[at.node].branches[branch].answers.is_empty() {
             self.follow(at.node, branch);
@@ -107,7 +125,7 @@ impl Search<'_> {
         for answer in 0..self.nodes[at.node].branches[branch].answers.len() {
             let (probability, node) = self.nodes[at.node].branches[branch].answers[answer];
             let probability = at.probability * probability * discount;
-            go_on(self, Reached { node, probability, depth: at.depth + 1 }, beliefs_max);
+            go_on(self, Reached { node, probability, depth: at.depth + 1 }, work);
         }
         self.back_up(at.node, branch);
     }
