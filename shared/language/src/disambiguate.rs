@@ -119,14 +119,15 @@ impl<'a> Place<'_, 'a> {
             && self.tags[self.at + 1..].iter().take(REACH).any(names)
     }
 
-    /// "leave the white one, …", but not "leave the white one on the counter".
+    /// "leave the white one, …", "leave the white one alone", "leave the white one on the counter", but
+    /// not "leave the white one on the doorstep".
     fn leaves_out(&self) -> bool {
         let rest = &self.tags[self.at + 1..];
         let phrase = &rest[..rest.iter().position(Tag::pauses).unwrap_or(rest.len())];
         let is_noun = |tag: &Tag<'_>| tag.is_any(classes![Head One]) || tag.is_role(Role::Kind);
         phrase.iter().any(Tag::is_value)
             && phrase.iter().any(is_noun)
-            && !phrase.iter().any(|tag| tag.is_role(Role::Place) || tag.is_unknown())
+            && !phrase.iter().any(Tag::is_unknown)
     }
 
     /// "the shirt draped over the chair", "the pen clipped to the drawer": how it is where it is.

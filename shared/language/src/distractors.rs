@@ -11,7 +11,7 @@ use crate::topic::{ClauseAnalysis, SCENE_NAMES};
 impl ClauseAnalysis<'_> {
     /// Places in the clause of the values that describe something else than the wanted object.
     pub(crate) fn distractors(&self) -> Vec<usize> {
-        let fetched = self.has(classes![Fetch]) || self.is_described_noun();
+        let fetched = self.has(classes![Fetch]) || self.brings() || self.is_described_noun();
         let errand = self.is_errand();
         let describes_other = |&at: &usize| {
             if self.clause[at].is_role(Role::Place) {

@@ -37,9 +37,47 @@ impl ClauseAnalysis<'_> {
             // "clear the"
             let has_object = matches!(tag.word, "clear" | "break")
                 || self.next(at).is_some_and(|next| next.is_any(OBJECTS) || next.is_unknown());
-            (tag.is(Class::Put) || self.throws_away(at)) && has_object && !is_noun && !is_purpose
+            (tag.is(Class::Put) && !self.brings_at(at) || self.throws_away(at))
+                && has_object
+                && !is_noun
+                && !is_purpose
         };
         (0..self.clause.len()).find(orders)
+    }
+
+    /// "put the clear bowl in front of me": to put a thing where the speaker is, is to bring it.
+    pub(crate) fn brings(&self) -> bool {
+        (0..self.clause.len()).any(|at| self.brings_at(at))
+    }
+
+    fn brings_at(&self, at: usize) -> bool {
+        const CARRYING: [&str; 8] =
+            ["put", "place", "set", "move", "drop", "lay", "return", "putting"];
+        let tag = &self.clause[at];
+        tag.is(Class::Put)
+            && CARRYING.contains(&tag.word)
+            && (at + 1..self.clause.len())
+                .take_while(|&place| !self.clause[place].is_any(classes![And But Join]))
+                .any(|place| self.is_at_speaker(place))
+    }
+
+    /// "to me", "in my hand", "over here", "closer", but not "for me", "away from here", "out of my way",
+    /// nor "in my cabinet" of the scene.
+    fn is_at_speaker(&self, at: usize) -> bool {
+        const LEADS: &[Class] = classes![Preposition Destination Landmark];
+        let tag = &self.clause[at];
+        let before = self.clause[..at].last();
+        let is_elsewhere =
+            before.is_some_and(|it| matches!(it.word, "for" | "from" | "out" | "off"));
+        let is_led = before.is_some_and(|it| it.is_any(LEADS));
+        let is_known = self.next(at).is_some_and(|next| next.is_role(Role::Place));
+        let is_here = match tag.word {
+            "me" | "us" => is_led,
+            "my" | "our" => is_led && !is_known,
+            "closer" | "nearer" => true,
+            _ => tag.last == "here" && tag.is(Class::Plain),
+        };
+        is_here && !is_elsewhere
     }
 
     /// "throw the bowl away", but not "throw me the bowl".

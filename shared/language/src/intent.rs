@@ -101,20 +101,58 @@ fn puts_it_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
         && !tags.iter().any(described)
 }
 
-/// "put the red mug back", "put the red mug back on the shelf", but not "put it back on".
+/// "put the red mug back", "return the red mug to the shelf", "put the red mug away", but not "put it
+/// back on" and "bring the red mug back to me".
 fn puts_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
-    let [verb, rest @ ..] = after_leads(&tags[clause.span.clone()]) else { return false };
-    let Some(back) = rest.iter().position(|tag| tag.word == "back") else { return false };
-    let things = classes![Determiner Pointer Possessive It Head];
-    let after = &rest[back + 1..];
-    let in_place = classes![Courtesy Filler Preposition Determiner];
-    let says_place = after.iter().any(|tag| tag.is_role(Role::Place))
-        && after.iter().all(|tag| tag.is_role(Role::Place) || tag.is_any(in_place))
-        && after.iter().all(|tag| tag.word != "from");
-    matches!(verb.word, "put" | "take" | "bring" | "return")
-        && rest[..back].iter().all(|tag| tag.is_value() || tag.is_any(things))
-        && rest[..back].iter().any(|tag| tag.is_value() || tag.is_any(classes![Pointer It Head]))
-        && (says_place || after.iter().all(|tag| tag.is_any(classes![Courtesy Filler])))
+    let [verb, rest @ ..] = order(&tags[clause.span.clone()]) else { return false };
+    // "put back the red mug"
+    let is_back_first = rest.first().is_some_and(|tag| tag.word == "back");
+    let rest = &rest[usize::from(is_back_first)..];
+    let is_thing = |tag: &Tag<'_>| tag.is_value() || tag.is_any(classes![Pointer It Head]);
+    let in_phrase = |tag: &&Tag<'_>| is_thing(tag) || tag.is_any(classes![Determiner Possessive]);
+    let (thing, rest) = rest.split_at(rest.iter().take_while(in_phrase).count());
+    let place = match (verb.word, verb.last, rest) {
+        ("put", "away", rest) => rest,
+        ("put" | "take" | "bring" | "return", _, [back, rest @ ..]) if back.word == "back" => rest,
+        ("put" | "take", _, [away, rest @ ..]) if away.word == "away" => rest,
+        ("return", _, rest) => rest,
+        ("put" | "take", _, rest) if is_back_first => rest,
+        _ => return false,
+    };
+    thing.iter().any(is_thing) && is_where_it_was(place)
+}
+
+/// What may follow "put it back": nothing, "on the shelf", "where it was", "in its place".
+fn is_where_it_was(tags: &[Tag<'_>]) -> bool {
+    const BESIDE: &[Class] = classes![Courtesy Filler];
+    const IN_PLACE: &[Class] =
+        classes![Courtesy Filler Preposition Destination Determiner Possessive It Be];
+    // "in its place", where "its" is read as "it is".
+    let is_own_place = |tag: &Tag<'_>| matches!(tag.word, "place" | "spot");
+    let is_place =
+        |tag: &Tag<'_>| tag.is_role(Role::Place) || tag.is(Class::Unlisted) || is_own_place(tag);
+    // Our things go back to where they stood, whatever is said of it.
+    let says_where = tags.first().is_some_and(|tag| tag.word == "where");
+    let says_place = tags.iter().any(is_place)
+        && tags.iter().all(|tag| is_place(tag) || tag.is_any(IN_PLACE) && tag.word != "from");
+    says_where || says_place || tags.iter().all(|tag| tag.is_any(BESIDE))
+}
+
+/// An order from its verb on: "put it back" of "now I want you to put it back".
+fn order<'t, 'a>(tags: &'t [Tag<'a>]) -> &'t [Tag<'a>] {
+    const LEADS: &[Class] = classes![WeakYes Repair Plain];
+    let tags = after_leads(tags);
+    match tags {
+        [i, want, you, to, rest @ ..]
+            if i.is(Class::First)
+                && want.is(Class::Want)
+                && you.is(Class::Second)
+                && to.is(Class::Destination) =>
+        {
+            rest
+        }
+        _ => after_leads(&tags[tags.iter().take_while(|tag| tag.is_any(LEADS)).count()..]),
+    }
 }
 
 /// "wash the clear bowl", but not "wash it and bring it to me".
@@ -127,7 +165,7 @@ fn is_chore(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
         && !fetches_it(tags, clauses)
 }
 
-/// "the clear bowl is in the cabinet", and nothing else of our things.
+/// "the clear bowl is in the cabinet", and nothing else of our things, nor a "please".
 pub(crate) fn is_statement(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     let is_beside = |clause: &Clause| {
         let tags = &tags[clause.span.clone()];
@@ -135,6 +173,19 @@ pub(crate) fn is_statement(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     };
     clauses.iter().any(|clause| clause.states)
         && clauses.iter().all(|clause| clause.states || is_beside(clause))
+        && !asks_politely(tags)
+}
+
+/// "please", or thanks at the end: what stands beside it is asked for. Thanks at the beginning are for
+/// what was done before.
+fn asks_politely(tags: &[Tag<'_>]) -> bool {
+    const ASKING: [&str; 15] = [
+        "please", "pls", "plz", "pleez", "pleeze", "pleaze", "plees", "pliz", "kindly", "if",
+        "when", "would", "could", "will", "be",
+    ];
+    const THANKS: [&str; 8] = ["thanks", "thank", "thx", "ty", "cheers", "ta", "many", "much"];
+    let says = |tag: &Tag<'_>, words: &[&str]| tag.is(Class::Courtesy) && words.contains(&tag.word);
+    tags.iter().any(|tag| says(tag, &ASKING)) || tags.last().is_some_and(|tag| says(tag, &THANKS))
 }
 
 /// "don't get me the clear bowl", "I don't want the white ones": nothing is asked for.

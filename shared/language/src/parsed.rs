@@ -66,7 +66,11 @@ impl ParsedUtterance<'_> {
         };
         let before = self.tags[..first].iter().rposition(|tag| !lead(&tag));
         let is_led = before.is_some_and(|at| at + 1 < first);
-        let count = before.map(|at| &self.tags[at]).filter(|tag| tag.is(Class::Quantifier));
+        let count = before.filter(|at| self.tags[*at].is(Class::Quantifier));
+        if count.is_some_and(|at| self.is_one_of(at)) {
+            return None;
+        }
+        let count = count.map(|at| &self.tags[at]);
         let last = &self.tags[last..];
         let of_them = last.windows(3).find(|three| {
             three[0].is(Class::Quantifier) && three[1].word == "of" && three[2].is(Class::It)
@@ -84,6 +88,14 @@ impl ParsedUtterance<'_> {
             }
             _ => None,
         }
+    }
+
+    /// "one of the two", "either of the two": the number at `at` counts those to choose from.
+    fn is_one_of(&self, at: usize) -> bool {
+        let lead = |tag: &&Tag<'_>| tag.is_any(classes![Determiner Pointer Possessive]);
+        let leads = self.tags[..at].iter().rev().take_while(lead).count();
+        let [.., one, of] = &self.tags[..at - leads] else { return false };
+        of.word == "of" && matches!(one.last, "one" | "either" | "any")
     }
 
     /// Places of the first and the last word that describe what is wanted, or else of its noun.

@@ -11,11 +11,12 @@ impl ClauseAnalysis<'_> {
     /// with it. "The bowl is clear" describes the bowl that is wanted, and so does "I put it there".
     pub(crate) fn states(&self) -> bool {
         const LEADS: &[Class] = classes![Filler And But Join Plain];
+        if self.is_for_speaker() {
+            return false;
+        }
         let leads = self.clause.iter().take_while(|tag| tag.is_any(LEADS)).count();
+        // "I like the clear bowl" is no statement: a recogniser loses the "'d" of "I'd like".
         match &self.clause[leads..] {
-            [i, rest @ ..] if i.is(Class::Want) && (i.word, i.last) == ("i", "like") => {
-                is_described(rest)
-            }
             [i, put, rest @ ..] if i.is(Class::First) && put.is(Class::Put) => {
                 let noun = noun_phrase(rest);
                 is_described(noun) && rest[noun.len()..].iter().any(|tag| tag.is_role(Role::Place))
@@ -35,6 +36,13 @@ impl ClauseAnalysis<'_> {
                 is_described(subject) && is_predicate(rest)
             }
         }
+    }
+
+    /// "there is a clear bowl on the counter for me": asked for.
+    fn is_for_speaker(&self) -> bool {
+        let is_for_me =
+            |pair: &[Tag<'_>]| pair[0].word == "for" && matches!(pair[1].word, "me" | "us");
+        self.clause.windows(2).any(is_for_me)
     }
 }
 

@@ -48,14 +48,18 @@ pub(crate) fn unknown_words(
 fn relation(tags: &[Tag<'_>], at: usize) -> Option<Range<usize>> {
     const ALONG: [&str; 4] = ["same", "along", "together", "around"];
     const NOUN_PHRASE: &[Class] =
-        classes![Determiner Pointer Possessive Quantifier Head One Unlisted Second];
+        classes![Determiner Pointer Possessive Quantifier Head One Unlisted];
     let tag = &tags[at];
     if tag.is(Class::Landmark) && !ALONG.contains(&tag.word) {
         let in_phrase = |tag: &&Tag<'_>| {
             !tag.pauses() && (tag.is_value() || tag.is_unknown() || tag.is_any(NOUN_PHRASE))
         };
         let noun = tags[at + 1..].iter().take(LANDMARK_MAX).take_while(in_phrase).count();
-        return Some(at..at + 1 + noun);
+        let next = after(tags, at);
+        // "close to me", "nearby": where the robot and the person are, it has no word for.
+        let is_person = next.is_some_and(|next| matches!(next.word, "me" | "you" | "us"));
+        let is_bare = noun == 0 && !next.is_some_and(|next| next.is(Class::It));
+        return (!is_person && !is_bare).then_some(at..at + 1 + noun);
     }
     (tag.is(Class::Ordinal) && is_counted(tags, at)).then_some(at..at + 1)
 }
