@@ -203,7 +203,7 @@ impl Manager {
         let (_, reading) = likeliest(&heard.interpretations)?;
         let base = &reading.base;
         let is_consistent = !base.iter().any(|word| self.is_rivalled(*word, base));
-        let is_described = (0..self.setup.model.objects()).any(|i| self.fits(reading, i.into()));
+        let is_described = self.described(reading).next().is_some();
         let words = self.setup.scene.words();
         (base.len() > 1 && is_consistent && !is_described).then(|| Remark::Objects {
             asked: AboutObjects::Which,

@@ -26,8 +26,7 @@ impl Manager {
             return Preface::None;
         }
         let first = names(&reading.base);
-        let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
-        let fitting: Vec<ObjectId> = objects.filter(|i| self.fits(reading, *i)).collect();
+        let fitting: Vec<ObjectId> = self.described(reading).collect();
         let is_alike = further.iter().all(|words| *words == first);
         if is_alike && (1..=further.len()).contains(&fitting.len()) {
             // "two red mugs", of which there is one.

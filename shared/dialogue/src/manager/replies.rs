@@ -66,8 +66,7 @@ impl Manager {
             return None;
         }
         let reading = likeliest(said, Intent::Chore).filter(|it| !it.base.is_empty())?;
-        let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
-        let described: Vec<ObjectId> = objects.filter(|i| self.fits(reading, *i)).collect();
+        let described: Vec<ObjectId> = self.described(reading).collect();
         let [object] = described[..] else { return None };
         let name = &self.setup.scene.object(object).name;
         let has_it = state.with_user.as_ref().is_some_and(|it| it.name == *name)
@@ -93,14 +92,20 @@ impl Manager {
         let is_choice = intent == Intent::AskWhich && !values.is_empty();
         let asked_of =
             if is_choice { Reading { base, ..reading.clone() } } else { reading.clone() };
-        let described = (0..scene.objects().len()).filter(|i| self.fits(&asked_of, (*i).into()));
-        let objects: Vec<String> = described.map(|i| scene.objects()[i].name.clone()).collect();
+        let described = self.described(&asked_of);
+        let objects: Vec<String> = described.map(|i| scene.object(i).name.clone()).collect();
         let (asked, words) = match is_choice && !objects.is_empty() {
             true => (AboutObjects::Either, values),
             false => (asked, asked_of.base),
         };
         let name = |word: &WordId| scene.words()[word.index()].clone();
         Remark::Objects { asked, words: words.iter().map(name).collect(), objects }
+    }
+
+    /// Returns the objects that the words of a reading describe.
+    pub(super) fn described(&self, reading: &Reading) -> impl Iterator<Item = ObjectId> {
+        let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
+        objects.filter(move |object| self.fits(reading, *object))
     }
 
     /// Returns whether the words of a reading describe the object.
