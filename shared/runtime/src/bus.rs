@@ -10,7 +10,9 @@ use messages::{Epoch, Incarnation, Service, Stamp};
 use std::cell::{Cell, RefCell};
 use std::rc::{Rc, Weak};
 
+mod alarm;
 mod any;
+mod counter;
 mod encoded;
 mod fixed;
 mod gate;

@@ -1,28 +1,28 @@
 //! The sleep of a main loop: on its wake-ups, and on the other descriptors that it has to look at.
 
-use crate::Span;
+use super::alarm::Alarm;
+use super::counter::{DESCRIPTORS, Taken};
+use crate::{Span, Time, clock};
+use rustix::event::Timespec;
 use rustix::event::epoll::{self, CreateFlags, Event, EventData, EventFlags};
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::net::{RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, recvmsg};
 use std::cell::{Cell, RefCell};
 use std::io::IoSliceMut;
 use std::mem::MaybeUninit;
-use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd, RawFd};
+use std::os::fd::{AsRawFd, BorrowedFd, OwnedFd, RawFd};
 
 /// Most events of one wake-up; others follow with the next one.
 const EVENTS_MAX: usize = 16;
-/// Most pipes of processes that wake this one; others use its socket.
-const PIPES_MAX: usize = 64;
-/// Bytes of a pipe that are left unread, of the 4096 and more that it holds.
-const UNREAD_MAX: u32 = 256;
-/// Shorter sleeps end on time. Others may last up to a millisecond longer, the unit of `epoll_wait`.
-const PRECISE_BELOW: Span = Span::from_ms(20);
-/// The wake-up socket's event. Those of sources and pipes follow.
+/// Most counters of processes that wake this one; others use its socket.
+const COUNTERS_MAX: usize = 64;
+/// The wake-up socket's event.
 const SOCKET: u64 = 0;
+/// The alarm's event. Those of sources and counters follow.
+const ALARM: u64 = 1;
 /// First event of a source.
-const SOURCES: u64 = 1;
-/// First event of a pipe.
-const PIPES: u64 = 1 << 32;
+const SOURCES: u64 = 2;
+/// First event of a counter; the next one is its writer's end.
+const COUNTERS: u64 = 1 << 32;
 
 /// What has ended a sleep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,32 +33,15 @@ pub struct Woken<const N: usize> {
     pub sources: [bool; N],
 }
 
-/// A pipe whose bytes are wake-ups.
-#[derive(Debug)]
-struct Pipe {
-    fd: OwnedFd,
-    /// Wake-ups since it was read.
-    unread: u32,
-}
-
-impl Pipe {
-    fn empty(&mut self) {
-        self.unread = 0;
-        while rustix::io::read(&self.fd, &mut [0_u8; 4096]).is_ok_and(|read| read == 4096) {}
-    }
-}
-
-fn timespec(span: Span) -> Timespec {
-    Timespec { tv_sec: (span.0 / 1_000_000_000) as i64, tv_nsec: (span.0 % 1_000_000_000) as i64 }
-}
-
 /// Waits for wake-ups and for other descriptors.
 #[derive(Debug)]
 pub(super) struct Sleeper {
     epoll: OwnedFd,
+    /// Ends a sleep; cheaper than a timeout of `epoll_wait`, which the kernel sets and cancels each time.
+    alarm: Alarm,
     /// Sources of the last sleep.
     sources: RefCell<Vec<Option<RawFd>>>,
-    pipes: RefCell<Vec<Option<Pipe>>>,
+    counters: RefCell<Vec<Option<Taken>>>,
     /// Datagrams wait in the wake-up socket.
     has_datagrams: Cell<bool>,
 }
@@ -67,11 +50,16 @@ impl Sleeper {
     /// Creates a sleeper on the wake-up socket.
     pub(super) fn new(socket: BorrowedFd<'_>) -> rustix::io::Result<Self> {
         let epoll = epoll::create(CreateFlags::CLOEXEC)?;
+        let alarm = Alarm::new()?;
         epoll::add(&epoll, socket, EventData::new_u64(SOCKET), EventFlags::IN)?;
+        // Each time it goes off is one event, so it is never read.
+        let each = EventFlags::IN | EventFlags::ET;
+        epoll::add(&epoll, &alarm, EventData::new_u64(ALARM), each)?;
         Ok(Self {
             epoll,
+            alarm,
             sources: RefCell::default(),
-            pipes: RefCell::default(),
+            counters: RefCell::default(),
             has_datagrams: Cell::new(false),
         })
     }
@@ -87,37 +75,43 @@ impl Sleeper {
             tracing::error!(%error, "a descriptor cannot be waited for");
         }
         let mut woken = Woken { by_wake: false, sources: [false; N] };
-        let mut space = [MaybeUninit::uninit(); EVENTS_MAX];
-        let Ok(events) = self.wait(&mut space, longest) else {
-            return Woken { by_wake: true, sources: [true; N] };
-        };
+        let until = clock::now() + longest;
+        let waits = longest > Span(0);
+        loop {
+            if waits {
+                self.alarm.set_by(until);
+            }
+            let mut space = [MaybeUninit::uninit(); EVENTS_MAX];
+            let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
+            let timeout = (!waits).then_some(&at_once);
+            let Ok((events, _)) = epoll::wait(&self.epoll, &mut space, timeout) else {
+                return Woken { by_wake: true, sources: [true; N] };
+            };
+            let is_over = self.note(events, until, &mut woken);
+            if !waits || is_over || woken.by_wake || woken.sources.contains(&true) {
+                return woken;
+            }
+        }
+    }
+
+    /// Notes what the events mean. Returns whether the time is over.
+    fn note<const N: usize>(&self, events: &[Event], until: Time, woken: &mut Woken<N>) -> bool {
+        let mut is_over = false;
         for event in events {
             match event.data.u64() {
                 SOCKET => {
                     self.has_datagrams.set(true);
                     woken.by_wake = true;
                 }
-                pipe @ PIPES.. => {
-                    self.on_pipe((pipe - PIPES) as usize, event.flags);
+                ALARM => is_over = self.alarm.went_off() >= Some(until),
+                counter @ COUNTERS.. => {
+                    self.on_counter(counter - COUNTERS);
                     woken.by_wake = true;
                 }
                 source => woken.sources[(source - SOURCES) as usize] = true,
             }
         }
-        woken
-    }
-
-    fn wait<'a>(
-        &self,
-        space: &'a mut [MaybeUninit<Event>],
-        longest: Span,
-    ) -> rustix::io::Result<&'a mut [Event]> {
-        let mut longest = longest;
-        if longest < PRECISE_BELOW && longest > Span(0) {
-            poll(&mut [PollFd::new(&self.epoll, PollFlags::IN)], Some(&timespec(longest)))?;
-            longest = Span(0);
-        }
-        epoll::wait(&self.epoll, space, Some(&timespec(longest))).map(|(events, _)| events)
+        is_over
     }
 
     fn register(&self, sources: &[Option<BorrowedFd<'_>>]) -> rustix::io::Result<()> {
@@ -136,30 +130,22 @@ impl Sleeper {
         Ok(())
     }
 
-    fn on_pipe(&self, number: usize, flags: EventFlags) {
-        let mut pipes = self.pipes.borrow_mut();
-        let Some(slot) = pipes.get_mut(number) else { return };
-        // Its process has ended; closing it ends its events too.
-        if flags.intersects(EventFlags::HUP | EventFlags::ERR) {
+    /// Drops a counter whose writer has ended; that ends its events too.
+    fn on_counter(&self, event: u64) {
+        if event % 2 == 1
+            && let Some(slot) = self.counters.borrow_mut().get_mut((event / 2) as usize)
+        {
             *slot = None;
-        }
-        if let Some(pipe) = slot {
-            pipe.unread += 1;
-            if pipe.unread >= UNREAD_MAX {
-                pipe.empty();
-            }
         }
     }
 
-    /// Receives what waits in the wake-up socket, with the pipes in it.
+    /// Receives what waits in the wake-up socket, with the counters in it.
     pub(super) fn empty(&self, socket: BorrowedFd<'_>) {
         if !self.has_datagrams.replace(false) {
             return;
         }
-        // A full pipe is one reason for a datagram.
-        self.pipes.borrow_mut().iter_mut().flatten().for_each(Pipe::empty);
         // iceoryx2 has each datagram carry its sender's credentials.
-        const SPACE: usize = rustix::cmsg_space!(ScmRights(1), ScmCredentials(1));
+        const SPACE: usize = rustix::cmsg_space!(ScmRights(DESCRIPTORS), ScmCredentials(1));
         let mut space = [MaybeUninit::uninit(); SPACE];
         let flags = RecvFlags::DONTWAIT | RecvFlags::CMSG_CLOEXEC;
         loop {
@@ -169,26 +155,34 @@ impl Sleeper {
                 return;
             }
             for message in control.drain() {
-                if let RecvAncillaryMessage::ScmRights(fds) = message {
-                    fds.for_each(|fd| self.adopt(fd));
+                if let RecvAncillaryMessage::ScmRights(mut fds) = message
+                    && let (Some(counter), Some(lifeline)) = (fds.next(), fds.next())
+                {
+                    self.offered(Taken { counter, lifeline });
                 }
             }
         }
     }
 
-    /// Listens to a pipe too. One that is not wanted is closed, which its writer notices.
-    fn adopt(&self, fd: OwnedFd) {
-        let mut pipes = self.pipes.borrow_mut();
-        let free = pipes.iter().position(Option::is_none).unwrap_or(pipes.len());
-        if free >= PIPES_MAX {
+    /// Takes a counter. One that is not taken is closed, and its writer goes on with datagrams.
+    fn offered(&self, counter: Taken) {
+        let mut counters = self.counters.borrow_mut();
+        let free = counters.iter().position(Option::is_none).unwrap_or(counters.len());
+        if free >= COUNTERS_MAX {
             return;
         }
-        let event = EventData::new_u64(PIPES + free as u64);
-        match epoll::add(&self.epoll, fd.as_fd(), event, EventFlags::IN | EventFlags::ET) {
-            Ok(()) if free == pipes.len() => pipes.push(Some(Pipe { fd, unread: 0 })),
-            Ok(()) => pipes[free] = Some(Pipe { fd, unread: 0 }),
-            Err(error) => tracing::debug!(%error, "a peer's pipe is not used"),
+        match self.take(&counter, COUNTERS + 2 * free as u64) {
+            Ok(()) if free == counters.len() => counters.push(Some(counter)),
+            Ok(()) => counters[free] = Some(counter),
+            Err(error) => tracing::debug!(%error, "a counter of a peer is not used"),
         }
+    }
+
+    fn take(&self, counter: &Taken, event: u64) -> rustix::io::Result<()> {
+        let (added, ended) = (EventData::new_u64(event), EventData::new_u64(event + 1));
+        epoll::add(&self.epoll, &counter.counter, added, EventFlags::IN | EventFlags::ET)?;
+        epoll::add(&self.epoll, &counter.lifeline, ended, EventFlags::HUP)?;
+        counter.confirm()
     }
 }
 
@@ -196,9 +190,30 @@ impl Sleeper {
 #[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 mod tests {
     use super::*;
-    use rustix::net::{SendAncillaryBuffer, SendAncillaryMessage, SendFlags, sendmsg};
-    use std::io::IoSlice;
+    use crate::bus::counter::Offered;
+    use std::os::fd::AsFd;
     use std::os::unix::net::UnixDatagram;
+
+    #[test]
+    fn sleep_ends_on_time_whatever_the_alarm_was_set_to_before() {
+        let (here, there) = sockets();
+        let sleeper = Sleeper::new(here.as_fd()).unwrap();
+        let quiet = Woken { by_wake: false, sources: [] };
+        let sleep = |span| {
+            let started = clock::now();
+            assert_eq!(sleeper.sleep(&[], span), quiet);
+            let slept = clock::now().since(started);
+            assert!(slept >= span, "{slept:?} of {span:?}");
+        };
+        for ms in [20, 1, 0, 5, 1] {
+            sleep(Span::from_ms(ms));
+        }
+        // Woken early, it leaves an alarm that goes off before the next sleep is over.
+        there.send(&[0]).unwrap();
+        assert!(sleeper.sleep(&[], Span::from_ms(5)).by_wake);
+        sleeper.empty(here.as_fd());
+        sleep(Span::from_ms(50));
+    }
 
     /// A wake-up socket as iceoryx2 makes it, and one that is connected to it.
     fn sockets() -> (UnixDatagram, UnixDatagram) {
@@ -211,51 +226,47 @@ mod tests {
         sleeper.sleep(&[], Span(0)).by_wake
     }
 
-    /// Sends one pipe's reading end, as a notifier does, and returns the other end.
-    fn offer(socket: &UnixDatagram) -> OwnedFd {
-        let (reading, writing) =
-            rustix::pipe::pipe_with(rustix::pipe::PipeFlags::NONBLOCK).unwrap();
-        let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
-        let mut control = SendAncillaryBuffer::new(&mut space);
-        let carried = [reading.as_fd()];
-        control.push(SendAncillaryMessage::ScmRights(&carried));
-        sendmsg(socket, &[IoSlice::new(&[0])], &mut control, SendFlags::empty()).unwrap();
-        writing
-    }
-
     #[test]
-    fn bytes_of_a_pipe_wake_each_time_until_its_writer_ends() {
+    fn counter_wakes_each_time_once_it_is_taken_until_its_writer_ends() {
         let (here, there) = sockets();
         let sleeper = Sleeper::new(here.as_fd()).unwrap();
-        let pipe = offer(&there);
+        let counter = Offered::send(there.as_fd()).unwrap();
+        assert!(!counter.wake(), "nobody has taken it");
         assert!(is_woken(&sleeper), "by the datagram");
         sleeper.empty(here.as_fd());
-        assert!(!is_woken(&sleeper));
-        // More than the pipe holds, so it has to be emptied now and then.
+        assert!(is_woken(&sleeper), "by its own answer");
         for n in 0..100_000 {
-            rustix::io::write(&pipe, &[0]).unwrap();
+            assert!(counter.wake());
             assert!(is_woken(&sleeper), "wake-up {n}");
+            assert!(!is_woken(&sleeper), "once");
         }
-        drop(pipe);
+        drop(counter);
         is_woken(&sleeper);
-        assert!(sleeper.pipes.borrow().iter().all(Option::is_none), "its descriptor is closed");
+        assert!(
+            sleeper.counters.borrow().iter().all(Option::is_none),
+            "its descriptors are closed"
+        );
+        assert!(!is_woken(&sleeper));
     }
 
     #[test]
-    fn pipe_beyond_the_bound_is_closed_so_that_its_writer_uses_the_socket() {
+    fn counter_beyond_the_bound_is_closed_so_that_its_writer_uses_the_socket() {
         let (here, there) = sockets();
         let sleeper = Sleeper::new(here.as_fd()).unwrap();
-        let pipes: Vec<OwnedFd> = (0..=PIPES_MAX)
-            .map(|_| {
-                let pipe = offer(&there);
-                assert!(is_woken(&sleeper));
-                sleeper.empty(here.as_fd());
-                pipe
-            })
-            .collect();
-        let is_written = |pipe: &OwnedFd| rustix::io::write(pipe, &[0]).is_ok();
-        assert!(pipes[..PIPES_MAX].iter().all(is_written));
-        assert!(!is_written(&pipes[PIPES_MAX]));
+        let offer = || {
+            let counter = Offered::send(there.as_fd()).unwrap();
+            assert!(is_woken(&sleeper));
+            sleeper.empty(here.as_fd());
+            counter
+        };
+        let mut counters: Vec<Offered> = (0..=COUNTERS_MAX).map(|_| offer()).collect();
+        let refused = counters.pop().unwrap();
+        assert!(counters.iter().all(Offered::wake));
+        assert!(!refused.wake());
+        // A writer that ends makes room.
+        counters.pop();
+        while is_woken(&sleeper) {}
+        assert!(offer().wake());
     }
 
     #[test]

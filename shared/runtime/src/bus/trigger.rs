@@ -1,12 +1,10 @@
-//! What wakes a sleeping service: iceoryx2's datagram socket, and a pipe from each process that has
-//! woken it before.
+//! What wakes a sleeping service: iceoryx2's datagram socket, and a counter of each process that wakes it often.
 //!
-//! A datagram has to be received, or its socket's short queue fills up and wake-ups are lost; a byte
-//! in a pipe wakes an edge-triggered sleeper without being read. So the first wake-up carries the
-//! reading end of a pipe, and later ones are bytes in it. A listener that does not know about pipes
-//! (iceoryx2's own, in programs of other languages) closes the end with the datagram, as does its
-//! death: writing fails then, and the socket is used as before.
+//! A datagram has to be received, or its socket's short queue fills up and wake-ups are lost; a counter need not be
+//! read. So the second wake-up offers a counter (see [`super::counter`]), and later ones add to it once it is taken.
+//! Most clients wake a service once.
 
+use super::counter::Offered;
 use super::segment::Segment;
 use core::ptr::NonNull;
 use iceoryx2::prelude::{FileName, Path};
@@ -21,12 +19,10 @@ use iceoryx2_cal::event::{
     ListenerCreateError, ListenerWaitError, NotifierNotifyError, NotifierOpenError,
 };
 use iceoryx2_cal::named_concept::{NamedConceptPathHintRemoveError, NamedConceptRemoveError};
-use rustix::net::{SendAncillaryBuffer, SendAncillaryMessage, SendFlags, sendmsg};
-use rustix::pipe::{PipeFlags, pipe_with};
-use std::io::IoSlice;
 use std::mem::MaybeUninit;
-use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::fd::BorrowedFd;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 type Bits = RelocatableCountingBitSet;
@@ -51,37 +47,33 @@ pub(super) fn borrow(descriptor: &FileDescriptor) -> BorrowedFd<'_> {
 #[derive(Debug)]
 pub(crate) struct Handle {
     socket: SocketHandle,
-    /// The pipe to the listener once it has been offered; none where that was not possible.
-    pipe: OnceLock<Option<OwnedFd>>,
+    has_woken: AtomicBool,
+    /// The counter once it has been offered; none where that was not possible.
+    counter: OnceLock<Option<Offered>>,
 }
 
 impl Handle {
-    /// Wakes the listener with a datagram that carries a pipe's reading end.
-    fn offer_pipe(&self) -> Option<OwnedFd> {
-        let (reading, writing) = pipe_with(PipeFlags::CLOEXEC | PipeFlags::NONBLOCK).ok()?;
-        let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
-        let mut control = SendAncillaryBuffer::new(&mut space);
-        let carried = [reading.as_fd()];
-        control.push(SendAncillaryMessage::ScmRights(&carried));
-        let flags = SendFlags::DONTWAIT | SendFlags::NOSIGNAL;
-        let socket = borrow(self.socket.file_descriptor());
-        sendmsg(socket, &[IoSlice::new(&[0])], &mut control, flags).ok()?;
-        Some(writing)
+    /// Returns whether the listener has been woken with the counter, or with the offer of one.
+    fn wakes_by_counter(&self) -> bool {
+        match self.counter.get() {
+            Some(counter) => counter.as_ref().is_some_and(Offered::wake),
+            None if self.has_woken.swap(true, Ordering::Relaxed) => {
+                let offer = || Offered::send(borrow(self.socket.file_descriptor())).ok();
+                self.counter.get_or_init(offer).is_some()
+            }
+            None => false,
+        }
     }
 }
 
 impl HandlerInterface<Bits, (), Storage> for Handle {
     fn open(name: &FileName, config: &Configuration, mgmt: &()) -> Result<Self, NotifierOpenError> {
         let socket = SocketHandle::open(name, config, mgmt)?;
-        Ok(Self { socket, pipe: OnceLock::new() })
+        Ok(Self { socket, has_woken: AtomicBool::new(false), counter: OnceLock::new() })
     }
 
     fn notify(&self) -> Result<(), NotifierNotifyError> {
-        let is_woken = match self.pipe.get() {
-            Some(pipe) => pipe.as_ref().is_some_and(|fd| rustix::io::write(fd, &[0]).is_ok()),
-            None => self.pipe.get_or_init(|| self.offer_pipe()).is_some(),
-        };
-        if is_woken { Ok(()) } else { self.socket.notify() }
+        if self.wakes_by_counter() { Ok(()) } else { self.socket.notify() }
     }
 }
 
@@ -100,13 +92,13 @@ impl Abandonable for Handle {
         unsafe {
             let this = this.as_mut();
             SocketHandle::abandon_in_place(NonNull::from_mut(&mut this.socket));
-            core::ptr::drop_in_place(&raw mut this.pipe);
+            core::ptr::drop_in_place(&raw mut this.counter);
         }
     }
 }
 
-/// The listening end. Its socket is emptied by [`super::WakeListener`], which also takes over the
-/// pipes that come with datagrams; here only the events are collected.
+/// The listening end. Its socket is emptied by [`super::WakeListener`], which also takes the counters
+/// that come with datagrams; here only the events are collected.
 #[derive(Debug)]
 pub(crate) struct Waiter(SocketWaiter);
 
