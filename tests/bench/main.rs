@@ -86,8 +86,10 @@ fn measure(options: &Options, report: &mut Report) {
     if all || options.kinematics {
         arm::measure(report, options.quick);
     }
-    if all || options.processes {
+    if all || options.processes || options.hops {
         hop::measure(report);
+    }
+    if all || options.processes {
         start::measure(report);
         latency::measure(report);
         idle::measure(report);

@@ -37,6 +37,9 @@ pub(crate) struct Options {
     /// Only the running group: start, recovery, latency through all processes, idle load
     #[arg(long)]
     pub(crate) processes: bool,
+    /// Only a message between sleeping processes, beside other transports; part of --processes
+    #[arg(long)]
+    pub(crate) hops: bool,
     /// Only the recorder: its cost, and latencies with and without it
     #[arg(long)]
     pub(crate) recorder: bool,
@@ -113,10 +116,20 @@ impl Options {
     pub(crate) fn wants_all(&self) -> bool {
         let Self { core, bounds, kinematics, processes, long, joints, orders, stops, ros1, .. } =
             *self;
-        let Self { speech, endings, turns, console, size, spoken, recorder, flight, .. } = *self;
+        let Self { hops, speech, endings, turns, console, size, spoken, recorder, flight, .. } =
+            *self;
         let measured =
             core || bounds || kinematics || processes || long || joints || orders || stops || ros1;
-        !(measured || speech || endings || turns || console || size || spoken || recorder || flight)
+        !(measured
+            || hops
+            || speech
+            || endings
+            || turns
+            || console
+            || size
+            || spoken
+            || recorder
+            || flight)
     }
 }
 
