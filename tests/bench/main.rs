@@ -53,6 +53,7 @@ fn main() -> ExitCode {
     if let Some(reports) = &options.write {
         return documents::write(reports);
     }
+    whichone_tests::end_with_groups();
     let mut report = Report::new(documents::arguments());
     // What was measured before a part failed is printed, and is no report that documents are compared with.
     let measured = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {

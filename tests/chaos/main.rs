@@ -76,6 +76,7 @@ fn main() -> ExitCode {
         }
     };
     machine::enter_own_mounts();
+    whichone_tests::end_with_groups();
     print(&format!("seed {}", plan.seed));
     let mut tally = Tally::default();
     let ran = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| run(&plan, &mut tally)));

@@ -23,6 +23,7 @@ mod full_memory;
 mod gateway;
 mod hearing;
 mod installed;
+mod interrupted;
 mod isolation;
 mod journal_format;
 mod journal_loss;

@@ -92,6 +92,7 @@ impl Process {
 
 fn main() -> ExitCode {
     let plan = Plan::parse();
+    whichone_tests::end_with_groups();
     let group = Group::up(&["arm.time_scale=20.0"]);
     let samples = work(&group, &plan);
     group.verify_journals();

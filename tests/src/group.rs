@@ -4,7 +4,7 @@ use crate::command::{Ended, program, run};
 use crate::{BUSY, wait_for, wait_for_or_none};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
-use service::group::{ENV_HOME, GroupName, GroupPaths};
+use service::group::{ENV_GROUP, ENV_HOME, GroupName, GroupPaths};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -13,6 +13,8 @@ use std::sync::mpsc;
 
 /// Timeout of a call of the command line, seconds.
 const CALL_S: f64 = 120.0;
+/// Timeout of the end of groups, seconds.
+const DOWN_S: f64 = 10.0;
 /// Timeout of a pick, seconds: on a busy machine the arm of a physics engine may have to halt and begin again.
 const PICK_S: f64 = 180.0;
 
@@ -46,7 +48,7 @@ impl Group {
     fn at(home: std::io::Result<tempfile::TempDir>, config: PathBuf) -> Self {
         let home = home.expect("a temporary folder");
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let name = format!("t{}-{number}", std::process::id());
+        let name = format!("{}{number}", name_prefix(std::process::id()));
         let name = GroupName::new(&name).expect("an allowed name");
         let paths = GroupPaths::in_home(home.path(), &name).expect("a short path");
         Self { home, paths, config, is_up: false }
@@ -108,7 +110,7 @@ impl Group {
     /// `whichone WORDS…` for this group.
     pub fn command(&self, words: &[&str]) -> Command {
         let mut command = Command::new(program("whichone"));
-        command.env(ENV_HOME, self.home.path()).env("WHICHONE_GROUP", self.paths.name().as_str());
+        command.env(ENV_HOME, self.home.path()).env(ENV_GROUP, self.paths.name().as_str());
         command.args(words);
         command
     }
@@ -243,7 +245,7 @@ impl Group {
     pub fn drill(&self, words: &[&str]) {
         let mut command = Command::new(program("whichone-baxter"));
         command.env("WHICHONE_HOME", self.paths.home());
-        command.env("WHICHONE_GROUP", self.paths.name().as_str());
+        command.env(ENV_GROUP, self.paths.name().as_str());
         let ended = run(command.args(words), "", CALL_S);
         assert_eq!(ended.code, Some(0), "{words:?}: {ended:?}");
     }
@@ -289,16 +291,42 @@ impl Group {
     /// Processes of this group: those with its home in their environment.
     fn pids(&self) -> Vec<Pid> {
         let mark = format!("{ENV_HOME}={}", self.home.path().display());
-        let Ok(entries) = std::fs::read_dir("/proc") else { return Vec::new() };
-        let of_group = |pid: &Pid| {
-            let path = format!("/proc/{}/environ", pid.as_raw_nonzero());
-            let environment = std::fs::read(path).unwrap_or_default();
-            environment.split(|&b| b == 0).any(|entry| entry == mark.as_bytes())
-        };
-        let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-        let pids = names.filter_map(|name| Pid::from_raw(name.parse().ok()?));
-        pids.filter(of_group).collect()
+        pids_with(|entry| entry == mark.as_bytes())
     }
+
+    /// Processes of all groups that a process has started.
+    pub fn pids_started_by(process: u32) -> Vec<Pid> {
+        let mark = format!("{ENV_GROUP}={}", name_prefix(process));
+        pids_with(|entry| entry.starts_with(mark.as_bytes()))
+    }
+
+    /// Ends the processes of every group that this process has started.
+    pub(crate) fn end_all() {
+        let pids = || Self::pids_started_by(std::process::id());
+        let end = |signal| pids().into_iter().for_each(|pid| _ = kill_process(pid, signal));
+        end(Signal::TERM);
+        let is_over = wait_for_or_none(DOWN_S, || pids().is_empty().then_some(()));
+        if is_over.is_none() {
+            end(Signal::KILL);
+        }
+    }
+}
+
+/// What the names of a process's groups begin with.
+fn name_prefix(process: u32) -> String {
+    format!("t{process}-")
+}
+
+/// Processes that have such an entry in their environment.
+fn pids_with(is_of_group: impl Fn(&[u8]) -> bool) -> Vec<Pid> {
+    let Ok(entries) = std::fs::read_dir("/proc") else { return Vec::new() };
+    let has_entry = |pid: &Pid| {
+        let path = format!("/proc/{}/environ", pid.as_raw_nonzero());
+        std::fs::read(path).unwrap_or_default().split(|&b| b == 0).any(&is_of_group)
+    };
+    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let pids = names.filter_map(|name| Pid::from_raw(name.parse().ok()?));
+    pids.filter(has_entry).collect()
 }
 
 impl Default for Group {

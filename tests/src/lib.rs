@@ -7,6 +7,7 @@ pub mod fuzz;
 pub mod gateway;
 mod group;
 pub mod hammer;
+mod interrupt;
 pub mod isolated;
 pub mod link;
 pub mod markdown;
@@ -20,6 +21,7 @@ pub mod spoken;
 
 pub use command::{Ended, program, run};
 pub use group::Group;
+pub use interrupt::end_with_groups;
 
 use config::Settings;
 use std::path::Path;

@@ -1,0 +1,19 @@
+//! Interrupted programs that run groups.
+
+use crate::Group;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+
+/// From now on Ctrl-C and SIGTERM end this process after its groups, which would run on without it.
+///
+/// # Panics
+/// If the system lets no signal be handled.
+pub fn end_with_groups() {
+    let mut signals = Signals::new([SIGINT, SIGTERM]).expect("handlers of signals");
+    std::thread::spawn(move || {
+        for signal in signals.forever().take(1) {
+            Group::end_all();
+            std::process::exit(128 + signal);
+        }
+    });
+}
