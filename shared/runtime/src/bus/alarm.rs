@@ -12,7 +12,7 @@ use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 #[derive(Debug)]
 pub(super) struct Alarm {
     fd: OwnedFd,
-    /// When it goes off; none after that.
+    /// When it goes off; `None` once it has gone off.
     set_to: Cell<Option<Time>>,
 }
 
@@ -23,20 +23,22 @@ impl Alarm {
         Ok(Self { fd, set_to: Cell::new(None) })
     }
 
-    /// Makes it go off at that time or earlier.
-    pub(super) fn set_by(&self, time: Time) {
+    /// Makes it go off at that time or earlier. Returns false if the system refuses.
+    pub(super) fn set_by(&self, time: Time) -> bool {
         if self.set_to.get().is_some_and(|set_to| set_to <= time) {
-            return;
+            return true;
         }
         // Zero would switch it off.
         let ns = time.0.max(1);
         let it_value =
             Timespec { tv_sec: (ns / 1_000_000_000) as i64, tv_nsec: (ns % 1_000_000_000) as i64 };
         let once = Itimerspec { it_interval: Timespec::default(), it_value };
-        match timerfd_settime(&self.fd, TimerfdTimerFlags::ABSTIME, &once) {
+        let set = timerfd_settime(&self.fd, TimerfdTimerFlags::ABSTIME, &once);
+        match set {
             Ok(_) => self.set_to.set(Some(time)),
             Err(error) => tracing::error!(%error, "an alarm cannot be set"),
         }
+        set.is_ok()
     }
 
     /// Notes that it has gone off. Returns the time that it was set to.

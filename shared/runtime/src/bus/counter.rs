@@ -3,7 +3,8 @@
 //!
 //! The writer offers it in a datagram, with one end of a pair of sockets. A reader that takes the counter answers with
 //! a byte; one that does not know about counters (iceoryx2's own, in programs of other languages) closes both, and
-//! datagrams are sent as before. The pair also tells the reader that the writer has ended.
+//! datagrams are sent as before. The pair also tells the reader that the writer has ended. A
+//! reader that has died is added to until iceoryx2 forgets it, when the supervisor has cleaned up.
 
 use rustix::event::{EventfdFlags, eventfd};
 use rustix::net::{
@@ -45,7 +46,7 @@ impl Offered {
         Ok(Self { counter, answers, is_taken: OnceLock::new() })
     }
 
-    /// Wakes the reader. Returns false if it has not taken the counter, or not yet.
+    /// Wakes the reader. Returns false if it has refused the counter or not answered yet.
     pub(super) fn wake(&self) -> bool {
         self.is_taken() && rustix::io::write(&self.counter, &1_u64.to_ne_bytes()).is_ok()
     }
@@ -63,7 +64,7 @@ impl Offered {
 /// The reader's end.
 #[derive(Debug)]
 pub(super) struct Taken {
-    /// Readable each time it has been added to.
+    /// Each addition is one event where it is listened to edge-triggered.
     pub(super) counter: OwnedFd,
     /// Hung up once the writer has ended.
     pub(super) writer: OwnedFd,

@@ -52,7 +52,7 @@ impl Sleeper {
         let epoll = epoll::create(CreateFlags::CLOEXEC)?;
         let alarm = Alarm::new()?;
         epoll::add(&epoll, socket, EventData::new_u64(SOCKET), EventFlags::IN)?;
-        // Each time it goes off is one event, so it is never read.
+        // Each expiry is one event, so it is never read.
         let each = EventFlags::IN | EventFlags::ET;
         epoll::add(&epoll, &alarm, EventData::new_u64(ALARM), each)?;
         Ok(Self {
@@ -76,15 +76,13 @@ impl Sleeper {
         }
         let mut woken = Woken { by_wake: false, sources: [false; N] };
         let until = clock::now() + longest;
-        let waits = longest > Span(0);
+        // Without an alarm it does not wait.
+        let waits = || longest > Span(0) && self.alarm.set_by(until);
         loop {
-            if waits {
-                self.alarm.set_by(until);
-            }
+            let waits = waits();
             let mut space = [MaybeUninit::uninit(); EVENTS_MAX];
-            let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
-            let timeout = (!waits).then_some(&at_once);
-            let Ok((events, _)) = epoll::wait(&self.epoll, &mut space, timeout) else {
+            let timeout = (!waits).then(Timespec::default);
+            let Ok((events, _)) = epoll::wait(&self.epoll, &mut space, timeout.as_ref()) else {
                 return Woken { by_wake: true, sources: [true; N] };
             };
             let is_over = self.note(events, until, &mut woken);
@@ -130,12 +128,23 @@ impl Sleeper {
         Ok(())
     }
 
-    /// Drops a counter whose writer has ended; that ends its events too.
+    /// Drops a counter whose writer has ended.
     fn on_counter(&self, event: u64) {
         if event % 2 == 1
             && let Some(slot) = self.counters.borrow_mut().get_mut((event / 2) as usize)
+            && let Some(counter) = slot.take()
         {
-            *slot = None;
+            self.forget(&counter);
+        }
+    }
+
+    /// Ends the events of a counter: closing it does not where another process has a copy, as a child has until it
+    /// runs its own program.
+    fn forget(&self, counter: &Taken) {
+        for descriptor in [&counter.counter, &counter.writer] {
+            if let Err(error) = epoll::delete(&self.epoll, descriptor) {
+                tracing::debug!(%error, "a counter was not listened to");
+            }
         }
     }
 
@@ -174,14 +183,17 @@ impl Sleeper {
         match self.take(&counter, COUNTERS + 2 * free as u64) {
             Ok(()) if free == counters.len() => counters.push(Some(counter)),
             Ok(()) => counters[free] = Some(counter),
-            Err(error) => tracing::debug!(%error, "a counter of a peer is not used"),
+            Err(error) => {
+                tracing::debug!(%error, "a counter of a peer is not used");
+                self.forget(&counter);
+            }
         }
     }
 
     fn take(&self, counter: &Taken, event: u64) -> rustix::io::Result<()> {
         let (added, ended) = (EventData::new_u64(event), EventData::new_u64(event + 1));
         epoll::add(&self.epoll, &counter.counter, added, EventFlags::IN | EventFlags::ET)?;
-        epoll::add(&self.epoll, &counter.writer, ended, EventFlags::HUP)?;
+        epoll::add(&self.epoll, &counter.writer, ended, EventFlags::HUP | EventFlags::ET)?;
         counter.confirm()
     }
 }
@@ -247,6 +259,25 @@ mod tests {
             "its descriptors are closed"
         );
         assert!(!is_woken(&sleeper));
+    }
+
+    #[test]
+    fn end_of_a_writer_wakes_once_whoever_has_copies_of_its_descriptors() {
+        let (here, there) = sockets();
+        let sleeper = Sleeper::new(here.as_fd()).unwrap();
+        let counter = Offered::send(there.as_fd()).unwrap();
+        assert!(is_woken(&sleeper));
+        sleeper.empty(here.as_fd());
+        assert!(counter.wake());
+        assert!(is_woken(&sleeper));
+        // As a child of this process has them until it runs its own program.
+        let copies = sleeper.counters.borrow()[0]
+            .as_ref()
+            .map(|taken| [&taken.counter, &taken.writer].map(|fd| fd.try_clone().unwrap()));
+        drop(counter);
+        assert!(is_woken(&sleeper));
+        assert!(!is_woken(&sleeper));
+        drop(copies);
     }
 
     #[test]
