@@ -24,9 +24,11 @@ fn client_that_hammers_leaves_the_others_their_share() {
     let hammer = Hammer::start(&group, "the metal one");
     wait_for("a backlog", 30.0, || (hammer.sent() >= BACKLOG).then_some(()));
     for text in ["the white one", "no", "the plastic one", "start over"] {
-        let mut before = 0;
-        receipts.drain(|receipt| before = before.max(receipt.seq)).unwrap();
-        assert!(before > 0, "the other client is served, too");
+        let mut latest = 0;
+        let before = wait_for("an utterance of the other client", 20.0, || {
+            receipts.drain(|receipt| latest = latest.max(receipt.seq)).unwrap();
+            (latest > 0).then_some(latest)
+        });
         let (sound, said) = (Sound::Text(text.to_owned()), (clock::now(), Time(0)));
         let own = deliver(&writer, &receipts, sound, said, Span::from_ms(20_000), || None).unwrap();
         assert_eq!(own[0].status.get(), ReceiptStatus::Accepted, "{text}: {:?}", own[0].note);

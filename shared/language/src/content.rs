@@ -48,6 +48,8 @@ pub(crate) struct Content<'a> {
     pub(crate) hedged: bool,
     /// "red or blue": alternatives, not a description.
     pub(crate) alternatives: bool,
+    /// Values that a question is about: "is the clear one white or metallic".
+    pub(crate) asked: Vec<WordId>,
 }
 
 impl Content<'_> {

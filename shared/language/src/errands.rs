@@ -86,8 +86,8 @@ impl ClauseAnalysis<'_> {
             && self.clause[at..].iter().any(|tag| tag.word == "away")
     }
 
-    /// "wash the clear bowl", "I want you to fill the mug": an errand with one of our things, which are
-    /// told from `distractors`.
+    /// "wash the clear bowl", "I want you to fill the mug", "wash it": an errand with one of our things,
+    /// which are told from `distractors`.
     pub(crate) fn is_chore(&self, distractors: &[usize]) -> bool {
         const LEADS: &[Class] = classes![
             Filler Courtesy And But Join Yes WeakYes Repair Plain Auxiliary First Second Want Destination
@@ -97,7 +97,8 @@ impl ClauseAnalysis<'_> {
         let says = |class| lead.iter().any(|tag| tag.is(class));
         let is_ours = |(at, tag): (usize, &Tag<'_>)| {
             let is_thing = tag.is_value() && !tag.is_role(Role::Place);
-            tag.is(Class::Head) || is_thing && !distractors.contains(&(verb + at))
+            let is_it = at == 1 && tag.is(Class::It);
+            is_it || tag.is(Class::Head) || is_thing && !distractors.contains(&(verb + at))
         };
         // "I put it in the cabinet" is told, "I want you to put it there" is ordered.
         lead.iter().all(|tag| tag.is_any(LEADS))

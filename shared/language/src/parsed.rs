@@ -12,7 +12,7 @@ use crate::token_class::{Class, classes};
 
 /// Most readings of one utterance.
 pub const READINGS_MAX: usize = 4;
-/// Most further objects that "all" stands for.
+/// Most further objects that "all" stands for, and most values that a question is about.
 const MORE_MAX: usize = 4;
 /// Weight as a yes of a "maybe" that is not an answer, judged. That yes is doubted as well, so that
 /// it moves the odds little.
@@ -43,6 +43,7 @@ impl ParsedUtterance<'_> {
         };
         let mut reading = self.reading_of(&objects[0]);
         reading.further = objects.iter().skip(1).map(words).collect();
+        reading.further.extend(self.content.asked.iter().take(MORE_MAX).map(|word| vec![*word]));
         if objects.len() == 1
             && reading.response == Response::None
             && let Some(more) = self.more_of_them()
@@ -77,10 +78,14 @@ impl ParsedUtterance<'_> {
         });
         let count = count.or(of_them.map(|three| &three[0]))?;
         match count.word {
-            "both" | "two" => Some(1),
+            // "a pair of scissors" is one thing.
+            "pair" => {
+                (!self.content.base.iter().any(|it| self.questions.is_plural(it.word))).then_some(1)
+            }
+            "both" | "two" | "couple" => Some(1),
             "three" => Some(2),
             "four" => Some(3),
-            "five" => Some(4),
+            "five" | "six" | "seven" | "eight" | "nine" | "ten" => Some(MORE_MAX),
             "all" if is_led || of_them.is_some() => {
                 let words: Vec<WordId> = self.content.base.iter().map(|it| it.word).collect();
                 let more = self.questions.described(&words).saturating_sub(1);

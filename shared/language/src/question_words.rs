@@ -1,6 +1,8 @@
 //! The question that an utterance answers, as far as words go.
 
-use scene::{AttributeId, Question, Scene, WordId};
+use scene::{AttributeId, Question, Role, Scene, WordId};
+
+use crate::morphology::inflected;
 
 /// A question, in words of the scene.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +37,10 @@ impl QuestionWords<'_> {
 pub(crate) struct SceneQuestions {
     objects: Vec<Box<[WordId]>>,
     attributes: Vec<Box<[WordId]>>,
+    /// The names of each attribute, as one word each.
+    names: Vec<Box<[String]>>,
+    /// Kinds that are named in plural, as "scissors" are.
+    plurals: Vec<WordId>,
 }
 
 impl SceneQuestions {
@@ -42,10 +48,37 @@ impl SceneQuestions {
         let objects = (0..scene.objects().len()).map(scene::ObjectId::from);
         let words =
             |attribute: &scene::Attribute| attribute.values.iter().map(|v| v.word).collect();
+        let values = scene.attributes().iter().flat_map(|attribute| &attribute.values);
+        let is_plural = |value: &&scene::Value| {
+            let name = &value.name;
+            value.role() == Role::Kind && name.ends_with('s') && !name.ends_with("ss")
+        };
+        let names = |attribute: &scene::Attribute| {
+            let all = std::iter::once(&attribute.name).chain(&attribute.synonyms);
+            all.map(|name| name.to_lowercase()).collect()
+        };
         Self {
             objects: objects.map(|i| scene.vocabulary(i).collect()).collect(),
             attributes: scene.attributes().iter().map(words).collect(),
+            names: scene.attributes().iter().map(names).collect(),
+            plurals: values.filter(is_plural).map(|value| value.word).collect(),
         }
+    }
+
+    /// The values of the attribute that a word names, in any of its forms.
+    pub(crate) fn values(&self, word: &str) -> &[WordId] {
+        let is_named = |names: &[String]| {
+            names
+                .iter()
+                .any(|name| name == word || inflected(name, false).iter().any(|it| it == word))
+        };
+        let found = self.names.iter().position(|names| is_named(names));
+        found.map_or(&[], |k| &self.attributes[k])
+    }
+
+    /// "a pair of scissors" is one thing, where the scene calls it so.
+    pub(crate) fn is_plural(&self, word: WordId) -> bool {
+        self.plurals.contains(&word)
     }
 
     /// The number of objects that have all of the words.

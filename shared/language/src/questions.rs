@@ -1,28 +1,65 @@
 //! What a question to the robot is about, and of which objects.
 
-use scene::Intent;
+use scene::{Intent, WordId};
 
 use crate::clauses::{Clause, Topic};
-use crate::content::Content;
+use crate::content::{Asserted, Content};
 use crate::extractor::extract;
-use crate::question_words::QuestionWords;
+use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
 use crate::token_class::Class;
 
 /// Returns what is asked in a text whose intent is a question, and the words for the objects that it
 /// is asked of: "how many white cups are there".
-pub(crate) fn question<'a>(tags: &[Tag<'a>], clauses: &[Clause]) -> (Intent, Content<'a>) {
+pub(crate) fn question<'a>(
+    tags: &[Tag<'a>],
+    clauses: &[Clause],
+    scene: &SceneQuestions,
+) -> (Intent, Content<'a>) {
     let asking: Vec<Clause> = clauses.iter().map(of_question).collect();
     let mut content = extract(tags, &asking, QuestionWords::Nothing);
-    // "are there red or blue cups" asks about both, not about one of them.
-    content.base.iter_mut().for_each(|value| value.choice = 0);
     let first = clauses.iter().find(|clause| clause.topic == Topic::AskBack);
     let intent = first.map_or(Intent::AskBack, |clause| {
         kind(&tags[clause.span.clone()], !content.base.is_empty())
     });
+    if let Some(values) = first.and_then(|it| asked_values(&tags[it.span.clone()], scene))
+        && intent == Intent::AskBack
+        && !content.base.is_empty()
+    {
+        content.asked = values.to_vec();
+        return (Intent::AskWhich, content);
+    }
+    let alternatives = alternatives(tags, &content.base);
+    // "are there red or blue cups" asks about both, not about one of them.
+    content.base.iter_mut().for_each(|value| value.choice = 0);
+    if intent != Intent::AskWhether || alternatives.is_empty() {
+        return (intent, content);
+    }
     // "is it long or short" asks which of them.
-    let is_choice = intent == Intent::AskWhether && content.alternatives;
-    (if is_choice { Intent::AskWhich } else { intent }, content)
+    let base = content.base.iter().enumerate();
+    let (asked, base) = base.partition::<Vec<_>, _>(|(n, _)| alternatives.contains(n));
+    content.asked = asked.into_iter().map(|(_, value)| value.word).collect();
+    content.base = base.into_iter().map(|(_, value)| *value).collect();
+    (Intent::AskWhich, content)
+}
+
+/// "what colour is the wrench": the values of the attribute, if it has more than one.
+fn asked_values<'s>(tags: &[Tag<'_>], scene: &'s SceneQuestions) -> Option<&'s [WordId]> {
+    let named = tags.iter().filter(|tag| tag.is(Class::Attribute));
+    named.map(|tag| scene.values(tag.word)).find(|values| values.len() > 1)
+}
+
+/// Places in `base` of the values that "or" joins: "white or metallic", "white, clear or metallic".
+fn alternatives(tags: &[Tag<'_>], base: &[Asserted<'_>]) -> Vec<usize> {
+    let is_or = |n: &usize| {
+        let (left, right) = (&base[*n], &base[*n + 1]);
+        left.choice != right.choice && left.rivals(right)
+    };
+    let Some(first) = (0..base.len().saturating_sub(1)).find(is_or) else { return Vec::new() };
+    let last = (first..base.len() - 1).filter(is_or).last().unwrap_or(first);
+    let is_listed = |n: &usize| base[*n].rivals(&base[*n + 1]) && tags[base[*n + 1].at].pauses();
+    let listed = (0..first).rev().take_while(is_listed).count();
+    (first - listed..=last + 1).collect()
 }
 
 /// "have you seen my red pen? bring it please": what was asked about is asked for.

@@ -153,7 +153,7 @@ impl Reader {
             intent => intent,
         };
         if intent == Intent::AskBack {
-            (intent, content) = question(&tags, &clauses);
+            (intent, content) = question(&tags, &clauses, &self.questions);
             if intent != Intent::AskHelp && fetches_it(&tags, &clauses) {
                 intent = Intent::Inform;
             }

@@ -110,7 +110,8 @@ pub struct Reading {
     pub intent: Intent,
     /// The object that it points to by what was spoken of.
     pub refers: Reference,
-    /// Words of each further object that is asked for ("… and the white cup").
+    /// Words of each further object that is asked for ("… and the white cup"); of [`Intent::AskWhich`], each value that
+    /// it is about ("is it long or short").
     pub further: Vec<Vec<WordId>>,
     /// Doubts about its parts.
     pub doubt: Doubt,

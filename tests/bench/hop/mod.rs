@@ -4,6 +4,7 @@
 mod allocations;
 mod peers;
 mod topics;
+mod zeromq;
 
 use crate::report::{Report, percentile};
 use messages::Observation;
@@ -12,6 +13,7 @@ use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
 use std::thread::Scope;
 use std::time::Instant;
 use topics::{Bytes, Fixed, Group, Large};
+use zeromq::ZeroMq;
 
 /// Rounds of each transport, there and back.
 const ROUNDS: usize = 20_000;
@@ -60,6 +62,9 @@ pub(crate) fn measure(report: &mut Report) {
     let [datagrams, topics] = in_turn(Datagrams::<[u64; 8]>::pair([0; 8]), group.pair(Fixed::open));
     add(report, &peer, datagrams, None);
     add(report, &topic, topics, Some(&peer));
+    if let Some(ends) = ZeroMq::<[u64; 8]>::pair([0; 8]) {
+        add(report, &named("64 B", "in ZeroMQ with postcard"), exchange(ends), Some(&peer));
+    }
     let whole = format!("an observation ({:.1} kB)", size_of::<Observation>() as f64 / 1e3);
     let large = exchange(group.pair(Large::open));
     add(report, &named(&whole, "through a topic"), large, Some(&topic));
@@ -71,6 +76,10 @@ pub(crate) fn measure(report: &mut Report) {
         add(report, &peer, datagrams, None);
         let stream = named(size, "in a stream with postcard");
         add(report, &stream, exchange(Streams::pair(message())), Some(&peer));
+        if let Some(ends) = ZeroMq::pair(message()) {
+            let name = named(size, "in ZeroMQ with postcard");
+            add(report, &name, exchange(ends), Some(&peer));
+        }
         add(report, &named(size, "through an encoded topic"), topics, Some(&peer));
     }
 }

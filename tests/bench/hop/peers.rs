@@ -25,12 +25,12 @@ impl Numbered for (u64, Vec<u8>) {
     }
 }
 
-fn encoded<M: Numbered>(message: &mut M, number: u64) -> Vec<u8> {
+pub(super) fn encoded<M: Numbered>(message: &mut M, number: u64) -> Vec<u8> {
     *message.number() = number;
     postcard::to_stdvec(message).expect("room for a message")
 }
 
-fn decoded<M: Numbered>(bytes: &[u8]) -> u64 {
+pub(super) fn decoded<M: Numbered>(bytes: &[u8]) -> u64 {
     let mut message: M = postcard::from_bytes(bytes).expect("a message");
     *message.number()
 }

@@ -45,6 +45,11 @@ impl Manager {
                 None => self.reply(state, Remark::AllRight, at),
             },
             Intent::Cancel => self.cancel(state, at),
+            // "Stop, not that one": what it says of the object counts as well.
+            Intent::Stop if state.open.is_some() && is_about_object(utterance) => {
+                self.inform(state, utterance, &shares, at);
+                self.reply(state, Remark::Stopped, at);
+            }
             Intent::StopAndCancel => {
                 self.cancel(state, at);
                 self.reply(state, Remark::Stopped, at);
@@ -129,6 +134,15 @@ impl Manager {
 /// Returns whether it withdraws only what it describes.
 fn excludes(utterance: &Utterance) -> bool {
     likeliest(utterance, Intent::Cancel).is_some_and(|reading| !reading.excluded.is_empty())
+}
+
+/// Returns whether an order to stop also tells what is wanted or not.
+fn is_about_object(utterance: &Utterance) -> bool {
+    likeliest(utterance, Intent::Stop).is_some_and(|reading| {
+        let bare =
+            Reading { intent: Intent::Stop, doubt: reading.doubt.clone(), ..Reading::default() };
+        *reading != bare
+    })
 }
 
 /// Returns the shares of an utterance that answers nothing.

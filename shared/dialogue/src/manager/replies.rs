@@ -86,17 +86,16 @@ impl Manager {
     fn objects(&self, said: &Utterance, intent: Intent, asked: AboutObjects) -> Remark {
         let scene = &self.setup.scene;
         let Some(reading) = likeliest(said, intent) else { return Remark::Inventory };
-        // "is the marker long or short": no marker is both.
-        let (values, base): (Vec<WordId>, Vec<WordId>) =
-            reading.base.iter().partition(|word| self.is_rivalled(**word, &reading.base));
-        let is_choice = intent == Intent::AskWhich && !values.is_empty();
-        let asked_of =
-            if is_choice { Reading { base, ..reading.clone() } } else { reading.clone() };
-        let described = self.described(&asked_of);
+        let described = self.described(reading);
         let objects: Vec<String> = described.map(|i| scene.object(i).name.clone()).collect();
-        let (asked, words) = match is_choice && !objects.is_empty() {
-            true => (AboutObjects::Either, values),
-            false => (asked, asked_of.base),
+        // "is the marker long or short"
+        let values: Vec<WordId> = match asked {
+            AboutObjects::Which => reading.further.iter().flatten().copied().collect(),
+            _ => Vec::new(),
+        };
+        let (asked, words) = match (values.is_empty(), &objects[..]) {
+            (false, [_, ..]) => (AboutObjects::Either, &values),
+            _ => (asked, &reading.base),
         };
         let name = |word: &WordId| scene.words()[word.index()].clone();
         Remark::Objects { asked, words: words.iter().map(name).collect(), objects }

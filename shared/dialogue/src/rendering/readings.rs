@@ -49,9 +49,10 @@ pub fn reading(scene: &Scene, reading: &Reading) -> String {
         let group: Vec<&str> = group.iter().map(word).collect();
         format!("not {}", group.join(" and "))
     }));
+    let joint = if reading.intent == Intent::AskWhich { "or" } else { "then" };
     parts.extend(reading.further.iter().map(|group| {
         let group: Vec<&str> = group.iter().map(word).collect();
-        format!("then {}", group.join(" "))
+        format!("{joint} {}", group.join(" "))
     }));
     if parts.is_empty() { "a request".to_owned() } else { parts.join(" · ") }
 }
