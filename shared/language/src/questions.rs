@@ -7,7 +7,7 @@ use crate::content::{Asserted, Content};
 use crate::extractor::extract;
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
-use crate::token_class::Class;
+use crate::token_class::{Class, classes};
 
 /// Returns what is asked in a text whose intent is a question, and the words for the objects that it
 /// is asked of: "how many white cups are there".
@@ -82,9 +82,6 @@ fn kind(tags: &[Tag<'_>], describes: bool) -> Intent {
     let says = |class| tags.iter().any(|tag| tag.is(class));
     let opens = |word: &str| tags.iter().any(|tag| is_asking(tag) && tag.word == word);
     let ends = |words: &[&str]| tags.iter().any(|tag| is_asking(tag) && words.contains(&tag.last));
-    // "what colour is"
-    let asks_for_attribute =
-        opens("what") && tags.iter().any(|tag| tag.is(Class::AskBack) && tag.last == "is");
     if says(Class::AskStatus) {
         Intent::AskStatus
     } else if says(Class::AskHelp) {
@@ -92,11 +89,10 @@ fn kind(tags: &[Tag<'_>], describes: bool) -> Intent {
     } else if opens("why") || ends(&["come"]) {
         Intent::AskWhy
     } else if says(Class::Attribute)
-        || asks_for_attribute
         || ends(&["mean", "pointing", "talking", "referring", "asking"])
     {
         Intent::AskBack
-    } else if ends(&["many"]) {
+    } else if ends(&["many"]) || is_number_asked(tags) {
         Intent::AskCount
     } else if opens("where") || ends(&["where"]) {
         Intent::AskWhere
@@ -107,6 +103,12 @@ fn kind(tags: &[Tag<'_>], describes: bool) -> Intent {
     } else {
         Intent::AskBack
     }
+}
+
+/// "two or three".
+fn is_number_asked(tags: &[Tag<'_>]) -> bool {
+    let is_number = |tag: &Tag<'_>| tag.is_any(classes![Quantifier One]);
+    tags.windows(3).any(|it| is_number(&it[0]) && it[1].is(Class::Or) && is_number(&it[2]))
 }
 
 fn is_asking(tag: &Tag<'_>) -> bool {

@@ -197,7 +197,8 @@ impl Manager {
 fn content(reading: &Reading) -> std::borrow::Cow<'_, Reading> {
     use std::borrow::Cow;
     match reading.intent {
-        Intent::Inform => Cow::Borrowed(reading),
+        // "Stop, not that one": plain "stop" has nothing else in it.
+        Intent::Inform | Intent::Stop => Cow::Borrowed(reading),
         Intent::Cancel if !reading.excluded.is_empty() => Cow::Borrowed(reading),
         _ => Cow::Owned(Reading::default()),
     }
