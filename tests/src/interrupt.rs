@@ -11,7 +11,7 @@ use signal_hook::iterator::Signals;
 pub fn end_with_groups() {
     let mut signals = Signals::new([SIGINT, SIGTERM]).expect("handlers of signals");
     std::thread::spawn(move || {
-        for signal in signals.forever().take(1) {
+        if let Some(signal) = signals.forever().next() {
             Group::end_all();
             std::process::exit(128 + signal);
         }

@@ -56,7 +56,7 @@ fn alternatives(tags: &[Tag<'_>], base: &[Asserted<'_>]) -> Vec<usize> {
         left.choice != right.choice && left.rivals(right)
     };
     let Some(first) = (0..base.len().saturating_sub(1)).find(is_or) else { return Vec::new() };
-    let last = (first..base.len() - 1).filter(is_or).last().unwrap_or(first);
+    let last = (first..base.len() - 1).rfind(is_or).unwrap_or(first);
     let is_listed = |n: &usize| base[*n].rivals(&base[*n + 1]) && tags[base[*n + 1].at].pauses();
     let listed = (0..first).rev().take_while(is_listed).count();
     (first - listed..=last + 1).collect()

@@ -133,9 +133,12 @@ fn questions_about_the_scene_are_answered_from_it() {
     assert!(whether.starts_with("Yes, I see the "), "{whether}");
     let not = ask(about(Intent::AskWhether, &["white", "metallic"]));
     assert_eq!(not, "No, there are no white metallic bowls here.");
-    let which = ask(about(Intent::AskWhich, &["clear", "small", "big"]));
+    let values = about(Intent::AskWhich, &["small", "big"]).base;
+    let further: Vec<_> = values.into_iter().map(|word| vec![word]).collect();
+    let of_size = |word| Reading { further: further.clone(), ..about(Intent::AskWhich, &[word]) };
+    let which = ask(of_size("clear"));
     assert_eq!(which, "It is big.");
-    let which = ask(about(Intent::AskWhich, &["white", "small", "big"]));
+    let which = ask(of_size("white"));
     assert_eq!(which, "Two are small and one is big.");
     let only = ask(about(Intent::Chore, &["clear"]));
     assert_eq!(only, "I can only fetch things and put them back. Shall I get the clear bowl?");
