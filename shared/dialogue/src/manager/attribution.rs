@@ -194,11 +194,12 @@ impl Manager {
 }
 
 /// Returns the content of a reading about the object: none where it is about something else.
-fn content(reading: &Reading) -> std::borrow::Cow<'_, Reading> {
+pub(super) fn content(reading: &Reading) -> std::borrow::Cow<'_, Reading> {
     use std::borrow::Cow;
     match reading.intent {
-        // "Stop, not that one": plain "stop" has nothing else in it.
-        Intent::Inform | Intent::Stop => Cow::Borrowed(reading),
+        Intent::Inform => Cow::Borrowed(reading),
+        // "Stop, not that one": what is said beside the order, nothing with a plain "stop".
+        Intent::Stop => Cow::Owned(Reading { intent: Intent::Inform, ..reading.clone() }),
         Intent::Cancel if !reading.excluded.is_empty() => Cow::Borrowed(reading),
         _ => Cow::Owned(Reading::default()),
     }

@@ -4,7 +4,7 @@ use scene::{Intent, Reading, Reference};
 
 use super::Manager;
 use super::acts::{call_off, repeat, say};
-use super::attribution::share_of;
+use super::attribution::{content, share_of};
 use super::concede::Conceded;
 use super::line::{Content, Remark};
 use super::put_back::{Progress, PuttingBack};
@@ -138,11 +138,7 @@ fn excludes(utterance: &Utterance) -> bool {
 
 /// Returns whether an order to stop also tells what is wanted or not.
 fn is_about_object(utterance: &Utterance) -> bool {
-    likeliest(utterance, Intent::Stop).is_some_and(|reading| {
-        let bare =
-            Reading { intent: Intent::Stop, doubt: reading.doubt.clone(), ..Reading::default() };
-        *reading != bare
-    })
+    likeliest(utterance, Intent::Stop).is_some_and(|it| *content(it) != Reading::default())
 }
 
 /// Returns the shares of an utterance that answers nothing.
