@@ -5,6 +5,7 @@ use crate::{BUSY, wait_for, wait_for_or_none};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use service::group::{ENV_GROUP, ENV_HOME, GroupName, GroupPaths};
+use std::collections::HashSet;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -303,11 +304,19 @@ impl Group {
     /// Ends the processes of every group that this process has started.
     pub(crate) fn end_all() {
         let pids = || Self::pids_started_by(std::process::id());
-        let end = |signal| pids().into_iter().for_each(|pid| _ = kill_process(pid, signal));
-        end(Signal::TERM);
-        let is_over = wait_for_or_none(DOWN_S, || pids().is_empty().then_some(()));
+        let mut told = HashSet::new();
+        let is_over = wait_for_or_none(DOWN_S, || {
+            let pids = pids();
+            let news = pids.iter().filter(|pid| told.insert(**pid));
+            news.for_each(|pid| _ = kill_process(*pid, Signal::TERM));
+            pids.is_empty().then_some(())
+        });
         if is_over.is_none() {
-            end(Signal::KILL);
+            wait_for_or_none(DOWN_S, || {
+                let pids = pids();
+                pids.iter().for_each(|pid| _ = kill_process(*pid, Signal::KILL));
+                pids.is_empty().then_some(())
+            });
         }
     }
 }
