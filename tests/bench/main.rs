@@ -1,12 +1,4 @@
-//! Benchmarks of the decision core, of the arm and of the running group: what a decision and a
-//! belief update cost and how good decisions are; how often and how fast poses are reached, beside
-//! other solvers; how fast the group starts and recovers, how long an utterance
-//! takes to become a decision and where the time goes, what it costs when nothing happens, how
-//! steadily joint states come, how soon the arm accepts an order, how soon joint
-//! states of a robot behind ROS 1 are answered by commands, how much of spoken sentences is understood, how turns are taken in
-//! simulated time, what many open pages cost the console, what thousands of objects
-//! cost the group, what the recorder and the flight recorder cost, how dialogues by voice end, and how soon
-//! the arm stops while something is short.
+//! Benchmarks of the decision core, of the arm and of the running group; [`parts`] lists them.
 //!
 //! Machines are noisy: each figure stands beside a peer that was measured in the same run, and no
 //! test rests on one.
@@ -23,6 +15,7 @@ mod latency;
 mod long;
 mod options;
 mod orders;
+mod parts;
 mod peers;
 mod recorder;
 mod report;
@@ -73,65 +66,6 @@ fn main() -> ExitCode {
 }
 
 fn measure(options: &Options, report: &mut Report) {
-    let all = options.wants_all();
-    if all || options.core || options.processes {
-        peers::measure(report);
-    }
-    if all || options.core {
-        let effort = if options.quick { core::Effort::QUICK } else { core::Effort::FULL };
-        core::measure(report, effort);
-    }
-    if all || options.bounds {
-        core::bounds::measure(report, options.seconds(), options.quick);
-    }
-    if all || options.kinematics {
-        arm::measure(report, options.quick);
-    }
-    if all || options.processes || options.hops {
-        hop::measure(report);
-    }
-    if all || options.processes {
-        start::measure(report);
-        latency::measure(report);
-        idle::measure(report);
-    }
-    if all || options.recorder {
-        recorder::measure(report, options.quick);
-    }
-    if all || options.flight {
-        flight::measure(report, options.quick);
-    }
-    if all || options.long {
-        long::measure(report, options);
-    }
-    if all || options.joints {
-        jitter::measure(report);
-    }
-    if all || options.orders {
-        orders::measure(report, options.quick);
-    }
-    if all || options.stops {
-        stops::measure(report, options.quick);
-    }
-    if all || options.ros1 {
-        ros1::measure(report, options.quick);
-    }
-    if all || options.speech {
-        speech::measure(report, options.quick, options.kept_apart);
-    }
-    if all || options.endings {
-        speech::measure_endings(report, options.quick);
-    }
-    if all || options.turns {
-        turns::measure(report, options);
-    }
-    if all || options.console {
-        console::measure(report, options);
-    }
-    if all || options.size {
-        size::measure(report, options);
-    }
-    if all || options.spoken {
-        spoken::measure(report, options);
-    }
+    peers::measure(report);
+    options.parts.selected().for_each(|part| (part.measure)(report, options));
 }

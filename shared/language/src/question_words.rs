@@ -2,6 +2,7 @@
 
 use scene::{AttributeId, Question, Role, Scene, WordId};
 
+use crate::lexicon::ValueSense;
 use crate::morphology::inflected;
 
 /// A question, in words of the scene.
@@ -74,6 +75,12 @@ impl SceneQuestions {
         };
         let found = self.names.iter().position(|names| is_named(names));
         found.map_or(&[], |k| &self.attributes[k])
+    }
+
+    /// All values of a value's attribute.
+    pub(crate) fn values_beside(&self, value: &ValueSense) -> &[WordId] {
+        let attribute = value.attributes.first();
+        attribute.map_or(&[], |k| &self.attributes[k.index()])
     }
 
     /// "a pair of scissors" is one thing, where the scene calls it so.

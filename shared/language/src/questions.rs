@@ -29,6 +29,15 @@ pub(crate) fn question<'a>(
         content.asked = values.to_vec();
         return (Intent::AskWhich, content);
     }
+    // "how long is the wrench" does not say that it is long.
+    if let Some(n) = content.base.iter().position(|value| follows_how(tags, value.at)) {
+        let measured = content.base.remove(n);
+        if content.base.is_empty() {
+            return (Intent::AskBack, content);
+        }
+        content.asked = scene.values_beside(&measured).to_vec();
+        return (Intent::AskWhich, content);
+    }
     let alternatives = alternatives(tags, &content.base);
     // "are there red or blue cups" asks about both, not about one of them.
     content.base.iter_mut().for_each(|value| value.choice = 0);
@@ -47,6 +56,10 @@ pub(crate) fn question<'a>(
 fn asked_values<'s>(tags: &[Tag<'_>], scene: &'s SceneQuestions) -> Option<&'s [WordId]> {
     let named = tags.iter().filter(|tag| tag.is(Class::Attribute));
     named.map(|tag| scene.values(tag.word)).find(|values| values.len() > 1)
+}
+
+fn follows_how(tags: &[Tag<'_>], at: usize) -> bool {
+    at.checked_sub(1).is_some_and(|before| tags[before].last == "how")
 }
 
 /// Places in `base` of the values that "or" joins: "white or metallic", "white, clear or metallic".

@@ -391,7 +391,7 @@ fn reader_that_starts_again_is_woken_by_a_writer_that_went_on() {
         let speech = shm.join(1, 2);
         let listener = speech.wake_listener(Service::Speech).unwrap();
         // By datagrams, with the offer of a counter, and by the counter.
-        for seq in (10 * seq..).take(5) {
+        for seq in (20 * seq..).take(15) {
             writer.send(&AppliedMark { seq }).unwrap();
             assert!(is_woken(&listener), "message {seq}");
             assert_eq!(listener.take(), None);

@@ -59,22 +59,36 @@ pub(crate) fn measure(report: &mut Report, limit_s: f64, quick: bool) {
         "Bounds on the value of the best policy at the uniform belief, their gap, and the seconds of \
          processor / elapsed that took, on two threads; beside it the value of `lookahead`, dialogues less \
          probable than {CUT:e} cut short. Yes/no questions, costs in seconds. Each column has an attempt that begins \
-         anew, with as many beliefs as are expected to fit, and shows the best of those that have ended in time."
+         anew, with as many beliefs as are expected to fit and fewer if it has taken longer, and shows the best of \
+         those that have ended in time."
     );
     report.table("Certified bounds on hard scenes", note, heads, rows);
 }
 
-/// A first attempt, and one for each column.
+/// A first attempt, and one for each column; two where the first did not end in time.
 fn attempts(problem: &DecisionProblem<'_>, columns: &[f64]) -> Vec<Attempt> {
     let mut attempts = vec![attempt(problem, FIRST)];
     for seconds in columns {
-        let last = &attempts[attempts.len() - 1];
-        let beliefs = last.beliefs as f64 * EXPECTED * seconds / last.elapsed_s;
-        if beliefs as usize > last.beliefs && !is_exhausted(&attempts) {
-            attempts.push(attempt(problem, beliefs as usize));
+        for _ in 0..2 {
+            let done = largest_within(&attempts, *seconds);
+            let last = &attempts[attempts.len() - 1];
+            let beliefs = (last.beliefs as f64 * EXPECTED * seconds / last.elapsed_s) as usize;
+            if beliefs <= done || is_exhausted(&attempts) {
+                break;
+            }
+            attempts.push(attempt(problem, beliefs));
+            if attempts[attempts.len() - 1].elapsed_s <= *seconds {
+                break;
+            }
         }
     }
     attempts
+}
+
+/// Most beliefs of an attempt that has ended in time.
+fn largest_within(attempts: &[Attempt], seconds: f64) -> usize {
+    let within = attempts.iter().filter(|attempt| attempt.elapsed_s <= seconds);
+    within.map(|attempt| attempt.beliefs).max().unwrap_or(0)
 }
 
 /// Returns whether more beliefs have shown nothing more, with all the memory that the plan may have.

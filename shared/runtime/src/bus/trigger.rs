@@ -1,8 +1,8 @@
 //! What wakes a sleeping service: iceoryx2's datagram socket, and a counter of each process that wakes it often.
 //!
 //! A datagram has to be received, or its socket's short queue fills up and wake-ups are lost; a counter need not be
-//! read. So the second wake-up offers a counter (see [`super::counter`]), and later ones add to it once it is taken.
-//! Most clients wake a service once.
+//! read. So the ninth wake-up offers a counter (see [`super::counter`]), and later ones add to it once it is taken.
+//! A command such as `whichone say` wakes a service a few times and ends: an offer would cost more than it saves.
 
 use super::counter::Offered;
 use super::segment::Segment;
@@ -22,13 +22,16 @@ use iceoryx2_cal::named_concept::{NamedConceptPathHintRemoveError, NamedConceptR
 use std::mem::MaybeUninit;
 use std::os::fd::BorrowedFd;
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::Duration;
 
 type Bits = RelocatableCountingBitSet;
 type Storage = Segment<State<Bits, ()>>;
 type SocketHandle = UnixDatagramHandle<Bits, Storage>;
 type SocketWaiter = UnixDatagramWaiter<Bits, Storage>;
+
+/// Wake-ups of a listener before a counter is offered.
+const DATAGRAMS: u8 = 8;
 
 /// The event of a group: names and layout in shared memory are those of iceoryx2's datagram trigger.
 pub(super) type Trigger = EventImpl<Bits, (), Storage, Handle, Waiter>;
@@ -47,7 +50,8 @@ pub(super) fn borrow(descriptor: &FileDescriptor) -> BorrowedFd<'_> {
 #[derive(Debug)]
 pub(crate) struct Handle {
     socket: SocketHandle,
-    has_woken: AtomicBool,
+    /// Wake-ups before the offer.
+    woken: AtomicU8,
     /// The counter once it has been offered; none where that was not possible.
     counter: OnceLock<Option<Offered>>,
 }
@@ -57,11 +61,11 @@ impl Handle {
     fn wakes_by_counter(&self) -> bool {
         match self.counter.get() {
             Some(counter) => counter.as_ref().is_some_and(Offered::wake),
-            None if self.has_woken.swap(true, Ordering::Relaxed) => {
+            None if self.woken.fetch_add(1, Ordering::Relaxed) < DATAGRAMS => false,
+            None => {
                 let offer = || Offered::send(borrow(self.socket.file_descriptor())).ok();
                 self.counter.get_or_init(offer).is_some()
             }
-            None => false,
         }
     }
 }
@@ -69,7 +73,7 @@ impl Handle {
 impl HandlerInterface<Bits, (), Storage> for Handle {
     fn open(name: &FileName, config: &Configuration, mgmt: &()) -> Result<Self, NotifierOpenError> {
         let socket = SocketHandle::open(name, config, mgmt)?;
-        Ok(Self { socket, has_woken: AtomicBool::new(false), counter: OnceLock::new() })
+        Ok(Self { socket, woken: AtomicU8::new(0), counter: OnceLock::new() })
     }
 
     fn notify(&self) -> Result<(), NotifierNotifyError> {
