@@ -100,11 +100,7 @@ const PARTS: [Part; 18] = [
     part("spoken", "dialogues by voice with the real group, in real time", spoken::measure),
 ];
 
-const fn part(
-    name: &'static str,
-    help: &'static str,
-    measure: fn(&mut Report, &Options),
-) -> Part {
+const fn part(name: &'static str, help: &'static str, measure: fn(&mut Report, &Options)) -> Part {
     Part { name, help, within: None, measure }
 }
 
@@ -115,7 +111,9 @@ impl Named {
     /// The parts to measure, each once.
     pub(crate) fn selected(&self) -> impl Iterator<Item = &'static Part> {
         let is_selected = |name| self.0.is_empty() || self.0.contains(&name);
-        PARTS.iter().filter(move |part| is_selected(part.name) && !part.within.is_some_and(is_selected))
+        PARTS
+            .iter()
+            .filter(move |part| is_selected(part.name) && !part.within.is_some_and(is_selected))
     }
 }
 
