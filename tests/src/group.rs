@@ -301,14 +301,14 @@ impl Group {
         pids_with(|entry| entry.starts_with(mark.as_bytes()))
     }
 
-    /// Ends the processes of every group that this process has started.
+    /// Ends the processes of every group that this process has started, and those that they start meanwhile.
     pub(crate) fn end_all() {
         let pids = || Self::pids_started_by(std::process::id());
-        let mut told = HashSet::new();
+        let mut signalled = HashSet::new();
         let is_over = wait_for_or_none(DOWN_S, || {
             let pids = pids();
-            let news = pids.iter().filter(|pid| told.insert(**pid));
-            news.for_each(|pid| _ = kill_process(*pid, Signal::TERM));
+            let new = pids.iter().filter(|pid| signalled.insert(**pid));
+            new.for_each(|pid| _ = kill_process(*pid, Signal::TERM));
             pids.is_empty().then_some(())
         });
         if is_over.is_none() {

@@ -12,7 +12,7 @@ pub fn end_with_groups() {
     let mut signals = Signals::new([SIGINT, SIGTERM]).expect("handlers of signals");
     std::thread::spawn(move || {
         if let Some(signal) = signals.forever().next() {
-            // A thread that fails as its group has ended would end this process before the other groups.
+            // A panic that the end of a group causes must not end this process before the other groups.
             std::panic::set_hook(Box::new(|_| {
                 loop {
                     std::thread::park();

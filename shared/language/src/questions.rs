@@ -23,19 +23,10 @@ pub(crate) fn question<'a>(
         kind(&tags[clause.span.clone()], !content.base.is_empty())
     });
     if let Some(values) = first.and_then(|it| asked_values(&tags[it.span.clone()], scene))
-        && intent == Intent::AskBack
+        && matches!(intent, Intent::AskBack | Intent::AskWhether)
         && !content.base.is_empty()
     {
         content.asked = values.to_vec();
-        return (Intent::AskWhich, content);
-    }
-    // "how long is the wrench" does not say that it is long.
-    if let Some(n) = content.base.iter().position(|value| follows_how(tags, value.at)) {
-        let measured = content.base.remove(n);
-        if content.base.is_empty() {
-            return (Intent::AskBack, content);
-        }
-        content.asked = scene.values_beside(&measured).to_vec();
         return (Intent::AskWhich, content);
     }
     let alternatives = alternatives(tags, &content.base);
@@ -52,14 +43,14 @@ pub(crate) fn question<'a>(
     (Intent::AskWhich, content)
 }
 
-/// "what colour is the wrench": the values of the attribute, if it has more than one.
+/// "what colour is the wrench", "how long is it": the values of the attribute, if it has more than one.
 fn asked_values<'s>(tags: &[Tag<'_>], scene: &'s SceneQuestions) -> Option<&'s [WordId]> {
-    let named = tags.iter().filter(|tag| tag.is(Class::Attribute));
-    named.map(|tag| scene.values(tag.word)).find(|values| values.len() > 1)
-}
-
-fn follows_how(tags: &[Tag<'_>], at: usize) -> bool {
-    at.checked_sub(1).is_some_and(|before| tags[before].last == "how")
+    let values = |tag: &Tag<'_>| match tag.class() {
+        Some(Class::Attribute) => scene.values(tag.word),
+        Some(Class::AskBack) if tag.word == "how" => scene.values_beside(tag.second),
+        _ => &[],
+    };
+    tags.iter().map(values).find(|values| values.len() > 1)
 }
 
 /// Places in `base` of the values that "or" joins: "white or metallic", "white, clear or metallic".

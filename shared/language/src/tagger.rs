@@ -19,6 +19,8 @@ pub(crate) struct Tag<'a> {
     pub(crate) word: &'a str,
     /// Place of its first word in the utterance.
     pub(crate) at: usize,
+    /// Its second word; the first one again where it has one only.
+    pub(crate) second: &'a str,
     /// Its last word; the first one again where it has one only.
     pub(crate) last: &'a str,
     /// Stands in the lexicon as it was said or typed.
@@ -66,10 +68,11 @@ impl<'a> Tag<'a> {
         let run = &tokens[at..tokens.len().min(at + found.words)];
         let least = run.iter().map(|token| token.confidence).fold(1.0, f32::min);
         let Token { word, gap, .. } = tokens[at];
+        let second = run.get(1).map_or(word, |token| token.word);
         let last = run.last().map_or(word, |token| token.word);
         let exact = found.doubt == 0.0;
         let (sense, sure) = (found.sense, found.sure);
-        let mut tag = Self { sense, gap, word, at, last, exact, doubt: 0.0, sure };
+        let mut tag = Self { sense, gap, word, at, second, last, exact, doubt: 0.0, sure };
         tag.add_doubt(1.0 - f64::from(least));
         tag.add_doubt(found.doubt);
         tag

@@ -59,8 +59,8 @@ pub(crate) fn measure(report: &mut Report, limit_s: f64, quick: bool) {
         "Bounds on the value of the best policy at the uniform belief, their gap, and the seconds of \
          processor / elapsed that took, on two threads; beside it the value of `lookahead`, dialogues less \
          probable than {CUT:e} cut short. Yes/no questions, costs in seconds. Each column has an attempt that begins \
-         anew, with as many beliefs as are expected to fit and fewer if it has taken longer, and shows the best of \
-         those that have ended in time."
+         anew, with as many beliefs as are expected to fit; one that takes longer is repeated once with fewer. A column \
+         shows the best of those that have ended in time."
     );
     report.table("Certified bounds on hard scenes", note, heads, rows);
 }
@@ -120,12 +120,12 @@ fn process_s() -> f64 {
 }
 
 fn cell(attempts: &[Attempt], seconds: f64) -> String {
-    let mut within = attempts.iter().filter(|attempt| attempt.elapsed_s <= seconds);
-    let Some(first) = within.next() else { return "–".to_owned() };
-    let (mut lower, mut upper, mut last) = (first.lower, first.upper, first);
-    for attempt in within {
-        (lower, upper, last) = (lower.max(attempt.lower), upper.min(attempt.upper), attempt);
-    }
-    let Attempt { processor_s, elapsed_s, .. } = last;
+    let within = || attempts.iter().filter(|attempt| attempt.elapsed_s <= seconds);
+    let Some(largest) = within().max_by_key(|attempt| attempt.beliefs) else {
+        return "–".to_owned();
+    };
+    let lower = within().map(|attempt| attempt.lower).fold(f64::NEG_INFINITY, f64::max);
+    let upper = within().map(|attempt| attempt.upper).fold(f64::INFINITY, f64::min);
+    let Attempt { processor_s, elapsed_s, .. } = largest;
     format!("{lower:.2}–{upper:.2}, {:.2}, {processor_s:.1} / {elapsed_s:.1}", upper - lower)
 }

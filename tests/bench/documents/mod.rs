@@ -16,34 +16,13 @@ mod number;
 #[cfg(test)]
 mod tests;
 
+use crate::parts::Part;
 use crate::report::{Report, latest, print};
 use markdown::{Source, Table, plain};
 use measured::Cell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Parts of the benchmark, by the option that selects each.
-const PARTS: [&str; 17] = [
-    "--core",
-    "--bounds",
-    "--kinematics",
-    "--processes",
-    "--recorder",
-    "--flight",
-    "--long",
-    "--joints",
-    "--orders",
-    "--ros1",
-    "--speech",
-    "--endings",
-    "--stops",
-    "--turns",
-    "--console",
-    "--size",
-    "--spoken",
-];
-/// Parts that take fewer repetitions when all are measured.
-const SHORTENED: [&str; 4] = ["--bounds", "--long", "--console", "--spoken"];
 /// The variable that changes what is measured.
 const MODEL: &str = "WHICHONE_WHISPER_MODEL";
 
@@ -216,17 +195,26 @@ fn cells<'a>(table: &'a Table, reports: &[Report]) -> Option<Vec<Compared<'a>>> 
 fn covers(arguments: &[String], command: &str) -> bool {
     let words = command.split_whitespace().filter(|word| *word != "scripts/bench");
     let words = words.map(|word| if word.starts_with(MODEL) { MODEL } else { word });
-    let (parts, settings): (Vec<&str>, Vec<&str>) = words.partition(|word| PARTS.contains(word));
-    let (own_parts, own_settings): (Vec<&str>, Vec<&str>) =
-        without_runs(arguments).into_iter().partition(|word| PARTS.contains(word));
-    let is_measured = |part: &&str| match own_parts.is_empty() {
-        true => !SHORTENED.contains(part),
-        false => own_parts.contains(part),
-    };
+    let (parts, settings) = divided(words);
+    let (own_parts, own_settings) = divided(without_runs(arguments).into_iter());
     let holds_all = |these: &[&str], those: &[&str]| these.iter().all(|it| those.contains(it));
-    parts.iter().all(is_measured)
+    parts.iter().all(|part| part.is_measured_by(&own_parts))
         && holds_all(&settings, &own_settings)
         && holds_all(&own_settings, &settings)
+}
+
+/// The parts that words select, and the other words.
+fn divided<'a>(words: impl Iterator<Item = &'a str>) -> (Vec<&'static Part>, Vec<&'a str>) {
+    let mut parts = Vec::new();
+    let others = words.filter(|word| match Part::of_option(word) {
+        Some(part) => {
+            parts.push(part);
+            false
+        }
+        None => true,
+    });
+    let others = others.collect();
+    (parts, others)
 }
 
 /// The arguments without the number of runs, which changes nothing that is measured.
