@@ -59,36 +59,22 @@ pub(crate) fn measure(report: &mut Report, limit_s: f64, quick: bool) {
         "Bounds on the value of the best policy at the uniform belief, their gap, and the seconds of \
          processor / elapsed that took, on two threads; beside it the value of `lookahead`, dialogues less \
          probable than {CUT:e} cut short. Yes/no questions, costs in seconds. Each column has an attempt that begins \
-         anew, with as many beliefs as are expected to fit; one that takes longer is repeated once with fewer. A column \
-         shows the best of those that have ended in time."
+         anew, with as many beliefs as are expected to fit, and shows the best of those that have ended in time."
     );
     report.table("Certified bounds on hard scenes", note, heads, rows);
 }
 
-/// A first attempt, and one for each column; two where the first did not end in time.
+/// A first attempt, and one for each column.
 fn attempts(problem: &DecisionProblem<'_>, columns: &[f64]) -> Vec<Attempt> {
     let mut attempts = vec![attempt(problem, FIRST)];
     for seconds in columns {
-        for _ in 0..2 {
-            let done = largest_within(&attempts, *seconds);
-            let last = &attempts[attempts.len() - 1];
-            let beliefs = (last.beliefs as f64 * EXPECTED * seconds / last.elapsed_s) as usize;
-            if beliefs <= done || is_exhausted(&attempts) {
-                break;
-            }
-            attempts.push(attempt(problem, beliefs));
-            if attempts[attempts.len() - 1].elapsed_s <= *seconds {
-                break;
-            }
+        let last = &attempts[attempts.len() - 1];
+        let beliefs = last.beliefs as f64 * EXPECTED * seconds / last.elapsed_s;
+        if beliefs as usize > last.beliefs && !is_exhausted(&attempts) {
+            attempts.push(attempt(problem, beliefs as usize));
         }
     }
     attempts
-}
-
-/// Most beliefs of an attempt that has ended in time.
-fn largest_within(attempts: &[Attempt], seconds: f64) -> usize {
-    let within = attempts.iter().filter(|attempt| attempt.elapsed_s <= seconds);
-    within.map(|attempt| attempt.beliefs).max().unwrap_or(0)
 }
 
 /// Returns whether more beliefs have shown nothing more, with all the memory that the plan may have.
@@ -120,12 +106,12 @@ fn process_s() -> f64 {
 }
 
 fn cell(attempts: &[Attempt], seconds: f64) -> String {
-    let within = || attempts.iter().filter(|attempt| attempt.elapsed_s <= seconds);
-    let Some(largest) = within().max_by_key(|attempt| attempt.beliefs) else {
-        return "–".to_owned();
-    };
-    let lower = within().map(|attempt| attempt.lower).fold(f64::NEG_INFINITY, f64::max);
-    let upper = within().map(|attempt| attempt.upper).fold(f64::INFINITY, f64::min);
-    let Attempt { processor_s, elapsed_s, .. } = largest;
+    let mut within = attempts.iter().filter(|attempt| attempt.elapsed_s <= seconds);
+    let Some(first) = within.next() else { return "–".to_owned() };
+    let (mut lower, mut upper, mut last) = (first.lower, first.upper, first);
+    for attempt in within {
+        (lower, upper, last) = (lower.max(attempt.lower), upper.min(attempt.upper), attempt);
+    }
+    let Attempt { processor_s, elapsed_s, .. } = last;
     format!("{lower:.2}–{upper:.2}, {:.2}, {processor_s:.1} / {elapsed_s:.1}", upper - lower)
 }
