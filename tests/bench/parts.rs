@@ -1,4 +1,4 @@
-//! The parts of the benchmarks: the one list of them.
+//! The parts of the benchmarks. The help of `scripts/bench` repeats their names, because it builds nothing.
 
 use crate::options::Options;
 use crate::report::Report;
@@ -177,5 +177,25 @@ impl clap::FromArgMatches for Named {
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
         *self = Self::from_arg_matches(matches)?;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PARTS;
+    use std::path::Path;
+
+    #[test]
+    fn script_knows_the_parts() {
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts/bench");
+        let script = std::fs::read_to_string(script).unwrap();
+        // As the script itself finds them.
+        let lines = script.lines().filter_map(|line| line.strip_prefix("#   scripts/bench --"));
+        let named = lines.filter(|line| line.contains(" only "));
+        let mut named: Vec<&str> = named.filter_map(|line| line.split(' ').next()).collect();
+        let mut parts = PARTS.map(|part| part.name);
+        named.sort_unstable();
+        parts.sort_unstable();
+        assert_eq!(named, parts);
     }
 }

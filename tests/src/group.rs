@@ -304,20 +304,16 @@ impl Group {
     /// Ends the processes of every group that this process has started, and those that they start meanwhile.
     pub(crate) fn end_all() {
         let pids = || Self::pids_started_by(std::process::id());
-        let mut signalled = HashSet::new();
-        let is_over = wait_for_or_none(DOWN_S, || {
-            let pids = pids();
-            let new = pids.iter().filter(|pid| signalled.insert(**pid));
-            new.for_each(|pid| _ = kill_process(*pid, Signal::TERM));
-            pids.is_empty().then_some(())
-        });
-        if is_over.is_none() {
+        let end = |signal| {
+            let mut signalled = HashSet::new();
             wait_for_or_none(DOWN_S, || {
                 let pids = pids();
-                pids.iter().for_each(|pid| _ = kill_process(*pid, Signal::KILL));
+                let new = pids.iter().filter(|pid| signalled.insert(**pid));
+                new.for_each(|pid| _ = kill_process(*pid, signal));
                 pids.is_empty().then_some(())
-            });
-        }
+            })
+        };
+        let _ = end(Signal::TERM).or_else(|| end(Signal::KILL));
     }
 }
 

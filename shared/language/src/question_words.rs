@@ -2,6 +2,7 @@
 
 use scene::{AttributeId, Question, Role, Scene, WordId};
 
+use crate::lexicon::ValueSense;
 use crate::morphology::inflected;
 
 /// A question, in words of the scene.
@@ -39,8 +40,6 @@ pub(crate) struct SceneQuestions {
     attributes: Vec<Box<[WordId]>>,
     /// The names of each attribute, as one word each.
     names: Vec<Box<[String]>>,
-    /// The names of each attribute's values.
-    value_names: Vec<Box<[String]>>,
     /// Kinds that are named in plural, as "scissors" are.
     plurals: Vec<WordId>,
 }
@@ -59,16 +58,10 @@ impl SceneQuestions {
             let all = std::iter::once(&attribute.name).chain(&attribute.synonyms);
             all.map(|name| name.to_lowercase()).collect()
         };
-        let value_names = |attribute: &scene::Attribute| {
-            let all = attribute.values.iter();
-            let all = all.flat_map(|value| std::iter::once(&value.name).chain(&value.synonyms));
-            all.map(|name| name.to_lowercase()).collect()
-        };
         Self {
             objects: objects.map(|i| scene.vocabulary(i).collect()).collect(),
             attributes: scene.attributes().iter().map(words).collect(),
             names: scene.attributes().iter().map(names).collect(),
-            value_names: scene.attributes().iter().map(value_names).collect(),
             plurals: values.filter(is_plural).map(|value| value.word).collect(),
         }
     }
@@ -84,11 +77,9 @@ impl SceneQuestions {
         found.map_or(&[], |k| &self.attributes[k])
     }
 
-    /// The values of the attribute that has a value of this name.
-    pub(crate) fn values_beside(&self, name: &str) -> &[WordId] {
-        let is_named = |names: &[String]| names.iter().any(|it| it == name);
-        let found = self.value_names.iter().position(|names| is_named(names));
-        found.map_or(&[], |k| &self.attributes[k])
+    /// The values of the attribute that has a value.
+    pub(crate) fn values_beside(&self, value: &ValueSense) -> &[WordId] {
+        value.attributes.first().map_or(&[], |k| &self.attributes[k.index()])
     }
 
     /// "a pair of scissors" is one thing, where the scene calls it so.

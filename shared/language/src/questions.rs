@@ -5,6 +5,7 @@ use scene::{Intent, WordId};
 use crate::clauses::{Clause, Topic};
 use crate::content::{Asserted, Content};
 use crate::extractor::extract;
+use crate::lexicon::{Lexicon, Sense};
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
@@ -14,6 +15,7 @@ use crate::token_class::{Class, classes};
 pub(crate) fn question<'a>(
     tags: &[Tag<'a>],
     clauses: &[Clause],
+    lexicon: &Lexicon,
     scene: &SceneQuestions,
 ) -> (Intent, Content<'a>) {
     let asking: Vec<Clause> = clauses.iter().map(of_question).collect();
@@ -22,7 +24,9 @@ pub(crate) fn question<'a>(
     let intent = first.map_or(Intent::AskBack, |clause| {
         kind(&tags[clause.span.clone()], !content.base.is_empty())
     });
-    if let Some(values) = first.and_then(|it| asked_values(&tags[it.span.clone()], scene))
+    let asked = first.and_then(|it| asked_values(&tags[it.span.clone()], lexicon, scene));
+    // To `kind`, "how long is the wrench" asks whether there is one.
+    if let Some(values) = asked
         && matches!(intent, Intent::AskBack | Intent::AskWhether)
         && !content.base.is_empty()
     {
@@ -44,10 +48,17 @@ pub(crate) fn question<'a>(
 }
 
 /// "what colour is the wrench", "how long is it": the values of the attribute, if it has more than one.
-fn asked_values<'s>(tags: &[Tag<'_>], scene: &'s SceneQuestions) -> Option<&'s [WordId]> {
+fn asked_values<'s>(
+    tags: &[Tag<'_>],
+    lexicon: &Lexicon,
+    scene: &'s SceneQuestions,
+) -> Option<&'s [WordId]> {
     let values = |tag: &Tag<'_>| match tag.class() {
         Some(Class::Attribute) => scene.values(tag.word),
-        Some(Class::AskBack) if tag.word == "how" => scene.values_beside(tag.second),
+        Some(Class::AskBack) if tag.word == "how" => match lexicon.word(tag.second) {
+            Some(Sense::Value(value)) => scene.values_beside(value),
+            _ => &[],
+        },
         _ => &[],
     };
     tags.iter().map(values).find(|values| values.len() > 1)

@@ -153,7 +153,7 @@ impl Reader {
             intent => intent,
         };
         if intent == Intent::AskBack {
-            (intent, content) = question(&tags, &clauses, &self.questions);
+            (intent, content) = question(&tags, &clauses, &self.lexicon, &self.questions);
             if intent != Intent::AskHelp && fetches_it(&tags, &clauses) {
                 intent = Intent::Inform;
             }

@@ -205,16 +205,9 @@ fn covers(arguments: &[String], command: &str) -> bool {
 
 /// The parts that words select, and the other words.
 fn divided<'a>(words: impl Iterator<Item = &'a str>) -> (Vec<&'static Part>, Vec<&'a str>) {
-    let mut parts = Vec::new();
-    let others = words.filter(|word| match Part::of_option(word) {
-        Some(part) => {
-            parts.push(part);
-            false
-        }
-        None => true,
-    });
-    let others = others.collect();
-    (parts, others)
+    let (options, others): (Vec<_>, Vec<_>) =
+        words.partition(|word| Part::of_option(word).is_some());
+    (options.into_iter().filter_map(Part::of_option).collect(), others)
 }
 
 /// The arguments without the number of runs, which changes nothing that is measured.

@@ -176,6 +176,8 @@ fn reports_cover_the_commands_that_measure_the_same() {
     assert!(covers(&["--runs", "3", "--stops", "--core"], "scripts/bench --core"));
     assert!(covers(&[], "scripts/bench --core"), "all parts");
     assert!(!covers(&[], "scripts/bench --spoken"), "shorter among all parts");
+    assert!(covers(&["--processes"], "scripts/bench --hops"), "a part of it");
+    assert!(!covers(&["--hops"], "scripts/bench --processes"));
     assert!(!covers(&["--stops"], "scripts/bench --core"));
     assert!(!covers(&["--core", "--quick"], "scripts/bench --core"));
     assert!(!covers(&["--speech"], "scripts/bench --speech --quick"));

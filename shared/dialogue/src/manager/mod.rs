@@ -3,6 +3,7 @@
 //!
 //! | file | contents |
 //! |---|---|
+//! | `setup.rs` | what the manager decides by |
 //! | `state.rs`, `line.rs` | state, causes of its changes, acts and lines |
 //! | `intents.rs` | dispatch of an utterance by the user's intent |
 //! | `attribution.rs` | the questions that an utterance answers |
@@ -41,6 +42,7 @@ mod reconfigure;
 mod references;
 mod refold;
 mod replies;
+mod setup;
 mod state;
 
 pub use concede::Conceded;
@@ -52,6 +54,7 @@ pub use history::History;
 pub use line::{AboutObjects, Content, Line, Preface, Reason, Remark};
 pub use put_back::{Progress, PuttingBack, WithUser};
 pub use refold::{Mismatch, refold, refold_since};
+pub use setup::Setup;
 pub use state::{
     Act, Basis, Cause, Deferred, Interaction, KnownObject, PROMPTS_MAX, Preference, Prompt, Record,
     State, Timing, Utterance,
@@ -62,52 +65,17 @@ use objects::SceneFile;
 use pointing::Pointing;
 use scene::{ObjectId, Scene};
 
-use crate::gesture::Gestures;
 use crate::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 use crate::time::Time;
 use crate::{
-    ActKind, Action, Actions, Announce, Belief, Costs, Decision, DecisionProblem, Durations, Ended,
-    Model, Outcome, PickOutcome, Planner, PolicyTable, Prior, Step, Table, TurnTaking, rendering,
+    ActKind, Action, Belief, Decision, DecisionProblem, Ended, Model, Outcome, PickOutcome,
+    Planner, PolicyTable, Step, Table, TurnTaking, rendering,
 };
 
 /// Objects that are named before one of them is picked.
 const LEFT_MAX: usize = 3;
 /// Alternatives that an act lists.
 const ALTERNATIVES_MAX: usize = 5;
-
-/// Everything that the manager decides by, besides its planner.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Setup {
-    /// The scene.
-    pub scene: Scene,
-    /// Observation model of the scene.
-    pub model: Model,
-    /// Costs of the actions.
-    pub costs: Costs,
-    /// Measured durations of the actions, if any.
-    pub durations: Option<Durations>,
-    /// Actions that the robot may take.
-    pub actions: Actions,
-    /// Whether an announced pick can be denied, in the planner's eyes.
-    pub announce: Announce,
-    /// Prior of a new interaction.
-    pub prior: Prior,
-    /// Model of pointing gestures and the user's place (metres, frame `base`); none where gestures
-    /// do not count.
-    pub gestures: Option<(Gestures, [f64; 3])>,
-    /// Settings of turn-taking.
-    pub turns: TurnTaking,
-    /// Whether the objects come from perception; those of the scene are what they may be.
-    pub perceives: bool,
-}
-
-impl Setup {
-    /// Returns the decision problem for planners.
-    fn problem(&self) -> DecisionProblem<'_> {
-        let problem = DecisionProblem::new(&self.model, self.costs, self.actions);
-        DecisionProblem { durations: self.durations.as_ref(), announce: self.announce, ..problem }
-    }
-}
 
 /// The dialogue manager of one scene and one decision problem.
 pub struct Manager {

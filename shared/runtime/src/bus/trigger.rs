@@ -1,7 +1,7 @@
 //! What wakes a sleeping service: iceoryx2's datagram socket, and a counter of each process that wakes it often.
 //!
 //! A datagram has to be received, or its socket's short queue fills up and wake-ups are lost; a counter need not be
-//! read. So the ninth wake-up offers a counter (see [`super::counter`]), and later ones add to it once it is taken.
+//! read. So a writer that goes on offers a counter (see [`super::counter`]), and later wake-ups add to it once it is taken.
 //! A command such as `whichone say` wakes a service a few times and ends: an offer would cost more than it saves.
 
 use super::counter::Offered;
@@ -30,7 +30,7 @@ type Storage = Segment<State<Bits, ()>>;
 type SocketHandle = UnixDatagramHandle<Bits, Storage>;
 type SocketWaiter = UnixDatagramWaiter<Bits, Storage>;
 
-/// Wake-ups of a listener before a counter is offered.
+/// Datagrams to a listener before the one that offers a counter: more than a command sends.
 const DATAGRAMS: u8 = 8;
 
 /// The event of a group: names and layout in shared memory are those of iceoryx2's datagram trigger.

@@ -1,0 +1,40 @@
+//! What the manager decides by.
+
+use scene::Scene;
+
+use crate::gesture::Gestures;
+use crate::{Actions, Announce, Costs, DecisionProblem, Durations, Model, Prior, TurnTaking};
+
+/// Everything that the manager decides by, besides its planner.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// The scene.
+    pub scene: Scene,
+    /// Observation model of the scene.
+    pub model: Model,
+    /// Costs of the actions.
+    pub costs: Costs,
+    /// Measured durations of the actions, if any.
+    pub durations: Option<Durations>,
+    /// Actions that the robot may take.
+    pub actions: Actions,
+    /// Whether an announced pick can be denied, in the planner's eyes.
+    pub announce: Announce,
+    /// Prior of a new interaction.
+    pub prior: Prior,
+    /// Model of pointing gestures and the user's place (metres, frame `base`); none where gestures
+    /// do not count.
+    pub gestures: Option<(Gestures, [f64; 3])>,
+    /// Settings of turn-taking.
+    pub turns: TurnTaking,
+    /// Whether the objects come from perception; those of the scene are what they may be.
+    pub perceives: bool,
+}
+
+impl Setup {
+    /// Returns the decision problem for planners.
+    pub(super) fn problem(&self) -> DecisionProblem<'_> {
+        let problem = DecisionProblem::new(&self.model, self.costs, self.actions);
+        DecisionProblem { durations: self.durations.as_ref(), announce: self.announce, ..problem }
+    }
+}
