@@ -45,7 +45,7 @@ const FAULTS: [(&str, &str, &str); 23] = [
     ("is-without-beats", "beats", "expected WATCHDOG=1 at least every 3 s, found none"),
     ("forgets-its-epoch", "identity", "expected messages of epoch 7, found 8"),
     ("forgets-its-incarnation", "identity", "expected messages of incarnation 1, found 77"),
-    ("moves-the-arm", "topics", "arm/motion, a topic of clients"),
+    ("speaks-for-users", "topics", "speech/audio, a topic of clients"),
     ("dies-when-restarted", "restart", "found its end: exit 4"),
     ("is-silent", "answers", "found none with its `seq`"),
     ("renumbers", "answers", "found none with its `seq`"),

@@ -95,7 +95,7 @@ fn beliefs_and_words(group: &Group) {
         .filter_map(|line| match line.record {
             JournalRecord::Speech(record) => match *record {
                 SpeechRecord::Accepted(accepted) => Some(accepted.text),
-                SpeechRecord::Presented(_) => None,
+                _ => None,
             },
             other => panic!("{other:?} in the journal of speech"),
         })

@@ -18,6 +18,7 @@ const CRASHES: Protocol = Protocol {
     lost: 0,
     lossy: true,
     stops: false,
+    says_stop: false,
     impatient: false,
     broken: None,
 };
@@ -25,6 +26,8 @@ const CRASHES: Protocol = Protocol {
 const ONE: Protocol = Protocol { objects: 1, ..CRASHES };
 /// One object, and a stop on the way.
 const STOPS: Protocol = Protocol { objects: 1, crashes: 2, stops: true, ..CRASHES };
+/// One object, and a user who says "stop" on the way.
+const SAYS_STOP: Protocol = Protocol { objects: 1, says_stop: true, ..CRASHES };
 /// One object, and a user who talks on before the robot has taken in what was said.
 const TALKS: Protocol = Protocol { objects: 1, crashes: 1, impatient: true, ..CRASHES };
 /// Two objects, and one journal set aside at any moment; the bus delays and reorders.
@@ -74,6 +77,11 @@ fn protocol_holds_with_a_stop() {
 }
 
 #[test]
+fn protocol_holds_with_a_stop_that_is_said() {
+    holds(SAYS_STOP);
+}
+
+#[test]
 fn protocol_holds_when_a_journal_is_set_aside() {
     holds(LOST);
 }
@@ -87,6 +95,15 @@ fn protocol_needs_its_rules_of_durability() {
     breaks(CRASHES, Broken::IgnoreGripper, "grasps twice");
     breaks(STOPS, Broken::ForgetLatch, "moves after its stop");
     breaks(ONE, Broken::NoRepresentation, "progress");
+}
+
+#[test]
+fn protocol_needs_its_rules_for_a_stop_that_is_said() {
+    breaks(SAYS_STOP, Broken::StopOnce, "progress");
+    breaks(SAYS_STOP, Broken::StopNotJournaled, "progress");
+    breaks(SAYS_STOP, Broken::SettleByAnyAnswer, "progress");
+    breaks(SAYS_STOP, Broken::ConfirmBeforeSync, "moves after its stop");
+    breaks(SAYS_STOP, Broken::ReportIntention, "moves after its stop");
 }
 
 #[test]

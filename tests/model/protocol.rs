@@ -17,6 +17,7 @@ mod faults;
 mod policy;
 mod speech;
 mod state;
+mod stop_order;
 
 /// The rule that a mutant breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +46,16 @@ pub(crate) enum Broken {
     IgnoreGripper,
     /// The arm forgets the latched stop in a restart.
     ForgetLatch,
+    /// Speech sends a stop that was said once.
+    StopOnce,
+    /// Speech keeps a stop that was said in memory only.
+    StopNotJournaled,
+    /// An answer to an earlier order settles the pending one.
+    SettleByAnyAnswer,
+    /// The arm may confirm a stop before its latch is durable.
+    ConfirmBeforeSync,
+    /// The robot says that it has stopped once a stop is accepted.
+    ReportIntention,
     /// A new policy journal begins with utterance 0, and speech sends the old ones.
     ReplayAfterLoss,
     /// A new policy journal numbers interactions from 1; picks are compared with their objects.
@@ -72,6 +83,8 @@ pub(crate) struct Protocol {
     pub(crate) lossy: bool,
     /// Whether the user may stop the arm, once.
     pub(crate) stops: bool,
+    /// Whether the user may say "stop", once.
+    pub(crate) says_stop: bool,
     /// Whether the user says the second thing before the robot has taken in the first.
     pub(crate) impatient: bool,
     /// The rule that does not hold.
@@ -99,6 +112,9 @@ pub(crate) enum Step {
     Play(u8, Cut),
     Present(u8, Cut),
     SpeechTick,
+    SayStop(Cut),
+    StopSettled(Cut),
+    StopOrder(Cut),
     Apply(u8, Cut),
     PickEnds(u8, Cut),
     PolicyTick,
@@ -177,9 +193,10 @@ fn commit(
 
 fn kill(state: &mut State, service: Service) {
     match service {
-        Service::Speech => state.speech = None,
+        Service::Speech => (state.speech, state.bus.stop_done) = (None, 0),
         Service::Policy => state.policy = None,
-        Service::Arm => state.arm = None,
+        // Nothing listens to orders to a process that is away.
+        Service::Arm => (state.arm, state.bus.stop) = (None, 0),
     }
 }
 
@@ -192,6 +209,7 @@ impl System for Protocol {
     fn successors(&self, state: &State, visit: &mut dyn FnMut(Step, State)) {
         self.client(state, visit);
         self.speech(state, visit);
+        self.stop_order(state, visit);
         self.policy(state, visit);
         self.arm(state, visit);
         self.starts(state, visit);
@@ -211,6 +229,6 @@ impl System for Protocol {
     }
 
     fn is_done(&self, state: &State) -> bool {
-        state.client.got == self.objects
+        state.client.got == self.objects && state.world.stop_due == 0
     }
 }

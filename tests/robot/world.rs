@@ -8,9 +8,10 @@ use config::Settings;
 use messages::WireCode;
 use messages::robot::{Drill, DrillKind, JointState, Order, Report};
 use messages::{
-    ActKind, ArmStatus, MessageRef, MotionCommand, MotionInhibit, MotionOrder, PickOutcome,
+    ActKind, ArmStatus, MessageRef, MotionInhibit, MotionOrder, PickOutcome,
     PickPhase, RobotAct, Sighting, TableView,
 };
+use service::stop_socket::{Caller, StopOrder};
 use service::{Span, Time};
 use std::path::Path;
 use whichone_tests::simulated_group::{Faults, Host};
@@ -124,8 +125,8 @@ impl World {
 
     pub(crate) fn motion(&mut self, order: MotionOrder) {
         let given_ns = self.now.ns();
-        let command = MotionCommand { given_ns, order: order.code(), ..MotionCommand::default() };
-        self.to_arm.push(In::Motion(command));
+        let order = StopOrder { order, given_ns };
+        self.to_arm.push(In::StopOrder(order, Caller::named(b"a client")));
     }
 
     /// Injects a fault into the robot.

@@ -7,14 +7,15 @@ use arm::ArmNode;
 use config::Settings;
 use grounding::GroundingNode;
 use messages::{
-    ActKind, ArmStatus, Injection, MotionCommand, MotionOrder, PickId, PickOutcome, PickPhase,
+    ActKind, ArmStatus, Injection, MotionOrder, PickId, PickOutcome, PickPhase,
     ReceiptStatus, RequestKey, RobotAct, Sound,
 };
 use policy::PolicyNode;
 use scene::{ObjectId, Question};
 use service::{Node, Span, Time};
+use service::stop_socket::{Caller, StopOrder};
 use speech::{PlaybackEvent, PlaybackState, SpeechNode};
-use whichone_tests::simulated_group::{Faults, Host};
+use whichone_tests::simulated_group::{Faults, Host, RepeatedStop};
 
 /// Duration of a robot's sentence.
 const SENTENCE: Span = Span::from_ms(1_500);
@@ -90,6 +91,7 @@ pub(crate) struct Group {
     arm: Host<ArmNode>,
     faults: Faults,
     inboxes: Inboxes,
+    stop: RepeatedStop,
     saying: Option<Saying>,
     /// The question of each prompt.
     questions: BTreeMap<u64, Question>,
@@ -109,6 +111,7 @@ impl Group {
             arm: Host::new::<arm::shell::ArmProgram>(settings),
             faults: Faults::none(),
             inboxes: Inboxes::default(),
+            stop: RepeatedStop::default(),
             saying: None,
             questions: BTreeMap::new(),
             latest_pick: None,
@@ -139,9 +142,8 @@ impl Group {
                 self.inboxes.speech.push(speech::In::Injection(injection));
             }
             Input::Motion(order) => {
-                let (given_ns, order) = (self.now.ns(), order.into());
-                let command = MotionCommand { given_ns, order, ..MotionCommand::default() };
-                self.inboxes.arm.push(arm::In::Motion(command));
+                let order = StopOrder { order, given_ns: self.now.ns() };
+                self.inboxes.arm.push(arm::In::StopOrder(order, Caller::named(b"an operator")));
             }
         }
     }
@@ -185,6 +187,7 @@ impl Group {
         self.inboxes.policy.extend(observations.map(|it| policy::In::Observation(it.into())));
         let outputs = self.policy.wake(policy, now, &mut self.faults);
         self.route_policy(outputs);
+        let arm = arm.into_iter().chain(self.stop.order()).collect();
         let outputs = self.arm.wake(arm, now, &mut self.faults);
         self.route_arm(outputs);
     }
@@ -201,7 +204,7 @@ impl Group {
                 speech::Out::Activity(activity) => {
                     self.inboxes.policy.push(policy::In::Activity(activity));
                 }
-                speech::Out::Motion(command) => self.inboxes.arm.push(arm::In::Motion(command)),
+                speech::Out::Stop(given) => self.stop.give(given),
                 speech::Out::Receipt(receipt) if receipt.status != ReceiptStatus::Accepted => {
                     let note = receipt.note.as_str().unwrap_or_default().to_owned();
                     self.seen.refused.push(note);
@@ -289,6 +292,9 @@ impl Group {
                     self.see_arm(&status);
                     self.inboxes.policy.push(policy::In::Arm(status));
                     self.inboxes.speech.push(speech::In::Arm(status));
+                }
+                arm::Out::StopState(_, state) => {
+                    self.inboxes.speech.extend(self.stop.on_answer(&state));
                 }
                 arm::Out::Plan(request) => {
                     self.inboxes.arm.push(arm::In::Planned(Box::new(request.solve())));

@@ -40,7 +40,7 @@ use goal::PlanFailures;
 use messages::pick::Pick;
 use messages::robot::{Order, Report};
 use messages::{
-    ArmStatus, JointStates, MessageRef, MotionCommand, MotionInhibit, MotionOrder, PickOutcome,
+    ArmStatus, JointStates, MessageRef, MotionInhibit, MotionOrder, PickOutcome,
     PickPhase, RobotAct, TableView, TrajectoryView, WorldView,
 };
 use orders::StandingAct;
@@ -49,7 +49,7 @@ use preflight::ArmSetup;
 use publish::{Activity, Facts, Publisher};
 use scene::{ObjectId, Scene};
 use serde::{Deserialize, Serialize};
-use service::stop_socket::{Caller, StopState};
+use service::stop_socket::{Caller, StopOrder, StopState};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use state::{ArmState, Cause, Record};
 use std::process::ExitCode;
@@ -67,10 +67,8 @@ pub fn run() -> ExitCode {
 pub enum In<'a> {
     /// Act of the policy.
     Act(MessageRef<'a, RobotAct>),
-    /// Stop or resume, from speech and clients.
-    Motion(MotionCommand),
-    /// The same from a client that is answered.
-    StopOrder(MotionCommand, Caller),
+    /// Stop or release, from a client that is answered.
+    StopOrder(StopOrder, Caller),
     /// Report of a real robot.
     Robot(Report<'a>),
     /// Result of a [`PlanRequest`].
@@ -167,10 +165,9 @@ impl Node for ArmNode {
         match event {
             Event::SetAside(set_aside) => self.set_aside(set_aside, now, fx),
             Event::Started => self.begin(now, fx),
-            Event::Message(In::Motion(command)) => self.on_motion_command(&command, now, fx),
-            Event::Message(In::StopOrder(command, caller)) => {
-                self.on_motion_command(&command, now, fx);
-                self.callers.push((caller, command.given_ns));
+            Event::Message(In::StopOrder(order, caller)) => {
+                self.on_stop_order(&order, now, fx);
+                self.callers.push((caller, order.given_ns));
                 self.urgent = true;
             }
             Event::Message(In::Act(act)) => self.on_act(&act, now, fx),

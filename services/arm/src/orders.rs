@@ -5,10 +5,11 @@ use crate::state::Cause;
 use crate::{ArmNode, Fx};
 use messages::pick::{Order, Pick, judge};
 use messages::{
-    ActId, ActKind, MotionCommand, MotionOrder, PickId, PickOutcome, PickPhase, RobotAct, Task,
+    ActId, ActKind, MotionOrder, PickId, PickOutcome, PickPhase, RobotAct, Task,
 };
 use scene::{ObjectId, Question};
 use service::Time;
+use service::stop_socket::StopOrder;
 
 /// The relevant part of the policy's latest act.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -138,9 +139,8 @@ impl ArmNode {
     }
 
     /// Handles the motion stop and its release.
-    pub(crate) fn on_motion_command(&mut self, command: &MotionCommand, now: Time, fx: &mut Fx) {
-        let given = Time(command.given_ns);
-        let order = command.order.get();
+    pub(crate) fn on_stop_order(&mut self, order: &StopOrder, now: Time, fx: &mut Fx) {
+        let (order, given) = (order.order, Time(order.given_ns));
         if given <= self.state.obeyed {
             return;
         }

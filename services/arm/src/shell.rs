@@ -5,7 +5,7 @@ use crate::{ArmNode, Config, In, Out, inspection, journal_record};
 use config::{Driver, Settings};
 use messages::Service;
 use messages::{
-    ArmStatus, JointStates, MotionCommand, RobotAct, TableView, TrajectoryView, WorldView, topics,
+    ArmStatus, JointStates, RobotAct, TableView, TrajectoryView, WorldView, topics,
 };
 use planner::PlannerThread;
 use preflight::ArmSetup;
@@ -71,7 +71,6 @@ impl Program for ArmProgram {
 /// The arm's topics and its planner.
 #[derive(Debug)]
 pub struct ArmShell {
-    motion: Reader<MotionCommand>,
     acts: Reader<RobotAct>,
     status: Writer<ArmStatus>,
     joints: Writer<JointStates>,
@@ -92,7 +91,6 @@ impl Shell<ArmNode> for ArmShell {
         let table = perceives.then(|| bus.encoded_reader(&topics::OBJECTS));
         let robot = (context.settings.arm.driver == Driver::Baxter).then(|| RobotTopics::open(bus));
         Ok(Self {
-            motion: bus.reader(&topics::MOTION)?,
             acts: bus.reader(&topics::ACT)?,
             status: bus.writer(&topics::STATUS)?,
             joints: bus.writer(&topics::JOINTS)?,
@@ -113,9 +111,9 @@ impl Shell<ArmNode> for ArmShell {
         take: &mut dyn FnMut(In<'_>),
     ) -> Result<(), PortError> {
         if is_readable {
-            self.stop.drain(|command, caller| take(In::StopOrder(command, caller)));
+            self.stop.drain(|order, caller| take(In::StopOrder(order, caller)));
         }
-        self.motion.drain(|message| take(In::Motion(*message)))
+        Ok(())
     }
 
     fn urgent_fd(&self) -> Option<BorrowedFd<'_>> {

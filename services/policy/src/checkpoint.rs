@@ -14,6 +14,7 @@ struct Checkpoint {
     floor: Floor,
     said: (PromptId, u32),
     heard_of_speech: Time,
+    rested: Option<Time>,
     rejected: u64,
     waiting_since: Option<Time>,
     next_send: Time,
@@ -23,7 +24,7 @@ impl PolicyNode {
     /// Returns the state; `None` where objects are followed, which is not described.
     pub(crate) fn whole_state(&self) -> Option<Vec<u8>> {
         let Self { manager: _, state, perceived, floor, said, heard_of_speech, .. } = self;
-        let Self { rejected, waiting_since, next_send, .. } = self;
+        let Self { rested, rejected, waiting_since, next_send, .. } = self;
         if perceived.is_some() {
             return None;
         }
@@ -32,6 +33,7 @@ impl PolicyNode {
             floor: *floor,
             said: *said,
             heard_of_speech: *heard_of_speech,
+            rested: *rested,
             rejected: *rejected,
             waiting_since: *waiting_since,
             next_send: *next_send,
@@ -42,10 +44,10 @@ impl PolicyNode {
     /// Returns the node of this state.
     pub(crate) fn with_whole_state(config: Config, bytes: &[u8]) -> Result<Self, NodeError> {
         let checkpoint = postcard::from_bytes(bytes);
-        let Checkpoint { state, floor, said, heard_of_speech, rejected, waiting_since, next_send } =
+        let Checkpoint { state, floor, said, heard_of_speech, rested, rejected, waiting_since, next_send } =
             checkpoint.map_err(|_| NodeError::foreign_checkpoint())?;
         let record = Record { cause: Cause::Snapshot, at: Time(0), state };
         let node = Self::recover(config, vec![record])?;
-        Ok(Self { floor, said, heard_of_speech, rejected, waiting_since, next_send, ..node })
+        Ok(Self { floor, said, heard_of_speech, rested, rejected, waiting_since, next_send, ..node })
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use config::Settings;
-use dialogue::manager::{Act, Cause, Manager, Record, refold_since};
+use dialogue::manager::{Act, Cause, Manager, MotionStop, Record, refold_since};
 use dialogue::{ActKind, Action, Outcome, PickOutcome, rendering};
 use scene::{Scene, count};
 use service::exit::{Exit, Failure};
@@ -42,8 +42,11 @@ fn why(cause: &Cause) -> String {
             let objects = count(table.objects.len(), "object");
             format!("change {} of the table: {objects}", table.version)
         }
-        Cause::MotionStop(true) => "motion stop latched".to_owned(),
-        Cause::MotionStop(false) => "motion stop released".to_owned(),
+        Cause::MotionStop(MotionStop::Released) => "motion stop released".to_owned(),
+        Cause::MotionStop(MotionStop::Stopping) => "motion stop latched".to_owned(),
+        Cause::MotionStop(MotionStop::Stopped) => "stopped".to_owned(),
+        Cause::StopReport { confirmed: true } => "ordered stop confirmed".to_owned(),
+        Cause::StopReport { confirmed: false } => "ordered stop not confirmed in time".to_owned(),
         Cause::SetAside(over) => format!("journal set aside, numbers up to {over} are over"),
     }
 }

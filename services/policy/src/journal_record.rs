@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use config::Settings;
-use dialogue::manager::{Act, Cause, Interaction, Record, State};
+use dialogue::manager::{Act, Cause, Interaction, MotionStop, Record, State};
 use dialogue::{Action, Ended, Interpretation, Presentation, rendering};
 use scene::{ObjectId, Scene, WordId};
 use service::journal_record::{
@@ -62,7 +62,7 @@ pub(crate) fn explain(scene: Option<&Scene>, record: &Record) -> PolicyRecord {
             .and_then(|handed_over| handed_over.object())
             .map(|object| names.object(object)),
         putting_back: state.putting_back.as_ref().map(|back| names.object(back.object)),
-        stopped: state.stopped,
+        stopped: state.motion_stop.is_latched(),
     }
 }
 
@@ -129,8 +129,10 @@ fn cause(names: &Names<'_>, cause: &Cause) -> PolicyCause {
             version: table.version,
             objects: table.objects.iter().map(|object| object.name.clone()).collect(),
         },
-        Cause::MotionStop(true) => PolicyCause::Stopped,
-        Cause::MotionStop(false) => PolicyCause::Released,
+        Cause::MotionStop(MotionStop::Released) => PolicyCause::Released,
+        Cause::MotionStop(MotionStop::Stopping) => PolicyCause::Stopping,
+        Cause::MotionStop(MotionStop::Stopped) => PolicyCause::Stopped,
+        Cause::StopReport { confirmed } => PolicyCause::StopReport { confirmed: *confirmed },
         Cause::SetAside(numbers_over) => PolicyCause::SetAside { numbers_over: *numbers_over },
     }
 }

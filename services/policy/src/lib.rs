@@ -18,7 +18,7 @@ mod view;
 mod tests;
 
 use dialogue::ids::{PromptId, UtteranceSeq};
-use dialogue::manager::{Cause, Floor, HEARING_MAX, Manager, Record, State, Utterance};
+use dialogue::manager::{Cause, Floor, HEARING_MAX, Manager, MotionStop, Record, State, Utterance};
 use dialogue::{PickOutcome, PickPhase, Presentation};
 use messages::inbox::{Inbox, Verdict};
 use messages::{
@@ -39,6 +39,10 @@ pub fn run() -> ExitCode {
 const RESEND_EVERY: Span = Span::from_ms(250);
 /// Longest time without a message of speech, which sends several a second, that is no outage.
 const OUTAGE: Span = Span::from_ms(1_000);
+
+/// Longest time in which the arm confirms an ordered stop: it halts within 0.1 s and reports its status four
+/// times a second.
+const STOP_CONFIRMATION_MAX: Span = Span::from_ms(1_000);
 
 /// Input of the policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -98,6 +102,8 @@ pub struct PolicyNode {
     said: (PromptId, u32),
     /// When speech was last heard of.
     heard_of_speech: Time,
+    /// When the arm last reported that it was stopped and at rest, in its latest status.
+    rested: Option<Time>,
     /// Messages rejected as invalid or contradictory.
     rejected: u64,
     /// Since when an earlier observation is missing.
@@ -124,6 +130,7 @@ impl Node for PolicyNode {
             floor: Floor::default(),
             said: Default::default(),
             heard_of_speech: Time(0),
+            rested: None,
             rejected: 0,
             waiting_since: None,
             next_send: Time(0),
@@ -217,6 +224,7 @@ impl PolicyNode {
         self.waiting_since = None;
         let more = self.manager.more_is_coming(&self.floor, now);
         self.apply(Cause::Utterance(Utterance { more, ..utterance }), now, fx);
+        self.report_stop(now, fx);
     }
 
     /// Returns the utterance of an observation; none where it is invalid or of another scene.
@@ -240,12 +248,26 @@ impl PolicyNode {
         })
     }
 
-    /// Goes on when the arm has ended its order; notes the motion stop.
-    fn watch_arm(&mut self, status: &ArmStatus, now: Time, fx: &mut Fx) {
-        let is_stopped = status.stopped != 0;
-        if is_stopped != self.state.stopped {
-            self.apply(Cause::MotionStop(is_stopped), now, fx);
+    /// Reports the effect of a stop that a user ordered: only a status that is younger than the order shows it.
+    fn report_stop(&mut self, now: Time, fx: &mut Fx) {
+        let Some(order) = self.state.stop_order else { return };
+        // A time in the future is of a clock before a restart of the machine.
+        let accepted = order.accepted.min(now);
+        if self.rested.is_some_and(|rested| rested >= accepted) {
+            self.apply(Cause::StopReport { confirmed: true }, now, fx);
+        } else if !order.is_late && now >= accepted + STOP_CONFIRMATION_MAX {
+            self.apply(Cause::StopReport { confirmed: false }, now, fx);
         }
+    }
+
+    /// Continues when the arm has ended its order; notes the motion stop.
+    fn watch_arm(&mut self, status: &ArmStatus, now: Time, fx: &mut Fx) {
+        let stop = motion_stop(status);
+        self.rested = (stop == MotionStop::Stopped).then_some(now);
+        if stop != self.state.motion_stop {
+            self.apply(Cause::MotionStop(stop), now, fx);
+        }
+        self.report_stop(now, fx);
         let Some((pick, object)) = self.state.ordered() else { return };
         if status.phase.get() != PickPhase::Done || status.pick() != pick {
             return;
@@ -297,6 +319,7 @@ impl PolicyNode {
 
     fn tick(&mut self, now: Time, fx: &mut Fx) {
         self.decide_deferred(now, fx);
+        self.report_stop(now, fx);
         self.step_table(None, now, fx);
         if self.manager.silence_is_due(&self.state, &self.floor(now), now) {
             self.apply(Cause::Silence, now, fx);
@@ -334,6 +357,14 @@ impl PolicyNode {
         let view = view::view(&self.manager, &self.state, self.rejected);
         fx.publish(Out::View(Box::new(view)));
         self.next_send = now + RESEND_EVERY;
+    }
+}
+
+fn motion_stop(status: &ArmStatus) -> MotionStop {
+    match (status.stopped, status.moving) {
+        (0, _) => MotionStop::Released,
+        (_, 0) => MotionStop::Stopped,
+        _ => MotionStop::Stopping,
     }
 }
 

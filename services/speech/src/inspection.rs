@@ -17,6 +17,7 @@ pub(crate) fn recorded_at(record: &Record) -> Time {
     match record {
         Record::Accepted(accepted) => accepted.accepted,
         Record::Presented(presentation) => presentation.ended.unwrap_or(presentation.began),
+        Record::StopOrdered(given) | Record::StopSettled(given) => *given,
     }
 }
 
@@ -37,6 +38,8 @@ pub(crate) fn line(record: &Record) -> String {
             let how = if complete { "spoken to its end" } else { "interrupted" };
             format!("line {prompt} {how} (presentation {number})")
         }
+        Record::StopOrdered(_) => "stop ordered".to_owned(),
+        Record::StopSettled(_) => "stop carried out, or overruled by a later order".to_owned(),
     }
 }
 
@@ -86,7 +89,7 @@ fn is_first_after(last: u64, number: u64) -> bool {
 pub(crate) fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
     let accepted = parts.iter().flat_map(|part| part.records()).filter_map(|record| match record {
         Record::Accepted(accepted) => Some(accepted.seq.0),
-        Record::Presented(_) => None,
+        _ => None,
     });
     SharedFacts { utterance: accepted.max().unwrap_or(0), ..SharedFacts::default() }
 }

@@ -1,11 +1,11 @@
 //! Inputs and outputs of the reducer.
 
 use messages::{
-    Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MessageRef, MotionCommand,
+    Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MessageRef,
     Partial, Presented, PromptId, Receipt, RobotAct, Utterance,
 };
 use serde::{Deserialize, Serialize};
-use service::Span;
+use service::{Span, Time};
 
 use crate::Hypothesis;
 use crate::devices::microphone::MicrophoneStatus;
@@ -25,6 +25,8 @@ pub enum In<'a> {
     Act(MessageRef<'a, RobotAct>),
     /// Status of the arm, which may aim at an object.
     Arm(ArmStatus),
+    /// The arm has carried out the stop that was ordered at that time, or obeys a later order.
+    StopSettled(Time),
     /// An event of a microphone or of a client's stream.
     Stream(StreamEvent),
     /// Status of the microphone.
@@ -64,8 +66,8 @@ pub enum Out {
     Presented(Presented),
     /// To the policy.
     Activity(Activity),
-    /// To the arm: the user said stop.
-    Motion(MotionCommand),
+    /// To the arm, until it has carried it out: the stop that a user ordered at that time.
+    Stop(Time),
     /// To clients: quality of hearing.
     Hearing(Hearing),
     /// To clients: interim result.

@@ -12,6 +12,8 @@ pub(crate) fn explain(settings: &[Settings], record: &Record) -> SpeechRecord {
     match record {
         Record::Accepted(accepted) => SpeechRecord::Accepted(accepted_record(settings, accepted)),
         Record::Presented(put) => SpeechRecord::Presented(presentation(settings, put)),
+        Record::StopOrdered(given) => SpeechRecord::StopOrdered { given_ns: given.ns() },
+        Record::StopSettled(given) => SpeechRecord::StopSettled { given_ns: given.ns() },
     }
 }
 
@@ -117,6 +119,8 @@ mod tests {
             Record::Accepted(spoken),
             Record::Presented(cut_short),
             Record::Accepted(pointed),
+            Record::StopOrdered(Time(5 * second)),
+            Record::StopSettled(Time(5 * second)),
         ]
     }
 

@@ -79,6 +79,7 @@ impl Node for SpeechNode {
             match record {
                 Record::Accepted(accepted) => intake.restore(accepted),
                 Record::Presented(presentation) => player.restore(presentation),
+                stop => intake.stop.restore(&stop),
             }
         }
         Ok(Self { intake, player, next_send: Time(0) })
@@ -89,9 +90,13 @@ impl Node for SpeechNode {
             Event::SetAside(SetAside { over, .. }) => {
                 self.intake.accepted.skip(UtteranceSeq(over));
             }
-            Event::Started => self.send(now, fx),
+            Event::Started => {
+                self.intake.stop.resume(now, fx);
+                self.send(now, fx);
+            }
             Event::Message(message) => self.handle(message, now, fx),
             Event::Tick => {
+                self.intake.stop.tick(now);
                 if now >= self.next_send {
                     self.send(now, fx);
                 }
@@ -105,7 +110,8 @@ impl Node for SpeechNode {
     }
 
     fn deadline(&self) -> Option<Time> {
-        Some(self.player.deadline().map_or(self.next_send, |at| at.min(self.next_send)))
+        let deadlines = [self.player.deadline(), self.intake.stop.deadline(), Some(self.next_send)];
+        deadlines.into_iter().flatten().min()
     }
 
     /// Without the policy's mark no utterance can be numbered.
@@ -132,7 +138,8 @@ impl Node for SpeechNode {
 
     fn snapshot(&self) -> Option<Vec<Record>> {
         let accepted = self.intake.accepted.snapshot().map(Record::Accepted);
-        Some(accepted.chain(self.player.snapshot().map(Record::Presented)).collect())
+        let presented = self.player.snapshot().map(Record::Presented);
+        Some(accepted.chain(presented).chain(self.intake.stop.snapshot()).collect())
     }
 }
 
@@ -171,6 +178,7 @@ impl SpeechNode {
             }
             In::Act(act) => self.player.on_act(&act, now, fx),
             In::Arm(status) => self.player.on_arm_status(&status),
+            In::StopSettled(given) => self.intake.stop.settle(given, fx),
             In::Playback(event) => self.player.on_playback(event, now, fx),
         }
     }

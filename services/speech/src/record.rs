@@ -17,6 +17,10 @@ pub enum Record {
     Accepted(Accepted),
     /// A prompt was spoken, to its end or until it was interrupted. Later answers may refer to it.
     Presented(Presentation),
+    /// A user ordered a stop at that time.
+    StopOrdered(Time),
+    /// The arm has carried out the stop that was ordered at that time, or obeys a later order.
+    StopSettled(Time),
 }
 
 /// An accepted utterance.

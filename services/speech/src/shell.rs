@@ -20,7 +20,7 @@ use crate::{
 use config::Settings;
 use crossbeam_channel::Receiver;
 use messages::{
-    Activity, AppliedMark, ArmStatus, AudioChunk, EarState, Hearing, Injection, MotionCommand,
+    Activity, AppliedMark, ArmStatus, AudioChunk, EarState, Hearing, Injection,
     Partial, Presented, Receipt, RobotAct, Service, SoundFile, Utterance, topics,
 };
 use service::bus::{EncodedReader, PortError, Reader, Writer};
@@ -29,6 +29,7 @@ use service::inspection::{Finding, Part, SharedFacts};
 use service::journal_record::JournalRecord;
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
+use service::stop_socket::RepeatedStop;
 use service::worker_channel::DeviceSender;
 use service::{Span, Time};
 
@@ -41,7 +42,7 @@ pub struct SpeechProgram;
 
 impl Program for SpeechProgram {
     const SERVICE: Service = Service::Speech;
-    const RECORD: Option<&'static str> = Some("speech/5");
+    const RECORD: Option<&'static str> = Some("speech/6");
     const ABOUT: &'static str =
         "recognises what users say or type, and speaks the robot's questions";
     type Node = SpeechNode;
@@ -96,7 +97,7 @@ pub struct SpeechShell {
     receipts: Writer<Receipt>,
     presented: Writer<Presented>,
     activity: Writer<Activity>,
-    motion: Writer<MotionCommand>,
+    stop: RepeatedStop,
     hearing: Writer<Hearing>,
     partials: Writer<Partial>,
     /// The recogniser, or why it is off.
@@ -157,7 +158,8 @@ impl Shell<SpeechNode> for SpeechShell {
             receipts: bus.writer(&topics::RECEIPT)?,
             presented: bus.writer(&topics::PRESENTED)?,
             activity: bus.writer(&topics::ACTIVITY)?,
-            motion: bus.writer(&topics::MOTION)?,
+            stop: RepeatedStop::open(paths)
+                .map_err(|error| Failure::file(&paths.stop_socket(), &error))?,
             hearing: bus.writer(&topics::HEARING)?,
             partials: bus.writer(&topics::PARTIAL)?,
             recogniser: start_recogniser(settings, &paths.recogniser(), inbox),
@@ -175,6 +177,12 @@ impl Shell<SpeechNode> for SpeechShell {
         })
     }
 
+    /// Called in each pass, also while the disk is full.
+    fn drain_urgent(&mut self, _: bool, take: &mut dyn FnMut(In<'_>)) -> Result<(), PortError> {
+        self.stop.pass().into_iter().for_each(|given| take(In::StopSettled(given)));
+        Ok(())
+    }
+
     fn drain(&mut self, take: &mut dyn FnMut(In<'_>)) -> Result<(), PortError> {
         self.replies.drain(..).for_each(&mut *take);
         self.acts.drain(|message| take(In::Act(message.into())))?;
@@ -190,7 +198,7 @@ impl Shell<SpeechNode> for SpeechShell {
             Out::Receipt(message) => return self.receipts.send(&message),
             Out::Presented(message) => return self.presented.send(&message),
             Out::Activity(message) => return self.activity.send(&message),
-            Out::Motion(message) => return self.motion.send(&message),
+            Out::Stop(given) => self.stop.give(given),
             Out::Hearing(message) => return self.hearing.send(&message),
             Out::Partial(message) => return self.partials.send(&message),
             Out::InterimSamples(sound, samples) => {

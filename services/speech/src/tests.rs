@@ -117,8 +117,7 @@ impl Outputs {
     }
 
     fn stops_motion(&self) -> bool {
-        let stop = MotionOrder::Stop.code();
-        self.find(|out| matches!(out, Out::Motion(it) if it.order == stop).then_some(())).is_some()
+        self.find(|out| matches!(out, Out::Stop(_)).then_some(())).is_some()
     }
 
     fn recognises(&self) -> Option<u64> {

@@ -4,6 +4,7 @@
 mod accepted;
 mod hearing_status;
 mod origin;
+mod stop_order;
 mod waiting_requests;
 
 use crate::devices::microphone::MicrophoneStatus;
@@ -20,13 +21,14 @@ use accepted::{AcceptedUtterances, Receipts};
 use hearing_status::HearingStatus;
 use language::Completeness;
 use messages::{
-    EarState, GateVerdict, Injection, MotionCommand, MotionOrder, Receipt, ReceiptStatus, Sound,
+    EarState, GateVerdict, Injection, Receipt, ReceiptStatus, Sound,
     Source,
 };
 use origin::Origin;
 use scene::Question;
 use service::{Span, Time};
 use std::ops::RangeInclusive;
+use stop_order::StopOrder;
 use waiting_requests::{Request, SHARE, WaitingRequests};
 
 /// Longest time that a user's speech delays the robot's prompts.
@@ -38,6 +40,7 @@ const TALK_S: RangeInclusive<f64> = 1.0..=60.0;
 pub(crate) struct UtteranceIntake {
     config: Config,
     pub(crate) accepted: AcceptedUtterances,
+    pub(crate) stop: StopOrder,
     waiting: WaitingRequests,
     receipts: Receipts,
     pending: PendingSounds,
@@ -50,9 +53,9 @@ pub(crate) struct UtteranceIntake {
 impl UtteranceIntake {
     /// Returns everything but the configuration, for flights that begin in the middle of a start.
     pub(crate) fn checkpoint(&self) -> Option<Vec<u8>> {
-        let Self { config: _, accepted, waiting, receipts, pending, status, last_partial, early } =
+        let Self { config: _, accepted, stop, waiting, receipts, pending, status, last_partial, early } =
             self;
-        let requests = (accepted, waiting, receipts);
+        let requests = (accepted, stop, waiting, receipts);
         postcard::to_stdvec(&(requests, pending, status, last_partial, early)).ok()
     }
 
@@ -60,14 +63,15 @@ impl UtteranceIntake {
     pub(crate) fn resume(config: Config, checkpoint: &[u8]) -> Option<Self> {
         let (requests, pending, status, last_partial, early) =
             postcard::from_bytes(checkpoint).ok()?;
-        let (accepted, waiting, receipts) = requests;
-        Some(Self { config, accepted, waiting, receipts, pending, status, last_partial, early })
+        let (accepted, stop, waiting, receipts) = requests;
+        Some(Self { config, accepted, stop, waiting, receipts, pending, status, last_partial, early })
     }
 
     pub(crate) fn new(config: Config) -> Self {
         Self {
             config,
             accepted: AcceptedUtterances::new(),
+            stop: StopOrder::default(),
             waiting: WaitingRequests::default(),
             receipts: Receipts::default(),
             pending: PendingSounds::default(),
@@ -94,10 +98,15 @@ impl UtteranceIntake {
     ) -> bool {
         let key = injection.key;
         let is_pending = self.pending.contains(key) || self.waiting.contains(key);
-        if is_pending || self.receipts.repeat(key, fx) || !self.accepted.is_marked() {
+        if is_pending || self.receipts.repeat(key, fx) {
             return false;
         }
         let origin = Origin::of_injection(&injection, now);
+        if !self.accepted.is_marked() {
+            // The utterance waits for the policy; a stop in it does not.
+            self.obey_unmarked(&origin, injection.sound, now, fx);
+            return false;
+        }
         let (source, content) = match injection.sound {
             Sound::Text(text) => {
                 (Source::Text, Ok(UtteranceContent::words(vec![Hypothesis::certain(text)])))
@@ -121,6 +130,18 @@ impl UtteranceIntake {
         self.enqueue(Origin { source, ..origin }, content, player, now, fx)
     }
 
+    /// Obeys a stop in a request that cannot be accepted yet and will be repeated.
+    fn obey_unmarked(&mut self, origin: &Origin, sound: Sound, now: Time, fx: &mut Fx) {
+        let words = match sound {
+            Sound::Text(text) => vec![Hypothesis::certain(text)],
+            Sound::Transcript { hypotheses } => hypotheses,
+            _ => return,
+        };
+        if let Ok(content) = UtteranceContent::transcript(words) {
+            self.obey_stop(origin, &content, now, fx);
+        }
+    }
+
     /// Has a request wait for its turn, which may be now. Returns whether it is new.
     fn enqueue(
         &mut self,
@@ -137,7 +158,7 @@ impl UtteranceIntake {
             Ok(content) => content,
             Err(reason) => return self.reject(&origin, &reason, fx),
         };
-        self.obey_stop(&content, now, fx);
+        self.obey_stop(&origin, &content, now, fx);
         let is_taken = self.waiting.push(Request { origin, content });
         self.accept_waiting(player, now, fx);
         is_taken
@@ -360,7 +381,7 @@ impl UtteranceIntake {
         }
         match UtteranceContent::words(hypotheses).checked(&self.config) {
             Ok(content) => {
-                self.obey_stop(&content, now, fx);
+                self.obey_stop(&origin, &content, now, fx);
                 self.accept(origin, content, player, now, fx);
             }
             Err(reason) => {
@@ -379,12 +400,10 @@ impl UtteranceIntake {
         is_known
     }
 
-    /// Stops the arm if the words say so, which waits for no disk and for nobody's turn.
-    fn obey_stop(&self, content: &UtteranceContent, now: Time, fx: &mut Fx) {
+    /// Stops the arm if the words say so, which waits for no disk and no other request.
+    fn obey_stop(&mut self, origin: &Origin, content: &UtteranceContent, now: Time, fx: &mut Fx) {
         if content.is_stop(&self.config) {
-            let order = MotionOrder::Stop.code();
-            let command = MotionCommand { given_ns: now.ns(), order, ..MotionCommand::default() };
-            fx.publish_urgent(Out::Motion(command));
+            self.stop.give((origin.key, origin.segment.0), now, fx);
         }
     }
 

@@ -185,14 +185,6 @@ pub const JOINTS: Topic = Topic {
 pub const WORLD: Topic = topic::<WorldView>("arm/world", Some(Service::Arm));
 /// Arm to clients, when a motion begins, enters its next phase, or ends.
 pub const TRAJECTORY: Topic = topic::<TrajectoryView>("arm/trajectory", Some(Service::Arm));
-/// Speech and clients to arm, past the dialogue.
-pub const MOTION: Topic = Topic {
-    readers: &[Service::Arm, Service::Recorder],
-    writers_max: CLIENTS_MAX,
-    buffer: 4,
-    history: 0,
-    ..topic::<MotionCommand>("arm/motion", None)
-};
 
 /// The topics between the arm and a Baxter, or its simulation.
 pub mod robot {
@@ -292,7 +284,7 @@ pub mod robot {
 
 /// Every topic that the group's services and clients share, but for those of [`robot`], which are only
 /// used with a robot behind them.
-pub const ALL: [Topic; 19] = [
+pub const ALL: [Topic; 18] = [
     INJECTION,
     AUDIO,
     RECEIPT,
@@ -311,7 +303,6 @@ pub const ALL: [Topic; 19] = [
     JOINTS,
     WORLD,
     TRAJECTORY,
-    MOTION,
 ];
 
 /// Returns the services that are woken by some topic.

@@ -16,7 +16,7 @@ use std::mem::MaybeUninit;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::path::PathBuf;
 
-use messages::{MotionCommand, MotionInhibit, MotionOrder};
+use messages::{MotionInhibit, MotionOrder};
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::io::Errno;
 use rustix::net::{
@@ -28,6 +28,10 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::group::GroupPaths;
 use crate::{Span, Time, clock};
+
+mod repeated;
+
+pub use repeated::RepeatedStop;
 
 /// Longest datagram, bytes.
 const DATAGRAM_BYTES_MAX: usize = 512;
@@ -45,10 +49,11 @@ const DURABLE_GRACE: Span = Span::from_ms(500);
 /// An order to the motion stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct StopOrder {
-    order: MotionOrder,
-    /// Time at which it was given, nanoseconds of the monotonic clock.
-    given_ns: u64,
+pub struct StopOrder {
+    /// Stop or release.
+    pub order: MotionOrder,
+    /// Time at which it was given, nanoseconds of the monotonic clock; an older one than the last obeyed is ignored.
+    pub given_ns: u64,
 }
 
 /// State of the arm's motion stop: the answer to an order.
@@ -66,6 +71,16 @@ pub struct StopState {
     pub durable: bool,
     /// Reason why the robot cannot move; where the robot is not heard, `at_rest` is a belief.
     pub inhibit: MotionInhibit,
+}
+
+impl StopState {
+    /// Returns whether the stop that was given at `given` needs no repetition: it is latched for good and the arm
+    /// is at rest, or a later order is in force.
+    pub fn settles(&self, given: Time) -> bool {
+        let is_done = self.stopped && self.at_rest && self.durable;
+        let is_overruled = !self.stopped && self.in_force_ns > given.ns();
+        self.given_ns == given.ns() && (is_done || is_overruled)
+    }
 }
 
 /// Where an answer goes.
@@ -124,16 +139,10 @@ impl StopListener {
     }
 
     /// Hands waiting orders to `take`, up to a bound.
-    pub fn drain(&self, mut take: impl FnMut(MotionCommand, Caller)) {
+    pub fn drain(&self, mut take: impl FnMut(StopOrder, Caller)) {
         for _ in 0..DATAGRAMS_MAX {
             match receive::<StopOrder>(&self.socket) {
-                Ok(Some((StopOrder { order, given_ns }, Some(from)))) => {
-                    let order = order.code();
-                    take(
-                        MotionCommand { given_ns, order, ..MotionCommand::default() },
-                        Caller(from),
-                    );
-                }
+                Ok(Some((order, Some(from)))) => take(order, Caller(from)),
                 Ok(_) => {}
                 Err(Errno::INTR) => {}
                 Err(_) => return,

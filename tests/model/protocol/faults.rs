@@ -30,13 +30,15 @@ impl Protocol {
 
     pub(super) fn faults(&self, state: &State, visit: Visit<'_>) {
         type Clear = fn(&mut Bus) -> bool;
-        let topics: [(&str, Clear); 6] = [
+        let topics: [(&str, Clear); 8] = [
             ("injection", |bus| bus.injection.take().is_some()),
             ("receipt", |bus| bus.receipt.take().is_some()),
             ("utterance", |bus| bus.utterances.pop().is_some()),
             ("mark", |bus| bus.mark.take().is_some()),
             ("act", |bus| bus.act.take().is_some()),
             ("status", |bus| bus.status.take().is_some()),
+            ("stop", |bus| std::mem::take(&mut bus.stop) != 0),
+            ("stop's answer", |bus| std::mem::take(&mut bus.stop_done) != 0),
         ];
         for (name, clear) in topics.into_iter().filter(|_| self.lossy) {
             let mut next = state.clone();
@@ -90,7 +92,8 @@ impl Protocol {
 
     pub(super) fn speech_above(&self, state: &State, over: u8, is_own: bool) -> SpeechJournal {
         let presented = if is_own { 0 } else { state.speech_journal.presented };
-        let above = SpeechJournal { base: over, accepted: Vec::new(), presented };
+        let stop = if is_own { 0 } else { state.speech_journal.stop };
+        let above = SpeechJournal { base: over, accepted: Vec::new(), presented, stop };
         match self.broken {
             Some(Broken::ReuseUtterances) if is_own => SpeechJournal { base: 0, ..above },
             Some(Broken::ReplayAfterLoss) if !is_own => state.speech_journal.clone(),

@@ -37,6 +37,8 @@ pub(super) struct Arm {
     pub(super) pick: Ordered,
     pub(super) phase: Phase,
     pub(super) stopped: bool,
+    /// The latest stop order obeyed.
+    pub(super) obeyed: u8,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -56,6 +58,8 @@ pub(super) struct SpeechJournal {
     pub(super) base: u8,
     pub(super) accepted: Vec<Said>,
     pub(super) presented: u8,
+    /// Number of a stop that was said, until the arm has confirmed it; 0 for none.
+    pub(super) stop: u8,
 }
 
 /// Speech's memory.
@@ -79,6 +83,9 @@ pub(super) struct Bus {
     /// What the client sees.
     pub(super) view: Policy,
     pub(super) presented: u8,
+    /// Numbers of a stop order on its way to the arm, and of the order that the arm answers; 0 for none.
+    pub(super) stop: u8,
+    pub(super) stop_done: u8,
 }
 
 /// The client.
@@ -110,6 +117,12 @@ pub(super) struct World {
     pub(super) applied: u32,
     pub(super) stop_seen: bool,
     pub(super) stops: u8,
+    /// Times at which a stop was said.
+    pub(super) stop_orders: u8,
+    /// One of them was accepted.
+    pub(super) stop_said: bool,
+    /// The number of one that the arm has not latched.
+    pub(super) stop_due: u8,
     pub(super) crashes: u8,
     pub(super) lost: u8,
     pub(super) broken: Option<&'static str>,

@@ -6,12 +6,13 @@ use arm::shell::ArmProgram;
 use config::Settings;
 use grounding::shell::GroundingProgram;
 use messages::{
-    Activity, AppliedMark, ArmStatus, Injection, MotionCommand, Observation, Presented, RequestKey,
+    Activity, AppliedMark, ArmStatus, Injection, MotionOrder, Observation, Presented, RequestKey,
     RobotAct, Sound, Utterance,
 };
 use policy::shell::PolicyProgram;
 use service::lifecycle::Environment;
 use service::service_loop::{Program, Record};
+use service::stop_socket::{Caller, StopOrder};
 use service::{Effects, Event, Node, Span, Time};
 use speech::shell::SpeechProgram;
 use speech::{PlaybackEvent, PlaybackState};
@@ -34,7 +35,6 @@ pub(super) struct Latest {
     pub(super) presented: Presented,
     pub(super) activity: Activity,
     pub(super) status: ArmStatus,
-    pub(super) motion: MotionCommand,
 }
 
 /// The configuration that the real program gives its node.
@@ -219,9 +219,8 @@ impl Group {
                 self.latest.activity = activity;
                 self.to_policy.push(policy::In::Activity(activity));
             }
-            speech::Out::Motion(motion) => {
-                self.latest.motion = motion;
-                self.to_arm.push(arm::In::Motion(motion));
+            speech::Out::Stop(given) => {
+                self.order(MotionOrder::Stop, given.ns());
             }
             speech::Out::Speak(line) => {
                 self.saying = Some((line.playback, SENTENCE_STEPS));
@@ -235,6 +234,12 @@ impl Group {
             // To clients, and to a recogniser and a microphone that are not there.
             _ => {}
         }
+    }
+
+    /// Gives the arm an order to its motion stop.
+    pub(super) fn order(&mut self, order: MotionOrder, given_ns: u64) {
+        let order = StopOrder { order, given_ns };
+        self.to_arm.push(arm::In::StopOrder(order, Caller::named(b"a client")));
     }
 
     fn policy_says(&mut self, output: policy::Out) {

@@ -1,6 +1,6 @@
 //! Forged messages between the services of a group at work: valid as messages, with any numbers.
 
-use messages::{Injection, MessageRef, WireField};
+use messages::{Injection, MessageRef, MotionOrder, WireField};
 use speech::record::Record;
 
 use super::bytes::Input;
@@ -90,9 +90,8 @@ fn forge(group: &mut Group, input: &mut Input<'_>) {
             }
         }
         _ => {
-            if let Some(it) = forged(&latest.motion, input) {
-                group.to_arm.push(arm::In::Motion(it));
-            }
+            let order = if input.byte() % 2 == 0 { MotionOrder::Stop } else { MotionOrder::Resume };
+            group.order(order, u64::from_le_bytes(input.array()));
         }
     }
     group.run(2);
@@ -129,7 +128,7 @@ fn restart(group: &mut Group, which: u8) {
 fn numbered_without_gaps(group: &Group) {
     let accepted = group.speech.journal.iter().filter_map(|record| match record {
         Record::Accepted(accepted) => Some(accepted.seq.0),
-        Record::Presented(_) => None,
+        _ => None,
     });
     let numbers: Vec<u64> = accepted.collect();
     assert!(numbers.windows(2).all(|pair| Some(pair[1]) == pair[0].checked_add(1)), "{numbers:?}");

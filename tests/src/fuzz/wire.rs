@@ -77,7 +77,6 @@ kinds! {
     Receipt |receipt| { texts([receipt.note.as_str()]); let _ = receipt.utterance(); },
     ArmStatus |status| { let _ = (status.pick(), status.aimed_at()); },
     JointStates |_| {},
-    MotionCommand |_| {},
     JointCommand joint_command,
     JointState joint_state,
     JointTrajectoryPoint |_| {},

@@ -5,9 +5,11 @@ use dialogue::Rng;
 use messages::judge::COUNT_MAX;
 use messages::{
     ActKind, Activity, AppliedMark, ArmStatus, Code, FixedText, Hypothesis, Injection, MessageRef,
-    MotionCommand, MotionOrder, Observation, PickOutcome, PickPhase, PresentationState, Presented,
+    MotionOrder, Observation, PickOutcome, PickPhase, PresentationState, Presented,
     RequestKey, RobotAct, Sound, Utterance, WireCode, WireQuestion,
 };
+
+use service::stop_socket::{Caller, StopOrder};
 
 use super::SimulatedGroup;
 
@@ -213,10 +215,10 @@ fn observation(rng: &mut Rng, scene_key: u64) -> Observation {
 fn to_arm(rng: &mut Rng, scene_key: u64) -> arm::In<'static> {
     match rng.below(2) {
         0 => arm::In::Act(act(rng, scene_key).into()),
-        _ => arm::In::Motion(MotionCommand {
-            given_ns: COUNT_MAX << rng.below(11),
-            order: MotionOrder::Resume.code(),
-            ..MotionCommand::default()
-        }),
+        _ => {
+            let given_ns = COUNT_MAX << rng.below(11);
+            let order = StopOrder { order: MotionOrder::Resume, given_ns };
+            arm::In::StopOrder(order, Caller::named(b"a forger"))
+        }
     }
 }

@@ -10,6 +10,7 @@
 //! | `user.rs` | the user and the input channels |
 //! | `client.rs` | the user at a terminal, by the command line's own code, who is killed as well |
 //! | `routes.rs` | routing of the services' messages |
+//! | `stop.rs` | stop orders that are repeated until the arm has carried them out |
 //! | `table.rs`, `perceived.rs` | objects from perception: a table under a simulated camera, and dialogues about it |
 //! | `attribution.rs` | a study of turn-taking: to which question each answer is credited |
 
@@ -21,9 +22,11 @@ mod forger;
 mod host;
 mod perceived;
 mod routes;
+mod stop;
 mod table;
 mod user;
 
+use std::iter::repeat_n;
 use std::path::Path;
 
 use config::Settings;
@@ -41,6 +44,7 @@ pub use client::Client;
 pub use faults::{Fault, Faults};
 pub use host::{Crash, Host};
 pub use perceived::{Tally, at_best, before_camera, converse, perceive};
+pub use stop::RepeatedStop;
 pub use table::{Happening, TableTop};
 pub use user::{Channel, GroupUser};
 
@@ -106,6 +110,7 @@ pub struct SimulatedGroup {
     inboxes: Inboxes,
     /// When each process is started again: speech, grounding, policy, arm.
     restarts: [Option<Time>; 4],
+    stop: RepeatedStop,
     saying: Option<Saying>,
     decoding: Vec<Decoding>,
     picked: Option<ObjectId>,
@@ -140,6 +145,7 @@ impl SimulatedGroup {
             now: Time(1),
             inboxes: Inboxes::default(),
             restarts: [Some(Time(1)); 4],
+            stop: RepeatedStop::default(),
             saying: None,
             decoding: Vec::new(),
             picked: None,
@@ -332,6 +338,9 @@ impl SimulatedGroup {
         self.route_policy(outputs);
         let inbox = std::mem::take(&mut self.inboxes.arm);
         let Some(arm) = &mut self.arm else { return };
+        let orders = self.stop.order().into_iter();
+        let orders = orders.flat_map(|order| repeat_n(order, self.faults.copies(self.now)));
+        let inbox = inbox.into_iter().chain(orders).collect();
         let outputs = arm.wake(inbox, now, &mut self.faults);
         let is_up = arm.is_up();
         self.note_death(3, is_up, "arm");
@@ -351,7 +360,7 @@ impl SimulatedGroup {
         for sighting in table.look(self.now) {
             let copies = self.faults.copies(self.now);
             let message = policy::In::Sighting(Box::new(sighting));
-            self.inboxes.policy.extend(std::iter::repeat_n(message, copies));
+            self.inboxes.policy.extend(repeat_n(message, copies));
         }
     }
 
@@ -367,7 +376,7 @@ impl SimulatedGroup {
         for injection in sent {
             let copies = self.faults.copies(now);
             let message = speech::In::Injection(injection);
-            self.inboxes.speech.extend(std::iter::repeat_n(message, copies));
+            self.inboxes.speech.extend(repeat_n(message, copies));
         }
     }
 

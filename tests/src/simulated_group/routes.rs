@@ -98,9 +98,7 @@ impl SimulatedGroup {
                     }
                     self.inboxes.policy.extend(repeat_n(policy::In::Activity(activity), copies));
                 }
-                speech::Out::Motion(command) => {
-                    self.inboxes.arm.push(arm::In::Motion(command));
-                }
+                speech::Out::Stop(given) => self.stop.give(given),
                 speech::Out::Speak(line) => self.speak(&line),
                 speech::Out::StopSpeaking => self.stop_speaking(),
                 speech::Out::Recognise(sound, _) => {
@@ -201,6 +199,9 @@ impl SimulatedGroup {
                     let copies = self.faults.copies(self.now);
                     self.inboxes.policy.extend(repeat_n(policy::In::Arm(status), copies));
                     self.inboxes.speech.extend(repeat_n(speech::In::Arm(status), copies));
+                }
+                arm::Out::StopState(_, state) => {
+                    self.inboxes.speech.extend(self.stop.on_answer(&state));
                 }
                 // A result that comes while the arm is down is lost, as with its thread.
                 arm::Out::Plan(request) => {

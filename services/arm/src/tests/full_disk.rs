@@ -7,10 +7,9 @@ impl Machine {
     /// A client orders a stop or a release and asks until the arm rests; returns the last answer.
     fn order_by_socket(&mut self, order: MotionOrder) -> StopState {
         let given_ns = self.now.ns();
-        let command = MotionCommand { given_ns, order: order.code(), ..Default::default() };
         let until = self.now + Span::from_ms(100);
         loop {
-            self.waiting.push(In::StopOrder(command, Caller::named(b"a client")));
+            self.order(order, given_ns);
             self.go(None);
             let state = *self.stop_states.last().expect("every order is answered in its pass");
             assert_eq!(state.given_ns, given_ns);

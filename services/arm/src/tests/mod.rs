@@ -27,13 +27,13 @@ use config::Settings;
 use manipulation::{Joints, Limb};
 use messages::WireCode;
 use messages::{
-    ActKind, ArmStatus, InteractionId, JointStates, MessageRef, MotionCommand, MotionOrder, PickId,
+    ActKind, ArmStatus, InteractionId, JointStates, MessageRef, MotionOrder, PickId,
     PickOutcome, PickPhase, RobotAct, TrajectoryView, WorldView,
 };
 use preflight::ArmSetup;
 use robot::Robot;
 use scene::{ObjectId, Question};
-use service::stop_socket::{Caller, StopState};
+use service::stop_socket::{Caller, StopOrder, StopState};
 use service::{Effects, Event, Node, Span, Time};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -302,9 +302,13 @@ impl Machine {
     }
 
     fn motion(&mut self, order: MotionOrder) {
-        let command =
-            MotionCommand { given_ns: self.now.ns(), order: order.code(), ..Default::default() };
-        self.waiting.push(In::Motion(command));
+        self.order(order, self.now.ns());
+    }
+
+    /// Receives an order that was given at that time.
+    fn order(&mut self, order: MotionOrder, given_ns: u64) {
+        let order = StopOrder { order, given_ns };
+        self.waiting.push(In::StopOrder(order, Caller::named(b"a client")));
     }
 
     fn phase(&self) -> PickPhase {

@@ -22,10 +22,7 @@ fn arm_without_memory_waits_for_a_person() {
     machine.restart();
     set_aside(&mut machine, false);
     assert!(machine.node.state().stopped);
-    let given_ns = machine.now.ns();
-    let resume =
-        MotionCommand { given_ns, order: MotionOrder::Resume.code(), ..Default::default() };
-    machine.waiting.push(In::Motion(resume));
+    machine.motion(MotionOrder::Resume);
     machine.delivers(OVER + 1, 4);
 }
 

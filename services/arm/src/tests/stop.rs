@@ -68,19 +68,16 @@ fn motion_stop_while_idle_is_latched_and_survives_a_restart() {
 #[test]
 fn arm_applies_newer_motion_orders_only() {
     let mut machine = Machine::new(config());
-    let given = |given_ns, order: MotionOrder| {
-        In::Motion(MotionCommand { given_ns, order: order.code(), ..Default::default() })
-    };
     let now = machine.now.ns();
-    machine.waiting.push(given(now - 5, MotionOrder::Stop));
+    machine.order(MotionOrder::Stop, now - 5);
     machine.run(0.02);
     assert!(machine.node.state().stopped);
-    machine.waiting.push(given(now - 9, MotionOrder::Resume));
-    machine.waiting.push(given(now - 5, MotionOrder::Resume));
-    machine.waiting.push(given(now + 3_600_000_000_000, MotionOrder::Resume));
+    machine.order(MotionOrder::Resume, now - 9);
+    machine.order(MotionOrder::Resume, now - 5);
+    machine.order(MotionOrder::Resume, now + 3_600_000_000_000);
     machine.run(0.02);
     assert!(machine.node.state().stopped, "older, repeated, from the future");
-    machine.waiting.push(given(now - 4, MotionOrder::Resume));
+    machine.order(MotionOrder::Resume, now - 4);
     machine.run(0.02);
     assert!(!machine.node.state().stopped);
 }
@@ -88,8 +85,7 @@ fn arm_applies_newer_motion_orders_only() {
 #[test]
 fn motion_stop_from_the_future_is_obeyed_and_can_be_released() {
     let mut machine = Machine::new(config());
-    let stop = MotionCommand { given_ns: u64::MAX, ..Default::default() };
-    machine.waiting.push(In::Motion(stop));
+    machine.order(MotionOrder::Stop, u64::MAX);
     machine.run(0.02);
     assert!(machine.node.state().stopped);
     machine.motion(MotionOrder::Resume);

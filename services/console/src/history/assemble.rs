@@ -143,6 +143,10 @@ impl Assembler {
             PolicyCause::Reconfigured => Event::Reconfigured,
             PolicyCause::Objects { .. } => Event::Objects,
             PolicyCause::Stopped => Event::Stopped,
+            // The arm comes to rest within a moment.
+            PolicyCause::Stopping => return,
+            PolicyCause::StopReport { confirmed: true } => Event::StopConfirmed,
+            PolicyCause::StopReport { confirmed: false } => Event::StopUnconfirmed,
             PolicyCause::Released => Event::Released,
             PolicyCause::SetAside { .. } | PolicyCause::Snapshot => Event::Recovered,
         };

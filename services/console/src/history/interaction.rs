@@ -61,6 +61,10 @@ pub enum Event {
     Objects,
     /// The motion stop was latched.
     Stopped,
+    /// The arm confirmed a stop that the user ordered.
+    StopConfirmed,
+    /// The arm did not confirm it in time.
+    StopUnconfirmed,
     /// The motion stop was released.
     Released,
     /// A journal was set aside, or its file began.

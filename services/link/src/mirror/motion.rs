@@ -5,11 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use messages::MotionCommand;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use service::client::random_key;
 use service::group::GroupPaths;
-use service::stop_socket::{Caller, StopListener};
+use service::stop_socket::{Caller, StopListener, StopOrder};
 use service::worker_channel::{self, DeviceReceiver, DeviceSender};
 use service::{Span, clock};
 use zenoh::Session;
@@ -131,8 +130,8 @@ impl Worker {
         }
     }
 
-    fn on_order(&mut self, command: &MotionCommand, caller: Caller) {
-        let (order, given_ns) = (command.order.get(), command.given_ns);
+    fn on_order(&mut self, order: &StopOrder, caller: Caller) {
+        let StopOrder { order, given_ns } = *order;
         let now = clock::now();
         match self.orders.take((order, given_ns), self.seen, random_key().0, now) {
             Ok(Some(state)) => self.listener.answer(&caller, &state),

@@ -284,8 +284,6 @@ impl<'a> Test<'a> {
     fn may_write(&self, topic: &Topic) -> bool {
         let is_client = match self.bench.service {
             Service::Console | Service::Ros2 | Service::Link => topic.writer.is_none(),
-            // Speech stops the arm on a spoken stop.
-            Service::Speech => topic.name == messages::topics::MOTION.name,
             _ => false,
         };
         let is_configured =

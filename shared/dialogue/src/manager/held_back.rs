@@ -8,7 +8,7 @@ use super::Manager;
 use super::acts::{say, set};
 use super::attribution::Heard;
 use super::line::{Content, Line, Preface, Remark};
-use super::state::{Act, State};
+use super::state::{Act, MotionStop, State};
 use crate::ActKind;
 use crate::ids::PromptId;
 use crate::time::Time;
@@ -78,7 +78,7 @@ impl Manager {
         if state.to_put_back().is_some() {
             // Its turn comes once the other object is back.
             self.reply(state, Remark::AllRight, at);
-        } else if state.stopped {
+        } else if state.motion_stop.is_latched() {
             say(state, Content::Confirmed, at);
         } else {
             self.release(state, object, at);
@@ -86,17 +86,36 @@ impl Manager {
         true
     }
 
-    /// Notes whether the motion stop is latched.
-    pub(super) fn note_stop(&mut self, state: &mut State, stopped: bool, at: Time) {
-        state.stopped = stopped;
-        if !stopped && self.release_put_back(state, at) {
+    /// Reports the effect of a stop that a user ordered, as the arm does: it is at rest, or the stop is not
+    /// confirmed in time.
+    pub(super) fn report_stop(&mut self, state: &mut State, confirmed: bool, at: Time) {
+        let Some(order) = &mut state.stop_order else { return };
+        order.is_late = true;
+        if confirmed {
+            state.stop_order = None;
+        }
+        let remark = if confirmed { Remark::Stopped } else { Remark::StopUnconfirmed };
+        self.reply(state, remark, at);
+    }
+
+    /// Notes the state of the motion stop.
+    pub(super) fn note_stop(&mut self, state: &mut State, stop: MotionStop, at: Time) {
+        let (before, is_latched) = (state.motion_stop.is_latched(), stop.is_latched());
+        state.motion_stop = stop;
+        if before == is_latched {
+            return;
+        }
+        if !is_latched {
+            state.stop_order = None;
+        }
+        if !is_latched && self.release_put_back(state, at) {
             return;
         }
         let Some(held) = state.open.as_ref().and_then(|open| open.held_back.clone()) else {
             return;
         };
         let Some(object) = self.setup.scene.object_named(&held.name) else { return };
-        match (stopped, held.is_confirmed) {
+        match (is_latched, held.is_confirmed) {
             (true, _) => {}
             (false, true) => self.release(state, object, at),
             (false, false) => self.ask_to_release(state, object, Preface::None, at),
@@ -111,7 +130,7 @@ impl Manager {
         preface: Preface,
         at: Time,
     ) {
-        let content = match state.stopped {
+        let content = match state.motion_stop.is_latched() {
             true => Content::HeldBack(self.description(object)),
             false => Content::AskToRelease(self.description(object)),
         };

@@ -9,7 +9,7 @@ use super::concede::Conceded;
 use super::line::{Content, Remark};
 use super::put_back::{Progress, PuttingBack};
 use super::replies::likeliest;
-use super::state::{State, Utterance};
+use super::state::{State, StopOrder, Utterance};
 use crate::time::Time;
 use crate::{ActKind, Interpretation, Outcome};
 
@@ -48,12 +48,13 @@ impl Manager {
             // "Stop, not that one": what it says of the object counts as well.
             Intent::Stop if state.open.is_some() && is_about_object(utterance) => {
                 self.inform(state, utterance, &shares, at);
-                self.reply(state, Remark::Stopped, at);
+                order_stop(state, utterance);
             }
             Intent::StopAndCancel => {
                 self.cancel(state, at);
-                self.reply(state, Remark::Stopped, at);
+                order_stop(state, utterance);
             }
+            Intent::Stop => order_stop(state, utterance),
             Intent::Repeat if state.act.line.content != Content::Silence => repeat(state, at),
             Intent::StartOver => {
                 self.start_over(state, at);
@@ -71,7 +72,10 @@ impl Manager {
         // The standing question is on its way.
         let is_asked = state.open.is_some() && state.act.kind == ActKind::Ask;
         let is_deferred = is_deferred && state.to_put_back().is_none();
-        if utterance.typed && state.act.id == before && !is_deferred && !is_asked {
+        // The arm's report is on its way.
+        let is_stop = matches!(intent, Intent::Stop | Intent::StopAndCancel);
+        let is_answered = is_deferred || is_asked || is_stop;
+        if utterance.typed && state.act.id == before && !is_answered {
             let remark = self.status(state);
             self.reply(state, remark, at);
         }
@@ -129,6 +133,12 @@ impl Manager {
         }
         self.ask_wanted(state, at);
     }
+}
+
+/// Notes an order to stop, which the speech service has given to the arm: the robot reports its effect once
+/// the arm has.
+fn order_stop(state: &mut State, utterance: &Utterance) {
+    state.stop_order = Some(StopOrder { accepted: utterance.accepted, is_late: false });
 }
 
 /// Returns whether it withdraws only what it describes.

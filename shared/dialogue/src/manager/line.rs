@@ -54,7 +54,7 @@ pub enum Preface {
 /// A remark that answers the user without a decision. Journals hold its position in this list: new ones come last.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Remark {
-    /// The motion stop is latched.
+    /// The motion stop is latched, and the arm is at rest.
     Stopped,
     /// The objects and values that there are to choose from.
     Inventory,
@@ -100,6 +100,10 @@ pub enum Remark {
     OnlyFetches(Option<String>),
     /// The object of that description is handed over: it was called off too late.
     TooLate(String),
+    /// The motion stop is latched; the arm is not at rest yet.
+    Stopping,
+    /// The arm has not confirmed a stop.
+    StopUnconfirmed,
 }
 
 /// A question of the user about the scene.

@@ -56,8 +56,8 @@ pub use put_back::{Progress, PuttingBack, WithUser};
 pub use refold::{Mismatch, refold, refold_since};
 pub use setup::Setup;
 pub use state::{
-    Act, Basis, Cause, Deferred, Interaction, KnownObject, PROMPTS_MAX, Preference, Prompt, Record,
-    State, Timing, Utterance,
+    Act, Basis, Cause, Deferred, Interaction, KnownObject, MotionStop, PROMPTS_MAX, Preference, Prompt, Record,
+    State, StopOrder, Timing, Utterance,
 };
 
 use acts::{order_again, say, set, set_reasons};
@@ -165,7 +165,8 @@ impl Manager {
                 _ => self.end_pick(state, *pick, *outcome, at),
             },
             Cause::Reconfigured | Cause::Objects(_) => self.reconfigure(state, at),
-            Cause::MotionStop(stopped) => self.note_stop(state, *stopped, at),
+            Cause::MotionStop(stop) => self.note_stop(state, *stop, at),
+            Cause::StopReport { confirmed } => self.report_stop(state, *confirmed, at),
             Cause::SetAside(over) => self.set_aside(state, *over, at),
         }
     }

@@ -181,7 +181,7 @@ impl Manager {
         state.last_prompt = state.last_prompt.next();
         let (prompt, utterance) = (state.last_prompt, state.applied);
         state.note_putting_back(prompt);
-        let (kind, pick, progress, content) = if state.stopped {
+        let (kind, pick, progress, content) = if state.motion_stop.is_latched() {
             let held_back = Progress::HeldBack { is_confirmed: false };
             (ActKind::Say, None, held_back, Content::PutBackHeldBack(description))
         } else {
@@ -223,7 +223,7 @@ impl Manager {
     }
 
     fn confirm_put_back(&mut self, state: &mut State, at: Time) {
-        if !state.stopped {
+        if !state.motion_stop.is_latched() {
             return self.put_back_now(state, Preface::None, at);
         }
         if let Some(it) = &mut state.putting_back {

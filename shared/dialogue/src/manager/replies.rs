@@ -5,7 +5,7 @@ use scene::{Intent, ObjectId, Reading, WordId};
 use super::Manager;
 use super::hand_over::HandedOver;
 use super::line::{AboutObjects, Content, Reason, Remark};
-use super::state::{Interaction, State, Utterance};
+use super::state::{Interaction, MotionStop, State, Utterance};
 use crate::ActKind;
 
 /// Most objects that a reason names.
@@ -29,8 +29,7 @@ impl Manager {
             Intent::Greet => Remark::Greeting,
             Intent::Leave => Remark::Goodbye,
             Intent::Thank => Remark::Welcome,
-            Intent::Stop | Intent::StopAndCancel => Remark::Stopped,
-            Intent::AskStatus if state.stopped => Remark::Stopped,
+            Intent::AskStatus if state.motion_stop.is_latched() => stop_remark(state),
             Intent::AskHelp => Remark::Help,
             Intent::AskBack => Remark::Inventory,
             Intent::AskCount => self.objects(said, intent, AboutObjects::Count),
@@ -53,7 +52,7 @@ impl Manager {
             (ActKind::Cancel, Some((_, object))) => Remark::Leaving(self.description(object)),
             (_, Some((_, object))) => Remark::Fetching(self.description(object)),
             (ActKind::Ask, None) => Remark::AllRight,
-            (_, None) if state.stopped => Remark::Stopped,
+            (_, None) if state.motion_stop.is_latched() => stop_remark(state),
             (_, None) if state.handed_over.is_some() => Remark::AllRight,
             _ => Remark::Idle,
         }
@@ -136,6 +135,14 @@ impl Manager {
             words if words.is_empty() => Reason::Likeliest,
             words => Reason::Said(words),
         }
+    }
+}
+
+/// Returns what is true of a latched motion stop.
+fn stop_remark(state: &State) -> Remark {
+    match state.motion_stop {
+        MotionStop::Stopped => Remark::Stopped,
+        _ => Remark::Stopping,
     }
 }
 

@@ -53,14 +53,44 @@ pub struct State {
     pub with_user: Option<WithUser>,
     /// The object that goes back to its place.
     pub putting_back: Option<PuttingBack>,
-    /// Whether the motion stop is latched.
-    pub stopped: bool,
+    /// The motion stop.
+    pub motion_stop: MotionStop,
+    /// A stop that a user ordered in words and whose effect the robot has not reported yet.
+    pub stop_order: Option<StopOrder>,
     /// Deliveries by object.
     pub history: History,
     /// The user as learned in earlier interactions, where the planner uses it.
     pub person: Option<Person>,
     /// The user's reaction times as observed so far.
     pub timing: Timing,
+}
+
+/// The motion stop as the arm reports it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MotionStop {
+    /// The arm may move.
+    #[default]
+    Released,
+    /// Latched; the arm is not at rest yet.
+    Stopping,
+    /// Latched, and the arm is at rest.
+    Stopped,
+}
+
+impl MotionStop {
+    /// Returns whether the arm accepts no motion until it is released.
+    pub fn is_latched(self) -> bool {
+        self != Self::Released
+    }
+}
+
+/// A stop that a user ordered in words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StopOrder {
+    /// When its words were accepted; only a later report of the arm confirms it.
+    pub accepted: Time,
+    /// Whether the user was warned that it is not confirmed.
+    pub is_late: bool,
 }
 
 /// Reaction times of the user. None until an answer was observed: the configured one holds then.
@@ -290,8 +320,13 @@ pub enum Cause {
     Reconfigured,
     /// The objects on the table are these.
     Objects(Table),
-    /// The motion stop was latched, or released.
-    MotionStop(bool),
+    /// The motion stop was latched, came to rest, or was released.
+    MotionStop(MotionStop),
+    /// The arm is at rest after a stop that a user ordered, or has not confirmed it in time.
+    StopReport {
+        /// Whether the arm has confirmed the stop.
+        confirmed: bool,
+    },
     /// A journal of the group was set aside: every number up to this one is over.
     SetAside(u64),
 }

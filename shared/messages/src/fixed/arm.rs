@@ -119,14 +119,3 @@ wire_enum! {
     }
 }
 
-wire_struct! {
-    /// Stops the arm, past everything else. Speech and clients to arm.
-    MotionCommand = "MotionCommand" {
-        /// When it was given; an older one than the last obeyed is ignored.
-        given_ns: u64,
-        /// [`MotionOrder`].
-        order: Code<MotionOrder>,
-        /// Zero.
-        reserved: [u8; 7],
-    }
-}

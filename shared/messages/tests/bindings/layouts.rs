@@ -52,7 +52,6 @@ pub(crate) fn structs() -> Vec<Layout> {
         Receipt,
         ArmStatus,
         JointStates,
-        MotionCommand,
         JointCommand,
         JointState,
         JointTrajectoryPoint,

@@ -12,11 +12,11 @@ fn group() -> (tempfile::TempDir, GroupPaths) {
 }
 
 /// The state of an arm that obeyed `command` and has come to rest.
-fn obeyed(command: &MotionCommand) -> StopState {
+fn obeyed(command: &StopOrder) -> StopState {
     StopState {
         given_ns: command.given_ns,
         in_force_ns: command.given_ns,
-        stopped: command.order.get() == MotionOrder::Stop,
+        stopped: command.order == MotionOrder::Stop,
         at_rest: true,
         durable: true,
         inhibit: MotionInhibit::None,
@@ -28,7 +28,7 @@ fn give_to(
     paths: &GroupPaths,
     order: MotionOrder,
     patience_ms: u64,
-    mut answer: impl FnMut(&MotionCommand, u32) -> Option<StopState> + Send,
+    mut answer: impl FnMut(&StopOrder, u32) -> Option<StopState> + Send,
 ) -> Result<StopState, StopError> {
     let listener = StopListener::bind(paths).unwrap();
     let done = AtomicBool::new(false);

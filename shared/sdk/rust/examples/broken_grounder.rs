@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use messages::{Code, Epoch, Incarnation, MotionCommand, Observation, Service, Utterance, topics};
+use messages::{AudioChunk, Code, Epoch, Incarnation, Observation, Service, Utterance, topics};
 use runtime::bus::{Bus, Identity, Reader, WakeListener, Writer};
 use runtime::clock;
 use runtime::exit::{Exit, Failure};
@@ -91,7 +91,7 @@ struct BrokenGrounder<'a> {
     /// Of the next epoch.
     others: Reader<Utterance>,
     observations: Writer<Observation>,
-    motion: Writer<MotionCommand>,
+    audio: Writer<AudioChunk>,
     is_ending: bool,
     _buses: [Bus; 3],
 }
@@ -116,7 +116,7 @@ impl<'a> BrokenGrounder<'a> {
             utterances: buses[0].reader(&topics::UTTERANCE).unwrap(),
             others: buses[1].reader(&topics::UTTERANCE).unwrap(),
             observations: buses[2].writer(&topics::OBSERVATION).unwrap(),
-            motion: buses[0].writer(&topics::MOTION).unwrap(),
+            audio: buses[0].writer(&topics::AUDIO).unwrap(),
             is_ending: false,
             _buses: buses,
         }
@@ -127,7 +127,7 @@ impl<'a> BrokenGrounder<'a> {
             "is-silent" => return,
             "is-slow" => std::thread::sleep(Duration::from_millis(1_300)),
             "trusts-its-input" => drop(Heard::new(utterance, &self.scene).unwrap()),
-            "moves-the-arm" => self.motion.send(&MotionCommand::default()).unwrap(),
+            "speaks-for-users" => self.audio.send(&AudioChunk::default()).unwrap(),
             _ => {}
         }
         let Ok(observed) = observation(&mut self.reader, &self.scene, utterance, clock::now())

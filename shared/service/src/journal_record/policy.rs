@@ -93,10 +93,17 @@ pub enum PolicyCause {
         /// Names of the objects.
         objects: Vec<String>,
     },
-    /// The motion stop was latched.
+    /// The motion stop was latched; the arm was not at rest yet.
+    Stopping,
+    /// The motion stop is latched, and the arm came to rest.
     Stopped,
     /// The motion stop was released.
     Released,
+    /// A stop that a user ordered was confirmed by the arm, or not in time.
+    StopReport {
+        /// Whether it was confirmed.
+        confirmed: bool,
+    },
     /// A journal of the group was set aside.
     SetAside {
         /// Every number up to this one is over.

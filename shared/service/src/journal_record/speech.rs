@@ -11,6 +11,16 @@ pub enum SpeechRecord {
     Accepted(AcceptedRecord),
     /// A line of the robot was spoken, to its end or until it was interrupted.
     Presented(PresentationRecord),
+    /// A user ordered a stop.
+    StopOrdered {
+        /// When.
+        given_ns: u64,
+    },
+    /// The arm has carried out a stop that a user ordered, or obeys a later order.
+    StopSettled {
+        /// When the stop was ordered.
+        given_ns: u64,
+    },
 }
 
 /// An accepted utterance.
