@@ -8,8 +8,8 @@ use config::Settings;
 use messages::WireCode;
 use messages::robot::{Drill, DrillKind, JointState, Order, Report};
 use messages::{
-    ActKind, ArmStatus, MessageRef, MotionInhibit, MotionOrder, PickOutcome,
-    PickPhase, RobotAct, Sighting, TableView,
+    ActKind, ArmStatus, MessageRef, MotionInhibit, MotionOrder, PickOutcome, PickPhase, RobotAct,
+    Sighting, TableView,
 };
 use service::stop_socket::{Caller, StopOrder};
 use service::{Span, Time};

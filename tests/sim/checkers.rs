@@ -121,7 +121,7 @@ fn picked_once(group: &SimulatedGroup) -> Verdict {
 fn numbered_without_gap(group: &SimulatedGroup) -> Verdict {
     let accepted = group.speech.journal().iter().filter_map(|record| match record {
         Spoken::Accepted(accepted) => Some((accepted.seq.0, accepted.key)),
-        Spoken::Presented(_) => None,
+        _ => None,
     });
     let (numbers, keys): (Vec<_>, Vec<_>) = accepted.unzip();
     let expected: Vec<u64> = (1..=numbers.len() as u64).collect();

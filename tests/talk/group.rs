@@ -7,13 +7,13 @@ use arm::ArmNode;
 use config::Settings;
 use grounding::GroundingNode;
 use messages::{
-    ActKind, ArmStatus, Injection, MotionOrder, PickId, PickOutcome, PickPhase,
-    ReceiptStatus, RequestKey, RobotAct, Sound,
+    ActKind, ArmStatus, Injection, MotionOrder, PickId, PickOutcome, PickPhase, ReceiptStatus,
+    RequestKey, RobotAct, Sound,
 };
 use policy::PolicyNode;
 use scene::{ObjectId, Question};
-use service::{Node, Span, Time};
 use service::stop_socket::{Caller, StopOrder};
+use service::{Node, Span, Time};
 use speech::{PlaybackEvent, PlaybackState, SpeechNode};
 use whichone_tests::simulated_group::{Faults, Host, RepeatedStop};
 

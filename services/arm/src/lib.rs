@@ -40,8 +40,8 @@ use goal::PlanFailures;
 use messages::pick::Pick;
 use messages::robot::{Order, Report};
 use messages::{
-    ArmStatus, JointStates, MessageRef, MotionInhibit, MotionOrder, PickOutcome,
-    PickPhase, RobotAct, TableView, TrajectoryView, WorldView,
+    ArmStatus, JointStates, MessageRef, MotionInhibit, MotionOrder, PickOutcome, PickPhase,
+    RobotAct, TableView, TrajectoryView, WorldView,
 };
 use orders::StandingAct;
 use plan::Planning;

@@ -4,9 +4,7 @@ use crate::program::Planner;
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
 use messages::pick::{Order, Pick, judge};
-use messages::{
-    ActId, ActKind, MotionOrder, PickId, PickOutcome, PickPhase, RobotAct, Task,
-};
+use messages::{ActId, ActKind, MotionOrder, PickId, PickOutcome, PickPhase, RobotAct, Task};
 use scene::{ObjectId, Question};
 use service::Time;
 use service::stop_socket::StopOrder;

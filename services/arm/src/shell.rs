@@ -4,9 +4,7 @@ use crate::state::Record;
 use crate::{ArmNode, Config, In, Out, inspection, journal_record};
 use config::{Driver, Settings};
 use messages::Service;
-use messages::{
-    ArmStatus, JointStates, RobotAct, TableView, TrajectoryView, WorldView, topics,
-};
+use messages::{ArmStatus, JointStates, RobotAct, TableView, TrajectoryView, WorldView, topics};
 use planner::PlannerThread;
 use preflight::ArmSetup;
 use robot::RobotTopics;

@@ -44,10 +44,27 @@ impl PolicyNode {
     /// Returns the node of this state.
     pub(crate) fn with_whole_state(config: Config, bytes: &[u8]) -> Result<Self, NodeError> {
         let checkpoint = postcard::from_bytes(bytes);
-        let Checkpoint { state, floor, said, heard_of_speech, rested, rejected, waiting_since, next_send } =
-            checkpoint.map_err(|_| NodeError::foreign_checkpoint())?;
+        let Checkpoint {
+            state,
+            floor,
+            said,
+            heard_of_speech,
+            rested,
+            rejected,
+            waiting_since,
+            next_send,
+        } = checkpoint.map_err(|_| NodeError::foreign_checkpoint())?;
         let record = Record { cause: Cause::Snapshot, at: Time(0), state };
         let node = Self::recover(config, vec![record])?;
-        Ok(Self { floor, said, heard_of_speech, rested, rejected, waiting_since, next_send, ..node })
+        Ok(Self {
+            floor,
+            said,
+            heard_of_speech,
+            rested,
+            rejected,
+            waiting_since,
+            next_send,
+            ..node
+        })
     }
 }

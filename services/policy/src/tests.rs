@@ -15,6 +15,7 @@ mod reconfigure;
 mod replies;
 mod seconds;
 mod set_aside;
+mod stop;
 mod turns;
 mod words;
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use config::Settings;
-use dialogue::manager::{Cause, Record, State, Utterance};
+use dialogue::manager::{Cause, MotionStop, Record, State, Utterance};
 use dialogue::{Belief, PickOutcome, Posterior, Presentation};
 use journal::{Header, Journal};
 use messages::{Interpretation, PromptId, Service, UtteranceSeq};
@@ -105,7 +105,11 @@ fn every_cause() -> Vec<Record> {
         records.push(Record { cause, at, state: state.clone() });
         state.last_order
     };
-    for cause in [Cause::Silence, Cause::MotionStop(true), Cause::MotionStop(false)] {
+    for cause in [
+        Cause::Silence,
+        Cause::MotionStop(MotionStop::Stopped),
+        Cause::MotionStop(MotionStop::Released),
+    ] {
         add(cause);
     }
     let about = |word| Reading {

@@ -1,8 +1,8 @@
 //! Inputs and outputs of the reducer.
 
 use messages::{
-    Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MessageRef,
-    Partial, Presented, PromptId, Receipt, RobotAct, Utterance,
+    Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MessageRef, Partial, Presented,
+    PromptId, Receipt, RobotAct, Utterance,
 };
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};

@@ -20,8 +20,8 @@ use crate::{
 use config::Settings;
 use crossbeam_channel::Receiver;
 use messages::{
-    Activity, AppliedMark, ArmStatus, AudioChunk, EarState, Hearing, Injection,
-    Partial, Presented, Receipt, RobotAct, Service, SoundFile, Utterance, topics,
+    Activity, AppliedMark, ArmStatus, AudioChunk, EarState, Hearing, Injection, Partial, Presented,
+    Receipt, RobotAct, Service, SoundFile, Utterance, topics,
 };
 use service::bus::{EncodedReader, PortError, Reader, Writer};
 use service::exit::Failure;

@@ -4,6 +4,7 @@ mod endings;
 mod fair_share;
 mod prompts;
 mod set_aside;
+mod stop_order;
 
 use crate::devices::recogniser::Rejected;
 use crate::devices::stream::SpeechSegment;
@@ -15,7 +16,7 @@ use crate::{
     PreparedJudge, Recognised, RecognisedSegment, SpeechNode,
 };
 use messages::{
-    ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, MessageRef, MotionOrder,
+    ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, MessageRef,
     PresentationState, Receipt, RequestKey, RobotAct, Sound, Source, Utterance, WireCode,
 };
 use scene::{AttributeId, Question, ValueId};
@@ -39,6 +40,11 @@ impl Speech {
     }
 
     fn before_mark() -> Self {
+        let node = SpeechNode::recover(Self::config(), Vec::new()).unwrap();
+        Self { node, now: Time(0), records: Vec::new() }
+    }
+
+    fn config() -> Config {
         let ms = std::time::Duration::from_millis;
         let endpointing = Endpointing {
             judge: PreparedJudge::new(&testing::bowls()),
@@ -46,9 +52,7 @@ impl Speech {
             closing: ms(500),
             open: ms(900),
         };
-        let config = Config { endpointing, utterance_bytes_max: 4000, gestures: false };
-        let node = SpeechNode::recover(config, Vec::new()).unwrap();
-        Self { node, now: Time(0), records: Vec::new() }
+        Config { endpointing, utterance_bytes_max: 4000, gestures: false }
     }
 
     /// Handles a message after a delay.

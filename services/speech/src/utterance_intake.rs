@@ -20,10 +20,7 @@ use crate::{Config, Fx, Hypothesis, Out, Recognised, RecognisedSegment, Recognit
 use accepted::{AcceptedUtterances, Receipts};
 use hearing_status::HearingStatus;
 use language::Completeness;
-use messages::{
-    EarState, GateVerdict, Injection, Receipt, ReceiptStatus, Sound,
-    Source,
-};
+use messages::{EarState, GateVerdict, Injection, Receipt, ReceiptStatus, Sound, Source};
 use origin::Origin;
 use scene::Question;
 use service::{Span, Time};
@@ -53,8 +50,17 @@ pub(crate) struct UtteranceIntake {
 impl UtteranceIntake {
     /// Returns everything but the configuration, for flights that begin in the middle of a start.
     pub(crate) fn checkpoint(&self) -> Option<Vec<u8>> {
-        let Self { config: _, accepted, stop, waiting, receipts, pending, status, last_partial, early } =
-            self;
+        let Self {
+            config: _,
+            accepted,
+            stop,
+            waiting,
+            receipts,
+            pending,
+            status,
+            last_partial,
+            early,
+        } = self;
         let requests = (accepted, stop, waiting, receipts);
         postcard::to_stdvec(&(requests, pending, status, last_partial, early)).ok()
     }
@@ -64,7 +70,17 @@ impl UtteranceIntake {
         let (requests, pending, status, last_partial, early) =
             postcard::from_bytes(checkpoint).ok()?;
         let (accepted, stop, waiting, receipts) = requests;
-        Some(Self { config, accepted, stop, waiting, receipts, pending, status, last_partial, early })
+        Some(Self {
+            config,
+            accepted,
+            stop,
+            waiting,
+            receipts,
+            pending,
+            status,
+            last_partial,
+            early,
+        })
     }
 
     pub(crate) fn new(config: Config) -> Self {

@@ -191,14 +191,6 @@ enum whichone_motion_inhibit {
     WHICHONE_MOTION_INHIBIT_CALIBRATING = 7,
 };
 
-/** Commands to the motion stop. */
-enum whichone_motion_order {
-    /** Halt and latch. */
-    WHICHONE_MOTION_ORDER_STOP = 0,
-    /** Release the latch. */
-    WHICHONE_MOTION_ORDER_RESUME = 1,
-};
-
 /** Purpose of a part of a motion. */
 enum whichone_motion_phase {
     /** Away from what the arm touches, straight up; or a pause while the fingers open. */
@@ -1027,22 +1019,6 @@ WHICHONE_ASSERT(offsetof(whichone_joint_states_t, gripper_percent) == 416, "offs
 #define WHICHONE_JOINT_STATES_TYPE "JointStates"
 #define WHICHONE_JOINT_STATES_SCHEMA "b61683a36126fd0b"
 
-/** Stops the arm, past everything else. Speech and clients to arm. */
-typedef struct whichone_motion_command {
-    /** When it was given; an older one than the last obeyed is ignored. */
-    uint64_t given_ns;
-    /** `MotionOrder`. */
-    uint8_t order /* enum whichone_motion_order */;
-    /** Zero. */
-    uint8_t reserved[7];
-} whichone_motion_command_t;
-WHICHONE_ASSERT(sizeof(whichone_motion_command_t) == 16, "size of MotionCommand");
-WHICHONE_ASSERT(offsetof(whichone_motion_command_t, given_ns) == 0, "offset of MotionCommand.given_ns");
-WHICHONE_ASSERT(offsetof(whichone_motion_command_t, order) == 8, "offset of MotionCommand.order");
-WHICHONE_ASSERT(offsetof(whichone_motion_command_t, reserved) == 9, "offset of MotionCommand.reserved");
-#define WHICHONE_MOTION_COMMAND_TYPE "MotionCommand"
-#define WHICHONE_MOTION_COMMAND_SCHEMA "c8629862f4910ed1"
-
 /** `baxter_core_msgs/JointCommand`: what the joints of one limb are to do now. A limb that has heard none
 for 0.2 s (`joint_command_timeout`) goes back to holding its position. */
 typedef struct whichone_joint_command {
@@ -1404,9 +1380,6 @@ static const whichone_topic_t whichone_arm_world = {
 /** Carries TrajectoryView. */
 static const whichone_topic_t whichone_arm_trajectory = {
     "arm/trajectory", "u8", WHICHONE_TRAJECTORY_VIEW_SCHEMA, 0, 1, "arm", {NULL}, 1, 1};
-/** Carries MotionCommand. */
-static const whichone_topic_t whichone_arm_motion = {
-    "arm/motion", "MotionCommand", WHICHONE_MOTION_COMMAND_SCHEMA, sizeof(whichone_motion_command_t), _Alignof(whichone_motion_command_t), NULL, {"arm", "recorder", NULL}, 4, 0};
 /** Carries JointState. */
 static const whichone_topic_t whichone_robot_joint_states = {
     "robot/joint_states", "JointState", WHICHONE_JOINT_STATE_SCHEMA, sizeof(whichone_joint_state_t), _Alignof(whichone_joint_state_t), "baxter", {"arm", NULL}, 16, 1};

@@ -5,8 +5,8 @@ use dialogue::Rng;
 use messages::judge::COUNT_MAX;
 use messages::{
     ActKind, Activity, AppliedMark, ArmStatus, Code, FixedText, Hypothesis, Injection, MessageRef,
-    MotionOrder, Observation, PickOutcome, PickPhase, PresentationState, Presented,
-    RequestKey, RobotAct, Sound, Utterance, WireCode, WireQuestion,
+    MotionOrder, Observation, PickOutcome, PickPhase, PresentationState, Presented, RequestKey,
+    RobotAct, Sound, Utterance, WireCode, WireQuestion,
 };
 
 use service::stop_socket::{Caller, StopOrder};

@@ -27,8 +27,8 @@ use config::Settings;
 use manipulation::{Joints, Limb};
 use messages::WireCode;
 use messages::{
-    ActKind, ArmStatus, InteractionId, JointStates, MessageRef, MotionOrder, PickId,
-    PickOutcome, PickPhase, RobotAct, TrajectoryView, WorldView,
+    ActKind, ArmStatus, InteractionId, JointStates, MessageRef, MotionOrder, PickId, PickOutcome,
+    PickPhase, RobotAct, TrajectoryView, WorldView,
 };
 use preflight::ArmSetup;
 use robot::Robot;

@@ -2,7 +2,7 @@
 
 use super::{answer, at, belief, delivered, first, heard, manager, remark, reply, settings};
 use super::{text, words};
-use dialogue::manager::{Cause, Record};
+use dialogue::manager::{Cause, MotionStop, Record};
 use dialogue::manager::{Manager, State, refold};
 use messages::{ActKind, Outcome};
 use scene::{Intent, Reading, Reference, Response};
@@ -183,12 +183,12 @@ fn refusals_fold_again() {
     step(&mut manager, &mut state, delivered(pick));
     let no = heard(2, state.act.prompt, answer(Response::No));
     step(&mut manager, &mut state, no);
-    step(&mut manager, &mut state, Cause::MotionStop(true));
+    step(&mut manager, &mut state, Cause::MotionStop(MotionStop::Stopped));
     let metal = heard(3, state.act.prompt, words(&["metallic", "big"]));
     step(&mut manager, &mut state, metal);
     let yes = heard(4, state.act.prompt, answer(Response::Yes));
     step(&mut manager, &mut state, yes);
-    step(&mut manager, &mut state, Cause::MotionStop(false));
+    step(&mut manager, &mut state, Cause::MotionStop(MotionStop::Released));
     assert_eq!(state.act.kind, ActKind::Pick);
     refold(&mut manager, &records).unwrap();
 }

@@ -2,18 +2,18 @@
 
 use super::{answer, at, first, manager, remark, reply, tell, text, words};
 use crate::{In, PolicyNode};
-use dialogue::manager::{Cause, Manager, State};
+use dialogue::manager::{Cause, Manager, MotionStop, State};
 use messages::{ActKind, ArmStatus};
 use scene::{Intent, Reading, Response};
 use service::Node;
 
 fn stopped(manager: &mut Manager, said: &[&str]) -> State {
-    let state = manager.next(&manager.first(), &Cause::MotionStop(true), at(0));
+    let state = manager.next(&manager.first(), &Cause::MotionStop(MotionStop::Stopped), at(0));
     remark(manager, &state, words(said))
 }
 
 fn resume(manager: &mut Manager, state: &State) -> State {
-    manager.next(state, &Cause::MotionStop(false), at(state.applied.0))
+    manager.next(state, &Cause::MotionStop(MotionStop::Released), at(state.applied.0))
 }
 
 #[test]
@@ -21,7 +21,7 @@ fn a_pick_while_stopped_is_announced_and_not_ordered() {
     let mut manager = manager();
     let state = stopped(&mut manager, &["clear"]);
     assert_eq!((state.act.kind, state.act.pick), (ActKind::Say, None));
-    assert_eq!(text(&state), "I have stopped. Shall I get the clear bowl once you resume?");
+    assert_eq!(text(&state), "The motion stop is on. Shall I get the clear bowl once you resume?");
     let resumed = resume(&mut manager, &state);
     assert_eq!((resumed.act.kind, resumed.act.pick), (ActKind::Say, None), "{}", text(&resumed));
     let confirmed = reply(&mut manager, &resumed, answer(Response::Yes));
@@ -66,7 +66,7 @@ fn what_was_denied_or_withdrawn_while_stopped_does_not_start() {
 fn a_stop_changes_no_order() {
     let mut manager = manager();
     let state = first(&mut manager, words(&["clear"]));
-    let stop = manager.next(&state, &Cause::MotionStop(true), at(2));
+    let stop = manager.next(&state, &Cause::MotionStop(MotionStop::Stopped), at(2));
     assert_eq!(stop.act, state.act);
     assert_eq!(resume(&mut manager, &stop).act, state.act);
 }
@@ -76,8 +76,8 @@ fn the_stop_is_heard_from_the_arm() {
     let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let status = |stopped| In::Arm(ArmStatus { stopped, ..ArmStatus::default() });
     assert_eq!(tell(&mut node, status(1), at(1)).0.len(), 1);
-    assert!(node.state().stopped);
+    assert!(node.state().motion_stop.is_latched());
     assert!(tell(&mut node, status(1), at(2)).0.is_empty());
     assert_eq!(tell(&mut node, status(0), at(3)).0.len(), 1);
-    assert!(!node.state().stopped);
+    assert!(!node.state().motion_stop.is_latched());
 }

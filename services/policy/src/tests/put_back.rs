@@ -4,7 +4,7 @@ use super::{
     answer, at, delivered, first, heard, manager, remark, reply, settings, tell, text, words,
 };
 use crate::{In, PolicyNode};
-use dialogue::manager::{Cause, Manager, Progress, Record, State, refold};
+use dialogue::manager::{Cause, Manager, MotionStop, Progress, Record, State, refold};
 use messages::{ActKind, ArmStatus, Outcome, PickOutcome, PickPhase, Task};
 use scene::{Intent, ObjectId, Question, Reading, Response};
 use service::{Node, Span};
@@ -178,7 +178,8 @@ fn while_stopped_it_waits_for_a_yes_and_the_release() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["clear"]);
     let stop = |manager: &mut Manager, state: &State, stopped| {
-        manager.next(state, &Cause::MotionStop(stopped), at(state.applied.0))
+        let stop = if stopped { MotionStop::Stopped } else { MotionStop::Released };
+        manager.next(state, &Cause::MotionStop(stop), at(state.applied.0))
     };
     let stopped = stop(&mut manager, &end, true);
     let held_back = remark(&mut manager, &stopped, wish(&[]));
@@ -255,12 +256,12 @@ fn putting_back_folds_again() {
     step(&mut state, clear);
     let (pick, _) = state.ordered().expect("a pick");
     step(&mut state, delivered(pick));
-    step(&mut state, Cause::MotionStop(true));
+    step(&mut state, Cause::MotionStop(MotionStop::Stopped));
     let back = heard(2, state.act.prompt, wish(&[]));
     step(&mut state, back);
     let yes = heard(3, state.act.prompt, answer(Response::Yes));
     step(&mut state, yes);
-    step(&mut state, Cause::MotionStop(false));
+    step(&mut state, Cause::MotionStop(MotionStop::Released));
     let ordered = state.putting_back.as_ref().map(|it| it.progress);
     assert!(matches!(ordered, Some(Progress::Ordered(_))));
     let (pick, _) = state.ordered().expect("an order");

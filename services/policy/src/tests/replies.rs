@@ -30,9 +30,9 @@ fn about(intent: Intent, said: &[&str]) -> Reading {
     Reading { intent, ..words(said) }
 }
 
-const TALK: [Intent; 17] = [
+/// All talk but stops, whose effect the arm reports first.
+const TALK: [Intent; 15] = [
     Intent::None,
-    Intent::Stop,
     Intent::Cancel,
     Intent::Repeat,
     Intent::StartOver,
@@ -47,7 +47,6 @@ const TALK: [Intent; 17] = [
     Intent::Greet,
     Intent::Thank,
     Intent::Chore,
-    Intent::StopAndCancel,
 ];
 
 fn cancels(intent: Intent) -> bool {

@@ -56,8 +56,8 @@ pub use put_back::{Progress, PuttingBack, WithUser};
 pub use refold::{Mismatch, refold, refold_since};
 pub use setup::Setup;
 pub use state::{
-    Act, Basis, Cause, Deferred, Interaction, KnownObject, MotionStop, PROMPTS_MAX, Preference, Prompt, Record,
-    State, StopOrder, Timing, Utterance,
+    Act, Basis, Cause, Deferred, Interaction, KnownObject, MotionStop, PROMPTS_MAX, Preference,
+    Prompt, Record, State, StopOrder, Timing, Utterance,
 };
 
 use acts::{order_again, say, set, set_reasons};

@@ -118,4 +118,3 @@ wire_enum! {
         Resume = 1,
     }
 }
-

@@ -164,7 +164,7 @@ fn nonsense_and_floods_are_passed_over() {
     let mut count = 0;
     listener.drain(|command, caller| {
         count += 1;
-        assert_eq!((command.given_ns, command.order.get()), (7, MotionOrder::Stop));
+        assert_eq!((command.given_ns, command.order), (7, MotionOrder::Stop));
         listener.answer(&caller, &obeyed(&command));
     });
     assert!((1..=DATAGRAMS_MAX).contains(&count), "{count}");

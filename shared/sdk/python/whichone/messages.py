@@ -197,15 +197,6 @@ class MotionInhibit(IntEnum):
     """A gripper is being calibrated."""
 
 
-class MotionOrder(IntEnum):
-    """Commands to the motion stop."""
-
-    STOP = 0
-    """Halt and latch."""
-    RESUME = 1
-    """Release the latch."""
-
-
 class MotionPhase(IntEnum):
     """Purpose of a part of a motion."""
 
@@ -1078,26 +1069,6 @@ class JointStates(Message):
         ("velocity", ctypes.c_double * JOINT_STATE_LEN),  # 144
         ("effort", ctypes.c_double * JOINT_STATE_LEN),  # 280
         ("gripper_percent", ctypes.c_double * 2),  # 416
-    ]
-
-
-class MotionCommand(Message):
-    """Stops the arm, past everything else. Speech and clients to arm."""
-
-    wire_name = "MotionCommand"
-    wire_size = 16
-    schema_key = "c8629862f4910ed1"
-    given_ns: int
-    """When it was given; an older one than the last obeyed is ignored."""
-    order: int
-    """`MotionOrder`."""
-    reserved: Array[int]
-    """Zero."""
-    codes = {"order": MotionOrder}
-    _fields_ = [
-        ("given_ns", ctypes.c_uint64),  # 0
-        ("order", ctypes.c_uint8),  # 8
-        ("reserved", ctypes.c_uint8 * 7),  # 9
     ]
 
 
@@ -2102,7 +2073,6 @@ TOPICS: dict[str, Topic] = {
     "arm/joints": Topic("arm/joints", JointStates, writer="arm", wakes=("ros2",), buffer=16, history=1),
     "arm/world": Topic("arm/world", WorldView, writer="arm", wakes=(), buffer=1, history=1),
     "arm/trajectory": Topic("arm/trajectory", TrajectoryView, writer="arm", wakes=(), buffer=1, history=1),
-    "arm/motion": Topic("arm/motion", MotionCommand, writer=None, wakes=("arm", "recorder",), buffer=4, history=0),
     "robot/joint_states": Topic("robot/joint_states", JointState, writer="baxter", wakes=("arm",), buffer=16, history=1),
     "robot/state": Topic("robot/state", AssemblyState, writer="baxter", wakes=(), buffer=1, history=1),
     "robot/limb/left/joint_command": Topic("robot/limb/left/joint_command", JointCommand, writer="arm", wakes=("baxter",), buffer=4, history=0),
