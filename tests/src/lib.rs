@@ -11,6 +11,7 @@ mod interrupt;
 pub mod isolated;
 pub mod link;
 pub mod markdown;
+pub mod motion_watch;
 pub mod ros1;
 pub mod ros2;
 pub mod second_user;
