@@ -54,7 +54,7 @@ impl CompletenessJudge {
     pub fn judge(&self, text: &str, question: Question) -> Completeness {
         let normal = normalise(text);
         let tokens = Tokens::of(&normal);
-        let tags = tag(self.reader.lexicon(), &tokens.words);
+        let tags = tag(self.reader.lexicon(), &tokens);
         let spoken = match tags.iter().rposition(|tag| !tag.is(Class::Courtesy)) {
             // "please" alone, or nothing yet.
             None => return Completeness::Unclear,

@@ -60,6 +60,7 @@ mod disambiguate;
 mod distractors;
 mod errands;
 mod extractor;
+mod halting;
 mod hedges;
 mod indifference;
 mod intent;
