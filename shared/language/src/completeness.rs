@@ -71,7 +71,7 @@ impl CompletenessJudge {
         let reading = self.reader.read(text, question);
         match reading.intent {
             Intent::Stop | Intent::StopAndCancel => Completeness::Complete,
-            Intent::Inform => self.judge_content(spoken, &reading, question),
+            Intent::Inform | Intent::GoOn => self.judge_content(spoken, &reading, question),
             Intent::Cancel
             | Intent::StartOver
             | Intent::Greet

@@ -22,6 +22,8 @@ enum Place {
     Command,
     /// Where nothing else is said.
     Alone,
+    /// The same, of words that ask to go on.
+    Resuming,
     /// Anywhere.
     Danger,
 }
@@ -32,6 +34,7 @@ impl Place {
             "leads" => Self::Lead,
             "commands" => Self::Command,
             "alone" => Self::Alone,
+            "resuming" => Self::Resuming,
             "dangers" => Self::Danger,
             _ => return None,
         })
@@ -67,6 +70,12 @@ pub(crate) fn halting_words(tokens: &Tokens<'_>) -> Vec<Range<usize>> {
     Utterance::new(tokens).halting_words()
 }
 
+/// Returns whether the words ask to go on after a stop, and nothing else.
+pub(crate) fn asks_to_go_on(tokens: &Tokens<'_>) -> bool {
+    let beside = classes![Filler Courtesy Yes WeakYes And But Plain];
+    Utterance::new(tokens).is_alone(Place::Resuming, beside)
+}
+
 struct Utterance<'t, 'a> {
     tokens: &'t [Token<'a>],
     /// What lengthened words may be: "stoooop".
@@ -94,7 +103,7 @@ impl<'t, 'a> Utterance<'t, 'a> {
                 break;
             }
         }
-        if found.is_empty() && self.is_alone() {
+        if found.is_empty() && self.is_alone(Place::Alone, classes![Filler Courtesy]) {
             found.push(0..self.tokens.len());
         }
         if found.is_empty() && !self.asks_or_tells() {
@@ -161,30 +170,31 @@ impl<'t, 'a> Utterance<'t, 'a> {
         if next.gap == Gap::Glued {
             return true;
         }
-        let is_doing = next.word.len() > 4 && (next.word.ends_with("ing") || next.word.ends_with("ly"));
+        let is_doing =
+            next.word.len() > 4 && (next.word.ends_with("ing") || next.word.ends_with("ly"));
         match self.own.longest(self.tokens, at).and_then(|phrase| class(phrase.sense)) {
             Some(class) => class == Class::Preposition,
             None => !is_doing && self.longest(Place::Command, at, end).is_none(),
         }
     }
 
-    /// "one moment please", and nothing else.
-    fn is_alone(&self) -> bool {
-        let (mut at, mut waits) = (0, false);
+    /// "one moment please": patterns of that place, and nothing else but words of the classes.
+    fn is_alone(&self, place: Place, beside: &[Class]) -> bool {
+        let (mut at, mut found) = (0, false);
         while at < self.tokens.len() {
-            if let Some(words) = self.longest(Place::Alone, at, self.tokens.len()) {
-                waits = true;
+            if let Some(words) = self.longest(place, at, self.tokens.len()) {
+                found = true;
                 at += words;
                 continue;
             }
             let phrase = self.own.longest(self.tokens, at);
-            let is_beside = |class: Class| matches!(class, Class::Filler | Class::Courtesy);
+            let is_beside = |class: Class| beside.contains(&class);
             match phrase {
                 Some(phrase) if class(phrase.sense).is_some_and(is_beside) => at += phrase.words,
                 _ => return false,
             }
         }
-        waits
+        found
     }
 
     /// Returns whether something is asked for, or told of another day: no danger then, whatever it names.
@@ -206,9 +216,8 @@ impl<'t, 'a> Utterance<'t, 'a> {
 
     /// "hand me", but not "my hand" and "hand stuck".
     fn is_verb(&self, at: usize) -> bool {
-        const AFTER: [&str; 12] = [
-            "me", "us", "over", "it", "the", "a", "an", "them", "that", "this", "him", "her",
-        ];
+        const AFTER: [&str; 12] =
+            ["me", "us", "over", "it", "the", "a", "an", "them", "that", "this", "him", "her"];
         let next = self.tokens.get(at + 1);
         self.tokens[at].word != "hand"
             || next.is_some_and(|next| !next.pauses() && AFTER.contains(&next.word))
@@ -279,7 +288,10 @@ impl<'t, 'a> Utterance<'t, 'a> {
             let Some(phrase) = self.own.longest(self.tokens, at) else { return false };
             let ends = |class: Class| {
                 matches!(class, Class::Filler | Class::Courtesy | Class::WeakYes | Class::No)
-                    || matches!(self.tokens[at].word, "now" | "here" | "there" | "immediately" | "and")
+                    || matches!(
+                        self.tokens[at].word,
+                        "now" | "here" | "there" | "immediately" | "and"
+                    )
             };
             let again = self.longest(Place::Command, at, end).is_some();
             if !again && !class(phrase.sense).is_some_and(ends) {

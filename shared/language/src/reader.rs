@@ -6,7 +6,7 @@ use crate::answer::response;
 use crate::clauses::clauses;
 use crate::content::Content;
 use crate::extractor::extract;
-use crate::halting::halting_words;
+use crate::halting::{asks_to_go_on, halting_words};
 use crate::hedges::hedge;
 use crate::indifference::{indifference, is_of_attribute};
 use crate::intent::{intent, is_side_talk, is_statement};
@@ -146,6 +146,7 @@ impl Reader {
             (refers, ..) => refers,
         };
         let mut intent = match intent(&tags, &clauses, &content, asked, tokens.code) {
+            Intent::None | Intent::Inform if says_nothing && asks_to_go_on(tokens) => Intent::GoOn,
             Intent::Inform if is_aside => Intent::None,
             Intent::None if response.0 == Response::DoesNotMatter => Intent::Inform,
             Intent::None if refers != Reference::None => Intent::Inform,

@@ -17,6 +17,7 @@ fn remarks_keep_their_numbers_in_journals() {
         (Remark::Why(Reason::None), 16),
         (Remark::OnlyFetches(None), 17),
         (Remark::TooLate(String::new()), 18),
+        (Remark::StillStopped, 19),
     ] {
         assert_eq!(number(remark.clone()), expected, "{remark:?}");
     }
@@ -30,7 +31,7 @@ fn about(intent: Intent, said: &[&str]) -> Reading {
     Reading { intent, ..words(said) }
 }
 
-const TALK: [Intent; 17] = [
+const TALK: [Intent; 18] = [
     Intent::None,
     Intent::Stop,
     Intent::Cancel,
@@ -48,6 +49,7 @@ const TALK: [Intent; 17] = [
     Intent::Thank,
     Intent::Chore,
     Intent::StopAndCancel,
+    Intent::GoOn,
 ];
 
 fn cancels(intent: Intent) -> bool {

@@ -30,7 +30,7 @@ impl Manager {
             Intent::Leave => Remark::Goodbye,
             Intent::Thank => Remark::Welcome,
             Intent::Stop | Intent::StopAndCancel => Remark::Stopped,
-            Intent::AskStatus if state.stopped => Remark::Stopped,
+            Intent::AskStatus if state.stopped => Remark::StillStopped,
             Intent::AskHelp => Remark::Help,
             Intent::AskBack => Remark::Inventory,
             Intent::AskCount => self.objects(said, intent, AboutObjects::Count),
@@ -45,6 +45,10 @@ impl Manager {
 
     /// Returns what the robot is doing.
     pub(super) fn status(&mut self, state: &State) -> Remark {
+        // A question that stands is still to be answered; anything else waits for the release.
+        if state.stopped && (state.act.kind != ActKind::Ask || state.open.is_none()) {
+            return Remark::StillStopped;
+        }
         if state.to_put_back().is_some() {
             return self.about_putting_back(state);
         }
@@ -53,7 +57,6 @@ impl Manager {
             (ActKind::Cancel, Some((_, object))) => Remark::Leaving(self.description(object)),
             (_, Some((_, object))) => Remark::Fetching(self.description(object)),
             (ActKind::Ask, None) => Remark::AllRight,
-            (_, None) if state.stopped => Remark::Stopped,
             (_, None) if state.handed_over.is_some() => Remark::AllRight,
             _ => Remark::Idle,
         }

@@ -15,6 +15,9 @@ const LISTED_MAX: usize = 30;
 pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
     let text = match remark {
         Remark::Stopped => "I have stopped. Release the motion stop to go on.".to_owned(),
+        Remark::StillStopped => {
+            "I am stopped. Press Resume on the page, or run: whichone resume-motion".to_owned()
+        }
         Remark::Inventory => inventory(scene),
         Remark::Greeting => "Hello!".to_owned(),
         Remark::Goodbye => "Goodbye!".to_owned(),

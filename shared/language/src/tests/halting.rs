@@ -68,7 +68,8 @@ fn all_sentences() -> impl Iterator<Item = &'static str> {
     let of_tables = tables.into_iter().flat_map(super::sentences);
     let said = |line: &'static str| {
         let (first, rest) = line.split_once(' ')?;
-        matches!(first, "you" | "meanwhile" | "late" | "afresh" | "asked" | "always").then_some(rest)
+        matches!(first, "you" | "meanwhile" | "late" | "afresh" | "asked" | "always")
+            .then_some(rest)
     };
     let of_dialogues = dialogues.into_iter().flat_map(str::lines).filter_map(said);
     sentences().map(|(_, text)| text).chain(of_tables).chain(of_dialogues)
@@ -113,7 +114,8 @@ fn taken(words: &[&str]) -> Scene {
 
 #[test]
 fn no_scene_takes_a_halting_word_away() {
-    let halting: Vec<&str> = sentences().filter(|(halts, _)| *halts).map(|(_, text)| text).collect();
+    let halting: Vec<&str> =
+        sentences().filter(|(halts, _)| *halts).map(|(_, text)| text).collect();
     let mut words: Vec<&str> =
         halting.iter().flat_map(|text| text.split([' ', ',', '!', '.'])).collect();
     words.extend(&halting);
