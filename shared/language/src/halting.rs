@@ -103,7 +103,7 @@ impl<'t, 'a> Utterance<'t, 'a> {
                 break;
             }
         }
-        if found.is_empty() && self.is_alone(Place::Alone, classes![Filler Courtesy]) {
+        if found.is_empty() && self.is_alone(Place::Alone, classes![Filler Courtesy WeakYes]) {
             found.push(0..self.tokens.len());
         }
         if found.is_empty() && !self.asks_or_tells() {
@@ -182,8 +182,10 @@ impl<'t, 'a> Utterance<'t, 'a> {
     fn is_alone(&self, place: Place, beside: &[Class]) -> bool {
         let (mut at, mut found) = (0, false);
         while at < self.tokens.len() {
-            if let Some(words) = self.longest(place, at, self.tokens.len()) {
-                found = true;
+            let words = self.longest(place, at, self.tokens.len());
+            found |= words.is_some();
+            if let Some(words) = words.or_else(|| self.longest(Place::Lead, at, self.tokens.len()))
+            {
                 at += words;
                 continue;
             }

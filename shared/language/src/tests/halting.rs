@@ -1,7 +1,8 @@
 //! Words that halt the arm, and words that are near them.
 //!
-//! `halting.txt` was written before any of the code that it judges: 20 of the 94 sentences halted then,
-//! and 89 of the 91 others did not.
+//! The first 185 sentences of `halting.txt` were written before any of the code that they judge: 20 of the 94 that
+//! should halted then, and 89 of the 91 others did not. The rest was written after that code and before it
+//! was measured on them: 60 of 80 halted, and 74 of 78 others did not.
 
 use scene::{Intent, Question, Scene};
 
@@ -13,7 +14,7 @@ fn sentences() -> impl Iterator<Item = (bool, &'static str)> {
     let mut halts = false;
     include_str!("halting.txt").lines().filter_map(move |line| match line.strip_prefix("## ") {
         Some(heading) => {
-            halts = heading == "halts";
+            halts = heading.starts_with("halts");
             None
         }
         None => Some((halts, line)),
@@ -116,9 +117,9 @@ fn taken(words: &[&str]) -> Scene {
 fn no_scene_takes_a_halting_word_away() {
     let halting: Vec<&str> =
         sentences().filter(|(halts, _)| *halts).map(|(_, text)| text).collect();
-    let mut words: Vec<&str> =
-        halting.iter().flat_map(|text| text.split([' ', ',', '!', '.'])).collect();
-    words.extend(&halting);
+    let text = format!("{}\n", halting.join("\n")).to_lowercase();
+    let mut words: Vec<&str> = text.split([' ', ',', '!', '.', '\n']).collect();
+    words.extend(text.lines());
     words.retain(|word| !word.is_empty());
     words.sort_unstable();
     words.dedup();
