@@ -11,6 +11,7 @@
 //! |---|---|---|
 //! | normalise | `normalise.rs` | plain lower-case text |
 //! | tokenise | `tokens.rs` | words and the pauses between them |
+//! | halting words | `halting.rs` (`vocabulary/halting.txt`) | what halts the arm, whatever the scene |
 //! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `relations.rs`, `spelling.rs`, `phonetics.rs`, `vocabulary/`) | value or class of each word or phrase |
 //! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`, `errands.rs`, `statements.rs`) | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |

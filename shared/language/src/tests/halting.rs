@@ -136,3 +136,32 @@ fn no_scene_takes_a_halting_word_away() {
         assert!(stop.base.is_empty(), "{stop:?}");
     }
 }
+
+/// A misspelt set or section would be a hole that nobody sees.
+#[test]
+fn patterns_are_written_in_known_sections_and_sets() {
+    let lines: Vec<(&str, &str)> = crate::vocabulary::halting().collect();
+    let of = |section: &'static str| lines.iter().filter(move |(named, _)| *named == section);
+    let sections = ["sets", "leads", "commands", "alone", "resuming", "dangers"];
+    assert!(lines.iter().all(|(section, _)| sections.contains(section)));
+    let sets: Vec<&str> =
+        of("sets").map(|(_, line)| line.split_once(" = ").expect("a set").0).collect();
+    for (section, line) in lines.iter().filter(|(section, _)| *section != "sets") {
+        for (n, element) in line.split(' ').enumerate() {
+            assert!(!element.is_empty() && (n > 0 || element != "_"), "{section}: {line}");
+            let mut words = element.trim_end_matches('?').split('|');
+            let is_known = |word: &str| match word.strip_prefix('$') {
+                Some(set) => sets.contains(&set),
+                None => matches!(word, "_" | "." | ",") || is_one_word(word.trim_end_matches('~')),
+            };
+            assert!(words.all(is_known), "{section}: {line}: {element}");
+        }
+    }
+    assert!(of("commands").count() > 50 && of("dangers").count() > 10);
+}
+
+/// Returns whether the word is written as tokens read it: contractions opened, no hyphens.
+fn is_one_word(word: &str) -> bool {
+    let tokens = crate::tokens::Tokens::of(word);
+    matches!(&tokens.words[..], [token] if token.word == word)
+}
