@@ -8,8 +8,8 @@ use crate::normalise::normalise;
 use crate::token_class::Class;
 use crate::tokens::Tokens;
 
-/// Returns the names in a scene that the robot's own words are, a sentence each. What halts the arm always
-/// halts it; any other word means what the scene says.
+/// Returns a warning for each name in a scene that is one of the robot's own words. A word that halts the arm
+/// always does; any other loses the robot's meaning in that scene.
 pub fn own_words(scene: &Scene) -> Vec<String> {
     let mut found = Vec::new();
     let mut look = |name: &str, of: &str| {
