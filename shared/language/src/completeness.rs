@@ -54,7 +54,7 @@ impl CompletenessJudge {
     pub fn judge(&self, text: &str, question: Question) -> Completeness {
         let normal = normalise(text);
         let tokens = Tokens::of(&normal);
-        let tags = tag(self.reader.lexicon(), &tokens.words);
+        let tags = tag(self.reader.lexicon(), &tokens);
         let spoken = match tags.iter().rposition(|tag| !tag.is(Class::Courtesy)) {
             // "please" alone, or nothing yet.
             None => return Completeness::Unclear,
@@ -71,7 +71,7 @@ impl CompletenessJudge {
         let reading = self.reader.read(text, question);
         match reading.intent {
             Intent::Stop | Intent::StopAndCancel => Completeness::Complete,
-            Intent::Inform => self.judge_content(spoken, &reading, question),
+            Intent::Inform | Intent::GoOn => self.judge_content(spoken, &reading, question),
             Intent::Cancel
             | Intent::StartOver
             | Intent::Greet

@@ -25,9 +25,10 @@ pub(crate) fn intent(
     let commands = |class| clauses[..spoken].iter().any(|clause| commands(tags, clause, class));
     let withdraws = commands(Class::Cancel) || commands(Class::Withdraw) || puts_off(tags);
     let declines = |new| clauses.iter().any(|clause| declines(tags, clause, new));
-    if commands(Class::Stop) && says_nothing && (withdraws || declines(true)) {
+    let stops = tags.iter().any(|tag| tag.is(Class::Stop));
+    if stops && says_nothing && (withdraws || declines(true)) {
         Intent::StopAndCancel
-    } else if commands(Class::Stop) || is_only_wait(tags) {
+    } else if stops {
         Intent::Stop
     } else if commands(Class::StartOver) {
         Intent::StartOver
@@ -64,18 +65,8 @@ pub(crate) fn commands(tags: &[Tag<'_>], clause: &Clause, class: Class) -> bool 
     if at > range.start && tags[at - 1].is(Class::Not) {
         return false;
     }
-    let plain = tags[range.clone()].iter().all(|tag| !tag.is_unknown());
-    const LEADS: &[Class] = classes![Filler Courtesy No Yes Repair WeakYes And But Join Plain];
-    let opens = tags[range.start..at].iter().all(|tag| tag.is_any(LEADS));
-    match class {
-        // Better to stop once too often.
-        Class::Stop => {
-            let next = tags[at + 1..range.end].first();
-            let joined = next.is_some_and(|next| next.is_unknown() || next.is(Class::Preposition));
-            opens && !joined || plain && clause.topic == Topic::On
-        }
-        _ => plain && clause.topic != Topic::Off,
-    }
+    let plain = tags[range].iter().all(|tag| !tag.is_unknown());
+    plain && clause.topic != Topic::Off
 }
 
 /// "I don't want a bowl any more", "forget about the bowl": what is declined is any of them. `new`: said
@@ -249,13 +240,6 @@ fn courtesy(tags: &[Tag<'_>]) -> Option<Intent> {
     } else {
         None
     }
-}
-
-/// "wait", and nothing else.
-fn is_only_wait(tags: &[Tag<'_>]) -> bool {
-    let wait = |tag: &Tag<'_>| tag.is(Class::Repair) && tag.word == "wait";
-    tags.iter().any(wait)
-        && tags.iter().all(|tag| wait(tag) || tag.is_any(classes![Filler Courtesy]))
 }
 
 /// "not now", "later", "not yet", and nothing else.

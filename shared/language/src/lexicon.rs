@@ -5,6 +5,7 @@
 use std::cell::LazyCell;
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
+use std::sync::LazyLock;
 
 use scene::{AttributeId, Reference, Role, Scene, Value, WordId};
 
@@ -88,16 +89,34 @@ pub(crate) struct Lexicon {
 impl Lexicon {
     /// Collects the words of a scene and of the language.
     pub(crate) fn new(scene: &Scene) -> Self {
-        let lookalikes = Lookalikes::new(scene.noun());
-        let mut lexicon = Self { phrases: HashMap::new(), values: Vec::new(), lookalikes };
+        let mut lexicon = Self::empty(scene.noun());
         lexicon.add_values(scene);
         lexicon.add_names(scene);
         lexicon.add_parts(scene);
-        lexicon.add_phrases();
-        for phrases in lexicon.phrases.values_mut() {
+        lexicon.add_language();
+        lexicon
+    }
+
+    /// The words of the language alone: the robot's own, whatever the scene.
+    pub(crate) fn own() -> &'static Self {
+        static OWN: LazyLock<Lexicon> = LazyLock::new(|| {
+            let mut own = Lexicon::empty("");
+            own.add_language();
+            own
+        });
+        &OWN
+    }
+
+    fn empty(noun: &str) -> Self {
+        let lookalikes = Lookalikes::new(noun);
+        Self { phrases: HashMap::new(), values: Vec::new(), lookalikes }
+    }
+
+    fn add_language(&mut self) {
+        self.add_phrases();
+        for phrases in self.phrases.values_mut() {
             phrases.sort_by_key(|phrase| Reverse(phrase.rest.len()));
         }
-        lexicon
     }
 
     /// Words that are not in the lexicon, but nearly are.

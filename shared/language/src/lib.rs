@@ -11,6 +11,7 @@
 //! |---|---|---|
 //! | normalise | `normalise.rs` | plain lower-case text |
 //! | tokenise | `tokens.rs` | words and the pauses between them |
+//! | halting words | `halting.rs` (`vocabulary/halting.txt`) | what halts the arm, whatever the scene |
 //! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `relations.rs`, `spelling.rs`, `phonetics.rs`, `vocabulary/`) | value or class of each word or phrase |
 //! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`, `errands.rs`, `statements.rs`) | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
@@ -60,6 +61,7 @@ mod disambiguate;
 mod distractors;
 mod errands;
 mod extractor;
+mod halting;
 mod hedges;
 mod indifference;
 mod intent;
@@ -70,6 +72,7 @@ mod negation;
 mod negation_scope;
 mod normalise;
 mod objects;
+mod own_words;
 mod paper;
 mod parsed;
 mod phonetics;
@@ -94,5 +97,6 @@ mod tests;
 pub use completeness::{Completeness, CompletenessJudge};
 pub use confusion::confusion;
 pub use normalise::TEXT_CHARS_MAX;
+pub use own_words::own_words;
 pub use parsed::READINGS_MAX;
 pub use reader::{Language, Reader};

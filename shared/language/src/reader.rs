@@ -6,6 +6,7 @@ use crate::answer::response;
 use crate::clauses::clauses;
 use crate::content::Content;
 use crate::extractor::extract;
+use crate::halting::{asks_to_go_on, halting_words};
 use crate::hedges::hedge;
 use crate::indifference::{indifference, is_of_attribute};
 use crate::intent::{intent, is_side_talk, is_statement};
@@ -75,10 +76,10 @@ impl Reader {
         }
     }
 
-    /// Returns whether the words tell the robot to stop.
+    /// Returns whether the words halt the arm. That is a matter of safety: it depends neither on the
+    /// scene nor on the language, and the careful reading of such words is always a stop.
     pub fn is_stop(&self, text: &str) -> bool {
-        let intent = self.read(text, Question::None).intent;
-        matches!(intent, Intent::Stop | Intent::StopAndCancel)
+        !halting_words(&Tokens::of(&normalise(text))).is_empty()
     }
 
     /// Returns the attribute and object words in an utterance that the scene lacks, for the robot's
@@ -120,7 +121,7 @@ impl Reader {
     }
 
     fn parse<'a>(&'a self, tokens: &Tokens<'a>, last_question: Question) -> ParsedUtterance<'a> {
-        let mut tags = tag(&self.lexicon, &tokens.words);
+        let mut tags = tag(&self.lexicon, tokens);
         let clauses = clauses(&tags, tokens.code);
         hedge(&mut tags, &clauses);
         let asked = self.questions.asked(last_question);
@@ -145,6 +146,7 @@ impl Reader {
             (refers, ..) => refers,
         };
         let mut intent = match intent(&tags, &clauses, &content, asked, tokens.code) {
+            Intent::None | Intent::Inform if says_nothing && asks_to_go_on(tokens) => Intent::GoOn,
             Intent::Inform if is_aside => Intent::None,
             Intent::None if response.0 == Response::DoesNotMatter => Intent::Inform,
             Intent::None if refers != Reference::None => Intent::Inform,

@@ -4,11 +4,12 @@
 use scene::Role;
 
 use crate::disambiguate::disambiguate;
+use crate::halting::halting_words;
 use crate::lexicon::{Lexicon, Sense, ValueSense};
 use crate::relations::begins_relation;
 use crate::spelling::shortened;
 use crate::token_class::Class;
-use crate::tokens::{Gap, Token};
+use crate::tokens::{Gap, Token, Tokens};
 
 /// A word or phrase, what it is taken for, and the pause before it.
 #[derive(Clone, Copy, Debug)]
@@ -148,13 +149,23 @@ const JOINED_LETTERS_MIN: usize = 6;
 /// Most letters of a word that is tried as two run together.
 const RUN_ON_LETTERS_MAX: usize = 24;
 
-/// The tags of some words.
-pub(crate) fn tag<'a>(lexicon: &'a Lexicon, tokens: &[Token<'a>]) -> Vec<Tag<'a>> {
+/// The tags of an utterance.
+pub(crate) fn tag<'a>(lexicon: &'a Lexicon, tokens: &Tokens<'a>) -> Vec<Tag<'a>> {
+    // No word of the scene takes these away.
+    let mut halting = halting_words(tokens).into_iter().peekable();
+    let tokens = &tokens.words;
     let mut tags: Vec<Tag<'a>> = Vec::with_capacity(tokens.len());
     let mut at = 0;
     while at < tokens.len() {
+        if let Some(words) = halting.next_if(|words| words.start <= at) {
+            let stop = Found { words: words.len(), ..Found::word(Sense::Class(Class::Stop)) };
+            tags.push(Tag::of(tokens, at, &stop));
+            at = words.end;
+            continue;
+        }
         let described = tags.last().is_some_and(|tag| tag.is_value() || tag.is(Class::Determiner));
-        let found = find(lexicon, tokens, at, described);
+        let end = halting.peek().map_or(tokens.len(), |words| words.start);
+        let found = find(lexicon, &tokens[..end], at, described);
         let tag = Tag::of(tokens, at, &found);
         tags.push(tag);
         tags.extend(found.second.map(|sense| Tag { sense, gap: Gap::Glued, ..tag }));

@@ -20,6 +20,21 @@ pub(crate) fn phrases() -> impl Iterator<Item = (Class, &'static str)> {
     })
 }
 
+/// Returns the patterns of what halts the arm, each with its section.
+pub(crate) fn halting() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let mut section = "";
+    let lines = include_str!("vocabulary/halting.txt").lines();
+    lines.filter(|line| !line.starts_with('#') && !line.is_empty()).filter_map(move |line| {
+        match line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
+            Some(heading) => {
+                section = heading;
+                None
+            }
+            None => Some((section, line)),
+        }
+    })
+}
+
 /// Returns the groups of words that mean nearly the same, with the role of the values that they name.
 pub(crate) fn synonyms() -> impl Iterator<Item = (Role, Vec<&'static str>)> {
     let mut role = Role::Quality;

@@ -237,6 +237,7 @@ wire_codes! {
         AskWhether = 17,
         Chore = 18,
         StopAndCancel = 19,
+        GoOn = 20,
     }
 }
 wire_codes! {

@@ -35,6 +35,7 @@ prop_compose! {
         intent in prop::sample::select(vec![
             Intent::Inform, Intent::None, Intent::Stop, Intent::Cancel, Intent::Repeat,
             Intent::StartOver, Intent::AskBack, Intent::AskCount, Intent::PutBack, Intent::StopAndCancel,
+            Intent::GoOn,
         ]),
         refers in prop::sample::select(vec![Reference::None, Reference::Other, Reference::Largest]),
         further in prop::collection::vec(words(EXCLUDED_WORDS_MAX), 0..=FURTHER_MAX),

@@ -32,7 +32,7 @@ The scene:
 ";
 
 /// Every intent, in its order.
-const INTENTS: [Intent; 20] = [
+const INTENTS: [Intent; 21] = [
     Intent::Inform,
     Intent::None,
     Intent::Stop,
@@ -53,6 +53,7 @@ const INTENTS: [Intent; 20] = [
     Intent::AskWhether,
     Intent::Chore,
     Intent::StopAndCancel,
+    Intent::GoOn,
 ];
 /// Every response.
 const RESPONSES: [Response; 5] =

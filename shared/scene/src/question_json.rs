@@ -100,6 +100,7 @@ fn published_intent(reading: &Reading) -> Intent {
     match reading.intent {
         Intent::Cancel if !reading.excluded.is_empty() => Intent::Inform,
         Intent::StopAndCancel => Intent::Stop,
+        Intent::GoOn if reading.response != Response::None => Intent::Inform,
         Intent::AskCount
         | Intent::AskWhich
         | Intent::AskWhether
@@ -107,9 +108,12 @@ fn published_intent(reading: &Reading) -> Intent {
         | Intent::AskWhy
         | Intent::AskStatus
         | Intent::AskHelp => Intent::AskBack,
-        Intent::Greet | Intent::Thank | Intent::PutBack | Intent::Leave | Intent::Chore => {
-            Intent::None
-        }
+        Intent::Greet
+        | Intent::Thank
+        | Intent::PutBack
+        | Intent::Leave
+        | Intent::Chore
+        | Intent::GoOn => Intent::None,
         other => other,
     }
 }

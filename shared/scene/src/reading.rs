@@ -69,6 +69,9 @@ pub enum Intent {
     Chore,
     /// Stop moving at once, and withdraw the request ("stop, I don't want it").
     StopAndCancel,
+    /// Move again after a stop ("go on"), which words cannot bring about. An answer in the same words
+    /// ("keep going") stands.
+    GoOn,
 }
 
 /// An object that an utterance points to by what was spoken of.

@@ -70,7 +70,7 @@ pub fn check(configuration: &Configuration, file: TextFile) -> Findings {
     let words = Scene::from_toml(&file.label, &file.text).map(|scene| {
         let objects = scene.objects().len();
         let words = (0..objects).map(|n| scene.describe(n.into())).collect();
-        (words, scene.ambiguities())
+        (words, warnings(&scene))
     });
     let (words, warnings) = words.unwrap_or_default();
     let loaded = preflight::load_with_scene(folder, profile.as_deref(), set, Some(file));
@@ -79,6 +79,13 @@ pub fn check(configuration: &Configuration, file: TextFile) -> Findings {
         Err(found) => found.iter().map(Problem::from).collect(),
     };
     Findings { problems, warnings, words }
+}
+
+/// Returns what a person cannot say clearly in a scene, a sentence each.
+pub fn warnings(scene: &Scene) -> Vec<String> {
+    let mut warnings = scene.ambiguities();
+    warnings.extend(language::own_words(scene));
+    warnings
 }
 
 /// A robot, as an editor draws it.

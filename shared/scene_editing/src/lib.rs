@@ -24,6 +24,8 @@ mod template;
 
 pub use document::{AttributeEntry, Document, ObjectEntry, ValueEntry};
 pub use edit::SceneEdit;
-pub use examine::{Configuration, Findings, LimbSummary, Problem, Reach, RobotSummary, check};
+pub use examine::{
+    Configuration, Findings, LimbSummary, Problem, Reach, RobotSummary, check, warnings,
+};
 pub use folder::{FileError, ScenesFolder, fingerprint};
 pub use template::{new_scene, schema_line};

@@ -153,6 +153,9 @@ enum whichone_intent {
     WHICHONE_INTENT_CHORE = 18,
     /** Stop moving at once, and withdraw the request ("stop, I don't want it"). */
     WHICHONE_INTENT_STOP_AND_CANCEL = 19,
+    /** Move again after a stop ("go on"), which words cannot bring about. An answer in the same words
+    ("keep going") stands. */
+    WHICHONE_INTENT_GO_ON = 20,
 };
 
 /** State of the microphone of the robot's computer. */
@@ -600,7 +603,7 @@ WHICHONE_ASSERT(offsetof(whichone_reading_t, excluded_count) == 397, "offset of 
 WHICHONE_ASSERT(offsetof(whichone_reading_t, further_count) == 398, "offset of Reading.further_count");
 WHICHONE_ASSERT(offsetof(whichone_reading_t, reserved) == 399, "offset of Reading.reserved");
 #define WHICHONE_READING_TYPE "Reading"
-#define WHICHONE_READING_SCHEMA "07c4f2ab175b43b3"
+#define WHICHONE_READING_SCHEMA "3df25522accf9501"
 
 /** An accepted utterance. Speech to grounding. */
 typedef struct whichone_utterance {
@@ -695,7 +698,7 @@ WHICHONE_ASSERT(offsetof(whichone_observation_t, reserved) == 276, "offset of Ob
 WHICHONE_ASSERT(offsetof(whichone_observation_t, readings) == 280, "offset of Observation.readings");
 WHICHONE_ASSERT(offsetof(whichone_observation_t, unknown) == 13080, "offset of Observation.unknown");
 #define WHICHONE_OBSERVATION_TYPE "Observation"
-#define WHICHONE_OBSERVATION_SCHEMA "ee8b2a9dabad2445"
+#define WHICHONE_OBSERVATION_SCHEMA "b0d5c403b2296e0a"
 
 /** The highest utterance that the belief holds. Policy to speech. */
 typedef struct whichone_applied_mark {

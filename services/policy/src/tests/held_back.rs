@@ -81,3 +81,54 @@ fn the_stop_is_heard_from_the_arm() {
     assert_eq!(tell(&mut node, status(0), at(3)).0.len(), 1);
     assert!(!node.state().motion_stop.is_latched());
 }
+
+/// How to resume: words do not.
+const STILL_STOPPED: &str =
+    "The motion stop is on. Press Resume on the page, or run: whichone resume-motion";
+
+#[test]
+fn words_to_go_on_are_told_how_to_resume() {
+    let mut manager = manager();
+    let fetching = first(&mut manager, words(&["clear"]));
+    let go_on = |response| Reading { intent: Intent::GoOn, response, ..Reading::default() };
+    let ask = Reading { intent: Intent::AskStatus, ..Reading::default() };
+    let stopped = manager.next(&fetching, &Cause::MotionStop(MotionStop::Stopped), at(0));
+    for reading in [
+        go_on(Response::None),
+        go_on(Response::Yes),
+        go_on(Response::No),
+        answer(Response::Yes),
+        ask,
+    ] {
+        let after = reply(&mut manager, &stopped, reading.clone());
+        assert_eq!(text(&after), STILL_STOPPED, "{reading:?}");
+        assert_eq!((after.act.kind, after.act.pick), (ActKind::Pick, fetching.act.pick));
+        assert!(after.motion_stop.is_latched());
+    }
+    // At rest, too.
+    let idle = manager.next(&manager.first(), &Cause::MotionStop(MotionStop::Stopped), at(0));
+    let after = remark(&mut manager, &idle, go_on(Response::None));
+    assert_eq!(text(&after), STILL_STOPPED);
+}
+
+#[test]
+fn words_to_go_on_mean_what_they_did_where_nothing_is_stopped() {
+    let mut manager = manager();
+    let fetching = first(&mut manager, words(&["clear"]));
+    for response in [Response::None, Response::Yes, Response::No] {
+        let go_on = Reading { intent: Intent::GoOn, response, ..Reading::default() };
+        let intent = if response == Response::None { Intent::None } else { Intent::Inform };
+        let as_before = reply(&mut manager, &fetching, Reading { intent, ..go_on.clone() });
+        let after = reply(&mut manager, &fetching, go_on);
+        assert_eq!((after.act, after.open), (as_before.act, as_before.open), "{response:?}");
+    }
+}
+
+#[test]
+fn yes_go_on_confirms_what_waits_for_the_release() {
+    let mut manager = manager();
+    let state = stopped(&mut manager, &["clear"]);
+    let yes = Reading { intent: Intent::GoOn, ..answer(Response::Yes) };
+    let confirmed = reply(&mut manager, &state, yes);
+    assert_eq!(text(&confirmed), "All right, once you resume.");
+}

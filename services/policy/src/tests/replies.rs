@@ -17,6 +17,8 @@ fn remarks_keep_their_numbers_in_journals() {
         (Remark::Why(Reason::None), 16),
         (Remark::OnlyFetches(None), 17),
         (Remark::TooLate(String::new()), 18),
+        (Remark::StillStopped, 19),
+        (Remark::StopUnconfirmed, 20),
     ] {
         assert_eq!(number(remark.clone()), expected, "{remark:?}");
     }
@@ -31,7 +33,7 @@ fn about(intent: Intent, said: &[&str]) -> Reading {
 }
 
 /// All talk but stops, whose effect the arm reports first.
-const TALK: [Intent; 15] = [
+const TALK: [Intent; 16] = [
     Intent::None,
     Intent::Cancel,
     Intent::Repeat,
@@ -47,6 +49,7 @@ const TALK: [Intent; 15] = [
     Intent::Greet,
     Intent::Thank,
     Intent::Chore,
+    Intent::GoOn,
 ];
 
 fn cancels(intent: Intent) -> bool {

@@ -56,7 +56,6 @@ fn talk(paths: &GroupPaths, interrupt: &Interrupt, out: &mut Output<'_>) -> Outc
                 "" => {}
                 "quit" | "exit" => return Ok(Exit::Ok),
                 "resume" => chat.resume()?,
-                "go on" | "continue" if chat.is_stopped() => chat.resume()?,
                 words => chat.conversation.say(words)?,
             },
             Err(TryRecvError::Empty) => thread::sleep(LOOK_EVERY * 2),
@@ -174,11 +173,6 @@ impl<'a, 'b> Chat<'a, 'b> {
         }
         let sentence = await_pick::sentence(&last);
         self.out.line(self.out.style().paint(Ink::Dim, format!("({sentence})")))
-    }
-
-    /// Returns whether the motion stop is latched.
-    fn is_stopped(&self) -> bool {
-        self.conversation.latest().arm.is_some_and(|arm| arm.stopped != 0)
     }
 
     fn resume(&mut self) -> Result<(), Failure> {

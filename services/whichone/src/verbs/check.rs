@@ -5,6 +5,7 @@ use std::path::Path;
 use config::Settings;
 use diagnostics::{Diagnostic, Diagnostics};
 use scene::Scene;
+use scene_editing::warnings;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
@@ -39,8 +40,8 @@ pub(super) fn verdict(
             for line in summary(&settings) {
                 out.line(line)?;
             }
-            for ambiguity in settings.scene.ambiguities() {
-                note(format_args!("warning: scene {}: {ambiguity}", settings.scene.name()));
+            for warning in warnings(&settings.scene) {
+                note(format_args!("warning: scene {}: {warning}", settings.scene.name()));
             }
             if with_values {
                 values(&settings, out)?;
@@ -147,7 +148,7 @@ fn as_json(settings: &Settings, values: bool) -> Json {
         "ok": true,
         "scene": { "name": settings.scene.name(), "objects": settings.scene.objects().len(),
                    "placed": settings.scene.placed().count() },
-        "warnings": settings.scene.ambiguities(),
+        "warnings": warnings(&settings.scene),
         "planner": settings.dialogue.planner,
         "params": settings.dialogue.params,
         "costs": settings.dialogue.costs,

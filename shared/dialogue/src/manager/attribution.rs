@@ -199,7 +199,9 @@ pub(super) fn content(reading: &Reading) -> std::borrow::Cow<'_, Reading> {
     match reading.intent {
         Intent::Inform => Cow::Borrowed(reading),
         // "Stop, not that one": what is said beside the order, nothing with a plain "stop".
-        Intent::Stop => Cow::Owned(Reading { intent: Intent::Inform, ..reading.clone() }),
+        Intent::Stop | Intent::GoOn => {
+            Cow::Owned(Reading { intent: Intent::Inform, ..reading.clone() })
+        }
         Intent::Cancel if !reading.excluded.is_empty() => Cow::Borrowed(reading),
         _ => Cow::Owned(Reading::default()),
     }

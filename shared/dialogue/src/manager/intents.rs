@@ -1,6 +1,6 @@
 //! Dispatch of an utterance by the user's intent.
 
-use scene::{Intent, Reading, Reference};
+use scene::{Intent, Reading, Reference, Response};
 
 use super::Manager;
 use super::acts::{call_off, repeat, say};
@@ -28,6 +28,9 @@ impl Manager {
         }
         let intent = match intent(utterance, &shares, state.open.is_some()) {
             Intent::Inform if self.asks_to_put_back(state, utterance) => Intent::PutBack,
+            Intent::GoOn if !state.motion_stop.is_latched() || is_confirmed(state, utterance) => {
+                answered(utterance)
+            }
             intent => intent,
         };
         match intent {
@@ -149,6 +152,23 @@ fn excludes(utterance: &Utterance) -> bool {
 /// Returns whether an order to stop also tells what is wanted or not.
 fn is_about_object(utterance: &Utterance) -> bool {
     likeliest(utterance, Intent::Stop).is_some_and(|it| *content(it) != Reading::default())
+}
+
+/// Returns whether "ok, go on" confirms what waits for the release of the motion stop.
+fn is_confirmed(state: &State, utterance: &Utterance) -> bool {
+    let is_fetched = state.open.as_ref().is_some_and(|open| open.held_back.is_some());
+    let held_back = |it: &PuttingBack| matches!(it.progress, Progress::HeldBack { .. });
+    let is_put_back = state.putting_back.as_ref().is_some_and(held_back);
+    let yes = |it: &Reading| it.response == Response::Yes;
+    (is_fetched || is_put_back) && likeliest(utterance, Intent::GoOn).is_some_and(yes)
+}
+
+/// Returns the intent of "go on" as an answer.
+fn answered(utterance: &Utterance) -> Intent {
+    let answers = |it: &Interpretation| {
+        it.reading.intent == Intent::GoOn && it.reading.response != Response::None
+    };
+    if utterance.interpretations.iter().any(answers) { Intent::Inform } else { Intent::None }
 }
 
 /// Returns the shares of an utterance that answers nothing.

@@ -100,8 +100,8 @@ pub enum Remark {
     OnlyFetches(Option<String>),
     /// The object of that description is handed over: it was called off too late.
     TooLate(String),
-    /// The motion stop is latched; the arm is not at rest yet.
-    Stopping,
+    /// The motion stop is still latched, and only a person releases it.
+    StillStopped,
     /// The arm has not confirmed a stop.
     StopUnconfirmed,
 }

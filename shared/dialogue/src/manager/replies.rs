@@ -5,7 +5,7 @@ use scene::{Intent, ObjectId, Reading, WordId};
 use super::Manager;
 use super::hand_over::HandedOver;
 use super::line::{AboutObjects, Content, Reason, Remark};
-use super::state::{Interaction, MotionStop, State, Utterance};
+use super::state::{Interaction, State, Utterance};
 use crate::ActKind;
 
 /// Most objects that a reason names.
@@ -29,7 +29,7 @@ impl Manager {
             Intent::Greet => Remark::Greeting,
             Intent::Leave => Remark::Goodbye,
             Intent::Thank => Remark::Welcome,
-            Intent::AskStatus if state.motion_stop.is_latched() => stop_remark(state),
+            Intent::AskStatus if state.motion_stop.is_latched() => Remark::StillStopped,
             Intent::AskHelp => Remark::Help,
             Intent::AskBack => Remark::Inventory,
             Intent::AskCount => self.objects(said, intent, AboutObjects::Count),
@@ -44,6 +44,12 @@ impl Manager {
 
     /// Returns what the robot is doing.
     pub(super) fn status(&mut self, state: &State) -> Remark {
+        // A question that stands is still to be answered; anything else waits for the release.
+        if state.motion_stop.is_latched()
+            && (state.act.kind != ActKind::Ask || state.open.is_none())
+        {
+            return Remark::StillStopped;
+        }
         if state.to_put_back().is_some() {
             return self.about_putting_back(state);
         }
@@ -52,7 +58,6 @@ impl Manager {
             (ActKind::Cancel, Some((_, object))) => Remark::Leaving(self.description(object)),
             (_, Some((_, object))) => Remark::Fetching(self.description(object)),
             (ActKind::Ask, None) => Remark::AllRight,
-            (_, None) if state.motion_stop.is_latched() => stop_remark(state),
             (_, None) if state.handed_over.is_some() => Remark::AllRight,
             _ => Remark::Idle,
         }
@@ -135,14 +140,6 @@ impl Manager {
             words if words.is_empty() => Reason::Likeliest,
             words => Reason::Said(words),
         }
-    }
-}
-
-/// Returns what is true of a latched motion stop.
-fn stop_remark(state: &State) -> Remark {
-    match state.motion_stop {
-        MotionStop::Stopped => Remark::Stopped,
-        _ => Remark::Stopping,
     }
 }
 

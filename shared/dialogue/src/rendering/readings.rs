@@ -8,6 +8,7 @@ pub fn reading(scene: &Scene, reading: &Reading) -> String {
         Intent::None => return "nothing for me".to_owned(),
         Intent::Stop => Some("stop"),
         Intent::StopAndCancel => Some("stop, never mind"),
+        Intent::GoOn => Some("go on"),
         Intent::Cancel => Some("never mind"),
         Intent::Repeat => Some("say that again"),
         Intent::StartOver => Some("start over"),

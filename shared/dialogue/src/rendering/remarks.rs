@@ -15,9 +15,12 @@ const LISTED_MAX: usize = 30;
 pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
     let text = match remark {
         Remark::Stopped => "I have stopped. Release the motion stop to go on.".to_owned(),
-        Remark::Stopping => "I am stopping.".to_owned(),
         Remark::StopUnconfirmed => {
             "The arm has not confirmed the stop. Use the robot's emergency stop.".to_owned()
+        }
+        Remark::StillStopped => {
+            "The motion stop is on. Press Resume on the page, or run: whichone resume-motion"
+                .to_owned()
         }
         Remark::Inventory => inventory(scene),
         Remark::Greeting => "Hello!".to_owned(),

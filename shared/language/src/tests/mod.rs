@@ -2,6 +2,7 @@
 
 mod conversation;
 mod formatting;
+mod halting;
 mod own_words;
 mod readings;
 mod table;

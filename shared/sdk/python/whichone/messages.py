@@ -157,6 +157,9 @@ class Intent(IntEnum):
     """Have the robot do something else than fetch ('wash the bowl')."""
     STOP_AND_CANCEL = 19
     """Stop moving at once, and withdraw the request ('stop, I don't want it')."""
+    GO_ON = 20
+    """Move again after a stop ('go on'), which words cannot bring about. An answer in the same words ('keep
+    going') stands."""
 
 
 class MicrophoneState(IntEnum):
@@ -549,7 +552,7 @@ class WireReading(Message):
 
     wire_name = "Reading"
     wire_size = 400
-    schema_key = "07c4f2ab175b43b3"
+    schema_key = "3df25522accf9501"
     weight: float
     """Probability among the readings for the same question; they sum to 1."""
     base_doubt: Array[float]
@@ -659,7 +662,7 @@ class Observation(Message):
 
     wire_name = "Observation"
     wire_size = 13144
-    schema_key = "ee8b2a9dabad2445"
+    schema_key = "b0d5c403b2296e0a"
     seq: int
     """The utterance's `UtteranceSeq`."""
     asked: Array[AskedQuestion]

@@ -167,7 +167,7 @@ impl Meaning {
 
     /// Returns whether it describes an object or answers a question.
     fn has_content(&self) -> bool {
-        self.intent == Intent::Inform
+        matches!(self.intent, Intent::Inform | Intent::GoOn)
             && (!self.base.is_empty()
                 || !self.excluded.is_empty()
                 || self.response != Response::None)

@@ -3,6 +3,7 @@
 use config::Settings;
 use preflight::{ArmSetup, Arrangement};
 use scene::{ObjectId, Scene, Value};
+use scene_editing::warnings;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
@@ -45,7 +46,7 @@ pub(super) fn show(args: &SceneShowArgs, out: &mut Output<'_>) -> Outcome {
             ));
         }
     }
-    scene.ambiguities().iter().for_each(|text| note(format_args!("warning: {text}")));
+    warnings(scene).iter().for_each(|text| note(format_args!("warning: {text}")));
     Ok(Exit::Ok)
 }
 
@@ -111,6 +112,6 @@ fn to_json(settings: &Settings, reach: &[Reach]) -> Json {
     json!({
         "name": scene.name(), "noun": scene.noun(), "file": settings.scene_file().label,
         "objects": json["objects"], "attributes": attributes.collect::<Vec<_>>(),
-        "warnings": scene.ambiguities(),
+        "warnings": warnings(scene),
     })
 }

@@ -1,0 +1,62 @@
+//! Words of the robot that a scene uses for its things.
+
+use scene::Scene;
+
+use crate::halting::halting_words;
+use crate::lexicon::{Lexicon, Sense};
+use crate::normalise::normalise;
+use crate::token_class::Class;
+use crate::tokens::Tokens;
+
+/// Returns a warning for each name in a scene that is one of the robot's own words. A word that halts the arm
+/// always does; any other loses the robot's meaning in that scene.
+pub fn own_words(scene: &Scene) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut look = |name: &str, of: &str| {
+        let text = normalise(name);
+        let tokens = Tokens::of(&text);
+        if !halting_words(&tokens).is_empty() {
+            found.push(format!(
+                "\"{name}\", {of}, halts the arm where it is said alone; help: choose another name"
+            ));
+        } else if let Some(meaning) = meaning(&tokens) {
+            found.push(format!(
+                "\"{name}\", {of}, no longer means {meaning} in this scene; help: choose another name"
+            ));
+        }
+    };
+    look(scene.noun(), "the noun of the scene");
+    for attribute in scene.attributes() {
+        let of_attribute = format!("a name of attribute `{}`", attribute.name);
+        let names = std::iter::once(&attribute.name).chain(&attribute.synonyms);
+        names.for_each(|name| look(name, &of_attribute));
+        let of_value = format!("a value of `{}`", attribute.name);
+        let names = |value: &'_ scene::Value| {
+            std::iter::once(value.name.clone()).chain(value.synonyms.clone()).collect::<Vec<_>>()
+        };
+        attribute.values.iter().flat_map(names).for_each(|name| look(&name, &of_value));
+    }
+    found
+}
+
+/// What the robot takes a whole name for, where the dialogue needs it.
+fn meaning(tokens: &Tokens<'_>) -> Option<&'static str> {
+    let phrase = Lexicon::own().longest(&tokens.words, 0);
+    let phrase = phrase.filter(|phrase| phrase.words == tokens.words.len())?;
+    let Sense::Class(class) = phrase.sense else { return None };
+    Some(match class {
+        Class::Yes => "yes",
+        Class::No => "no",
+        Class::Not => "that something is denied",
+        Class::One => "any of the things",
+        Class::Unsure => "that the person does not know",
+        Class::Indifferent => "that anything will do",
+        Class::Cancel => "to cancel the request",
+        Class::StartOver => "to start over",
+        Class::Repeat => "to repeat the question",
+        Class::PutBack => "to put a thing back",
+        Class::AskHelp => "to ask for help",
+        Class::AskStatus => "to ask what the robot does",
+        _ => return None,
+    })
+}
