@@ -182,7 +182,7 @@ impl Progress {
     }
 
     /// Returns why the order is not confirmed.
-    fn why(&self, now: Time) -> StopError {
+    pub fn why(&self, now: Time) -> StopError {
         let waited_s = now.since(self.since).s();
         match self.state {
             None if self.is_absent => StopError::Absent,
