@@ -10,15 +10,15 @@ use std::sync::{Arc, Mutex};
 use whichone_tests::{Group, wait_for};
 
 /// A terminal with a program in it.
-struct Terminal {
+pub(crate) struct Terminal {
     master: File,
-    child: Child,
+    pub(crate) child: Child,
     screen: Arc<Mutex<Screen>>,
 }
 
 impl Terminal {
     /// Starts a program in a terminal of that size.
-    fn start(command: &mut Command, columns: u16, rows: u16) -> Self {
+    pub(crate) fn start(command: &mut Command, columns: u16, rows: u16) -> Self {
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
         grantpt(&master).unwrap();
         unlockpt(&master).unwrap();
@@ -40,12 +40,19 @@ impl Terminal {
         Self { master, child, screen }
     }
 
-    fn press(&mut self, keys: &str) {
+    pub(crate) fn press(&mut self, keys: &str) {
         self.master.write_all(keys.as_bytes()).unwrap();
     }
 
-    fn wait_for(&self, what: &str, is_shown: impl Fn(&[String]) -> bool) {
+    pub(crate) fn wait_for(&self, what: &str, is_shown: impl Fn(&[String]) -> bool) {
         wait_for(what, 15.0, || is_shown(&self.screen.lock().unwrap().lines()).then_some(()));
+    }
+}
+
+impl Terminal {
+    /// What is shown.
+    pub(crate) fn lines(&self) -> Vec<String> {
+        self.screen.lock().unwrap().lines()
     }
 }
 
@@ -129,7 +136,7 @@ impl Screen {
     }
 }
 
-fn has(lines: &[String], part: &str) -> bool {
+pub(crate) fn has(lines: &[String], part: &str) -> bool {
     lines.iter().any(|line| line.contains(part))
 }
 
@@ -145,9 +152,15 @@ fn watch_on_a_terminal_shows_the_dialogue_obeys_keys_and_follows_its_size() {
     terminal.press("s");
     terminal.wait_for("the stop", |lines| has(lines, "STOPPED"));
     assert_eq!(group.arm()["stopped"], true);
-    terminal.press("r");
-    terminal.wait_for("what a release asks", |lines| has(lines, "release the motion stop?"));
-    terminal.press("\r");
+    // Right after a stop nothing resumes, so the key is pressed until it counts.
+    terminal.wait_for("the confirmed stop", |lines| has(lines, "the arm is stopped, at rest"));
+    wait_for("what a release asks", 15.0, || {
+        terminal.press("r");
+        std::thread::sleep(std::time::Duration::from_millis(200));
+        has(&terminal.lines(), "to let the arm move, type resume").then_some(())
+    });
+    assert_eq!(group.arm()["stopped"], true);
+    terminal.press("resume\r");
     terminal.wait_for("the release", |lines| !has(lines, "STOPPED"));
     assert_eq!(group.arm()["stopped"], false);
     resize(&terminal.master, 60, 20);

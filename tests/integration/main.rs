@@ -52,6 +52,7 @@ mod second_user;
 mod shortage;
 mod speech;
 mod spoken;
+mod stop_matrix;
 mod stops;
 mod supervision;
 mod swap;

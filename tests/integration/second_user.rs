@@ -105,3 +105,26 @@ fn folder_of_another_user_is_refused_with_the_fix() {
     let expected = format!("expected a folder of user 0, found one of user {OTHER_USER}; help:");
     assert!(ended.stderr.contains(&expected), "{ended:?}");
 }
+
+/// A group of another user, with root as its operator.
+#[test]
+#[ignore = "needs root: acts as another user"]
+fn roots_orders_to_the_motion_stop_of_another_users_group_are_confirmed() {
+    let mut group = Group::new();
+    chown(group.paths().home(), Some(OTHER_USER), Some(OTHER_USER)).unwrap();
+    let ended = as_other_user(|| group.start(&[]));
+    assert_eq!(ended.code, Some(0), "{ended:?}\n{}", group.logs());
+    assert_eq!(group.paths().run().metadata().unwrap().uid(), OTHER_USER);
+    let state = group.must(&["stop-motion", "--timeout", "50", "--json"]).json();
+    assert_eq!((&state["stopped"], &state["at_rest"]), (&true.into(), &true.into()), "{state}");
+    let shown = as_other_user(|| group.arm());
+    assert_eq!(shown["stopped"], true, "{shown}");
+    group.must(&["resume-motion", "--timeout", "50"]);
+    assert_eq!(as_other_user(|| group.arm())["stopped"], false);
+    // What root cannot do there says how it is done, and destroys nothing of the running group.
+    let ended = group.call(&["say", "hello"]);
+    assert_ne!(ended.code, Some(0), "{ended:?}");
+    assert!(ended.stderr.contains("help: run the command as that user"), "{ended:?}");
+    assert!(!ended.stderr.contains("remove"), "{ended:?}");
+    as_other_user(|| group.down());
+}

@@ -61,20 +61,6 @@ fn arm_stops_with_a_hung_supervisor_a_stopped_policy_and_no_free_descriptor() {
     group.down();
 }
 
-#[test]
-fn stop_without_the_arm_ends_soon_and_names_the_emergency_stop() {
-    let group = Group::up(&[]);
-    group.must(&["hold", "arm"]);
-    wait_for("the hold", 10.0, || (group.service("arm")["actual"] == "held").then_some(()));
-    let ended = group.call(&["stop-motion", "--timeout", "50"]);
-    assert_eq!(ended.code, Some(1), "{ended:?}");
-    for words in ["not running", "may still move", "emergency stop", "held"] {
-        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
-    }
-    group.must(&["release", "arm"]);
-    group.down();
-}
-
 /// What needs file systems of its own.
 mod as_root {
     use super::*;

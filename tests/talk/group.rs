@@ -294,7 +294,7 @@ impl Group {
                     self.inboxes.speech.push(speech::In::Arm(status));
                 }
                 arm::Out::StopState(_, state) => {
-                    self.inboxes.speech.extend(self.stop.on_answer(&state));
+                    self.inboxes.speech.extend(self.stop.on_answer(state, self.now));
                 }
                 arm::Out::Plan(request) => {
                     self.inboxes.arm.push(arm::In::Planned(Box::new(request.solve())));

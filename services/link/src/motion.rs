@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 
 use messages::MotionOrder;
 use serde::{Deserialize, Serialize};
-use service::stop_socket::StopState;
+use service::stop_socket::{Progress, StopClient, StopState, default_patience};
 use service::{Span, Time};
 
 /// Greatest age of the state that a release is based on.
@@ -117,6 +117,57 @@ impl Register {
             self.known.pop_front();
         }
         stamp
+    }
+}
+
+/// The robot's side: the latest stop, which is repeated to the arm until it is confirmed or overruled, even if the
+/// network is gone meanwhile and the operator's machine repeats nothing.
+#[derive(Debug, Default)]
+pub struct StandingStop {
+    /// Stamp of the latest stop; a repetition of it is not given again.
+    latest: Time,
+    progress: Option<Progress>,
+}
+
+impl StandingStop {
+    /// Takes in a request's order.
+    pub fn take(&mut self, order: MotionOrder, stamp: Time) {
+        if order == MotionOrder::Stop && stamp > self.latest {
+            self.latest = stamp;
+            self.progress = Some(Progress::new(order, stamp, default_patience(order)));
+        }
+    }
+
+    /// Returns whether this stop is repeated here.
+    pub fn repeats(&self, stamp: Time) -> bool {
+        self.progress.as_ref().is_some_and(|progress| progress.given() == stamp)
+    }
+
+    /// Returns whether a stop is not confirmed.
+    pub fn is_open(&self) -> bool {
+        self.progress.is_some()
+    }
+
+    /// Repeats the stop where that is due; logs if it is late, and its end.
+    pub fn advance(&mut self, client: &StopClient, now: Time) {
+        let Some(progress) = &mut self.progress else { return };
+        if progress.due(now) {
+            progress.on_sent(&client.send(progress.order(), progress.given()));
+        }
+        if let Some(why) = progress.warning(now) {
+            tracing::warn!(%why, "stop over the link not confirmed; it is repeated");
+        }
+        match progress.result(now) {
+            None => return,
+            Some(Ok(_)) => tracing::info!("stop over the link confirmed"),
+            Some(Err(why)) => tracing::warn!(%why, "stop over the link ended"),
+        }
+        self.progress = None;
+    }
+
+    /// Takes in an answer of the arm.
+    pub fn on_answer(&mut self, state: StopState, now: Time) {
+        self.progress.iter_mut().for_each(|progress| progress.on_answer(state, now));
     }
 }
 
@@ -290,6 +341,43 @@ mod tests {
             }
             assert!(arm.stopped || !is_stopped_again, "{word}: a later stop was released");
         }
+    }
+
+    #[test]
+    fn stop_is_repeated_at_the_robot_without_the_network() {
+        use service::group::GroupPaths;
+        use service::stop_socket::StopListener;
+        let home = tempfile::tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
+        std::fs::create_dir_all(paths.run()).unwrap();
+        let (client, mut standing) = (StopClient::open(&paths).unwrap(), StandingStop::default());
+        // One request arrives; the arm's service is away for an hour, and nothing else arrives.
+        standing.take(MotionOrder::Stop, at(100));
+        assert!(standing.repeats(at(100)));
+        for ms in (100..3_600_000).step_by(1_000) {
+            standing.advance(&client, at(ms));
+            assert!(standing.is_open(), "after {ms} ms");
+        }
+        let arm = StopListener::bind(&paths).unwrap();
+        standing.advance(&client, at(3_600_100));
+        let mut heard = Vec::new();
+        arm.drain(|command, _| heard.push((command.order, Time(command.given_ns))));
+        assert_eq!(heard, [(MotionOrder::Stop, at(100))]);
+        let state = StopState {
+            given_ns: at(100).ns(),
+            in_force_ns: at(100).ns(),
+            stopped: true,
+            at_rest: true,
+            durable: true,
+            inhibit: MotionInhibit::None,
+        };
+        standing.on_answer(state, at(3_600_101));
+        standing.advance(&client, at(3_600_101));
+        assert!(!standing.is_open());
+        // A repetition of the request that was held up in the network, and a release.
+        standing.take(MotionOrder::Stop, at(100));
+        standing.take(MotionOrder::Resume, at(3_700_000));
+        assert!(!standing.is_open());
     }
 
     #[test]

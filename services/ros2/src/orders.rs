@@ -2,13 +2,11 @@
 //! another order overrules it, however long the arm's service is away.
 
 use messages::MotionOrder;
-use service::stop_socket::{Progress, StopError, StopState};
+use service::stop_socket::{Progress, StopClient, StopState, default_patience};
 use service::{Span, Time};
 
-/// Interval at which an unconfirmed order is repeated.
-const RESEND_EVERY: Span = Span::from_ms(20);
-/// Deadline for the answer to a caller; a release that is later would surprise.
-const PATIENCE: Span = Span::from_ms(4_000);
+/// Deadline for the answer to a caller of a stop, which is repeated all the same.
+const ANSWER_WITHIN: Span = Span::from_ms(4_000);
 /// Most callers that wait for an answer; the order of a further one is given all the same.
 const CALLERS_MAX: usize = 32;
 
@@ -18,15 +16,18 @@ pub type Answer = Result<StopState, String>;
 /// The order that is in force until it is confirmed.
 #[derive(Debug)]
 struct Pending<C> {
-    order: MotionOrder,
-    given: Time,
-    sent: Option<Time>,
     progress: Progress,
-    callers: Vec<C>,
-    /// No process listened to the latest repetition.
-    is_absent: bool,
-    /// Callers have been answered that it is late.
-    is_late: bool,
+    /// Who waits for the answer, and since when.
+    callers: Vec<(C, Time)>,
+}
+
+/// Outcome of an order, or of the wait for it.
+#[derive(Debug, PartialEq)]
+pub enum Event<C> {
+    /// The order is over; the callers who wait for it.
+    Done(Vec<C>, Answer),
+    /// A stop is not confirmed yet and is repeated, for the reason given; the callers who have waited long enough.
+    Late(Vec<C>, String),
 }
 
 /// Orders on their way. `C` identifies who waits for the answer.
@@ -43,58 +44,43 @@ impl<C> Orders<C> {
     /// Puts an order in force, which is to be sent at once. Returns the callers of a contrary one, whose
     /// order is overruled.
     pub fn give(&mut self, order: MotionOrder, caller: Option<C>, now: Time) -> Vec<C> {
-        let mut callers = Vec::new();
         let mut overruled = Vec::new();
-        if let Some(before) = self.0.take() {
-            let is_same = before.order == order;
-            *(if is_same { &mut callers } else { &mut overruled }) = before.callers;
+        match &mut self.0 {
+            Some(pending) if pending.progress.order() == order => pending.progress.renew(now),
+            pending => {
+                let progress = Progress::new(order, now, default_patience(order));
+                let before = pending.replace(Pending { progress, callers: Vec::new() });
+                overruled.extend(before.into_iter().flat_map(|before| before.callers));
+            }
         }
-        callers.extend(caller.filter(|_| callers.len() < CALLERS_MAX));
-        let progress = Progress::new(order, now, PATIENCE);
-        let (is_absent, is_late) = (false, false);
-        self.0 =
-            Some(Pending { order, given: now, sent: None, progress, callers, is_absent, is_late });
-        overruled
+        if let (Some(pending), Some(caller)) = (&mut self.0, caller)
+            && pending.callers.len() < CALLERS_MAX
+        {
+            pending.callers.push((caller, now));
+        }
+        overruled.into_iter().map(|(caller, _)| caller).collect()
     }
 
-    /// Returns the order that is due to be sent, with its original time, which makes repetitions
-    /// harmless.
-    pub fn due(&mut self, now: Time) -> Option<(MotionOrder, Time)> {
-        let pending =
-            self.0.as_mut().filter(|it| it.sent.is_none_or(|sent| now >= sent + RESEND_EVERY))?;
-        pending.sent = Some(now);
-        Some((pending.order, pending.given))
-    }
-
-    /// Notes whether a process listened.
-    pub fn on_sent(&mut self, sent: &Result<(), StopError>) {
+    /// Repeats the order and takes in the arm's answers.
+    pub fn advance(&mut self, client: &StopClient, now: Time) {
         if let Some(pending) = &mut self.0 {
-            pending.is_absent = matches!(sent, Err(StopError::Absent));
+            pending.progress.advance(client, now);
         }
     }
 
-    /// Takes in an answer of the arm.
-    pub fn on_answer(&mut self, state: StopState, now: Time) {
-        if let Some(pending) = &mut self.0 {
-            pending.progress.on_answer(state, now);
-        }
-    }
-
-    /// Returns the result once there is one, and who waits for it. A stop that is not confirmed in time
-    /// stays in force.
-    pub fn result(&mut self, now: Time) -> Option<(Vec<C>, Answer)> {
+    /// Returns what has happened to the order. A stop that is not confirmed in time stays in force.
+    pub fn event(&mut self, now: Time) -> Option<Event<C>> {
         let pending = self.0.as_mut()?;
-        let result = pending.progress.result(pending.is_absent, now)?;
-        let callers = std::mem::take(&mut pending.callers);
-        let stays = pending.order == MotionOrder::Stop
-            && matches!(result, Err(ref error) if !matches!(error, StopError::Overruled));
-        let was_late = std::mem::replace(&mut pending.is_late, stays);
-        if !stays {
-            self.0 = None;
-        } else if was_late && callers.is_empty() {
-            return None;
+        if let Some(result) = pending.progress.result(now) {
+            let callers = self.0.take()?.callers.into_iter().map(|(caller, _)| caller).collect();
+            return Some(Event::Done(callers, result.map_err(|error| error.to_string())));
         }
-        Some((callers, result.map_err(|error| error.to_string())))
+        let warning = pending.progress.warning(now);
+        let is_late = |(_, since): &mut (C, Time)| now >= *since + ANSWER_WITHIN;
+        let late: Vec<C> =
+            pending.callers.extract_if(.., is_late).map(|(caller, _)| caller).collect();
+        let why = warning.or((!late.is_empty()).then(|| pending.progress.why(now)))?;
+        Some(Event::Late(late, format!("not confirmed yet; the order is repeated: {why}")))
     }
 
     /// Returns whether an order is not confirmed, so that the next repetition should come soon.
@@ -108,6 +94,7 @@ impl<C> Orders<C> {
 mod tests {
     use super::*;
     use messages::MotionInhibit;
+    use service::stop_socket::StopError;
 
     fn at(ms: u64) -> Time {
         Time(1_000_000 * ms)
@@ -119,23 +106,41 @@ mod tests {
         StopState { given_ns, in_force_ns, stopped, at_rest: true, durable: true, inhibit }
     }
 
+    fn done<C>(event: Option<Event<C>>) -> (Vec<C>, Answer) {
+        match event {
+            Some(Event::Done(callers, answer)) => (callers, answer),
+            _ => panic!("not over"),
+        }
+    }
+
     #[test]
     fn stop_is_repeated_until_it_is_confirmed_and_callers_are_answered_meanwhile() {
         let mut orders = Orders::default();
         assert!(orders.give(MotionOrder::Stop, Some('a'), at(1)).is_empty());
-        assert_eq!(orders.due(at(1)), Some((MotionOrder::Stop, at(1))));
-        assert_eq!(orders.due(at(10)), None);
-        assert_eq!(orders.due(at(21)), Some((MotionOrder::Stop, at(1))));
-        orders.on_sent(&Err(StopError::Absent));
-        assert!(orders.result(at(900)).is_none());
-        let (callers, result) = orders.result(at(1_001)).unwrap();
-        assert!(callers == ['a'] && result.unwrap_err().contains("emergency stop"));
-        assert!(orders.result(at(1_100)).is_none(), "reported once");
-        assert!(orders.due(at(60_000)).is_some(), "a minute later, still in force");
-        orders.on_sent(&Ok(()));
-        orders.on_answer(answer(at(1), true), at(60_001));
-        assert!(matches!(orders.result(at(60_001)), Some((_, Ok(state))) if state.stopped));
-        assert!(!orders.is_pending() && orders.due(at(70_000)).is_none());
+        let progress = |orders: &mut Orders<char>, sent| {
+            orders.0.as_mut().unwrap().progress.on_sent(&sent);
+        };
+        progress(&mut orders, Err(StopError::Absent));
+        // An hour without the arm's service; the caller is answered once, the log has a warning every few seconds.
+        let (mut late, mut warnings) = (Vec::new(), 0);
+        for ms in (1..3_600_000).step_by(20) {
+            match orders.event(at(ms)) {
+                None => {}
+                Some(Event::Late(callers, why)) => {
+                    assert!(why.contains("not confirmed yet") && why.contains("emergency stop"));
+                    late.extend(callers.iter().map(|_| ms));
+                    warnings += 1;
+                }
+                Some(Event::Done(_, answer)) => panic!("given up after {ms} ms: {answer:?}"),
+            }
+        }
+        assert_eq!(late, [4_001]);
+        assert!((1_200..=1_202).contains(&warnings), "{warnings}");
+        progress(&mut orders, Ok(()));
+        let pending = orders.0.as_mut().unwrap();
+        pending.progress.on_answer(answer(at(1), true), at(3_600_001));
+        let (callers, result) = done(orders.event(at(3_600_001)));
+        assert!(callers.is_empty() && result.unwrap().stopped && !orders.is_pending());
     }
 
     #[test]
@@ -144,10 +149,13 @@ mod tests {
         orders.give(MotionOrder::Stop, Some('a'), at(1));
         orders.give(MotionOrder::Stop, Some('b'), at(2));
         assert_eq!(orders.give(MotionOrder::Resume, Some('c'), at(3)), ['a', 'b']);
-        orders.on_answer(answer(at(2), true), at(4));
-        assert!(orders.result(at(4)).is_none(), "an answer to another order");
-        let (callers, result) = orders.result(at(4_003)).unwrap();
-        assert!(callers == ['c'] && result.is_err() && !orders.is_pending());
+        let pending = orders.0.as_mut().unwrap();
+        pending.progress.on_answer(answer(at(2), true), at(4));
+        assert_eq!(orders.event(at(4)), None, "an answer to another order");
+        let Some(Event::Late(callers, _)) = orders.event(at(4_003)) else { panic!("late") };
+        assert_eq!(callers, ['c']);
+        let (callers, result) = done(orders.event(at(5_003)));
+        assert!(callers.is_empty() && result.is_err() && !orders.is_pending());
     }
 
     #[test]

@@ -20,8 +20,8 @@ const STICKY: u32 = 0o1000;
 pub enum FolderError {
     /// It belongs to another user.
     #[error(
-        "{}: expected a folder of user {own}, found one of user {owner}; help: remove it, or set \
-         WHICHONE_HOME to a folder of your own",
+        "{}: expected a folder of user {own}, found one of user {owner}; help: run the command as that user, whose \
+         group it may be, or set WHICHONE_HOME to a folder of your own",
         path.display()
     )]
     Foreign {

@@ -6,45 +6,36 @@
 //! descriptor in the service, with a hung supervisor and a dead policy.
 //!
 //! An order is a JSON object in one datagram, `{"order":"stop","given_ns":N}`, and is answered by the
-//! arm's [`StopState`]. It is repeated until the answer is the wanted one; `given_ns`, its time on the
-//! monotonic clock, makes repetitions harmless. Only the group's own user and root are heard: the
-//! socket lies in the private folder `run/`, and both sides check the credentials that the kernel
-//! attaches to each datagram.
+//! arm's [`StopState`]. A stop is repeated until the arm has confirmed it, however long its service is away
+//! ([`Progress`]); `given_ns`, its time on the machine's monotonic clock, makes repetitions harmless. Only the group's
+//! own user and root are heard: the socket lies in the private folder `run/`, and both sides check the credentials
+//! that the kernel attaches to each datagram.
 
-use std::io::{self, IoSliceMut};
-use std::mem::MaybeUninit;
-use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
-use std::path::PathBuf;
+use std::io;
+use std::os::fd::BorrowedFd;
 
 use messages::{MotionInhibit, MotionOrder};
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::io::Errno;
-use rustix::net::{
-    AddressFamily, RecvAncillaryBuffer, RecvAncillaryMessage, RecvFlags, SendFlags, SocketAddrUnix,
-    SocketFlags, SocketType, bind, recvmsg, sendto, socket_with, sockopt,
-};
-use serde::de::DeserializeOwned;
+use rustix::net::SocketAddrUnix;
+use rustix::process::{Uid, geteuid};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::group::GroupPaths;
 use crate::{Span, Time, clock};
+use datagram::{ClockOffset, Endpoint};
+use progress::RESEND_EVERY;
+pub use progress::{Progress, default_patience};
+
+mod datagram;
+mod progress;
 
 mod repeated;
 
 pub use repeated::RepeatedStop;
 
-/// Longest datagram, bytes.
-const DATAGRAM_BYTES_MAX: usize = 512;
 /// Most datagrams of one pass.
 const DATAGRAMS_MAX: usize = 64;
-/// Interval at which an order is repeated.
-const RESEND_EVERY: Span = Span::from_ms(10);
-/// Time for a restart of the arm's service, before it counts as absent.
-const RESTART_GRACE: Span = Span::from_ms(1_000);
-/// Time without an answer before the caller is notified.
-const SILENCE: Span = Span::from_ms(250);
-/// Time that a stop of an arm at rest is given to become durable.
-const DURABLE_GRACE: Span = Span::from_ms(500);
 
 /// An order to the motion stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -74,12 +65,9 @@ pub struct StopState {
 }
 
 impl StopState {
-    /// Returns whether the stop that was given at `given` needs no repetition: it is latched for good and the arm
-    /// is at rest, or a later order is in force.
-    pub fn settles(&self, given: Time) -> bool {
-        let is_done = self.stopped && self.at_rest && self.durable;
-        let is_overruled = !self.stopped && self.in_force_ns > given.ns();
-        self.given_ns == given.ns() && (is_done || is_overruled)
+    fn translated(self, time: impl Fn(u64) -> u64) -> Self {
+        let (given_ns, in_force_ns) = (time(self.given_ns), time(self.in_force_ns));
+        Self { given_ns, in_force_ns, ..self }
     }
 }
 
@@ -114,7 +102,8 @@ impl Caller {
 /// The service's end.
 #[derive(Debug)]
 pub struct StopListener {
-    socket: OwnedFd,
+    endpoint: Endpoint,
+    clock: ClockOffset,
 }
 
 impl StopListener {
@@ -128,21 +117,23 @@ impl StopListener {
             Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
             _ => {}
         }
-        let socket = socket()?;
-        bind(&socket, &SocketAddrUnix::new(&path)?)?;
-        Ok(Self { socket })
+        let endpoint = Endpoint::bind(&SocketAddrUnix::new(&path)?)?;
+        Ok(Self { endpoint, clock: ClockOffset::of_process() })
     }
 
     /// Readable while orders wait.
     pub fn fd(&self) -> BorrowedFd<'_> {
-        self.socket.as_fd()
+        self.endpoint.fd()
     }
 
     /// Hands waiting orders to `take`, up to a bound.
     pub fn drain(&self, mut take: impl FnMut(StopOrder, Caller)) {
         for _ in 0..DATAGRAMS_MAX {
-            match receive::<StopOrder>(&self.socket) {
-                Ok(Some((order, Some(from)))) => take(order, Caller(from)),
+            match self.endpoint.receive::<StopOrder>(|_| false) {
+                Ok(Some((order, Some(from)))) => {
+                    let given_ns = self.clock.from_machine(order.given_ns);
+                    take(StopOrder { given_ns, ..order }, Caller(from));
+                }
                 Ok(_) => {}
                 Err(Errno::INTR) => {}
                 Err(_) => return,
@@ -152,7 +143,8 @@ impl StopListener {
 
     /// Answers without waiting. A caller that is gone, or whose queue is full, asks again.
     pub fn answer(&self, Caller(address): &Caller, state: &StopState) {
-        if let Err(error) = send(&self.socket, state, address) {
+        let state = state.translated(|ns| self.clock.to_machine(ns));
+        if let Err(error) = self.endpoint.send(&state, address) {
             tracing::debug!(%error, "answer to a motion order not delivered");
         }
     }
@@ -161,8 +153,9 @@ impl StopListener {
 /// The client's end. It never waits.
 #[derive(Debug)]
 pub struct StopClient {
-    socket: OwnedFd,
-    path: PathBuf,
+    endpoint: Endpoint,
+    paths: GroupPaths,
+    clock: ClockOffset,
 }
 
 /// An order is not carried out, or not known to be.
@@ -192,6 +185,12 @@ pub enum StopError {
          emergency stop, reset and enable the robot, then give the order again"
     )]
     NotTaken(f64, MotionInhibit),
+    /// The stop is latched, and what the robot does is not known.
+    #[error("the stop is latched, but the robot is not heard and may still move; {EMERGENCY}")]
+    Unheard,
+    /// The giver ended the order before it was confirmed.
+    #[error("the order is not confirmed; the robot may still move; {EMERGENCY}")]
+    Ended,
     /// The client has no socket.
     #[error("no socket: {0}; {EMERGENCY}")]
     Socket(String),
@@ -205,25 +204,28 @@ impl StopClient {
     /// # Errors
     /// The process or the system has no descriptor left.
     pub fn open(paths: &GroupPaths) -> io::Result<Self> {
-        let socket = socket()?;
-        bind(&socket, &SocketAddrUnix::new_unnamed())?;
-        Ok(Self { socket, path: paths.stop_socket() })
+        let endpoint = Endpoint::bind(&SocketAddrUnix::new_unnamed())?;
+        Ok(Self { endpoint, paths: paths.clone(), clock: ClockOffset::of_process() })
     }
 
     /// Readable while answers wait.
     pub fn fd(&self) -> BorrowedFd<'_> {
-        self.socket.as_fd()
+        self.endpoint.fd()
     }
 
     /// Sends the order that was given at `given`. A full queue drops it: it is repeated anyway.
     ///
     /// # Errors
-    /// [`StopError::Absent`] if nobody listens.
+    /// [`StopError::Absent`] if no process listens, [`StopError::NoGroup`] if there is no folder `run` either.
     pub fn send(&self, order: MotionOrder, given: Time) -> Result<(), StopError> {
         let socket_error = |error: Errno| StopError::Socket(error.to_string());
-        let to = SocketAddrUnix::new(&self.path).map_err(socket_error)?;
-        match send(&self.socket, &StopOrder { order, given_ns: given.ns() }, &to) {
-            Ok(()) | Err(Errno::AGAIN | Errno::NOBUFS | Errno::INTR) => Ok(()),
+        let to = SocketAddrUnix::new(self.paths.stop_socket()).map_err(socket_error)?;
+        let given_ns = self.clock.to_machine(given.ns());
+        match self.endpoint.send(&StopOrder { order, given_ns }, &to) {
+            Ok(()) | Err(Errno::AGAIN | Errno::NOBUFS | Errno::NOMEM | Errno::INTR) => Ok(()),
+            Err(Errno::NOENT | Errno::CONNREFUSED) if !self.paths.run().is_dir() => {
+                Err(StopError::NoGroup(self.paths.name().to_string()))
+            }
             Err(Errno::NOENT | Errno::CONNREFUSED) => Err(StopError::Absent),
             Err(error) => Err(socket_error(error)),
         }
@@ -231,120 +233,51 @@ impl StopClient {
 
     /// Returns the next answer.
     pub fn take(&self) -> Option<StopState> {
-        (0..DATAGRAMS_MAX).find_map(|_| match receive::<StopState>(&self.socket) {
+        let next = || self.endpoint.receive::<StopState>(|uid| self.is_groups_user(uid));
+        let state = (0..DATAGRAMS_MAX).find_map(|_| match next() {
             Ok(answer) => answer.map(|(state, _)| Some(state)),
             Err(Errno::INTR) => None,
             Err(_) => Some(None),
-        })?
+        })??;
+        Some(state.translated(|ns| self.clock.from_machine(ns)))
+    }
+
+    /// Returns whether this is the user whom the group belongs to. Root alone needs it: others reach no group but
+    /// their own.
+    fn is_groups_user(&self, uid: Uid) -> bool {
+        use std::os::unix::fs::MetadataExt;
+        let is_owner = |run: std::fs::Metadata| run.uid() == uid.as_raw();
+        geteuid().is_root() && self.paths.run().metadata().is_ok_and(is_owner)
     }
 }
 
 /// Gives an order and waits until the arm has carried it out: latched, at rest and durable, or
 /// released. A stop that cannot become durable is returned as such.
 ///
-/// While there is still time, `keep_trying` is asked between repetitions with the reason for which the answer
-/// is late; the reason is the error where it returns false. It must not wait.
+/// `keep_trying` is asked with each repetition, and gets the reason for which the order is not confirmed whenever a
+/// warning is due; where it returns false, the order ends. It must not wait.
 ///
 /// # Errors
-/// Not confirmed within `patience`, which no error exceeds; see [`StopError`].
+/// Not confirmed within `patience` ([`default_patience`]), which no error exceeds; without one a stop ends
+/// unconfirmed only if it is overruled, if the group ends, or if the robot is not heard; see [`StopError`].
 pub fn give(
     paths: &GroupPaths,
     order: MotionOrder,
-    patience: Span,
-    keep_trying: &mut dyn FnMut(&StopError) -> bool,
+    patience: impl Into<Option<Span>>,
+    keep_trying: &mut dyn FnMut(Option<StopError>) -> bool,
 ) -> Result<StopState, StopError> {
     let client = StopClient::open(paths).map_err(|error| StopError::Socket(error.to_string()))?;
-    let given = clock::now();
-    let mut progress = Progress::new(order, given, patience);
+    let mut progress = Progress::new(order, clock::now(), patience);
     loop {
-        let absent = match client.send(order, given) {
-            Err(StopError::Absent) if !paths.run().is_dir() => {
-                return Err(StopError::NoGroup(paths.name().to_string()));
-            }
-            Err(StopError::Absent) => true,
-            sent => sent.map(|()| false)?,
-        };
-        wait(&client, RESEND_EVERY);
-        while let Some(state) = client.take() {
-            progress.on_answer(state, clock::now());
-        }
+        progress.advance(&client, clock::now());
         let now = clock::now();
-        if let Some(result) = progress.result(absent, now) {
+        if let Some(result) = progress.result(now) {
             return result;
         }
-        if let Some(trouble) = progress.trouble(absent, now)
-            && !keep_trying(&trouble)
-        {
-            return Err(trouble);
+        if !keep_trying(progress.warning(now)) {
+            return Err(StopError::Ended);
         }
-    }
-}
-
-/// Progress of one order. Pure: the caller sends the order and hands in the answers.
-#[derive(Debug)]
-pub struct Progress {
-    order: MotionOrder,
-    given: Time,
-    patience: Span,
-    state: Option<StopState>,
-    /// Time since which the arm has been at rest.
-    rests_since: Option<Time>,
-}
-
-impl Progress {
-    /// An order that was given at `given` and is carried out within `patience`, or has failed.
-    pub fn new(order: MotionOrder, given: Time, patience: Span) -> Self {
-        Self { order, given, patience, state: None, rests_since: None }
-    }
-
-    /// Takes in an answer; those to other orders are ignored.
-    pub fn on_answer(&mut self, state: StopState, now: Time) {
-        if state.given_ns != self.given.ns() {
-            return;
-        }
-        self.rests_since = state.at_rest.then(|| self.rests_since.unwrap_or(now));
-        self.state = Some(state);
-    }
-
-    /// Returns the result once there is one. `absent`: no process listened to the latest repetition.
-    ///
-    /// # Errors
-    /// As [`give`].
-    pub fn result(&self, absent: bool, now: Time) -> Option<Result<StopState, StopError>> {
-        let waited = now.since(self.given);
-        let late = waited >= self.patience;
-        let Some(state) = self.state else {
-            return match absent {
-                true => (late || waited >= RESTART_GRACE).then_some(Err(StopError::Absent)),
-                false => late.then(|| Err(StopError::Silent(waited.s()))),
-            };
-        };
-        if state.stopped != (self.order == MotionOrder::Stop) {
-            if state.in_force_ns > self.given.ns() {
-                return Some(Err(StopError::Overruled));
-            }
-            return late.then(|| Err(StopError::NotTaken(waited.s(), state.inhibit)));
-        }
-        if self.order == MotionOrder::Resume {
-            return Some(Ok(state));
-        }
-        match self.rests_since {
-            None => late.then(|| Err(StopError::Moving(waited.s()))),
-            Some(since) => {
-                let done = state.durable || late || now.since(since) >= DURABLE_GRACE;
-                done.then_some(Ok(state))
-            }
-        }
-    }
-
-    /// Returns why there is no answer yet, if that has lasted.
-    fn trouble(&self, absent: bool, now: Time) -> Option<StopError> {
-        let waited = now.since(self.given);
-        match self.state {
-            Some(_) => None,
-            None if absent => Some(StopError::Absent),
-            None => (waited >= SILENCE).then(|| StopError::Silent(waited.s())),
-        }
+        wait(&client, RESEND_EVERY);
     }
 }
 
@@ -352,47 +285,6 @@ fn wait(client: &StopClient, longest: Span) {
     let timeout = rustix::time::Timespec { tv_sec: 0, tv_nsec: longest.0 as i64 };
     // Interrupted or not: the caller looks for answers.
     let _ = poll(&mut [PollFd::new(&client.fd(), PollFlags::IN)], Some(&timeout));
-}
-
-fn socket() -> rustix::io::Result<OwnedFd> {
-    let flags = SocketFlags::CLOEXEC | SocketFlags::NONBLOCK;
-    let socket = socket_with(AddressFamily::UNIX, SocketType::DGRAM, flags, None)?;
-    sockopt::set_socket_passcred(&socket, true)?;
-    Ok(socket)
-}
-
-fn send(socket: &OwnedFd, message: &impl Serialize, to: &SocketAddrUnix) -> Result<(), Errno> {
-    let bytes = serde_json::to_vec(message).map_err(|_| Errno::INVAL)?;
-    sendto(socket, &bytes, SendFlags::NOSIGNAL, to).map(drop)
-}
-
-/// Returns the next message with its sender's address; none for one that does not count.
-fn receive<T: DeserializeOwned>(
-    socket: &OwnedFd,
-) -> Result<Option<(T, Option<SocketAddrUnix>)>, Errno> {
-    let mut bytes = [0; DATAGRAM_BYTES_MAX];
-    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmCredentials(1))];
-    let mut control = RecvAncillaryBuffer::new(&mut space);
-    let mut slices = [IoSliceMut::new(&mut bytes)];
-    let received = recvmsg(socket, &mut slices, &mut control, RecvFlags::CMSG_CLOEXEC)?;
-    let heard = control.drain().any(|message| match message {
-        RecvAncillaryMessage::ScmCredentials(sender) => {
-            sender.uid.is_root() || sender.uid == rustix::process::geteuid()
-        }
-        _ => false,
-    });
-    if !heard {
-        tracing::warn!("datagram of another user on the stop socket ignored");
-        return Ok(None);
-    }
-    let from = received.address.and_then(|address| SocketAddrUnix::try_from(address).ok());
-    match serde_json::from_slice(&bytes[..received.bytes.min(DATAGRAM_BYTES_MAX)]) {
-        Ok(message) => Ok(Some((message, from))),
-        Err(error) => {
-            tracing::warn!(%error, "unintelligible datagram on the stop socket ignored");
-            Ok(None)
-        }
-    }
 }
 
 #[cfg(test)]

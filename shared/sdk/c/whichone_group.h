@@ -67,6 +67,14 @@ uint64_t whichone_now_ns(void);
  * number, or 0 with the reason on standard error. */
 uint64_t whichone_say(whichone_group_t *group, const char *text, double seconds);
 
+/** Stops the arm and latches the stop, on the motion stop's own path: it needs no shared memory and no disk. Returns
+ * true once the arm is at rest. The order is repeated for `seconds`, or, if they are below 0, for as long as the group
+ * runs; warnings on standard error say that it is not confirmed. On false use the robot's own emergency stop. */
+bool whichone_stop_motion(const whichone_group_t *group, double seconds);
+
+/** Releases the motion stop, within `seconds`, or 5 if they are below 0. */
+bool whichone_resume_motion(const whichone_group_t *group, double seconds);
+
 /** Key of the scene in force, for messages about it. */
 uint64_t whichone_scene_key(const whichone_group_t *group);
 

@@ -201,7 +201,7 @@ impl SimulatedGroup {
                     self.inboxes.speech.extend(repeat_n(speech::In::Arm(status), copies));
                 }
                 arm::Out::StopState(_, state) => {
-                    self.inboxes.speech.extend(self.stop.on_answer(&state));
+                    self.inboxes.speech.extend(self.stop.on_answer(state, self.now));
                 }
                 // A result that comes while the arm is down is lost, as with its thread.
                 arm::Out::Plan(request) => {

@@ -12,10 +12,10 @@ use service::{Span, Time, clock};
 use zenoh::query::Query;
 
 use super::senders::{Answer, Outlet};
-use crate::motion::{self, Register, Request, Seen, Stamped};
+use crate::motion::{self, Register, Request, Seen, Stamped, StandingStop};
 use crate::names::Call;
 
-/// Interval at which an order is repeated to the arm.
+/// Interval at which an order is repeated to the arm while its request waits; a stop is repeated beyond that.
 const RESEND_EVERY: Span = Span::from_ms(10);
 /// Requests of one pass, and requests that wait for the arm.
 const REQUESTS_MAX: usize = 64;
@@ -39,6 +39,7 @@ pub(super) fn start(
         answers,
         register: Register::default(),
         waiting: Vec::new(),
+        standing: StandingStop::default(),
         looked: Time(0),
     };
     thread::Builder::new().name("stop".into()).spawn(move || worker.run())?;
@@ -62,6 +63,7 @@ struct Worker {
     answers: SyncSender<Answer>,
     register: Register,
     waiting: Vec<Waiting>,
+    standing: StandingStop,
     looked: Time,
 }
 
@@ -79,7 +81,8 @@ impl Worker {
     }
 
     fn wait(&self) {
-        let longest = if self.waiting.is_empty() { LOOK_EVERY } else { RESEND_EVERY };
+        let is_idle = self.waiting.is_empty() && !self.standing.is_open();
+        let longest = if is_idle { LOOK_EVERY } else { RESEND_EVERY };
         let timeout = Timespec { tv_sec: 0, tv_nsec: longest.0 as i64 };
         let mut sources = [self.requests.fd(), self.stop_client.fd()]
             .map(|fd| PollFd::from_borrowed_fd(fd, PollFlags::IN));
@@ -97,6 +100,7 @@ impl Worker {
         match self.register.stamp(&request, now) {
             Ok((order, stamp)) => {
                 tracing::info!(?order, stamp = stamp.ns(), "motion stop, over the link");
+                self.standing.take(order, stamp);
                 if self.waiting.len() >= REQUESTS_MAX {
                     // Carried out without an answer: it is asked again.
                     let _ = self.stop_client.send(order, stamp);
@@ -113,7 +117,9 @@ impl Worker {
     }
 
     fn advance(&mut self, now: Time) {
-        for waiting in &mut self.waiting {
+        self.standing.advance(&self.stop_client, now);
+        let is_own = |waiting: &&mut Waiting| !self.standing.repeats(waiting.stamp);
+        for waiting in self.waiting.iter_mut().filter(is_own) {
             if waiting.sent.is_none_or(|sent| now >= sent + RESEND_EVERY) {
                 waiting.sent = Some(now);
                 // An arm that is absent is asked again.
@@ -132,6 +138,7 @@ impl Worker {
     }
 
     fn on_state(&mut self, state: StopState) {
+        self.standing.on_answer(state, clock::now());
         for waiting in &mut self.waiting {
             if waiting.stamp.ns() == state.given_ns {
                 waiting.state = Some(state);

@@ -2,6 +2,7 @@
 
 use super::{Node, failure};
 use crate::dds::Call;
+use crate::orders::Event;
 use crate::types::Triggered;
 use messages::MotionOrder;
 use service::clock;
@@ -34,23 +35,17 @@ impl Node {
     }
 
     pub(super) fn advance_orders(&mut self) {
-        let now = clock::now();
-        if let Some((order, given)) = self.orders.due(now) {
-            let sent = self.stop_client.send(order, given);
-            self.orders.on_sent(&sent);
-        }
-        while let Some(state) = self.stop_client.take() {
-            self.orders.on_answer(state, clock::now());
-        }
-        let Some((callers, result)) = self.orders.result(clock::now()) else { return };
+        self.orders.advance(&self.stop_client, clock::now());
         let success = |message: &str| Triggered { success: true, message: message.to_owned() };
-        let response = match result {
-            Ok(state) if state.stopped && state.at_rest => success("stopped, at rest"),
-            Ok(state) if state.stopped => success("stopped"),
-            Ok(_) => success("released"),
-            Err(why) => {
+        let (callers, response) = match self.orders.event(clock::now()) {
+            None => return,
+            Some(Event::Done(callers, Ok(state))) if state.stopped => {
+                (callers, success("stopped, at rest"))
+            }
+            Some(Event::Done(callers, Ok(_))) => (callers, success("released")),
+            Some(Event::Done(callers, Err(why)) | Event::Late(callers, why)) => {
                 tracing::error!(why, "motion order not confirmed");
-                failure(&why)
+                (callers, failure(&why))
             }
         };
         self.respond(callers, &response);

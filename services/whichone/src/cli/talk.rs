@@ -128,9 +128,10 @@ pub enum Awaited {
 /// Arguments of `stop-motion` and `resume-motion`.
 #[derive(Debug, Args)]
 pub struct MotionArgs {
-    /// Timeout for the arm's confirmation, seconds.
-    #[arg(long, value_name = "S", default_value = "5", value_parser = seconds)]
-    pub timeout: Duration,
+    /// Timeout for the arm's confirmation, seconds. Without it a stop is repeated until the arm confirms it, and a
+    /// release is given up after 5 s.
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub timeout: Option<Duration>,
 }
 
 /// Arguments of `journal`.

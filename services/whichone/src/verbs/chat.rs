@@ -5,9 +5,11 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use language::Reader;
 use messages::{MotionOrder, Receipt, ReceiptStatus};
 use scene::ObjectId;
 use serde_json::json;
+use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::printable::one_line;
@@ -15,6 +17,7 @@ use service::printable::one_line;
 use super::availability::Lookout;
 use super::conversation::{Conversation, LOOK_EVERY};
 use super::interrupt::Interrupt;
+use super::motion::{MotionOrders, ResumeGuard};
 use super::{await_pick, operate, up};
 use crate::Outcome;
 use crate::cli::ChatArgs;
@@ -42,27 +45,9 @@ pub(super) fn chat(paths: &GroupPaths, args: &ChatArgs, out: &mut Output<'_>) ->
 }
 
 fn talk(paths: &GroupPaths, interrupt: &Interrupt, out: &mut Output<'_>) -> Outcome {
-    let mut chat = Chat::new(Conversation::join(paths)?, out);
-    chat.conversation.first_look()?;
-    chat.greet()?;
-    let (lines, mut lookout) = (typed_lines(), Lookout::new());
-    while !interrupt.is_requested() {
-        chat.look()?;
-        if let Some(why) = lookout.news(paths) {
-            note(why);
-        }
-        match lines.try_recv() {
-            Ok(line) => match line.trim() {
-                "" => {}
-                "quit" | "exit" => return Ok(Exit::Ok),
-                "resume" => chat.resume()?,
-                words => chat.conversation.say(words)?,
-            },
-            Err(TryRecvError::Empty) => thread::sleep(LOOK_EVERY * 2),
-            Err(TryRecvError::Disconnected) => return chat.finish(interrupt),
-        }
-    }
-    Ok(Exit::Ok)
+    let mut chat = Chat::new(Conversation::join(paths)?, MotionOrders::open(paths)?, out);
+    let talked = chat.run(paths, interrupt);
+    chat.orders.finish(interrupt, talked)
 }
 
 /// Lines from standard input, read on a thread of their own because reading blocks.
@@ -88,11 +73,65 @@ struct Chat<'a, 'b> {
     printed: Option<(u64, u32)>,
     /// The last interaction whose end is known.
     ended: Option<u64>,
+    orders: MotionOrders,
+    guard: ResumeGuard,
 }
 
 impl<'a, 'b> Chat<'a, 'b> {
-    fn new(conversation: Conversation, out: &'a mut Output<'b>) -> Self {
-        Self { conversation, out, printed: None, ended: None }
+    fn new(conversation: Conversation, orders: MotionOrders, out: &'a mut Output<'b>) -> Self {
+        let guard = ResumeGuard::default();
+        Self { conversation, out, printed: None, ended: None, orders, guard }
+    }
+
+    fn run(&mut self, paths: &GroupPaths, interrupt: &Interrupt) -> Outcome {
+        self.conversation.first_look()?;
+        self.greet()?;
+        let (lines, mut lookout) = (typed_lines(), Lookout::new());
+        while !interrupt.is_requested() {
+            self.look()?;
+            if let Some(why) = lookout.news(paths) {
+                note(why);
+            }
+            match lines.try_recv() {
+                Ok(line) => match line.trim() {
+                    "" => {}
+                    "quit" | "exit" => return Ok(Exit::Ok),
+                    words => self.on_line(words)?,
+                },
+                Err(TryRecvError::Empty) => thread::sleep(LOOK_EVERY * 2),
+                Err(TryRecvError::Disconnected) => return self.finish(interrupt),
+            }
+        }
+        Ok(Exit::Ok)
+    }
+
+    /// Takes a line. Words that tell the robot to stop go to the arm at once, on the motion stop's own path, which
+    /// needs no speech service; they are said to the robot besides.
+    fn on_line(&mut self, words: &str) -> Result<(), Failure> {
+        let language = self.conversation.language();
+        match words {
+            "resume" => self.resume(),
+            "go on" | "continue" if self.is_stopped() => {
+                note("the arm is stopped; to let it move, type resume");
+            }
+            words => {
+                // The scene may have changed, and lines are rare.
+                if Reader::new(self.conversation.scene(), language).is_stop(words) {
+                    self.guard.on_stop(clock::now());
+                    self.orders.give(MotionOrder::Stop);
+                }
+                self.conversation.say(words)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Releases the motion stop. The typed word is its own confirmation, unless it comes right after a stop.
+    fn resume(&mut self) {
+        match self.guard.may_resume(clock::now()) {
+            true => self.orders.give(MotionOrder::Resume),
+            false => note("stopped just now; type resume 2 s after the latest stop, or later"),
+        }
     }
 
     fn greet(&mut self) -> Result<(), Failure> {
@@ -110,13 +149,14 @@ impl<'a, 'b> Chat<'a, 'b> {
         let first = scene.describe(*first);
         note(format_args!("Here are {}.", scene.list(&objects, "and")));
         note(format_args!(
-            "Ask for a {noun}, e.g. \"get me the {first}\"; after a motion stop resume goes on; quit ends."
+            "Ask for a {noun}, e.g. \"get me the {first}\"; stop stops the arm, resume lets it move again; quit ends."
         ));
         Ok(())
     }
 
     /// Prints new events.
     fn look(&mut self) -> Result<(), Failure> {
+        std::iter::from_fn(|| self.orders.news()).for_each(|news| note(news.text));
         for receipt in self.conversation.look()? {
             if self.conversation.is_own(&receipt) {
                 self.refused(&receipt)?;
@@ -175,10 +215,9 @@ impl<'a, 'b> Chat<'a, 'b> {
         self.out.line(self.out.style().paint(Ink::Dim, format!("({sentence})")))
     }
 
-    fn resume(&mut self) -> Result<(), Failure> {
-        self.conversation.motion(MotionOrder::Resume)?;
-        note("the arm may move");
-        Ok(())
+    /// Returns whether the motion stop is latched.
+    fn is_stopped(&self) -> bool {
+        self.conversation.latest().arm.is_some_and(|arm| arm.stopped != 0)
     }
 
     /// Waits, at the end of the input, until the interaction ends or a question is left unanswered.

@@ -7,6 +7,7 @@ use std::collections::{HashSet, VecDeque};
 use std::time::{Duration, Instant};
 
 use config::Settings;
+use language::Language;
 use messages::{Injection, PolicyView, PromptId, Receipt, RequestKey, Sound, topics};
 use scene::Scene;
 use service::bus::EncodedWriter;
@@ -14,7 +15,6 @@ use service::client::{Client, Polling};
 use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::{GroupPaths, ShmName};
-use service::stop_socket;
 use service::submission::Submission;
 use service::view::{Latest, LatestTopics, quiet};
 use service::{Span, Time};
@@ -39,6 +39,7 @@ pub(super) struct Conversation {
     own: HashSet<RequestKey>,
     latest: Latest,
     scene: Scene,
+    language: Language,
     may_be_absent: bool,
     paths: GroupPaths,
     /// Name of the group's shared memory, another one is another run.
@@ -69,6 +70,7 @@ impl Conversation {
                 true => settings.scene.with_objects(&[]),
                 false => settings.scene,
             },
+            language: settings.dialogue.language,
             may_be_absent: settings.dialogue.prior.absent > 0.0,
             paths: paths.clone(),
             shared_memory: shared_memory.map_err(|_| ended(paths))?,
@@ -90,6 +92,11 @@ impl Conversation {
     /// Returns false as long as nothing is known to be on the table, where the objects come from perception.
     pub(super) fn knows_objects(&self) -> bool {
         !self.scene.objects().is_empty()
+    }
+
+    /// The language that the robot understands.
+    pub(super) fn language(&self) -> Language {
+        self.language
     }
 
     /// Returns true if the robot considers that the wanted object is not here.
@@ -137,12 +144,6 @@ impl Conversation {
     /// Returns true if every utterance of this client has a receipt.
     pub(super) fn is_heard(&self) -> bool {
         self.saying.is_empty()
-    }
-
-    /// Latches or releases the motion stop.
-    pub(super) fn motion(&self, order: messages::MotionOrder) -> Result<(), Failure> {
-        let patience = Span::from_ms(5_000);
-        Ok(stop_socket::give(&self.paths, order, patience, &mut |_| true).map(drop)?)
     }
 
     /// Processes all messages since the last poll. Returns the receipts among them,

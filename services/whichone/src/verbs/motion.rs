@@ -1,25 +1,30 @@
-//! `stop-motion` and `resume-motion`.
+//! `stop-motion` and `resume-motion`, and the same orders within `watch` and `chat`.
 
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use std::time::Duration;
 
-use messages::{MotionInhibit, MotionOrder, Service};
+use messages::{MotionOrder, Service};
 use serde::Serialize;
 use service::Span;
-use service::exit::{Exit, Failure};
+use service::exit::Exit;
 use service::group::GroupPaths;
-use service::stop_socket::{self, StopError, StopState};
+use service::stop_socket::{self, StopError, StopState, default_patience};
 
 use super::availability::Availability;
+use super::interrupt::Interrupt;
 use crate::Outcome;
 use crate::output::{Output, note};
+
+mod orders;
+
+pub(super) use orders::{MotionOrders, News, ResumeGuard};
 
 /// The service that carries out the orders.
 const ARM: &[Service] = &[Service::Arm];
 
 /// Note on a stop that the disk does not hold yet.
-pub(super) const NOT_DURABLE: &str = "the stop is not on the disk yet: it holds as long as the arm's service runs; \
+const NOT_DURABLE: &str = "the stop is not on the disk yet: it holds as long as the arm's service runs; \
      help: free some space on the disk of the group's folder";
 
 /// State of the motion stop.
@@ -34,10 +39,18 @@ struct MotionStop {
 pub(super) fn motion(
     paths: &GroupPaths,
     order: MotionOrder,
-    timeout: Duration,
+    timeout: Option<Duration>,
     out: &mut Output<'_>,
 ) -> Outcome {
-    let StopState { stopped, at_rest, durable, .. } = give(paths, order, timeout, note)?;
+    let interrupt = Interrupt::listen()?;
+    let patience = timeout.map(|timeout| Span::from_s(timeout.as_secs_f64()));
+    let patience = patience.or(default_patience(order));
+    let mut warnings = Warnings::new(paths);
+    let state = stop_socket::give(paths, order, patience, &mut |why| {
+        why.into_iter().for_each(|why| note(warnings.line(order, &why)));
+        !interrupt.is_requested()
+    });
+    let StopState { stopped, at_rest, durable, .. } = state?;
     if out.is_json() {
         out.json(&MotionStop { stopped, at_rest, durable })?;
     } else if stopped {
@@ -51,67 +64,39 @@ pub(super) fn motion(
     Ok(Exit::Ok)
 }
 
-/// Latches or releases the motion stop, waits until the arm has confirmed it, and calls `report` if that
-/// takes long.
-pub(super) fn give(
-    paths: &GroupPaths,
-    order: MotionOrder,
-    timeout: Duration,
-    report: impl Fn(String),
-) -> Result<StopState, Failure> {
-    let patience = Span::from_s(timeout.as_secs_f64());
-    let mut pending = Pending { paths, report, why: None };
-    let state = stop_socket::give(paths, order, patience, &mut |late| pending.keep_trying(late));
-    let state = state.map_err(|error| with_reason(error, paths))?;
-    if order == MotionOrder::Stop {
-        believe(&state)?;
+/// Warnings about an order that is not confirmed, with the supervisor's reason as soon as it has answered. It is
+/// asked on threads of their own: one that hangs must not delay the order's repetitions.
+struct Warnings {
+    paths: GroupPaths,
+    reasons: (Sender<Option<String>>, Receiver<Option<String>>),
+    is_asked: bool,
+    reason: Option<String>,
+}
+
+impl Warnings {
+    fn new(paths: &GroupPaths) -> Self {
+        Self { paths: paths.clone(), reasons: channel(), is_asked: false, reason: None }
     }
-    Ok(state)
-}
 
-/// An order that the arm has not answered.
-struct Pending<'a, R> {
-    paths: &'a GroupPaths,
-    report: R,
-    /// Receives why the arm's service does not run, or an end where it soon will.
-    why: Option<Receiver<String>>,
-}
-
-impl<R: Fn(String)> Pending<'_, R> {
-    /// Notifies the user once; returns false as soon as the supervisor says that the service stays away.
-    /// It is asked on a thread of its own: one that hangs must not delay the order's repetitions.
-    fn keep_trying(&mut self, late: &StopError) -> bool {
-        let why = self.why.get_or_insert_with(|| {
-            (self.report)(format!("{late}; trying again"));
-            let (sender, why) = channel();
-            let paths = self.paths.clone();
-            thread::spawn(move || {
-                Availability::now(&paths).first_missing(ARM, |_| true).map(|why| sender.send(why))
-            });
-            why
-        });
-        *late != StopError::Absent || why.try_recv().is_err()
-    }
-}
-
-/// Adds why the arm's service does not run, where the supervisor says so at once.
-fn with_reason(error: StopError, paths: &GroupPaths) -> Failure {
-    let reason = match error {
-        StopError::Absent => Availability::now(paths).first_missing(ARM, |_| true),
-        _ => None,
-    };
-    let reason = reason.map_or(String::new(), |reason| format!(" ({reason})"));
-    Failure::new(Exit::NotReached, format!("{error}{reason}"))
-}
-
-/// Refuses to call an arm stopped whose robot is not heard.
-fn believe(state: &StopState) -> Result<(), Failure> {
-    match state.inhibit {
-        MotionInhibit::Unheard | MotionInhibit::Stale => {
-            let what = "the stop is latched, but the robot is not heard and may still move; \
-                        help: use the robot's own emergency stop";
-            Err(Failure::new(Exit::NotReached, what))
+    /// Returns the line for the user.
+    fn line(&mut self, order: MotionOrder, why: &StopError) -> String {
+        if let Some(reason) = self.reasons.1.try_iter().last() {
+            (self.reason, self.is_asked) = (reason, false);
         }
-        _ => Ok(()),
+        if !std::mem::replace(&mut self.is_asked, true) {
+            let (paths, reasons) = (self.paths.clone(), self.reasons.0.clone());
+            thread::spawn(move || {
+                reasons.send(Availability::now(&paths).first_missing(ARM, |_| true))
+            });
+        }
+        let reason = match (&self.reason, why) {
+            (Some(reason), StopError::Absent) => format!(" ({reason})"),
+            _ => String::new(),
+        };
+        let order = match order {
+            MotionOrder::Stop => "the stop",
+            MotionOrder::Resume => "the release",
+        };
+        format!("not confirmed: {why}{reason}; {order} is repeated")
     }
 }

@@ -42,7 +42,7 @@ pub(super) fn watch(paths: &GroupPaths, args: &WatchArgs, out: &mut Output<'_>) 
     let interrupt = Interrupt::listen()?;
     let screen = !out.is_json() && out.is_terminal();
     if screen && !args.plain && io::stdin().is_terminal() {
-        return dashboard::run(&mut model, &interrupt, out.style()).map(|()| Exit::Ok);
+        return dashboard::run(&mut model, &interrupt, out.style());
     }
     if screen {
         out.text(frame::BEGIN)?;

@@ -23,8 +23,8 @@ pub enum SegmentError {
     },
     /// A segment of another user has the name.
     #[error(
-        "{SHM}/{file} belongs to user {user}; help: remove it as that user or as root, and start \
-         the group again"
+        "{SHM}/{file} belongs to user {user}; help: run the command as that user, whose group it may be \
+         (`sudo -u '#{user}' whichone …`), or end that group first"
     )]
     Foreign {
         /// The file in shared memory.

@@ -2,20 +2,16 @@
 
 use messages::MotionOrder;
 
-use super::{StopClient, StopError};
+use super::{Progress, StopClient};
 use crate::group::GroupPaths;
-use crate::{Span, Time, clock};
+use crate::{Time, clock};
 use std::io;
-
-/// Interval at which a pending stop is repeated: what a restarted arm may move before it is stopped again.
-const RESEND_EVERY: Span = Span::from_ms(40);
 
 /// The latest stop that the arm has not carried out. It never waits; its owner calls [`RepeatedStop::pass`].
 #[derive(Debug)]
 pub struct RepeatedStop {
     client: StopClient,
-    /// When the stop was given, and when it was sent last.
-    pending: Option<(Time, Time)>,
+    pending: Option<Progress>,
 }
 
 impl RepeatedStop {
@@ -29,31 +25,16 @@ impl RepeatedStop {
 
     /// Gives the stop of that time in the place of an earlier one, and sends it at once.
     pub fn give(&mut self, given: Time) {
-        self.send(given);
+        let mut progress = Progress::new(MotionOrder::Stop, given, None);
+        progress.advance(&self.client, clock::now());
+        self.pending = Some(progress);
     }
 
-    /// Repeats a pending stop if it is due. Returns the time of one that needs no repetition any more: carried out,
-    /// or overruled by a later order.
+    /// Repeats a pending stop if it is due. Returns the time of one that needs no repetition any more.
     pub fn pass(&mut self) -> Option<Time> {
-        let (given, sent) = self.pending?;
-        while let Some(state) = self.client.take() {
-            if state.settles(given) {
-                self.pending = None;
-                return Some(given);
-            }
-        }
-        if clock::now() >= sent + RESEND_EVERY {
-            self.send(given);
-        }
-        None
-    }
-
-    fn send(&mut self, given: Time) {
-        self.pending = Some((given, clock::now()));
-        match self.client.send(MotionOrder::Stop, given) {
-            // The arm's service is away: it finds the order when it is back.
-            Ok(()) | Err(StopError::Absent) => {}
-            Err(error) => tracing::warn!(%error, "stop order not sent"),
-        }
+        let now = clock::now();
+        let progress = self.pending.as_mut()?;
+        progress.advance(&self.client, now);
+        self.pending.take_if(|progress| progress.is_settled(now)).map(|progress| progress.given())
     }
 }

@@ -11,6 +11,15 @@ fn group() -> (tempfile::TempDir, GroupPaths) {
     (home, paths)
 }
 
+fn at(ms: u64) -> Time {
+    Time(1_000_000 * ms)
+}
+
+fn command(order: MotionOrder, given_ms: u64) -> StopOrder {
+    let given_ns = at(given_ms).ns();
+    StopOrder { order, given_ns }
+}
+
 /// The state of an arm that obeyed `command` and has come to rest.
 fn obeyed(command: &StopOrder) -> StopState {
     StopState {
@@ -92,28 +101,92 @@ fn unconfirmed_orders_end_with_the_reason() {
 }
 
 #[test]
-fn absent_service_is_reported_soon_with_the_emergency_stop() {
+fn stop_outlasts_every_restart_and_warns_now_and_then() {
+    // Longer than any backoff, hold or upload: a day in which nobody listens.
+    let mut stop = Progress::new(MotionOrder::Stop, at(1), default_patience(MotionOrder::Stop));
+    let mut warnings = Vec::new();
+    for ms in (1..86_400_000).step_by(500) {
+        if stop.due(at(ms)) {
+            stop.on_sent(&Err(StopError::Absent));
+        }
+        assert_eq!(stop.result(at(ms)), None, "after {ms} ms");
+        warnings.extend(stop.warning(at(ms)).map(|why| (ms, why)));
+    }
+    assert_eq!(warnings[0], (1, StopError::Absent), "at once");
+    assert!(warnings.windows(2).all(|pair| pair[1].0 - pair[0].0 == 3_000), "every few seconds");
+    assert!(StopError::Absent.to_string().contains("emergency stop"));
+    // The service is back, and answers.
+    assert!(stop.due(at(86_400_000)));
+    stop.on_sent(&Ok(()));
+    stop.on_answer(obeyed(&command(MotionOrder::Stop, 1)), at(86_400_001));
+    assert!(matches!(stop.result(at(86_400_001)), Some(Ok(state)) if state.at_rest));
+    assert_eq!(stop.warning(at(86_400_001)), None);
+}
+
+#[test]
+fn release_is_given_up_soon() {
+    let mut release =
+        Progress::new(MotionOrder::Resume, at(1), default_patience(MotionOrder::Resume));
+    release.on_sent(&Err(StopError::Absent));
+    assert_eq!(release.result(at(5_000)), None);
+    assert_eq!(release.result(at(5_001)), Some(Err(StopError::Absent)));
+}
+
+#[test]
+fn what_an_arm_answered_before_its_end_confirms_nothing() {
+    let mut stop = Progress::new(MotionOrder::Stop, at(1), None);
+    let lost = StopState { durable: false, ..obeyed(&command(MotionOrder::Stop, 1)) };
+    stop.on_answer(lost, at(2));
+    stop.on_sent(&Err(StopError::Absent));
+    assert_eq!(stop.result(at(10_000)), None);
+    stop.on_answer(lost, at(10_000));
+    assert_eq!(stop.result(at(10_499)), None);
+    assert_eq!(stop.result(at(10_500)), Some(Ok(lost)), "it cannot become durable");
+}
+
+#[test]
+fn robot_that_is_not_heard_is_not_called_stopped() {
+    let mut stop = Progress::new(MotionOrder::Stop, at(1), None);
+    let heard = obeyed(&command(MotionOrder::Stop, 1));
+    let unheard = StopState { inhibit: MotionInhibit::Unheard, ..heard };
+    stop.on_answer(unheard, at(2));
+    assert_eq!(stop.result(at(1_001)), None, "an arm that has just started hears it soon");
+    assert_eq!(stop.result(at(1_002)), Some(Err(StopError::Unheard)));
+    stop.on_answer(heard, at(1_001));
+    assert_eq!(stop.result(at(1_002)), Some(Ok(heard)));
+}
+
+#[test]
+fn order_that_is_given_again_puts_off_neither_its_deadline_nor_its_warning() {
+    let mut stop = Progress::new(MotionOrder::Stop, at(0), Span::from_ms(4_000));
+    let mut warned = None;
+    for ms in (0..4_000).step_by(20) {
+        stop.renew(at(ms));
+        assert!(stop.due(at(ms)), "each is sent at once");
+        stop.on_sent(&Ok(()));
+        warned = warned.or(stop.warning(at(ms)).map(|_| ms));
+        assert_eq!(stop.result(at(ms)), None);
+    }
+    assert_eq!(warned, Some(260));
+    stop.on_answer(obeyed(&command(MotionOrder::Stop, 0)), at(3_990));
+    assert!(matches!(stop.result(at(4_000)), Some(Err(StopError::Silent(_)))), "of an earlier one");
+}
+
+#[test]
+fn giver_may_end_an_order_and_a_group_that_is_down_has_none() {
     let (_home, paths) = group();
     // The socket of a service that was killed.
     drop(StopListener::bind(&paths).unwrap());
-    let mut reasons = Vec::new();
-    let given = clock::now();
-    let result = give(&paths, MotionOrder::Stop, Span::from_ms(60_000), &mut |reason| {
-        reasons.push(reason.clone());
-        true
-    });
-    assert_eq!(result, Err(StopError::Absent));
-    assert!(reasons.len() > 1 && reasons.iter().all(|reason| *reason == StopError::Absent));
-    assert!(clock::now().since(given) < Span::from_ms(30_000), "not at the end of its patience");
-    let mut asked = 0;
-    let result = give(&paths, MotionOrder::Stop, Span::from_ms(60_000), &mut |_| {
+    let (mut asked, mut warnings) = (0, Vec::new());
+    let result = give(&paths, MotionOrder::Stop, None, &mut |why| {
         asked += 1;
-        asked < 3
+        warnings.extend(why);
+        asked < 5
     });
-    assert_eq!((result, asked), (Err(StopError::Absent), 3));
-    assert!(StopError::Absent.to_string().contains("emergency stop"));
+    assert_eq!((result, asked), (Err(StopError::Ended), 5));
+    assert_eq!(warnings, [StopError::Absent], "not with each repetition");
     std::fs::remove_dir_all(paths.run()).unwrap();
-    let result = give(&paths, MotionOrder::Stop, Span::from_ms(60_000), &mut |_| true);
+    let result = give(&paths, MotionOrder::Stop, None, &mut |_| true);
     assert_eq!(result, Err(StopError::NoGroup("stop".to_owned())));
 }
 
@@ -135,9 +208,9 @@ fn restarted_service_takes_the_repeated_order() {
                 });
             }
         });
-        let state = give(paths, MotionOrder::Stop, Span::from_ms(60_000), &mut |_| {
+        let state = give(paths, MotionOrder::Stop, None, &mut |why| {
             // The listener takes the first of them.
-            let _ = noted.send(());
+            why.map(|_| noted.send(()));
             true
         });
         listener.join().unwrap();
@@ -151,7 +224,7 @@ fn nonsense_and_floods_are_passed_over() {
     let listener = StopListener::bind(&paths).unwrap();
     let speaker = std::os::unix::net::UnixDatagram::unbound().unwrap();
     speaker.set_nonblocking(true).unwrap();
-    let long = vec![b'x'; 4 * DATAGRAM_BYTES_MAX];
+    let long = vec![b'x'; 4 * datagram::BYTES_MAX];
     for datagram in [&b""[..], b"stop", b"{}", b"{\"order\":\"stop\"}", b"\xff\xfe", &long] {
         speaker.send_to(datagram, paths.stop_socket()).unwrap();
         listener.drain(|command, _| panic!("{command:?}"));

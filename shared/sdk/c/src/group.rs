@@ -3,16 +3,20 @@
 use std::ffi::{CString, c_char};
 use std::fs;
 
-use messages::{ReceiptStatus, Sound};
+use messages::{MotionOrder, ReceiptStatus, Sound};
 use service::bus::{Bus, Identity};
 use service::client::{Client, deliver};
 use service::exit::Failure;
 use service::group::{ENV_GROUP, GroupName, GroupPaths};
 use service::lifecycle::{Environment, Lifecycle};
 use service::logging::{self, LogFlush};
+use service::stop_socket::{self, default_patience};
 use service::{Span, Time, clock};
 
 use crate::{complain, or_complain, text};
+
+/// Longest timeout of an order to the motion stop, a month.
+const SECONDS_MAX: f64 = 2_678_400.0;
 
 /// File of the group with the scene's key and words.
 const WORDS_FILE: &str = "scene.words";
@@ -113,6 +117,22 @@ impl Group {
     }
 }
 
+impl Group {
+    /// Gives an order to the motion stop; `seconds` below 0 stand for the usual patience.
+    fn order(&self, order: MotionOrder, seconds: f64) -> bool {
+        let patience = match seconds >= 0.0 {
+            true => Some(Span::from_s(seconds.min(SECONDS_MAX))),
+            false => default_patience(order),
+        };
+        let given = stop_socket::give(&self.paths, order, patience, &mut |why| {
+            why.iter()
+                .for_each(|why| complain(&format_args!("not confirmed: {why}; it is repeated")));
+            true
+        });
+        or_complain(given).is_some()
+    }
+}
+
 fn boxed(group: Result<Group, Failure>) -> *mut Group {
     or_complain(group).map_or(std::ptr::null_mut(), |group| Box::into_raw(Box::new(group)))
 }
@@ -170,6 +190,26 @@ pub unsafe extern "C" fn whichone_say(
     let (Some(group), Some(words)) = (unsafe { (group.as_ref(), text(words)) }) else { return 0 };
     let patience = Span::from_s(seconds.clamp(0.0, 3600.0));
     or_complain(group.say(words, patience)).unwrap_or_default()
+}
+
+/// Stops the arm and latches the stop. Returns false after saying why it is not confirmed.
+///
+/// # Safety
+/// `group` is null or joined.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn whichone_stop_motion(group: *const Group, seconds: f64) -> bool {
+    // SAFETY: as the caller promises.
+    unsafe { group.as_ref() }.is_some_and(|group| group.order(MotionOrder::Stop, seconds))
+}
+
+/// Releases the motion stop. Returns false after saying why it is not confirmed.
+///
+/// # Safety
+/// `group` is null or joined.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn whichone_resume_motion(group: *const Group, seconds: f64) -> bool {
+    // SAFETY: as the caller promises.
+    unsafe { group.as_ref() }.is_some_and(|group| group.order(MotionOrder::Resume, seconds))
 }
 
 /// Key of the scene in force.

@@ -1,7 +1,12 @@
 """Messages, scene and readings without a group: `python3 -m unittest discover shared/sdk/python/tests`."""
 
 import ctypes
+import json
+import socket
 import sys
+import tempfile
+import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -9,8 +14,9 @@ HERE = Path(__file__).resolve()
 sys.path.insert(0, str(HERE.parents[1]))
 ROOT = HERE.parents[4]
 
-from whichone import InvalidMessage, Reading, Response, Scene, spot
+from whichone import GroupNotRunning, InvalidMessage, Reading, Response, Scene, _stop, spot
 from whichone import messages as m
+from whichone.group import Group
 from whichone._postcard import decode, encode
 from whichone.grounding import Heard, Hypothesis, heard, observation
 
@@ -25,6 +31,68 @@ def utterance(text, questions=0):
     message.hypotheses[0].len, message.hypotheses[0].weight = len(text.encode()), 1.0
     message.hypotheses[0].confidence[:] = [255] * m.CONFIDENCES_MAX
     return message
+
+
+class StopOrder(unittest.TestCase):
+    """The motion stop's orders, of an arm that this test imitates."""
+
+    def answer(self, **changed):
+        return {"given_ns": 5, "in_force_ns": 5, "stopped": True, "at_rest": True, "durable": True,
+                "inhibit": "None"} | changed
+
+    def test_stop_outlasts_every_restart_and_warns_now_and_then(self):
+        stop, warnings = _stop.Order("stop", 0.0, None), []
+        for second in range(86_400):
+            stop.on_sent(is_absent=True)
+            self.assertFalse(stop.is_done(second))
+            if why := stop.warning(second):
+                warnings.append(second)
+                self.assertIn("emergency stop", why)
+        self.assertEqual(warnings[:3], [0, 3, 6])
+        stop.on_sent(is_absent=False)
+        stop.on_answer(self.answer(), 86_400)
+        self.assertTrue(stop.is_done(86_400))
+
+    def test_only_an_arm_at_rest_that_is_heard_confirms(self):
+        for changed in ({"at_rest": False}, {"inhibit": "Unheard"}, {"stopped": False}):
+            stop = _stop.Order("stop", 0.0, None)
+            stop.on_answer(self.answer(**changed), 0.1)
+            self.assertFalse(stop.is_done(1.0), changed)
+        stop = _stop.Order("stop", 0.0, None)
+        stop.on_answer(self.answer(stopped=False, in_force_ns=6), 0.1)
+        self.assertRaisesRegex(_stop.NotStopped, "overruled", stop.is_done, 0.1)
+        late = _stop.Order("resume", 0.0, 5.0)
+        self.assertFalse(late.is_done(4.9))
+        self.assertRaisesRegex(_stop.NotStopped, "does not answer", late.is_done, 5.0)
+
+    def test_restarted_arm_takes_the_repeated_order(self):
+        with tempfile.TemporaryDirectory() as home:
+            group = Group("g", home)
+            self.assertRaises(GroupNotRunning, _stop.give, group, "stop", None)
+            group.run.mkdir(parents=True)
+            orders = []
+
+            def arm():
+                with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listener:
+                    listener.bind(str(group.run / "stop.sock"))
+                    data, caller = listener.recvfrom(512)
+                    orders.append(json.loads(data))
+                    given = orders[0]["given_ns"]
+                    listener.sendto(json.dumps(self.answer(given_ns=given, in_force_ns=given)).encode(), caller)
+
+            with self.assertLogs("whichone", "WARNING") as logged:
+                # The arm starts once the giver has been warned that it is away.
+                starter = threading.Thread(target=lambda: (wait_until(lambda: logged.records), arm()))
+                starter.start()
+                _stop.give(group, "stop", None)
+                starter.join()
+            self.assertEqual(orders[0]["order"], "stop")
+
+
+def wait_until(fact):
+    until = time.monotonic() + 60
+    while not fact() and time.monotonic() < until:
+        time.sleep(0.001)
 
 
 class Messages(unittest.TestCase):

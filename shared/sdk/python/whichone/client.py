@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import os
 import secrets
-import socket
 import time
 from dataclasses import dataclass
 from types import TracebackType
 from typing import Iterator, Sequence
 
+from . import _stop
 from . import messages as m
+from ._stop import NotStopped
 from .bus import Bus
 from .group import Group, GroupNotRunning
 from .scene import Scene
@@ -20,12 +20,6 @@ RESEND_S = 0.25
 """Time between two transmissions of a request that has no receipt yet."""
 LOOK_S = 0.005
 """Time between two looks at the topics."""
-STOP_RESEND_S = 0.01
-"""Time between two repetitions of an order to the motion stop."""
-RESTART_GRACE_S = 1.0
-"""Time for a restart of the arm's service, before it counts as absent."""
-DURABLE_GRACE_S = 0.5
-"""Time for a stop of an arm at rest to become durable."""
 SETTLED_LOOKS = 3
 """Looks that must find everything applied: the parts of one step are not published at once."""
 
@@ -36,10 +30,6 @@ class Refused(ValueError):
 
 class NoPick(RuntimeError):
     """What was said opened no interaction; the message is the robot's answer."""
-
-
-class NotStopped(RuntimeError):
-    """An order to the motion stop is not carried out, or not known to be."""
 
 
 @dataclass(frozen=True)
@@ -205,60 +195,15 @@ class Client:
         """Whether everything that was said is applied, and no sound is still being recognised."""
         return view.applied >= self._said and self._activity is not None and self._activity.pending == 0
 
-    def stop(self, timeout: float = 2.0) -> None:
-        """Stops the arm and latches the stop; returns once the arm is at rest. Raises `NotStopped`: use the
-        robot's own emergency stop then."""
-        self._order("stop", timeout)
+    def stop(self, timeout: float | None = None) -> None:
+        """Stops the arm and latches the stop; returns once the arm is at rest. The order is repeated for as long as
+        the group runs, or for `timeout` seconds, and the logger `whichone` warns while it is not confirmed. Raises
+        `NotStopped`: use the robot's own emergency stop then."""
+        _stop.give(self.group, "stop", timeout)
 
-    def resume(self, timeout: float = 2.0) -> None:
+    def resume(self, timeout: float = 5.0) -> None:
         """Releases the motion stop. Raises `NotStopped`."""
-        self._order("resume", timeout)
-
-    def _order(self, order: str, timeout: float) -> None:
-        emergency = "help: use the robot's own emergency stop, then see `whichone status`"
-        given_ns = time.monotonic_ns()
-        request = json.dumps({"order": order, "given_ns": given_ns}).encode()
-        state, rests_since = None, None
-        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as arm:
-            # Both sides check who the other one is.
-            arm.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
-            arm.bind("")
-            arm.settimeout(STOP_RESEND_S)
-            while (waited := (time.monotonic_ns() - given_ns) / 1e9) < timeout:
-                try:
-                    arm.sendto(request, str(self.group.run / "stop.sock"))
-                except (FileNotFoundError, ConnectionRefusedError):
-                    self._check_group()
-                    if waited >= RESTART_GRACE_S:
-                        raise NotStopped("the arm's service is not running; the robot may still move; "
-                                         + emergency) from None
-                    time.sleep(STOP_RESEND_S)
-                    continue
-                except BlockingIOError:
-                    pass
-                try:
-                    answer = json.loads(arm.recv(512))
-                except TimeoutError:
-                    continue
-                if answer.get("given_ns") != given_ns:
-                    continue
-                state, now = answer, time.monotonic()
-                rests_since = (rests_since or now) if state["at_rest"] else None
-                if state["stopped"] != (order == "stop"):
-                    if state["in_force_ns"] > given_ns:
-                        raise NotStopped("overruled by a later order; help: see `whichone watch`")
-                elif order == "resume" or (rests_since and (
-                        state["durable"] or now - rests_since >= DURABLE_GRACE_S)):
-                    return
-                time.sleep(STOP_RESEND_S)
-        if state is None:
-            raise NotStopped(f"the arm's service does not answer after {timeout:g} s; the robot may still move; "
-                             + emergency)
-        if order == "stop" and rests_since is None:
-            raise NotStopped(f"the arm is stopping but not at rest after {timeout:g} s; {emergency}")
-        if state["stopped"] != (order == "stop"):
-            raise NotStopped(f"the arm has not taken the order after {timeout:g} s (motion inhibited: "
-                             f"{state['inhibit']}); help: reset and enable the robot, then give the order again")
+        _stop.give(self.group, "resume", timeout)
 
 
 __all__ = ["Client", "GroupNotRunning", "NoPick", "NotStopped", "Refused", "Snapshot"]

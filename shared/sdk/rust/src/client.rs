@@ -11,7 +11,7 @@ use runtime::client::{Polling, deliver};
 use runtime::clock;
 use runtime::exit::{Exit, Failure};
 use runtime::group::{ENV_GROUP, GroupName, GroupPaths};
-use runtime::stop_socket::{self, StopState};
+use runtime::stop_socket::{self, StopState, default_patience};
 use runtime::{Span, Time};
 use scene::{ObjectId, Question, Scene};
 
@@ -19,8 +19,6 @@ use crate::settings;
 
 /// Time for the speech service to accept an utterance.
 const ACCEPT_PATIENCE: Span = Span::from_ms(10_000);
-/// Time for the arm to carry out an order to the motion stop.
-const STOP_PATIENCE: Span = Span::from_ms(3_000);
 
 /// What the robot says of itself: the latest state of the dialogue and of the arm.
 #[derive(Clone, Debug, PartialEq)]
@@ -210,24 +208,38 @@ impl Client {
         }
     }
 
-    /// Stops the arm at once and latches the stop. Returns once the arm has confirmed it.
+    /// Stops the arm at once and latches the stop. Returns once the arm has confirmed it: latched, at rest. The order
+    /// is repeated for as long as the group runs, however long the arm's service is away; warnings in the log say
+    /// meanwhile that it is not confirmed. Use the robot's own emergency stop then.
     ///
     /// # Errors
-    /// Not confirmed within 3 s; then use the robot's own emergency stop.
+    /// A later order overrules it, the robot is not heard, or the group is down: the robot may still move.
     pub fn stop(&self) -> Result<StopState, Failure> {
-        self.order(MotionOrder::Stop)
+        self.order(MotionOrder::Stop, default_patience(MotionOrder::Stop))
+    }
+
+    /// As [`Client::stop`], for at most `patience`. The order is not repeated after that.
+    ///
+    /// # Errors
+    /// As [`Client::stop`], or not confirmed in time.
+    pub fn stop_within(&self, patience: Duration) -> Result<StopState, Failure> {
+        self.order(MotionOrder::Stop, Some(Span::from_s(patience.as_secs_f64())))
     }
 
     /// Releases the motion stop.
     ///
     /// # Errors
-    /// Not confirmed within 3 s.
+    /// Not confirmed within 5 s.
     pub fn resume(&self) -> Result<StopState, Failure> {
-        self.order(MotionOrder::Resume)
+        self.order(MotionOrder::Resume, default_patience(MotionOrder::Resume))
     }
 
-    fn order(&self, order: MotionOrder) -> Result<StopState, Failure> {
-        Ok(stop_socket::give(&self.paths, order, STOP_PATIENCE, &mut |_| true)?)
+    fn order(&self, order: MotionOrder, patience: Option<Span>) -> Result<StopState, Failure> {
+        Ok(stop_socket::give(&self.paths, order, patience, &mut |why| {
+            why.iter()
+                .for_each(|why| tracing::warn!(%why, ?order, "not confirmed; it is repeated"));
+            true
+        })?)
     }
 
     /// Returns the name of an object of the scene.

@@ -1,11 +1,11 @@
 //! `watch` on a terminal: a dashboard with keys.
 //!
-//! Invariant: nothing here waits. The supervisor's status and orders to the motion stop are awaited on
+//! Invariant: nothing here waits. The supervisor's status is awaited and orders to the motion stop are given on
 //! threads of their own, so that a service that hangs neither freezes the picture nor delays a stop.
 
 use std::io::{self, Stdout};
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::thread::{self, JoinHandle};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use messages::{MotionOrder, Receipt, ReceiptStatus};
@@ -16,16 +16,18 @@ use ratatui::crossterm::execute;
 use ratatui::crossterm::terminal::{
     EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
 };
+use service::clock;
 use service::control::{Reply, Request, call};
-use service::exit::Failure;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::status::GroupStatus;
 
 use super::model::WatchModel;
 use super::{STATUS_EVERY, STATUS_PATIENCE};
-use crate::output::{Style, note};
+use crate::Outcome;
+use crate::output::Style;
 use crate::verbs::interrupt::Interrupt;
-use crate::verbs::motion;
+use crate::verbs::motion::{MotionOrders, News};
 use draw::{Notice, Picture, draw};
 use keys::{Command, Keyboard};
 
@@ -36,29 +38,20 @@ mod keys;
 const FRAME_EVERY: Duration = Duration::from_millis(100);
 /// Interval at which messages are taken.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
-/// Timeout of an order to the motion stop, as of `stop-motion`.
-const ORDER_PATIENCE: Duration = Duration::from_secs(5);
 
-/// Shows the dashboard until the user quits. An order to the motion stop that is not confirmed then is still
-/// waited for.
-pub(super) fn run(
-    model: &mut WatchModel,
-    interrupt: &Interrupt,
-    style: Style,
-) -> Result<(), Failure> {
-    let mut orders = Orders::new(model.paths());
-    let ended = show(model, interrupt, style, &mut orders);
-    if let Some(notice) = orders.finish() {
-        note(notice.text());
-    }
-    ended
+/// Shows the dashboard until the user quits. A stop that is not confirmed then is still repeated, until the user
+/// interrupts.
+pub(super) fn run(model: &mut WatchModel, interrupt: &Interrupt, style: Style) -> Outcome {
+    let orders = MotionOrders::open(model.paths())?;
+    let shown = show(model, interrupt, style, &orders);
+    orders.finish(interrupt, shown.map(|()| Exit::Ok))
 }
 
 fn show(
     model: &mut WatchModel,
     interrupt: &Interrupt,
     style: Style,
-    orders: &mut Orders,
+    orders: &MotionOrders,
 ) -> Result<(), Failure> {
     let mut screen = Screen::open().map_err(Failure::output)?;
     let status = status_of(model.paths());
@@ -69,7 +62,8 @@ fn show(
             notice = Some(refusal);
         }
         model.status = status.try_iter().last().or(model.status.take());
-        notice = orders.news().or(notice);
+        let news = std::iter::from_fn(|| orders.news()).last();
+        notice = news.map(|News { text, is_bad }| Notice { text, is_bad }).or(notice);
         if drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME_EVERY) {
             let picture = Picture::of(model, notice.as_ref(), style);
             screen.0.draw(|frame| draw(frame, &picture, &keyboard)).map_err(Failure::output)?;
@@ -80,11 +74,21 @@ fn show(
         }
         drawn = None;
         let Event::Key(key) = event::read().map_err(Failure::output)? else { continue };
-        match keyboard.press(key) {
+        match keyboard.press(key, clock::now()) {
             None => {}
             Some(Command::Quit) => return Ok(()),
             Some(Command::Say(text)) => model.say(&text)?,
-            Some(Command::Motion(order)) => notice = Some(orders.give(order)),
+            Some(Command::TooSoon) => {
+                notice =
+                    Some(Notice::good("stopped just now; r resumes 2 s after the latest stop"));
+            }
+            Some(Command::Motion(order)) => {
+                orders.give(order);
+                notice = Some(Notice::good(match order {
+                    MotionOrder::Stop => "stopping the arm …",
+                    MotionOrder::Resume => "releasing the motion stop …",
+                }));
+            }
         }
     }
     Ok(())
@@ -135,53 +139,4 @@ fn status_of(paths: &GroupPaths) -> Receiver<GroupStatus> {
         }
     });
     status
-}
-
-/// Orders to the motion stop. A stop is never kept waiting by an earlier order.
-struct Orders {
-    paths: GroupPaths,
-    results: (Sender<Notice>, Receiver<Notice>),
-    pending: Vec<JoinHandle<()>>,
-}
-
-impl Orders {
-    fn new(paths: &GroupPaths) -> Self {
-        Self { paths: paths.clone(), results: channel(), pending: Vec::new() }
-    }
-
-    /// Gives an order; [`Orders::news`] has what becomes of it.
-    fn give(&mut self, order: MotionOrder) -> Notice {
-        let (paths, results) = (self.paths.clone(), self.results.0.clone());
-        self.pending.retain(|order| !order.is_finished());
-        self.pending.push(thread::spawn(move || {
-            let report = |text: String| drop(results.send(Notice::bad(text)));
-            let ended = motion::give(&paths, order, ORDER_PATIENCE, report);
-            let notice = match ended {
-                Ok(state) if !state.stopped => Notice::good("the arm may move"),
-                Ok(state) if state.durable => Notice::good("the arm is stopped"),
-                Ok(_) => Notice::bad(format!("the arm is stopped; {}", motion::NOT_DURABLE)),
-                Err(failure) => Notice::bad(failure.to_string()),
-            };
-            // The dashboard may be closed.
-            let _ = results.send(notice);
-        }));
-        Notice::good(match order {
-            MotionOrder::Stop => "stopping the arm …",
-            MotionOrder::Resume => "releasing the motion stop …",
-        })
-    }
-
-    /// Returns the latest result, if there is a new one.
-    fn news(&self) -> Option<Notice> {
-        self.results.1.try_iter().last()
-    }
-
-    /// Waits for the orders that are not confirmed. Returns the latest result of them.
-    fn finish(&mut self) -> Option<Notice> {
-        self.pending.retain(|order| !order.is_finished());
-        let was_pending = !self.pending.is_empty();
-        // One that has panicked has no result.
-        self.pending.drain(..).for_each(|order| drop(order.join()));
-        self.news().filter(|_| was_pending)
-    }
 }

@@ -10,7 +10,7 @@ use service::printable::one_line;
 use service::status::{GroupState, GroupStatus};
 use service::view::{Latest, SaidView, Speaker};
 
-use super::keys::Keyboard;
+use super::keys::{Keyboard, Mode};
 use crate::output::{Ink, Style};
 use crate::verbs::status::state_ink;
 use crate::verbs::watch::frame::{arm_line, bars, reasons, summary};
@@ -30,8 +30,8 @@ const SAID_HEIGHT_MIN: u16 = 4;
 /// A line for the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Notice {
-    text: String,
-    is_bad: bool,
+    pub(super) text: String,
+    pub(super) is_bad: bool,
 }
 
 impl Notice {
@@ -43,11 +43,6 @@ impl Notice {
     /// Something that did not.
     pub(super) fn bad(text: impl Into<String>) -> Self {
         Self { text: text.into(), is_bad: true }
-    }
-
-    /// The words.
-    pub(super) fn text(&self) -> &str {
-        &self.text
     }
 }
 
@@ -232,10 +227,14 @@ fn arm_lines(picture: &Picture<'_>) -> Vec<Line<'static>> {
 }
 
 fn draw_keys(frame: &mut Frame<'_>, area: Rect, picture: &Picture<'_>, keyboard: &Keyboard) {
-    let text = match keyboard {
-        Keyboard::Watching => "q quit   s stop motion   r resume motion   t type to the robot",
-        Keyboard::Releasing => "release the motion stop? Enter releases it, any other key does not",
-        Keyboard::Typing(text) => return draw_typed(frame, area, picture, text),
+    let text = match keyboard.mode() {
+        Mode::Watching => {
+            "q quit   s, space, Esc stop motion   r resume motion   t type to the robot"
+        }
+        Mode::Releasing(word) => {
+            &format!("to let the arm move, type resume and Enter: {word}_   space stops motion")
+        }
+        Mode::Typing(text) => return draw_typed(frame, area, picture, text),
     };
     frame.render_widget(picture.span(Ink::Dim, text), area);
 }

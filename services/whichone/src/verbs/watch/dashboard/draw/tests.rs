@@ -52,7 +52,7 @@ fn screen(width: u16, height: u16, keyboard: &Keyboard, notice: Option<&Notice>)
 #[test]
 fn dashboard_shows_belief_dialogue_arm_and_services() {
     let notice = Notice::bad("not accepted: too long");
-    let text = screen(100, 24, &Keyboard::Watching, Some(&notice)).join("\n");
+    let text = screen(100, 24, &Keyboard::default(), Some(&notice)).join("\n");
     for part in [
         "lab degraded, scene scene, up 1 min 1 s",
         "white  25.0 %",
@@ -74,19 +74,25 @@ fn dashboard_shows_belief_dialogue_arm_and_services() {
 #[test]
 fn dashboard_fits_terminals_of_every_size() {
     for (width, height) in [(1, 1), (3, 40), (20, 5), (60, 12), (89, 24), (90, 8), (300, 90)] {
-        for keyboard in [Keyboard::Watching, Keyboard::Typing("the white bowl".repeat(20))] {
+        for keyboard in
+            [Keyboard::default(), Keyboard::in_mode(Mode::Typing("the white bowl".repeat(20)))]
+        {
             assert_eq!(screen(width, height, &keyboard, None).len(), usize::from(height));
         }
     }
-    let narrow = screen(60, 24, &Keyboard::Watching, None).join("\n");
+    let narrow = screen(60, 24, &Keyboard::default(), None).join("\n");
     assert!(narrow.contains("speech ready  arm held"), "{narrow}");
 }
 
 #[test]
 fn dashboard_shows_what_is_typed_and_asks_before_a_release() {
     let last = |keyboard| screen(60, 20, &keyboard, None).pop().unwrap();
-    assert!(last(Keyboard::Typing("the cup".into())).starts_with("say> the cup   Enter says it"));
-    let long = last(Keyboard::Typing(format!("{}end", "x".repeat(200))));
+    assert!(
+        last(Keyboard::in_mode(Mode::Typing("the cup".into())))
+            .starts_with("say> the cup   Enter says it")
+    );
+    let long = last(Keyboard::in_mode(Mode::Typing(format!("{}end", "x".repeat(200)))));
     assert!(long.contains("xxxend"), "{long}");
-    assert!(last(Keyboard::Releasing).starts_with("release the motion stop?"));
+    let releasing = last(Keyboard::in_mode(Mode::Releasing("res".into())));
+    assert!(releasing.starts_with("to let the arm move, type resume and Enter: res_"));
 }

@@ -1,0 +1,213 @@
+//! Progress of one order: when it is repeated, when its giver is warned, and when it is over.
+
+use messages::{MotionInhibit, MotionOrder};
+
+use super::{StopClient, StopError, StopState};
+use crate::{Span, Time};
+
+/// Interval at which an order is repeated.
+pub(super) const RESEND_EVERY: Span = Span::from_ms(10);
+/// Time without an answer before the giver is warned; the lack of a process counts at once.
+const SILENCE: Span = Span::from_ms(250);
+/// Time for an arm that has answered to come to rest, before the giver is warned.
+const HALTS_WITHIN: Span = Span::from_ms(1_000);
+/// Interval between warnings.
+const WARN_EVERY: Span = Span::from_ms(3_000);
+/// Time that a stop of an arm at rest is given to become durable.
+const DURABLE_GRACE: Span = Span::from_ms(500);
+/// Time for the robot to be heard, which an arm that has just started needs.
+const HEARD_GRACE: Span = Span::from_ms(1_000);
+/// Time for a release; a later one would surprise.
+const RELEASE_PATIENCE: Span = Span::from_ms(5_000);
+
+/// Returns how long an order is repeated unless its giver says otherwise: a stop for as long as the group's folder
+/// `run` exists, because no restart of the arm's service and no hold by an operator may outlast it.
+pub fn default_patience(order: MotionOrder) -> Option<Span> {
+    (order == MotionOrder::Resume).then_some(RELEASE_PATIENCE)
+}
+
+/// Progress of one order. The caller passes the time: `advance`, then look at `result` and `warning`.
+#[derive(Debug)]
+pub struct Progress {
+    order: MotionOrder,
+    given: Time,
+    /// Time at which it was given first.
+    since: Time,
+    patience: Option<Span>,
+    sent: Option<Time>,
+    warned: Option<Time>,
+    /// No process listened to the latest repetition.
+    is_absent: bool,
+    /// The order cannot be sent.
+    failure: Option<StopError>,
+    state: Option<StopState>,
+    /// Time since which the arm has been stopped and at rest.
+    rests_since: Option<Time>,
+    /// Time since which the stop has been latched while the robot is not heard.
+    unheard_since: Option<Time>,
+}
+
+impl Progress {
+    /// An order that was given at `given` and is carried out within `patience`, or has failed; without `patience` it
+    /// is repeated until the arm confirms it, a later order overrules it, or the group ends.
+    pub fn new(order: MotionOrder, given: Time, patience: impl Into<Option<Span>>) -> Self {
+        Self {
+            order,
+            given,
+            since: given,
+            patience: patience.into(),
+            sent: None,
+            warned: None,
+            is_absent: false,
+            failure: None,
+            state: None,
+            rests_since: None,
+            unheard_since: None,
+        }
+    }
+
+    /// The order.
+    pub fn order(&self) -> MotionOrder {
+        self.order
+    }
+
+    /// Time at which it was given, latest.
+    pub fn given(&self) -> Time {
+        self.given
+    }
+
+    /// The same order is given again, at `given`. Deadline and warnings count from the first time, so that a flood
+    /// of orders puts off neither.
+    pub fn renew(&mut self, given: Time) {
+        self.given = given;
+        self.sent = None;
+        self.forget_answers();
+    }
+
+    /// Repeats the order where that is due, and takes in the answers.
+    pub fn advance(&mut self, client: &StopClient, now: Time) {
+        if self.due(now) {
+            self.on_sent(&client.send(self.order, self.given));
+        }
+        while let Some(state) = client.take() {
+            self.on_answer(state, now);
+        }
+    }
+
+    /// Returns whether the order is due to be sent, with its time [`Progress::given`], which makes repetitions harmless.
+    pub fn due(&mut self, now: Time) -> bool {
+        let is_due = self.sent.is_none_or(|sent| now >= sent + RESEND_EVERY);
+        if is_due {
+            self.sent = Some(now);
+        }
+        is_due
+    }
+
+    /// Notes the outcome of sending. A process that has ended may have lost what it answered.
+    pub fn on_sent(&mut self, sent: &Result<(), StopError>) {
+        self.is_absent = matches!(sent, Err(StopError::Absent));
+        match sent {
+            Err(StopError::Absent) => self.forget_answers(),
+            Err(error) => self.failure = Some(error.clone()),
+            Ok(()) => {}
+        }
+    }
+
+    /// Takes in an answer; those to other orders are ignored.
+    pub fn on_answer(&mut self, state: StopState, now: Time) {
+        if state.given_ns != self.given.ns() {
+            return;
+        }
+        let is_heard = state.is_heard();
+        let since = |before: Option<Time>, holds: bool| holds.then(|| before.unwrap_or(now));
+        self.rests_since = since(self.rests_since, state.stopped && state.at_rest && is_heard);
+        self.unheard_since = since(self.unheard_since, state.stopped && !is_heard);
+        self.state = Some(state);
+    }
+
+    fn forget_answers(&mut self) {
+        (self.state, self.rests_since, self.unheard_since) = (None, None, None);
+    }
+
+    /// Returns the result once there is one: a stop is latched, at rest and durable, or cannot become durable; a
+    /// release is in force.
+    ///
+    /// # Errors
+    /// As [`super::give`].
+    pub fn result(&self, now: Time) -> Option<Result<StopState, StopError>> {
+        if let Some(failure) = &self.failure {
+            return Some(Err(failure.clone()));
+        }
+        let is_late = self.patience.is_some_and(|patience| now.since(self.since) >= patience);
+        let lasts = |since: Option<Time>, span| since.is_some_and(|since| now.since(since) >= span);
+        let done = self.state.filter(|state| match self.order {
+            MotionOrder::Resume => !state.stopped,
+            MotionOrder::Stop => {
+                self.rests_since.is_some()
+                    && (state.durable || is_late || lasts(self.rests_since, DURABLE_GRACE))
+            }
+        });
+        if let Some(state) = done {
+            return Some(Ok(state));
+        }
+        if self.state.is_some_and(|state| self.is_overruled(&state)) {
+            return Some(Err(StopError::Overruled));
+        }
+        if self.order == MotionOrder::Stop && lasts(self.unheard_since, HEARD_GRACE) {
+            return Some(Err(StopError::Unheard));
+        }
+        is_late.then(|| Err(self.why(now)))
+    }
+
+    /// Returns whether the order needs no repetition: it is carried out for good, or a later one is in force.
+    pub fn is_settled(&self, now: Time) -> bool {
+        match self.result(now) {
+            Some(Ok(state)) => state.durable,
+            Some(Err(error)) => error == StopError::Overruled,
+            None => false,
+        }
+    }
+
+    fn is_overruled(&self, state: &StopState) -> bool {
+        let is_contrary = state.stopped != (self.order == MotionOrder::Stop);
+        is_contrary && state.in_force_ns > self.given.ns()
+    }
+
+    /// Returns a warning for the giver where one is due: soon after the order, and every few seconds while it is not
+    /// confirmed.
+    pub fn warning(&mut self, now: Time) -> Option<StopError> {
+        let is_due = match self.warned {
+            Some(warned) => now >= warned + WARN_EVERY,
+            None => {
+                let patience = self.state.map_or(SILENCE, |_| HALTS_WITHIN);
+                self.is_absent || now.since(self.since) >= patience
+            }
+        };
+        if !is_due || self.rests_since.is_some() {
+            return None;
+        }
+        self.warned = Some(now);
+        Some(self.why(now))
+    }
+
+    /// Returns why the order is not confirmed.
+    pub fn why(&self, now: Time) -> StopError {
+        let waited_s = now.since(self.since).s();
+        match self.state {
+            None if self.is_absent => StopError::Absent,
+            None => StopError::Silent(waited_s),
+            Some(state) if state.stopped != (self.order == MotionOrder::Stop) => {
+                StopError::NotTaken(waited_s, state.inhibit)
+            }
+            Some(state) if !state.is_heard() => StopError::Unheard,
+            Some(_) => StopError::Moving(waited_s),
+        }
+    }
+}
+
+impl StopState {
+    /// Returns false where the robot is not heard: that it rests is a belief then.
+    pub fn is_heard(&self) -> bool {
+        !matches!(self.inhibit, MotionInhibit::Unheard | MotionInhibit::Stale)
+    }
+}
