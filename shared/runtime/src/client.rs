@@ -139,9 +139,23 @@ pub fn deliver(
     sound: Sound,
     said: (Time, Time),
     patience: Span,
-    mut standstill: impl FnMut() -> Option<String>,
+    standstill: impl FnMut() -> Option<String>,
 ) -> Result<Vec<Receipt>, ClientError> {
     let mut submission = Submission::new(sound, said, clock::now(), patience);
+    submit(writer, receipts, &mut submission, standstill)
+}
+
+/// As [`deliver`], with a request that may have been sent before, perhaps to an earlier run of the group: its key stays,
+/// so that it is accepted once.
+///
+/// # Errors
+/// As [`deliver`].
+pub fn submit(
+    writer: &EncodedWriter<Injection>,
+    receipts: &Reader<Receipt>,
+    submission: &mut Submission,
+    mut standstill: impl FnMut() -> Option<String>,
+) -> Result<Vec<Receipt>, ClientError> {
     let mut polling = Polling::default();
     while !submission.is_expired(clock::now()) {
         if let Some(request) = submission.due(clock::now()) {
@@ -156,7 +170,7 @@ pub fn deliver(
         }
         polling.pause();
     }
-    Err(ClientError::Timeout { what: "speech", seconds: patience.s() })
+    Err(ClientError::Timeout { what: "speech", seconds: submission.patience().s() })
 }
 
 /// Returns the identity of this process among the clients of the speech service, which gives each its

@@ -16,6 +16,7 @@ const RESEND_EVERY: Span = Span::from_ms(250);
 #[derive(Clone, Debug, PartialEq)]
 pub struct Submission {
     injection: Injection,
+    patience: Span,
     expires: Time,
     sent: Option<Time>,
     receipts: Vec<Receipt>,
@@ -28,7 +29,7 @@ impl Submission {
         let (onset_ns, end_ns) = (began.ns(), ended.ns());
         let key = request_key(own_id());
         let injection = Injection { key, onset_ns, end_ns, seen_prompt: 0, sound };
-        Self { injection, expires: now + patience, sent: None, receipts: Vec::new() }
+        Self { injection, patience, expires: now + patience, sent: None, receipts: Vec::new() }
     }
 
     /// Makes it a request of `client`, for a process that speaks for several.
@@ -50,6 +51,11 @@ impl Submission {
     pub fn under(mut self, key: RequestKey) -> Self {
         self.injection.key = key;
         self
+    }
+
+    /// Time after which the request expires.
+    pub fn patience(&self) -> Span {
+        self.patience
     }
 
     /// Key of the request, which its receipts repeat.

@@ -6,11 +6,12 @@ use messages::{
     GateVerdict, Hypothesis, Receipt, ReceiptStatus, SecondState, Service, Sound, Source, WireError,
 };
 use serde::Serialize;
-use service::client::{Client, deliver};
+use service::client::{Client, ClientError, submit};
 use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::printable::one_line;
+use service::submission::Submission;
 use service::{Span, Time};
 
 use super::availability::{AFTER_SPEECH, Availability, Lookout};
@@ -91,16 +92,28 @@ fn give_said(
     timeout: Duration,
     out: &mut Output<'_>,
 ) -> Outcome {
-    let services = Availability::request(paths);
-    let client = Client::join(paths)?;
-    let (injections, receipts) = client.submission(&sound)?;
-    let services = services.wait();
-    services.require(Service::Speech)?;
-    let mut lookout = Lookout::with_shortages();
-    let standstill = || lookout.news(paths);
     let patience = Span::from_s(timeout.as_secs_f64());
-    let receipts = deliver(&injections, &receipts, sound, said, patience, standstill)?;
-    print_all(&services, &receipts, out)
+    let mut submission = Submission::new(sound.clone(), said, clock::now(), patience);
+    let mut lookout = Lookout::with_shortages();
+    loop {
+        let services = Availability::request(paths);
+        let memory = paths.shm_name().ok();
+        let client = Client::join(paths)?;
+        let (injections, receipts) = client.submission(&sound)?;
+        let services = services.wait();
+        services.require(Service::Speech)?;
+        let mut is_replaced = false;
+        let standstill = || {
+            let news = lookout.news(paths);
+            // A supervisor that was killed has a successor with other shared memory.
+            is_replaced = paths.shm_name().is_ok_and(|now| memory.as_ref() != Some(&now));
+            if is_replaced { Some(String::new()) } else { news }
+        };
+        match submit(&injections, &receipts, &mut submission, standstill) {
+            Err(ClientError::Standstill(_)) if is_replaced => {}
+            receipts => return print_all(&services, &receipts?, out),
+        }
+    }
 }
 
 fn print_all(services: &Availability, receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
