@@ -258,8 +258,8 @@ pub enum Verb {
     Talk(TalkArgs),
     /// Show the belief, the dialogue, the arm and the services, live.
     ///
-    /// Keys: q quits, s stops the arm's motion, r and Enter resume it, t types to the robot. Ctrl-S stops
-    /// motion also while you type.
+    /// Keys: q quits, s, space and Esc stop the arm's motion, r and the typed word `resume` release the stop, t types
+    /// to the robot. Ctrl-S stops motion also while you type.
     Watch(WatchArgs),
     /// Talk to the robot in this terminal; starts a group if none is running.
     Chat(ChatArgs),

@@ -131,7 +131,7 @@ impl StopListener {
         for _ in 0..DATAGRAMS_MAX {
             match self.endpoint.receive::<StopOrder>(|_| false) {
                 Ok(Some((order, Some(from)))) => {
-                    let given_ns = self.clock.from_machine(order.given_ns);
+                    let given_ns = self.clock.own_ns(order.given_ns);
                     take(StopOrder { given_ns, ..order }, Caller(from));
                 }
                 Ok(_) => {}
@@ -143,7 +143,7 @@ impl StopListener {
 
     /// Answers without waiting. A caller that is gone, or whose queue is full, asks again.
     pub fn answer(&self, Caller(address): &Caller, state: &StopState) {
-        let state = state.translated(|ns| self.clock.to_machine(ns));
+        let state = state.translated(|ns| self.clock.machine_ns(ns));
         if let Err(error) = self.endpoint.send(&state, address) {
             tracing::debug!(%error, "answer to a motion order not delivered");
         }
@@ -220,7 +220,7 @@ impl StopClient {
     pub fn send(&self, order: MotionOrder, given: Time) -> Result<(), StopError> {
         let socket_error = |error: Errno| StopError::Socket(error.to_string());
         let to = SocketAddrUnix::new(self.paths.stop_socket()).map_err(socket_error)?;
-        let given_ns = self.clock.to_machine(given.ns());
+        let given_ns = self.clock.machine_ns(given.ns());
         match self.endpoint.send(&StopOrder { order, given_ns }, &to) {
             Ok(()) | Err(Errno::AGAIN | Errno::NOBUFS | Errno::NOMEM | Errno::INTR) => Ok(()),
             Err(Errno::NOENT | Errno::CONNREFUSED) if !self.paths.run().is_dir() => {
@@ -239,7 +239,7 @@ impl StopClient {
             Err(Errno::INTR) => None,
             Err(_) => Some(None),
         })??;
-        Some(state.translated(|ns| self.clock.from_machine(ns)))
+        Some(state.translated(|ns| self.clock.own_ns(ns)))
     }
 
     /// Returns whether this is the user whom the group belongs to. Root alone needs it: others reach no group but

@@ -7,7 +7,7 @@ use std::time::Duration;
 use messages::{MotionOrder, Service};
 use serde::Serialize;
 use service::Span;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::stop_socket::{self, StopError, StopState, default_patience};
 
@@ -50,7 +50,8 @@ pub(super) fn motion(
         why.into_iter().for_each(|why| note(warnings.line(order, &why)));
         !interrupt.is_requested()
     });
-    let StopState { stopped, at_rest, durable, .. } = state?;
+    let state = state.map_err(|error| warnings.failure(&error))?;
+    let StopState { stopped, at_rest, durable, .. } = state;
     if out.is_json() {
         out.json(&MotionStop { stopped, at_rest, durable })?;
     } else if stopped {
@@ -78,25 +79,35 @@ impl Warnings {
         Self { paths: paths.clone(), reasons: channel(), is_asked: false, reason: None }
     }
 
+    /// Returns the failure of the order.
+    fn failure(&mut self, why: &StopError) -> Failure {
+        Failure::new(Exit::NotReached, format!("{why}{}", self.reason(why)))
+    }
+
     /// Returns the line for the user.
     fn line(&mut self, order: MotionOrder, why: &StopError) -> String {
-        if let Some(reason) = self.reasons.1.try_iter().last() {
-            (self.reason, self.is_asked) = (reason, false);
-        }
+        let reason = self.reason(why);
         if !std::mem::replace(&mut self.is_asked, true) {
             let (paths, reasons) = (self.paths.clone(), self.reasons.0.clone());
             thread::spawn(move || {
                 reasons.send(Availability::now(&paths).first_missing(ARM, |_| true))
             });
         }
-        let reason = match (&self.reason, why) {
-            (Some(reason), StopError::Absent) => format!(" ({reason})"),
-            _ => String::new(),
-        };
         let order = match order {
             MotionOrder::Stop => "the stop",
             MotionOrder::Resume => "the release",
         };
         format!("not confirmed: {why}{reason}; {order} is repeated")
+    }
+
+    /// Returns why the arm's service does not run, where the supervisor has said so.
+    fn reason(&mut self, why: &StopError) -> String {
+        if let Some(reason) = self.reasons.1.try_iter().last() {
+            (self.reason, self.is_asked) = (reason, false);
+        }
+        match (&self.reason, why) {
+            (Some(reason), StopError::Absent) => format!(" ({reason})"),
+            _ => String::new(),
+        }
     }
 }

@@ -97,12 +97,12 @@ impl ClockOffset {
     }
 
     /// Returns a time of this process in the machine's. 0 stays, because it stands for no time.
-    pub(super) fn to_machine(self, ns: u64) -> u64 {
+    pub(super) fn machine_ns(self, ns: u64) -> u64 {
         shift(ns, self.0.saturating_neg())
     }
 
     /// Returns a time of the machine in this process's.
-    pub(super) fn from_machine(self, ns: u64) -> u64 {
+    pub(super) fn own_ns(self, ns: u64) -> u64 {
         shift(ns, self.0)
     }
 }
@@ -128,10 +128,10 @@ mod tests {
         let text = "monotonic       -2000         5\nboottime            0         0\n";
         let offset = ClockOffset(parse(text).unwrap_or_default());
         assert_eq!(offset, ClockOffset(-1_999_999_999_995));
-        assert_eq!(offset.to_machine(7), 2_000_000_000_002);
-        assert_eq!(offset.from_machine(2_000_000_000_002), 7);
-        assert_eq!((offset.to_machine(0), offset.from_machine(0)), (0, 0));
-        assert_eq!((offset.from_machine(9), offset.to_machine(u64::MAX)), (1, u64::MAX));
+        assert_eq!(offset.machine_ns(7), 2_000_000_000_002);
+        assert_eq!(offset.own_ns(2_000_000_000_002), 7);
+        assert_eq!((offset.machine_ns(0), offset.own_ns(0)), (0, 0));
+        assert_eq!((offset.own_ns(9), offset.machine_ns(u64::MAX)), (1, u64::MAX));
         for damaged in ["", "monotonic", "monotonic x 0", "monotonic 9223372036854775807 0"] {
             assert_eq!(parse(damaged), None, "{damaged}");
         }

@@ -228,9 +228,7 @@ fn arm_lines(picture: &Picture<'_>) -> Vec<Line<'static>> {
 
 fn draw_keys(frame: &mut Frame<'_>, area: Rect, picture: &Picture<'_>, keyboard: &Keyboard) {
     let text = match keyboard.mode() {
-        Mode::Watching => {
-            "q quit   s, space, Esc stop motion   r resume motion   t type to the robot"
-        }
+        Mode::Watching => "s, space, Esc stop   r resume   t type to the robot   q quit",
         Mode::Releasing(word) => {
             &format!("to let the arm move, type resume and Enter: {word}_   space stops motion")
         }

@@ -65,7 +65,7 @@ fn dashboard_shows_belief_dialogue_arm_and_services() {
         "help: whichone release",
         "STOPPED",
         "not accepted: too long",
-        "q quit   s stop motion",
+        "s, space, Esc stop   r resume",
     ] {
         assert!(text.contains(part), "{part}:\n{text}");
     }
