@@ -30,14 +30,15 @@ const STOP: Duration = Duration::from_secs(60);
 
 /// Runs a dialogue until `quit` or the end of the input.
 pub(super) fn chat(paths: &GroupPaths, args: &ChatArgs, out: &mut Output<'_>) -> Outcome {
-    let started = !up::is_running(paths)?;
+    let is_running = up::is_running(paths)?;
     let interrupt = Interrupt::listen()?;
-    if started {
+    if !is_running {
         note(format_args!("no group {} is running; starting one", paths.name()));
     }
-    let ready = if started { up::bring_up(paths, &args.config) } else { Ok(()) };
+    let is_own = !is_running && up::bring_up(paths, &args.config)?;
+    let ready = if is_running { Ok(()) } else { up::wait_ready(paths) };
     let talked = ready.and_then(|()| talk(paths, &interrupt, out));
-    if started && !args.keep {
+    if is_own && !args.keep {
         note("stopping the group that was started for this chat");
         operate::down(paths, STOP, &mut Output::to(io::sink(), true))?;
     }

@@ -55,10 +55,21 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
     Ok(Exit::Ok)
 }
 
-/// Starts a detached group with everything ready, for a verb that needs one.
-pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<(), Failure> {
+/// Starts a detached group, for a verb that needs one. Returns false if another start was quicker: that group is not
+/// this verb's to stop.
+pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<bool, Failure> {
     let options = options(paths, config, false)?;
-    start(paths, &options, config, Some(Duration::from_secs(30))).map(drop)
+    match start(paths, &options, config, None) {
+        Ok(_) => Ok(true),
+        Err(_) if is_running(paths)? => Ok(false),
+        Err(failure) => Err(failure),
+    }
+}
+
+/// Waits until every service of a group is ready that was just started.
+pub(super) fn wait_ready(paths: &GroupPaths) -> Result<(), Failure> {
+    let ready = launch::wait_ready(paths, Duration::from_secs(30));
+    ready.map(drop).map_err(|error| not_ready(error, paths))
 }
 
 /// Returns true if a supervisor answers for the group.
