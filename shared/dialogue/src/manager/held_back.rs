@@ -72,7 +72,7 @@ impl Manager {
                 && reading.response == Response::Yes
                 && reading.base.iter().all(has)
         });
-        if !yes {
+        if !yes && !self.asks_for_kept(state, heard) {
             return false;
         }
         if let Some(held) = state.open.as_mut().and_then(|open| open.held_back.as_mut()) {

@@ -1,10 +1,11 @@
 //! An object that was called off and cannot go back to its place: the gripper keeps hold of it, and
 //! nothing else is decided until the user has said what becomes of it.
 
-use scene::ObjectId;
+use scene::{ObjectId, Response};
 
 use super::Manager;
 use super::acts::{call_off, next_key};
+use super::attribution::Heard;
 use super::held_back::HeldBack;
 use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, State};
@@ -44,6 +45,15 @@ impl Manager {
         let reasons = Act { utterance: state.applied, decided: at, ..Act::default() };
         self.ask_for(state, object, Line { preface, content }, reasons);
         true
+    }
+
+    /// Returns whether the user asks for what the gripper has kept by its description.
+    pub(super) fn asks_for_kept(&self, state: &State, heard: &Heard<'_>) -> bool {
+        let Some(kept) = self.kept(state) else { return false };
+        heard.interpretations.first().is_some_and(|(.., reading)| {
+            let describes = !reading.base.is_empty() && reading.response != Response::No;
+            describes && self.described(reading).eq([kept])
+        })
     }
 
     /// Has the arm try once more to put the object back that the gripper has kept.
