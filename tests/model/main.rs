@@ -19,6 +19,7 @@ const CRASHES: Protocol = Protocol {
     lossy: true,
     stops: false,
     says_stop: false,
+    calls_off: false,
     impatient: false,
     broken: None,
 };
@@ -30,6 +31,8 @@ const STOPS: Protocol = Protocol { objects: 1, crashes: 2, stops: true, ..CRASHE
 const STOP_ALONE: Protocol = Protocol { objects: 0, crashes: 3, says_stop: true, ..CRASHES };
 /// One object, and a user who says "stop" on the way.
 const SAYS_STOP: Protocol = Protocol { objects: 1, lossy: false, says_stop: true, ..CRASHES };
+/// One object, and a user who calls it off at any moment.
+const CALLS_OFF: Protocol = Protocol { objects: 1, calls_off: true, lossy: false, ..CRASHES };
 /// One object, and a user who talks on before the robot has taken in what was said.
 const TALKS: Protocol = Protocol { objects: 1, crashes: 1, impatient: true, ..CRASHES };
 /// Two objects, and one journal set aside at any moment; the bus delays and reorders.
@@ -85,6 +88,11 @@ fn protocol_holds_with_a_stop_that_is_said() {
 }
 
 #[test]
+fn protocol_holds_with_an_order_that_is_called_off() {
+    holds(CALLS_OFF);
+}
+
+#[test]
 fn protocol_holds_when_a_journal_is_set_aside() {
     holds(LOST);
 }
@@ -107,6 +115,13 @@ fn protocol_needs_its_rules_for_a_stop_that_is_said() {
     breaks(STOP_ALONE, Broken::SettleByAnyAnswer, "progress");
     breaks(SAYS_STOP, Broken::ConfirmBeforeSync, "moves after its stop");
     breaks(SAYS_STOP, Broken::ReportIntention, "moves after its stop");
+}
+
+#[test]
+fn protocol_needs_its_rules_for_an_order_that_is_called_off() {
+    breaks(CALLS_OFF, Broken::CallOffInMemory, "called off is handed over");
+    breaks(CALLS_OFF, Broken::HandOverCalledOff, "called off is handed over");
+    breaks(CALLS_OFF, Broken::OpenBeforeRecord, "the user has what was called off");
 }
 
 #[test]

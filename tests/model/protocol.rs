@@ -46,6 +46,12 @@ pub(crate) enum Broken {
     IgnoreGripper,
     /// The arm forgets the latched stop in a restart.
     ForgetLatch,
+    /// The arm keeps in memory only that its pick was called off.
+    CallOffInMemory,
+    /// The arm hands over what it holds, though it was called off.
+    HandOverCalledOff,
+    /// The gripper opens before the record that it does is durable.
+    OpenBeforeRecord,
     /// Speech sends a stop that was said once.
     StopOnce,
     /// Speech keeps a stop that was said in memory only.
@@ -85,6 +91,8 @@ pub(crate) struct Protocol {
     pub(crate) stops: bool,
     /// Whether the user may say "stop", once.
     pub(crate) says_stop: bool,
+    /// Whether the user may call off what is being fetched, once.
+    pub(crate) calls_off: bool,
     /// Whether the user says the second thing before the robot has taken in the first.
     pub(crate) impatient: bool,
     /// The rule that does not hold.
@@ -117,11 +125,15 @@ pub(crate) enum Step {
     StopOrder(Cut),
     Apply(u8, Cut),
     PickEnds(u8, Cut),
+    CallOff(Cut),
     PolicyTick,
     Order(u8, Cut),
     Grasp,
     Held(Cut),
+    LetGo(Cut),
     Release,
+    TurnBack(Cut),
+    PutDown,
     Done(Cut),
     ArmTick,
     Stop(Cut),
@@ -150,9 +162,10 @@ impl Protocol {
     }
 
     /// Utterances that suffice whatever is lost: two for each object, three more for each
-    /// interaction that ends with a journal, and what is said before the robot has listened.
+    /// interaction that ends with a journal, two more after a call-off, and what is said before the robot
+    /// has listened.
     fn keys_max(&self) -> u8 {
-        2 * self.objects + 3 * self.lost + u8::from(self.impatient)
+        2 * (self.objects + u8::from(self.calls_off)) + 3 * self.lost + u8::from(self.impatient)
     }
 
     /// The points at which this pass may be cut.

@@ -33,8 +33,10 @@ pub(crate) enum Action {
     SayAfresh(String),
     /// Says it as soon as the robot has announced what it fetches.
     SayDuringFetch(String),
-    /// Says it when the robot is about to let go of what it fetches.
-    SayBeforeHandOver(String),
+    /// Says it when the gripper is about to open for the user.
+    SayBeforeOpening(String),
+    /// Says it when the gripper opens.
+    SayWhileOpening(String),
     Silence,
     StopMotion,
     ResumeMotion,
@@ -169,6 +171,7 @@ fn read_line(case: &mut Case, word: &str, rest: &str, place: &str) {
         ("you", _) => Action::Say(text),
         ("afresh", _) => Action::SayAfresh(text),
         ("meanwhile", _) => Action::SayDuringFetch(text),
+        ("arriving", _) => Action::SayBeforeOpening(text),
         ("late", _) => Action::SayBeforeHandOver(text),
         ("wants", _) => Action::Want(text),
         ("silence", "") => Action::Silence,

@@ -21,8 +21,6 @@ use whichone_tests::simulated_group::{Faults, Host, RepeatedStop};
 const SENTENCE: Span = Span::from_ms(1_500);
 /// Time that a message takes from one service to the next.
 const STEP: Span = Span::from_ms(1);
-/// Seconds before an object is let go of from which it is handed over whatever is said.
-const HAND_OVER_S: f64 = 0.5;
 /// Longest leap.
 const LEAP: Span = Span::from_ms(50);
 
@@ -56,8 +54,8 @@ pub(crate) struct Seen {
     /// Objects that are back in their places.
     pub(crate) put_back: Vec<(Time, ObjectId)>,
     pub(crate) is_fetching: bool,
-    /// The gripper is where it lets go of what it fetches.
-    pub(crate) is_handing_over: bool,
+    /// Seconds until what is fetched is let go of, once it is held.
+    pub(crate) lets_go_s: Option<f64>,
     pub(crate) is_stopped: bool,
     /// Texts that were refused.
     pub(crate) refused: Vec<String>,
@@ -306,8 +304,8 @@ impl Group {
 
     fn see_arm(&mut self, status: &ArmStatus) {
         self.seen.is_stopped = status.stopped != 0;
-        self.seen.is_handing_over =
-            status.phase == PickPhase::Holding && status.remaining_s <= HAND_OVER_S;
+        let is_held = status.phase == PickPhase::Holding;
+        self.seen.lets_go_s = is_held.then_some(status.remaining_s);
         if status.phase != PickPhase::Done || Some(status.pick()) != self.latest_pick {
             return;
         }

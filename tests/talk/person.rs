@@ -11,6 +11,9 @@ use crate::group::{Input, Line, Seen};
 const REACTION: Span = Span::from_ms(1_000);
 /// Time from the announcement of a pick to a protest against it.
 const PROTEST: Span = Span::from_ms(1_200);
+/// Seconds before an object is let go of from which the gripper is about to open, and opens.
+const ARRIVING_S: f64 = 1.3;
+const OPENING_S: f64 = 0.5;
 /// Time after which a person without a reply goes on.
 const PATIENCE: Span = Span::from_ms(12_000);
 /// Longest silence of a person who is waited for.
@@ -78,9 +81,11 @@ impl<'a> Person<'a> {
         let step = self.case.steps.get(self.next);
         if seen.is_fetching {
             let announced = || seen.picks.last().is_some_and(|(at, ..)| now >= *at + PROTEST);
+            let is_within = |max_s: f64| seen.lets_go_s.is_some_and(|left_s| left_s <= max_s);
             let due = match step.map(|step| &step.action) {
                 Some(Action::SayDuringFetch(text)) => Some((text, announced())),
-                Some(Action::SayBeforeHandOver(text)) => Some((text, seen.is_handing_over)),
+                Some(Action::SayBeforeOpening(text)) => Some((text, is_within(ARRIVING_S))),
+                Some(Action::SayBeforeHandOver(text)) => Some((text, is_within(OPENING_S))),
                 _ => None,
             };
             if let Some((text, is_due)) = due {
@@ -106,6 +111,7 @@ impl<'a> Person<'a> {
             Action::AnswerUntilFetching
             | Action::AnswerUntilDelivered
             | Action::SayDuringFetch(_)
+            | Action::SayBeforeOpening(_)
             | Action::SayBeforeHandOver(_)
             | Action::Want(_) => self.answer(now, seen),
             Action::Say(text) | Action::SayAfresh(text) => {

@@ -82,7 +82,7 @@ impl ArmNode {
         let away = returning || self.limb_away().is_some() && self.plan_failures.way_to_rest(now);
         match self.goal() {
             Some(goal) if !(away && self.comes_after_rest(goal)) => Some(goal),
-            None if self.state.waits_for_person => None,
+            None if self.state.waits() => None,
             _ => away.then_some(Purpose::Return),
         }
     }
@@ -94,7 +94,7 @@ impl ArmNode {
         }
         let aim = self.act.aim.filter(|object| self.plan_failures.aim != Some(*object))?;
         let stands = self.config.arm.restock || !self.state.gone.contains(&aim);
-        (stands && !self.state.waits_for_person).then_some(Purpose::Aim(aim))
+        (stands && !self.state.waits()).then_some(Purpose::Aim(aim))
     }
 
     /// Returns whether the arm must rest first: no plan was found from elsewhere, it leaves what a user
@@ -105,7 +105,8 @@ impl ArmNode {
         let with_person = object.is_some_and(|object| self.state.gone.contains(&object));
         let restocked =
             self.config.arm.restock && with_person && object != self.state.to_put_back();
-        self.plan_failures.from_rest == Some(goal) || self.state.offered.is_some() || restocked
+        let is_offered = self.state.offered.is_some() && !self.state.is_letting_go();
+        self.plan_failures.from_rest == Some(goal) || is_offered || restocked
     }
 
     fn object_of(&self, purpose: Purpose) -> Option<ObjectId> {
@@ -181,7 +182,7 @@ impl ArmNode {
                 tracing::error!(%refusal, "no way to rest; the arm stands where it is");
                 self.plan_failures.retry_rest = Some(now + RETRY_EVERY);
             }
-            _ if from_rest => {
+            _ if from_rest && !self.is_called_off() => {
                 tracing::info!(%purpose, %refusal, "not from here; the arm goes to rest first");
                 self.plan_failures.from_rest = Some(purpose);
                 self.urgent = true;
@@ -195,9 +196,11 @@ impl ArmNode {
                 let Some(pick) = self.state.open_pick().copied() else { return };
                 let name = self.name(pick.object);
                 tracing::error!(name, task = ?pick.task, %refusal, "no way with the object");
-                let holds = pick.phase >= PickPhase::Holding;
-                let outcome =
-                    if holds { PickOutcome::Interrupted } else { PickOutcome::Unreachable };
+                let outcome = match pick.phase {
+                    PickPhase::Returning => PickOutcome::Kept,
+                    PickPhase::Holding => PickOutcome::Interrupted,
+                    _ => PickOutcome::Unreachable,
+                };
                 self.end(outcome, now, fx);
             }
         }

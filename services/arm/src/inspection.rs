@@ -63,6 +63,7 @@ fn progress(pick: &Pick) -> &'static str {
         (PickPhase::Done, PickOutcome::Missed) => "missed",
         (PickPhase::Done, PickOutcome::Blocked) => "blocked",
         (PickPhase::Done, PickOutcome::PutBack) => "put back",
+        (PickPhase::Done, PickOutcome::Kept) => "called off, no way back: the gripper keeps it",
         (PickPhase::Done, PickOutcome::Vanished) => "no longer there",
     }
 }
@@ -131,7 +132,7 @@ fn step(
     if returned && pick.outcome == PickOutcome::Delivered {
         return Err(format!("{name} was delivered though it was called off"));
     }
-    if pick.phase == PickPhase::Returning && !returned {
+    if pick.phase == PickPhase::Returning && phase_before == Some(PickPhase::Holding) {
         tally.lifted = tally.lifted.saturating_sub(1);
     }
     if pick.phase == PickPhase::Done && phase_before != Some(PickPhase::Done) {

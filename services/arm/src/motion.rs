@@ -73,13 +73,29 @@ impl ArmNode {
         let Some(phase) = program.steps.front().and_then(|step| step.phase) else { return false };
         let Some(pick) = self.state.open_pick() else { return false };
         if pick.phase >= phase && self.state.limb == Some(limb) {
-            return false;
+            return self.begins_to_let_go(now, fx);
         }
         if phase == PickPhase::Holding {
             self.hold(limb, now, fx);
         } else {
             self.enter(phase, limb, now, fx);
         }
+        true
+    }
+
+    /// Returns whether the fingers are about to open where the object is handed over. From then on it is
+    /// too late to call it off, so that is recorded first.
+    fn begins_to_let_go(&mut self, now: Time, fx: &mut Fx) -> bool {
+        let step = self.executor.program().and_then(|program| program.steps.front());
+        let opens = step.is_some_and(|step| step.kind == MotionPhase::Release);
+        let ends_at_place = self.state.open_pick().is_none_or(Pick::ends_at_place);
+        if !opens || ends_at_place || self.state.is_letting_go() {
+            return false;
+        }
+        let Some(held) = self.state.held else { return false };
+        self.state.offered = Some(self.world.offered(&held, &self.driver.measured()));
+        self.urgent = true;
+        self.record(Cause::Phase, now, fx);
         true
     }
 
@@ -189,24 +205,25 @@ impl ArmNode {
     /// Handles fingers that have opened where the object was to be let go.
     fn let_go(&mut self, now: Time, fx: &mut Fx) {
         let held = self.state.held.take();
-        let is_called_off =
-            self.state.open_pick().is_some_and(|pick| pick.phase == PickPhase::Returning);
         let outcome = match self.state.to_put_back() {
             Some(object) => {
                 self.state.handed_over.retain(|other| other.object != object);
                 PickOutcome::PutBack
             }
             // It stands in its place again.
-            None if is_called_off => PickOutcome::Cancelled,
+            None if self.is_called_off() => PickOutcome::Cancelled,
             None => {
-                let measured = self.driver.measured();
-                self.state.offered = held.map(|held| self.world.offered(&held, &measured));
                 self.state.gone.extend(held.map(|held| held.object));
                 held.into_iter().for_each(|held| self.state.remember(held));
                 PickOutcome::Delivered
             }
         };
         self.end(outcome, now, fx);
+    }
+
+    /// Returns whether the open pick was called off while its object was held.
+    pub(crate) fn is_called_off(&self) -> bool {
+        self.state.open_pick().is_some_and(|pick| pick.phase == PickPhase::Returning)
     }
 
     /// Returns whether people may put objects back by themselves.

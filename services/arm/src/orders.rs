@@ -1,10 +1,12 @@
 //! Orders to the arm: acts of the policy, and the motion stop.
 
-use crate::program::Planner;
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
+use manipulation::Limb;
 use messages::pick::{Order, Pick, judge};
-use messages::{ActId, ActKind, MotionOrder, PickId, PickOutcome, PickPhase, RobotAct, Task};
+use messages::{
+    ActId, ActKind, MotionOrder, MotionPhase, PickId, PickOutcome, PickPhase, RobotAct, Task,
+};
 use scene::{ObjectId, Question};
 use service::Time;
 use service::stop_socket::StopOrder;
@@ -65,10 +67,12 @@ impl ArmNode {
     ) {
         match judge(self.state.pick.as_ref(), id, object, Some(task)) {
             Order::Accept => {
+                let keeps = self.state.keeps(object);
                 let accepted = (PickPhase::Accepted, PickOutcome::Pending);
-                self.take_on((id, object, task), accepted);
+                let progress = self.beginning(object, PickPhase::Holding, accepted);
+                self.take_on((id, object, task), progress);
                 // Whoever asks for it to be put back has it, whatever a simulated world restocks.
-                if task == Task::PutBack && !self.state.gone.contains(&object) {
+                if task == Task::PutBack && !keeps && !self.state.gone.contains(&object) {
                     self.state.gone.push(object);
                 }
                 tracing::info!(%id, object = object.0, ?task, "pick accepted");
@@ -85,8 +89,7 @@ impl ArmNode {
         }
     }
 
-    /// Cancels the pick. An object that the gripper holds goes back to its place first. Where the fingers
-    /// still close on it, this follows with the next of the repeated orders.
+    /// Cancels the pick. An object that the gripper holds, or closes on, goes back to its place first.
     fn cancel(&mut self, id: PickId, object: ObjectId, now: Time, fx: &mut Fx) {
         match judge(self.state.pick.as_ref(), id, object, None) {
             Order::Known => {
@@ -95,14 +98,16 @@ impl ArmNode {
                     Some(PickPhase::Accepted | PickPhase::Moving) => {
                         self.end(PickOutcome::Cancelled, now, fx);
                     }
-                    Some(PickPhase::Holding) => self.turn_back(now, fx),
+                    Some(PickPhase::Closing | PickPhase::Holding) => self.turn_back(now, fx),
                     _ => {}
                 }
             }
-            // The order itself has not arrived yet. It must be ignored when it does.
+            // The order itself has not arrived yet, and must be ignored when it does; or the arm is to
+            // try once more to put back what the gripper has kept.
             Order::Accept => {
                 let cancelled = (PickPhase::Done, PickOutcome::Cancelled);
-                self.take_on((id, object, Task::Fetch), cancelled);
+                let progress = self.beginning(object, PickPhase::Returning, cancelled);
+                self.take_on((id, object, Task::Fetch), progress);
                 tracing::info!(%id, "pick cancelled before its order arrived");
                 self.record(Cause::Ordered, now, fx);
             }
@@ -110,19 +115,46 @@ impl ArmNode {
         }
     }
 
-    /// Carries the held object back to its place, unless the gripper is where it hands it over: the user
-    /// may have it already. One that is put back goes there anyway.
+    /// Carries the held object back to its place, unless the gripper has begun to let go of it where it
+    /// hands it over: the user may have it already. One that is put back goes there anyway.
     fn turn_back(&mut self, now: Time, fx: &mut Fx) {
         let (Some(pick), Some(limb)) = (self.state.open_pick().copied(), self.state.limb) else {
             return;
         };
-        let measured = self.driver.measured();
-        let planner = Planner::new(&self.config, &self.world, &self.state, &measured);
-        if pick.ends_at_place() || planner.is_at_goal(&pick, limb) {
+        if pick.ends_at_place() || self.state.is_letting_go() {
             return;
+        }
+        if pick.phase == PickPhase::Closing {
+            if !self.may_hold(limb) {
+                return self.end(PickOutcome::Cancelled, now, fx);
+            }
+            // The fingers open where they are.
+            self.state.held = self.world.grasped(pick.object, limb, &self.driver.measured());
         }
         self.executor.halt();
         self.enter(PickPhase::Returning, limb, now, fx);
+    }
+
+    /// Returns whether the fingers may hold an object, or close on it.
+    fn may_hold(&self, limb: Limb) -> bool {
+        let step = self.executor.program().and_then(|program| program.steps.front());
+        let closes = step.is_some_and(|step| step.kind == MotionPhase::Close);
+        closes || self.driver.measured().holds(limb) != Some(false)
+    }
+
+    /// Returns how an order begins: `held` if the gripper has kept its object, else as given. While it
+    /// keeps another one, a person must look: the fingers would drop that.
+    fn beginning(
+        &self,
+        object: ObjectId,
+        held: PickPhase,
+        otherwise: (PickPhase, PickOutcome),
+    ) -> (PickPhase, PickOutcome) {
+        match self.state.kept() {
+            None => otherwise,
+            Some(_) if self.state.keeps(object) => (held, PickOutcome::Pending),
+            Some(_) => (PickPhase::Done, PickOutcome::Interrupted),
+        }
     }
 
     fn take_on(
@@ -131,8 +163,10 @@ impl ArmNode {
         (phase, outcome): (PickPhase, PickOutcome),
     ) {
         self.acknowledge_interruption();
+        self.state.limb = self.state.kept().filter(|held| held.object == object).map(|it| it.limb);
         self.state.pick = Some(Pick { id, object, task, phase, outcome });
-        (self.state.limb, self.state.misses) = (None, 0);
+        self.state.misses = 0;
+        self.state.waits_for_person = outcome == PickOutcome::Interrupted;
         self.urgent = true;
     }
 

@@ -3,7 +3,7 @@
 
 use manipulation::{Joints, Limb, Robot};
 use messages::pick::Pick;
-use messages::{MotionOrder, PickPhase, Task};
+use messages::{MotionOrder, PickOutcome, PickPhase, Task};
 use scene::ObjectId;
 use serde::{Deserialize, Serialize};
 use service::Time;
@@ -24,15 +24,16 @@ pub struct ArmState {
     pub limb: Option<Limb>,
     /// Missed grasps in the latest pick.
     pub misses: u32,
-    /// Object in the gripper. Only while the pick is `Holding` or `Returning`, or was interrupted then.
+    /// Object in the gripper. Only while the pick is `Holding` or `Returning`, was interrupted then, or
+    /// is kept.
     pub held: Option<Held>,
     /// Objects that a person has taken and not put back, in order.
     pub gone: Vec<ObjectId>,
     /// The objects handed over last as they were held, the latest last: so they are taken again to be
     /// put back.
     pub handed_over: Vec<Held>,
-    /// What a user may still hold where the gripper let go of it, or came for it, until that limb is at
-    /// rest.
+    /// What a user may hold where the gripper lets go of it, from before the fingers begin to open, or
+    /// where it came for it, until that limb is at rest.
     pub offered: Option<Offered>,
     /// True if the motion stop is latched.
     pub stopped: bool,
@@ -158,6 +159,30 @@ impl ArmState {
             self.handed_over.remove(0);
         }
         self.handed_over.push(held);
+    }
+
+    /// Returns whether the gripper has begun to let go of the object that it holds where it hands it
+    /// over: the user may have it already.
+    pub(crate) fn is_letting_go(&self) -> bool {
+        self.held.is_some_and(|held| self.offered.is_some_and(|it| it.object == held.object))
+    }
+
+    /// Returns the object that was called off, with no way back to its place: the gripper keeps hold of
+    /// it until the next order for it.
+    pub(crate) fn kept(&self) -> Option<&Held> {
+        let is_kept = self.pick.is_some_and(|pick| pick.outcome == PickOutcome::Kept);
+        self.held.as_ref().filter(|_| is_kept)
+    }
+
+    /// Returns whether that is this object.
+    pub(crate) fn keeps(&self, object: ObjectId) -> bool {
+        self.kept().is_some_and(|held| held.object == object)
+    }
+
+    /// Returns whether the arm stands until a person has looked, or has said what becomes of what it
+    /// keeps.
+    pub(crate) fn waits(&self) -> bool {
+        self.waits_for_person || self.kept().is_some()
     }
 
     /// Returns the object that is to be put back, while that is in progress.

@@ -4,6 +4,7 @@ mod concede;
 mod correct;
 mod hand_over;
 mod held_back;
+mod kept;
 mod long;
 mod objects;
 mod person;

@@ -18,8 +18,8 @@ pub enum ActKind {
     Say,
     /// Picks an object and says so.
     Pick,
-    /// Calls a pick off: an object that is grasped already goes back to its place, unless the gripper is
-    /// where it hands it over. Calls putting back off, unless the object is already grasped.
+    /// Calls a pick off: an object that is grasped already goes back to its place, unless the gripper has
+    /// begun to let go of it where it hands it over. Calls putting back off, unless the object is already grasped.
     Cancel,
     /// Puts the object that was handed over back in its place and says so.
     PutBack,
@@ -97,6 +97,9 @@ pub enum PickOutcome {
     PutBack,
     /// The object is no longer where it was seen; nothing is held.
     Vanished,
+    /// Called off while it was held, and no way back to its place was found: the gripper keeps hold of it
+    /// until the next order for it.
+    Kept,
 }
 
 /// Outcome of an interaction.
@@ -130,6 +133,7 @@ impl Outcome {
             | PickOutcome::Interrupted
             | PickOutcome::Missed
             | PickOutcome::Vanished
+            | PickOutcome::Kept
             | PickOutcome::Blocked => Some(Self::Failed),
             PickOutcome::Cancelled => Some(Self::Cancelled),
         }

@@ -45,6 +45,9 @@ pub fn text(scene: &Scene, act: &Act) -> String {
         Content::Remark(it) => remarks::text(scene, it, act.kind),
         Content::Correcting | Content::Cancelled => "All right.".to_owned(),
         // Whether the arm can still leave it turns out only when the pick ends.
+        Content::Kept(object) => {
+            format!("I cannot put the {object} back, so I still hold it. Shall I give it to you?")
+        }
         Content::CallingOff => "All right, if it is not too late.".to_owned(),
         Content::Keeping => "It stays with you, unless I already hold it.".to_owned(),
         Content::Forgotten => "I have lost a part of my memory; please ask me again.".to_owned(),
@@ -170,7 +173,8 @@ fn pick_ended(it: &str, outcome: PickOutcome) -> String {
             "My arm did not move as it should. Please look before you ask again.".to_owned()
         }
         PickOutcome::Cancelled => "I have left it where it was.".to_owned(),
-        PickOutcome::Pending | PickOutcome::PutBack => String::new(),
+        // Its own line asks what becomes of it.
+        PickOutcome::Pending | PickOutcome::PutBack | PickOutcome::Kept => String::new(),
     }
 }
 
@@ -188,6 +192,7 @@ fn put_back_ended(it: &str, outcome: PickOutcome) -> String {
         | PickOutcome::Delivered
         | PickOutcome::Interrupted
         | PickOutcome::Vanished
+        | PickOutcome::Kept
         | PickOutcome::Blocked => format!(
             "I was interrupted while putting the {it} back. Please look before you ask again."
         ),

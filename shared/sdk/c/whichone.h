@@ -42,8 +42,9 @@ enum whichone_act_kind {
     WHICHONE_ACT_KIND_SAY = 2,
     /** Picks an object and says so. */
     WHICHONE_ACT_KIND_PICK = 3,
-    /** Calls a pick off: an object that is grasped already goes back to its place, unless the gripper is
-    where it hands it over. Calls putting back off, unless the object is already grasped. */
+    /** Calls a pick off: an object that is grasped already goes back to its place, unless the gripper has
+    begun to let go of it where it hands it over. Calls putting back off, unless the object is already
+    grasped. */
     WHICHONE_ACT_KIND_CANCEL = 4,
     /** Puts the object that was handed over back in its place and says so. */
     WHICHONE_ACT_KIND_PUT_BACK = 5,
@@ -258,6 +259,9 @@ enum whichone_pick_outcome {
     WHICHONE_PICK_OUTCOME_PUT_BACK = 7,
     /** The object is no longer where it was seen; nothing is held. */
     WHICHONE_PICK_OUTCOME_VANISHED = 8,
+    /** Called off while it was held, and no way back to its place was found: the gripper keeps hold of it
+    until the next order for it. */
+    WHICHONE_PICK_OUTCOME_KEPT = 9,
 };
 
 enum whichone_pick_phase {
@@ -998,7 +1002,7 @@ WHICHONE_ASSERT(offsetof(whichone_arm_status_t, task) == 29, "offset of ArmStatu
 WHICHONE_ASSERT(offsetof(whichone_arm_status_t, reserved) == 30, "offset of ArmStatus.reserved");
 WHICHONE_ASSERT(offsetof(whichone_arm_status_t, remaining_s) == 32, "offset of ArmStatus.remaining_s");
 #define WHICHONE_ARM_STATUS_TYPE "ArmStatus"
-#define WHICHONE_ARM_STATUS_SCHEMA "6091b239633739c2"
+#define WHICHONE_ARM_STATUS_SCHEMA "f718994c0b0a6760"
 
 /** Joint states, at 100 Hz while the arm is busy, in the order of `JOINT_STATE_NAMES`. Arm to clients. */
 typedef struct whichone_joint_states {

@@ -209,6 +209,8 @@ describe("words and thoughts", () => {
         "missed",
         "blocked",
         "put_back",
+        "vanished",
+        "kept",
       ]) {
         states.push({ ...idle, phase: "done", outcome, object: "b" });
         states.push({ ...idle, task: "put_back", phase: "done", outcome, object: "b" });

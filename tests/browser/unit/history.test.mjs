@@ -99,7 +99,7 @@ describe("an interaction", () => {
     const types = "silence quiet reconfigured objects stopped released recovered heard".split(" ");
     for (const type of types) has(eventWords({ type }, past));
     const outcomes =
-      "pending delivered unreachable interrupted cancelled missed blocked put_back vanished";
+      "pending delivered unreachable interrupted cancelled missed blocked put_back vanished kept";
     for (const outcome of outcomes.split(" ")) {
       has(eventWords({ type: "pick_ended", outcome }, past));
       has(eventWords(arm("done", outcome, "ended"), past));

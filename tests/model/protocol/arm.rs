@@ -10,8 +10,11 @@ use super::{Broken, Cut, Protocol, Service, Step, Visit, commit};
 impl Protocol {
     pub(super) fn arm(&self, state: &State, visit: Visit<'_>) {
         let Some(arm) = state.arm else { return };
-        if let Some((_, order)) = state.bus.act.filter(|(_, order)| order.object != 0) {
-            self.on_order(state, arm, order, visit);
+        if let Some((_, order, called_off)) = state.bus.act.filter(|(_, it, _)| it.object != 0) {
+            match called_off {
+                false => self.on_order(state, arm, order, visit),
+                true => self.call_off(state, arm, order, visit),
+            }
         }
         let move_now = |next: &mut State| {
             let stop_seen = next.world.stop_seen;
@@ -24,17 +27,40 @@ impl Protocol {
                 let after = Arm { phase: Phase::Holding, ..arm };
                 self.record_arm(state, after, &Step::Held, visit);
             }
-            (Phase::Holding, 0) => {
+            (Phase::LettingGo, 0) => {
                 let after = Arm { phase: Phase::Delivered, ..arm };
                 self.record_arm(state, after, &Step::Done, visit);
             }
-            (Phase::Holding, _) => {
+            (Phase::Holding, 0) if self.is(Broken::OpenBeforeRecord) => {
+                let after = Arm { phase: Phase::Delivered, ..arm };
+                self.record_arm(state, after, &Step::Done, visit);
+            }
+            (Phase::Holding, _) if !self.is(Broken::OpenBeforeRecord) => {
+                let after = Arm { phase: Phase::LettingGo, ..arm };
+                self.record_arm(state, after, &Step::LetGo, visit);
+            }
+            (Phase::Returning, 1..) if !self.is(Broken::HandOverCalledOff) => {
                 let mut next = state.clone();
                 move_now(&mut next);
-                let twice = next.world.delivered & bit(arm.pick) != 0;
-                next.world.must(!twice, "I4: an object is delivered twice");
-                next.world.delivered |= bit(arm.pick);
                 next.world.holding = 0;
+                visit(Step::PutDown, next);
+            }
+            (Phase::Returning, 0) => {
+                let after = Arm { phase: Phase::Cancelled, ..arm };
+                self.record_arm(state, after, &Step::Done, visit);
+            }
+            (Phase::Holding | Phase::LettingGo | Phase::Returning, _) => {
+                let mut next = state.clone();
+                move_now(&mut next);
+                let world = &mut next.world;
+                world
+                    .must(world.delivered & bit(arm.pick) == 0, "I4: an object is delivered twice");
+                world.must(
+                    world.called_off & bit(arm.pick) == 0,
+                    "I5: what was called off is handed over",
+                );
+                world.delivered |= bit(arm.pick);
+                world.holding = 0;
                 visit(Step::Release, next);
             }
             _ => {}
@@ -60,7 +86,8 @@ impl Protocol {
         let id = id(order);
         let judged = judge(latest.as_ref(), id, ObjectId(order.object.into()), Some(Task::Fetch));
         let again = judged == Order::Known && self.is(Broken::RepeatOrder);
-        let is_over = !matches!(arm.phase, Phase::Accepted | Phase::Holding);
+        use Phase::{Accepted, Holding, LettingGo, Returning};
+        let is_over = !matches!(arm.phase, Accepted | Holding | LettingGo | Returning);
         let by_id = judged == Order::Conflict && self.is(Broken::ReuseAndCompareIdOnly);
         if (judged == Order::Accept || again && is_over) && !by_id {
             if self.is(Broken::MoveBeforeRecord) && state.world.holding == 0 {
@@ -73,6 +100,26 @@ impl Protocol {
         }
     }
 
+    /// The order is called off: what is held goes back, unless the gripper opens for the user already.
+    fn call_off(&self, state: &State, arm: Arm, order: Ordered, visit: Visit<'_>) {
+        let object = ObjectId(order.object.into());
+        let phase = match (judge(latest(arm).as_ref(), id(order), object, None), arm.phase) {
+            (Order::Accept, _) => Phase::Cancelled,
+            (Order::Known, Phase::Accepted) if state.world.holding == 0 => Phase::Cancelled,
+            (Order::Known, Phase::Accepted | Phase::Holding) => Phase::Returning,
+            _ => return,
+        };
+        let after = Arm { pick: order, phase, ..arm };
+        let forgets = self.is(Broken::CallOffInMemory);
+        let record = move |next: &mut State| {
+            next.world.called_off |= bit(order);
+            if !forgets {
+                next.arm_journal = after;
+            }
+        };
+        self.commit_arm(state, after, record, &Step::TurnBack, visit);
+    }
+
     pub(super) fn record_arm(
         &self,
         state: &State,
@@ -80,12 +127,22 @@ impl Protocol {
         step: &dyn Fn(Cut) -> Step,
         visit: Visit<'_>,
     ) {
+        self.commit_arm(state, after, |next| next.arm_journal = after, step, visit);
+    }
+
+    fn commit_arm(
+        &self,
+        state: &State,
+        after: Arm,
+        record: impl Fn(&mut State),
+        step: &dyn Fn(Cut) -> Step,
+        visit: Visit<'_>,
+    ) {
         let mut next = state.clone();
         next.arm = Some(after);
-        let record = |next: &mut State| next.arm_journal = after;
         let publish = |next: &mut State| publish_status(next, after);
         for cut in self.cuts(state, false) {
-            visit(step(cut), commit(&next, cut, Service::Arm, record, &[&publish]));
+            visit(step(cut), commit(&next, cut, Service::Arm, &record, &[&publish]));
         }
     }
 }
@@ -104,7 +161,9 @@ fn latest(arm: Arm) -> Option<Pick> {
     let (phase, outcome) = match arm.phase {
         Phase::None => return None,
         Phase::Accepted => (PickPhase::Accepted, PickOutcome::Pending),
-        Phase::Holding => (PickPhase::Holding, PickOutcome::Pending),
+        Phase::Holding | Phase::LettingGo => (PickPhase::Holding, PickOutcome::Pending),
+        Phase::Returning => (PickPhase::Returning, PickOutcome::Pending),
+        Phase::Cancelled => (PickPhase::Done, PickOutcome::Cancelled),
         Phase::Delivered => (PickPhase::Done, PickOutcome::Delivered),
         Phase::Failed => (PickPhase::Done, PickOutcome::Interrupted),
     };

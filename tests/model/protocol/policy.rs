@@ -27,18 +27,28 @@ impl Protocol {
                 true => order.interaction == ordered.interaction,
                 false => order == ordered,
             };
-            let ends = matches!(phase, Phase::Delivered | Phase::Failed);
+            let ends = matches!(phase, Phase::Delivered | Phase::Failed | Phase::Cancelled);
             if policy.open != 0 && policy.pick != 0 && is_it && ends {
                 let object = if phase == Phase::Delivered { policy.pick } else { 0 };
-                let after = Policy { open: 0, pick: 0, ended: (policy.open, object), ..policy };
-                let really = object == 0 || state.world.delivered & bit(ordered) != 0;
+                let ended = (policy.open, object);
+                let after = Policy { open: 0, pick: 0, called_off: false, ended, ..policy };
+                let is_delivered = state.world.delivered & bit(ordered) != 0;
+                let really = object == 0 || is_delivered;
+                let is_left = phase != Phase::Cancelled || !is_delivered;
                 let ghost = move |next: &mut State| {
                     next.world.must(really, "false delivery: the arm did not deliver this object");
+                    next.world.must(is_left, "false end: the user has what was called off");
                 };
                 self.advance(&next, after, ghost, &|cut| Step::PickEnds(policy.open, cut), visit);
             } else {
                 visit(Step::PickEnds(0, Cut::Not), next);
             }
+        }
+        if self.calls_off && !state.world.calls_off && policy.pick != 0 {
+            let mut next = state.clone();
+            next.world.calls_off = true;
+            let after = Policy { called_off: true, ..policy };
+            self.advance(&next, after, |_| {}, &Step::CallOff, visit);
         }
         let mut next = state.clone();
         publish_act(&mut next, policy);
@@ -115,7 +125,7 @@ fn publish_act(next: &mut State, policy: Policy) {
     let asks = policy.open != 0 && policy.pick == 0;
     let prompt = if asks { policy.last_prompt } else { 0 };
     let order = Ordered { interaction: policy.open, object: policy.pick };
-    next.bus.act = Some((prompt, order));
+    next.bus.act = Some((prompt, order, policy.called_off));
 }
 
 fn publish_mark(next: &mut State, policy: Policy) {

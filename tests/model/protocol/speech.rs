@@ -61,7 +61,7 @@ impl Protocol {
             next.speech = Some(Speech { mark: Some(mark), ..speech });
             visit(Step::Marked(mark), next);
         }
-        if let Some((prompt, _)) = state.bus.act
+        if let Some((prompt, ..)) = state.bus.act
             && prompt > journal.presented
             && prompt != speech.playing
         {

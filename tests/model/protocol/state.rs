@@ -27,6 +27,8 @@ pub(super) struct Policy {
     pub(super) open: u8,
     /// Its order; object 0 while it asks.
     pub(super) pick: u8,
+    /// Whether that order is called off.
+    pub(super) called_off: bool,
     /// The latest end: interaction, and the object delivered, 0 where it failed.
     pub(super) ended: (u8, u8),
 }
@@ -47,8 +49,14 @@ pub(super) enum Phase {
     None,
     Accepted,
     Holding,
+    /// The gripper opens where it hands over.
+    LettingGo,
+    /// Called off while it holds: the object goes back.
+    Returning,
     Delivered,
     Failed,
+    /// Called off, and left or put back.
+    Cancelled,
 }
 
 /// Speech's journal.
@@ -77,8 +85,8 @@ pub(super) struct Bus {
     /// Utterances by number, in any order.
     pub(super) utterances: Vec<(u8, Said)>,
     pub(super) mark: Option<u8>,
-    /// Prompt asked, and order.
-    pub(super) act: Option<(u8, Ordered)>,
+    /// Prompt asked, order, and whether it is called off.
+    pub(super) act: Option<(u8, Ordered, bool)>,
     pub(super) status: Option<(Ordered, Phase)>,
     /// What the client sees.
     pub(super) view: Policy,
@@ -112,9 +120,13 @@ pub(super) struct World {
     /// Bits of (interaction, object).
     pub(super) ordered: u32,
     pub(super) delivered: u32,
+    /// Those that the arm knew to be called off before its gripper opened.
+    pub(super) called_off: u32,
     /// Bits of keys.
     pub(super) acknowledged: u32,
     pub(super) applied: u32,
+    /// The user has called something off.
+    pub(super) calls_off: bool,
     pub(super) stop_seen: bool,
     pub(super) stops: u8,
     /// Times at which a stop was said.

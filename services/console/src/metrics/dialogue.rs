@@ -35,7 +35,7 @@ pub struct DialogueMetrics {
 }
 
 /// All outcomes of a pick, so that each is exported from the beginning.
-const PICKS: [PickOutcome; 8] = [
+const PICKS: [PickOutcome; 9] = [
     PickOutcome::Delivered,
     PickOutcome::Unreachable,
     PickOutcome::Interrupted,
@@ -44,6 +44,7 @@ const PICKS: [PickOutcome; 8] = [
     PickOutcome::Blocked,
     PickOutcome::PutBack,
     PickOutcome::Vanished,
+    PickOutcome::Kept,
 ];
 const INTERACTIONS: [Outcome; 7] = [
     Outcome::Delivered,

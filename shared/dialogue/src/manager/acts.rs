@@ -167,6 +167,9 @@ impl Manager {
     /// Answers the user without a decision: before the standing question, in the middle of the
     /// standing pick, or alone.
     pub(super) fn reply(&self, state: &mut State, remark: Remark, at: Time) {
+        if self.ask_about_kept(state, Preface::Remark(remark.clone()), at) {
+            return;
+        }
         match state.act.kind {
             ActKind::Ask if state.open.is_some() => {
                 self.put_again(state, Preface::Remark(remark), at);

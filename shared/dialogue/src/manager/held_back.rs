@@ -1,5 +1,6 @@
-//! Picks that are decided while the motion stop is latched: they are announced as such, and ordered
-//! once the user has confirmed them and the stop is released.
+//! Picks that wait for a word: those decided while the motion stop is latched, which are ordered once the
+//! user has confirmed them and the stop is released, and an object that was called off and that the
+//! gripper has kept (`kept.rs`).
 
 use scene::{ObjectId, Question, Response};
 use serde::{Deserialize, Serialize};
@@ -13,13 +14,15 @@ use crate::ActKind;
 use crate::ids::PromptId;
 use crate::time::Time;
 
-/// A pick that waits for the release of the motion stop.
+/// A pick that waits for the release of the motion stop, or for a word about what the gripper has kept.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HeldBack {
     /// Name of the object.
     pub name: String,
     /// Whether the user has confirmed it.
     pub is_confirmed: bool,
+    /// Whether the gripper has kept it.
+    pub is_kept: bool,
 }
 
 impl State {
@@ -46,12 +49,12 @@ impl Manager {
         let name = self.setup.scene.object(object).name.clone();
         let content = Content::HeldBack(self.description(object));
         let Some(open) = &mut state.open else { return };
-        open.held_back = Some(HeldBack { name, is_confirmed: false });
+        open.held_back = Some(HeldBack { name, is_confirmed: false, is_kept: false });
         self.ask_for(state, object, Line { preface, content }, reasons);
     }
 
     /// Says a line that is answered with yes or no to the object, without aiming at it.
-    fn ask_for(&self, state: &mut State, object: ObjectId, line: Line, reasons: Act) {
+    pub(super) fn ask_for(&self, state: &mut State, object: ObjectId, line: Line, reasons: Act) {
         let prompt = self.new_prompt(state, Question::Point(object));
         set(state, Act { kind: ActKind::Say, prompt, presentation: 1, line, ..reasons });
     }
@@ -69,7 +72,7 @@ impl Manager {
                 && reading.response == Response::Yes
                 && reading.base.iter().all(has)
         });
-        if !yes {
+        if !yes && !self.asks_for_kept(state, heard) {
             return false;
         }
         if let Some(held) = state.open.as_mut().and_then(|open| open.held_back.as_mut()) {
@@ -130,6 +133,9 @@ impl Manager {
         preface: Preface,
         at: Time,
     ) {
+        if self.ask_about_kept(state, preface.clone(), at) {
+            return;
+        }
         let content = match state.motion_stop.is_latched() {
             true => Content::HeldBack(self.description(object)),
             false => Content::AskToRelease(self.description(object)),
@@ -142,6 +148,10 @@ impl Manager {
     fn release(&mut self, state: &mut State, object: ObjectId, at: Time) {
         let utterance = state.applied;
         let reasons = Act { utterance, decided: at, ..Act::default() };
+        let is_kept = state.kept().is_some();
         self.pick(state, object, Preface::None, reasons);
+        if is_kept {
+            state.act.line = Content::Remark(Remark::AllRight).into();
+        }
     }
 }

@@ -6,7 +6,7 @@ use super::Manager;
 use super::acts::{call_off, repeat, say};
 use super::attribution::{content, share_of};
 use super::concede::Conceded;
-use super::line::{Content, Remark};
+use super::line::{Content, Preface, Remark};
 use super::put_back::{Progress, PuttingBack};
 use super::replies::likeliest;
 use super::state::{State, StopOrder, Utterance};
@@ -93,6 +93,10 @@ impl Manager {
         state.queue.clear();
         // Another object may have been wanted instead of the one being left: no longer.
         open.corrected = false;
+        if self.ask_about_kept(state, Preface::Remark(Remark::AllRight), at) {
+            return;
+        }
+        let Some(open) = &state.open else { return };
         if open.pick.is_none() {
             self.close(state, Outcome::Cancelled, at, Content::Cancelled);
         } else if state.act.kind == ActKind::Pick {
@@ -125,7 +129,8 @@ impl Manager {
                 open.forgotten = 0;
                 open.conceded = Conceded::default();
                 open.posterior = beginning;
-                (open.deferred, open.held_back) = (None, None);
+                open.deferred = None;
+                open.held_back.take_if(|it| !it.is_kept);
                 state.queue.clear();
             }
         }
@@ -134,7 +139,9 @@ impl Manager {
             let remark = self.about_putting_back(state);
             return self.reply(state, remark, at);
         }
-        self.ask_wanted(state, at);
+        if !self.ask_about_kept(state, Preface::Remark(Remark::AllRight), at) {
+            self.ask_wanted(state, at);
+        }
     }
 }
 

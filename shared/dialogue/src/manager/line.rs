@@ -187,4 +187,6 @@ pub enum Content {
     SceneReplaced,
     /// Putting back is called off at the user's request.
     Keeping,
+    /// The object of that description was called off and cannot go back: asks whether to hand it over.
+    Kept(String),
 }

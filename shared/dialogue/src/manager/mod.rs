@@ -16,6 +16,7 @@
 //! | `beliefs.rs`, `pointing.rs` | prior, updates, the user model, gestures |
 //! | `acts.rs` | decisions as standing acts |
 //! | `put_back.rs` | putting back what was handed over |
+//! | `kept.rs` | what was called off and cannot go back |
 //! | `floor.rs` | deferred decisions and response windows |
 //! | `reconfigure.rs`, `evidence.rs` | an interaction under another scene or other settings |
 //! | `objects.rs` | objects from perception |
@@ -33,6 +34,7 @@ mod held_back;
 mod history;
 mod inform;
 mod intents;
+mod kept;
 mod line;
 mod objects;
 mod pointing;
@@ -212,6 +214,9 @@ impl Manager {
 
     /// Decides on the present belief.
     fn decide(&mut self, state: &mut State, basis: Basis, at: Time) {
+        if self.ask_about_kept(state, basis.preface.clone(), at) {
+            return;
+        }
         let Some(decision) = self.plan(state) else { return };
         let standing = Action::Ask(state.act.question);
         let others = decision.alternatives.iter().map(|(action, _)| *action);
@@ -330,6 +335,9 @@ impl Manager {
         let ordered = state.open.as_ref().and_then(|open| open.pick);
         let Some((_, object)) = ordered.filter(|(id, _)| *id == pick) else { return };
         let Some(ends_as) = Outcome::of_pick(outcome) else { return };
+        if outcome == PickOutcome::Kept {
+            return self.keep_hold(state, object, at);
+        }
         if outcome == PickOutcome::Cancelled {
             // The order still stands: the arm gave it up before a grasp, because it was restarted
             // with another scene.

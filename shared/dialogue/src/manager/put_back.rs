@@ -101,7 +101,8 @@ impl Manager {
             all += it.weight;
             asks += if it.reading.intent == Intent::PutBack { it.weight } else { 0.0 };
         }
-        (state.with_user.is_some() || state.putting_back.is_some()) && asks > PLAIN * all
+        let can_go_back = state.with_user.is_some() || state.putting_back.is_some();
+        (can_go_back || state.kept().is_some()) && asks > PLAIN * all
     }
 
     /// Processes the wish to have the object put back that was handed over.
@@ -114,6 +115,9 @@ impl Manager {
                     self.reply(state, remark, at);
                 }
             };
+        }
+        if let Some(object) = self.kept(state).filter(|object| self.is_meant(utterance, *object)) {
+            return self.leave_kept(state, object, at);
         }
         let is_fetching = state.open.as_ref().is_some_and(|open| open.pick.is_some());
         let Some(with_user) = state.with_user.clone() else {

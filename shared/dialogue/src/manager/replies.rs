@@ -58,6 +58,7 @@ impl Manager {
             (ActKind::Cancel, Some((_, object))) => Remark::Leaving(self.description(object)),
             (_, Some((_, object))) => Remark::Fetching(self.description(object)),
             (ActKind::Ask, None) => Remark::AllRight,
+            (_, None) if state.kept().is_some() => Remark::AllRight,
             (_, None) if state.handed_over.is_some() => Remark::AllRight,
             _ => Remark::Idle,
         }

@@ -26,6 +26,7 @@ wire_codes!(PickOutcome {
     Blocked = 6,
     PutBack = 7,
     Vanished = 8,
+    Kept = 9,
 });
 wire_codes!(Task { Fetch = 0, PutBack = 1, });
 

@@ -16,7 +16,7 @@ int main(int count, char **words) {
     }
     double seconds = count == 3 ? atof(words[2]) : 60.0;
     static const char *const outcomes[] = {"pending", "delivered", "unreachable", "interrupted", "cancelled",
-                                           "missed",  "blocked",   "put back",    "vanished"};
+                                           "missed",  "blocked",   "put back",    "vanished",    "kept"};
     whichone_group_t *group = whichone_join_as_client(NULL);
     whichone_reader_t *acts = group ? whichone_open_reader(group, &whichone_policy_act) : NULL;
     whichone_reader_t *arm = acts ? whichone_open_reader(group, &whichone_arm_status) : NULL;

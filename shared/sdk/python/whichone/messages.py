@@ -42,8 +42,9 @@ class ActKind(IntEnum):
     PICK = 3
     """Picks an object and says so."""
     CANCEL = 4
-    """Calls a pick off: an object that is grasped already goes back to its place, unless the gripper is where
-    it hands it over. Calls putting back off, unless the object is already grasped."""
+    """Calls a pick off: an object that is grasped already goes back to its place, unless the gripper has
+    begun to let go of it where it hands it over. Calls putting back off, unless the object is already
+    grasped."""
     PUT_BACK = 5
     """Puts the object that was handed over back in its place and says so."""
 
@@ -267,6 +268,9 @@ class PickOutcome(IntEnum):
     """The object is back in its place."""
     VANISHED = 8
     """The object is no longer where it was seen; nothing is held."""
+    KEPT = 9
+    """Called off while it was held, and no way back to its place was found: the gripper keeps hold of it
+    until the next order for it."""
 
 
 class PickPhase(IntEnum):
@@ -1007,7 +1011,7 @@ class ArmStatus(Message):
 
     wire_name = "ArmStatus"
     wire_size = 40
-    schema_key = "6091b239633739c2"
+    schema_key = "f718994c0b0a6760"
     interaction: int
     """`InteractionId` of the latest pick."""
     aimed_act: int

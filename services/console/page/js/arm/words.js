@@ -11,6 +11,7 @@ const OUTCOMES = [
   "blocked",
   "put_back",
   "vanished",
+  "kept",
 ];
 /** Ends of an order that read otherwise where the object was to be put back. */
 const OUTCOMES_OF_PUT_BACK = ["unreachable", "cancelled", "missed"];

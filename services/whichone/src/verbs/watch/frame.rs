@@ -226,6 +226,7 @@ pub(super) fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
             PickOutcome::Cancelled => format!("has left {object} where it was"),
             PickOutcome::Missed => format!("could not get hold of {object}"),
             PickOutcome::Vanished => format!("found {object} gone"),
+            PickOutcome::Kept => format!("holds {object} and has no way back to its place"),
             PickOutcome::Blocked => format!("was kept from moving to {object}"),
             PickOutcome::Pending => "is done".to_owned(),
         },
