@@ -1,6 +1,7 @@
 // The motion stop.
 
 import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
+import { expectStopped, resume, resumeButton } from "../lib/resume.mjs";
 import { t } from "../lib/strings.mjs";
 import { answerUntilPicked, expectDelivered, stopByKey, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
@@ -14,7 +15,7 @@ test.describe("while the arm moves", () => {
   // A pick that lasts long enough to be stopped by a person.
   test.use({ settings: ["arm.time_scale=1"] });
 
-  test("one press stops it, two resume it, and the bowl still comes", async ({
+  test("one press stops it, a held Resume lets it go on, and the bowl still comes", async ({
     console: page,
     group,
   }) => {
@@ -26,20 +27,13 @@ test.describe("while the arm moves", () => {
     await expect(page.getByRole("alert").filter({ hasText: t("alarm.stopped") })).toBeAttached();
     await expect.poll(async () => (await group.state()).arm.moving).toBe(false);
 
-    // Presses that follow at once are not meant for what the button has become, and do nothing.
-    const resume = page.getByRole("button", { name: t("stop.resume") });
-    const confirm = page.getByRole("button", { name: t("stop.confirm") });
-    await expect(async () => {
-      await resume.click({ timeout: 2_000 });
-      await expect(confirm).toBeVisible({ timeout: 2_000 });
-    }).toPass();
-    expect(await stopped(group), "one press does not move the arm").toBe(true);
-    await expect(async () => {
-      for (const button of [resume, confirm]) {
-        if (await button.isVisible()) await button.click({ timeout: 2_000 });
-      }
-      await expect.poll(() => stopped(group), { timeout: 4_000 }).toBe(false);
-    }).toPass();
+    const button = resumeButton(page);
+    await expect(button).toHaveAccessibleDescription(t("resume.hold"));
+    await button.click();
+    await stop(page).click();
+    expect(await stopped(group), "a short press does not move the arm").toBe(true);
+    await resume(page, group);
+    await expect(button).toBeHidden();
     await expectDelivered(page, group, "clear");
   });
 });
@@ -91,5 +85,5 @@ test("without the arm's service it warns, with the reason, until the arm confirm
   if (!(await release.isVisible())) await page.locator(".health summary").click();
   await release.click();
   await expect(alarm).toBeHidden();
-  await expect(page.getByRole("button", { name: t("stop.resume") })).toBeVisible();
+  await expectStopped(page);
 });
