@@ -10,7 +10,7 @@ test.use({ ...WITHOUT_PICTURE, hasTouch: true });
 /** Time between two presses, milliseconds: 60 from 50 ms to 2 s. */
 const RHYTHMS = Array.from({ length: 60 }, (_, n) => Math.round(50 + (n * 1_950) / 59));
 const PRESSES = 5;
-/** The arm may move again before each so-manieth rhythm, so that Resume comes while a finger hammers. */
+/** Rhythms from one release of the arm to the next: Resume then appears while a finger hammers. */
 const RELEASE_EVERY = 10;
 
 /** Ways to press: each returns what presses and what lets go. */

@@ -19,6 +19,7 @@ import { mountPart } from "./views/part.js";
 import { mountQuestion } from "./views/question.js";
 import { mountResume } from "./views/resume.js";
 import { mountSay } from "./views/say.js";
+import { mountStale } from "./views/stale.js";
 import { mountStrip } from "./views/strip.js";
 import { mountTabs } from "./views/tabs.js";
 import { mountTools, toolButton } from "./views/tools.js";
@@ -51,6 +52,7 @@ await loadStrings(chooseLanguage(location.search, keptLanguage(), wished));
 translate(document);
 
 const context = { link, store, t, session, stop, hold: new Hold() };
+mountStale(context);
 mountActions(at("actions"), context);
 mountResume(at("resume"), context);
 mountAlarm(at("alarm"), at("polite"), context);

@@ -13,6 +13,7 @@ import { mountAlarm } from "../views/alarm.js";
 import { attempt } from "../views/attempt.js";
 import { mountPart } from "../views/part.js";
 import { mountSay } from "../views/say.js";
+import { mountStale } from "../views/stale.js";
 import { mountTools } from "../views/tools.js";
 import { mountTurn } from "../views/turn.js";
 import { desired } from "./desired.js";
@@ -43,6 +44,7 @@ await loadStrings(chooseLanguage(location.search, keptLanguage(), navigator.lang
 translate(document);
 
 const context = { link, store, t, stop };
+mountStale(context);
 mountActions(at("actions"), context);
 mountAlarm(at("alarm"), at("polite"), { ...context, isParticipant: true });
 mountTurn(at("turn"), context);

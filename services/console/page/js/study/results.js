@@ -12,6 +12,7 @@ import { mountActions } from "../views/actions.js";
 import { mountAlarm } from "../views/alarm.js";
 import { attempt } from "../views/attempt.js";
 import { mountResume } from "../views/resume.js";
+import { mountStale } from "../views/stale.js";
 import { mountTools } from "../views/tools.js";
 import { inControl } from "./control.js";
 import { picturesOf } from "./numbers.js";
@@ -40,6 +41,7 @@ await loadStrings(chooseLanguage(location.search, keptLanguage(), navigator.lang
 translate(document);
 
 const context = { link, store, t, stop, hold: new Hold() };
+mountStale(context);
 const secret = new Secret(null);
 mountActions(at("actions"), context);
 mountResume(at("resume"), context);
