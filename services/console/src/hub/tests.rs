@@ -65,12 +65,15 @@ fn participant_of_a_study_stops_the_arm_and_cannot_release_it() {
     // The experimenter's page, which has no control.
     let (experimenter, _more) = hub.join("", "b", Role::Viewer, Time(1)).unwrap();
     hub.motion(experimenter, 5, false).unwrap();
+    hub.leave(experimenter, Time(1));
     let (screen, _most) = hub.join("", "c", Role::Screen, Time(1)).unwrap();
     assert!(hub.motion(screen, 6, false).is_err());
     // The console's own page on the participant's device.
     let (other, _again) = hub.join("", "a", Role::Operator, Time(2)).unwrap();
     hub.motion(other, 7, false).unwrap();
-    assert!(hub.motion(experimenter, 8, false).is_err());
+    hub.leave(screen, Time(2));
+    let (viewer, _frames) = hub.join("", "b", Role::Viewer, Time(2)).unwrap();
+    assert!(hub.motion(viewer, 8, false).is_err());
 }
 
 #[test]
