@@ -76,7 +76,7 @@ async function dialogue() {
   await take(page, "console-fetches");
   await page.emulateMedia({ colorScheme: "light" });
   await page.keyboard.press("Escape");
-  await page.getByRole("button", { name: t("stop.resume") }).waitFor();
+  await page.getByRole("button", { name: t("resume.words"), exact: true }).waitFor();
   await drawnFinely(page);
   await take(page, "console-stopped");
   await group.must("resume-motion");

@@ -1,6 +1,7 @@
 // Talking to the robot through the page, as a person does.
 
 import { answer } from "./person.mjs";
+import { expectStopped } from "./resume.mjs";
 import { t } from "./strings.mjs";
 import { expect } from "./test.mjs";
 import { until } from "./until.mjs";
@@ -80,7 +81,7 @@ const delivered = new RegExp(`${t("delivery.kicker")}|${t("last.delivered.other"
 export const offer = (page, name) => question(page).getByRole("button", { name, exact: true });
 
 /**
- * Presses Escape twice, and again as a person would, until the stop button has become another: a page that
+ * Presses Escape twice, and again as a person would, until STOP shows that the arm is stopped: a page that
  * is just being drawn on a slow machine takes the presses for two single ones.
  * @param {import("@playwright/test").Page} page
  */
@@ -88,8 +89,6 @@ export async function stopByKey(page) {
   await expect(async () => {
     await page.keyboard.press("Escape");
     await page.keyboard.press("Escape");
-    await expect(page.getByRole("button", { name: t("stop.resume") })).toBeVisible({
-      timeout: 2_000,
-    });
+    await expectStopped(page, { timeout: 2_000 });
   }).toPass();
 }

@@ -97,7 +97,7 @@ test.describe("on a phone", () => {
     await stop.click();
     await until("the stop", async () => (await group.state()).arm?.stopped);
     await expect(sheet).toBeVisible();
-    await expect(stop).toHaveAttribute("data-mode", "resume");
+    await expect(stop).toHaveAttribute("data-state", "stopped");
     await expectAccessible(page);
     await sheet.getByRole("button", { name: t("history.close") }).click();
     await expect(sheet).toBeHidden();

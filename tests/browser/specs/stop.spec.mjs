@@ -1,6 +1,7 @@
 // The motion stop.
 
 import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
+import { expectStopped, resume, resumeButton } from "../lib/resume.mjs";
 import { t } from "../lib/strings.mjs";
 import { answerUntilPicked, expectDelivered, stopByKey, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
@@ -14,7 +15,7 @@ test.describe("while the arm moves", () => {
   // A pick that lasts long enough to be stopped by a person.
   test.use({ settings: ["arm.time_scale=1"] });
 
-  test("one press stops it, two resume it, and the bowl still comes", async ({
+  test("one press stops it, a held Resume lets it go on, and the bowl still comes", async ({
     console: page,
     group,
   }) => {
@@ -26,20 +27,13 @@ test.describe("while the arm moves", () => {
     await expect(page.getByRole("alert").filter({ hasText: t("alarm.stopped") })).toBeAttached();
     await expect.poll(async () => (await group.state()).arm.moving).toBe(false);
 
-    // Presses that follow at once are not meant for what the button has become, and do nothing.
-    const resume = page.getByRole("button", { name: t("stop.resume") });
-    const confirm = page.getByRole("button", { name: t("stop.confirm") });
-    await expect(async () => {
-      await resume.click({ timeout: 2_000 });
-      await expect(confirm).toBeVisible({ timeout: 2_000 });
-    }).toPass();
-    expect(await stopped(group), "one press does not move the arm").toBe(true);
-    await expect(async () => {
-      for (const button of [resume, confirm]) {
-        if (await button.isVisible()) await button.click({ timeout: 2_000 });
-      }
-      await expect.poll(() => stopped(group), { timeout: 4_000 }).toBe(false);
-    }).toPass();
+    const button = resumeButton(page);
+    await expect(button).toHaveAccessibleDescription(t("resume.hold"));
+    await button.click();
+    await stop(page).click();
+    expect(await stopped(group), "a short press does not move the arm").toBe(true);
+    await resume(page, group);
+    await expect(button).toBeHidden();
     await expectDelivered(page, group, "clear");
   });
 });
@@ -91,5 +85,78 @@ test("without the arm's service it warns, with the reason, until the arm confirm
   if (!(await release.isVisible())) await page.locator(".health summary").click();
   await release.click();
   await expect(alarm).toBeHidden();
-  await expect(page.getByRole("button", { name: t("stop.resume") })).toBeVisible();
+  await expectStopped(page);
+});
+
+test.describe("without a connection", () => {
+  test.use({ provoked: ["WebSocket connection", "ERR_CONNECTION_REFUSED"] });
+
+  test("nothing looks healthy, and a stop is kept, sent first, and shown with its age", async ({
+    page,
+    group,
+    watched,
+  }) => {
+    void watched;
+    const sockets = [];
+    page.on("websocket", (socket) => {
+      const sent = [];
+      sockets.push(sent);
+      socket.on("framesent", ({ payload }) => {
+        if (typeof payload === "string") sent.push(JSON.parse(payload));
+      });
+    });
+    await page.goto(group.link());
+    await expect(page.getByText(t("control.mine"))).toBeAttached();
+    await group.must("hold", "console");
+    await expect(page.locator(":root[data-stale]")).toBeAttached();
+    await expect(page.getByText(t("health.unknown"))).toBeAttached();
+    await expect(page.getByText(t("control.offline"))).toBeAttached();
+    await expect(page.locator("[data-state=good]")).toHaveCount(0);
+    await expect(page.getByText(t("control.mine"))).toHaveCount(0);
+
+    const before = sockets.length;
+    await stop(page).click();
+    await expect(page.locator("#stop")).toHaveAttribute("data-state", "unsent");
+    await expect(page.getByRole("alert").filter({ hasText: t("alarm.undelivered") })).toBeVisible();
+    await page.waitForTimeout(2_500);
+    await group.must("release", "console");
+    const [first, last] = t("stop.late", { s: "#" }).split("#");
+    await expect(page.getByText(new RegExp(`${first}[0-9]+${last}`))).toBeVisible();
+    expect(await stopped(group)).toBe(true);
+    await expectStopped(page);
+    await expect(page.locator(":root[data-stale]")).toHaveCount(0);
+    const greeted = sockets.slice(before).filter((sent) => sent.length > 0);
+    expect(greeted.at(-1).slice(0, 2)).toMatchObject([{ t: "hello" }, { t: "do", do: "stop" }]);
+  });
+
+  test("a console that is killed before the arm confirms gets the stop again", async ({
+    console: page,
+    group,
+  }) => {
+    await expect(page.getByText(t("control.mine"))).toBeAttached();
+    await group.must("hold", "arm");
+    await stop(page).click();
+    const why = t("alarm.unconfirmed", { why: t("alarm.why.held") });
+    await expect(page.getByRole("alert").filter({ hasText: why })).toBeVisible();
+    await group.killAndWait("console");
+    await group.must("release", "arm");
+    await expectStopped(page);
+    expect(await stopped(group)).toBe(true);
+  });
+});
+
+test("it is in every sheet, and no sheet covers it", async ({ console: page, group }) => {
+  await expect(page.getByText(t("control.mine"))).toBeAttached();
+  for (const key of ["settings.open", "help.open", "scene.show", "history.show"]) {
+    await page.getByRole("button", { name: t(key), exact: true }).click();
+    const inSheet = page.locator("dialog[open] #stop");
+    await expect(inSheet).toBeInViewport({ ratio: 1 });
+    await inSheet.click({ trial: true });
+    if (key === "help.open") {
+      await inSheet.click();
+      await expect.poll(() => stopped(group)).toBe(true);
+    }
+    await page.locator("dialog[open] .help-head button").last().click();
+    await expect(page.locator("#actions #stop")).toBeInViewport({ ratio: 1 });
+  }
 });

@@ -2,6 +2,7 @@
 
 import { expectAccessible } from "../lib/axe.mjs";
 import { finish, press, rate, request, screen } from "../lib/participant.mjs";
+import { resume, resumeButton } from "../lib/resume.mjs";
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";
 
@@ -56,6 +57,37 @@ test("three interactions, a reload, the questionnaire and the export", async ({
   const report = await group.json("study", "report");
   expect(report.all).toMatchObject({ interactions: 3, success: 1 });
   expect(report.questionnaire[3].mean.mean).toBe(4);
+});
+
+test("a stopped robot: the participant calls the experimenter, who resumes", async ({
+  page,
+  group,
+  context,
+  watched,
+}) => {
+  void watched;
+  await page.goto(group.link("/study"));
+  await press(page, "study.begin");
+  await screen(page, "consent");
+  await page.getByRole("checkbox", { name: t("study.agree") }).focus();
+  await page.keyboard.press("Space");
+  await press(page, "study.continue");
+  await screen(page, "instructions");
+  await press(page, "study.continue");
+  await screen(page, "drawn");
+  await page.locator("#stop").click();
+  await expect(page.getByText(t("study.waits.stopped")).first()).toBeVisible();
+  await expect(page.getByRole("alert").filter({ hasText: t("alarm.participant") })).toBeVisible();
+  await expect(page.locator("#start")).toBeDisabled();
+  await expect(resumeButton(page)).toHaveCount(0);
+  await expectAccessible(page);
+
+  const results = await context.newPage();
+  await results.goto(group.link("/results"));
+  await expect(results.locator("#stop")).toBeVisible();
+  await expectAccessible(results);
+  await resume(results, group);
+  await expect(page.locator("#start")).toBeEnabled();
 });
 
 /** The rows of a table without quotes, by column. */

@@ -18,7 +18,12 @@ import {
   ranked,
   toCome,
 } from "../../../services/console/page/js/model/reasons.js";
-import { banner, whoControls } from "../../../services/console/page/js/model/turn.js";
+import {
+  banner,
+  isStopped,
+  mayResume,
+  whoControls,
+} from "../../../services/console/page/js/model/turn.js";
 import { escapeStops, stopper } from "../../../services/console/page/js/stop.js";
 import { Store } from "../../../services/console/page/js/store.js";
 
@@ -234,6 +239,7 @@ describe("the sign of the turn", () => {
     for (const state of ["idle", "listening", "hearing", "asked", "understanding", "speaking"]) {
       assert.equal(banner(up, { state }, {}).key, state);
       assert.equal(banner(up, { state }, { stopped: true }).key, "stopped");
+      assert.equal(banner(up, { state }, { stopped: true, moving: true }).key, "stopping");
     }
     assert.equal(banner(up, { state: "down" }, { stopped: true }).key, "down");
     assert.equal(banner(up, { state: "unheard of" }, {}).key, "idle");
@@ -340,14 +346,19 @@ describe("stop", () => {
           link.sent.push({ verb, ok: resolve, fail: (code) => reject(error(code)) });
         });
       },
+      go: () => {
+        link.isUp = false;
+        heard.status({ state: "down" });
+      },
       come: () => {
         link.isUp = true;
         heard.status({ state: "up" });
       },
     };
     const store = new Store();
-    const press = stopper({ link, store });
-    return { link, press, store, state: () => store.get("stop").state };
+    const clock = { now: 0 };
+    const press = stopper({ link, store, now: () => clock.now });
+    return { clock, link, press, store, state: () => store.get("stop").state };
   }
 
   it("is sent in the same moment, and quiet when it is confirmed", async () => {
@@ -399,6 +410,65 @@ describe("stop", () => {
     await again;
   });
 
+  it("sends it again to a server that was restarted before the arm confirmed", async () => {
+    const { link, press, store, state } = play(true);
+    const pressed = press();
+    store.set("motion", { unconfirmed: { why: "moving" } });
+    link.sent[0].fail("refused");
+    await pressed;
+    link.go();
+    assert.equal(state(), "undelivered");
+    link.come();
+    assert.deepEqual([state(), link.sent.length], ["sent", 2]);
+    link.sent[1].ok({});
+    await new Promise(setImmediate);
+    assert.equal(state(), "idle");
+    link.go();
+    link.come();
+    assert.equal(link.sent.length, 2, "a confirmed stop is not repeated");
+  });
+
+  it("takes the connection's loss for no confirmation, whatever the server said before", async () => {
+    const { link, press, store, state } = play(true);
+    store.set("motion", { unconfirmed: { why: "held" } });
+    const pressed = press();
+    link.go();
+    link.sent[0].fail("lost");
+    await pressed;
+    assert.equal(state(), "undelivered");
+    link.come();
+    assert.equal(link.sent.length, 2);
+  });
+
+  it("is over once the server reports that it is confirmed", async () => {
+    const { link, press, store } = play(true);
+    const pressed = press();
+    store.set("motion", { unconfirmed: { why: "held" } });
+    link.sent[0].fail("refused");
+    await pressed;
+    store.set("motion", { unconfirmed: null });
+    link.go();
+    link.come();
+    assert.equal(link.sent.length, 1);
+  });
+
+  it("shows its age where it is delivered late", async () => {
+    const { clock, link, press, store } = play(false);
+    await press();
+    clock.now = 20_000;
+    await press();
+    clock.now = 40_000;
+    link.come();
+    link.sent[0].ok({});
+    await new Promise(setImmediate);
+    assert.deepEqual(store.get("stop"), { state: "idle", ageMs: 40_000 });
+    press();
+    clock.now = 40_100;
+    link.sent[1].ok({});
+    await new Promise(setImmediate);
+    assert.deepEqual(store.get("stop"), { state: "idle" });
+  });
+
   it("repeats a stop that the server could not take, and warns", async (test) => {
     test.mock.timers.enable({ apis: ["setTimeout"] });
     const { link, press, state } = play(true);
@@ -418,5 +488,31 @@ describe("stop", () => {
     assert.equal(escapeStops(600, 1_000, false), true);
     assert.equal(escapeStops(0, 1_000, false), false);
     assert.equal(escapeStops(null, 1_000, true), true);
+  });
+});
+
+describe("an arm that is stopped", () => {
+  it("is at rest", () => {
+    assert.equal(isStopped({ stopped: true, moving: false }), true);
+    for (const arm of [null, undefined, {}, { stopped: true, moving: true }, { moving: true }]) {
+      assert.equal(isStopped(arm), false);
+    }
+  });
+
+  it("is released by the operator, and in a study by every page but the participant's", () => {
+    const welcome = { viewer: "v1" };
+    assert.equal(mayResume({ operator: "v1" }, welcome), true);
+    assert.equal(mayResume({ operator: "v2" }, welcome), false);
+    assert.equal(mayResume({ operator: null }, welcome), false);
+    assert.equal(mayResume({ operator: "v1", participant: true }, welcome), false);
+    assert.equal(mayResume({ operator: "v2", participant: true }, welcome), true);
+    assert.equal(mayResume(undefined, undefined), false);
+  });
+});
+
+describe("services without a connection", () => {
+  it("are unknown, whatever they were", () => {
+    const services = [{ name: "arm", state: "ready", restarts: 0 }];
+    assert.deepEqual([health(services).tone, health(services, true).tone], ["good", "unknown"]);
   });
 });

@@ -5,6 +5,8 @@ import { linked } from "./history/address.js";
 import { keptLanguage, tabStorage } from "./kept.js";
 import { sessionId } from "./link/session.js";
 import { connect } from "./link.js";
+import { Hold } from "./model/hold.js";
+import { stopper } from "./stop.js";
 import { keep, Store } from "./store.js";
 import { chooseLanguage, loadStrings, t, translate } from "./strings.js";
 import { mountActions } from "./views/actions.js";
@@ -15,7 +17,9 @@ import { mountControl } from "./views/control.js";
 import { mountHealth } from "./views/health.js";
 import { mountPart } from "./views/part.js";
 import { mountQuestion } from "./views/question.js";
+import { mountResume } from "./views/resume.js";
 import { mountSay } from "./views/say.js";
+import { mountStale } from "./views/stale.js";
 import { mountStrip } from "./views/strip.js";
 import { mountTabs } from "./views/tabs.js";
 import { mountTools, toolButton } from "./views/tools.js";
@@ -38,6 +42,8 @@ const link = connect({
   role,
   lastLine: () => store.resumeAfter,
 });
+// Before everything else, so that a stop that waits is sent first.
+const stop = stopper({ link, store });
 keep(store, link);
 keepDelivery({ link, store });
 
@@ -45,8 +51,10 @@ const wished = [await setLanguage(), ...navigator.languages];
 await loadStrings(chooseLanguage(location.search, keptLanguage(), wished));
 translate(document);
 
-const context = { link, store, t, session };
+const context = { link, store, t, session, stop, hold: new Hold() };
+mountStale(context);
 mountActions(at("actions"), context);
+mountResume(at("resume"), context);
 mountAlarm(at("alarm"), at("polite"), context);
 mountTurn(at("turn"), context);
 mountQuestion(at("question"), context);

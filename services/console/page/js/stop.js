@@ -3,16 +3,29 @@
 const CONFIRM_MS = 1_500;
 /** Delay before a stop that was refused is sent again, milliseconds. */
 const AGAIN_MS = 500;
+/** Age from which a stop that is confirmed is a late one, milliseconds. */
+const LATE_MS = 2_000;
 
 /**
- * Stops the robot's motion. Without a connection or an answer the page says so, and sends the stop again
- * until there is one. From the server's section `motion` on, the server does so, for every page. The
- * state is the store's section `stop`: `idle`, `sent`, or `undelivered` until a confirmation comes.
- * @param {{link: any, store: any}} context
- * @returns {() => void} presses stop
+ * @typedef {object} StopSection the store's section `stop`
+ * @property {"idle"|"sent"|"undelivered"} state `undelivered` until a confirmation comes
+ * @property {number} [ageMs] of a late stop that has just been confirmed
  */
-export function stopper({ link, store }) {
-  let wanted = false;
+
+/**
+ * Stops the robot's motion. The stop is sent again until the arm confirms it, also to a server that was
+ * restarted meanwhile. While the server says in its section `motion` that a stop is unconfirmed, it
+ * repeats it itself, for every page.
+ *
+ * Its listener has to be the first of the link, so that a stop that waits is sent before everything else.
+ * @param {{link: any, store: any, now?: () => number}} context
+ * @returns {() => Promise<void>} presses stop
+ */
+export function stopper({ link, store, now = () => performance.now() }) {
+  /** When the stop was pressed that is not confirmed. @type {number|null} */
+  let pressedAt = null;
+  /** True if the server has the stop and repeats it. */
+  let isHandedOver = false;
   /** True if a stop was sent and not confirmed in time: the warning stays until it is. */
   let late = false;
   let again = 0;
@@ -20,8 +33,12 @@ export function stopper({ link, store }) {
     if (store.get("stop")?.state !== state) store.set("stop", { state });
   };
   const done = () => {
-    wanted = false;
-    notify("idle");
+    if (pressedAt === null) return;
+    const ageMs = now() - pressedAt;
+    [pressedAt, isHandedOver, late] = [null, false, false];
+    clearTimeout(again);
+    if (ageMs < LATE_MS) notify("idle");
+    else store.set("stop", { state: "idle", ageMs });
   };
   const send = async () => {
     clearTimeout(again);
@@ -29,21 +46,36 @@ export function stopper({ link, store }) {
       await link.do("stop", {}, CONFIRM_MS);
       done();
     } catch (error) {
-      if (!wanted || store.get("motion")?.unconfirmed) return done();
+      if (pressedAt === null) return;
+      if (error.code === "refused" && store.get("motion")?.unconfirmed) {
+        isHandedOver = true;
+        return notify("idle");
+      }
       late ||= error.code === "late" || error.code === "refused";
       notify("undelivered");
       if (error.code === "late") link.reconnect();
-      if (error.code === "refused") again = setTimeout(() => wanted && send(), AGAIN_MS);
+      if (error.code === "refused")
+        again = setTimeout(() => pressedAt !== null && send(), AGAIN_MS);
     }
   };
   store.set("stop", { state: "idle" });
   link.on("status", ({ state }) => {
-    if (!wanted || state !== "up" || store.get("stop")?.state !== "undelivered") return;
-    if (!late) notify("sent");
-    send();
+    if (pressedAt === null) return;
+    if (state !== "up") {
+      // A server that is restarted no longer knows the stop.
+      isHandedOver = false;
+      notify("undelivered");
+    } else if (store.get("stop")?.state === "undelivered") {
+      if (!late) notify("sent");
+      send();
+    }
+  });
+  store.subscribe("motion", (motion) => {
+    if (isHandedOver && !motion.unconfirmed) done();
   });
   return () => {
-    [wanted, late] = [true, false];
+    pressedAt ??= now();
+    [isHandedOver, late] = [false, false];
     const sent = send();
     if (link.isUp) notify("sent");
     return sent;

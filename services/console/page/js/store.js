@@ -6,7 +6,7 @@ const OVERLAP = 10;
 
 /**
  * State of the page. Sections are those of the server's `state`, and the page's own: `lines`
- * (transcript, oldest first), `partial`, `link` (status), `welcome`, `cover` (the sheet that covers the page, or null).
+ * (transcript, oldest first), `partial`, `link` (status), `welcome`, `stale` (there is no connection, so the state is unknown), `cover` (the sheet that covers the page, or null).
  */
 export class Store {
   /** @type {Map<string, any>} */

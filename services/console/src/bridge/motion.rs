@@ -1,7 +1,7 @@
 //! Orders to the motion stop that the arm has not confirmed.
 //!
 //! They take the motion stop's own path, which needs neither shared memory nor disk. A stop is repeated
-//! until the arm confirms it or the operator resumes, however long its service is away.
+//! until the arm confirms it, latched and at rest, or the operator resumes, however long its service is away.
 //! Where no confirmation comes, every page warns, with the reason, until one does.
 
 use std::io;
@@ -23,6 +23,10 @@ const RESEND_EVERY: Span = Span::from_ms(50);
 const ALARM_AFTER: Span = Span::from_ms(1_000);
 /// Deadline for the arm to confirm a release; a later one would surprise.
 const PATIENCE: Span = Span::from_ms(5_000);
+/// Age from which the arm's answer that it moves is no longer true.
+const ANSWER_AGE_MAX: Span = Span::from_ms(500);
+/// Answer to a release that a later stop overrules.
+const OVERRULED: &str = "overruled by a later stop";
 /// Most orders that wait for a confirmation; the latest is in force.
 const ORDERS_MAX: usize = 64;
 
@@ -43,6 +47,8 @@ struct Latest {
     sent: Time,
     /// It is a stop that pages warn about.
     is_late: bool,
+    /// Time of the arm's latest answer that it is latched, but not at rest.
+    moved: Option<Time>,
 }
 
 /// The section `motion`: the stop that the arm has not confirmed, if any.
@@ -53,7 +59,8 @@ pub(super) struct MotionSection {
 
 #[derive(Debug, PartialEq, Serialize)]
 struct Unconfirmed {
-    /// State of the arm's service, or `silent` if it should answer and does not.
+    /// State of the arm's service; `silent` if it should answer and does not; `moving` if it is latched, but
+    /// not at rest.
     why: &'static str,
 }
 
@@ -77,14 +84,19 @@ impl Motions {
         // The latest order overrules contrary ones.
         let overruled = |waiting: &Motion| waiting.stop != motion.stop;
         for old in self.waiting.extract_if(.., |waiting| overruled(waiting)) {
-            hub.answer(old.viewer, old.id, Err("overruled by another order".to_owned()));
+            let outcome = match old.stop {
+                true => Ok(Some(Answer::Motion { stopped: false })),
+                false => Err(OVERRULED.to_owned()),
+            };
+            hub.answer(old.viewer, old.id, outcome);
         }
         if self.waiting.len() < ORDERS_MAX {
             self.waiting.push(motion);
         }
         // A stop that its user repeats is as late as before.
         let is_late = motion.stop && self.latest.is_some_and(|before| before.is_late);
-        self.latest = Some(Latest { stop: motion.stop, given: now, sent: now, is_late });
+        self.latest =
+            Some(Latest { stop: motion.stop, given: now, sent: now, is_late, moved: None });
     }
 
     pub(super) fn is_waiting(&self) -> bool {
@@ -95,7 +107,7 @@ impl Motions {
     /// a late release.
     pub(super) fn pass(&mut self, group: Option<&GroupStatus>, hub: &Hub, now: Time) {
         while let Some(state) = self.client.take() {
-            self.confirm(&state, hub);
+            self.confirm(&state, hub, now);
         }
         self.judge(group, hub, now);
         if self.latest.is_some_and(|latest| now >= latest.sent + RESEND_EVERY) {
@@ -104,19 +116,31 @@ impl Motions {
     }
 
     /// Takes in an answer; one to another order does not confirm this one.
-    fn confirm(&mut self, state: &StopState, hub: &Hub) {
-        let is_it = |latest: &Latest| state.given_ns == latest.given.ns();
-        let Some(latest) = self.latest.filter(is_it) else { return };
-        if state.in_force_ns > state.given_ns {
-            // Of the command line, or of another console.
-            self.latest = None;
-            self.refuse(hub, "overruled by another order");
-        } else if state.stopped == latest.stop {
-            self.latest = None;
-            for motion in self.waiting.drain(..) {
-                let answer = Answer::Motion { stopped: latest.stop };
-                hub.answer(motion.viewer, motion.id, Ok(Some(answer)));
+    fn confirm(&mut self, state: &StopState, hub: &Hub, now: Time) {
+        let is_it = |latest: &&mut Latest| state.given_ns == latest.given.ns();
+        let Some(latest) = self.latest.as_mut().filter(is_it) else { return };
+        match state.stopped {
+            true if latest.stop && !state.at_rest => latest.moved = Some(now),
+            stopped if stopped == latest.stop => {
+                self.latest = None;
+                self.done(hub, stopped);
             }
+            // Of the command line, or of another console.
+            stopped if state.in_force_ns > state.given_ns => {
+                self.latest = None;
+                match stopped {
+                    true => self.refuse(hub, OVERRULED),
+                    // A stop that is over is not repeated.
+                    false => self.done(hub, false),
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn done(&mut self, hub: &Hub, stopped: bool) {
+        for motion in self.waiting.drain(..) {
+            hub.answer(motion.viewer, motion.id, Ok(Some(Answer::Motion { stopped })));
         }
     }
 
@@ -134,14 +158,18 @@ impl Motions {
 
     fn judge(&mut self, group: Option<&GroupStatus>, hub: &Hub, now: Time) {
         let Some(latest) = &mut self.latest else { return };
+        latest.moved = latest.moved.filter(|moved| now < *moved + ANSWER_AGE_MAX);
         if latest.stop {
             latest.is_late |= now >= latest.given + ALARM_AFTER;
         } else if now >= latest.given + PATIENCE {
             self.latest = None;
             return self.refuse(hub, "the arm does not answer; help: see the list of services");
         }
-        if self.latest.is_some_and(|latest| latest.is_late) && !self.waiting.is_empty() {
-            let what = match why(group) {
+        if let Some(latest) =
+            self.latest.filter(|latest| latest.is_late && !self.waiting.is_empty())
+        {
+            let what = match why(&latest, group) {
+                "moving" => "the arm has the stop, but is not at rest".to_owned(),
                 "silent" if self.is_absent => "the arm's service is not running".to_owned(),
                 "silent" => "the arm does not answer".to_owned(),
                 state => format!("the arm's service is not ready ({state})"),
@@ -160,16 +188,17 @@ impl Motions {
     /// Returns what pages show.
     pub(super) fn section(&self, group: Option<&GroupStatus>) -> MotionSection {
         let late = self.latest.filter(|latest| latest.is_late);
-        MotionSection { unconfirmed: late.map(|_| Unconfirmed { why: why(group) }) }
+        MotionSection { unconfirmed: late.map(|latest| Unconfirmed { why: why(&latest, group) }) }
     }
 }
 
 /// Returns why the arm does not confirm, in a word.
-fn why(group: Option<&GroupStatus>) -> &'static str {
+fn why(latest: &Latest, group: Option<&GroupStatus>) -> &'static str {
     let arm = group.and_then(|group| {
         group.services.iter().find(|service| service.name == Service::Arm.name())
     });
     match arm.map(|arm| arm.state) {
+        _ if latest.moved.is_some() => "moving",
         None | Some(ServiceState::Ready) => "silent",
         Some(state) => state.word(),
     }
@@ -244,10 +273,10 @@ mod tests {
         assert_eq!(section(&motions, &ready)["unconfirmed"]["why"], "silent");
         assert_eq!(received(&mut frames)["ok"], false, "answered at once");
         for other in [answer(3_600_000, false), answer(1, true)] {
-            motions.confirm(&other, &hub);
+            motions.confirm(&other, &hub, at(3_600_000));
             assert!(motions.is_waiting(), "{other:?}");
         }
-        motions.confirm(&answer(3_600_000, true), &hub);
+        motions.confirm(&answer(3_600_000, true), &hub, at(3_600_000));
         assert_eq!(section(&motions, &ready)["unconfirmed"], Json::Null);
         assert!(!motions.is_waiting());
     }
@@ -258,9 +287,45 @@ mod tests {
         let (viewer, mut frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
         let (_home, mut motions) = motions();
         stops(&hub, viewer, &mut motions, true, 1);
-        motions.confirm(&StopState { in_force_ns: at(2).ns(), ..answer(1, false) }, &hub);
+        let later = |stopped| StopState { in_force_ns: at(2).ns(), ..answer(1, stopped) };
+        motions.confirm(&later(false), &hub, at(3));
         assert!(!motions.is_waiting());
+        let over = received(&mut frames);
+        assert!(over["ok"] == true && over["stopped"] == false, "no page repeats it: {over}");
+
+        stops(&hub, viewer, &mut motions, true, 1);
+        motions.confirm(&later(true), &hub, at(3));
+        assert!(!motions.is_waiting());
+        assert_eq!(received(&mut frames)["stopped"], true, "another stop is in force");
+
+        stops(&hub, viewer, &mut motions, false, 1);
+        motions.confirm(&later(true), &hub, at(3));
         assert!(received(&mut frames)["error"].as_str().unwrap().contains("overruled"));
+    }
+
+    #[test]
+    fn stop_of_an_arm_that_still_moves_is_not_confirmed_and_raises_its_own_alarm() {
+        let Page { hub, .. } = hub();
+        let (viewer, mut frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
+        let ((_home, mut motions), ready) = (motions(), group("ready"));
+        stops(&hub, viewer, &mut motions, true, 1);
+        let moving = StopState { at_rest: false, ..answer(1, true) };
+        motions.confirm(&moving, &hub, at(950));
+        motions.judge(Some(&ready), &hub, at(1_000));
+        assert!(motions.is_waiting() && frames.try_recv().is_err());
+        assert_eq!(section(&motions, &ready)["unconfirmed"], Json::Null);
+
+        motions.judge(Some(&ready), &hub, at(1_001));
+        assert_eq!(section(&motions, &ready)["unconfirmed"]["why"], "moving");
+        let late = received(&mut frames);
+        assert!(late["error"].as_str().unwrap().contains("not at rest"), "{late}");
+        // It falls silent: that it moves is no longer known.
+        motions.judge(Some(&ready), &hub, at(1_450));
+        assert_eq!(section(&motions, &ready)["unconfirmed"]["why"], "silent");
+        motions.confirm(&moving, &hub, at(1_500));
+        motions.confirm(&answer(1, true), &hub, at(1_550));
+        assert_eq!(section(&motions, &ready)["unconfirmed"], Json::Null);
+        assert!(!motions.is_waiting());
     }
 
     #[test]
@@ -270,7 +335,7 @@ mod tests {
         let ((_home, mut motions), ready) = (motions(), group("ready"));
         stops(&hub, viewer, &mut motions, true, 0);
         stops(&hub, viewer, &mut motions, false, 1);
-        assert!(received(&mut frames)["error"].as_str().unwrap().contains("overruled"));
+        assert_eq!(received(&mut frames)["stopped"], false, "the stop is over");
         motions.judge(Some(&ready), &hub, at(5_000));
         assert!(motions.is_waiting());
         motions.judge(Some(&ready), &hub, at(5_001));

@@ -62,6 +62,8 @@ struct ControlSection<'a> {
     viewers: usize,
     asked_by: Option<String>,
     expires_ms: Option<f64>,
+    /// Whether the operator's page is that of a study's participant.
+    participant: bool,
 }
 
 /// Shared by bridge and server.
@@ -198,17 +200,25 @@ impl Hub {
 
     /// Passes a command to the bridge, which answers by [`Hub::answer`].
     pub fn ask(&self, viewer: ViewerId, id: u64, verb: Verb) -> Result<(), String> {
-        if !is_of_own_participant(&verb) {
-            self.must_hold(viewer)?;
+        match is_of_own_participant(&verb) {
+            true => self.mark_participant(viewer),
+            false => self.must_hold(viewer)?,
         }
         let offered = self.channels.commands.offer(Command::Do(viewer, id, verb));
         offered.map_err(|_| "the console is busy; help: try again".to_owned())
     }
 
-    /// Latches the motion stop for every viewer, releases it for the operator; the bridge answers.
+    fn mark_participant(&self, viewer: ViewerId) {
+        let mut control = self.control();
+        if control.viewers.mark_participant(viewer) {
+            self.show(&control);
+        }
+    }
+
+    /// Latches the motion stop for every viewer, releases it for those who may; the bridge answers.
     pub fn motion(&self, viewer: ViewerId, id: u64, stop: bool) -> Result<(), String> {
         if !stop {
-            self.must_hold(viewer)?;
+            self.must_release(viewer)?;
         }
         let offered = self.channels.motions.offer(Motion { viewer, id, stop });
         let help = "the console is busy; help: use the robot's emergency stop";
@@ -274,6 +284,23 @@ impl Hub {
         Err("this is for the page of the operator; help: take control first".to_owned())
     }
 
+    /// Checks that a viewer may release the motion stop: the operator may. A participant of a study may not;
+    /// while one is in control, every other page may, so that the experimenter need not take control.
+    fn must_release(&self, viewer: ViewerId) -> Result<(), String> {
+        {
+            let Control { viewers, lease } = &*self.control();
+            let is_participant = |who| viewers.get(who).is_some_and(|there| there.is_participant);
+            if is_participant(viewer) {
+                return Err("this page is a participant's; help: call the experimenter".to_owned());
+            }
+            let is_screen = viewers.get(viewer).is_none_or(|there| there.role == Role::Screen);
+            if !is_screen && lease.operator().is_some_and(is_participant) {
+                return Ok(());
+            }
+        }
+        self.must_hold(viewer)
+    }
+
     fn must_hold(&self, viewer: ViewerId) -> Result<(), String> {
         match self.control().lease.operator() {
             Some(operator) if operator == viewer => Ok(()),
@@ -312,6 +339,9 @@ impl Hub {
             viewers: viewers.len(),
             asked_by: asked.map(|(by, _)| by.to_string()),
             expires_ms: asked.map(|(_, until)| ms(until)),
+            participant: operator
+                .and_then(|operator| viewers.get(operator))
+                .is_some_and(|there| there.is_participant),
         };
         // Every section can be written.
         let text = serde_json::to_string(&section).unwrap_or_default();

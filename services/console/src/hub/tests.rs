@@ -52,6 +52,31 @@ fn hub_obeys_the_operator_but_lets_every_viewer_stop() {
 }
 
 #[test]
+fn participant_of_a_study_stops_the_arm_and_cannot_release_it() {
+    let Page { hub, motions, .. } = hub();
+    let (viewer, _frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
+    hub.motion(viewer, 1, false).unwrap();
+    assert!(motions.take().is_some_and(|motion| !motion.stop));
+    hub.ask(viewer, 2, Verb::Study("find".to_owned(), json!({}))).unwrap();
+    let refused = hub.motion(viewer, 3, false).unwrap_err();
+    assert!(refused.contains("experimenter"), "{refused}");
+    hub.motion(viewer, 4, true).unwrap();
+    assert!(motions.take().is_some_and(|motion| motion.stop));
+    // The experimenter's page, which has no control.
+    let (experimenter, _more) = hub.join("", "b", Role::Viewer, Time(1)).unwrap();
+    hub.motion(experimenter, 5, false).unwrap();
+    hub.leave(experimenter, Time(1));
+    let (screen, _most) = hub.join("", "c", Role::Screen, Time(1)).unwrap();
+    assert!(hub.motion(screen, 6, false).is_err());
+    // The console's own page on the participant's device.
+    let (other, _again) = hub.join("", "a", Role::Operator, Time(2)).unwrap();
+    hub.motion(other, 7, false).unwrap();
+    hub.leave(screen, Time(2));
+    let (viewer, _frames) = hub.join("", "b", Role::Viewer, Time(2)).unwrap();
+    assert!(hub.motion(viewer, 8, false).is_err());
+}
+
+#[test]
 fn hub_admits_a_known_session_in_control() {
     let Page { hub, .. } = hub();
     let (_, mut first) = hub.join("", "a", Role::Operator, Time(0)).unwrap();

@@ -46,6 +46,8 @@ pub(super) struct Viewer {
     pub(super) name: String,
     pub(super) session: String,
     pub(super) role: Role,
+    /// It is the page of a study's participant.
+    pub(super) is_participant: bool,
     pub(super) queue: mpsc::Sender<OutboundFrame>,
     /// When its user did something last, or when it was opened.
     pub(super) active: Time,
@@ -62,7 +64,8 @@ impl Viewers {
         self.replace(&session);
         self.last += 1;
         let (queue, frames) = mpsc::channel(QUEUE_MAX);
-        let viewer = Viewer { name, session, role, queue, active: now };
+        let is_participant = false;
+        let viewer = Viewer { name, session, role, is_participant, queue, active: now };
         self.open.insert(ViewerId(self.last), viewer);
         (ViewerId(self.last), frames)
     }
@@ -95,6 +98,12 @@ impl Viewers {
         if let Some(open) = self.open.get_mut(&viewer) {
             open.active = now;
         }
+    }
+
+    /// Notes that a viewer's page is that of a study's participant; returns whether that is news.
+    pub(super) fn mark_participant(&mut self, viewer: ViewerId) -> bool {
+        let open = self.open.get_mut(&viewer);
+        open.is_some_and(|open| !std::mem::replace(&mut open.is_participant, true))
     }
 
     /// Forgets a viewer; its socket ends once its queue is dropped.

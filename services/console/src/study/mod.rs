@@ -119,6 +119,7 @@ impl Study {
             view: model.latest().view.as_ref(),
             missing: model.group().and_then(missing).map(|service| service.name.as_str()),
             arm_is_busy: trial_monitor::arm_is_busy(model.latest().arm.as_ref()),
+            arm_is_stopped: model.latest().arm.is_some_and(|arm| arm.stopped != 0),
             is_switching: self.switch.is_busy() || self.controller.owing().is_some(),
         }
     }

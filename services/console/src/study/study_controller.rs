@@ -9,7 +9,7 @@ use evaluation::user_study::{
 use scene::ObjectId;
 use serde_json::{Map, Value as Json};
 
-use super::trial_monitor::RobotState;
+use super::trial_monitor::{NotReady, RobotState};
 
 #[derive(Debug)]
 pub(super) struct StudyController {
@@ -248,6 +248,9 @@ fn start(person: &Participant, robot: &RobotState<'_>) -> Result<Event, String> 
     let trial = person.trial().ok_or("Nothing was drawn yet.")?;
     match robot.not_ready(&trial.step.policy) {
         None => Ok(Event::Started { after: robot.latest_interaction() }),
+        Some(NotReady::Stopped) => {
+            Err("The robot is stopped. Please call the experimenter.".to_owned())
+        }
         Some(_) => Err("The robot is not ready yet. Please wait a moment.".to_owned()),
     }
 }

@@ -9,6 +9,7 @@ use messages::{ActKind, Outcome};
 use scene::Scene;
 use serde_json::{Map, json};
 
+use super::section::StudySection;
 use super::study_controller::{Command, StudyController};
 use super::trial_monitor::RobotRequest;
 use simulated_study::{FAULT_MS, PAGE, SimulatedStudy, protocol};
@@ -100,6 +101,28 @@ fn study_waits_for_a_ready_robot_and_cancels_open_goals() {
     study.ask(&Command::Start).unwrap();
     let trial = study.controller.active().unwrap().trial().unwrap();
     assert_eq!((trial.after, study.stage()), (7, Some(Stage::Running)));
+}
+
+/// A stop is not "busy": nothing but a person ends it.
+#[test]
+fn study_says_that_the_robot_is_stopped_whatever_else_it_waits_for() {
+    let mut study = SimulatedStudy::new(protocol());
+    for ask in [Command::Begin, Command::Consent, Command::Next] {
+        study.ask(&ask).unwrap();
+    }
+    study.arm_is_stopped = true;
+    let refused = study.ask(&Command::Start).unwrap_err();
+    assert!(refused.contains("call the experimenter"), "{refused}");
+    let section = |study: &SimulatedStudy| {
+        serde_json::to_value(StudySection::new(&study.controller, &study.robot(), None)).unwrap()
+    };
+    study.view.interaction = 7;
+    assert_eq!(section(&study)["active"]["trial"]["waits_for"], "stopped");
+    assert_eq!(study.controller.request(&study.robot()), Some(RobotRequest::Cancel));
+    study.arm_is_stopped = false;
+    assert_eq!(section(&study)["active"]["trial"]["waits_for"], "busy");
+    study.end(Outcome::Cancelled, None);
+    study.ask(&Command::Start).unwrap();
 }
 
 /// The policy of the one before is given back first: else it would go in the middle of an interaction.

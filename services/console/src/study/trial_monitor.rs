@@ -40,6 +40,8 @@ pub(super) struct RobotState<'a> {
     /// A required service that is not ready.
     pub(super) missing: Option<&'a str>,
     pub(super) arm_is_busy: bool,
+    /// `true` if the motion stop is latched: the experimenter releases it.
+    pub(super) arm_is_stopped: bool,
     /// `true` if the planner is being switched or is still to be restored.
     pub(super) is_switching: bool,
 }
@@ -54,11 +56,22 @@ pub(super) enum NotReady {
     Planner,
     /// An interaction is open, or the arm moves.
     Busy,
+    /// The motion stop is latched.
+    Stopped,
 }
 
 impl RobotState<'_> {
-    /// Returns what keeps an interaction with this planner from beginning.
+    /// Returns what keeps an interaction with this planner from beginning. A stop comes first: a person has to
+    /// act.
     pub(super) fn not_ready(&self, planner: &str) -> Option<NotReady> {
+        match self.arm_is_stopped {
+            true => Some(NotReady::Stopped),
+            false => self.not_prepared(planner),
+        }
+    }
+
+    /// As [`RobotState::not_ready`], apart from a stop.
+    fn not_prepared(&self, planner: &str) -> Option<NotReady> {
         match self.view {
             Some(view) if self.missing.is_none() => match () {
                 () if view.planner != planner || self.is_switching => Some(NotReady::Planner),
@@ -80,10 +93,10 @@ impl RobotState<'_> {
     }
 }
 
-/// Returns whether the arm does something, or may do something unseen.
+/// Returns whether the arm has something to do, or may do something unseen.
 pub(super) fn arm_is_busy(arm: Option<&ArmStatus>) -> bool {
     let still = [PickPhase::Idle, PickPhase::Done];
-    arm.is_none_or(|arm| !still.contains(&arm.phase.get()) || arm.stopped != 0)
+    arm.is_none_or(|arm| !still.contains(&arm.phase.get()))
 }
 
 impl StudyController {
@@ -148,7 +161,7 @@ impl StudyController {
         let Some(person) = self.active() else { return self.left_standing(view) };
         let trial = person.trial()?;
         match person.stage {
-            Stage::Drawn => match robot.not_ready(&trial.step.policy) {
+            Stage::Drawn => match robot.not_prepared(&trial.step.policy) {
                 Some(NotReady::Busy) if view.interaction != 0 => Some(RobotRequest::Cancel),
                 Some(NotReady::Planner) if view.interaction != 0 => Some(RobotRequest::Cancel),
                 Some(NotReady::Planner) if view.planner == trial.step.policy => None,

@@ -7,6 +7,7 @@ import { countOf, rankListed, readable } from "../model/ranking.js";
 import { keep, Store } from "../store.js";
 import { chooseLanguage, loadStrings, t, translate } from "../strings.js";
 import { mountPart } from "../views/part.js";
+import { mountStale } from "../views/stale.js";
 import { mountTurn } from "../views/turn.js";
 import { lastHeard, sentence, sizeOf } from "./model.js";
 
@@ -31,6 +32,7 @@ store.subscribe("welcome", ({ group }) => {
 });
 
 const context = { link, store, t };
+mountStale(context);
 mountTurn(at("turn"), context);
 mountPart(at("arm"), () => import("../arm/index.js"), "mountArm", context);
 

@@ -2,6 +2,7 @@
 import { eachFrame, h, setText } from "../dom.js";
 import { icon } from "../icons.js";
 import { addressOf } from "../place.js";
+import { openSheet } from "../sheet.js";
 import { notify } from "../views/attempt.js";
 import { linked, linkTo } from "./address.js";
 import { listView } from "./list.js";
@@ -35,7 +36,6 @@ export async function mountHistory({ store, t }) {
   );
   dialog.addEventListener("keydown", onKey);
   dialog.addEventListener("close", () => {
-    store.set("cover", null);
     address("");
   });
   document.body.append(dialog);
@@ -131,8 +131,7 @@ export async function mountHistory({ store, t }) {
     current = interaction;
     narrow(interaction > 0);
     if (!dialog.open) {
-      dialog.showModal();
-      store.set("cover", dialog);
+      openSheet(dialog, store);
       // The keys work at once, and no button looks chosen.
       dialog.focus();
     }

@@ -30,7 +30,7 @@ const STATES = {
   failed: { tone: "bad", act: "retry" },
 };
 
-/** @typedef {"good"|"busy"|"short"|"off"|"bad"} Tone the worst last */
+/** @typedef {"unknown"|"good"|"busy"|"short"|"off"|"bad"} Tone the worst last */
 
 /**
  * The reason for its state, its own status, and how its previous run ended.
@@ -62,9 +62,11 @@ export function actOf(state) {
 /**
  * Summarises the group's health in one line: the gravest problem first.
  * @param {Service[]|undefined} services
+ * @param {boolean} [isStale] without a connection nothing is known
  * @returns {{tone: Tone, key: string, args: Record<string, string|number>}}
  */
-export function health(services) {
+export function health(services, isStale = false) {
+  if (isStale) return { tone: "unknown", key: "health.unknown", args: {} };
   if (!services?.length) return { tone: "busy", key: "services.none", args: {} };
   for (const grave of /** @type {const} */ (["bad", "short", "off", "busy"])) {
     const affected = services.filter(({ state }) => tone(state) === grave);

@@ -15,9 +15,18 @@ const STATES = {
   understanding: ["understanding", "robot", "think"],
   speaking: ["speaking", "robot", "speak"],
   moving: ["moving", "arm", "arm"],
+  stopping: ["stopping", "stopped", "stop"],
   stopped: ["stopped", "stopped", "stop"],
   down: ["down", "down", "down"],
 };
+
+/**
+ * Returns whether the arm stands: its stop is latched, and no joint moves.
+ * @param {{stopped?: boolean, moving?: boolean}|null|undefined} arm
+ */
+export function isStopped(arm) {
+  return arm?.stopped === true && arm.moving !== true;
+}
 
 /** States in which the sign speaks to the operator. */
 const TO_OPERATOR = ["idle", "listening", "hearing", "asked", "speaking"];
@@ -26,7 +35,7 @@ const TO_OPERATOR = ["idle", "listening", "hearing", "asked", "speaking"];
  * Summarises whose turn it is in one sign. Without a connection nothing else is known.
  * @param {{state: string}|undefined} link
  * @param {{state: string}|undefined} turn
- * @param {{stopped?: boolean}|undefined} arm a stop outranks whose turn it is
+ * @param {{stopped?: boolean, moving?: boolean}|undefined} arm a stop outranks whose turn it is
  * @param {ReturnType<typeof whoControls>} [who] for viewers it is the operator's turn
  * @returns {Banner}
  */
@@ -39,10 +48,22 @@ export function banner(link, turn, arm, who) {
     return { key, tone: "down", icon: "down" };
   }
   if (!turn) return { key: "connecting", tone: "idle", icon: "think" };
-  const stopped = arm?.stopped === true && turn.state !== "down";
-  const [key, tone, icon] = STATES[stopped ? "stopped" : turn.state] ?? STATES.idle;
+  const latched = arm?.stopped === true && turn.state !== "down";
+  const state = latched ? (isStopped(arm) ? "stopped" : "stopping") : turn.state;
+  const [key, tone, icon] = STATES[state] ?? STATES.idle;
   const theirs = (who === "theirs" || who === "asked") && TO_OPERATOR.includes(key);
   return { key: theirs ? `theirs_${key}` : key, tone, icon };
+}
+
+/**
+ * Returns whether this page may release the motion stop: the operator's may, but while a participant of a
+ * study is in control, every page but the participant's.
+ * @param {any} control
+ * @param {any} welcome
+ */
+export function mayResume(control, welcome) {
+  const isMine = whoControls(control, welcome) === "mine";
+  return control?.participant ? !isMine && Boolean(welcome) : isMine;
 }
 
 /**

@@ -1,5 +1,6 @@
 // @ts-check
 import { eachFrame, h, setAttribute, setText } from "../dom.js";
+import { openSheet } from "../sheet.js";
 import { notify } from "../views/attempt.js";
 import { scenesApi } from "./api.js";
 import { iconButton } from "./buttons.js";
@@ -58,7 +59,6 @@ export async function mountScene({ store, t, session: page }) {
       side.element,
     ),
   );
-  dialog.addEventListener("close", () => store.set("cover", null));
   dialog.addEventListener("keydown", onKey);
   document.body.append(dialog);
   addEventListener("beforeunload", (event) => {
@@ -107,8 +107,7 @@ export async function mountScene({ store, t, session: page }) {
   });
   return () => {
     if (dialog.open) return;
-    dialog.showModal();
-    store.set("cover", dialog);
+    openSheet(dialog, store);
     dialog.focus();
     session.begin();
   };

@@ -2,6 +2,7 @@
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { keep, recall } from "../kept.js";
+import { openSheet } from "../sheet.js";
 import { LANGUAGES } from "../strings.js";
 import { choose, chosen, LOOK } from "./look.js";
 
@@ -9,11 +10,11 @@ const LANGUAGE_NAMES = { en: "English", de: "Deutsch" };
 
 /**
  * The one sheet with everything that a person can set on this browser.
- * @param {(key: string, args?: object) => string} t
+ * @param {{store: any, t: (key: string, args?: object) => string}} context
  * @returns {{open: () => void, add: (title: string, ...nodes: Node[]) => HTMLElement}} `add` adds a
  *   section, for a part of the page that is loaded later
  */
-export function makeSettings(t) {
+export function makeSettings({ store, t }) {
   const body = h("div", { class: "settings-body" });
   const close = { type: "button", class: "tool", "aria-label": t("settings.close") };
   const dialog = h(
@@ -38,7 +39,7 @@ export function makeSettings(t) {
   }
   add(t("settings.keys"), keys(t));
   document.body.append(dialog);
-  return { open: () => dialog.open || dialog.showModal(), add };
+  return { open: () => openSheet(dialog, store), add };
 }
 
 function languages(t) {

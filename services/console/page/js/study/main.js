@@ -4,6 +4,8 @@ import { keptLanguage, tabStorage } from "../kept.js";
 import { sessionId } from "../link/session.js";
 import { connect } from "../link.js";
 import { whoControls } from "../model/turn.js";
+import { openSheet } from "../sheet.js";
+import { stopper } from "../stop.js";
 import { keep, Store } from "../store.js";
 import { chooseLanguage, loadStrings, t, translate } from "../strings.js";
 import { mountActions } from "../views/actions.js";
@@ -11,6 +13,7 @@ import { mountAlarm } from "../views/alarm.js";
 import { attempt } from "../views/attempt.js";
 import { mountPart } from "../views/part.js";
 import { mountSay } from "../views/say.js";
+import { mountStale } from "../views/stale.js";
 import { mountTools } from "../views/tools.js";
 import { mountTurn } from "../views/turn.js";
 import { desired } from "./desired.js";
@@ -34,13 +37,16 @@ const link = connect({
   role: "operator",
   lastLine: () => store.lastLine,
 });
+// Before everything else, so that a stop that waits is sent first.
+const stop = stopper({ link, store });
 keep(store, link);
 await loadStrings(chooseLanguage(location.search, keptLanguage(), navigator.languages));
 translate(document);
 
-const context = { link, store, t };
+const context = { link, store, t, stop };
+mountStale(context);
 mountActions(at("actions"), context);
-mountAlarm(at("alarm"), at("polite"), context);
+mountAlarm(at("alarm"), at("polite"), { ...context, isParticipant: true });
 mountTurn(at("turn"), context);
 mountSay(at("say"), context);
 mountTools(at("tools"), context);
@@ -52,7 +58,7 @@ let drawn = "";
 let askedAt = Number.NEGATIVE_INFINITY;
 let hasVoice = false;
 const dialog = withdrawDialog(t, (deletes) => ask("withdraw", { delete: deletes }));
-at("withdraw").addEventListener("click", () => dialog.showModal());
+at("withdraw").addEventListener("click", () => openSheet(dialog, store));
 
 /** Does a verb of the study's; says so where it fails. */
 async function ask(verb, args = {}) {
@@ -160,7 +166,8 @@ function focusOn(selector) {
 addEventListener(
   "keydown",
   (event) => {
-    if (event.code === "Space" && document.body.dataset.screen !== "running") {
+    if (event.code !== "Space" || event.target === document.getElementById("stop")) return;
+    if (document.body.dataset.screen !== "running") {
       event.stopPropagation();
     }
   },

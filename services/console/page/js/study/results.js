@@ -3,11 +3,16 @@ import { eachFrame, h, setText } from "../dom.js";
 import { keptLanguage, tabStorage } from "../kept.js";
 import { sessionId } from "../link/session.js";
 import { connect } from "../link.js";
+import { Hold } from "../model/hold.js";
 import { addressOf } from "../place.js";
+import { stopper } from "../stop.js";
 import { keep, Store } from "../store.js";
 import { chooseLanguage, loadStrings, t, translate } from "../strings.js";
+import { mountActions } from "../views/actions.js";
 import { mountAlarm } from "../views/alarm.js";
 import { attempt } from "../views/attempt.js";
+import { mountResume } from "../views/resume.js";
+import { mountStale } from "../views/stale.js";
 import { mountTools } from "../views/tools.js";
 import { inControl } from "./control.js";
 import { picturesOf } from "./numbers.js";
@@ -29,12 +34,17 @@ const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 const store = new Store();
 const session = sessionId(tabStorage());
 const link = connect({ session, role: "viewer", lastLine: () => store.lastLine });
+// Before everything else, so that a stop that waits is sent first.
+const stop = stopper({ link, store });
 keep(store, link);
 await loadStrings(chooseLanguage(location.search, keptLanguage(), navigator.languages));
 translate(document);
 
-const context = { link, store, t };
+const context = { link, store, t, stop, hold: new Hold() };
+mountStale(context);
 const secret = new Secret(null);
+mountActions(at("actions"), context);
+mountResume(at("resume"), context);
 mountAlarm(at("alarm"), at("polite"), context);
 mountTools(at("tools"), context);
 for (const [file, key] of Object.entries(FILES)) {

@@ -1,14 +1,12 @@
 // @ts-check
 import { eachFrame, h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
-import { escapeStops, stopper } from "../stop.js";
-import { attempt } from "./attempt.js";
+import { isStopped } from "../model/turn.js";
+import { escapeStops } from "../stop.js";
+import { notify } from "./attempt.js";
 
-/** A press so soon after the stop is not meant for what the button has become, milliseconds. */
-const LATCH_MS = 800;
-/** Duration of the button's confirmation before motion is released, milliseconds. */
-const ASK_MS = 6_000;
-
+/** A press and the click that follows it are one, milliseconds. */
+const CLICK_MS = 800;
 /** A press of Escape and the end of the full screen within this time are one, milliseconds. */
 const SAME_MS = 80;
 /**
@@ -18,90 +16,76 @@ const SAME_MS = 80;
 const ASIDE_MS = 600;
 
 /**
- * The stop. It acts when it is touched, before anything is drawn; what it becomes, resume, wants two
- * separate presses.
+ * STOP. It acts when it is touched, before anything is drawn, and it never becomes anything else: pressed
+ * again, it sends the stop again.
  * @param {HTMLElement} element
- * @param {{link: any, store: any, t: (key: string, args?: object) => string}} context
+ * @param {object} context
+ * @param {any} context.store
+ * @param {(key: string, args?: object) => string} context.t
+ * @param {() => void} context.stop sends a stop
+ * @param {import("../model/hold.js").Hold} [context.hold] of Resume: learns of every press
  */
-export function mountActions(element, context) {
-  const { store, link, t } = context;
-  const words = h("span", { class: "stop-words" });
+export function mountActions(element, { store, t, stop: send, hold }) {
+  const words = h("span", { class: "stop-words", text: t("stop.stop") });
   const hint = h("span", { class: "stop-hint" });
-  const mark = h("span", { class: "stop-mark" }, icon("stop", 34));
   const text = h("span", { class: "stop-text" }, words, hint);
+  const mark = h("span", { class: "stop-mark" }, icon("stop", 34));
   const button = h("button", { type: "button", id: "stop", class: "stop" }, mark, text);
   element.append(button);
 
-  const press = stopper(context);
-  let pressedAt = Number.NEGATIVE_INFINITY;
   const touch = matchMedia("(hover: none)");
-  let askedAt = null;
-  let asking = 0;
+  let pressedAt = Number.NEGATIVE_INFINITY;
   let escapedAt = null;
   let otherAt = Number.NEGATIVE_INFINITY;
 
-  const mode = () => {
-    if (!store.get("arm")?.stopped) return "stop";
-    return askedAt === null ? "resume" : "confirm";
-  };
+  const notice = () => hold?.press(performance.now());
   const stop = () => {
-    press();
+    notice();
     pressedAt = performance.now();
-    askedAt = null;
+    send();
     show();
-  };
-  const resume = () => {
-    const now = performance.now();
-    if (now - pressedAt < LATCH_MS || (askedAt !== null && now - askedAt < LATCH_MS / 2)) return;
-    clearTimeout(asking);
-    if (askedAt === null) {
-      askedAt = now;
-      asking = setTimeout(forget, ASK_MS);
-    } else {
-      askedAt = null;
-      attempt(link.do("resume"), context);
-    }
-    show();
-  };
-  const forget = () => {
-    askedAt = null;
-    draw();
   };
 
-  button.addEventListener("pointerdown", (event) => {
-    if (event.button === 0 && mode() === "stop") stop();
-  });
+  button.addEventListener("pointerdown", stop);
+  button.addEventListener("contextmenu", (event) => event.preventDefault());
   button.addEventListener("keydown", (event) => {
-    const pressed = event.key === "Enter" || event.key === " ";
-    if (pressed && mode() === "stop" && !event.repeat) stop();
-    if (pressed && event.repeat) event.preventDefault();
+    if (event.key !== "Enter" && event.key !== " ") return;
+    if (!event.repeat) return stop();
+    notice();
+    event.preventDefault();
   });
   button.addEventListener("click", () => {
-    if (mode() !== "stop") resume();
-    else if (performance.now() - pressedAt > LATCH_MS) stop();
+    notice();
+    if (performance.now() - pressedAt > CLICK_MS) stop();
   });
-  // A dialog dims the page, but not the stop: pressing where it is seen stops, and shows the page.
+  // Where STOP was before a sheet took it: pressing there stops, and shows the page.
   const onBackdrop = (event) => {
     const dialog = event.target;
-    if (!(dialog instanceof HTMLDialogElement) || mode() !== "stop") return;
-    if (isAt(dialog, event) || !isAt(button, event)) return;
+    if (!(dialog instanceof HTMLDialogElement) || isAt(dialog, event)) return;
+    if (!isAt(element, event)) return;
     stop();
     dialog.close();
   };
   addEventListener("pointerdown", onBackdrop, { capture: true });
   const countEscape = (now) => {
+    notice();
     if (escapeStops(escapedAt, now, store.get("arm")?.moving === true)) stop();
     escapedAt = now;
   };
   const onKey = (event) => {
-    if (event.key === "Escape" && !event.isComposing) countEscape(event.timeStamp);
-    else otherAt = event.timeStamp;
+    if (event.key === "Escape" && !event.isComposing) return countEscape(event.timeStamp);
+    otherAt = event.timeStamp;
+    // On Resume itself Space holds; everywhere else it is a press.
+    if (event.code === "Space" && !event.target.closest?.(".resume-hold")) notice();
   };
-  // The stop is in what covers the page: the full screen, or a sheet.
+  // STOP is in what covers the page: the full screen, or a sheet.
   const place = () => {
     const full = document.fullscreenElement;
     const host = full ?? store.get("cover") ?? element;
-    if (button.parentElement !== host) host.append(button);
+    if (button.parentElement !== host) {
+      element.style.minHeight = host === element ? "" : `${element.offsetHeight}px`;
+      host.append(button);
+    }
     button.classList.toggle("floats", full !== null);
   };
   store.subscribe("cover", place);
@@ -123,25 +107,31 @@ export function mountActions(element, context) {
   document.addEventListener("fullscreenchange", onFullScreen);
 
   const show = () => {
-    const is = mode();
-    const sending = store.get("stop")?.state === "sent" && is === "stop";
-    const down = store.get("link")?.state !== "up";
-    setAttribute(button, "data-mode", is);
-    setAttribute(button, "data-down", down);
-    setText(words, t(sending ? "stop.sending" : `stop.${is}`));
+    const state = stateOf(store);
+    setAttribute(button, "data-state", state);
     const moving = store.get("arm")?.moving === true;
-    const keys = touch.matches ? t("stop.touch") : t(moving ? "stop.key_moving" : "stop.key");
-    const unconfirmed =
-      store.get("motion")?.unconfirmed || store.get("stop")?.state === "undelivered";
-    const usual = is === "stop" ? keys : t(`stop.${is}.more`);
-    setText(hint, down ? t("stop.down") : unconfirmed ? t("stop.unconfirmed") : usual);
-    const drawn = is === "stop" ? "stop" : "play";
-    if (mark.dataset.icon !== drawn) mark.replaceChildren(icon(drawn, 34));
-    mark.dataset.icon = drawn;
+    const idle = touch.matches ? "touch" : moving ? "key_moving" : "key";
+    setText(hint, t(`stop.${state === "idle" ? idle : state}`));
   };
+  store.subscribe("stop", ({ ageMs }) => {
+    if (ageMs) notify(t("stop.late", { s: Math.round(ageMs / 1_000) }));
+  });
   const draw = eachFrame(show);
   store.subscribe(["arm", "stop", "link", "motion"], draw);
   draw();
+}
+
+/**
+ * What there is to say of the stop, the gravest first.
+ * @param {{get: (section: string) => any}} store
+ * @returns {"unsent"|"down"|"unconfirmed"|"sending"|"stopped"|"idle"}
+ */
+function stateOf(store) {
+  const own = store.get("stop")?.state;
+  if (store.get("link")?.state !== "up") return own === "undelivered" ? "unsent" : "down";
+  if (store.get("motion")?.unconfirmed || own === "undelivered") return "unconfirmed";
+  if (isStopped(store.get("arm"))) return "stopped";
+  return own === "sent" ? "sending" : "idle";
 }
 
 /** Returns whether a pointer is on an element, regardless of anything in between. */

@@ -1,7 +1,7 @@
 // @ts-check
 import { h, setText } from "../dom.js";
 import { icon } from "../icons.js";
-import { banner, whoControls } from "../model/turn.js";
+import { banner, isStopped, whoControls } from "../model/turn.js";
 
 /** A connection that is back sooner is not worth a word, milliseconds. */
 const GRACE_MS = 1_200;
@@ -11,9 +11,10 @@ const GRACE_MS = 1_200;
  * sentences.
  * @param {HTMLElement} element a region that interrupts
  * @param {HTMLElement} polite a region that waits
- * @param {{link: any, store: any, t: (key: string, args?: object) => string}} context
+ * @param {{link: any, store: any, t: (key: string, args?: object) => string, isParticipant?: boolean}} context
+ *   a participant has no Resume, and is told what to do
  */
-export function mountAlarm(element, polite, { link, store, t }) {
+export function mountAlarm(element, polite, { link, store, t, isParticipant = false }) {
   const text = h("p", { class: "alarm-text" });
   const act = h("button", { type: "button", class: "alarm-act", onclick: () => link.reconnect() });
   const bar = h("div", { class: "alarm-bar", hidden: true }, icon("down", 22), text, act);
@@ -48,7 +49,7 @@ export function mountAlarm(element, polite, { link, store, t }) {
     if (late || stop === "undelivered") {
       return show("unconfirmed", { why: t(`alarm.why.${late?.why ?? "silent"}`) });
     }
-    const key = arm?.stopped ? "stopped" : "";
+    const key = isStopped(arm) ? (isParticipant ? "participant" : "stopped") : "";
     if (key !== shown) show(key);
   };
   store.subscribe(["link", "stop", "arm", "motion"], look);

@@ -70,7 +70,7 @@ export function mountCards(element, context) {
     const believed = store.get("belief") ?? dialogue?.belief;
     const belief = scene.objects.map(({ name }) => believed?.[name] ?? 0);
     const now = { dialogue, arm: store.get("arm"), world: store.get("world") };
-    const marked = marks(scene, now);
+    const marked = store.get("stale") ? new Map() : marks(scene, now);
     const ranked = rankListed(order, scene.objects, belief);
     order = ranked.map((i) => scene.objects[i].name);
     const pinned = new Set([...marked].filter(([, mark]) => mark !== "delivered").map(([i]) => i));
@@ -106,7 +106,10 @@ export function mountCards(element, context) {
     const { sign, share } = readable(dialogue?.absent ?? 0);
     setText(absent, t("objects.absent", { share: sign + t.percent(share) }));
   });
-  store.subscribe(["scene", "dialogue", "arm", "world", "belief", "control", "welcome"], draw);
+  store.subscribe(
+    ["scene", "dialogue", "arm", "world", "belief", "control", "welcome", "stale"],
+    draw,
+  );
   draw();
 }
 

@@ -36,12 +36,13 @@ export function mountControl(element, context) {
   const draw = eachFrame(() => {
     clearTimeout(tick);
     const control = store.get("control");
-    const is = whoControls(control, store.get("welcome"));
+    const isStale = store.get("stale") === true;
+    const is = isStale ? "unknown" : whoControls(control, store.get("welcome"));
     const elsewhere = is === "theirs" && pages.isMine(control.operator);
     const asked = is === "mine" && control.asked_by ? control.asked_by : null;
     const name = control?.name || control?.operator || "";
     setAttribute(element, "data-who", is);
-    const key = elsewhere ? "elsewhere" : is;
+    const key = elsewhere ? "elsewhere" : isStale ? "offline" : is;
     setText(who, asked ? t("control.asks", { viewer: asked }) : t(`control.${key}`, { name }));
     const left = control?.expires_ms
       ? Math.ceil((control.expires_ms - link.serverNow()) / 1000)
@@ -50,11 +51,11 @@ export function mountControl(element, context) {
     const soon = (asked || is === "asked") && left > 0;
     if (soon) tick = setTimeout(draw, 500);
     const below = soon ? t("control.in", { s: left }) : t("control.viewers", { n });
-    setText(viewers, control ? below : "");
+    setText(viewers, control && !isStale ? below : "");
     take.hidden = is !== "free" && is !== "theirs";
     setText(take, t(elsewhere ? "control.here" : is === "theirs" ? "control.ask" : "control.take"));
     give.hidden = keep.hidden = !asked;
   });
-  store.subscribe(["control", "welcome", "link"], draw);
+  store.subscribe(["control", "welcome", "link", "stale"], draw);
   draw();
 }

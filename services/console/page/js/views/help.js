@@ -3,6 +3,7 @@ import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { recall } from "../kept.js";
 import { answers } from "../model/answers.js";
+import { openSheet } from "../sheet.js";
 import { press } from "./press.js";
 
 /**
@@ -11,7 +12,7 @@ import { press } from "./press.js";
  * @returns {() => void} opens the dialog
  */
 export function mountHelp(context) {
-  const { t } = context;
+  const { store, t } = context;
   const close = { type: "button", class: "tool", "aria-label": t("help.close") };
   const dialog = h(
     "dialog",
@@ -26,7 +27,7 @@ export function mountHelp(context) {
     keys(t),
   );
   document.body.append(dialog);
-  const open = () => dialog.open || dialog.showModal();
+  const open = () => openSheet(dialog, store);
   addEventListener("keydown", (event) => {
     if (event.defaultPrevented || event.repeat || recall("keys") === "off") return;
     if (event.ctrlKey || event.metaKey || event.altKey || typing(event.target)) return;

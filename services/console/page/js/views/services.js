@@ -34,8 +34,9 @@ export function mountServices(element, context) {
   };
   const update = (node, service) => {
     const [, , state, note, button] = node.children;
-    setAttribute(node, "data-state", tone(service.state));
-    setText(state, t(`service.${service.state}`));
+    const isStale = store.get("stale") === true;
+    setAttribute(node, "data-state", isStale ? "unknown" : tone(service.state));
+    setText(state, t(`service.${isStale ? "unknown" : service.state}`));
     const act = actOf(service.state);
     const label = t(`services.act.${act}`, { name: service.name });
     setAttribute(button, "aria-label", label);
@@ -44,13 +45,13 @@ export function mountServices(element, context) {
     button.dataset.act = act;
     const restarts = service.restarts > 0 ? t("services.restarts", { n: service.restarts }) : "";
     setText(note, [noteOf(service, t), restarts].filter(Boolean).join(" · "));
-    button.disabled = whoControls(store.get("control"), store.get("welcome")) !== "mine";
+    button.disabled = isStale || whoControls(store.get("control"), store.get("welcome")) !== "mine";
   };
   const draw = eachFrame(() => {
     const services = store.get("group")?.services ?? [];
     empty.hidden = services.length > 0;
     keyed(list, services, (service) => service.name, make, update);
   });
-  store.subscribe(["group", "control", "welcome"], draw);
+  store.subscribe(["group", "control", "welcome", "stale"], draw);
   draw();
 }

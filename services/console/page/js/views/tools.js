@@ -23,7 +23,7 @@ export function toolButton(id, label, drawing, onclick) {
  */
 export function mountTools(element, context) {
   const { t } = context;
-  context.settings = makeSettings(t);
+  context.settings = makeSettings(context);
   element.append(
     toolButton("settings", t("settings.open"), "settings", context.settings.open),
     toolButton("help", t("help.open"), "help", mountHelp(context)),

@@ -54,6 +54,7 @@ pub(super) struct SimulatedStudy {
     pub(super) scene: Scene,
     pub(super) view: PolicyView,
     pub(super) missing: Option<&'static str>,
+    pub(super) arm_is_stopped: bool,
     pub(super) ms: f64,
 }
 
@@ -66,7 +67,15 @@ impl SimulatedStudy {
             ..PolicyView::default()
         };
         let controller = StudyController::new(protocol, "lab".to_owned(), Vec::new());
-        Self { controller, disk: Vec::new(), scene, view, missing: None, ms: 1e6 }
+        Self {
+            controller,
+            disk: Vec::new(),
+            scene,
+            view,
+            missing: None,
+            arm_is_stopped: false,
+            ms: 1e6,
+        }
     }
 
     pub(super) fn robot(&self) -> RobotState<'_> {
@@ -77,6 +86,7 @@ impl SimulatedStudy {
             view: Some(&self.view),
             missing: self.missing,
             arm_is_busy: false,
+            arm_is_stopped: self.arm_is_stopped,
             is_switching: self.controller.owing().is_some(),
         }
     }
@@ -118,6 +128,7 @@ impl SimulatedStudy {
             view: Some(&view),
             missing,
             arm_is_busy: false,
+            arm_is_stopped: self.arm_is_stopped,
             is_switching: false,
         };
         while let Some((id, event)) = self.controller.look(&robot, FAULT_MS) {
