@@ -41,11 +41,6 @@ impl Lifeline {
     }
 }
 
-/// Opens (or creates) a lock file.
-pub(crate) fn open_lock(path: &Path) -> io::Result<File> {
-    OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)
-}
-
 /// Returns true if no other process holds the lock.
 pub(crate) fn is_free(lock: &File) -> bool {
     flock(lock, FlockOperation::NonBlockingLockExclusive).is_ok()

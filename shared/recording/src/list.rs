@@ -117,7 +117,7 @@ impl Entry {
 
 /// The statistics at the end of a complete file.
 fn statistics(path: &Path) -> Option<Statistics> {
-    let mut file = File::open(path).ok()?;
+    let mut file = safe_files::open_regular(path).ok()?;
     let size = file.metadata().ok()?.len();
     let options = SummaryReaderOptions::default().with_file_size(size);
     let mut reader = SummaryReader::new_with_options(options);

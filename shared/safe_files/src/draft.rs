@@ -15,6 +15,8 @@ use crate::leftovers::{self, RANDOM};
 
 /// End of the names of drafts.
 const SUFFIX: &str = ".new";
+/// Beginning of the names of files that are only written to see whether they can be.
+const PROBE: &str = ".whichone-probe.";
 /// Longest part of a file's name in that of its draft, bytes: file systems allow 255 in all.
 const NAME_MAX: usize = 200;
 /// Mode of a file for its owner alone.
@@ -118,16 +120,35 @@ pub fn replace_private(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()>
     replace(path, content, Readers::Owner)
 }
 
-/// As [`replace`], and a power loss leaves the old or the new content: the new one is on the disk first.
+/// As [`replace_private`], and a power loss leaves the old or the new content: the new one is on the disk first.
 ///
 /// # Errors
 /// As [`replace`].
-pub fn replace_synced(path: &Path, content: impl AsRef<[u8]>, readers: Readers) -> io::Result<()> {
-    let mut draft = Draft::of(path, readers)?;
+pub fn replace_private_synced(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
+    let mut draft = Draft::of(path, Readers::Owner)?;
     draft.write_all(content.as_ref())?;
     draft.sync()?;
     draft.replace()?;
     File::open(folder_of(path))?.sync_all()
+}
+
+/// Creates an empty file for its owner alone in the place of what has this name, for a program that writes to it.
+///
+/// # Errors
+/// The folder cannot be written.
+pub fn create_private(path: &Path) -> io::Result<File> {
+    let draft = Draft::of(path, Readers::Owner)?;
+    draft.file.persist(path).map_err(|error| error.error)
+}
+
+/// Opens a file that processes lock; it is created where it is missing, and never replaced.
+///
+/// # Errors
+/// It cannot be opened, or is a link.
+pub fn open_lock(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.read(true).write(true).create(true).truncate(false).mode(PRIVATE);
+    options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits().cast_signed()).open(path)
 }
 
 /// Checks that files can be written in a folder.
@@ -135,7 +156,8 @@ pub fn replace_synced(path: &Path, content: impl AsRef<[u8]>, readers: Readers) 
 /// # Errors
 /// They cannot.
 pub fn probe(folder: &Path) -> io::Result<()> {
-    make(folder, OsStr::new(".whichone."), ".probe", PRIVATE)?.as_file_mut().write_all(b"x")
+    leftovers::remove(folder, OsStr::new(PROBE), SUFFIX);
+    make(folder, OsStr::new(PROBE), SUFFIX, PRIVATE)?.as_file_mut().write_all(b"x")
 }
 
 /// The folder of a file.

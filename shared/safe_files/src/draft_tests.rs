@@ -20,7 +20,7 @@ fn entries(folder: &Path) -> usize {
 fn replaced_file_is_whole_and_has_the_wanted_mode() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("settings.toml");
-    replace_synced(&file, "one", Readers::Owner).unwrap();
+    replace_private_synced(&file, "one").unwrap();
     assert_eq!((fs::read_to_string(&file).unwrap().as_str(), mode(&file)), ("one", 0o600));
     replace(&file, "two", Readers::Mode(0o646)).unwrap();
     assert_eq!((fs::read_to_string(&file).unwrap().as_str(), mode(&file)), ("two", 0o646));
@@ -36,7 +36,7 @@ fn failed_replacement_leaves_the_old_file_and_nothing_else() {
     let path = folder.path().join("settings.toml");
     fs::create_dir_all(path.join("kept")).unwrap();
     assert!(replace_private(&path, "new").is_err());
-    assert!(replace_synced(&path, "new", Readers::AsBefore).is_err());
+    assert!(replace_private_synced(&path, "new").is_err());
     assert_eq!(entries(folder.path()), 1);
     assert!(path.join("kept").is_dir());
 }
@@ -50,7 +50,10 @@ fn dropped_draft_leaves_nothing() {
     draft.write_all(b"half").unwrap();
     assert_eq!(entries(folder.path()), 2);
     drop(draft);
-    assert_eq!((fs::read_to_string(&file).unwrap().as_str(), entries(folder.path())), ("secret", 1));
+    assert_eq!(
+        (fs::read_to_string(&file).unwrap().as_str(), entries(folder.path())),
+        ("secret", 1)
+    );
 }
 
 #[test]
@@ -71,7 +74,8 @@ fn leftover_of_a_crash_is_removed_and_a_draft_in_use_is_not() {
 fn files_with_similar_names_stay() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("token");
-    for name in [".token.short.new", ".token.abcdefgh-j.new", "token.new", ".other.abcdefghij.new"] {
+    for name in [".token.short.new", ".token.abcdefgh-j.new", "token.new", ".other.abcdefghij.new"]
+    {
         fs::write(folder.path().join(name), "").unwrap();
     }
     replace_private(&file, "x").unwrap();
@@ -124,6 +128,28 @@ fn writers_at_the_same_time_never_lose_a_draft() {
         }
     });
     assert_eq!((fs::read(&file).unwrap().len(), entries(folder.path())), (9, 1));
+}
+
+#[test]
+fn new_file_for_a_program_takes_the_place_of_a_link() {
+    let folder = tempfile::tempdir().unwrap();
+    let [log, other] = ["log", "other"].map(|name| folder.path().join(name));
+    fs::write(&other, "precious").unwrap();
+    symlink(&other, &log).unwrap();
+    create_private(&log).unwrap().write_all(b"line").unwrap();
+    assert_eq!(fs::read_to_string(&other).unwrap(), "precious");
+    assert_eq!((fs::read_to_string(&log).unwrap().as_str(), mode(&log)), ("line", 0o600));
+}
+
+#[test]
+fn lock_file_is_kept_and_no_link() {
+    let folder = tempfile::tempdir().unwrap();
+    let [lock, link] = ["lock", "link"].map(|name| folder.path().join(name));
+    fs::write(&lock, "17").unwrap();
+    open_lock(&lock).unwrap();
+    assert_eq!(fs::read_to_string(&lock).unwrap(), "17");
+    symlink(&lock, &link).unwrap();
+    assert!(open_lock(&link).is_err());
 }
 
 #[test]

@@ -18,7 +18,10 @@ mod output;
 mod regular;
 mod temporary;
 
-pub use draft::{Draft, Readers, probe, replace, replace_private, replace_synced};
-pub use output::{OutputFolder, write_output};
-pub use regular::open_regular;
+pub use draft::{
+    Draft, Readers, create_private, open_lock, probe, replace, replace_private,
+    replace_private_synced,
+};
+pub use output::{OutputFolder, check_new_output, write_new_output, write_output};
+pub use regular::{open_regular, read_private};
 pub use temporary::TemporaryFolder;

@@ -14,6 +14,7 @@ use rustix::fs::{CWD, FileType, Mode, OFlags, fstat, mkdirat, openat, readlinkat
 use rustix::io::Errno;
 use rustix::process::geteuid;
 
+use crate::draft::folder_of;
 use crate::{Draft, Readers};
 
 /// Links that may follow each other, as the kernel has it.
@@ -37,8 +38,9 @@ impl OutputFolder {
     ///
     /// # Errors
     /// It cannot be written, or is no regular file.
-    pub fn write(&self, name: &str, content: &[u8]) -> io::Result<()> {
-        let (folder, name) = follow(self.0.try_clone()?, [name.into()].into(), End::File)?;
+    pub fn write(&self, name: impl AsRef<OsStr>, content: &[u8]) -> io::Result<()> {
+        let (folder, name) =
+            follow(self.0.try_clone()?, [name.as_ref().to_owned()].into(), End::File)?;
         replace_in(&folder, &name, content)
     }
 
@@ -46,10 +48,8 @@ impl OutputFolder {
     ///
     /// # Errors
     /// `AlreadyExists`, or it cannot be written.
-    pub fn write_new(&self, name: &str, content: &[u8]) -> io::Result<()> {
-        let mut draft = Draft::of(&path_in(&self.0, OsStr::new(name)), Readers::AsBefore)?;
-        draft.write_all(content)?;
-        draft.put_if_absent()
+    pub fn write_new(&self, name: impl AsRef<OsStr>, content: &[u8]) -> io::Result<()> {
+        new_in(&self.0, name.as_ref(), content)
     }
 }
 
@@ -60,6 +60,30 @@ impl OutputFolder {
 pub fn write_output(path: &Path, content: &[u8]) -> io::Result<()> {
     let (folder, name) = walk(path, End::File)?;
     replace_in(&folder, &name, content)
+}
+
+/// Writes a new file that a user has named.
+///
+/// # Errors
+/// `AlreadyExists`, it cannot be written, or a link of another user leads to it.
+pub fn write_new_output(path: &Path, content: &[u8]) -> io::Result<()> {
+    let name = path.file_name().ok_or(ErrorKind::IsADirectory)?;
+    let (folder, _) = walk(folder_of(path), End::Existing)?;
+    new_in(&folder, name, content)
+}
+
+/// Checks that no link of another user leads to a new file that a user has named.
+///
+/// # Errors
+/// One does, or there is no such folder.
+pub fn check_new_output(path: &Path) -> io::Result<()> {
+    walk(folder_of(path), End::Existing).map(drop)
+}
+
+fn new_in(folder: &OwnedFd, name: &OsStr, content: &[u8]) -> io::Result<()> {
+    let mut draft = Draft::of(&path_in(folder, name), Readers::AsBefore)?;
+    draft.write_all(content)?;
+    draft.put_if_absent()
 }
 
 fn replace_in(folder: &OwnedFd, name: &OsStr, content: &[u8]) -> io::Result<()> {
@@ -78,6 +102,8 @@ enum End {
     File,
     /// A folder; what is missing is created.
     Folder,
+    /// A folder that is there.
+    Existing,
 }
 
 /// Finds the folder and the name that a path leads to; the name of a folder is empty.
@@ -133,7 +159,7 @@ fn follow(
         }
     }
     match end {
-        End::Folder => Ok((folder, OsString::new())),
+        End::Folder | End::Existing => Ok((folder, OsString::new())),
         End::File => Err(ErrorKind::IsADirectory.into()),
     }
 }

@@ -2,10 +2,11 @@
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io;
-use std::os::unix::fs::OpenOptionsExt;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::Path;
 
 use rustix::fs::OFlags;
+use rustix::process::geteuid;
 
 /// Opens a regular file for reading. Never waits: another user may have put a pipe there.
 ///
@@ -20,6 +21,14 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
+/// Reads a file of this user that no other user can read or change; none otherwise.
+pub fn read_private(path: &Path) -> Option<String> {
+    let file = fs::symlink_metadata(path).ok()?;
+    let is_own = file.uid() == geteuid().as_raw();
+    let is_private = file.is_file() && is_own && file.mode() & 0o077 == 0;
+    is_private.then(|| fs::read_to_string(path).ok())?
+}
+
 fn judge(found: &Metadata) -> io::Result<()> {
     if found.is_file() {
         return Ok(());
@@ -31,9 +40,28 @@ fn judge(found: &Metadata) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::Permissions;
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
     use rustix::fs::{CWD, FileType, Mode, mknodat};
 
     use super::*;
+
+    #[test]
+    fn private_file_is_for_its_owner_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("console.token");
+        crate::replace_private(&file, "secret\n").unwrap();
+        assert_eq!(read_private(&file).as_deref(), Some("secret\n"));
+        for mode in [0o640, 0o602, 0o604] {
+            fs::set_permissions(&file, Permissions::from_mode(mode)).unwrap();
+            assert_eq!(read_private(&file), None, "{mode:o}");
+        }
+        fs::set_permissions(&file, Permissions::from_mode(0o600)).unwrap();
+        let link = folder.path().join("link");
+        symlink(&file, &link).unwrap();
+        assert_eq!(read_private(&link), None);
+    }
 
     #[test]
     fn pipes_and_folders_are_refused_at_once() {

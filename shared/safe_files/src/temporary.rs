@@ -48,7 +48,8 @@ impl TemporaryFolder {
         builder.permissions(Permissions::from_mode(0o700));
         loop {
             let folder = builder.tempdir_in(parent)?;
-            let claimed = File::open(folder.path()).and_then(|it| leftovers::claim(&it).map(|()| it));
+            let claimed =
+                File::open(folder.path()).and_then(|it| leftovers::claim(&it).map(|()| it));
             match claimed {
                 Ok(claimed) => return Ok(Self { folder, _claimed: claimed }),
                 Err(error) if is_gone(&error) => {}
@@ -98,7 +99,8 @@ mod tests {
     #[test]
     fn folder_is_private_and_goes_with_its_owner() {
         let top = tempfile::tempdir().unwrap();
-        let (one, other) = (TemporaryFolder::within(top.path()), TemporaryFolder::within(top.path()));
+        let (one, other) =
+            (TemporaryFolder::within(top.path()), TemporaryFolder::within(top.path()));
         let (one, other) = (one.unwrap(), other.unwrap());
         assert_ne!(one.path(), other.path());
         assert_eq!(fs::metadata(one.path()).unwrap().mode() & 0o7777, 0o700);
