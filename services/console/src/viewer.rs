@@ -1,7 +1,6 @@
 //! A page for one shared interaction, without a group: `whichone-console view FILE`.
 
-use std::fs;
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::net::Ipv4Addr;
 use std::path::Path;
 use std::process::ExitCode;

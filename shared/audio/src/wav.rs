@@ -1,6 +1,5 @@
 //! WAV files of any usual format, read as samples at the service's rate.
 
-use std::fs::File;
 use std::io::{self, Cursor, Read as _};
 use std::path::{Path, PathBuf};
 
@@ -87,7 +86,7 @@ fn read(path: &Path) -> Result<Option<Vec<u8>>, String> {
     let unreadable = |error: io::Error| format!("cannot be read: {error}");
     let mut bytes = Vec::new();
     // Reading a device or a pipe could block forever.
-    let file = open_regular(path).map_err(unreadable)?;
+    let file = safe_files::open_regular(path).map_err(unreadable)?;
     file.take(BYTES_MAX + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     Ok((bytes.len() as u64 <= BYTES_MAX).then_some(bytes))
 }

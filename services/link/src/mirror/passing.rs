@@ -1,6 +1,7 @@
 //! The main loop of a mirror: passes the robot's states to the local topics, and local words and sound to the robot.
 
 use std::collections::VecDeque;
+use std::io::Read;
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};

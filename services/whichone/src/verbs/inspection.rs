@@ -2,11 +2,12 @@
 //! `doctor`.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::{env, fs, io};
 
 use messages::Service;
+use safe_files::TemporaryFolder;
 use serde_json::json;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;

@@ -1,6 +1,5 @@
 //! `scene`: writing, showing, checking and completing scene files.
 
-use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -100,6 +99,8 @@ fn examine(args: &ConfigArgs, scene: Option<TextFile>) -> Result<Settings, Failu
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use crate::cli::{ScenePlaceArgs, SceneShowArgs};
     use serde_json::Value as Json;
