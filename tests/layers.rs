@@ -109,3 +109,79 @@ fn command_line_uses_no_service() {
     }
     assert!(read > 50, "{read} files");
 }
+
+/// What only `safe_files` may do outside tests, with what it offers instead.
+const WRITING: [(&str, &str); 8] = [
+    ("temp_dir(", "TemporaryFolder"),
+    ("tempfile::", "TemporaryFolder, Draft"),
+    ("\"/tmp", "TemporaryFolder"),
+    ("fs::write(", "replace_private, write_output"),
+    ("File::create(", "create_private, open_lock"),
+    ("fs::rename(", "replace, Draft::replace"),
+    ("fs::copy(", "replace_private"),
+    (".truncate(true)", "create_private"),
+];
+
+/// Files that do one of these things, each with the reason.
+const WRITERS: [(&str, &str, &str); 7] = [
+    ("shared/service/src/journal_record/golden.rs", "fs::write(", "used by tests alone, in the repository"),
+    ("shared/journal/src/rotate.rs", "fs::rename(", "older journals move up; crashes between its steps are tested"),
+    ("shared/journal/src/rotate.rs", "fs::copy(", "a second name of the journal where there are no links"),
+    ("shared/recording/src/", "fs::rename(", "finished recordings get their names"),
+    ("shared/service/src/log_file.rs", "fs::rename(", "older logs move up"),
+    ("shared/service/src/journal_set.rs", "fs::rename(", "journals are set aside"),
+    ("services/", "fs::rename(", "the gateway's audit moves up, journals are put aside"),
+];
+
+/// The text without items for tests.
+fn production(text: &str) -> String {
+    let (mut kept, mut is_test) = (String::new(), false);
+    for line in text.lines() {
+        is_test |= line == "#[cfg(test)]";
+        if !is_test && !line.trim_start().starts_with("//") {
+            kept.push_str(line);
+            kept.push('\n');
+        }
+        // The end of an item.
+        is_test &= !(line == "}" || line.ends_with(';') && !line.starts_with(' '));
+    }
+    kept
+}
+
+fn sources(folder: PathBuf, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        if path.is_dir() {
+            if !["tests", "examples", "target", "safe_files"].contains(&name) {
+                sources(path, found);
+            }
+        } else if name.ends_with(".rs") && !name.ends_with("tests.rs") && name != "build.rs" {
+            found.push(path);
+        }
+    }
+}
+
+/// A name that others can guess, or a file that is written through a link, is a hole wherever another user may write.
+#[test]
+fn files_are_written_by_one_crate() {
+    let top = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+    let mut files = Vec::new();
+    ["shared", "services"].map(|folder| sources(top.join(folder), &mut files));
+    assert!(files.len() > 500, "{} files", files.len());
+    let mut problems = Vec::new();
+    let mut used = BTreeSet::new();
+    for file in files {
+        let name = file.strip_prefix(&top).unwrap().display().to_string();
+        let text = production(&std::fs::read_to_string(&file).unwrap());
+        for (what, instead) in WRITING.into_iter().filter(|(what, _)| text.contains(what)) {
+            let reason = WRITERS.iter().position(|(of, it, _)| name.starts_with(of) && *it == what);
+            match reason {
+                Some(number) => drop(used.insert(number)),
+                None => problems.push(format!("{name}: {what} (use safe_files: {instead})")),
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{problems:#?}");
+    assert_eq!(used.len(), WRITERS.len(), "exceptions that are none any more: only {used:?} are used");
+}

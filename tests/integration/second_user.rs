@@ -1,5 +1,7 @@
 //! Another user of the machine can neither read, change, reach nor block a group.
 
+mod prepared;
+
 use rustix::fs::Mode;
 use rustix::process::Signal;
 use service::folders::make_private;

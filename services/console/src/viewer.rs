@@ -1,7 +1,6 @@
 //! A page for one shared interaction, without a group: `whichone-console view FILE`.
 
-use std::fs;
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::net::Ipv4Addr;
 use std::path::Path;
 use std::process::ExitCode;
@@ -61,7 +60,9 @@ fn secret() -> Result<String, Failure> {
 
 /// Reads the file, which must hold an interaction.
 fn read(file: &Path) -> Result<String, Failure> {
-    let length = fs::metadata(file).map_err(|error| Failure::file(file, &error))?.len();
+    let failed = |error: io::Error| Failure::file(file, &error);
+    let mut opened = safe_files::open_regular(file).map_err(failed)?;
+    let length = opened.metadata().map_err(failed)?.len();
     let wrong = |found: String| {
         let help = "help: save one with the arrow in the history of the console's page";
         let expected = format!("expected an interaction, JSON with \"format\": \"{FORMAT}\"");
@@ -70,7 +71,8 @@ fn read(file: &Path) -> Result<String, Failure> {
     if length > FILE_MAX {
         return Err(wrong(format!("{length} bytes")));
     }
-    let bytes = fs::read(file).map_err(|error| Failure::file(file, &error))?;
+    let mut bytes = Vec::new();
+    opened.read_to_end(&mut bytes).map_err(failed)?;
     let text = String::from_utf8(bytes).map_err(|_| wrong("a file that is not text".to_owned()))?;
     let json: serde_json::Value =
         serde_json::from_str(&text).map_err(|error| wrong(format!("no JSON ({error})")))?;

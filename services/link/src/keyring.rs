@@ -2,8 +2,6 @@
 //! robot and person, and the router's configuration, which denies everything else.
 
 use std::fs;
-use std::io::Write;
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -279,14 +277,7 @@ pub(crate) fn storage(error: FolderError) -> Failure {
 
 /// Writes a file that only its owner can read.
 pub(crate) fn write_private(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let draft = path.with_extension("new");
-    let write = || {
-        let mut options = fs::OpenOptions::new();
-        let mut file = options.write(true).create(true).truncate(true).mode(0o600).open(&draft)?;
-        file.write_all(bytes)?;
-        fs::rename(&draft, path)
-    };
-    write().map_err(|error| Failure::file(path, &error))
+    safe_files::replace_private_synced(path, bytes).map_err(|error| Failure::file(path, &error))
 }
 
 /// Adds the port where there is none, and checks that the rest can be a host.

@@ -47,7 +47,7 @@ fn write(path: &Path, table: &PolicyTable) -> io::Result<()> {
             fs::remove_file(entry.path())?;
         }
     }
-    service::replace_file(path, bytes)
+    safe_files::replace_private(path, bytes)
 }
 
 #[cfg(test)]

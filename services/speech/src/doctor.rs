@@ -1,11 +1,12 @@
 //! Checks of recogniser, voice and microphone for `whichone doctor`.
 
-use std::env;
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
 use config::{MicrophoneMode, Recogniser, Settings, Voice};
+use safe_files::TemporaryFolder;
 use service::Span;
 use service::inspection::Finding;
 
@@ -23,30 +24,17 @@ pub(crate) fn examine(settings: &Settings) -> Vec<Finding> {
     found.into_iter().chain(second).collect()
 }
 
-/// A temporary folder for the devices. Dropping it removes the folder.
-struct Work(PathBuf);
-
-impl Work {
-    fn new(name: &str) -> Self {
-        Self(env::temp_dir().join(format!("whichone-doctor-{name}-{}", std::process::id())))
-    }
-}
-
-impl Drop for Work {
-    fn drop(&mut self) {
-        // It may not have been created at all.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 /// Opens the recogniser as the service does.
 fn recogniser(settings: &Settings) -> Finding {
     const WHAT: &str = "recogniser";
     if settings.speech.recogniser == Recogniser::None {
         return Finding::good(WHAT, "switched off (speech.recogniser)");
     }
-    let work = Work::new("recogniser");
-    let backend = Backend::of(&settings.speech, &work.0);
+    let work = match TemporaryFolder::new() {
+        Ok(work) => work,
+        Err(error) => return no_folder(WHAT, &error),
+    };
+    let backend = Backend::of(&settings.speech, work.path());
     match backend.open(&settings.scene) {
         Ok((_, unpronounceable)) if unpronounceable.is_empty() => Finding::good(
             WHAT,
@@ -65,6 +53,10 @@ fn recogniser(settings: &Settings) -> Finding {
     }
 }
 
+fn no_folder(what: &str, error: &io::Error) -> Finding {
+    Finding::poor(what, format!("not examined: no temporary folder: {error}"))
+}
+
 /// Loads the second recogniser's model as the service does.
 fn second_recogniser(model: &Path, settings: &Settings) -> Finding {
     const WHAT: &str = "second recogniser";
@@ -77,12 +69,16 @@ fn second_recogniser(model: &Path, settings: &Settings) -> Finding {
 /// Starts the voice as the service does.
 fn voice(settings: &Settings) -> Finding {
     const WHAT: &str = "voice";
-    let work = Work::new("voice");
     if settings.speech.voice == Voice::Print {
         return Finding::good(WHAT, "switched off (speech.voice)");
     }
+    let work = match TemporaryFolder::new() {
+        Ok(work) => work,
+        Err(error) => return no_folder(WHAT, &error),
+    };
     // No prompt is spoken, so no audio is cached.
-    let options = VoiceOptions { audio_dir: None, ..VoiceOptions::of(&settings.speech, &work.0) };
+    let options =
+        VoiceOptions { audio_dir: None, ..VoiceOptions::of(&settings.speech, work.path()) };
     let program = options.program.name();
     let (_voice, events) = voice::Voice::start(options);
     match events.recv() {

@@ -6,10 +6,9 @@
 //! process of the tree exists, the file cannot be locked exclusively, so a later supervisor knows
 //! for certain when the last one has ended.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io;
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd, RawFd};
-use std::path::Path;
 
 use rustix::fs::{FlockOperation, flock};
 use rustix::pipe::{PipeFlags, pipe_with};
@@ -41,11 +40,6 @@ impl Lifeline {
     }
 }
 
-/// Opens (or creates) a lock file.
-pub(crate) fn open_lock(path: &Path) -> io::Result<File> {
-    OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)
-}
-
 /// Returns true if no other process holds the lock.
 pub(crate) fn is_free(lock: &File) -> bool {
     flock(lock, FlockOperation::NonBlockingLockExclusive).is_ok()
@@ -60,9 +54,9 @@ mod tests {
     fn lifeline_is_locked_while_any_copy_of_the_descriptor_is_open() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("alive.lock");
-        let later = open_lock(&path).unwrap();
+        let later = safe_files::open_lock(&path).unwrap();
         assert!(is_free(&later));
-        let lifeline = Lifeline::new(open_lock(&path).unwrap()).unwrap();
+        let lifeline = Lifeline::new(safe_files::open_lock(&path).unwrap()).unwrap();
         assert!(!is_free(&later));
         let inherited = rustix::io::dup(lifeline.inherited()[1]).unwrap();
         drop(lifeline);

@@ -13,7 +13,7 @@ use service::control::{Request, call};
 use service::group::{ENV_GROUP, ENV_HOME, ENV_INCARNATION, GroupPaths};
 use thiserror::Error;
 
-use crate::lifeline::{is_free, open_lock};
+use crate::lifeline::is_free;
 use crate::procfs::{self, Process};
 
 /// Timeout for the end of killed processes.
@@ -49,7 +49,7 @@ fn with_pid(pid: &Option<u32>) -> String {
 pub(crate) fn take_group(paths: &GroupPaths) -> Result<File, PreviousRunError> {
     let path = paths.supervisor_lock();
     let failed = |error| PreviousRunError::Io(path.clone(), error);
-    let mut file = open_lock(&path).map_err(failed)?;
+    let mut file = safe_files::open_lock(&path).map_err(failed)?;
     let until = Instant::now() + RELEASE_PATIENCE;
     loop {
         match flock(&file, FlockOperation::NonBlockingLockExclusive) {
@@ -87,7 +87,7 @@ fn answers(paths: &GroupPaths) -> bool {
 pub(crate) fn await_end(paths: &GroupPaths, patience: Duration) -> Result<File, PreviousRunError> {
     let path = paths.alive_lock();
     let failed = |error| PreviousRunError::Io(path.clone(), error);
-    let alive = open_lock(&path).map_err(failed)?;
+    let alive = safe_files::open_lock(&path).map_err(failed)?;
     if is_free(&alive) {
         return Ok(alive);
     }

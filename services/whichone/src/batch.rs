@@ -3,7 +3,6 @@
 //! Invariant: every line that is not blank gets exactly one line of output, whatever it holds; an
 //! answer depends on its own line alone.
 
-use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 
 use serde::de::DeserializeOwned;
@@ -75,7 +74,7 @@ where
 /// There is no such file.
 pub fn open(input: &InputArgs) -> Result<Box<dyn Read>, Failure> {
     let Some(path) = &input.input else { return Ok(Box::new(io::stdin().lock())) };
-    let file = File::open(path).map_err(|error| Failure::file(path, &error))?;
+    let file = safe_files::open_regular(path).map_err(|error| Failure::file(path, &error))?;
     Ok(Box::new(file))
 }
 

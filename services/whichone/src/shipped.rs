@@ -1,10 +1,10 @@
 //! The configuration that is built in: written out on request, and where no other one is found.
 
-use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use safe_files::{OutputFolder, TemporaryFolder};
 use scene::StableHash;
 use service::exit::{Exit, Failure};
 use service::folders::make_private;
@@ -42,9 +42,9 @@ fn write_files(files: Files, folder: &Path) -> Result<usize, Failure> {
     }
     for (path, text) in files {
         let file = folder.join(path);
-        let parent = file.parent().unwrap_or(folder);
-        fs::create_dir_all(parent)
-            .and_then(|()| fs::write(&file, text))
+        let (Some(parent), Some(name)) = (file.parent(), file.file_name()) else { continue };
+        OutputFolder::open(parent)
+            .and_then(|folder| folder.write_new(name, text.as_bytes()))
             .map_err(|error| Failure::file(&file, &error))?;
     }
     Ok(files.len())
@@ -76,13 +76,13 @@ fn folder_of(files: Files, home: &Path) -> Result<Option<PathBuf>, Failure> {
     }
     make_private(home).map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
     // Whole or not at all, and once where several processes start.
-    let part = folder.with_extension(format!("{}.part", std::process::id()));
-    write_files(files, &part)?;
-    let renamed = match fs::rename(&part, &folder) {
-        Err(error) if was_first(&error) && folder.is_dir() => fs::remove_dir_all(&part),
-        other => other,
-    };
-    renamed.map_err(|error| Failure::file(&folder, &error))?;
+    let failed = |error: io::Error| Failure::file(&folder, &error);
+    let part = TemporaryFolder::within(home).map_err(failed)?;
+    write_files(files, part.path())?;
+    match part.keep_as(&folder) {
+        Err(error) if was_first(&error) && folder.is_dir() => {}
+        kept => kept.map_err(failed)?,
+    }
     Ok(Some(folder))
 }
 

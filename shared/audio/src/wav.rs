@@ -1,6 +1,5 @@
 //! WAV files of any usual format, read as samples at the service's rate.
 
-use std::fs::File;
 use std::io::{self, Cursor, Read as _};
 use std::path::{Path, PathBuf};
 
@@ -85,12 +84,9 @@ fn unsupported(what: &str) -> String {
 /// Returns the content of a file; `None` if it is too long.
 fn read(path: &Path) -> Result<Option<Vec<u8>>, String> {
     let unreadable = |error: io::Error| format!("cannot be read: {error}");
-    // Reading a device or a pipe could block forever.
-    if !path.metadata().map_err(unreadable)?.is_file() {
-        return Err("is not a regular file".to_owned());
-    }
     let mut bytes = Vec::new();
-    let file = File::open(path).map_err(unreadable)?;
+    // Reading a device or a pipe could block forever.
+    let file = safe_files::open_regular(path).map_err(unreadable)?;
     file.take(BYTES_MAX + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     Ok((bytes.len() as u64 <= BYTES_MAX).then_some(bytes))
 }

@@ -88,7 +88,7 @@ fn wav_rejects_other_and_damaged_files_by_name() {
     let path = folder.path().join("x.wav");
     let error = |path: &Path, longest_s| read_wav(path, longest_s).unwrap_err().to_string();
     assert!(error(&path, LONGEST_S).contains("x.wav cannot be read"));
-    assert!(error(folder.path(), LONGEST_S).contains("not a regular file"));
+    assert!(error(folder.path(), LONGEST_S).contains("expected a regular file, found a folder"));
     let (_ramp, ramp) = written(spec(1, RATE_HZ, 16, SampleFormat::Int));
     let whole = fs::read(ramp).unwrap();
     let truncated_headers = (0..44).map(|len| &whole[..len]);

@@ -1,6 +1,6 @@
 //! The files that settings name: the scene and the robot's description.
 
-use std::fs::{self, File, Metadata};
+use std::fs;
 use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
@@ -138,23 +138,15 @@ pub fn read_file(path: &Path) -> io::Result<String> {
 }
 
 fn read_bounded(path: &Path, bytes_max: u64) -> io::Result<String> {
-    // Before it is opened: opening a pipe waits for a writer.
-    judge(&fs::metadata(path)?, bytes_max)?;
-    let file = File::open(path)?;
-    judge(&file.metadata()?, bytes_max)?;
+    let file = safe_files::open_regular(path)?;
+    let bytes = file.metadata()?.len();
+    if bytes > bytes_max {
+        return Err(too_large(bytes, bytes_max));
+    }
     let mut text = String::new();
     // It may grow meanwhile.
     let bytes = file.take(bytes_max + 1).read_to_string(&mut text)? as u64;
     if bytes > bytes_max { Err(too_large(bytes, bytes_max)) } else { Ok(text) }
-}
-
-fn judge(file: &Metadata, bytes_max: u64) -> io::Result<()> {
-    if !file.is_file() {
-        let found = if file.is_dir() { "a folder" } else { "a pipe, socket or device" };
-        let what = format!("expected a regular file, found {found}");
-        return Err(io::Error::new(ErrorKind::InvalidData, what));
-    }
-    if file.len() > bytes_max { Err(too_large(file.len(), bytes_max)) } else { Ok(()) }
 }
 
 fn too_large(bytes: u64, bytes_max: u64) -> io::Error {

@@ -59,7 +59,7 @@ impl Settings {
     /// The folder cannot be written.
     pub fn write_snapshot(&self, run_dir: &Path) -> io::Result<()> {
         let text = format!("{HEADER}{}", self.snapshot());
-        journal::replace_file(&run_dir.join(SNAPSHOT_FILE), text)
+        safe_files::replace_private(&run_dir.join(SNAPSHOT_FILE), text)
     }
 
     /// Writes the scene's key (16 hexadecimal digits) and its words into a group's run folder, each on a line of its
@@ -73,7 +73,7 @@ impl Settings {
             text += word;
             text.push('\n');
         }
-        journal::replace_file(&run_dir.join(WORDS_FILE), text)
+        safe_files::replace_private(&run_dir.join(WORDS_FILE), text)
     }
 
     /// Reads the snapshot in a group's run folder, checked as the files were but for the arm's

@@ -1,7 +1,7 @@
 //! The journal on disk: open, append, sync, rotate, read.
 
-use std::fs::{self, File, OpenOptions};
-use std::io;
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
@@ -200,12 +200,14 @@ pub fn inspect(path: &Path) -> Result<Inspection, JournalOpenError> {
 fn load(path: &Path) -> Result<Vec<u8>, JournalOpenError> {
     let failed = |error: io::Error| match error.kind() {
         io::ErrorKind::NotFound => JournalOpenError::Missing,
+        io::ErrorKind::InvalidData => JournalOpenError::NotAJournal,
         _ => JournalOpenError::io("read the journal")(error),
     };
-    if !fs::metadata(path).map_err(failed)?.is_file() {
-        return Err(JournalOpenError::NotAJournal);
-    }
-    fs::read(path).map_err(failed)
+    let mut bytes = Vec::new();
+    safe_files::open_regular(path)
+        .and_then(|mut file| file.read_to_end(&mut bytes))
+        .map_err(failed)?;
+    Ok(bytes)
 }
 
 fn create<R: Serialize>(

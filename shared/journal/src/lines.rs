@@ -107,7 +107,7 @@ mod tests {
         lines.append("four\n").unwrap();
         let files = read_folder(path.parent().unwrap(), "jsonl").unwrap();
         assert_eq!(files, [(path.clone(), "one\ntwo\nfour\n".to_owned())]);
-        crate::replace_file_synced(&path, "gone\n").unwrap();
+        safe_files::replace_private(&path, "gone\n").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "gone\n");
         assert_eq!(read_folder(path.parent().unwrap(), "jsonl").unwrap().len(), 1);
     }

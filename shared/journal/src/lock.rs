@@ -1,7 +1,7 @@
 //! One writer per journal: a lock on a file beside it, held for life. The journal itself cannot
 //! carry the lock because a rotation puts another file in its place.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::{File, TryLockError};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -16,13 +16,7 @@ pub(crate) struct Lock {
 impl Lock {
     pub(crate) fn take(path: &Path) -> Result<Self, JournalOpenError> {
         let io = JournalOpenError::io;
-        let mut file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(lock_path(path))
-            .map_err(io("open the lock file"))?;
+        let mut file = safe_files::open_lock(&lock_path(path)).map_err(io("open the lock file"))?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {

@@ -92,7 +92,8 @@ pub(crate) fn beside(path: &Path, suffix: &str) -> PathBuf {
 }
 
 fn write_new(new: &Path, bytes: &[u8]) -> io::Result<File> {
-    let mut file = File::create(new)?;
+    absent_is_fine(fs::remove_file(new))?;
+    let mut file = File::create_new(new)?;
     file.write_all(bytes)?;
     file.sync_all()?;
     Ok(file)

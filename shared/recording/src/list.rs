@@ -1,7 +1,7 @@
 //! The recordings of a folder.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
@@ -117,7 +117,7 @@ impl Entry {
 
 /// The statistics at the end of a complete file.
 fn statistics(path: &Path) -> Option<Statistics> {
-    let mut file = File::open(path).ok()?;
+    let mut file = safe_files::open_regular(path).ok()?;
     let size = file.metadata().ok()?.len();
     let options = SummaryReaderOptions::default().with_file_size(size);
     let mut reader = SummaryReader::new_with_options(options);

@@ -116,7 +116,7 @@ pub(crate) fn each_record(
     path: &Path,
     mut take: impl FnMut(Record<'_>) -> Result<(), RecordingError>,
 ) -> Result<End, RecordingError> {
-    let file = File::open(path).map_err(RecordingError::io(path))?;
+    let file = safe_files::open_regular(path).map_err(RecordingError::io(path))?;
     let mut file = BufReader::new(file);
     let read_options = LinearReaderOptions::default()
         .with_skip_end_magic(true)

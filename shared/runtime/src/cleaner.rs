@@ -82,7 +82,7 @@ impl Cleaner {
     /// # Errors
     /// The lock's file cannot be written, or there is no thread.
     pub(crate) fn start(lock: PathBuf, config: Config) -> io::Result<Self> {
-        let file = File::create(&lock)?;
+        let file = safe_files::open_lock(&lock)?;
         let (begun, ended) = (Mutex::default(), Condvar::default());
         let lock = Arc::new(CleanupLock { path: lock, file, begun, ended });
         let (requests, inbox) = mpsc::channel();

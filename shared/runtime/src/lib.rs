@@ -10,7 +10,7 @@ pub mod client;
 pub mod clock;
 pub mod epoch;
 pub mod exit;
-pub mod folders;
+pub use safe_files::folders;
 pub mod group;
 pub mod lifecycle;
 pub mod notify;

@@ -115,7 +115,7 @@ impl Lifecycle {
             signal_hook::low_level::pipe::register(signal, writer)
                 .map_err(failed("signal handler"))?;
         }
-        let alive = File::create(paths.alive_lock()).map_err(failed("alive.lock"))?;
+        let alive = safe_files::open_lock(&paths.alive_lock()).map_err(failed("alive.lock"))?;
         flock(&alive, FlockOperation::NonBlockingLockShared)
             .map_err(|e| failed("alive.lock")(e.into()))?;
         let lifeline = lifeline().map_err(failed("lifeline"))?;

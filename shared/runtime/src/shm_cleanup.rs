@@ -174,9 +174,7 @@ pub fn create_place(paths: &GroupPaths) -> io::Result<ShmName> {
         }
     };
     // Complete as soon as it is there: clients may look for it at any time.
-    let draft = paths.shm_name_file().with_extension("new");
-    fs::write(&draft, place.prefix())?;
-    fs::rename(&draft, paths.shm_name_file())?;
+    safe_files::replace_private(&paths.shm_name_file(), place.prefix())?;
     Ok(place)
 }
 

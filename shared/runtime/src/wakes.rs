@@ -33,9 +33,7 @@ impl Wakes {
     pub fn save(&self, paths: &GroupPaths) -> io::Result<()> {
         let lines = self.0.iter().map(|(topic, service)| format!("{} {topic}\n", service.name()));
         // Complete as soon as it is there.
-        let draft = paths.wakes_file().with_extension("new");
-        fs::write(&draft, lines.collect::<String>())?;
-        fs::rename(&draft, paths.wakes_file())
+        safe_files::replace_private(&paths.wakes_file(), lines.collect::<String>())
     }
 
     /// Returns the services that are woken by the topic.

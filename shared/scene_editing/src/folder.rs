@@ -1,12 +1,12 @@
 //! The scene files of a configuration: read and replaced by their names, and nothing outside the folder.
 
-use std::ffi::OsString;
-use std::fs::{self, File, Permissions};
+use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 use diagnostics::TextFile;
+use safe_files::{Draft, Readers};
 use scene::StableHash;
 use thiserror::Error;
 
@@ -133,35 +133,18 @@ impl ScenesFolder {
         // A new file may be read by those who may read the folder.
         let folder = || fs::metadata(&self.0).map_or(0o700, |folder| folder.permissions().mode());
         let mode = mode.unwrap_or_else(|| folder() & 0o666);
-        let mut new = OsString::from(".");
-        new.push(name);
-        new.push(".new");
-        let new = self.0.join(new);
-        let written = write_synced(&new, text, mode).and_then(|()| match known {
-            Some(_) => fs::rename(&new, &path),
-            // Another program may have made it meanwhile: that one stays.
-            None => fs::hard_link(&new, &path).and_then(|()| fs::remove_file(&new)),
-        });
-        written.map_err(|error| {
-            let _ = fs::remove_file(&new);
-            match error.kind() {
-                ErrorKind::AlreadyExists => FileError::Exists(name.to_owned()),
-                _ => FileError::Io(path, error),
-            }
+        let write = || {
+            let mut draft = Draft::of(&path, Readers::Mode(mode))?;
+            draft.write_all(text.as_bytes())?;
+            draft.sync()?;
+            // Another program may have made a new one meanwhile: that one stays.
+            if known.is_some() { draft.replace() } else { draft.put_if_absent() }
+        };
+        write().map_err(|error| match error.kind() {
+            ErrorKind::AlreadyExists => FileError::Exists(name.to_owned()),
+            _ => FileError::Io(path, error),
         })
     }
-}
-
-fn write_synced(path: &Path, text: &str, mode: u32) -> io::Result<()> {
-    // What a crash has left.
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
-        _ => {}
-    }
-    let mut file = File::create_new(path)?;
-    file.write_all(text.as_bytes())?;
-    file.set_permissions(Permissions::from_mode(mode & 0o777))?;
-    file.sync_all()
 }
 
 fn is_name(name: &str) -> bool {
@@ -173,6 +156,7 @@ fn is_name(name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::Permissions;
     use std::os::unix::fs::symlink;
 
     use super::*;

@@ -1,10 +1,11 @@
 //! The console's address for the group's owner: the token in a file that only the owner can read, and
 //! the link that carries it.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
-use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
-use std::path::{Path, PathBuf};
+use std::fs;
+use std::io;
+use std::path::PathBuf;
+
+use safe_files::read_private;
 
 use crate::group::GroupPaths;
 
@@ -63,88 +64,9 @@ pub fn random_secret() -> io::Result<String> {
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// Reads a file of this user that no other user can read or change; none otherwise.
-pub fn read_private(path: &Path) -> Option<String> {
-    let file = fs::symlink_metadata(path).ok()?;
-    let is_own = file.uid() == rustix::process::geteuid().as_raw();
-    let is_private = file.is_file() && is_own && file.mode() & 0o077 == 0;
-    is_private.then(|| fs::read_to_string(path).ok())?
-}
-
-/// Replaces the content of a file that only this user can read; readers see the old or the new one, and the old
-/// one stays where the new one cannot be written.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn replace_private(path: &Path, content: &str) -> io::Result<()> {
-    replace(path, content, File::flush)
-}
-
-/// As [`replace_private`], and the new content is on the disk before the file is replaced.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn replace_private_synced(path: &Path, content: &str) -> io::Result<()> {
-    replace(path, content, |file| file.sync_all())
-}
-
-fn replace(
-    path: &Path,
-    content: &str,
-    finish: impl FnOnce(&mut File) -> io::Result<()>,
-) -> io::Result<()> {
-    // Beside it, by a name that belongs to no other file.
-    let mut new = path.as_os_str().to_owned();
-    new.push(".new");
-    let new = Path::new(&new);
-    // Never into a file, or through a link, that another has put there.
-    match fs::remove_file(new) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-        _ => {}
-    }
-    let mut file = OpenOptions::new().write(true).create_new(true).mode(0o600).open(new)?;
-    let written = file.write_all(content.as_bytes()).and_then(|()| finish(&mut file));
-    written.and_then(|()| fs::rename(new, path)).inspect_err(|_| {
-        // What a full disk has left of it.
-        let _ = fs::remove_file(new);
-    })
-}
-
 #[cfg(test)]
 mod tests {
-    use std::os::unix::fs::{PermissionsExt, symlink};
-
     use super::*;
-
-    #[test]
-    fn private_file_is_for_its_owner_alone() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("console.token");
-        fs::write(folder.path().join("console.token.new"), "left behind").unwrap();
-        replace_private_synced(&file, "secret\n").unwrap();
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-        assert_eq!(fs::metadata(&file).unwrap().mode() & 0o777, 0o600);
-        assert_eq!(read_private(&file).as_deref(), Some("secret\n"));
-        for mode in [0o640, 0o602, 0o604] {
-            fs::set_permissions(&file, fs::Permissions::from_mode(mode)).unwrap();
-            assert_eq!(read_private(&file), None, "{mode:o}");
-        }
-        fs::set_permissions(&file, fs::Permissions::from_mode(0o600)).unwrap();
-        let link = folder.path().join("link");
-        symlink(&file, &link).unwrap();
-        assert_eq!(read_private(&link), None);
-    }
-
-    #[test]
-    fn failed_replacement_leaves_the_old_file_and_nothing_else() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("console.token");
-        replace_private(&file, "secret").unwrap();
-        let full = |_: &mut File| Err(io::ErrorKind::StorageFull.into());
-        assert_eq!(replace(&file, "new", full).unwrap_err().kind(), io::ErrorKind::StorageFull);
-        assert_eq!(read_private(&file).as_deref(), Some("secret"));
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    }
 
     #[test]
     fn link_carries_the_token() {
@@ -154,7 +76,7 @@ mod tests {
         assert_eq!(link(&paths), None, "no page is served");
         fs::write(paths.console_url(), "http://127.0.0.1:8377/\n").unwrap();
         assert_eq!(link(&paths).as_deref(), Some("http://127.0.0.1:8377/"));
-        replace_private(&token_file(&paths), "correct-horse\nmore\n").unwrap();
+        safe_files::replace_private(&token_file(&paths), "correct-horse\nmore\n").unwrap();
         let link = link(&paths);
         assert_eq!(link.as_deref(), Some("http://127.0.0.1:8377/?token=correct-horse"));
     }

@@ -8,7 +8,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Time, clock, replace_file};
+use crate::{Time, clock};
 
 /// Change of the offset that is noted: the clock was set, the machine slept or was restarted, ns.
 const CHANGE_NS: u64 = 1_000_000_000;
@@ -58,7 +58,7 @@ impl JournalClock {
         let oldest = entries.len().saturating_sub(ENTRIES_MAX);
         let lines = entries[oldest..].iter().filter_map(|entry| serde_json::to_string(entry).ok());
         let text: String = lines.map(|line| line + "\n").collect();
-        if let Err(error) = replace_file(&self.file, text) {
+        if let Err(error) = safe_files::replace_private(&self.file, text) {
             tracing::debug!(%error, file = %self.file.display(), "wall time not noted");
         }
     }

@@ -19,7 +19,7 @@ mod agreement;
 pub use agreement::{Behind, agree, check_agreement};
 
 use std::collections::BTreeMap;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::os::unix::fs::DirBuilderExt;
 use std::path::{Path, PathBuf};
@@ -119,7 +119,7 @@ impl JournalSet {
     /// The file cannot be written.
     pub fn save(&self, paths: &GroupPaths) -> io::Result<()> {
         let line = serde_json::to_string(self)?;
-        journal::replace_file_synced(&paths.epoch_file(), epoch::with_checksum(&line))
+        safe_files::replace_private_synced(&paths.epoch_file(), epoch::with_checksum(&line))
     }
 
     /// Returns every journal that cannot be used.
@@ -239,7 +239,7 @@ fn patiently<T>(
 
 /// Locks the set for a change; each takes milliseconds.
 fn lock(paths: &GroupPaths) -> io::Result<File> {
-    let file = open_lock(&paths.epoch_lock())?;
+    let file = safe_files::open_lock(&paths.epoch_lock())?;
     let until = clock::now() + LOCK_PATIENCE;
     loop {
         match flock(&file, FlockOperation::NonBlockingLockExclusive) {
@@ -249,10 +249,6 @@ fn lock(paths: &GroupPaths) -> io::Result<File> {
             locked => return locked.map(|()| file).map_err(io::Error::from),
         }
     }
-}
-
-fn open_lock(path: &Path) -> io::Result<File> {
-    OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)
 }
 
 /// Moves the journals of these services into a folder of their own, with their older parts, and lets
@@ -290,7 +286,7 @@ pub fn set_aside(paths: &GroupPaths, services: &[Service]) -> Result<Option<Path
 
 /// Takes a lock that a running group holds.
 fn lock_idle(paths: &GroupPaths, path: &Path) -> Result<File, Failure> {
-    let file = open_lock(path).map_err(|error| Failure::file(path, &error))?;
+    let file = safe_files::open_lock(path).map_err(|error| Failure::file(path, &error))?;
     flock(&file, FlockOperation::NonBlockingLockExclusive).map_err(|_| {
         let what = format!("group {} is running; help: `whichone down` first", paths.name());
         Failure::new(Exit::NotReached, what)

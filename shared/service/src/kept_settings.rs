@@ -77,7 +77,7 @@ pub fn note_checked(paths: &GroupPaths, settings: &Settings) {
     if fs::read_to_string(&file).is_ok_and(|noted| noted == own) {
         return;
     }
-    if let Err(error) = fs::write(file, own) {
+    if let Err(error) = safe_files::replace_private(&file, own) {
         tracing::debug!(%error, "settings not noted as checked; the next start checks them again");
     }
 }

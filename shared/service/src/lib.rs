@@ -74,7 +74,6 @@ pub mod view;
 pub mod wall_time;
 pub mod worker_channel;
 
-pub use journal::{replace_file, replace_file_synced};
 pub use reducer::{Effects, Event, Never, Node, NodeError, SetAside};
 pub use runtime::{Span, Time};
 pub use runtime::{

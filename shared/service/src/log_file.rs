@@ -90,10 +90,9 @@ pub fn size(path: &Path) -> u64 {
 fn copy_end(path: &Path, bytes: u64, bytes_max: u64) -> io::Result<()> {
     let mut log = File::open(path)?;
     log.seek(SeekFrom::Start(bytes.saturating_sub(bytes_max)))?;
-    let mut kept = OpenOptions::new();
-    let kept = kept.write(true).create(true).truncate(true).mode(PRIVATE);
-    io::copy(&mut log.take(bytes_max), &mut kept.open(numbered(path, 1))?)?;
-    Ok(())
+    let mut kept = safe_files::Draft::of(&numbered(path, 1), safe_files::Readers::Owner)?;
+    io::copy(&mut log.take(bytes_max), &mut kept)?;
+    kept.replace()
 }
 
 /// Makes room for a new `.1`: every older one moves one up, the oldest goes.

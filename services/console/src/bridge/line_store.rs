@@ -47,7 +47,7 @@ impl LineStore {
         // Every line can be written.
         let lines = lines.filter_map(|line| serde_json::to_string(line).ok());
         let text: String = lines.map(|line| line + "\n").collect();
-        if let Err(error) = journal::replace_file(&self.path, text) {
+        if let Err(error) = safe_files::replace_private(&self.path, text) {
             tracing::debug!(%error, file = %self.path.display(), "not stored");
         }
     }

@@ -8,9 +8,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use axum::http::{HeaderMap, header};
-use service::console_link::{
-    is_token, random_secret, read_private, replace_private, replace_private_synced,
-};
+use safe_files::{read_private, replace_private, replace_private_synced};
+use service::console_link::{is_token, random_secret};
 
 /// Most sessions; the oldest gives way.
 const SESSIONS_MAX: usize = 64;
@@ -57,7 +56,7 @@ impl Access {
                     tracing::warn!(file = %file.display(), "other users could read the token, or it is none: replaced");
                 }
                 let token = random_secret()?;
-                replace_private_synced(file, &format!("{token}\n"))?;
+                replace_private_synced(file, format!("{token}\n"))?;
                 token
             }
         };

@@ -104,7 +104,7 @@ impl Web {
             tracing::warn!(%wanted, taken = %address, "the configured port is not free; another one is used");
         }
         tracing::info!(url, "the page is served");
-        if let Err(error) = journal::replace_file(&self.url_file, format!("{url}\n")) {
+        if let Err(error) = safe_files::replace_private(&self.url_file, format!("{url}\n")) {
             tracing::warn!(%error, "the page's address is not written");
         }
         let app = Arc::clone(&self.app);

@@ -43,7 +43,7 @@ impl Files {
     pub(super) fn replace(&mut self, id: &str, entries: &[Entry]) -> io::Result<()> {
         self.open.take_if(|(known, _)| *known == id);
         let text: String = entries.iter().map(Entry::to_line).collect();
-        journal::replace_file_synced(&self.path(id), &text)
+        safe_files::replace_private_synced(&self.path(id), &text)
     }
 
     fn path(&self, id: &str) -> PathBuf {

@@ -115,7 +115,7 @@ fn carry_out(verb: Verb) -> Result<(), Failure> {
             let options = Options { folder, groups, keys, listen, address };
             serve(&options, |address| {
                 let path = options.folder.join(ADDRESS);
-                std::fs::write(&path, format!("{address}\n"))
+                safe_files::replace_private(&path, format!("{address}\n"))
                     .map_err(|error| Failure::file(&path, &error))?;
                 print(&format!("{address}/\n"))
             })

@@ -2,8 +2,6 @@
 //! with a console on a port of its own.
 
 use std::collections::BTreeMap;
-use std::fs::OpenOptions;
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -129,9 +127,8 @@ impl Mirrors {
     fn launch(&self, robot: &Name) -> Result<Child, Failure> {
         let program = program_of(Service::Link.name());
         let path = self.home.join(format!("{robot}.log"));
-        let mut options = OpenOptions::new();
-        let log = options.create(true).write(true).truncate(true).mode(0o600).open(&path);
-        let log = log.map_err(|error| Failure::file(&path, &error))?;
+        let log =
+            safe_files::create_private(&path).map_err(|error| Failure::file(&path, &error))?;
         let mut command = Command::new(&program);
         command.args(["--mirror", robot.as_str(), "--group", robot.as_str()]);
         command.args(["--listen", "127.0.0.1:0", "--keys"]).arg(&self.keys);

@@ -5,8 +5,9 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use safe_files::{read_private, replace_private_synced};
 use serde::{Deserialize, Serialize};
-use service::console_link::{is_token, random_secret, read_private, replace_private_synced};
+use service::console_link::{is_token, random_secret};
 use service::exit::{Exit, Failure};
 use sha2::{Digest, Sha256};
 
@@ -108,7 +109,7 @@ impl People {
     fn save(&self, path: &Path) -> Result<(), Failure> {
         let text = toml::to_string(self)
             .map_err(|error| Failure::new(Exit::Invariant, error.to_string()))?;
-        replace_private_synced(path, &format!("{HEAD}{text}"))
+        replace_private_synced(path, format!("{HEAD}{text}"))
             .map_err(|error| Failure::file(path, &error))
     }
 

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use safe_files::{read_private, replace_private};
 use serde::{Deserialize, Serialize};
-use service::console_link::{random_secret, read_private, replace_private};
+use service::console_link::random_secret;
 
 use super::people::{People, hash};
 use crate::names::Name;

@@ -1,6 +1,6 @@
 //! The local group: its folders, shared memory and settings.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -37,8 +37,7 @@ pub(super) fn hold(paths: &GroupPaths, robot: &Name) -> Result<File, Failure> {
     make_root(paths.root()).map_err(storage)?;
     let path = paths.supervisor_lock();
     let failed = |error: std::io::Error| Failure::file(&path, &error);
-    let mut options = OpenOptions::new();
-    let mut lock = options.write(true).create(true).truncate(false).open(&path).map_err(failed)?;
+    let mut lock = safe_files::open_lock(&path).map_err(failed)?;
     if flock(&lock, FlockOperation::NonBlockingLockExclusive).is_err() {
         let what =
             format!("group {group} is already running; help: choose another name: --group {robot}");
@@ -46,7 +45,7 @@ pub(super) fn hold(paths: &GroupPaths, robot: &Name) -> Result<File, Failure> {
     }
     lock.set_len(0).map_err(failed)?;
     writeln!(lock, "{}", std::process::id()).map_err(failed)?;
-    fs::write(&mark, format!("{robot}\n")).map_err(|error| Failure::file(&mark, &error))?;
+    safe_files::replace_private(&mark, format!("{robot}\n")).map_err(|error| Failure::file(&mark, &error))?;
     Ok(lock)
 }
 
@@ -100,7 +99,7 @@ impl Local {
         // Readers believe a service's start only while the supervisor's socket for it is there.
         for service in Service::DIALOGUE {
             let socket = paths.notify_socket(service.name(), INCARNATION.0);
-            File::create(&socket).map_err(stored(socket.clone()))?;
+            safe_files::create_private(&socket).map_err(stored(socket.clone()))?;
         }
         tracing::info!(robot = %options.robot, group = %paths.name(), "mirrored");
         Ok(Self { paths: paths.clone(), epoch, admin: Some(admin) })

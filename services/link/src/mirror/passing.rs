@@ -1,6 +1,7 @@
 //! The main loop of a mirror: passes the robot's states to the local topics, and local words and sound to the robot.
 
 use std::collections::VecDeque;
+use std::io::Read;
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -315,10 +316,8 @@ impl<'a> Passing<'a> {
                 "the robot's voice is unintelligible; help: install the same version on both machines"
             );
         };
-        // Whole as soon as it is there.
-        let (draft, path) = (folder.join("draft"), folder.join(file.to_string()));
-        let written = std::fs::write(&draft, sound).and_then(|()| std::fs::rename(&draft, &path));
-        if let Err(error) = written {
+        let path = folder.join(file.to_string());
+        if let Err(error) = safe_files::replace_private(&path, sound) {
             tracing::warn!(%file, %error, "the sound of a line is not kept");
         }
         self.note_line(file);
@@ -428,7 +427,8 @@ impl<'a> Passing<'a> {
 
 fn contents(path: &Path) -> Result<Vec<u8>, String> {
     let failed = |error: std::io::Error| format!("{}: {error}", path.display());
-    let bytes = path.metadata().map_err(failed)?.len();
+    let mut file = safe_files::open_regular(path).map_err(failed)?;
+    let bytes = file.metadata().map_err(failed)?.len();
     if bytes > FILE_BYTES_MAX {
         let (mib, most) = (bytes >> 20, FILE_BYTES_MAX >> 20);
         return Err(format!(
@@ -436,5 +436,7 @@ fn contents(path: &Path) -> Result<Vec<u8>, String> {
             path.display()
         ));
     }
-    std::fs::read(path).map_err(failed)
+    let mut contents = Vec::new();
+    file.read_to_end(&mut contents).map_err(failed)?;
+    Ok(contents)
 }

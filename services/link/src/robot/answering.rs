@@ -96,7 +96,7 @@ impl Robot {
             Sent::File(contents) => {
                 let file = sound_file(&self.paths.run(), said.key);
                 if !self.asked.waits_for(said.key) {
-                    let written = std::fs::write(&file, contents);
+                    let written = safe_files::replace_private(&file, contents);
                     written
                         .inspect_err(|error| tracing::warn!(%error, "sound not written"))
                         .ok()?;

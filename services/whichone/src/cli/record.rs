@@ -37,7 +37,7 @@ pub struct OpenArgs {
     /// Name of the recording, as `record list` prints it, or its beginning [default: the newest].
     #[arg(value_name = "NAME")]
     pub name: Option<String>,
-    /// Copy it to this file [default, where a copy is needed: its name in the folder of temporary files].
+    /// Copy it to this file [default, where a copy is needed: the folder `opened` of the group].
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }

@@ -163,7 +163,7 @@ impl Reported {
     fn remember(self, paths: &GroupPaths) -> Result<(), Failure> {
         let path = paths.run().join(AWAITED);
         let Self { interaction, utterance } = self;
-        std::fs::write(&path, format!("{interaction} {utterance}\n"))
+        safe_files::replace_private(&path, format!("{interaction} {utterance}\n"))
             .map_err(|error| Failure::file(&path, &error))
     }
 }

@@ -3,8 +3,9 @@
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use safe_files::{replace_private, replace_private_synced};
 use serde::Serialize;
-use service::console_link::{self, random_secret, replace_private, replace_private_synced};
+use service::console_link::{self, random_secret};
 use service::control::Request;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -57,7 +58,7 @@ fn renew(paths: &GroupPaths) -> Result<(), Failure> {
     operate::status_of(paths)?;
     let file = console_link::token_file(paths);
     let written =
-        random_secret().and_then(|token| replace_private_synced(&file, &format!("{token}\n")));
+        random_secret().and_then(|token| replace_private_synced(&file, format!("{token}\n")));
     written.map_err(|error| {
         let what = format!("{}: {error}; the former token stays", file.display());
         Failure::new(Exit::Storage, what)

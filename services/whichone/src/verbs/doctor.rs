@@ -10,7 +10,7 @@ use config::Settings;
 use messages::{SUPERVISOR, Service};
 use service::console_link;
 use service::exit::{Exit, Failure};
-use service::group::{GroupName, GroupPaths};
+use service::group::{GroupName, GroupPaths, SHM};
 use service::inspection::{Condition, Finding};
 use service::launch;
 use service::shm_cleanup;
@@ -52,9 +52,9 @@ pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>
 
 /// Checks the devices of the speech service by its own program.
 fn devices(settings: &Settings) -> Result<Vec<Finding>, Failure> {
-    let snapshot = inspection::Settings::write(settings)?;
+    let snapshot = inspection::snapshot(settings)?;
     let mut command = inspection::command(Service::Speech.name(), "doctor");
-    command.arg("--settings").arg(snapshot.folder()).stderr(Stdio::inherit());
+    command.arg("--settings").arg(snapshot.path()).stderr(Stdio::inherit());
     let Ok(output) = command.output() else { return Ok(Vec::new()) };
     let lines = output.stdout.split(|&byte| byte == b'\n');
     Ok(lines.filter_map(|line| serde_json::from_slice(line).ok()).collect())
@@ -113,9 +113,7 @@ fn page(paths: &GroupPaths, settings: &Settings) -> Finding {
 fn folder(paths: &GroupPaths) -> Finding {
     const WHAT: &str = "groups' folder";
     let home = paths.home();
-    let probe = home.join(format!(".doctor-{}", std::process::id()));
-    let written = fs::create_dir_all(home).and_then(|()| fs::write(&probe, "x"));
-    match written.and_then(|()| fs::remove_file(&probe)) {
+    match fs::create_dir_all(home).and_then(|()| safe_files::probe(home)) {
         Ok(()) => Finding::good(WHAT, home.display().to_string()),
         Err(error) => {
             let help = "help: make it writable, or set WHICHONE_HOME to another folder";
@@ -130,12 +128,9 @@ fn shared_memory(settings: Option<&Settings>) -> Finding {
     if let Err(error) = shm_cleanup::check_room(needed.into()) {
         return Finding::bad(WHAT, error.to_string());
     }
-    let probe = Path::new("/dev/shm").join(format!("whichone-doctor-{}", std::process::id()));
-    match fs::write(&probe, "x").and_then(|()| fs::remove_file(&probe)) {
+    match safe_files::probe(Path::new(SHM)) {
         Ok(()) => Finding::good(WHAT, format!("more than {needed} MiB are free")),
-        Err(error) => {
-            Finding::bad(WHAT, format!("/dev/shm: {error}; mount a writable tmpfs there"))
-        }
+        Err(error) => Finding::bad(WHAT, format!("{SHM}: {error}; mount a writable tmpfs there")),
     }
 }
 

@@ -1,7 +1,9 @@
 //! `init`: the shipped configuration, to be edited. `man`: pages for `man`.
 
 use std::path::Path;
+use std::{fs, io};
 
+use safe_files::{OutputFolder, TemporaryFolder};
 use serde_json::json;
 use service::exit::{Exit, Failure};
 
@@ -27,11 +29,19 @@ pub(super) fn init(folder: &Path, out: &mut Output<'_>) -> Outcome {
 
 /// Writes a page for `man` per verb into a folder.
 pub(super) fn man(folder: &Path, out: &mut Output<'_>) -> Outcome {
-    std::fs::create_dir_all(folder)
-        .and_then(|()| clap_mangen::generate_to(Cli::definition(), folder))
-        .map_err(|error| Failure::file(folder, &error))?;
+    write_pages(folder).map_err(|error| Failure::file(folder, &error))?;
     if !out.is_json() {
         out.line(format_args!("{}: read them with `man -l`", folder.display()))?;
     }
     Ok(Exit::Ok)
+}
+
+fn write_pages(folder: &Path) -> io::Result<()> {
+    let (folder, drafts) = (OutputFolder::open(folder)?, TemporaryFolder::new()?);
+    clap_mangen::generate_to(Cli::definition(), drafts.path())?;
+    for page in fs::read_dir(drafts.path())? {
+        let page = page?;
+        folder.write(page.file_name(), &fs::read(page.path())?)?;
+    }
+    Ok(())
 }

@@ -2,11 +2,12 @@
 //! `doctor`.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::{env, fs, io};
 
 use messages::Service;
+use safe_files::TemporaryFolder;
 use serde_json::json;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -152,30 +153,13 @@ fn configured(paths: &GroupPaths, service: Service) -> Option<Vec<String>> {
     services.find(|it| it.name == service.name())?.command
 }
 
-/// A snapshot of settings in a temporary folder.
-#[derive(Debug)]
-pub(super) struct Settings(PathBuf);
-
-impl Settings {
-    /// Writes the snapshot.
-    pub(super) fn write(settings: &config::Settings) -> Result<Self, Failure> {
-        let folder = env::temp_dir().join(format!("whichone-settings-{}", std::process::id()));
-        let written = fs::create_dir_all(&folder).and_then(|()| settings.write_snapshot(&folder));
-        written.map_err(|error| Failure::file(&folder, &error))?;
-        Ok(Self(folder))
-    }
-
-    /// The folder that holds the snapshot.
-    pub(super) fn folder(&self) -> &Path {
-        &self.0
-    }
-}
-
-impl Drop for Settings {
-    fn drop(&mut self) {
-        // A leftover in the folder for temporary files does no harm.
-        let _ = fs::remove_dir_all(&self.0);
-    }
+/// Writes a snapshot of settings into a temporary folder.
+pub(super) fn snapshot(settings: &config::Settings) -> Result<TemporaryFolder, Failure> {
+    let written = TemporaryFolder::new()
+        .and_then(|folder| settings.write_snapshot(folder.path()).map(|()| folder));
+    written.map_err(|error| {
+        Failure::new(Exit::Storage, format!("temporary folder for the settings: {error}"))
+    })
 }
 
 /// The command line of a service's program with an inspection verb.

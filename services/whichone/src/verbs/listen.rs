@@ -40,7 +40,7 @@ pub(super) fn listen(paths: &GroupPaths, args: &ListenArgs, out: &mut Output<'_>
         return stream(paths, args, from_samples(samples), out);
     }
     let absolute = args.file.canonicalize().map_err(|error| Failure::file(&args.file, &error))?;
-    std::fs::File::open(&absolute).map_err(|error| Failure::file(&args.file, &error))?;
+    safe_files::open_regular(&absolute).map_err(|error| Failure::file(&args.file, &error))?;
     let path = absolute.into_os_string().into_string().map_err(|path| {
         let what = format!("{}: the path is not UTF-8; rename the file", path.display());
         Failure::new(Exit::Usage, what)

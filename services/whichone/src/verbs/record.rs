@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io::ErrorKind;
+use std::path::PathBuf;
 
 use messages::Service;
 use recording::list::{Entry, State, entries};
@@ -10,6 +11,7 @@ use recording::{EXTENSION, RecordingError};
 use serde_json::json;
 use service::control::Request;
 use service::exit::{Exit, Failure};
+use service::folders::make_private;
 use service::group::GroupPaths;
 
 use super::{operate, words};
@@ -20,6 +22,9 @@ use crate::output::{Output, note, table};
 /// How a recording is looked at.
 const HOW_TO_OPEN: &str = "open it in Foxglove or Lichtblick with the layout \
                            docs/recording-layout.json; docs/recording.md has other tools";
+
+/// Folder of the group for the copy that `record open` has made last.
+const COPIES: &str = "opened";
 
 /// Executes `record`.
 pub(super) fn record(paths: &GroupPaths, verb: RecordVerb, out: &mut Output<'_>) -> Outcome {
@@ -81,13 +86,14 @@ fn open(paths: &GroupPaths, args: &OpenArgs, out: &mut Output<'_>) -> Outcome {
             format!("{what}; help: `whichone record list`"),
         ));
     };
-    let copy = args.out.clone();
-    let copy = copy.or_else(|| {
-        let own = std::env::temp_dir().join(format!("{}.{EXTENSION}", name(&entry)));
-        // A former copy of the same recording has less of it.
-        let is_open = matches!(entry.state(), State::BeingWritten | State::Incomplete);
-        is_open.then(|| fs::remove_file(&own)).map(|_| own)
-    });
+    let copy = match (&args.out, entry.state()) {
+        (Some(path), _) => {
+            safe_files::check_new_output(path).map_err(|error| Failure::file(path, &error))?;
+            Some(path.clone())
+        }
+        (None, State::BeingWritten | State::Incomplete) => Some(place_of_copy(paths, &entry)?),
+        (None, _) => None,
+    };
     let path = match copy {
         None => entry.path,
         Some(path) => {
@@ -101,6 +107,17 @@ fn open(paths: &GroupPaths, args: &OpenArgs, out: &mut Output<'_>) -> Outcome {
     }
     note(HOW_TO_OPEN);
     Ok(Exit::Ok)
+}
+
+/// Where a recording is copied to that is not complete. Former copies, which have less of it, are removed.
+fn place_of_copy(paths: &GroupPaths, entry: &Entry) -> Result<PathBuf, Failure> {
+    let folder = paths.root().join(COPIES);
+    make_private(&folder).map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
+    for former in fs::read_dir(&folder).into_iter().flatten().flatten() {
+        // One that stays takes space.
+        let _ = fs::remove_file(former.path());
+    }
+    Ok(folder.join(format!("{}.{EXTENSION}", name(entry))))
 }
 
 /// The name without its end.

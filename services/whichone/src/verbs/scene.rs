@@ -1,6 +1,5 @@
 //! `scene`: writing, showing, checking and completing scene files.
 
-use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -53,15 +52,15 @@ fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
     let mut edit = SceneEdit::parse(&label, &text)?;
     let placed = place::places(&mut edit, &label, &args.config)?;
     load(&args.config, TextFile::new(&*label, edit.text()))??;
-    let file = fs::File::create_new(&path).map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => {
-            let what = format!("{label}: there is a file already; help: choose another name");
-            Failure::new(Exit::Usage, what)
+    safe_files::write_new_output(&path, edit.text().as_bytes()).map_err(|error| {
+        match error.kind() {
+            ErrorKind::AlreadyExists => {
+                let what = format!("{label}: there is a file already; help: choose another name");
+                Failure::new(Exit::Usage, what)
+            }
+            _ => Failure::file(&path, &error),
         }
-        _ => Failure::file(&path, &error),
     })?;
-    std::io::Write::write_all(&mut &file, edit.text().as_bytes())
-        .map_err(|error| Failure::file(&path, &error))?;
     if out.is_json() {
         out.json(&json!({ "file": path, "objects": placed.len() }))?;
     } else {
@@ -100,6 +99,8 @@ fn examine(args: &ConfigArgs, scene: Option<TextFile>) -> Result<Settings, Failu
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use crate::cli::{ScenePlaceArgs, SceneShowArgs};
     use serde_json::Value as Json;

@@ -1,10 +1,11 @@
 //! `whichone study`: simulated users for every policy, in threads, with tables, files and plots.
 
 use std::num::NonZeroUsize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use evaluation::simulation::Tally;
+use safe_files::OutputFolder;
 use service::exit::{Exit, Failure};
 
 use crate::Outcome;
@@ -30,18 +31,17 @@ use setup::Setup;
 pub(super) fn study(args: &StudyArgs, out: &mut Output<'_>) -> Outcome {
     let setup = Setup::new(args)?;
     let rows = design::rows(args, setup.planner())?;
-    if let Some(folder) = &args.out {
-        std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, &error))?;
-    }
+    // Before hours of work.
+    let folder = args.out.as_deref().map(Files::open).transpose()?;
     let results: Vec<(&Row, Tally)> = rows.iter().zip(conduct(args, &setup, &rows)).collect();
-    if let Some(folder) = &args.out {
-        write(folder, "study.csv", report::to_csv(&results).as_bytes())?;
+    if let Some(files) = &folder {
+        files.write("study.csv", report::to_csv(&results).as_bytes())?;
         let json = report::to_json(args, &setup, &results);
-        write(folder, "study.json", format!("{json:#}\n").as_bytes())?;
+        files.write("study.json", format!("{json:#}\n").as_bytes())?;
         for (name, bytes) in plot::pictures(&results)? {
-            write(folder, &name, &bytes)?;
+            files.write(&name, &bytes)?;
         }
-        note(format_args!("written to {}", folder.display()));
+        note(format_args!("written to {}", files.path.display()));
     }
     if out.is_json() {
         out.json(&report::to_json(args, &setup, &results))?;
@@ -69,8 +69,20 @@ fn conduct(args: &StudyArgs, setup: &Setup, rows: &[Row]) -> Vec<Tally> {
     tallies
 }
 
-/// Writes a file of the study.
-fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-    let path = folder.join(name);
-    std::fs::write(&path, bytes).map_err(|error| Failure::file(&path, &error))
+/// The files of a study, in the folder that the user has named.
+struct Files {
+    path: PathBuf,
+    folder: OutputFolder,
+}
+
+impl Files {
+    fn open(path: &Path) -> Result<Self, Failure> {
+        let folder = OutputFolder::open(path).map_err(|error| Failure::file(path, &error))?;
+        Ok(Self { path: path.to_owned(), folder })
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        let written = self.folder.write(name, bytes);
+        written.map_err(|error| Failure::file(&self.path.join(name), &error))
+    }
 }

@@ -37,7 +37,7 @@ pub(super) struct Flight {
 impl Flight {
     pub(super) fn open(path: &Path) -> Result<Self, Failure> {
         let failed = |error: io::Error| Failure::file(path, &error);
-        let mut file = BufReader::new(File::open(path).map_err(failed)?);
+        let mut file = BufReader::new(safe_files::open_regular(path).map_err(failed)?);
         let mut start = [0; MAGIC.len() + 4];
         let read = read_up_to(&mut file, &mut start).map_err(failed)?;
         let marked = read.min(MAGIC.len());

@@ -86,7 +86,8 @@ impl Ring {
 /// The file is no flight, or cannot be written.
 pub fn pack(path: &Path) -> Result<(), Failure> {
     let bytes = file_of(&Flight::open(path)?.content()?);
-    let written = bytes.and_then(|bytes| journal::replace_file(path, bytes));
+    let written =
+        bytes.and_then(|bytes| safe_files::replace(path, bytes, safe_files::Readers::AsBefore));
     written.map_err(|error| Failure::file(path, &error))
 }
 

@@ -65,7 +65,8 @@ impl Opener {
 
     fn open(&self, passes: Passes) -> Result<Decoder, RecogniserUnavailable> {
         let (library, log) = (library(&self.library)?, self.log(passes));
-        fs::write(&log, "").map_err(|error| RecogniserUnavailable::unwritable(&log, &error))?;
+        safe_files::create_private(&log)
+            .map_err(|error| RecogniserUnavailable::unwritable(&log, &error))?;
         Decoder::open(library, &self.files, passes, &log)
             .ok_or_else(|| RecogniserUnavailable::rejected(&last_errors(&log)))
     }

@@ -106,7 +106,7 @@ fn mark(origin: u64, contents: u64) -> String {
 }
 
 fn write(folder: &Path, file: &Path, text: &str) -> Result<(), RecogniserUnavailable> {
-    let written = fs::create_dir_all(folder).and_then(|()| fs::write(file, text));
+    let written = fs::create_dir_all(folder).and_then(|()| safe_files::replace_private(file, text));
     written.map_err(|error| RecogniserUnavailable::unwritable(file, &error))
 }
 

@@ -38,9 +38,7 @@ impl PromptAudioCache {
     /// Stores the audio of a prompt, atomically.
     pub(super) fn store(&mut self, name: SoundFile, sound: &Path) -> io::Result<()> {
         let file = self.folder.join(name.to_string());
-        let part = file.with_extension("part");
-        fs::copy(sound, &part)?;
-        fs::rename(&part, &file)?;
+        safe_files::replace_private(&file, fs::read(sound)?)?;
         self.files.retain(|known| *known != file);
         self.files.push_back(file);
         while self.files.len() > CACHED_MAX {

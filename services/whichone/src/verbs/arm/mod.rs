@@ -170,5 +170,5 @@ fn samples(pick: &Pick<'_>, hz: f64) -> Json {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    std::fs::write(path, bytes).map_err(|error| Failure::file(path, &error))
+    safe_files::write_output(path, bytes).map_err(|error| Failure::file(path, &error))
 }

@@ -1,15 +1,14 @@
 //! A group of its own for the service under test: folder, shared memory and settings as a supervisor makes them,
 //! and no other process.
 
-use std::fs::File;
 use std::os::fd::{AsRawFd, OwnedFd, RawFd};
 use std::path::{Path, PathBuf};
-use std::process;
 
 use config::Settings;
 use messages::{Epoch, Incarnation, Service, Topic, topics};
 use rustix::io::FdFlags;
 use rustix::pipe::{PipeFlags, pipe_with};
+use safe_files::TemporaryFolder;
 use service::bus::{Bus, Identity, RawReader};
 use service::exit::{Exit, Failure};
 use service::folders::{make_private, make_root};
@@ -34,6 +33,8 @@ pub(super) struct Bench {
     /// Every topic, as whoever writes it has filled it.
     watched: Vec<Watched>,
     admin: Option<Admin>,
+    /// Holds everything; removed last.
+    _home: TemporaryFolder,
 }
 
 /// A topic that is read whoever writes it.
@@ -53,17 +54,18 @@ pub(super) struct Written {
 impl Bench {
     /// Makes the group.
     pub(super) fn new(settings: Settings, service: &str) -> Result<Self, Failure> {
-        let home = std::env::temp_dir().join(format!("whichone-conform-{}", process::id()));
+        let home = TemporaryFolder::new().map_err(|error| {
+            Failure::new(Exit::Storage, format!("temporary folder for the group: {error}"))
+        })?;
         let name = GroupName::new("conform")?;
-        let paths = GroupPaths::in_home(&home, &name)?;
+        let paths = GroupPaths::in_home(home.path(), &name)?;
         let failed = |error: std::io::Error| Failure::file(paths.root(), &error);
         let private = |folder: &Path| {
             make_private(folder).map_err(|error| Failure::new(Exit::Storage, error.to_string()))
         };
-        private(&home)?;
         make_root(paths.root()).map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
         [paths.run(), paths.log(), paths.journal()].iter().try_for_each(|it| private(it))?;
-        File::create(paths.alive_lock()).map_err(failed)?;
+        safe_files::open_lock(&paths.alive_lock()).map_err(failed)?;
         JournalSet::new(EPOCH.0).save(&paths).map_err(failed)?;
         kept_settings::put_in_force(&paths, &settings).map_err(failed)?;
         let admin = Admin::open(&paths, EPOCH)?;
@@ -78,6 +80,7 @@ impl Bench {
             admin: Some(admin),
             settings,
             paths,
+            _home: home,
         };
         let bus = bench.bus("watcher", EPOCH)?;
         bench.watched = topics::ALL
@@ -138,6 +141,5 @@ impl Drop for Bench {
         self.watched.clear();
         self.admin = None;
         remove_leftovers(&self.paths);
-        let _ = std::fs::remove_dir_all(self.paths.home());
     }
 }

@@ -41,6 +41,7 @@ pub(super) fn export(
         None => paths()?.recordings(),
     };
     fs::metadata(source).map_err(|error| Failure::file(source, &error))?;
+    safe_files::check_new_output(to).map_err(|error| Failure::file(to, &error))?;
     let (journals, flights) = (journals_in(source), flights_in(source)?);
     let (messages, noun) = if !flights.is_empty() {
         (steps(&flights, to)?, "step")

@@ -42,7 +42,7 @@ pub(super) fn export(args: &PomdpArgs, out: &mut Output<'_>) -> Outcome {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text).map_err(|error| Failure::file(path, &error))
+    safe_files::write_output(path, text.as_bytes()).map_err(|error| Failure::file(path, &error))
 }
 
 fn comment(scene: &str) -> String {

@@ -28,7 +28,8 @@ pub(super) fn place(args: &ScenePlaceArgs, out: &mut Output<'_>) -> Outcome {
     let text = edit.text();
     let checked = load(&args.config, TextFile::new(&*file.label, &*text))?;
     if args.write && !placed.is_empty() {
-        journal::replace_file(&path, &text).map_err(|error| Failure::file(&path, &error))?;
+        safe_files::write_output(&path, text.as_bytes())
+            .map_err(|error| Failure::file(&path, &error))?;
     }
     if out.is_json() {
         let moved: Vec<Json> = (placed.iter())

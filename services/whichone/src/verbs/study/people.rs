@@ -7,7 +7,7 @@ use evaluation::user_study::{Group, Paired, Participant, Report};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
-use super::write;
+use super::Files;
 use crate::Outcome;
 use crate::cli::ReportArgs;
 use crate::output::{Output, note, table};
@@ -53,21 +53,20 @@ fn read(folder: &Path) -> Result<Vec<Participant>, Failure> {
 }
 
 fn export(folder: &Path, people: &[Participant], report: &Report) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, &error))?;
+    let files = Files::open(folder)?;
     let tables = evaluation::user_study::tables(people);
-    write(folder, "interactions.csv", tables.interactions.as_bytes())?;
-    write(folder, "participants.csv", tables.participants.as_bytes())?;
-    write(folder, "dictionary.csv", tables.dictionary.as_bytes())?;
-    write(
-        folder,
+    files.write("interactions.csv", tables.interactions.as_bytes())?;
+    files.write("participants.csv", tables.participants.as_bytes())?;
+    files.write("dictionary.csv", tables.dictionary.as_bytes())?;
+    files.write(
         "study.json",
         format!("{:#}\n", evaluation::user_study::to_json(people)).as_bytes(),
     )?;
-    write(folder, "report.json", format!("{:#}\n", report.to_json()).as_bytes())?;
+    files.write("report.json", format!("{:#}\n", report.to_json()).as_bytes())?;
     for (name, chart) in evaluation::user_study::pictures(report) {
-        let files = evaluation::charts::files(name, &chart)
+        let charts = evaluation::charts::files(name, &chart)
             .map_err(|error| Failure::new(Exit::Storage, format!("{name}: {error}")))?;
-        files.iter().try_for_each(|(name, bytes)| write(folder, name, bytes))?;
+        charts.iter().try_for_each(|(name, bytes)| files.write(name, bytes))?;
     }
     Ok(())
 }

@@ -34,8 +34,8 @@ pub enum FolderError {
     },
     /// Any user can rename what lies in it.
     #[error(
-        "{}: any user can replace folders in it; help: `chmod o-w` it, or set WHICHONE_HOME to \
-         another folder",
+        "{}: any user can replace folders in it; help: `chmod o-w` it, or set WHICHONE_HOME (for \
+         temporary files TMPDIR) to another folder",
         .0.display()
     )]
     Open(PathBuf),
@@ -70,7 +70,11 @@ pub fn make_private(folder: &Path) -> Result<(), FolderError> {
 /// As [`make_private`]; or the folder above it is open to others.
 pub fn make_root(root: &Path) -> Result<(), FolderError> {
     make_private(root)?;
-    let Some(home) = root.parent() else { return Ok(()) };
+    root.parent().map_or(Ok(()), check_parent)
+}
+
+/// Checks that no other user can replace what this user has in a folder.
+pub(crate) fn check_parent(home: &Path) -> Result<(), FolderError> {
     let found = fs::metadata(home).map_err(|error| FolderError::Io(home.to_owned(), error))?;
     let own = geteuid().as_raw();
     if found.uid() != own && found.uid() != 0 {

@@ -1,0 +1,27 @@
+//! Files and temporary folders that no other user of the machine can prepare, redirect or block.
+//!
+//! The only crate that replaces files or uses the system's folders for temporary files: names of new files are random
+//! and must not exist, and what a crash leaves is removed by the next writer of the same file.
+//!
+//! | contents | file |
+//! |---|---|
+//! | folders that only their owner can enter | `folders.rs` |
+//! | temporary folders | `temporary.rs` |
+//! | atomic replacement of files | `draft.rs` |
+//! | files and folders that a user names for output | `output.rs` |
+//! | opening of regular files for reading | `regular.rs` |
+
+mod draft;
+pub mod folders;
+mod leftovers;
+mod output;
+mod regular;
+mod temporary;
+
+pub use draft::{
+    Draft, Readers, create_private, open_lock, probe, replace, replace_private,
+    replace_private_synced,
+};
+pub use output::{OutputFolder, check_new_output, write_new_output, write_output};
+pub use regular::{open_regular, read_private};
+pub use temporary::TemporaryFolder;
