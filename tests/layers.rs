@@ -124,9 +124,21 @@ const WRITING: [(&str, &str); 8] = [
 
 /// Files that do one of these things, each with the reason.
 const WRITERS: [(&str, &str, &str); 7] = [
-    ("shared/service/src/journal_record/golden.rs", "fs::write(", "used by tests alone, in the repository"),
-    ("shared/journal/src/rotate.rs", "fs::rename(", "older journals move up; crashes between its steps are tested"),
-    ("shared/journal/src/rotate.rs", "fs::copy(", "a second name of the journal where there are no links"),
+    (
+        "shared/service/src/journal_record/golden.rs",
+        "fs::write(",
+        "used by tests alone, in the repository",
+    ),
+    (
+        "shared/journal/src/rotate.rs",
+        "fs::rename(",
+        "older journals move up; crashes between its steps are tested",
+    ),
+    (
+        "shared/journal/src/rotate.rs",
+        "fs::copy(",
+        "a second name of the journal where there are no links",
+    ),
     ("shared/recording/src/", "fs::rename(", "finished recordings get their names"),
     ("shared/service/src/log_file.rs", "fs::rename(", "older logs move up"),
     ("shared/service/src/journal_set.rs", "fs::rename(", "journals are set aside"),
@@ -183,5 +195,9 @@ fn files_are_written_by_one_crate() {
         }
     }
     assert!(problems.is_empty(), "{problems:#?}");
-    assert_eq!(used.len(), WRITERS.len(), "exceptions that are none any more: only {used:?} are used");
+    assert_eq!(
+        used.len(),
+        WRITERS.len(),
+        "exceptions that are none any more: only {used:?} are used"
+    );
 }

@@ -1,6 +1,8 @@
 //! Every way to stop the arm in every state of the group: a stop that was accepted is followed by a latch, and
 //! nothing moves after "stopped" was shown or said.
 
+#![allow(clippy::print_stdout, reason = "the pairs that were tried, for the log")]
+
 use messages::MotionOrder;
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::{Value as Json, json};

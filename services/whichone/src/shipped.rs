@@ -100,6 +100,7 @@ pub(crate) fn is_built_in(folder: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     const TWO: Files = &[("group.toml", "scene = 'x'"), ("scenes/x.toml", "name = 'x'")];
 

@@ -45,7 +45,8 @@ pub(super) fn hold(paths: &GroupPaths, robot: &Name) -> Result<File, Failure> {
     }
     lock.set_len(0).map_err(failed)?;
     writeln!(lock, "{}", std::process::id()).map_err(failed)?;
-    safe_files::replace_private(&mark, format!("{robot}\n")).map_err(|error| Failure::file(&mark, &error))?;
+    safe_files::replace_private(&mark, format!("{robot}\n"))
+        .map_err(|error| Failure::file(&mark, &error))?;
     Ok(lock)
 }
 

@@ -146,7 +146,7 @@ fn journal_set_aside_is_kept_and_its_numbers_are_over() {
 fn journal_is_not_set_aside_under_a_running_group() {
     let lab = Lab::new();
     for path in [lab.paths.supervisor_lock(), lab.paths.alive_lock()] {
-        let lock = open_lock(&path).unwrap();
+        let lock = safe_files::open_lock(&path).unwrap();
         flock(&lock, FlockOperation::LockShared).unwrap();
         let failure = set_aside(&lab.paths, &[Service::Arm]).unwrap_err();
         assert!(failure.to_string().contains("`whichone down` first"), "{failure}");
