@@ -118,6 +118,7 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
+    use std::fs;
 
     fn read_as_file(content: &str) -> Result<String, String> {
         let folder = tempfile::tempdir().unwrap();

@@ -90,7 +90,11 @@ fn forge(group: &mut Group, input: &mut Input<'_>) {
             }
         }
         _ => {
-            let order = if input.byte().is_multiple_of(2) { MotionOrder::Stop } else { MotionOrder::Resume };
+            let order = if input.byte().is_multiple_of(2) {
+                MotionOrder::Stop
+            } else {
+                MotionOrder::Resume
+            };
             group.order(order, u64::from_le_bytes(input.array()));
         }
     }
