@@ -9,7 +9,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use config::Settings;
+use messages::{PickOutcome, PickPhase};
 use scene::ObjectId;
+use service::Span;
 use whichone_tests::settings;
 use whichone_tests::simulated_group::{Fault, Faults, SimulatedGroup};
 
@@ -57,6 +59,36 @@ fn willing_user_gets_every_object_on_a_bad_day() {
         .filter_map(|seed| run(&settings, seed).err())
         .collect();
     assert!(failed.is_empty(), "{} seeds failed; the first:\n{}", failed.len(), failed[0]);
+}
+
+/// Called off at any moment of the fetch, the object is left, goes back, or was let go of before; whoever
+/// asks for it again gets it.
+#[test]
+fn what_is_called_off_on_a_bad_day_stays_unless_the_gripper_had_opened() {
+    // A fetch of about two seconds.
+    let settings = settings(&[("arm.time_scale", "5.0")]);
+    let (mut left, mut returned, mut delivered) = (0, 0, 0);
+    for seed in crate::seeds(SEEDS) {
+        let wanted = wanted(seed);
+        let after = Span::from_ms(100 * (seed % 20));
+        let faults = Faults::bad_day(seed);
+        let mut group = SimulatedGroup::with_client(settings.clone(), &wanted, false, faults)
+            .calling_off(after);
+        group.run();
+        if let Err(broken) = checkers::check(&group, &wanted.map(ObjectId::from)) {
+            panic!("seed {seed}: {broken}\n{}", group.story());
+        }
+        let picks = group.arm.iter().flat_map(|arm| arm.journal()).filter_map(|it| it.state.pick);
+        let first: Vec<_> = picks.take_while(|pick| pick.id.interaction.0 == 1).collect();
+        let goes_back = first.iter().any(|pick| pick.phase == PickPhase::Returning);
+        match first.last().map(|pick| pick.outcome) {
+            Some(PickOutcome::Delivered) => delivered += 1,
+            _ if goes_back => returned += 1,
+            _ => left += 1,
+        }
+    }
+    let counts = format!("{left} left, {returned} returned, {delivered} delivered");
+    assert!(number("WHICHONE_SEED").is_some() || left.min(returned).min(delivered) > 0, "{counts}");
 }
 
 #[test]

@@ -18,6 +18,7 @@ pub(crate) fn check(group: &SimulatedGroup, wanted: &[ObjectId]) -> Verdict {
         delivered_in_order(group, wanted)?;
         deliveries_are_picks(group)?;
         put_back_once(group)?;
+        called_off_stays(group)?;
     } else {
         delivered_the_right_one(group)?;
         picked_once(group)?;
@@ -46,6 +47,11 @@ fn delivered_in_order(group: &SimulatedGroup, wanted: &[ObjectId]) -> Verdict {
             ends.push(ended);
         }
     }
+    let is_left = |ended: &&Ended| ended.outcome == Outcome::Cancelled;
+    let (left, ends): (Vec<&Ended>, Vec<&Ended>) = ends.into_iter().partition(is_left);
+    let mut ends = ends;
+    let known = group.client.as_ref().map_or(0, |client| client.left as usize);
+    ensure(known <= left.len() && left.len() <= 1, || format!("left {left:?}, known {known}"))?;
     let given_up = group.client.as_ref().map_or(0, |client| client.given_up);
     ensure(given_up == 0, || format!("a user who could answer was given up {given_up} times"))?;
     ends.retain(|ended| ended.outcome != Outcome::Abandoned);
@@ -75,6 +81,19 @@ fn deliveries_are_picks(group: &SimulatedGroup) -> Verdict {
         ensure(held <= 1, || format!("{pick:?} was held {held} times"))?;
     }
     Ok(())
+}
+
+/// What the arm knew to be called off was not handed over (I5).
+fn called_off_stays(group: &SimulatedGroup) -> Verdict {
+    let Some(arm) = &group.arm else { return Err("no arm".to_owned()) };
+    let picks: Vec<_> = arm.journal().iter().filter_map(|r| r.state.pick).collect();
+    let is_called_off = |pick: &messages::pick::Pick| {
+        let mut of_it = picks.iter().filter(|other| other.id == pick.id);
+        of_it.any(|other| other.phase == PickPhase::Returning)
+    };
+    let mut delivered = picks.iter().filter(|pick| pick.outcome == PickOutcome::Delivered);
+    let wrong = delivered.find(|pick| is_called_off(pick));
+    ensure(wrong.is_none(), || format!("{wrong:?} was called off"))
 }
 
 /// What was refused after its delivery is back in its place, put there once; nothing else was, and no

@@ -172,7 +172,7 @@ fn read_line(case: &mut Case, word: &str, rest: &str, place: &str) {
         ("afresh", _) => Action::SayAfresh(text),
         ("meanwhile", _) => Action::SayDuringFetch(text),
         ("arriving", _) => Action::SayBeforeOpening(text),
-        ("late", _) => Action::SayBeforeHandOver(text),
+        ("late", _) => Action::SayWhileOpening(text),
         ("wants", _) => Action::Want(text),
         ("silence", "") => Action::Silence,
         ("stop", "") => Action::StopMotion,

@@ -85,7 +85,7 @@ impl<'a> Person<'a> {
             let due = match step.map(|step| &step.action) {
                 Some(Action::SayDuringFetch(text)) => Some((text, announced())),
                 Some(Action::SayBeforeOpening(text)) => Some((text, is_within(ARRIVING_S))),
-                Some(Action::SayBeforeHandOver(text)) => Some((text, is_within(OPENING_S))),
+                Some(Action::SayWhileOpening(text)) => Some((text, is_within(OPENING_S))),
                 _ => None,
             };
             if let Some((text, is_due)) = due {
@@ -112,7 +112,7 @@ impl<'a> Person<'a> {
             | Action::AnswerUntilDelivered
             | Action::SayDuringFetch(_)
             | Action::SayBeforeOpening(_)
-            | Action::SayBeforeHandOver(_)
+            | Action::SayWhileOpening(_)
             | Action::Want(_) => self.answer(now, seen),
             Action::Say(text) | Action::SayAfresh(text) => {
                 Some(self.perform(now, seen, Some(text.clone())))

@@ -21,7 +21,8 @@ pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
             Task::Fetch => format!("pick {interaction}.{attempt} of {object}"),
             Task::PutBack => format!("putting back {object} ({interaction}.{attempt})"),
         };
-        format!("{what}: {}", progress(pick))
+        let opens = state.is_letting_go() && pick.phase == PickPhase::Holding;
+        format!("{what}: {}", if opens { "letting go of it" } else { progress(pick) })
     });
     let held =
         state.held.as_ref().map(|held| format!(", {} in the gripper", name(scene, held.object)));

@@ -41,6 +41,12 @@ pub struct Client {
     regret: Option<Regret>,
     /// Objects that the robot has said to have put back.
     pub put_back: u32,
+    /// How long after it is announced the person calls the first fetch off, if they do.
+    pub(super) calls_off: Option<Span>,
+    /// When that fetch was announced.
+    announced: Option<Time>,
+    /// Fetches that the robot has left for the person's word.
+    pub left: u32,
 }
 
 /// How far a person has come who has what was delivered put back.
@@ -78,6 +84,9 @@ impl Client {
             regrets,
             regret: None,
             put_back: 0,
+            calls_off: None,
+            announced: None,
+            left: 0,
         }
     }
 
@@ -173,6 +182,7 @@ impl Client {
                     self.wanted.pop_front();
                     self.regret = std::mem::take(&mut self.regrets).then_some(Regret::Felt);
                 }
+                Outcome::Cancelled => self.left += 1,
                 _ => self.given_up += u32::from(self.could_answer),
             }
             if let Some(wanted) = self.wanted.front().cloned() {
@@ -180,6 +190,10 @@ impl Client {
             }
             return Some(format!("user: learns of {:?}, {:?}", ended.outcome, ended.name));
         }
+        if self.calls_off_now(now) {
+            return Some("user: never mind".to_owned());
+        }
+        let process = self.process.as_mut()?;
         self.could_answer |= now.since(process.quiet_since) >= TIME_TO_ANSWER;
         let answer = process.user.answer(&process.latest)?;
         process.say(&answer, now);
@@ -188,6 +202,23 @@ impl Client {
 }
 
 impl Client {
+    /// Calls the first fetch off when its time has come.
+    fn calls_off_now(&mut self, now: Time) -> bool {
+        let (Some(after), Some(process)) = (self.calls_off, &mut self.process) else {
+            return false;
+        };
+        let view = process.latest.view.as_ref();
+        if view.is_none_or(|view| view.decision != ActKind::Pick) {
+            return false;
+        }
+        let is_due = now >= *self.announced.get_or_insert(now) + after;
+        if is_due {
+            self.calls_off = None;
+            process.say("never mind", now);
+        }
+        is_due
+    }
+
     /// Has what was delivered put back, and waits until it is.
     fn regret(&mut self, now: Time) -> Option<String> {
         const WISH: &str = "put it back";

@@ -205,6 +205,15 @@ impl SimulatedGroup {
         Self { client: Some(client), ..group }
     }
 
+    /// The user at the terminal calls the first fetch off, so long after it was announced.
+    #[must_use]
+    pub fn calling_off(mut self, after: Span) -> Self {
+        if let Some(client) = &mut self.client {
+            client.calls_off = Some(after);
+        }
+        self
+    }
+
     /// The log of the dialogue.
     pub fn story(&self) -> String {
         self.story.join("\n")

@@ -156,8 +156,13 @@ impl Assembler {
     }
 
     fn on_arm(&mut self, at: At, record: ArmRecord) {
-        let ArmRecord { cause, pick, .. } = record;
+        let ArmRecord { cause, pick, offered, .. } = record;
         let Some(mut pick) = pick.filter(|pick| is_shown(cause, pick)) else { return };
+        // The gripper opens for the user: the end of the pick tells of it.
+        let opens = pick.phase == PickPhase::Holding && offered.is_some();
+        if cause == ArmCause::Phase && opens {
+            return;
+        }
         let Some(begun) = self.recent.get_mut(&pick.interaction) else { return };
         // The arm knows perceived objects by their numbers; the policy has named the order's object.
         if let Some(name) = begun.interaction.ordered(pick.attempt) {
