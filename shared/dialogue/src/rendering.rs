@@ -29,14 +29,14 @@ pub fn text(scene: &Scene, act: &Act) -> String {
         }
         Content::Fetching(object) => fetching(object, &act.line.preface),
         Content::HeldBack(object) => {
-            format!("The motion stop is on. Shall I get the {object} once you resume?")
+            format!("I stay stopped until you resume. Shall I get the {object} then?")
         }
         Content::AskToRelease(object) => format!("Say yes, and I will get the {object}."),
         Content::PuttingBack(object) => {
             format!("I will put the {object} back. Please hold it between my fingers.")
         }
         Content::PutBackHeldBack(object) => {
-            format!("The motion stop is on. Shall I put the {object} back once you resume?")
+            format!("I stay stopped until you resume. Shall I put the {object} back then?")
         }
         Content::AskToPutBack(object) => format!("Say yes, and I will put the {object} back."),
         Content::PutBackEnded(object, outcome) => put_back_ended(object, *outcome),

@@ -21,7 +21,7 @@ fn a_pick_while_stopped_is_announced_and_not_ordered() {
     let mut manager = manager();
     let state = stopped(&mut manager, &["clear"]);
     assert_eq!((state.act.kind, state.act.pick), (ActKind::Say, None));
-    assert_eq!(text(&state), "The motion stop is on. Shall I get the clear bowl once you resume?");
+    assert_eq!(text(&state), "I stay stopped until you resume. Shall I get the clear bowl then?");
     let resumed = resume(&mut manager, &state);
     assert_eq!((resumed.act.kind, resumed.act.pick), (ActKind::Say, None), "{}", text(&resumed));
     let confirmed = reply(&mut manager, &resumed, answer(Response::Yes));

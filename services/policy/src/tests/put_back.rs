@@ -184,7 +184,7 @@ fn while_stopped_it_waits_for_a_yes_and_the_release() {
     let stopped = stop(&mut manager, &end, true);
     let held_back = remark(&mut manager, &stopped, wish(&[]));
     assert_eq!((held_back.act.kind, held_back.ordered()), (ActKind::Say, None));
-    assert!(text(&held_back).ends_with("Shall I put the clear bowl back once you resume?"));
+    assert!(text(&held_back).ends_with("Shall I put the clear bowl back then?"));
     let yes = reply(&mut manager, &held_back, answer(Response::Yes));
     assert_eq!((text(&yes).as_str(), yes.ordered()), ("All right, once you resume.", None));
     assert_eq!(stop(&mut manager, &yes, false).act.kind, ActKind::PutBack);
