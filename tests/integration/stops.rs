@@ -52,8 +52,13 @@ fn kill_into_backoff(group: &Group) {
         wait_for("the arm's service", 20.0, || {
             (group.service("arm")["actual"] == "ready").then_some(())
         });
+        let killed = group.incarnation("arm");
         group.signal("arm", Signal::KILL);
-        wait_for("its end", 20.0, || (group.service("arm")["actual"] != "ready").then_some(()));
+        wait_for("its end", 20.0, || {
+            let arm = group.service("arm");
+            let is_other = arm["incarnation"].as_u64() > Some(killed);
+            (is_other || arm["actual"] != "ready").then_some(())
+        });
     }
 }
 

@@ -42,7 +42,7 @@ impl Place {
         fs::create_dir(place.own("")).unwrap();
         // Others may enter and look: what a link of theirs leads to is known.
         fs::set_permissions(place.own(""), Permissions::from_mode(0o755)).unwrap();
-        for name in ["file", "study.csv", "group.toml", "picture.svg"] {
+        for name in ["file", "study.csv", "picture.svg"] {
             fs::write(place.own(name), PRECIOUS).unwrap();
         }
         place.before = place.contents();
@@ -72,7 +72,10 @@ impl Place {
         assert_eq!(self.contents(), self.before, "{what}");
         for entry in fs::read_dir(self.shared("")).unwrap() {
             let entry = entry.unwrap();
-            assert_eq!(entry.metadata().unwrap().uid(), OTHER_USER, "{what}: {:?}", entry.path());
+            // Sound servers and the like leave files, too.
+            let is_ours = entry.file_name().to_string_lossy().contains("whichone");
+            let owner = entry.metadata().unwrap().uid();
+            assert!(!is_ours || owner == OTHER_USER, "{what}: {:?}", entry.path());
         }
     }
 
@@ -213,7 +216,7 @@ fn pipes_hold_no_verb_that_reads_a_file() {
     let [plain, sound, flights, config] = [&plain, &sound, &flights, &config].map(|it| text(it));
     let [toml, urdf] = ["pipe.toml", "pipe.urdf"].map(|name| text(&place.shared(name)));
     let written = text(&place.own("written.mcap"));
-    let verbs: [&[&str]; 17] = [
+    let verbs: [&[&str]; 16] = [
         &["listen", &sound],
         &["listen", "--live", &sound],
         &["replay", &plain],
@@ -223,7 +226,6 @@ fn pipes_hold_no_verb_that_reads_a_file() {
         &["export", "pomdp", &toml],
         &["belief", "--input", &plain],
         &["ground", "--scene", &toml],
-        &["ground", "--scene", "bowls", "--calibrate", &plain],
         &["fk", "--tip", "x", "--robot", &urdf],
         &["scene", "check", &toml],
         &["scene", "show", &toml],
@@ -235,7 +237,9 @@ fn pipes_hold_no_verb_that_reads_a_file() {
     for words in verbs {
         let ended = place.run(words);
         assert!(ended.code != Some(0), "{words:?}: {ended:?}");
-        assert!(ended.stderr.contains("pipe"), "{words:?}: {ended:?}");
+        // A pipe among the flights of a folder is none of them.
+        let why = if words.contains(&flights.as_str()) { &flights } else { "pipe" };
+        assert!(ended.stderr.contains(why), "{words:?}: {ended:?}");
     }
     place.assert_untouched("pipes");
 }
@@ -282,7 +286,8 @@ fn links_lead_no_output_elsewhere() {
         let words: Vec<&str> = words.iter().copied().chain(option).chain([path.as_str()]).collect();
         let ended = place.run(&words);
         assert!(ended.code != Some(0), "{words:?}: {ended:?}");
-        let known = ["link of user", "exist"].iter().any(|why| ended.stderr.contains(why));
+        let known =
+            ["link of user", "exist", "already"].iter().any(|why| ended.stderr.contains(why));
         assert!(known, "{words:?}: {ended:?}");
         place.assert_untouched(&format!("{words:?}"));
         // The same is done where nothing was prepared.
@@ -297,12 +302,12 @@ fn links_lead_no_output_elsewhere() {
 #[test]
 #[ignore = "needs root: acts as another user"]
 fn copy_of_an_open_recording_is_made_in_the_groups_own_folder() {
-    let group = Group::up(&["group.recorder.enabled=true"]);
+    let group = Group::up(&["group.recorder.free_min_mib=0"]);
     let place = Place::new();
     let name = wait_for("a recording", 20.0, || {
         let listed = group.must(&["record", "list", "--json"]).stdout;
         let first: serde_json::Value = serde_json::from_str(listed.lines().last()?).ok()?;
-        (first["state"] == "being written").then(|| first["name"].as_str().map(str::to_owned))?
+        (first["state"] == "being_written").then(|| first["name"].as_str().map(str::to_owned))?
     });
     as_other_user(|| {
         symlink(place.own("file"), place.shared(&format!("{name}.mcap"))).unwrap();
