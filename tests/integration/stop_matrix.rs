@@ -372,7 +372,7 @@ fn each_way_stops_the_arm_and_each_state_lets_it_be_stopped() {
 
 /// Every way in every state.
 #[test]
-#[ignore = "it takes ten minutes"]
+#[ignore = "it takes minutes"]
 fn every_way_stops_the_arm_in_every_state() {
     let states = STATES.into_iter().filter(|during| *during != During::FullDisk);
     let pairs: Vec<_> = states.flat_map(|during| here().map(move |way| (way, during))).collect();
