@@ -146,18 +146,6 @@ impl UtteranceIntake {
         self.enqueue(Origin { source, ..origin }, content, player, now, fx)
     }
 
-    /// Obeys a stop in a request that cannot be accepted yet and will be repeated.
-    fn obey_unmarked(&mut self, origin: &Origin, sound: Sound, now: Time, fx: &mut Fx) {
-        let words = match sound {
-            Sound::Text(text) => vec![Hypothesis::certain(text)],
-            Sound::Transcript { hypotheses } => hypotheses,
-            _ => return,
-        };
-        if let Ok(content) = UtteranceContent::transcript(words) {
-            self.obey_stop(origin, &content, now, fx);
-        }
-    }
-
     /// Has a request wait for its turn, which may be now. Returns whether it is new.
     fn enqueue(
         &mut self,
@@ -414,13 +402,6 @@ impl UtteranceIntake {
         let is_known = receipt.is_some();
         receipt.into_iter().for_each(|receipt| fx.publish(receipt));
         is_known
-    }
-
-    /// Stops the arm if the words say so, which waits for no disk and no other request.
-    fn obey_stop(&mut self, origin: &Origin, content: &UtteranceContent, now: Time, fx: &mut Fx) {
-        if content.is_stop(&self.config) {
-            self.stop.give((origin.key, origin.segment.0), now, fx);
-        }
     }
 
     /// Accepts an utterance if there is room for it.

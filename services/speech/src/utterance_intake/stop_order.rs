@@ -3,18 +3,48 @@
 
 use std::collections::VecDeque;
 
-use messages::RequestKey;
+use messages::{RequestKey, Sound};
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 
+use super::UtteranceIntake;
+use super::origin::Origin;
 use crate::bounded::push_bounded;
 use crate::record::Record;
-use crate::{Fx, Out};
+use crate::utterance_content::UtteranceContent;
+use crate::{Fx, Hypothesis, Out};
 
 /// Interval of the passes in which a pending order is repeated.
 const PASS_EVERY: Span = Span::from_ms(50);
 /// Requests that are remembered, so that their repetitions give no further order.
 const REQUESTS_MAX: usize = 64;
+
+impl UtteranceIntake {
+    /// Stops the arm if the words say so, which waits for no disk and no other request.
+    pub(super) fn obey_stop(
+        &mut self,
+        origin: &Origin,
+        content: &UtteranceContent,
+        now: Time,
+        fx: &mut Fx,
+    ) {
+        if content.is_stop(&self.config) {
+            self.stop.give((origin.key, origin.segment.0), now, fx);
+        }
+    }
+
+    /// Obeys a stop in a request that cannot be accepted yet and will be repeated.
+    pub(super) fn obey_unmarked(&mut self, origin: &Origin, sound: Sound, now: Time, fx: &mut Fx) {
+        let words = match sound {
+            Sound::Text(text) => vec![Hypothesis::certain(text)],
+            Sound::Transcript { hypotheses } => hypotheses,
+            _ => return,
+        };
+        if let Ok(content) = UtteranceContent::transcript(words) {
+            self.obey_stop(origin, &content, now, fx);
+        }
+    }
+}
 
 /// The latest stop, until the arm has carried it out.
 #[derive(Default, Serialize, Deserialize)]
