@@ -12,6 +12,10 @@ use whichone_tests::{Group, run, wait_for};
 /// The arm in real time, so that it moves for seconds.
 const REAL_TIME: &str = "arm.time_scale=1";
 
+/// The pause before a restart, as long as it is after many crashes in a row.
+const LONG_FIRST: &str = "group.restart.backoff_first_ms=5000";
+const LONG_MAX: &str = "group.restart.backoff_max_ms=5000";
+
 /// `stop-motion` that goes on while the test does something else.
 struct StopOrder {
     child: Child,
@@ -46,32 +50,25 @@ impl StopOrder {
     }
 }
 
-/// Kills the arm's service as soon as it is ready, so often that its next restart waits.
-fn kill_into_backoff(group: &Group) {
-    for _ in 0..5 {
-        wait_for("the arm's service", 20.0, || {
-            (group.service("arm")["actual"] == "ready").then_some(())
-        });
-        let killed = group.incarnation("arm");
-        group.signal("arm", Signal::KILL);
-        wait_for("its end", 20.0, || {
-            let arm = group.service("arm");
-            let is_other = arm["incarnation"].as_u64() > Some(killed);
-            (is_other || arm["actual"] != "ready").then_some(())
-        });
-    }
-}
-
 #[test]
 fn stop_outlasts_the_longest_restart_of_the_arm() {
-    let group = Group::up(&[REAL_TIME]);
+    let group = Group::up(&[REAL_TIME, LONG_FIRST, LONG_MAX]);
     let joints = JointWatch::open(&group);
     group.say("get me the clear bowl");
     joints.wait_moving();
-    kill_into_backoff(&group);
-    // Not a moment of it may be lost to patience: the restart waits a second and more.
+    // The first restart has no pause.
+    let first = group.incarnation("arm");
+    group.signal("arm", Signal::KILL);
+    group.wait_for_restart("arm", first);
+    joints.wait_moving();
+    let before = group.incarnation("arm");
+    group.signal("arm", Signal::KILL);
+    wait_for("its end", 10.0, || (group.service("arm")["actual"] != "ready").then_some(()));
     let order = StopOrder::give(&group, &[]);
     order.wait_for_warning(&["not confirmed", "not running", "emergency stop", "is repeated"]);
+    // The next warning comes three seconds later: the order goes on while the arm's service is away.
+    order.wait_for_warning(&["not confirmed", "not running"]);
+    assert_eq!(group.incarnation("arm"), before);
     let (code, text) = order.end();
     assert_eq!(code, Some(0), "{text}\n{}", group.logs());
     let state: serde_json::Value = serde_json::from_str(&text).unwrap();
