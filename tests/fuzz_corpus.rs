@@ -1,12 +1,13 @@
 //! The fuzz targets on stable: the kept corpus, the seeds, and mutations of both.
 //!
-//! A failing input is printed with the seed of its mutation and written to the folder of temporary
-//! files; put it into `tests/fixtures/fuzz/TARGET` once its cause is mended.
+//! A failing input is printed with the seed of its mutation and written to the folder `target/tmp`; put it into
+//! `tests/fixtures/fuzz/TARGET` once its cause is mended.
 //! `WHICHONE_SEED=N` sets the seed and `WHICHONE_MUTATIONS=N` the number of mutations.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "tests")]
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 
 use whichone_tests::fuzz::{self, Mutator, Target};
 
@@ -18,7 +19,8 @@ fn number(variable: &str) -> Option<u64> {
 fn check(target: &Target, origin: &str, input: &[u8]) {
     let run = AssertUnwindSafe(|| (target.run)(input));
     if catch_unwind(run).is_err() {
-        let file = std::env::temp_dir().join(format!("fuzz-{}.input", target.name));
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        let file = folder.join(format!("fuzz-{}.input", target.name));
         std::fs::write(&file, input).unwrap();
         panic!("target {}, {origin}: fails on {}", target.name, file.display());
     }

@@ -1,12 +1,15 @@
 // A device of the browser's own: Chromium's false microphone, which plays a file.
 
+import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { CHROMIUM_FLAGS, launchOptions, microphoneOf } from "../lib/chromium.mjs";
 import { expect, test } from "../lib/test.mjs";
 import { ALOUD, hears, quiet, say, writeWav } from "../lib/voice.mjs";
 
-const wav = join(tmpdir(), `whichone-voice-${process.pid}.wav`);
+const folder = mkdtempSync(join(tmpdir(), "wo-voice-"));
+process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
+const wav = join(folder, "microphone.wav");
 
 test.use({ settings: ALOUD });
 const args = [...CHROMIUM_FLAGS, ...microphoneOf(wav)];
