@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use language::{Language, Reader as Reading};
 use messages::{ArmStatus, PresentationState, Presented, Receipt, ReceiptStatus, Source, topics};
 use serde_json::json;
 use service::bus::Reader;
@@ -267,7 +266,6 @@ fn recognised_stops(robot_db: Option<f64>) -> (usize, usize) {
     let scene = whichone_tests::settings(&[]).scene;
     let options = PocketSphinxOptions::debian(folder.path().join("recogniser"));
     let mut recogniser = PocketSphinx::open(&scene, &options).unwrap();
-    let reader = Reading::new(&scene, Language::Careful);
     let mut robot = Speaker::espeak("en-us", 165).synthesiser(&folder.path().join("robot"));
     let line = "I will get the white plastic bowl on the counter, and bring it to you now.";
     let line = levelled(&robot.samples(line).unwrap());
@@ -286,7 +284,7 @@ fn recognised_stops(robot_db: Option<f64>) -> (usize, usize) {
             let pcm: Vec<i16> = (0..LEAD + said.len() + 3_200).zip(noise).map(sample).collect();
             let heard = recogniser.recognise(&pcm, LEAD..LEAD + said.len()).unwrap();
             found += usize::from(
-                heard.hypotheses.first().is_some_and(|best| reader.is_stop(&best.text)),
+                heard.hypotheses.first().is_some_and(|best| language::is_stop(&best.text)),
             );
             all += 1;
         }

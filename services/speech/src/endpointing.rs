@@ -51,16 +51,10 @@ const SHARE_MIN: f64 = 0.2;
 const SNR_MIN_DB: f32 = 15.0;
 
 impl Endpointing {
-    /// Returns whether the words tell the robot to stop. That is a matter of safety: it is found by the
-    /// careful reading, whichever reading the dialogue uses.
-    pub(crate) fn is_stop(&self, text: &str) -> bool {
-        self.judge.is_stop(text)
-    }
-
     /// Returns how complete an utterance is that follows `question`: that of its least complete
     /// hypothesis, and not complete before all recognisers have been heard. A stop waits for nothing.
     pub fn judge(&self, result: &RecognisedSegment, question: Question) -> Completeness {
-        if result.text().is_some_and(|text| self.is_stop(text)) {
+        if result.text().is_some_and(language::is_stop) {
             return Completeness::Complete;
         }
         let judged = self.judge_words(result, question);

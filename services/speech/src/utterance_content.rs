@@ -61,8 +61,8 @@ impl UtteranceContent {
     }
 
     /// Returns whether the words tell the robot to stop.
-    pub(crate) fn is_stop(&self, config: &Config) -> bool {
-        self.hypotheses.first().is_some_and(|best| config.endpointing.is_stop(&best.text))
+    pub(crate) fn is_stop(&self) -> bool {
+        self.hypotheses.first().is_some_and(|best| language::is_stop(&best.text))
     }
 
     /// Returns the content if the configuration admits it.

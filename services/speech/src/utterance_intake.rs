@@ -359,7 +359,7 @@ impl UtteranceIntake {
             Err(rejected) => &rejected.text,
         };
         match hypotheses {
-            _ if self.config.endpointing.is_stop(best) => {
+            _ if language::is_stop(best) => {
                 hypotheses.or_else(|rejected| Ok(vec![Hypothesis::certain(rejected.text)]))
             }
             Ok(_) if is_cut => {

@@ -45,11 +45,6 @@ impl CompletenessJudge {
         }
     }
 
-    /// See [`Reader::is_stop`].
-    pub fn is_stop(&self, text: &str) -> bool {
-        self.reader.is_stop(text)
-    }
-
     /// Judges the words so far of an utterance that follows `question`.
     pub fn judge(&self, text: &str, question: Question) -> Completeness {
         let normal = normalise(text);

@@ -4,66 +4,25 @@
 //! else: what halts the arm, and what the dialogue takes for an order to stop, is the same. It errs on
 //! the side of one halt too many.
 
-use std::collections::{HashMap, HashSet};
-use std::ops::Range;
-use std::sync::{Arc, LazyLock};
+mod patterns;
 
+use std::ops::Range;
+
+use self::patterns::{Element, PATTERNS, Place, WordNumber};
 use crate::lexicon::{Lexicon, Sense};
+use crate::normalise::normalise;
 use crate::spelling::shortened;
 use crate::token_class::{Class, classes};
 use crate::tokens::{Gap, Token, Tokens};
-use crate::vocabulary::halting;
-
-/// Where a pattern may match.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
-    Lead,
-    /// At the opening of what is said in one breath.
-    Command,
-    /// Where nothing else is said.
-    Alone,
-    /// The same, of words that ask to go on.
-    Resuming,
-    /// Anywhere.
-    Danger,
-}
-
-impl Place {
-    fn named(section: &str) -> Option<Self> {
-        Some(match section {
-            "leads" => Self::Lead,
-            "commands" => Self::Command,
-            "alone" => Self::Alone,
-            "resuming" => Self::Resuming,
-            "dangers" => Self::Danger,
-            _ => return None,
-        })
-    }
-}
-
-/// One element of a pattern.
-#[derive(Clone, Debug)]
-enum Element {
-    Words(Arc<HashSet<String>>),
-    Any,
-    Pause,
-    End,
-}
-
-/// A sequence without options.
-#[derive(Clone, Debug)]
-struct Pattern {
-    place: Place,
-    elements: Vec<Element>,
-}
-
-/// The patterns by their first words.
-struct Patterns(HashMap<String, Vec<Arc<Pattern>>>);
-
-static PATTERNS: LazyLock<Patterns> = LazyLock::new(Patterns::read);
 
 /// Phrases that say nothing before a command or after it.
 const BESIDE: &[Class] = classes![Filler Courtesy No Yes Repair WeakYes And But Join Plain];
+
+/// Returns whether the words halt the arm. That is a matter of safety: it depends neither on the scene nor on the
+/// language, and the careful reading of such words is always a stop.
+pub fn is_stop(text: &str) -> bool {
+    !halting_words(&Tokens::of(&normalise(text))).is_empty()
+}
 
 /// Returns the places of the words that halt the arm, in their order; none if nothing does.
 pub(crate) fn halting_words(tokens: &Tokens<'_>) -> Vec<Range<usize>> {
@@ -78,8 +37,10 @@ pub(crate) fn asks_to_go_on(tokens: &Tokens<'_>) -> bool {
 
 struct Utterance<'t, 'a> {
     tokens: &'t [Token<'a>],
-    /// What lengthened words may be: "stoooop".
-    short: Vec<Option<[String; 2]>>,
+    /// Numbers of each word, and of what it may be if it was lengthened: "stoooop".
+    forms: Vec<[Option<WordNumber>; 3]>,
+    /// Places of the patterns that may begin with each token.
+    begins: Vec<u8>,
     own: &'static Lexicon,
     code: bool,
 }
@@ -87,12 +48,20 @@ struct Utterance<'t, 'a> {
 impl<'t, 'a> Utterance<'t, 'a> {
     fn new(tokens: &'t Tokens<'a>) -> Self {
         let own = Lexicon::own();
-        let lengthened = |token: &Token<'_>| {
-            let is_known = own.word(token.word).is_some() || PATTERNS.0.contains_key(token.word);
-            if is_known { None } else { shortened(token.word) }
+        let forms: Vec<_> = tokens.words.iter().map(|token| forms_of(own, token.word)).collect();
+        let places = |forms: &[Option<WordNumber>; 3]| {
+            forms
+                .iter()
+                .flatten()
+                .fold(0, |places, word| places | PATTERNS.beginnings(*word).places)
         };
-        let short = tokens.words.iter().map(lengthened).collect();
-        Self { tokens: &tokens.words, short, own, code: tokens.code }
+        let begins = forms.iter().map(places).collect();
+        Self { tokens: &tokens.words, forms, begins, own, code: tokens.code }
+    }
+
+    /// Returns whether a pattern of that place may begin there.
+    fn may_begin(&self, place: Place, at: usize) -> bool {
+        self.begins[at] & place.bit() != 0
     }
 
     fn halting_words(&self) -> Vec<Range<usize>> {
@@ -106,9 +75,12 @@ impl<'t, 'a> Utterance<'t, 'a> {
         if found.is_empty() && self.is_alone(Place::Alone, classes![Filler Courtesy WeakYes]) {
             found.push(0..self.tokens.len());
         }
-        if found.is_empty() && !self.asks_or_tells() {
+        if found.is_empty() {
             let is_dangerous = |breath: &Range<usize>| self.is_danger(breath.clone());
             found.extend(self.breaths().filter(is_dangerous));
+            if !found.is_empty() && self.asks_or_tells() {
+                found.clear();
+            }
         }
         found
     }
@@ -126,9 +98,12 @@ impl<'t, 'a> Utterance<'t, 'a> {
 
     /// Adds the orders to halt in one breath.
     fn commands(&self, breath: Range<usize>, found: &mut Vec<Range<usize>>) {
+        let Some(last) = breath.clone().rfind(|at| self.may_begin(Place::Command, *at)) else {
+            return;
+        };
         let mut at = breath.start;
         let mut opens = true;
-        while at < breath.end {
+        while at <= last {
             let phrase = self.own.longest(self.tokens, at);
             let phrase_words = phrase.as_ref().map_or(1, |phrase| phrase.words);
             let class = phrase.and_then(|phrase| class(phrase.sense));
@@ -180,6 +155,9 @@ impl<'t, 'a> Utterance<'t, 'a> {
 
     /// "one moment please": patterns of that place, and nothing else but words of the classes.
     fn is_alone(&self, place: Place, beside: &[Class]) -> bool {
+        if !(0..self.tokens.len()).any(|at| self.may_begin(place, at)) {
+            return false;
+        }
         let (mut at, mut found) = (0, false);
         while at < self.tokens.len() {
             let words = self.longest(place, at, self.tokens.len());
@@ -230,7 +208,9 @@ impl<'t, 'a> Utterance<'t, 'a> {
         let mut places = breath.clone().take_while(|at| !denied(&self.tokens[*at]));
         let end = self.tokens.len();
         places.any(|at| {
-            !self.relates(at, breath.start) && self.longest(Place::Danger, at, end).is_some()
+            self.may_begin(Place::Danger, at)
+                && !self.relates(at, breath.start)
+                && self.longest(Place::Danger, at, end).is_some()
         })
     }
 
@@ -251,7 +231,9 @@ impl<'t, 'a> Utterance<'t, 'a> {
 
     /// Number of words of every pattern of that place that starts at `at`.
     fn matches(&self, place: Place, at: usize, end: usize) -> impl Iterator<Item = usize> {
-        let patterns = self.forms(at).filter_map(|word| PATTERNS.0.get(word)).flatten();
+        let begins = self.may_begin(place, at).then(|| self.forms[at].iter().flatten());
+        let beginnings = begins.into_iter().flatten().map(|word| PATTERNS.beginnings(*word));
+        let patterns = beginnings.flat_map(|it| &it.patterns);
         let of_place = patterns.filter(move |pattern| pattern.place == place);
         of_place.filter_map(move |pattern| self.matched(&pattern.elements, at, end))
     }
@@ -274,8 +256,8 @@ impl<'t, 'a> Utterance<'t, 'a> {
                 _ if at >= end || pauses && !paused => return None,
                 Element::Any => {}
                 Element::Words(words) => {
-                    let fits = |form: &str| words.contains(form);
-                    self.forms(at).any(fits).then_some(())?;
+                    let fits = |form: &WordNumber| words.binary_search(form).is_ok();
+                    self.forms[at].iter().flatten().any(fits).then_some(())?;
                 }
             }
             at += 1;
@@ -303,85 +285,20 @@ impl<'t, 'a> Utterance<'t, 'a> {
         }
         true
     }
+}
 
-    /// The word at a place, and what it may be where it was lengthened.
-    fn forms(&self, at: usize) -> impl Iterator<Item = &str> {
-        let short = self.short[at].iter().flatten().map(String::as_str);
-        std::iter::once(self.tokens[at].word).chain(short)
+/// Returns the numbers of a word, and of what it may be if it was lengthened and is unknown as it stands.
+fn forms_of(own: &Lexicon, word: &str) -> [Option<WordNumber>; 3] {
+    let number = |word: &str| PATTERNS.numbers.get(word).copied();
+    let begins = |word: WordNumber| PATTERNS.beginnings(word).places != 0;
+    let as_it_stands = number(word);
+    let is_known = || as_it_stands.is_some_and(begins) || own.word(word).is_some();
+    match shortened(word).filter(|_| !is_known()) {
+        Some([two, one]) => [as_it_stands, number(&two), number(&one)],
+        None => [as_it_stands, None, None],
     }
 }
 
 fn class(sense: Sense<'_>) -> Option<Class> {
     if let Sense::Class(class) = sense { Some(class) } else { None }
-}
-
-impl Patterns {
-    fn read() -> Self {
-        let mut sets: HashMap<&str, Vec<String>> = HashMap::new();
-        let mut patterns = Self(HashMap::new());
-        for (section, line) in halting() {
-            match (line.split_once(" = "), Place::named(section)) {
-                (Some((name, words)), None) => {
-                    let words = words.split(',').map(str::trim).filter(|word| !word.is_empty());
-                    sets.entry(name).or_default().extend(words.flat_map(forms));
-                }
-                (_, Some(place)) => {
-                    let elements: Vec<(Element, bool)> =
-                        line.split(' ').map(|text| element(text, &sets)).collect();
-                    patterns.add(place, &elements, Vec::new());
-                }
-                _ => {}
-            }
-        }
-        patterns
-    }
-
-    /// Adds every sequence that the optional elements leave.
-    fn add(&mut self, place: Place, rest: &[(Element, bool)], mut before: Vec<Element>) {
-        let Some(((element, optional), rest)) = rest.split_first() else {
-            return self.index(place, before);
-        };
-        if *optional {
-            self.add(place, rest, before.clone());
-        }
-        before.push(element.clone());
-        self.add(place, rest, before);
-    }
-
-    fn index(&mut self, place: Place, elements: Vec<Element>) {
-        let Some(Element::Words(first)) = elements.first() else { return };
-        let first = first.clone();
-        let pattern = Arc::new(Pattern { place, elements });
-        for word in first.iter() {
-            self.0.entry(word.clone()).or_default().push(pattern.clone());
-        }
-    }
-}
-
-/// Reads an element; returns whether it may be left out.
-fn element(text: &str, sets: &HashMap<&str, Vec<String>>) -> (Element, bool) {
-    let (text, optional) = text.strip_suffix('?').map_or((text, false), |text| (text, true));
-    let element = match text {
-        "." => Element::End,
-        "_" => Element::Any,
-        "," => Element::Pause,
-        words => {
-            let words = words.split('|').flat_map(|word| match word.strip_prefix('$') {
-                Some(set) => sets.get(set).cloned().unwrap_or_default(),
-                None => forms(word),
-            });
-            Element::Words(Arc::new(words.collect()))
-        }
-    };
-    (element, optional)
-}
-
-/// The forms of a verb that is marked as one: "pinch", "pinches", "pinched", "pinching".
-fn forms(word: &str) -> Vec<String> {
-    let Some(verb) = word.strip_suffix('~') else { return vec![word.to_owned()] };
-    let stem = verb.strip_suffix('e').unwrap_or(verb);
-    let doubled = verb.chars().last().map(|last| format!("{verb}{last}"));
-    let stems = std::iter::once(stem.to_owned()).chain(doubled);
-    let inflected = stems.flat_map(|stem| ["es", "ed", "ing"].map(|end| format!("{stem}{end}")));
-    [verb.to_owned(), format!("{verb}s")].into_iter().chain(inflected).collect()
 }

@@ -96,6 +96,7 @@ mod tests;
 
 pub use completeness::{Completeness, CompletenessJudge};
 pub use confusion::confusion;
+pub use halting::is_stop;
 pub use normalise::TEXT_CHARS_MAX;
 pub use own_words::own_words;
 pub use parsed::READINGS_MAX;

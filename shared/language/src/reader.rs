@@ -6,7 +6,7 @@ use crate::answer::response;
 use crate::clauses::clauses;
 use crate::content::Content;
 use crate::extractor::extract;
-use crate::halting::{asks_to_go_on, halting_words};
+use crate::halting::asks_to_go_on;
 use crate::hedges::hedge;
 use crate::indifference::{indifference, is_of_attribute};
 use crate::intent::{intent, is_side_talk, is_statement};
@@ -74,12 +74,6 @@ impl Reader {
                 self.parse(&Tokens::of(&text), last_question).reading()
             }
         }
-    }
-
-    /// Returns whether the words halt the arm. That is a matter of safety: it depends neither on the
-    /// scene nor on the language, and the careful reading of such words is always a stop.
-    pub fn is_stop(&self, text: &str) -> bool {
-        !halting_words(&Tokens::of(&normalise(text))).is_empty()
     }
 
     /// Returns the attribute and object words in an utterance that the scene lacks, for the robot's

@@ -71,6 +71,8 @@ fn remains(word: &str) -> impl Iterator<Item = String> + '_ {
 /// A word said or typed long ("biiiig", "nooo"), with every run of a letter cut to two, as English
 /// spells some words, and to one.
 pub(crate) fn shortened(word: &str) -> Option<[String; 2]> {
+    let repeats = word.chars().zip(word.chars().skip(1)).any(|(c, next)| c == next);
+    repeats.then_some(())?;
     let mut runs: Vec<(char, usize)> = Vec::new();
     for c in word.chars() {
         match runs.last_mut() {
@@ -78,12 +80,10 @@ pub(crate) fn shortened(word: &str) -> Option<[String; 2]> {
             _ => runs.push((c, 1)),
         }
     }
-    runs.iter().any(|(_, length)| *length > 1).then(|| {
-        [2, 1].map(|longest| {
-            let cut = |&(c, length): &(char, usize)| std::iter::repeat_n(c, length.min(longest));
-            runs.iter().flat_map(cut).collect()
-        })
-    })
+    Some([2, 1].map(|longest| {
+        let cut = |&(c, length): &(char, usize)| std::iter::repeat_n(c, length.min(longest));
+        runs.iter().flat_map(cut).collect()
+    }))
 }
 
 #[cfg(test)]

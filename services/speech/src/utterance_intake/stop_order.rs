@@ -28,7 +28,7 @@ impl UtteranceIntake {
         now: Time,
         fx: &mut Fx,
     ) {
-        if content.is_stop(&self.config) {
+        if content.is_stop() {
             self.stop.give((origin.key, origin.segment.0), now, fx);
         }
     }

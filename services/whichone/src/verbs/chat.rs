@@ -5,7 +5,6 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use language::Reader;
 use messages::{MotionOrder, Receipt, ReceiptStatus};
 use scene::ObjectId;
 use serde_json::json;
@@ -109,15 +108,13 @@ impl<'a, 'b> Chat<'a, 'b> {
     /// Takes a line. Words that tell the robot to stop go to the arm at once, on the motion stop's own path, which
     /// needs no speech service; they are said to the robot besides.
     fn on_line(&mut self, words: &str) -> Result<(), Failure> {
-        let language = self.conversation.language();
         match words {
             "resume" => self.resume(),
             "go on" | "continue" if self.is_stopped() => {
                 note("the arm is stopped; to let it move, type resume");
             }
             words => {
-                // The scene may have changed, and lines are rare.
-                if Reader::new(self.conversation.scene(), language).is_stop(words) {
+                if language::is_stop(words) {
                     self.guard.on_stop(clock::now());
                     self.orders.give(MotionOrder::Stop);
                 }

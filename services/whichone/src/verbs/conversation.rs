@@ -7,7 +7,6 @@ use std::collections::{HashSet, VecDeque};
 use std::time::{Duration, Instant};
 
 use config::Settings;
-use language::Language;
 use messages::{Injection, PolicyView, PromptId, Receipt, RequestKey, Sound, topics};
 use scene::Scene;
 use service::bus::EncodedWriter;
@@ -39,7 +38,6 @@ pub(super) struct Conversation {
     own: HashSet<RequestKey>,
     latest: Latest,
     scene: Scene,
-    language: Language,
     may_be_absent: bool,
     paths: GroupPaths,
     /// Name of the group's shared memory, another one is another run.
@@ -70,7 +68,6 @@ impl Conversation {
                 true => settings.scene.with_objects(&[]),
                 false => settings.scene,
             },
-            language: settings.dialogue.language,
             may_be_absent: settings.dialogue.prior.absent > 0.0,
             paths: paths.clone(),
             shared_memory: shared_memory.map_err(|_| ended(paths))?,
@@ -92,11 +89,6 @@ impl Conversation {
     /// Returns false as long as nothing is known to be on the table, where the objects come from perception.
     pub(super) fn knows_objects(&self) -> bool {
         !self.scene.objects().is_empty()
-    }
-
-    /// The language that the robot understands.
-    pub(super) fn language(&self) -> Language {
-        self.language
     }
 
     /// Returns true if the robot considers that the wanted object is not here.

@@ -82,7 +82,8 @@ impl Ensemble {
     /// Returns whether the first recogniser's hypotheses are worth a second opinion. A stop waits for
     /// none.
     pub fn is_in_doubt(&self, first: &[Hypothesis]) -> bool {
-        let is_open = |best| !self.gate.is_stop(best) && !self.gate.is_clear(first);
+        let is_open =
+            |best: &Hypothesis| !language::is_stop(&best.text) && !self.gate.is_clear(first);
         self.second.is_some() && first.first().is_some_and(is_open)
     }
 

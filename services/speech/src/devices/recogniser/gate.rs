@@ -100,11 +100,6 @@ impl Gate {
         self.score(hypotheses).max(self.plain_content(hypotheses)) >= CLEAR
     }
 
-    /// Returns whether the words tell the robot to stop.
-    pub fn is_stop(&self, hypothesis: &Hypothesis) -> bool {
-        self.reader.is_stop(&hypothesis.text)
-    }
-
     /// Returns the share of the scene's words among all words.
     fn share(&self, hypothesis: &Hypothesis) -> f64 {
         let (mut of_scene, mut all) = (0.0, 0.0_f64);
