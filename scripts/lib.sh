@@ -67,3 +67,61 @@ rclpy_python() {
     PYTHON=python3.11 python_with rclpy ros-jazzy-rclpy==7.1.6 ros-jazzy-rmw-fastrtps-cpp==8.4.3 \
         ros-jazzy-{std,sensor,visualization,diagnostic}-msgs==5.3.6 ros-jazzy-std-srvs==5.3.6
 }
+
+# Everything that is shipped, in one set: with the same features in every step each crate is built once. Never add
+# `-p`: the features of a single package are other ones, with which cargo builds most crates again.
+# whisper.cpp is left to scripts/nightly, as it needs cmake and libclang.
+workspace=(--workspace --features "ros2/dds,link/zenoh,grounding/tls" --locked)
+
+# prepare_tests: installs what tests need beyond a Rust toolchain, and sets `with` to the options of the test programs
+# that include the tests for which that succeeded. Without them cargo ignores these tests, with their reasons.
+prepare_tests() {
+    local missing
+    with=(--include-ignored)
+    missing=$(install espeak-ng flite libpocketsphinx3 pocketsphinx-en-us)
+    if [[ -n $missing ]]; then
+        say "without ${missing//$'\n'/, }: the tests that cargo ignores are not run"
+        with=()
+        return
+    fi
+    without() {
+        local reason=$1 name
+        shift
+        say "not run: $reason"
+        for name in "$@"; do with+=(--skip "$name"); done
+    }
+    # Disks and shared memory that get full are small ones of their own; a second user needs the superuser.
+    ((EUID == 0)) && unshare --mount true 2>/dev/null ||
+        without "tests on full disks, in full memory (no root)" as_root:: full_memory
+    setpriv --reuid=65534 --regid=65534 --clear-groups true 2>/dev/null ||
+        without "tests with a second user (no root)" second_user
+    WHICHONE_PYTHON=$(python_with python iceoryx2==0.10.0) ||
+        without "Python examples (no iceoryx2 for python3)" python:: sdk_python_
+    missing=$(install "${ros1_packages[@]}")
+    [[ -z $missing ]] || without "bridge to ROS 1 (no ${missing//$'\n'/, })" ros1_
+    WHICHONE_CYCLONE=$(cyclone_python) || without "ROS 2 node (no cyclonedds for python3)" ros2_cyclone
+    WHICHONE_PHYSICS=$(physics_python) || without "picks in a physics engine (no MuJoCo for python3)" physics::
+    WHICHONE_RECORDING_PYTHON=$(recording_python) ||
+        without "recordings, metrics and schemas by other readers (no mcap and websockets for python3)" \
+            recorded_dialogue_is_read live_view_ metrics_are_read_by_ schemas_accept_
+    local name
+    for name in WHICHONE_PYTHON WHICHONE_CYCLONE WHICHONE_PHYSICS WHICHONE_RECORDING_PYTHON; do
+        if [[ -n ${!name} ]]; then export "${name?}"; else unset "$name"; fi
+    done
+}
+
+# prepare_browser: sets `browser` to "ready", or to what the tests of the page lack.
+prepare_browser() {
+    browser=ready
+    if [[ -n $(install chromium fonts-dejavu-core) ]]; then
+        browser="chromium"
+    elif ! { { command -v node && command -v npm; } >/dev/null || [[ -z $(install nodejs npm) ]]; }; then
+        browser="node and npm"
+    elif ! npm install --prefix tests/browser --no-save --ignore-scripts --loglevel error >&2; then
+        browser="the packages of tests/browser"
+    fi
+    if [[ $browser != ready ]]; then
+        say "not run: tests of the console's page (no $browser)"
+        [[ -z ${WHICHONE_REQUIRE_BROWSER:-} ]] || exit 1
+    fi
+}

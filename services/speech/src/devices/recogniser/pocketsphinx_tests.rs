@@ -86,7 +86,8 @@ fn pocketsphinx_rejects_missing_and_broken_files_by_name() {
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
 fn pocketsphinx_stays_closed_for_one_start_after_a_fatal_error() {
-    let options = Speech::new().options();
+    let speech = Speech::new();
+    let options = speech.options();
     fs::create_dir_all(&options.work).unwrap();
     let fatal = "INFO: x\nFATAL: \"mdef.c\", line 526: Empty file: mdef\n";
     fs::write(options.work.join("pocketsphinx.log"), fatal).unwrap();

@@ -1,0 +1,378 @@
+#!/usr/bin/env python3
+"""Runs the test programs that cargo has built, side by side; `scripts/test` calls it.
+
+    run.py --targets LANE    the options of cargo that build the programs of a lane
+    run.py LANE [NAME…] [-- OPTIONS OF THE TEST PROGRAMS…] < what cargo printed
+
+LANE is quick, full or nightly (`lanes.toml`): full holds quick, and nightly what full leaves out. NAME… selects
+programs. Standard input is what `cargo test --no-run --message-format=json-render-diagnostics` printed.
+
+Programs that start processes run at normal priority, those that only compute fill the gaps at the lowest one. Tests
+in real time come last. A few failed tests are tried again, alone, and must pass three times in a row: `flaky.toml`.
+At the end nothing may be left: processes, shared memory, temporary files.
+"""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+# Results of earlier runs, which a check-out keeps and a fresh machine lacks.
+KEPT = ROOT / "target" / "lanes"
+LANES = ["quick", "full", "nightly"]
+# A program that takes longer hangs.
+LIMIT_S = 1_200
+# More failures than this are no matter of chance.
+TRIED_AGAIN = 5
+PASSES_IN_A_ROW = 3
+RUNS_REMEMBERED = 20
+SECOND_TRIES_ALLOWED = 2
+TOO_SLOW = "the physics did not keep up with real time"
+
+
+def say(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+@dataclass
+class Program:
+    """A test program: its name is CRATE for unit tests, CRATE/TARGET for others."""
+
+    name: str
+    path: str
+    folder: str
+    is_unit: bool
+
+
+@dataclass
+class Result:
+    program: Program
+    output: str
+    code: int
+    seconds: float
+    failed: list = field(default_factory=list)
+
+    @property
+    def count(self):
+        return sum(int(n) for n in re.findall(r"^test result: \w+\. (\d+) passed", self.output, re.M))
+
+
+def programs(lines):
+    """The test programs among the messages of cargo."""
+    found = []
+    for line in lines:
+        message = json.loads(line) if line.startswith("{") else {}
+        if message.get("executable") and message["profile"]["test"]:
+            target, package = message["target"], message["package_id"]
+            crate = re.search(r"([^/#@]+)(?:#[\d.]+|@[\d.]+)$", package).group(1)
+            is_unit = bool({"lib", "cdylib", "rlib", "staticlib"} & set(target["kind"]))
+            name = crate if is_unit else f"{crate}/{target['name']}"
+            folder = os.path.dirname(message["manifest_path"])
+            found.append(Program(name, message["executable"], folder, is_unit))
+    return found
+
+
+def test_targets():
+    """Names of the test targets that are no unit tests of a library, of the whole workspace."""
+    command = ["cargo", "metadata", "--no-deps", "--format-version=1", "--locked"]
+    metadata = json.loads(subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout)
+    return {
+        f"{package['name']}/{target['name']}"
+        for package in metadata["packages"]
+        for target in package["targets"]
+        if target["test"] and {"bin", "test"} & set(target["kind"])
+    }
+
+
+def check_lanes(lanes):
+    """Exits if a test target is in no lane, or a lane names one that is not there."""
+    named = {name for lane in [*LANES, "elsewhere"] for name in lanes[lane]}
+    names = test_targets()
+    for name in sorted(names - named):
+        say(f"tests/lanes/lanes.toml: expected the lane of {name}, found none; help: add it to one of the lists")
+    for name in sorted(named - names):
+        say(f"tests/lanes/lanes.toml: expected a test target, found {name}; help: remove it")
+    if names != named:
+        sys.exit(1)
+
+
+def cargo_options(lanes, lane):
+    """The options of `cargo test` that build the programs of a lane."""
+    if lane != "quick":
+        return []
+    return ["--lib", *(f"--test={name.split('/')[1]}" for name in lanes["quick"])]
+
+
+def in_lane(lanes, lane, found):
+    """The programs of a lane."""
+    if lane == "nightly":
+        return [p for p in found if p.name in lanes["nightly"] or p.name in lanes["full"]]
+    names = set(lanes["quick"]) | (set(lanes["full"]) if lane == "full" else set())
+    return [p for p in found if p.is_unit or p.name in names]
+
+
+class Runner:
+    def __init__(self, lanes, options, temporary):
+        self.lanes = lanes
+        self.options = options
+        self.environment = dict(os.environ, TMPDIR=temporary)
+        self.results = []
+        self.lock = threading.Lock()
+        self.seconds = read_json(KEPT / "seconds.json", {})
+
+    def run(self, program, options, nice=0):
+        """Runs a program to its end, and kills it with what it started if it hangs."""
+        began = time.monotonic()
+        environment = dict(self.environment, CARGO_MANIFEST_DIR=program.folder)
+        process = subprocess.Popen(
+            ["nice", "-n", str(nice), program.path, *options],
+            cwd=program.folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
+            text=True,
+            errors="replace",
+        )
+        try:
+            output, _ = process.communicate(timeout=LIMIT_S)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            output, _ = process.communicate()
+            output += f"\nexpected an end within {LIMIT_S} s, found the program running\n"
+        result = Result(program, output, process.returncode, time.monotonic() - began)
+        result.failed = failed_in(output)
+        return result
+
+    def record(self, result):
+        with self.lock:
+            self.results.append(result)
+            name = result.program.name
+            self.seconds[name] = max(self.seconds.get(name, 0), round(result.seconds, 1))
+            if result.code == 0 and result.count == 0:
+                return
+            state = "ok" if result.code == 0 else f"FAILED ({len(result.failed)})"
+            say(f"{state:<10} {result.seconds:6.1f} s  {result.count:4} passed  {name}")
+
+    def run_queue(self, queue, options, nice):
+        while True:
+            with self.lock:
+                if not queue:
+                    return
+                program = queue.pop(0)
+            self.record(self.run(program, options, nice))
+
+    def run_all(self, selected):
+        """Runs the programs side by side, the longest first, and then what needs the machine for itself."""
+        longest = lambda program: -self.seconds.get(program.name, 0)
+        processes = [p for p in selected if p.name in self.lanes["processes"]]
+        pure = sorted((p for p in selected if p not in processes), key=longest)
+        processes.sort(key=longest)
+        cores = os.cpu_count() or 2
+        beside = [f"--skip={part}" for part in self.lanes["alone"]]
+        # Tests with processes wait most of their time.
+        waiting = [*beside, f"--test-threads={2 * cores}", *self.options]
+        computing = [*beside, "--test-threads=1", *self.options]
+        threads = [threading.Thread(target=self.run_queue, args=(processes, waiting, 0))]
+        threads += [threading.Thread(target=self.run_queue, args=(pure, computing, 19)) for _ in range(cores)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+
+    def run_alone(self, selected):
+        options = ["--test-threads=1", *self.lanes["alone"], *self.options]
+        for program in selected:
+            if not program.is_unit and self.has_any(program):
+                self.record(self.run(program, options))
+
+    def has_any(self, program):
+        listed = self.run(program, ["--list", *self.lanes["alone"], *self.options]).output
+        return ": test" in listed
+
+    def try_again(self, failed):
+        """Tries failed tests again, alone. Returns those that passed, that physics was too slow for, and the rest."""
+        passed, slow, broken = [], [], []
+        for program, test in failed:
+            say(f"once more, alone: {program.name} {test}")
+            options = ["--exact", test, "--include-ignored", "--test-threads=1"]
+            for _ in range(PASSES_IN_A_ROW):
+                result = self.run(program, options)
+                if result.code != 0 or result.count != 1:
+                    break
+            name = f"{program.name} {test}"
+            if result.code == 0 and result.count == 1:
+                passed.append(name)
+            elif any(part in test for part in self.lanes["alone"]) and TOO_SLOW in result.output:
+                slow.append(name)
+            else:
+                broken.append(name)
+                say(result.output)
+        return passed, slow, broken
+
+
+def failed_in(output):
+    """Names of the failed tests."""
+    named = re.findall(r"^test (\S+)(?: - should panic)? \.\.\. FAILED$", output, re.M)
+    listed = output.rsplit("\nfailures:\n", 1)
+    if len(listed) == 2:
+        named += re.findall(r"^    (\S+)$", listed[1], re.M)
+    return sorted(set(named))
+
+
+def read_json(path, default):
+    try:
+        return json.loads(path.read_text())
+    except (OSError, ValueError):
+        return default
+
+
+def judge_second_tries(lane, passed):
+    """Whether second tries are too many, by the ledger and by earlier runs."""
+    ledger = tomllib.loads((HERE / "flaky.toml").read_text())
+    path = KEPT / "second_tries.json"
+    runs = (read_json(path, []) + [passed])[-RUNS_REMEMBERED:]
+    path.write_text(json.dumps(runs))
+    is_good = True
+    for name in passed:
+        tries = sum(name in run for run in runs)
+        cause = ledger.get(name, {}).get("cause")
+        say(f"second try: {name}: {cause or 'not listed in tests/lanes/flaky.toml'}")
+        if tries > SECOND_TRIES_ALLOWED:
+            say(f"{name}: {tries} of the last {len(runs)} runs needed a second try: that is a fault")
+            is_good = False
+        if lane == "nightly" and not cause:
+            is_good = False
+    return is_good
+
+
+class Leftovers:
+    """What this run may leave: processes of this build, shared memory of groups, temporary files."""
+
+    def __init__(self, temporary):
+        self.temporary = Path(temporary)
+        self.memory = self.segments()
+        self.processes = set(self.running())
+
+    @staticmethod
+    def segments():
+        return set(os.listdir("/dev/shm")) if os.path.isdir("/dev/shm") else set()
+
+    @staticmethod
+    def running():
+        """Processes whose program is in `target`."""
+        found = {}
+        for pid in filter(str.isdigit, os.listdir("/proc")):
+            try:
+                program = os.readlink(f"/proc/{pid}/exe")
+            except OSError:
+                continue
+            if program.startswith(f"{ROOT}/target/") and "/lanes/" not in program:
+                found[int(pid)] = program
+        return found
+
+    @staticmethod
+    def mapped():
+        """Shared memory that a process has mapped."""
+        found = set()
+        for pid in filter(str.isdigit, os.listdir("/proc")):
+            try:
+                text = Path(f"/proc/{pid}/maps").read_text()
+            except OSError:
+                continue
+            found.update(re.findall(r"/dev/shm/(\S+)", text))
+        return found
+
+    def find(self):
+        until = time.monotonic() + 10
+        while True:
+            processes = {p: x for p, x in self.running().items() if p not in self.processes}
+            if not processes or time.monotonic() > until:
+                break
+            time.sleep(0.2)
+        left = [f"process {pid}, {program}" for pid, program in sorted(processes.items())]
+        new = self.segments() - self.memory - self.mapped()
+        left += [f"shared memory /dev/shm/{name}" for name in sorted(new)]
+        left += [f"temporary {path}" for path in sorted(self.temporary.iterdir())]
+        return left
+
+
+def main():
+    lanes = tomllib.loads((HERE / "lanes.toml").read_text())
+    arguments, options = sys.argv[1:], []
+    if arguments[0] == "--targets":
+        check_lanes(lanes)
+        print(*cargo_options(lanes, arguments[1]))
+        return
+    if "--" in arguments:
+        at = arguments.index("--")
+        arguments, options = arguments[:at], arguments[at + 1 :]
+    lane, names = arguments[0], arguments[1:]
+    selected = in_lane(lanes, lane, programs(sys.stdin))
+    if names:
+        selected = [p for p in selected if any(name in p.name for name in names)]
+    if lane == "nightly":
+        options = [*options, *lanes["only_nightly"]]
+    else:
+        options = [*options, *(f"--skip={part}" for part in lanes["only_nightly"])]
+    KEPT.mkdir(parents=True, exist_ok=True)
+    # Short, as sockets are found by their path; open, as /tmp is, for tests with a second user.
+    temporary = tempfile.mkdtemp(prefix="wl-")
+    os.chmod(temporary, 0o1777)
+    leftovers = Leftovers(temporary)
+    runner = Runner(lanes, options, temporary)
+    began = time.monotonic()
+    if lane == "nightly":
+        for program in selected:
+            runner.record(runner.run(program, ["--test-threads=1", *options]))
+    else:
+        runner.run_all(selected)
+    if lane == "full":
+        runner.run_alone(selected)
+    (KEPT / "seconds.json").write_text(json.dumps(runner.seconds, indent=1, sort_keys=True))
+    sys.exit(0 if judge(lane, runner, leftovers, began) else 1)
+
+
+def judge(lane, runner, leftovers, began):
+    """Prints what failed, and whether the lane passes."""
+    bad = [result for result in runner.results if result.code != 0]
+    failed = [(result.program, test) for result in bad for test in result.failed]
+    for result in bad:
+        say(f"\n==== {result.program.name} (exit {result.code})\n{result.output}")
+    # A program that was killed reports no failed test.
+    is_sudden = any(result.code < 0 or not result.failed for result in bad)
+    broken = [f"{program.name} {test}" for program, test in failed] or [r.program.name for r in bad]
+    is_good = not bad
+    if failed and not is_sudden and len(failed) <= TRIED_AGAIN:
+        passed, slow, broken = runner.try_again(failed)
+        is_good = not broken and judge_second_tries(lane, passed)
+        if slow:
+            say(f"this machine was too slow for physics in real time; not tried: {', '.join(slow)}")
+    elif not bad:
+        judge_second_tries(lane, [])
+    for name in broken if bad else []:
+        say(f"failed: {name}")
+    left = leftovers.find()
+    for what in left:
+        say(f"left behind: {what}")
+    if not left:
+        shutil.rmtree(leftovers.temporary)
+    count = sum(result.count for result in runner.results)
+    say(f"{lane}: {count} tests in {time.monotonic() - began:.0f} s: {'passed' if is_good and not left else 'FAILED'}")
+    return is_good and not left
+
+
+if __name__ == "__main__":
+    main()
