@@ -143,6 +143,26 @@ fn is_allowed(expression: &str) -> bool {
     LICENCES.iter().any(|(licence, _)| *licence == expression)
 }
 
+/// Every crate, with its features, that `cargo build` with these arguments compiles.
+fn built(arguments: &[&str]) -> BTreeSet<String> {
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--locked", "--prefix", "none", "--no-dedupe"])
+        .args(["--edges", "normal,build", "--format", "{p} [{f}]"])
+        .args(arguments)
+        .current_dir(TOP)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn a_build_of_the_workspace_compiles_no_crate_of_the_default_build_again() {
+    let (default, workspace) = (built(&[]), built(&["--workspace"]));
+    let again: Vec<_> = default.difference(&workspace).collect();
+    assert!(again.is_empty(), "ask for these features in the workspace's table: {again:?}");
+}
+
 #[test]
 fn licence_expressions_are_understood() {
     for good in ["MIT", "(MIT OR GPL-3.0) AND ISC", "MPL-2.0/Zlib", "GPL-2.0 OR MIT AND 0BSD"] {
