@@ -30,7 +30,7 @@ const EXCEPTIONS: [(&str, &str, &str); 1] =
     [("option-ext", "MPL-2.0", "dirs of zenoh brings it, unchanged; the default build lacks it")];
 
 /// Crates of which two versions are built, and who brings the older one.
-const DUPLICATES: [(&str, &str); 25] = [
+const DUPLICATES: [(&str, &str); 24] = [
     ("base64", "axum's web sockets; ureq has the newer one"),
     ("cpufeatures", "sha1 of axum's web sockets"),
     ("darling", "enumset of iceoryx2; beside it zenoh's serde_with"),
@@ -41,7 +41,6 @@ const DUPLICATES: [(&str, &str); 25] = [
     ("hashbrown", "zenoh"),
     ("itertools", "bindgen, to build iceoryx2"),
     ("libloading", "clang-sys, to build iceoryx2"),
-    ("miniz_oxide", "png"),
     ("nom", "bindgen's cexpr, to build iceoryx2"),
     ("rand", "axum's web sockets"),
     ("rand_chacha", "rand of zenoh"),
