@@ -30,7 +30,7 @@ const EXCEPTIONS: [(&str, &str, &str); 1] =
     [("option-ext", "MPL-2.0", "dirs of zenoh brings it, unchanged; the default build lacks it")];
 
 /// Crates of which two versions are built, and who brings the older one.
-const DUPLICATES: [(&str, &str); 25] = [
+const DUPLICATES: [(&str, &str); 24] = [
     ("base64", "axum's web sockets; ureq has the newer one"),
     ("cpufeatures", "sha1 of axum's web sockets"),
     ("darling", "enumset of iceoryx2; beside it zenoh's serde_with"),
@@ -41,7 +41,6 @@ const DUPLICATES: [(&str, &str); 25] = [
     ("hashbrown", "zenoh"),
     ("itertools", "bindgen, to build iceoryx2"),
     ("libloading", "clang-sys, to build iceoryx2"),
-    ("miniz_oxide", "png"),
     ("nom", "bindgen's cexpr, to build iceoryx2"),
     ("rand", "axum's web sockets"),
     ("rand_chacha", "rand of zenoh"),
@@ -141,6 +140,26 @@ fn is_allowed(expression: &str) -> bool {
         }
     }
     LICENCES.iter().any(|(licence, _)| *licence == expression)
+}
+
+/// Every crate, with its features, that `cargo build` with these arguments compiles.
+fn built(arguments: &[&str]) -> BTreeSet<String> {
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--locked", "--prefix", "none", "--no-dedupe"])
+        .args(["--edges", "normal,build", "--format", "{p} [{f}]"])
+        .args(arguments)
+        .current_dir(TOP)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn a_build_of_the_workspace_compiles_no_crate_of_the_default_build_again() {
+    let (default, workspace) = (built(&[]), built(&["--workspace"]));
+    let again: Vec<_> = default.difference(&workspace).collect();
+    assert!(again.is_empty(), "ask for these features in the workspace's table: {again:?}");
 }
 
 #[test]

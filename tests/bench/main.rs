@@ -6,7 +6,6 @@
 mod arm;
 mod console;
 mod core;
-mod documents;
 mod flight;
 mod hop;
 mod idle;
@@ -15,6 +14,7 @@ mod latency;
 mod long;
 mod options;
 mod orders;
+mod page;
 mod parts;
 mod peers;
 mod recorder;
@@ -40,26 +40,28 @@ fn main() -> ExitCode {
             return ExitCode::from(if error.use_stderr() { 64 } else { 0 });
         }
     };
-    if let Some(reports) = &options.compare {
-        return documents::compare(reports);
-    }
-    if let Some(reports) = &options.write {
-        return documents::write(reports);
+    if options.write && options.wants_all() {
+        report::print("--write: a run of all parts shortens some; help: name those to be written");
+        return ExitCode::from(64);
     }
     whichone_tests::end_with_groups();
-    let mut report = Report::new(documents::arguments());
-    // What was measured before a part failed is printed, and is no report that documents are compared with.
+    let mut report = Report::default();
+    // What was measured before a part failed is printed, and is no report.
     let measured = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-        (0..options.runs).for_each(|_| measure(&options, &mut report));
+        measure(&options, &mut report);
     }));
     if measured.is_err() {
         report::print(&report.text());
         return ExitCode::from(70);
     }
-    match report.write() {
+    let written = report.write().and_then(|()| match options.write {
+        true => page::write(&report),
+        false => Ok(()),
+    });
+    match written {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            report::print(&format!("target/bench: {error}"));
+            report::print(&format!("the report: {error}"));
             ExitCode::from(74)
         }
     }
@@ -67,5 +69,8 @@ fn main() -> ExitCode {
 
 fn measure(options: &Options, report: &mut Report) {
     peers::measure(report);
-    options.parts.selected().for_each(|part| (part.measure)(report, options));
+    for part in options.parts.selected() {
+        report.part = part.name;
+        (part.measure)(report, options);
+    }
 }

@@ -2,23 +2,14 @@
 
 use crate::parts::Named;
 use clap::Parser;
-use std::path::PathBuf;
 
 /// Benchmarks: all parts unless some are named
 #[derive(Parser)]
 #[command(name = "bench")]
 pub(crate) struct Options {
-    /// Measure nothing; compare the figures of the documents with these reports
-    /// [target/bench/report.json]
-    #[arg(long, value_name = "REPORT", num_args = 0.., exclusive = true)]
-    pub(crate) compare: Option<Vec<PathBuf>>,
-    /// Measure nothing; write the figures of these reports into the documents
-    /// [target/bench/report.json]
-    #[arg(long, value_name = "REPORT", num_args = 0.., exclusive = true)]
-    pub(crate) write: Option<Vec<PathBuf>>,
-    /// Measure that many times; the report holds every run
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(crate) runs: usize,
+    /// Also write what the named parts measure into docs/benchmarks.md
+    #[arg(long, conflicts_with = "quick")]
+    pub(crate) write: bool,
     /// Fewer repetitions and smaller series
     #[arg(long)]
     pub(crate) quick: bool,

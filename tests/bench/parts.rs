@@ -10,21 +10,12 @@ use clap::{Arg, ArgAction, ArgMatches, Command};
 
 /// A part, which `--NAME` selects.
 pub(crate) struct Part {
-    name: &'static str,
+    pub(crate) name: &'static str,
     help: &'static str,
-    extent: Extent,
+    /// The part that measures it, too.
+    within: Option<&'static str>,
     /// Measures it.
     pub(crate) measure: fn(&mut Report, &Options),
-}
-
-/// How a run of all parts covers a part.
-enum Extent {
-    /// In full.
-    Whole,
-    /// With fewer repetitions.
-    Shortened,
-    /// As part of another one.
-    Within(&'static str),
 }
 
 const PARTS: [Part; 18] = [
@@ -36,8 +27,7 @@ const PARTS: [Part; 18] = [
         "bounds",
         "certified bounds on hard scenes against time; --quick: on one of each size",
         |report, options| core::bounds::measure(report, options.seconds(), options.quick),
-    )
-    .shortened(),
+    ),
     part(
         "kinematics",
         "the arm: inverse kinematics, motions and clearances beside other solvers",
@@ -47,7 +37,9 @@ const PARTS: [Part; 18] = [
         "processes",
         "the running group: start, recovery, latency through all processes, idle load",
         |report, _| {
+            report.part = "hops";
             hop::measure(report);
+            report.part = "processes";
             start::measure(report);
             latency::measure(report);
             idle::measure(report);
@@ -73,8 +65,7 @@ const PARTS: [Part; 18] = [
         "long",
         "one interaction of very many utterances: journals, memory, restart",
         long::measure,
-    )
-    .shortened(),
+    ),
     part("joints", "how steadily joint states come", |report, _| jitter::measure(report)),
     part(
         "orders",
@@ -104,40 +95,18 @@ const PARTS: [Part; 18] = [
         "turn-taking in simulated time: answers late, early, overlapping, doubled",
         turns::measure,
     ),
-    part("console", "the console: many pages while dialogues run", console::measure).shortened(),
+    part("console", "the console: many pages while dialogues run", console::measure),
     part("size", "groups with thousands of objects; --quick: with one thousand", size::measure),
-    part("spoken", "dialogues by voice with the real group, in real time", spoken::measure)
-        .shortened(),
+    part("spoken", "dialogues by voice with the real group, in real time", spoken::measure),
 ];
 
 const fn part(name: &'static str, help: &'static str, measure: fn(&mut Report, &Options)) -> Part {
-    Part { name, help, extent: Extent::Whole, measure }
+    Part { name, help, within: None, measure }
 }
 
 impl Part {
-    const fn shortened(self) -> Self {
-        Self { extent: Extent::Shortened, ..self }
-    }
-
     const fn within(self, other: &'static str) -> Self {
-        Self { extent: Extent::Within(other), ..self }
-    }
-
-    /// The part that an argument selects.
-    pub(crate) fn of_option(word: &str) -> Option<&'static Self> {
-        let name = word.strip_prefix("--")?;
-        PARTS.iter().find(|part| part.name == name)
-    }
-
-    /// Returns whether a run of `named`, or of all parts if that is empty, measures this part as fully as a run
-    /// of it alone.
-    pub(crate) fn is_measured_by(&self, named: &[&Self]) -> bool {
-        let is_named = |name| named.iter().any(|part| part.name == name);
-        match self.extent {
-            Extent::Shortened if named.is_empty() => false,
-            Extent::Within(other) if is_named(other) => true,
-            _ => named.is_empty() || is_named(self.name),
-        }
+        Self { within: Some(other), ..self }
     }
 }
 
@@ -149,7 +118,7 @@ impl Named {
     pub(crate) fn selected(&self) -> impl Iterator<Item = &'static Part> {
         let is_selected = |name: &'static str| self.0.is_empty() || self.0.contains(&name);
         PARTS.iter().filter(move |part| {
-            let elsewhere = matches!(part.extent, Extent::Within(other) if is_selected(other));
+            let elsewhere = part.within.is_some_and(is_selected);
             is_selected(part.name) && !elsewhere
         })
     }

@@ -1,47 +1,41 @@
 //! The table that is printed and written.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Consecutive parts of the samples, whose percentiles show how far those of a run spread.
-const PARTS: usize = 5;
-
 /// One measured figure.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Serialize)]
 pub(crate) struct Figure {
     pub(crate) what: String,
+    /// The part of the benchmarks that measured it.
+    pub(crate) part: &'static str,
     pub(crate) unit: String,
     runs: usize,
     pub(crate) p50: f64,
     pub(crate) p99: f64,
     pub(crate) max: f64,
-    /// Least and greatest p50 and p99 of the [`PARTS`] of the samples.
-    pub(crate) p50_range: (f64, f64),
-    pub(crate) p99_range: (f64, f64),
     /// The peer's name, and this p50 over the peer's.
     pub(crate) peer: Option<(String, f64)>,
     note: String,
 }
 
 /// Figures that belong together in rows and columns.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Serialize)]
 pub(crate) struct Table {
     pub(crate) title: String,
     note: String,
-    /// True if the cells do not depend on the machine.
-    #[serde(default)]
-    pub(crate) exact: bool,
     pub(crate) heads: Vec<String>,
     /// The first cell of a row is its name.
     pub(crate) rows: Vec<Vec<String>>,
 }
 
-/// All figures of a run; of several runs, each figure and table several times.
-#[derive(Debug, Default, Serialize, Deserialize)]
+/// All figures of a run.
+#[derive(Debug, Default, Serialize)]
 pub(crate) struct Report {
-    /// The command's arguments.
-    pub(crate) arguments: Vec<String>,
+    /// The part that is being measured.
+    #[serde(skip)]
+    pub(crate) part: &'static str,
     pub(crate) figures: Vec<Figure>,
     pub(crate) tables: Vec<Table>,
 }
@@ -59,31 +53,12 @@ pub(crate) fn percentile(samples: &[f64], share: f64) -> f64 {
     sorted.get(place).copied().unwrap_or(f64::NAN)
 }
 
-/// The least and the greatest of a percentile of the parts of the samples, in their order.
-fn range(samples: &[f64], share: f64) -> (f64, f64) {
-    let parts = samples.chunks(samples.len().div_ceil(PARTS).max(1));
-    let percentiles = parts.map(|part| percentile(part, share));
-    percentiles.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, greatest), value| {
-        (least.min(value), greatest.max(value))
-    })
-}
-
 /// The folder of the reports.
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/bench")
 }
 
-/// The latest report.
-pub(crate) fn latest() -> PathBuf {
-    folder().join("report.json")
-}
-
 impl Report {
-    /// An empty report of a run with these arguments.
-    pub(crate) fn new(arguments: Vec<String>) -> Self {
-        Self { arguments, ..Self::default() }
-    }
-
     /// Adds a figure from its samples, in the order in which they were taken.
     pub(crate) fn add(&mut self, what: &str, unit: &str, samples: &[f64], note: &str) {
         self.push(what, unit, samples, None, note);
@@ -115,10 +90,9 @@ impl Report {
             return print(&format!("{what}: no samples"));
         }
         let [p50, p99, max] = [0.5, 0.99, 1.0].map(|share| percentile(samples, share));
-        let [p50_range, p99_range] = [0.5, 0.99].map(|share| range(samples, share));
         let [what, unit, note] = [what, unit, note].map(str::to_owned);
-        let runs = samples.len();
-        let figure = Figure { what, unit, runs, p50, p99, max, p50_range, p99_range, peer, note };
+        let (runs, part) = (samples.len(), self.part);
+        let figure = Figure { what, part, unit, runs, p50, p99, max, peer, note };
         self.figures.push(figure);
     }
 
@@ -132,21 +106,7 @@ impl Report {
     ) {
         let heads = heads.into_iter().map(Into::into).collect();
         let (title, note) = (title.into(), note.into());
-        self.tables.push(Table { title, note, exact: false, heads, rows });
-    }
-
-    /// Adds a table whose cells do not depend on the machine.
-    pub(crate) fn exact_table<H: Into<String>>(
-        &mut self,
-        title: impl Into<String>,
-        note: impl Into<String>,
-        heads: impl IntoIterator<Item = H>,
-        rows: Vec<Vec<String>>,
-    ) {
-        self.table(title, note, heads, rows);
-        if let Some(table) = self.tables.last_mut() {
-            table.exact = true;
-        }
+        self.tables.push(Table { title, note, heads, rows });
     }
 
     /// All figures in one table, and the tables of figures below it.
@@ -175,11 +135,12 @@ impl Report {
         std::fs::create_dir_all(folder())?;
         std::fs::write(folder().join("report.md"), text)?;
         let json = serde_json::to_vec_pretty(self).map_err(std::io::Error::other)?;
-        std::fs::write(latest(), json)
+        std::fs::write(folder().join("report.json"), json)
     }
 }
 
-fn markdown(heads: &[String], rows: &[Vec<String>]) -> String {
+/// A table in Markdown.
+pub(crate) fn markdown(heads: &[String], rows: &[Vec<String>]) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let rule = format!("|{}\n", "---|".repeat(heads.len()));
     let rows: String = rows.iter().map(|row| line(row)).collect();

@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::process::Command;
 
-use model_reader::stand_in::{Reply, StandIn, heard, wants};
 use serde_json::Value;
+use stand_in_model::{Reply, StandIn, heard, wants};
 use whichone_tests::{Group, program, run, wait_for};
 
 /// What the built-in reader cannot know; everything else gets an answer that is refused.

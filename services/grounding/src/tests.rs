@@ -6,10 +6,10 @@ use config::{Calibration, LanguageModel};
 use language::{Language, Reader};
 use messages::{AskedQuestion, Hypothesis, Interpretation, Observation, Utterance};
 use model_reader::Client;
-use model_reader::stand_in::{Reply, StandIn, reading, wants};
 use scene::{Response, Scene};
 use serde_json::{Value as Json, json};
 use service::{Effects, Event, Never, Node, Span, Time, clock, worker_channel};
+use stand_in_model::{Reply, StandIn, reading, wants};
 
 use crate::model_worker::ModelWorker;
 use crate::{Config, GroundingNode, In, ModelAnswer, ModelRequest, ModelUse, Out};
@@ -237,7 +237,7 @@ fn calibration_mixes_the_built_in_reader_in() {
 /// one that is gone.
 #[test]
 fn worker_answers_within_the_time_of_each_request() {
-    let server = StandIn::start(|request| match model_reader::stand_in::heard(request).as_str() {
+    let server = StandIn::start(|request| match stand_in_model::heard(request).as_str() {
         "slow" => Reply::Slow(Duration::from_secs(20), wants(&[])),
         _ => Reply::Content(wants(&["clear"])),
     })

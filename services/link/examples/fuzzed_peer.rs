@@ -148,7 +148,7 @@ impl Dice {
             0 => Packed::File(self.bytes(2_000)),
             _ => Packed::Adpcm { rate_hz, codes: self.bytes(2_000) },
         };
-        let bytes = postcard::to_stdvec(&Line { file, sound }).unwrap_or_default();
+        let bytes = Line { file, sound }.encode().unwrap_or_default();
         if self.roll(2) == 0 { bytes } else { self.changed(bytes) }
     }
 

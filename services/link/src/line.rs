@@ -6,20 +6,13 @@
 use std::io::Cursor;
 use std::ops::RangeInclusive;
 
+use audio_codec_algorithms::{AdpcmImaState, decode_adpcm_ima, encode_adpcm_ima};
 use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
 use messages::SoundFile;
 use serde::{Deserialize, Serialize};
 
-/// Step sizes.
-const STEPS: [i32; 89] = [
-    7, 8, 9, 10, 11, 12, 13, 14, 16, 17, 19, 21, 23, 25, 28, 31, 34, 37, 41, 45, 50, 55, 60, 66,
-    73, 80, 88, 97, 107, 118, 130, 143, 157, 173, 190, 209, 230, 253, 279, 307, 337, 371, 408, 449,
-    494, 544, 598, 658, 724, 796, 876, 963, 1060, 1166, 1282, 1411, 1552, 1707, 1878, 2066, 2272,
-    2499, 2749, 3024, 3327, 3660, 4026, 4428, 4871, 5358, 5894, 6484, 7132, 7845, 8630, 9493,
-    10442, 11487, 12635, 13899, 15289, 16818, 18500, 20350, 22385, 24623, 27086, 29794, 32767,
-];
-/// Change of the step after each magnitude.
-const CHANGES: [i8; 8] = [-1, -1, -1, -1, 2, 4, 6, 8];
+/// Of the codes: the other end reads those of its own version alone.
+const VERSION: u8 = 2;
 /// Sample rates, hertz. Others, 0 among them, are of no sound.
 const RATES_HZ: RangeInclusive<u32> = 1_000..=192_000;
 /// Largest line, bytes: more than five minutes of speech.
@@ -51,13 +44,16 @@ pub enum Packed {
 impl Line {
     /// Returns the bytes that travel; `None` for more than a mirror takes.
     pub fn encode(&self) -> Option<Vec<u8>> {
-        postcard::to_stdvec(self).ok().filter(|bytes| bytes.len() <= BYTES_MAX)
+        postcard::to_stdvec(&(VERSION, self)).ok().filter(|bytes| bytes.len() <= BYTES_MAX)
     }
 
     /// Returns the file and its contents. Another version, and whoever has a robot's keys, may have sent anything.
     pub fn decode(bytes: &[u8]) -> Option<(SoundFile, Vec<u8>)> {
         let bytes = Some(bytes).filter(|bytes| bytes.len() <= BYTES_MAX)?;
-        let Self { file, sound } = postcard::from_bytes(bytes).ok()?;
+        let (version, Self { file, sound }) = postcard::from_bytes::<(u8, Self)>(bytes).ok()?;
+        if version != VERSION {
+            return None;
+        }
         Some((SoundFile::parse(&file)?, sound.file()?))
     }
 }
@@ -75,11 +71,10 @@ impl Packed {
             return None;
         }
         let samples: Vec<i16> = reader.into_samples().collect::<Result<_, _>>().ok()?;
-        let mut coder = Coder::default();
+        let mut state = AdpcmImaState::new();
         let byte = |pair: &[i16]| {
-            pair.iter()
-                .enumerate()
-                .fold(0, |byte, (n, sample)| byte | coder.code(*sample) << (4 * n))
+            let mut code = |n: usize| pair.get(n).map_or(0, |it| encode_adpcm_ima(*it, &mut state));
+            code(0) | code(1) << 4
         };
         Some(Self::Adpcm { rate_hz, codes: samples.chunks(2).map(byte).collect() })
     }
@@ -88,9 +83,9 @@ impl Packed {
     fn file(self) -> Option<Vec<u8>> {
         match self {
             Self::Adpcm { rate_hz, codes } if RATES_HZ.contains(&rate_hz) => {
-                let mut coder = Coder::default();
+                let mut state = AdpcmImaState::new();
                 let codes = codes.iter().flat_map(|byte| [byte & 15, byte >> 4]);
-                wav(rate_hz, codes.map(|code| coder.sample(code))).ok()
+                wav(rate_hz, codes.map(|code| decode_adpcm_ima(code, &mut state))).ok()
             }
             Self::Adpcm { .. } => None,
             Self::File(file) => Some(file),
@@ -112,36 +107,6 @@ fn wav(rate_hz: u32, samples: impl Iterator<Item = i16>) -> Result<Vec<u8>, houn
     }
     writer.finalize()?;
     Ok(file.into_inner())
-}
-
-/// What both ends know of the samples so far.
-#[derive(Clone, Copy, Default)]
-struct Coder {
-    predicted: i32,
-    step: usize,
-}
-
-impl Coder {
-    /// Codes a sample: its sign, then its distance from the predicted one in quarters of a step.
-    fn code(&mut self, sample: i16) -> u8 {
-        let off = i32::from(sample) - self.predicted;
-        let magnitude = (off.abs() * 4 / STEPS[self.step]).min(7);
-        let code = if off < 0 { magnitude + 8 } else { magnitude } as u8;
-        self.sample(code);
-        code
-    }
-
-    /// Returns the sample of a code.
-    fn sample(&mut self, code: u8) -> i16 {
-        let (magnitude, step) = (i32::from(code & 7), STEPS[self.step]);
-        let off = (2 * magnitude + 1) * step / 8;
-        let moved = if code & 8 == 0 { self.predicted + off } else { self.predicted - off };
-        let sample = moved.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-        self.predicted = sample.into();
-        let step = self.step.saturating_add_signed(CHANGES[usize::from(code & 7)].into());
-        self.step = step.min(STEPS.len() - 1);
-        sample
-    }
 }
 
 #[cfg(test)]
@@ -208,9 +173,11 @@ mod tests {
         }
         assert_eq!(Line::decode(&line("../x", sound(16_000)).unwrap()), None);
         assert_eq!(Line::decode(b"RIFF and so on"), None);
+        let of_another_version = (VERSION - 1, "line-1-1.wav", sound(16_000));
+        assert_eq!(Line::decode(&postcard::to_stdvec(&of_another_version).unwrap()), None);
         let long = Packed::File(vec![0; BYTES_MAX]);
         assert_eq!(line("line-1-1.wav", long.clone()), None);
-        let long = postcard::to_stdvec(&Line { file: "line-1-1.wav".to_owned(), sound: long });
+        let long = postcard::to_stdvec(&(VERSION, "line-1-1.wav", long));
         assert_eq!(Line::decode(&long.unwrap()), None);
     }
 

@@ -7,8 +7,6 @@ mod answer;
 mod calibration;
 mod client;
 mod prompt;
-#[cfg(any(test, feature = "stand_in"))]
-pub mod stand_in;
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]

@@ -7,8 +7,8 @@ use config::{Calibration, LanguageModel};
 use scene::{Question, Reading, Response, Scene};
 use serde_json::{Value as Json, json};
 
-use crate::stand_in::{Reply, StandIn, heard, reading, wants};
 use crate::{Case, Client, Prompt, calibrated, fit, log_loss, parse, utterance};
+use stand_in_model::{Reply, StandIn, heard, reading, wants};
 
 fn bowls() -> Scene {
     Scene::from_toml("bowls", include_str!("../../../config/scenes/bowls.toml")).unwrap()

@@ -6,6 +6,8 @@ use super::{POSTURES, numbers, rows, seven, thread_s, timed};
 use crate::report::Report;
 use manipulation::{Clearance, Cuboid, Joints, Limb, Robot};
 
+/// The solver beside whose forward kinematics ours stand.
+const PEER: &str = "Pinocchio 4.1";
 /// Samples of forward kinematics.
 const SAMPLES: usize = 200;
 /// The table of the reference.
@@ -21,17 +23,7 @@ pub(super) fn forward(report: &mut Report, subject: &Subject, python: &Measured)
     let pose = format!("forward kinematics of {}", subject.name);
     let both = format!("forward kinematics and Jacobian of {}", subject.name);
     let note = format!("base to gripper, {} joints", chain.joints());
-    #[cfg(feature = "peers")]
-    {
-        let peer = super::k_crate::chain(subject, limb);
-        let theirs = nanos(&postures, |q| super::k_crate::forward(&peer, subject.moving(limb, q)));
-        report.add(&format!("k 0.32: {pose}"), "ns", &theirs, &note);
-        let theirs = nanos(&postures, |q| super::k_crate::jacobian(&peer, subject.moving(limb, q)));
-        report.add(&format!("k 0.32: {both}"), "ns", &theirs, &note);
-    }
-    let mut peer = "k 0.32";
     for theirs in &python.forward {
-        peer = "Pinocchio 4.1";
         let apart = postures.iter().zip(&theirs.places).map(|(q, theirs)| {
             (chain.tool_frame(q).origin - nalgebra::Vector3::from(*theirs)).norm()
         });
@@ -39,12 +31,12 @@ pub(super) fn forward(report: &mut Report, subject: &Subject, python: &Measured)
             "{note}, less the same calls from Python for no joints; grippers within {:.0e} m of ours",
             apart.fold(0.0, f64::max)
         );
-        report.add(&format!("{peer}: {pose}"), "ns", &theirs.pose_ns, &less);
-        report.add(&format!("{peer}: {both}"), "ns", &theirs.jacobian_ns, &less);
+        report.add(&format!("{PEER}: {pose}"), "ns", &theirs.pose_ns, &less);
+        report.add(&format!("{PEER}: {both}"), "ns", &theirs.jacobian_ns, &less);
     }
-    let (ours, beside) = (nanos(&postures, pose_of), format!("{peer}: {pose}"));
+    let (ours, beside) = (nanos(&postures, pose_of), format!("{PEER}: {pose}"));
     report.add_beside(&pose, "ns", &ours, &beside, &note);
-    let (ours, beside) = (nanos(&postures, jacobian), format!("{peer}: {both}"));
+    let (ours, beside) = (nanos(&postures, jacobian), format!("{PEER}: {both}"));
     report.add_beside(&both, "ns", &ours, &beside, &note);
 }
 

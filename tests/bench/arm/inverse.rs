@@ -181,10 +181,6 @@ pub(super) fn measure(
     };
     let own = run(&mut Own { subject, nearest: false }, targets, Rule::OWN);
     let mut peers = vec![run(&mut Damped { subject, rng: Rng::new(11) }, few, Rule::PEER)];
-    #[cfg(feature = "peers")]
-    for mut solver in super::k_crate::solvers(subject) {
-        peers.push(run(&mut solver, few, Rule::PEER));
-    }
     peers.extend(python.outcomes(subject, targets, Kind::Reachable, false, Seed::Middle));
     let best = peers
         .iter()
@@ -205,9 +201,6 @@ pub(super) fn measure(
     );
     for line in &python.left_out {
         note += &format!(" {line}");
-    }
-    if !cfg!(feature = "peers") {
-        note += " Built without the feature `peers`: the crate k is left out.";
     }
     let ours = own.mean();
     let rows = std::iter::once(&own).chain(&peers).map(|outcome| outcome.cells(ours)).collect();

@@ -7,8 +7,6 @@
 mod checks;
 mod damped;
 mod inverse;
-#[cfg(feature = "peers")]
-mod k_crate;
 mod motion;
 mod python;
 mod refusal;

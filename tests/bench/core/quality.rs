@@ -48,7 +48,7 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
         effort.cut
     );
     let heads = ["scene, questions, costs", "best policy"];
-    report.exact_table("Exact values", note, heads.into_iter().chain(registry::names()), rows);
+    report.table("Exact values", note, heads.into_iter().chain(registry::names()), rows);
     wrong_picks(report, effort);
     larger(report, effort);
 }
@@ -78,7 +78,7 @@ fn wrong_picks(report: &mut Report, effort: Effort) {
     ];
     let note = "Six bowls in another room, the policy of `optimal` from the uniform belief.";
     let rows = WRONG.map(row).to_vec();
-    report.exact_table("Costs of a wrong pick", note, heads, rows);
+    report.table("Costs of a wrong pick", note, heads, rows);
 }
 
 fn larger(report: &mut Report, effort: Effort) {
@@ -102,12 +102,7 @@ fn larger(report: &mut Report, effort: Effort) {
          column. A dash: its decisions would take longer than this table is worth.",
     );
     let heads = ["objects × attributes, questions", "best policy"];
-    report.exact_table(
-        "Values on larger scenes",
-        note,
-        heads.into_iter().chain(registry::names()),
-        rows,
-    );
+    report.table("Values on larger scenes", note, heads.into_iter().chain(registry::names()), rows);
 }
 
 /// Certified bounds on the best policy's value.

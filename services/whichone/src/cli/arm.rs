@@ -27,8 +27,8 @@ pub struct ArmPlotArgs {
     /// one by default.
     #[arg(long, value_name = "NAME")]
     pub limb: Option<String>,
-    /// Picture; PNG or SVG by its extension.
-    #[arg(long, value_name = "FILE", default_value = "pick.png")]
+    /// Picture, as SVG.
+    #[arg(long, value_name = "FILE", default_value = "pick.svg")]
     pub out: PathBuf,
     /// Width of the picture, pixels.
     #[arg(long, value_name = "PIXELS", default_value = "1600", value_parser = width)]

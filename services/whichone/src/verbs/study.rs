@@ -38,8 +38,8 @@ pub(super) fn study(args: &StudyArgs, out: &mut Output<'_>) -> Outcome {
         files.write("study.csv", report::to_csv(&results).as_bytes())?;
         let json = report::to_json(args, &setup, &results);
         files.write("study.json", format!("{json:#}\n").as_bytes())?;
-        for (name, bytes) in plot::pictures(&results)? {
-            files.write(&name, &bytes)?;
+        for (name, svg) in plot::pictures(&results)? {
+            files.write(&name, svg.as_bytes())?;
         }
         note(format_args!("written to {}", files.path.display()));
     }

@@ -6,11 +6,14 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::charts::PlotError;
 use crate::charts::chart::{Chart, Panel, Shape, colour};
-use crate::charts::pixels::{Pixels, TEXT, TITLE, text_width};
 
 const BLACK: RGBColor = RGBColor(0x22, 0x22, 0x22);
 const GREY: RGBColor = RGBColor(0x66, 0x66, 0x66);
 const FAINT: RGBColor = RGBColor(0xe2, 0xe2, 0xe2);
+/// Size of ordinary text, in the units of `plotters`.
+const TEXT: f64 = 27.0;
+/// Size of titles.
+const TITLE: f64 = 36.0;
 /// Height of a line of text, pixels.
 const LINE: i32 = 36;
 /// Margin of the whole, pixels.
@@ -18,7 +21,7 @@ const MARGIN: i32 = 28;
 /// Largest side of a picture, pixels.
 const SIDE_MAX: u32 = 20_000;
 
-type Area<B> = DrawingArea<B, Shift>;
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), PlotError>;
 
 /// Returns the chart as SVG text.
@@ -32,28 +35,10 @@ pub fn svg(chart: &Chart) -> Result<String, PlotError> {
     Ok(text)
 }
 
-/// Returns the chart as a PNG file.
-///
-/// # Errors
-/// The chart is too large, has no panel, or cannot be encoded.
-pub fn png(chart: &Chart) -> Result<Vec<u8>, PlotError> {
-    let (width, height) = chart.size()?;
-    let mut rgb = vec![0; 3 * width as usize * height as usize];
-    draw(chart, &Pixels::new((width, height), &mut rgb).into_drawing_area())?;
-    let mut file = Vec::new();
-    let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.write_header().and_then(|mut file| file.write_image_data(&rgb)).map_err(failed)?;
-    Ok(file)
-}
-
-/// Returns the chart in both formats, each with its file name.
-///
-/// # Errors
-/// As of [`png`].
-pub fn files(name: &str, chart: &Chart) -> Result<[(String, Vec<u8>); 2], PlotError> {
-    Ok([(format!("{name}.svg"), svg(chart)?.into_bytes()), (format!("{name}.png"), png(chart)?)])
+/// Room that a text takes, pixels: the letters are those of the reader's own font.
+fn text_width(text: &str, size: f64) -> u32 {
+    let letter = if size < TITLE { 11 } else { 14 };
+    letter * text.chars().count() as u32
 }
 
 fn failed(error: impl std::fmt::Display) -> PlotError {
@@ -88,7 +73,7 @@ impl Chart {
     }
 }
 
-fn draw<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn {
+fn draw(chart: &Chart, area: &Area<'_>) -> Drawn {
     area.fill(&WHITE).map_err(failed)?;
     let (width, height) = area.dim_in_pixel();
     let (above, below) = chart.lines_around();
@@ -112,8 +97,8 @@ fn draw<B: DrawingBackend>(chart: &Chart, area: &Area<B>) -> Drawn {
     area.present().map_err(failed)
 }
 
-fn text<B: DrawingBackend>(
-    area: &Area<B>,
+fn text(
+    area: &Area<'_>,
     text: &str,
     at: (i32, i32),
     (size, ink): (f64, RGBColor),
@@ -129,7 +114,7 @@ fn style(size: f64, ink: RGBColor) -> TextStyle<'static> {
     ("monospace", size).into_font().color(&ink)
 }
 
-fn draw_panel<B: DrawingBackend>(panel: &Panel, area: &Area<B>) -> Drawn {
+fn draw_panel(panel: &Panel, area: &Area<'_>) -> Drawn {
     let widths = panel.y.ticks().iter().map(|(_, name)| text_width(name, TEXT));
     let label = if panel.y.label.is_empty() { 0 } else { LINE as u32 };
     let mut builder = ChartBuilder::on(area);

@@ -1,18 +1,17 @@
-//! Charts of measurements, as SVG and PNG.
+//! Charts of measurements, as SVG.
 //!
-//! A [`Chart`] is data: panels with axes and shapes, and a legend. [`svg`] and [`png`] draw it
-//! with `plotters`; the PNG brings its own letters, so that no font has to be installed.
+//! A [`Chart`] is data: panels with axes and shapes, and a legend. [`svg`] draws it
+//! with `plotters`.
 //!
 //! This module is pure: no IO, no clock, no threads. The same chart gives the same bytes.
 
 mod axis;
 mod chart;
 mod draw;
-mod pixels;
 
 pub use axis::Axis;
 pub use chart::{Chart, Colour, Panel, Point, Shape, colour};
-pub use draw::{files, png, svg};
+pub use draw::svg;
 
 /// A chart that cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

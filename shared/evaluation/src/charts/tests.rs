@@ -20,14 +20,6 @@ fn chart() -> Chart {
     }
 }
 
-/// Decodes a PNG file: width, height and pixels.
-fn decoded(file: &[u8]) -> (u32, u32, Vec<u8>) {
-    let mut reader = ::png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
-    let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
-    let frame = reader.next_frame(&mut rgb).unwrap();
-    (frame.width, frame.height, rgb)
-}
-
 #[test]
 fn axis_has_its_ticks_at_round_numbers() {
     let texts = |axis: &Axis| -> Vec<String> {
@@ -59,14 +51,7 @@ fn chart_is_drawn_with_its_labels_and_marks_and_repeats() {
     }
     // Each mark with its rim, and one of the legend.
     assert_eq!(text.matches("<polygon").count(), 2 * (POINTS.len() + 1));
-    let file = png(&chart).unwrap();
-    assert_eq!((&text, &file), (&svg(&chart).unwrap(), &png(&chart).unwrap()));
-    let (width, height, rgb) = decoded(&file);
-    assert!(text.contains(&format!("width=\"{width}\" height=\"{height}\"")), "{text}");
-    let [r, g, b] = colour(0);
-    let blue = rgb.chunks(3).filter(|pixel| *pixel == [r, g, b]).count();
-    let dark = rgb.chunks(3).filter(|pixel| pixel.iter().all(|part| *part < 0x50)).count();
-    assert!(blue > 1_000 && dark > 1_000, "{blue} {dark}");
+    assert_eq!(text, svg(&chart).unwrap());
 }
 
 #[test]
@@ -74,6 +59,6 @@ fn chart_without_panels_or_too_large_is_rejected() {
     let (nothing, large) =
         (Chart { panels: Vec::new(), ..chart() }, Chart { panel_size: (30_000, 10), ..chart() });
     for broken in [nothing, large] {
-        assert!(png(&broken).is_err() && svg(&broken).is_err());
+        assert!(svg(&broken).is_err());
     }
 }

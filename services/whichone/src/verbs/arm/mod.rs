@@ -29,13 +29,12 @@ struct Pick<'a> {
 
 /// Draws the motion that fetches an object.
 pub(super) fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
-    let ending = args.out.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if args.samples_hz.is_some() && !out.is_json() {
         let what = "--samples-hz: samples are printed as JSON; help: add --json";
         return Err(Failure::new(Exit::Usage, what));
     }
-    if !["png", "svg"].contains(&ending) {
-        let help = "end its name with .png or .svg";
+    if args.out.extension().is_none_or(|ending| ending != "svg") {
+        let help = "end its name with .svg";
         let what = format!("{}: not a picture format; help: {help}", args.out.display());
         return Err(Failure::new(Exit::Usage, what));
     }
@@ -57,12 +56,9 @@ pub(super) fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
         return Ok(Exit::Ok);
     }
     let chart = figure::chart(&pick, args.width);
-    let picture = match ending {
-        "svg" => evaluation::charts::svg(&chart).map(String::into_bytes),
-        _ => evaluation::charts::png(&chart),
-    };
-    let bytes = picture.map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
-    write(&args.out, &bytes)?;
+    let picture = evaluation::charts::svg(&chart)
+        .map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
+    write(&args.out, picture.as_bytes())?;
     let name = &pick.scene.object(pick.object.into()).name;
     let seconds = pick.plan.duration_s();
     let limb = &robot.arm(pick.plan.limb()).name;

@@ -64,9 +64,9 @@ fn export(folder: &Path, people: &[Participant], report: &Report) -> Result<(), 
     )?;
     files.write("report.json", format!("{:#}\n", report.to_json()).as_bytes())?;
     for (name, chart) in evaluation::user_study::pictures(report) {
-        let charts = evaluation::charts::files(name, &chart)
+        let svg = evaluation::charts::svg(&chart)
             .map_err(|error| Failure::new(Exit::Storage, format!("{name}: {error}")))?;
-        charts.iter().try_for_each(|(name, bytes)| files.write(name, bytes))?;
+        files.write(&format!("{name}.svg"), svg.as_bytes())?;
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Charts of a simulated study, each as SVG and as PNG.
+//! Charts of a simulated study, as SVG.
 
 use evaluation::charts::{Axis, Chart, Panel, Shape};
 use evaluation::distinct;
@@ -7,8 +7,8 @@ use service::exit::{Exit, Failure};
 
 use super::design::Row;
 
-/// File name and bytes.
-pub(super) type Picture = (String, Vec<u8>);
+/// File name and text.
+pub(super) type Picture = (String, String);
 
 /// Returns the files of every chart with data to show.
 pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, Failure> {
@@ -26,9 +26,9 @@ pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, Failur
     }
     let mut pictures = Vec::new();
     for (name, chart) in charts {
-        let files = evaluation::charts::files(name, &chart)
+        let svg = evaluation::charts::svg(&chart)
             .map_err(|error| Failure::new(Exit::Storage, format!("{name}: {error}")))?;
-        pictures.extend(files);
+        pictures.push((format!("{name}.svg"), svg));
     }
     Ok(pictures)
 }
