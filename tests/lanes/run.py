@@ -239,9 +239,10 @@ def read_json(path, default):
         return default
 
 
-def judge_second_tries(lane, passed):
+def judge_second_tries(passed):
     """Whether second tries are too many, by the ledger and by earlier runs."""
     ledger = tomllib.loads((HERE / "flaky.toml").read_text())
+    is_strict = os.environ.get("WHICHONE_LEDGER") == "strict"
     path = KEPT / "second_tries.json"
     runs = (read_json(path, []) + [passed])[-RUNS_REMEMBERED:]
     path.write_text(json.dumps(runs))
@@ -253,7 +254,7 @@ def judge_second_tries(lane, passed):
         if tries > SECOND_TRIES_ALLOWED:
             say(f"{name}: {tries} of the last {len(runs)} runs needed a second try: that is a fault")
             is_good = False
-        if lane == "nightly" and not cause:
+        if is_strict and not cause:
             is_good = False
     return is_good
 
@@ -357,11 +358,11 @@ def judge(lane, runner, leftovers, began):
     is_good = not bad
     if failed and not is_sudden and len(failed) <= TRIED_AGAIN:
         passed, slow, broken = runner.try_again(failed)
-        is_good = not broken and judge_second_tries(lane, passed)
+        is_good = not broken and judge_second_tries(passed)
         if slow:
             say(f"this machine was too slow for physics in real time; not tried: {', '.join(slow)}")
     elif not bad:
-        judge_second_tries(lane, [])
+        judge_second_tries([])
     for name in broken if bad else []:
         say(f"failed: {name}")
     left = leftovers.find()

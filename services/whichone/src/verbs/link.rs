@@ -12,7 +12,7 @@ use service::launch;
 use crate::cli::LinkArgs;
 
 /// Builds the program whichone-link.
-const LINK_HELP: &str = "cargo build --release -p link --features link/zenoh";
+const LINK_HELP: &str = "scripts/link build";
 
 /// `whichone link …`; returns only if that fails.
 pub(super) fn link(group: &GroupName, args: LinkArgs) -> Failure {

@@ -120,7 +120,7 @@ pub(crate) fn load(model: &Path, scene: &Scene) -> Result<Box<dyn Network>, Reco
 pub(crate) fn load(_: &Path, _: &Scene) -> Result<Box<dyn Network>, RecogniserUnavailable> {
     Err(RecogniserUnavailable(
         "speech.whisper_model: the second recogniser is not part of this build; help: build with \
-         `--features speech/whisper` (WHICHONE_FEATURES=speech/whisper scripts/run), or remove the key"
+         `--features whisper` (WHICHONE_FEATURES=whisper scripts/run), or remove the key"
             .to_owned(),
     ))
 }
