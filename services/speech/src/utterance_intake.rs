@@ -2,6 +2,7 @@
 //! applied.
 
 mod accepted;
+mod checkpoint;
 mod hearing_status;
 mod origin;
 mod stop_order;
@@ -48,41 +49,6 @@ pub(crate) struct UtteranceIntake {
 }
 
 impl UtteranceIntake {
-    /// Returns everything but the configuration, for flights that begin in the middle of a start.
-    pub(crate) fn checkpoint(&self) -> Option<Vec<u8>> {
-        let Self {
-            config: _,
-            accepted,
-            stop,
-            waiting,
-            receipts,
-            pending,
-            status,
-            last_partial,
-            early,
-        } = self;
-        let requests = (accepted, stop, waiting, receipts);
-        postcard::to_stdvec(&(requests, pending, status, last_partial, early)).ok()
-    }
-
-    /// Returns the intake of a checkpoint.
-    pub(crate) fn resume(config: Config, checkpoint: &[u8]) -> Option<Self> {
-        let (requests, pending, status, last_partial, early) =
-            postcard::from_bytes(checkpoint).ok()?;
-        let (accepted, stop, waiting, receipts) = requests;
-        Some(Self {
-            config,
-            accepted,
-            stop,
-            waiting,
-            receipts,
-            pending,
-            status,
-            last_partial,
-            early,
-        })
-    }
-
     pub(crate) fn new(config: Config) -> Self {
         Self {
             config,
