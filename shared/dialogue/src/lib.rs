@@ -75,6 +75,7 @@ mod table;
 pub mod time;
 mod turn_taking;
 pub mod user_model;
+pub mod wall_time;
 
 #[cfg(test)]
 mod testing;

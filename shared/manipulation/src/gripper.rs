@@ -9,8 +9,6 @@
 //! Numbers from baxter_common 1.2.0 and baxter_interface 1.2.0, BSD-3-Clause, Copyright (c) 2013-2015
 //! Rethink Robotics.
 
-use std::f64::consts::{PI, SQRT_2};
-
 /// Travel of one finger, metres.
 const FINGER_TRAVEL_M: f64 = 0.020833;
 
@@ -96,43 +94,10 @@ pub fn seconds_between(from_m: f64, to_m: f64) -> f64 {
     (to_m - from_m).abs() / SPEED_M_S
 }
 
-/// Returns the largest offset from the middle of fingers `opening_m` apart for an object of width `object_m`,
-/// metres; none for one that is too wide.
-fn tolerance_m(opening_m: f64, object_m: f64) -> Option<f64> {
-    (object_m <= opening_m).then_some(0.5 * (opening_m - object_m))
-}
-
 /// Returns whether fingers that are `opening_m` apart take hold of an object that is `object_m`
 /// wide and stands `offset_m` beside their middle.
 pub fn catches(opening_m: f64, object_m: f64, offset_m: f64) -> bool {
-    tolerance_m(opening_m, object_m).is_some_and(|tolerance_m| offset_m.abs() <= tolerance_m)
-}
-
-/// Probability that a grasp takes hold of an object: fingers `opening_m` apart, an object of width
-/// `object_m`, placement errors across the fingers with standard deviation `error_m`. 0 for an
-/// object that is too wide.
-pub fn success_probability(opening_m: f64, object_m: f64, error_m: f64) -> f64 {
-    match tolerance_m(opening_m, object_m) {
-        None => 0.0,
-        Some(_) if error_m <= 0.0 => 1.0,
-        Some(tolerance_m) => erf(tolerance_m / (SQRT_2 * error_m)),
-    }
-}
-
-/// Returns the error function, for arguments that are not negative: its Taylor series about zero
-/// (Abramowitz and Stegun 7.1.6, all terms positive), which is exact to 1e-15 below 6; above, it is
-/// 1.
-fn erf(x: f64) -> f64 {
-    if x >= 6.0 {
-        return 1.0;
-    }
-    let (mut term, mut sum, mut n) = (x, x, 0.0);
-    while term > 1e-17 * sum {
-        n += 1.0;
-        term *= 2.0 * x * x / (2.0 * n + 1.0);
-        sum += term;
-    }
-    (2.0 / PI.sqrt() * (-x * x).exp() * sum).min(1.0)
+    offset_m.abs() <= 0.5 * (opening_m - object_m)
 }
 
 #[cfg(test)]
@@ -177,53 +142,9 @@ mod tests {
     }
 
     #[test]
-    fn the_error_function_has_its_tabulated_values() {
-        // Abramowitz and Stegun, table 7.1.
-        let table = [
-            (0.0, 0.0),
-            (0.1, 0.112_462_916_0),
-            (0.5, 0.520_499_877_8),
-            (1.0, 0.842_700_792_9),
-            (2.0, 0.995_322_265_0),
-            (7.0, 1.0),
-        ];
-        for (x, expected) in table {
-            assert!((erf(x) - expected).abs() < 1e-10, "erf({x}) = {}", erf(x));
-        }
-    }
-
-    #[test]
     fn grasp_fits_until_a_finger_hits_the_object() {
         assert!(catches(0.04, 0.02, 0.0) && catches(0.04, 0.02, -0.01));
         assert!(!catches(0.04, 0.02, 0.0101) && !catches(0.04, 0.041, 0.0));
         assert!(catches(0.04, 0.04, 0.0), "it just fits");
-    }
-
-    #[test]
-    fn grasp_probability_is_exact_at_0_and_1() {
-        assert_eq!(success_probability(0.04, 0.004, 0.0), 1.0);
-        assert_eq!(success_probability(0.04, 0.041, 0.0), 0.0);
-        assert_eq!(success_probability(0.04, 0.041, 0.01), 0.0);
-        // One and two standard deviations on either side.
-        assert!((success_probability(0.03, 0.01, 0.01) - 0.682_689_492).abs() < 1e-9);
-        assert!((success_probability(0.03, 0.01, 0.005) - 0.954_499_736).abs() < 1e-9);
-    }
-
-    #[test]
-    fn grasp_probability_agrees_with_sampling() {
-        let (opening_m, object_m, error_m, side) = (0.04, 0.012, 0.012, 400);
-        let grid = |i: i32| (f64::from(i) + 0.5) / f64::from(side);
-        let mut caught = 0;
-        for u in 0..side {
-            for v in 0..side {
-                // A placement error from two uniform numbers (Box and Muller 1958).
-                let radius_m = error_m * (-2.0 * (1.0 - grid(u)).ln()).sqrt();
-                let offset_m = radius_m * (2.0 * PI * grid(v)).cos();
-                caught += i32::from(catches(opening_m, object_m, offset_m));
-            }
-        }
-        let share = f64::from(caught) / f64::from(side * side);
-        let expected = success_probability(opening_m, object_m, error_m);
-        assert!((share - expected).abs() < 0.003, "{share} of draws, {expected} expected");
     }
 }

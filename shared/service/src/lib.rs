@@ -71,9 +71,9 @@ pub mod service_loop;
 pub mod status;
 pub mod storage;
 pub mod view;
-pub mod wall_time;
 pub mod worker_channel;
 
+pub use dialogue::wall_time;
 pub use reducer::{Effects, Event, Never, Node, NodeError, SetAside};
 pub use runtime::{Span, Time};
 pub use runtime::{

@@ -24,7 +24,6 @@ mod pictures;
 mod plan;
 mod report;
 mod rows;
-mod stamp;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]
@@ -43,5 +42,4 @@ pub use pictures::pictures;
 pub use plan::{Counts, Step, draw, new_id, plan};
 pub use report::{Answers, Group, Report, report};
 pub use rows::{Tables, tables, to_json};
-pub use stamp::utc;
 pub use trial::{End, Trial};

@@ -7,9 +7,9 @@ use crate::distinct;
 use crate::user_study::dictionary::{INTERACTIONS, PARTICIPANTS, dictionary};
 use crate::user_study::event::Source;
 use crate::user_study::participant::Participant;
-use crate::user_study::stamp::utc;
 use crate::user_study::trial::{End, Trial};
 use config::study::Item;
+use dialogue::wall_time;
 
 /// The files of an export.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -174,6 +174,11 @@ fn block(person: &Participant, trial: &Trial) -> Option<usize> {
 
 fn answer(person: &Participant, item: &Item) -> Json {
     person.answers.get(&item.id).cloned().unwrap_or(Json::Null)
+}
+
+/// A moment, milliseconds since 1970.
+fn utc(ms: u64) -> String {
+    wall_time::text(ms.saturating_mul(1_000_000))
 }
 
 fn thousandths(value: f64) -> f64 {
