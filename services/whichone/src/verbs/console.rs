@@ -1,5 +1,6 @@
 //! `console`: the link to the console's page.
 
+use std::os::unix::process::CommandExt;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
@@ -29,9 +30,10 @@ struct Printed {
 /// Prints the link, or opens it.
 pub(super) fn console(paths: &GroupPaths, args: &ConsoleArgs, out: &mut Output<'_>) -> Outcome {
     if let Some(file) = &args.view {
+        // In the place of this process, so that signals reach it.
         let mut viewer = command("console", "view");
-        let status = viewer.arg(file).status().map_err(|error| failed(&viewer, &error))?;
-        return Ok(Exit::of_process(status.code()));
+        let error = viewer.arg(file).exec();
+        return Err(failed(&viewer, &error));
     }
     if args.renew {
         renew(paths)?;
