@@ -204,3 +204,17 @@ fn said_stop_waits_for_an_arm_that_is_held() {
     assert_eq!(answer["arm"]["stopped"], json!(true), "{answer}");
     trial.down();
 }
+
+/// The client waits for the speech service alone: a held arm takes no words from it.
+#[test]
+fn said_stop_outlasts_a_suspended_speech_service_while_the_arm_is_held() {
+    let trial = Trial::begin(&[]);
+    trial.fetch();
+    trial.enter(During::ArmHeld);
+    let report = trial.give(Way::Words, During::Suspended("speech"));
+    assert!(report.is_accepted, "{report:?}");
+    assert!(report.text.contains("arm is held"), "what keeps it from being obeyed: {report:?}");
+    trial.group.must(&["release", "arm"]);
+    trial.watch.wait_stopped("the arm's latch");
+    trial.down();
+}

@@ -12,6 +12,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 use whichone_tests::console::{Console, Page, Visitor};
 use whichone_tests::gateway::Gateway;
+use whichone_tests::link::{Mirror, Relay, is_built};
 use whichone_tests::ros2::{CYCLONE, Ros2Peer};
 use whichone_tests::{Ended, Group, run};
 
@@ -19,6 +20,8 @@ use whichone_tests::{Ended, Group, run};
 const PATIENCE: Duration = Duration::from_secs(60);
 /// The secret of the participant's page.
 const PARTICIPANT: &str = "00112233445566778899aabbccddeeff";
+/// The robot's name for its mirrors.
+const ROBOT: &str = "r1";
 const STUDY: [&str; 2] = ["study.enabled=true", "study.consent=I agree."];
 
 /// A way to give a stop.
@@ -38,9 +41,13 @@ pub(super) enum Way {
     Socket,
     Python,
     Ros2,
+    /// The command line at a mirror of the robot.
+    Mirror,
+    /// The page at that mirror.
+    MirrorPage,
 }
 
-const WAYS: [Way; 10] = [
+const WAYS: [Way; 12] = [
     Way::CommandLine,
     Way::Words,
     Way::Chat,
@@ -51,6 +58,8 @@ const WAYS: [Way; 10] = [
     Way::Study,
     Way::Gateway,
     Way::Ros2,
+    Way::Mirror,
+    Way::MirrorPage,
 ];
 
 /// What a way reported of its order.
@@ -78,6 +87,7 @@ impl Way {
             Self::Spoken => is_installed("espeak-ng") && has_recogniser(),
             Self::Python => std::env::var_os("WHICHONE_PYTHON").is_some(),
             Self::Ros2 => std::env::var_os("WHICHONE_CYCLONE").is_some(),
+            Self::Mirror | Self::MirrorPage => is_built(),
             _ => true,
         }
     }
@@ -93,11 +103,13 @@ fn has_recogniser() -> bool {
     listed.is_ok_and(|it| String::from_utf8_lossy(&it.stdout).contains("libpocketsphinx.so.3"))
 }
 
-/// Those who give stops in a group. A program of ROS 2 is there before the group.
+/// Those who give stops in a group. A program of ROS 2 and the link's router are there before the group.
 pub(super) struct Givers {
-    pub(super) settings: Vec<String>,
+    settings: Vec<String>,
     ros2: Option<Mutex<Ros2Peer>>,
     gateway: Option<(Gateway, Console)>,
+    mirror: Option<Mirror>,
+    relay: Option<Relay>,
     /// The recording of the word, and its folder.
     recording: Option<(tempfile::TempDir, String)>,
 }
@@ -108,6 +120,9 @@ impl Givers {
         let ros2 = ways.contains(&Way::Ros2).then(|| CYCLONE.start_alone());
         let mut settings: Vec<String> = settings.iter().map(|it| (*it).to_owned()).collect();
         settings.extend(ros2.iter().flat_map(Ros2Peer::settings));
+        let is_mirrored = ways.contains(&Way::Mirror) || ways.contains(&Way::MirrorPage);
+        let relay = is_mirrored.then(|| Relay::start(&["--robot", ROBOT, "--operator", "ann"]));
+        settings.extend(relay.iter().flat_map(|relay| relay.settings(ROBOT)));
         if ways.contains(&Way::Study) {
             settings.extend(STUDY.map(str::to_owned));
         }
@@ -116,7 +131,8 @@ impl Givers {
             let path = spoken("stop", folder.path());
             (folder, path)
         });
-        Self { settings, ros2: ros2.map(Mutex::new), gateway: None, recording }
+        let ros2 = ros2.map(Mutex::new);
+        Self { settings, ros2, gateway: None, mirror: None, relay, recording }
     }
 
     pub(super) fn settings(&self) -> Vec<&str> {
@@ -134,6 +150,9 @@ impl Givers {
             let secret = gateway.add("ann", &["--operator", robot]);
             let console = gateway.console(robot, &secret);
             self.gateway = Some((gateway, console));
+        }
+        if let Some(relay) = &self.relay {
+            self.mirror = Some(Mirror::start_with_console(ROBOT, &relay.person("ann")));
         }
         if ways.contains(&Way::Study) {
             let mut page = group.page(&participant());
@@ -162,7 +181,13 @@ impl Givers {
             Way::Socket => by_socket(group),
             Way::Python => by_python(group),
             Way::Ros2 => by_ros2(&mut self.ros2.as_ref().expect("a peer").lock().unwrap()),
+            Way::Mirror => confirmed(&self.mirrored().call(&["stop-motion"])),
+            Way::MirrorPage => by_page(|| Some(self.mirrored().page(&Visitor::operator(4)))),
         }
+    }
+
+    fn mirrored(&self) -> &Group {
+        &self.mirror.as_ref().expect("a mirror").group
     }
 }
 
