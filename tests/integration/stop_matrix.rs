@@ -3,179 +3,51 @@
 
 #![allow(clippy::print_stdout, reason = "the pairs that were tried, for the log")]
 
-use messages::MotionOrder;
-use rustix::process::{Pid, Signal, kill_process};
-use serde_json::{Value as Json, json};
-use service::stop_socket;
-use service::{Span, Time, clock};
-use std::io::{BufRead, BufReader, Write};
-use std::process::Stdio;
-use std::thread::{self, Scope, ScopedJoinHandle};
-use std::time::{Duration, Instant};
-use whichone_tests::console::Visitor;
+use serde_json::json;
+use service::clock;
+use states::{During, STATES};
+use std::time::Instant;
+use ways::{Givers, Way};
 use whichone_tests::motion_watch::MotionWatch;
 use whichone_tests::shortage::{SmallDisk, SmallGroup};
-use whichone_tests::{Group, program, run, wait_for};
+use whichone_tests::{Group, wait_for};
+
+mod signals;
+mod states;
+mod ways;
 
 /// Real time, so that there is a motion to be stopped; restarts that back off as on a robot.
 const SETTINGS: [&str; 2] = ["arm.time_scale=1.0", "group.restart.backoff_max_ms=2000"];
-/// Length of an outage after the stop was given, unless the way ends before.
-const OUTAGE: Duration = Duration::from_millis(1_500);
 /// Time in which nothing may move after a stop, seconds.
 const REST_S: f64 = 1.0;
-
-/// A way to give a stop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Way {
-    CommandLine,
-    Words,
-    Chat,
-    Page,
-    /// What the clients in Rust and C call.
-    Socket,
-    Python,
-}
-
-const WAYS: [Way; 6] =
-    [Way::CommandLine, Way::Words, Way::Chat, Way::Page, Way::Socket, Way::Python];
-
-/// State of the group while a stop is given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum During {
-    Nothing,
-    ArmKilled,
-    ArmRestarted,
-    ArmHeld,
-    ArmSwapped,
-    ArmInBackoff,
-    SupervisorKilled,
-    /// A process does not run, and continues later.
-    Suspended(&'static str),
-    FullDisk,
-    /// A second stop and a release come at the same time.
-    Race,
-}
-
-const STATES: [During; 12] = [
-    During::Nothing,
-    During::ArmKilled,
-    During::ArmRestarted,
-    During::ArmHeld,
-    During::ArmSwapped,
-    During::ArmInBackoff,
-    During::SupervisorKilled,
-    During::Suspended("policy"),
-    During::Suspended("speech"),
-    During::Suspended("console"),
-    During::FullDisk,
-    During::Race,
-];
-
-/// What a way reported of its order.
-#[derive(Clone, Debug)]
-struct Report {
-    /// The order was accepted: it must be carried out.
-    is_accepted: bool,
-    /// When the way reported that the arm is stopped.
-    stopped: Option<Time>,
-    text: String,
-}
-
-impl Way {
-    fn give(self, group: &Group) -> Report {
-        match self {
-            Self::CommandLine => confirmed(&group.call(&["stop-motion"])),
-            Self::Words => accepted(&group.call(&["say", "stop"])),
-            Self::Chat => by_chat(group),
-            Self::Page => by_page(group),
-            Self::Socket => by_socket(group),
-            Self::Python => by_python(group),
-        }
-    }
-
-    /// Returns whether this machine has what the way needs.
-    fn is_here(self) -> bool {
-        self != Self::Python || std::env::var_os("WHICHONE_PYTHON").is_some()
-    }
-}
-
-fn accepted(ended: &whichone_tests::Ended) -> Report {
-    let text = format!("{}{}", ended.stdout, ended.stderr);
-    Report { is_accepted: ended.code == Some(0), stopped: None, text }
-}
-
-fn confirmed(ended: &whichone_tests::Ended) -> Report {
-    let report = accepted(ended);
-    Report { stopped: report.is_accepted.then(clock::now), ..report }
-}
-
-/// A user at a terminal, who types "stop" and waits for the robot's report.
-fn by_chat(group: &Group) -> Report {
-    let mut command = group.command(&["chat"]);
-    let mut chat = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
-    let mut keys = chat.stdin.take().unwrap();
-    keys.write_all(b"stop\n").unwrap();
-    let mut lines = BufReader::new(chat.stdout.take().unwrap()).lines().map_while(Result::ok);
-    let line = lines.find(|line| line.contains("I have stopped"));
-    let stopped = line.is_some().then(clock::now);
-    keys.write_all(b"quit\n").unwrap();
-    let text = format!("{line:?}, {:?}", chat.wait());
-    Report { is_accepted: stopped.is_some(), stopped, text }
-}
-
-/// A page repeats a stop over every connection until it is confirmed, as its scripts do.
-fn by_page(group: &Group) -> Report {
-    let until = Instant::now() + Duration::from_secs(60);
-    loop {
-        let mut page = group.page(&Visitor::operator(1));
-        let id = page.begin("stop", &Json::Null);
-        while page.closed.is_none() && Instant::now() < until {
-            page.look();
-            let answer = page.messages.iter().find(|message| message["id"] == id).cloned();
-            let is_confirmed = |answer: &Json| answer["ok"] == true;
-            if let Some(answer) = answer.filter(is_confirmed) {
-                let text = answer.to_string();
-                return Report { is_accepted: true, stopped: Some(clock::now()), text };
-            }
-            // A stop that is late stays with the console, which shows when it is confirmed.
-            let arm = page.parts.get("arm").filter(|arm| arm["stopped"] == true);
-            let motion = page.parts.get("motion").filter(|motion| motion["unconfirmed"].is_null());
-            if let Some((arm, _)) = arm.zip(motion) {
-                return Report { is_accepted: true, stopped: None, text: arm.to_string() };
-            }
-        }
-        assert!(Instant::now() < until, "no confirmation on the page");
-    }
-}
-
-fn by_socket(group: &Group) -> Report {
-    let patience = Span::from_s(60.0);
-    let stopped = stop_socket::give(group.paths(), MotionOrder::Stop, patience, &mut |_| true);
-    let (is_accepted, text) = (stopped.is_ok(), format!("{stopped:?}"));
-    Report { is_accepted, stopped: is_accepted.then(clock::now), text }
-}
-
-fn by_python(group: &Group) -> Report {
-    let python =
-        std::env::var_os("WHICHONE_PYTHON").expect("a Python with the package's dependencies");
-    let mut command = std::process::Command::new(python);
-    command.args(["-c", "import sys, whichone\nwhichone.Client(sys.argv[1]).stop()"]);
-    command.arg(group.paths().name().as_str()).env("WHICHONE_HOME", group.paths().home());
-    command.env("PYTHONPATH", concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/sdk/python"));
-    confirmed(&run(&mut command, "", 60.0))
-}
 
 /// A group with an arm that moves, in which stops are given.
 struct Trial {
     group: Group,
     watch: MotionWatch,
+    givers: Givers,
     disk: Option<SmallDisk>,
 }
 
 impl Trial {
-    fn begin(group: Group, disk: Option<SmallDisk>) -> Self {
+    /// Begins in a group of its own, for these ways.
+    fn begin(ways: &[Way]) -> Self {
+        let givers = Givers::of(ways, &SETTINGS);
+        let group = Group::up(&givers.settings());
+        Self::join(ways, givers, group, None)
+    }
+
+    /// As [`Trial::begin`], on a disk that can be filled.
+    fn begin_on_a_small_disk(ways: &[Way]) -> Self {
+        let givers = Givers::of(ways, &SETTINGS);
+        let SmallGroup { group, disk } = SmallGroup::up(&givers.settings());
+        Self::join(ways, givers, group, Some(disk))
+    }
+
+    fn join(ways: &[Way], mut givers: Givers, group: Group, disk: Option<SmallDisk>) -> Self {
         let watch = MotionWatch::start(group.paths());
-        Self { group, watch, disk }
+        givers.join(ways, &group);
+        Self { group, watch, givers, disk }
     }
 
     fn run_all(&self, pairs: &[(Way, During)]) {
@@ -190,9 +62,7 @@ impl Trial {
     fn run(&self, way: Way, during: During) {
         let what = format!("{way:?} during {during:?}");
         let Self { group, watch, .. } = self;
-        group.say("get me the clear bowl");
-        watch.wait_moving();
-        watch.clear();
+        self.fetch();
         let report = self.give(way, during);
         let logs = || format!("{what}: {report:?}: {}\n{}", report.text, group.logs());
         assert!(report.is_accepted, "not accepted: {}", logs());
@@ -211,10 +81,17 @@ impl Trial {
         if let Some(shown) = shown.min().filter(|_| during != During::Race) {
             assert_eq!(watch.movements_since(shown), 0, "it moves after \"stopped\": {}", logs());
         }
-        if matches!(way, Way::Words | Way::Chat) && during != During::Race {
+        if way.is_words() && during != During::Race {
             wait_for("the robot's report", 10.0, || watch.said_stopped());
         }
         self.finish();
+    }
+
+    /// Has the arm move.
+    fn fetch(&self) {
+        self.group.say("get me the clear bowl");
+        self.watch.wait_moving();
+        self.watch.clear();
     }
 
     /// Releases the stop and has the arm give up what it fetches.
@@ -229,154 +106,67 @@ impl Trial {
         });
     }
 
-    /// Gives the stop in that state of the group, which ends soon after.
-    fn give(&self, way: Way, during: During) -> Report {
-        thread::scope(|scope| {
-            let group = &self.group;
-            let give = move || way.give(group);
-            match during {
-                During::Nothing => give(),
-                During::ArmKilled => {
-                    group.signal("arm", Signal::KILL);
-                    give()
-                }
-                During::ArmRestarted => {
-                    while_done(scope, give, || drop(group.call(&["restart", "arm"])))
-                }
-                During::ArmHeld => {
-                    group.must(&["hold", "arm"]);
-                    let giving = scope.spawn(give);
-                    outage(&giving);
-                    group.must(&["release", "arm"]);
-                    joined(giving)
-                }
-                During::ArmSwapped => {
-                    let arm = program("whichone-arm").display().to_string();
-                    let report = while_done(scope, give, || {
-                        drop(group.call(&["swap", "arm", "--", &arm]));
-                    });
-                    group.must(&["restart", "arm", "--original"]);
-                    report
-                }
-                During::ArmInBackoff => {
-                    (0..4).for_each(|_| self.kill_ready_arm());
-                    give()
-                }
-                During::SupervisorKilled => {
-                    let pid = group.status()["supervisor_pid"].as_i64().expect("its pid");
-                    let pid = Pid::from_raw(i32::try_from(pid).unwrap()).unwrap();
-                    kill_process(pid, Signal::KILL).unwrap();
-                    while_done(scope, give, || {
-                        let ended = group.start_again(&SETTINGS);
-                        assert_eq!(ended.code, Some(0), "{ended:?}");
-                    })
-                }
-                During::Suspended(service) => {
-                    group.signal(service, Signal::STOP);
-                    let giving = scope.spawn(give);
-                    outage(&giving);
-                    group.signal(service, Signal::CONT);
-                    joined(giving)
-                }
-                During::FullDisk => {
-                    let disk = self.disk.as_ref().expect("a small disk");
-                    disk.fill();
-                    let giving = scope.spawn(give);
-                    outage(&giving);
-                    disk.free();
-                    joined(giving)
-                }
-                During::Race => {
-                    let release = scope.spawn(|| group.call(&["resume-motion"]));
-                    let second = scope.spawn(|| group.call(&["stop-motion"]));
-                    let report = give();
-                    joined(release);
-                    joined(second);
-                    // Which order was the latest is chance, and an overruled one says so.
-                    Report { is_accepted: true, ..report }
-                }
-            }
-        })
+    fn down(self) {
+        let Self { group, watch, givers, disk } = self;
+        drop((watch, givers));
+        group.down();
+        drop(disk);
     }
-
-    fn kill_ready_arm(&self) {
-        wait_for("a ready arm", 10.0, || {
-            let arm = self.group.service("arm");
-            let pid = arm["pid"].as_i64().filter(|_| arm["state"] == "ready")?;
-            kill_process(Pid::from_raw(i32::try_from(pid).ok()?)?, Signal::KILL).ok()
-        });
-    }
-}
-
-/// Waits until the way has ended, or the outage is over.
-fn outage(giving: &ScopedJoinHandle<'_, Report>) {
-    let until = Instant::now() + OUTAGE;
-    while !giving.is_finished() && Instant::now() < until {
-        thread::sleep(Duration::from_millis(20));
-    }
-}
-
-/// Gives the stop while `done` runs.
-fn while_done<'scope>(
-    scope: &'scope Scope<'scope, '_>,
-    give: impl FnOnce() -> Report + Send + 'scope,
-    done: impl FnOnce(),
-) -> Report {
-    let giving = scope.spawn(give);
-    done();
-    joined(giving)
-}
-
-fn joined<T>(thread: ScopedJoinHandle<'_, T>) -> T {
-    thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }
 
 /// Runs these pairs in one group.
-fn run_all(pairs: &[(Way, During)]) {
-    let trial = Trial::begin(Group::up(&SETTINGS), None);
+fn run_all(ways: &[Way], pairs: &[(Way, During)]) {
+    let trial = Trial::begin(ways);
     trial.run_all(pairs);
     trial.group.verify_journals();
-    drop(trial.watch);
-    trial.group.down();
+    trial.down();
 }
 
 /// Runs these ways in a group whose disk is full while the stop is given.
 fn run_on_a_full_disk(ways: &[Way]) {
-    let SmallGroup { group, disk } = SmallGroup::up(&SETTINGS);
-    let trial = Trial::begin(group, Some(disk));
+    let trial = Trial::begin_on_a_small_disk(ways);
     let pairs: Vec<_> = ways.iter().map(|way| (*way, During::FullDisk)).collect();
     trial.run_all(&pairs);
-    drop(trial.watch);
-    trial.group.down();
-    drop(trial.disk);
+    trial.down();
 }
 
-fn here() -> impl Iterator<Item = Way> {
-    WAYS.into_iter().filter(|way| way.is_here())
+fn states_without_a_disk() -> impl Iterator<Item = During> {
+    STATES.into_iter().filter(|during| *during != During::FullDisk)
 }
 
-/// Each way once, and each state once.
+/// Each way once, and each state once: words for the arm's outages, and what a suspended process makes wait.
+const EACH_ONCE: [(Way, During); 12] = [
+    (Way::Words, During::Nothing),
+    (Way::Words, During::ArmKilled),
+    (Way::Chat, During::ArmRestarted),
+    (Way::Words, During::ArmHeld),
+    (Way::Socket, During::ArmSwapped),
+    (Way::Python, During::ArmInBackoff),
+    (Way::Ros2, During::SupervisorKilled),
+    (Way::Gateway, During::SupervisorKilled),
+    (Way::Study, During::Suspended("policy")),
+    (Way::Spoken, During::Suspended("speech")),
+    (Way::Page, During::Suspended("console")),
+    (Way::CommandLine, During::Race),
+];
+
 #[test]
 fn each_way_stops_the_arm_and_each_state_lets_it_be_stopped() {
-    let states = STATES.into_iter().filter(|during| *during != During::FullDisk);
-    let ways: Vec<Way> = here().collect();
-    // Words first: the arm's outages are theirs.
-    let order = [Way::Words, Way::Words, Way::Chat, Way::Words];
-    let of = |n: usize| order.get(n).copied().unwrap_or(ways[n % ways.len()]);
-    let pairs: Vec<(Way, During)> = states.enumerate().map(|(n, during)| (of(n), during)).collect();
-    let missing = ways.iter().filter(|way| pairs.iter().all(|(used, _)| used != *way));
-    let missing = missing.map(|way| (*way, During::Nothing));
-    let pairs: Vec<_> = pairs.iter().copied().chain(missing).collect();
-    run_all(&pairs);
+    let ways = Way::all_here();
+    // Words stand in for a way that is not here.
+    let present = |way| if ways.contains(&way) { way } else { Way::Words };
+    run_all(&ways, &EACH_ONCE.map(|(way, during)| (present(way), during)));
 }
 
 /// Every way in every state.
 #[test]
 #[ignore = "it takes minutes"]
 fn every_way_stops_the_arm_in_every_state() {
-    let states = STATES.into_iter().filter(|during| *during != During::FullDisk);
-    let pairs: Vec<_> = states.flat_map(|during| here().map(move |way| (way, during))).collect();
-    run_all(&pairs);
+    let ways = Way::all_here();
+    let pairs: Vec<_> = states_without_a_disk()
+        .flat_map(|during| ways.iter().map(move |way| (*way, during)))
+        .collect();
+    run_all(&ways, &pairs);
 }
 
 mod as_root {
@@ -390,14 +180,14 @@ mod as_root {
     #[test]
     #[ignore = "it takes a minute"]
     fn every_way_stops_the_arm_on_a_full_disk() {
-        run_on_a_full_disk(&here().collect::<Vec<_>>());
+        run_on_a_full_disk(&Way::all_here());
     }
 }
 
 /// The words of the smallest case: nothing fails, and the arm's service is away.
 #[test]
 fn said_stop_waits_for_an_arm_that_is_held() {
-    let trial = Trial::begin(Group::up(&SETTINGS), None);
+    let trial = Trial::begin(&[]);
     trial.group.say("get me the clear bowl");
     trial.watch.wait_moving();
     trial.group.must(&["hold", "arm"]);
@@ -412,5 +202,19 @@ fn said_stop_waits_for_an_arm_that_is_held() {
     wait_for("the robot's report", 10.0, || trial.watch.said_stopped());
     let answer = trial.group.call(&["watch", "--once", "--json"]).json();
     assert_eq!(answer["arm"]["stopped"], json!(true), "{answer}");
-    trial.group.down();
+    trial.down();
+}
+
+/// The client waits for the speech service alone: a held arm takes no words from it.
+#[test]
+fn said_stop_outlasts_a_suspended_speech_service_while_the_arm_is_held() {
+    let trial = Trial::begin(&[]);
+    trial.fetch();
+    trial.enter(During::ArmHeld);
+    let report = trial.give(Way::Words, During::Suspended("speech"));
+    assert!(report.is_accepted, "{report:?}");
+    assert!(report.text.contains("arm is held"), "what keeps it from being obeyed: {report:?}");
+    trial.group.must(&["release", "arm"]);
+    trial.watch.wait_stopped("the arm's latch");
+    trial.down();
 }

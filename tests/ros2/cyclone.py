@@ -55,6 +55,12 @@ def qos(latched, depth):
     )
 
 
+def taken(reader, most):
+    """Samples without those that only tell that a writer has ended."""
+    samples = reader.take(N=most)
+    return [it for it in samples if not getattr(it, "sample_info", None) or it.sample_info.valid_data]
+
+
 class Peer:
     def __init__(self, domain):
         self.participant = DomainParticipant(domain)
@@ -79,9 +85,7 @@ class Peer:
 
     def poll(self, seen):
         for name, reader in self.readers.items():
-            for sample in reader.take(N=200):
-                if getattr(sample, "sample_info", None) and not sample.sample_info.valid_data:
-                    continue
+            for sample in taken(reader, 200):
                 seen(name, sample)
         self.camera.publish()
         time.sleep(0.002)
@@ -104,7 +108,7 @@ class Peer:
         until = time.monotonic() + timeout
         while time.monotonic() < until:
             poll()
-            for reply in reader.take(N=10):
+            for reply in taken(reader, 10):
                 if (reply.guid, reply.seq) == (guid, self.number):
                     return {"success": reply.success, "message": reply.message}
         return None

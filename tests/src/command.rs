@@ -31,10 +31,14 @@ impl Ended {
 /// # Panics
 /// If it is not built: `cargo build --workspace` does that, and `scripts/test` does it first.
 pub fn program(name: &str) -> PathBuf {
+    find_program(name).unwrap_or_else(|| panic!("{name} is not built: cargo build --workspace"))
+}
+
+/// As [`program`]; none if it is not built.
+pub(crate) fn find_program(name: &str) -> Option<PathBuf> {
     let test = std::env::current_exe().expect("the test's own path");
     let folder = test.ancestors().find(|folder| folder.join(name).is_file());
-    let folder = folder.unwrap_or_else(|| panic!("{name} is not built: cargo build --workspace"));
-    folder.join(name)
+    folder.map(|folder| folder.join(name))
 }
 
 /// Runs `command` to its end, giving it `input`.

@@ -1,6 +1,6 @@
 //! A link for one test: keys, a router, and robots that are mirrored on the same machine.
 
-use crate::command::{Ended, program, run};
+use crate::command::{Ended, find_program, program, run};
 use crate::{Group, wait_for};
 use std::net::UdpSocket;
 use std::path::{Path, PathBuf};
@@ -98,6 +98,11 @@ impl Relay {
         let mut command = Command::new(program("whichone"));
         run(command.args(["fleet", "--json", "--keys"]).arg(keys), "", 20.0)
     }
+}
+
+/// Returns whether `scripts/link` has built the link's programs.
+pub fn is_built() -> bool {
+    find_program("whichone-link").is_some()
 }
 
 /// A peer with these keys that sends nonsense to a robot or in its name, for some seconds

@@ -14,6 +14,8 @@ use std::time::Duration;
 const LOOK_EVERY: Duration = Duration::from_millis(3);
 /// A change of a joint below it is no movement, radians; of a gripper, its whole width.
 const STILL_RAD: f64 = 1e-6;
+/// A velocity below it is rest, radians per second.
+const STILL_RAD_S: f64 = 1e-3;
 /// A joint state so long after the former one is of another incarnation of the arm.
 const GAP: Span = Span::from_ms(300);
 
@@ -23,6 +25,8 @@ type Joints = [f64; JOINT_STATE_LEN + 2];
 #[derive(Debug, Default)]
 struct Seen {
     latest: Option<(Time, Joints)>,
+    /// The latest state of the joints has velocities.
+    has_velocity: bool,
     /// Movements, each with the times of the joint states before and after it.
     movements: Vec<(Time, Time)>,
     status: ArmStatus,
@@ -109,6 +113,11 @@ impl MotionWatch {
         self.read(|seen| seen.status)
     }
 
+    /// Returns whether no joint had a velocity at last.
+    pub fn rests(&self) -> bool {
+        self.read(|seen| !seen.has_velocity)
+    }
+
     /// Returns the robot's latest line.
     pub fn line(&self) -> String {
         self.read(|seen| seen.line.clone())
@@ -145,14 +154,15 @@ fn follow(
     let acts = bus.reader::<RobotAct>(&topics::ACT)?;
     let memory = paths.shm_name()?;
     while !over.load(Ordering::Relaxed) {
-        if paths.shm_name()? != memory {
-            return Ok(());
-        }
+        // Read before it is judged: the last states of a group that ends count, too.
         let mut seen = seen.lock().unwrap_or_else(PoisonError::into_inner);
         joints.drain(|states| seen.on_joints(states))?;
         status.drain(|status| seen.status = *status)?;
         acts.drain(|act| seen.on_act(act))?;
         drop(seen);
+        if paths.shm_name()? != memory {
+            return Ok(());
+        }
         std::thread::sleep(LOOK_EVERY);
     }
     Ok(())
@@ -165,6 +175,7 @@ impl Seen {
         let grippers = states.gripper_percent.map(|percent| percent / 100.0);
         joints[JOINT_STATE_LEN..].copy_from_slice(&grippers);
         let at = Time(states.at_ns);
+        self.has_velocity = states.velocity.iter().any(|velocity| velocity.abs() > STILL_RAD_S);
         if let Some((before, former)) = self.latest.replace((at, joints)) {
             let moves = former.iter().zip(&joints).any(|(a, b)| (a - b).abs() > STILL_RAD);
             if moves && at < before + GAP {

@@ -54,13 +54,18 @@ impl Implementation {
     /// Starts a program and a group in a domain of their own, and waits until they have found each
     /// other.
     pub fn start(self, settings: &[&str]) -> (Ros2Peer, Group) {
-        let number = std::process::id() as u16 % 50 * 2 + DOMAIN.fetch_add(1, Ordering::Relaxed);
-        let mut peer = self.peer(number % 100);
+        let mut peer = self.start_alone();
         let own = peer.settings();
         let own = own.iter().map(String::as_str);
         let group = Group::up(&own.chain(settings.iter().copied()).collect::<Vec<_>>());
         peer.wait_until_found(&group);
         (peer, group)
+    }
+
+    /// Starts a program in a domain of its own; a group finds it by [`Ros2Peer::settings`].
+    pub fn start_alone(self) -> Ros2Peer {
+        let number = std::process::id() as u16 % 50 * 2 + DOMAIN.fetch_add(1, Ordering::Relaxed);
+        self.peer(number % 100)
     }
 
     /// Starts a program in a domain.
@@ -79,7 +84,7 @@ impl Implementation {
 
 impl Ros2Peer {
     /// Settings of a group that this program finds.
-    fn settings(&self) -> [String; 4] {
+    pub fn settings(&self) -> [String; 4] {
         [
             format!("group.services.ros2.command=[\"{}\"]", program("whichone-ros2").display()),
             format!("ros2.services={}", self.implementation.services),

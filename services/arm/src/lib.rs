@@ -304,6 +304,7 @@ impl ArmNode {
         self.record_progress(now, fx);
         if self.ending && self.executor.is_standing() {
             self.record(Cause::Shutdown, now, fx);
+            self.publisher.hurry_joints();
             fx.exit();
         }
         // Set-points depend on durable records alone, so they wait for none.

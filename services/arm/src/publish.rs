@@ -135,6 +135,11 @@ impl Publisher {
         }
     }
 
+    /// Has the joint states published in this pass: the last ones show the rest.
+    pub(crate) fn hurry_joints(&mut self) {
+        self.published.joints_were_due = Time(0);
+    }
+
     /// Publishes world and status when they are due.
     pub(crate) fn tick(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
         let (moving, standing) = WORLD_EVERY;

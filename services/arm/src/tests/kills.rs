@@ -130,6 +130,7 @@ fn arm_halts_and_journals_its_posture_on_shutdown() {
             machine.go(None);
         }
         assert!(machine.now.since(asked).s() < 0.15);
+        assert_eq!(machine.joints.last().unwrap().velocity, [0.0; 17], "the last ones show it");
         assert_eq!(machine.journal.last().unwrap().state.posture, machine.robot.posture());
         machine.restart_from_journal();
         machine.delivers(1, 0);

@@ -98,8 +98,8 @@ impl Lookout {
     }
 
     /// For one who wants to know of shortages too.
-    pub(super) fn with_shortages() -> Self {
-        Self { shortages: true, ..Self::new() }
+    pub(super) fn with_shortages(self) -> Self {
+        Self { shortages: true, ..self }
     }
 
     /// Returns why the dialogue stands still, where that is news.

@@ -94,7 +94,8 @@ fn give_said(
 ) -> Outcome {
     let patience = Span::from_s(timeout.as_secs_f64());
     let mut submission = Submission::new(sound.clone(), said, clock::now(), patience);
-    let mut lookout = Lookout::with_shortages();
+    // The speech service alone answers, and keeps what the others will need.
+    let mut lookout = Lookout::of(&[Service::Speech]).with_shortages();
     loop {
         let services = Availability::request(paths);
         let memory = paths.shm_name().ok();

@@ -279,7 +279,9 @@ fn report(segment: &RecognisedSegment) {
     if snr_db < SNR_MIN_DB {
         tracing::warn!(snr_db, "loud background noise; help: speak closer, or type");
     }
-    if let Err(rejected) = &segment.hypotheses {
+    let rejected = segment.hypotheses.as_ref().err();
+    // A stop is obeyed, whatever the score.
+    if let Some(rejected) = rejected.filter(|rejected| !language::is_stop(&rejected.text)) {
         let (text, score, reason) = (&rejected.text, rejected.score, rejected.reason);
         tracing::info!(text, score, ?reason, "speech rejected: not meant for the robot");
     }
