@@ -24,6 +24,7 @@ import threading
 import time
 import tomllib
 from dataclasses import dataclass, field
+from fnmatch import fnmatch
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -365,7 +366,8 @@ def judge(lane, runner, leftovers, began):
         judge_second_tries([])
     for name in broken if bad else []:
         say(f"failed: {name}")
-    left = leftovers.find()
+    known = runner.lanes["known_leftovers"]
+    left = [what for what in leftovers.find() if not any(fnmatch(what, it) for it in known)]
     for what in left:
         say(f"left behind: {what}")
     if not left:

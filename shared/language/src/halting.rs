@@ -130,13 +130,37 @@ impl<'t, 'a> Utterance<'t, 'a> {
         }
     }
 
-    /// "the white one stop", "no not that one stop": called out at the end of a breath.
+    /// "the white one stop", "what are you doing stop": called out at the end of a breath.
     fn is_called_out(&self, at: usize, breath: &Range<usize>) -> bool {
         const BEFORE: &[Class] = classes![One Head It No Yes WeakYes Courtesy Filler];
-        let before = self.own.word(self.tokens[at - 1].word).and_then(class);
         let negates = |token: &Token<'_>| matches!(token.word, "not" | "never" | "let");
+        let is_stop = self.tokens[at].word == "stop";
+        if self.tokens[breath.start..at].iter().any(negates) {
+            return false;
+        }
+        let before = self.own.word(self.tokens[at - 1].word).and_then(class);
         before.is_some_and(|class| BEFORE.contains(&class))
-            && !self.tokens[breath.start..at].iter().any(negates)
+            || is_stop && !self.is_no_order(breath.start, at)
+    }
+
+    /// "the bus stop", "did you stop", "how to stop": a name, a question, or what somebody does.
+    fn is_no_order(&self, start: usize, at: usize) -> bool {
+        let word = |back: usize| (at >= start + back).then(|| self.tokens[at - back].word);
+        let asks = |word: Option<&str>| {
+            matches!(
+                word,
+                Some("did" | "do" | "does" | "will" | "would" | "can" | "could" | "should" | "may")
+                    | Some("how" | "when" | "where" | "why" | "what" | "if" | "until" | "going")
+            )
+        };
+        let is_subject = matches!(word(1), Some("you" | "it" | "he" | "she" | "they" | "we" | "i"));
+        let names = matches!(
+            word(1),
+            Some("the" | "a" | "an" | "this" | "each" | "every" | "my" | "your" | "next" | "last")
+                | Some("first" | "bus" | "tram" | "truck" | "pit" | "door" | "full" | "rest")
+                | Some("called" | "named" | "labelled")
+        );
+        names || asks(word(1)) || (is_subject || word(1) == Some("to")) && asks(word(2))
     }
 
     /// "stop sign", "hold it in": what goes on belongs to the words before.
