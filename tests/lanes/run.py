@@ -8,7 +8,7 @@ LANE is quick, full or nightly (`lanes.toml`): full holds quick, and nightly wha
 programs. Standard input is what `cargo test --no-run --message-format=json-render-diagnostics` printed.
 
 Programs that start processes run at normal priority, those that only compute fill the gaps at the lowest one. Tests
-in real time come last. A few failed tests are tried again, alone, and must pass three times in a row: `flaky.toml`.
+in real time come last, once the process WHICHONE_BESIDE, which tests something else meanwhile, has ended. A few failed tests are tried again, alone, and must pass three times in a row: `flaky.toml`.
 At the end nothing may be left: processes, shared memory, temporary files.
 """
 
@@ -260,6 +260,12 @@ def judge_second_tries(passed):
     return is_good
 
 
+def wait_for_end(process):
+    """Waits until a process has ended: what it runs disturbs tests in real time, and would look left behind."""
+    while process and os.path.exists(f"/proc/{process}"):
+        time.sleep(0.5)
+
+
 class Leftovers:
     """What this run may leave: processes of this build, shared memory of groups, temporary files."""
 
@@ -341,6 +347,7 @@ def main():
             runner.record(runner.run(program, ["--test-threads=1", *options]))
     else:
         runner.run_all(selected)
+    wait_for_end(os.environ.get("WHICHONE_BESIDE"))
     if lane == "full":
         runner.run_alone(selected)
     (KEPT / "seconds.json").write_text(json.dumps(runner.seconds, indent=1, sort_keys=True))
