@@ -8,8 +8,9 @@ LANE is quick, full or nightly (`lanes.toml`): full holds quick, and nightly wha
 programs. Standard input is what `cargo test --no-run --message-format=json-render-diagnostics` printed.
 
 Programs that start processes run at normal priority, those that only compute fill the gaps at the lowest one. Tests
-in real time come last, once the process WHICHONE_BESIDE, which tests something else meanwhile, has ended. A few failed tests are tried again, alone, and must pass three times in a row: `flaky.toml`.
-At the end nothing may be left: processes, shared memory, temporary files.
+in real time come last, once the process WHICHONE_BESIDE, which tests something else meanwhile, has ended. A few
+failed tests are tried again, alone, and must pass three times in a row: `flaky.toml`. At the end nothing may be left:
+processes, shared memory, temporary files.
 """
 
 import json
