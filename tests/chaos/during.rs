@@ -91,7 +91,7 @@ fn full(kind: Kind, disk: &SmallDisk, group: &Group, rng: &mut Rng, tally: &mut 
 /// Lifts the motion stop, which is still latched.
 fn resume(group: &Group) {
     assert_eq!(group.arm()["stopped"], true, "the stop is latched\n{}", group.logs());
-    group.must(&["resume-motion"]);
+    group.release_stop();
 }
 
 /// Takes all further descriptors from a service and the supervisor for a while.

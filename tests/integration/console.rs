@@ -1,5 +1,6 @@
 //! The console as pages see it, with real groups and sockets.
 
+use std::time::Duration;
 use std::time::Instant;
 
 use rustix::process::Signal;
@@ -163,7 +164,12 @@ fn every_viewer_may_stop_the_arm() {
     assert!(ok(&stopped) && stopped["stopped"] == true, "{stopped}");
     viewer.until_part("turn", |turn| turn["state"] == "stopped");
     viewer.until_part("arm", |arm| arm["stopped"] == true && arm["moving"] == false);
+    // Whoever may not speak to the robot can still tell it to stop.
+    let said = viewer.ask("say", &json!({ "text": "stop" }));
+    assert!(why(&said).contains("control") && why(&said).contains("the stop is given"), "{said}");
     assert!(why(&viewer.ask("resume", &Json::Null)).contains("control"));
+    assert!(why(&operator.ask("resume", &Json::Null)).contains("less than 2 s"));
+    std::thread::sleep(Duration::from_millis(2_200));
     assert!(ok(&operator.ask("resume", &Json::Null)));
     operator.until_part("turn", |turn| turn["state"] == "moving");
     operator.until_line("the stop", |line| line["text"] == "The arm was stopped");

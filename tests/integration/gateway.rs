@@ -55,14 +55,12 @@ fn gateway_gives_each_person_their_rights_and_records_orders() {
     // An operator commands; the viewer sees it.
     let mut page = Page::open(&ann_here, &visitor(3)).unwrap();
     for (verb, stopped) in [("stop", true), ("resume", false)] {
-        let done = page.ask(verb, &json!({}));
-        assert_eq!(
-            (&done["ok"], &group.arm()["stopped"]),
-            (&true.into(), &stopped.into()),
-            "{done}"
-        );
+        let given = || Some(page.ask(verb, &json!({}))).filter(|done| done["ok"] == true);
+        wait_for("the order", 10.0, given);
+        wait_for("the arm's report", 5.0, || (group.arm()["stopped"] == stopped).then_some(()));
     }
-    assert_eq!(page.ask("say", &json!({ "text": "get me the bowl" }))["ok"], true);
+    let said = page.ask("say", &json!({ "text": "get me the bowl" }));
+    assert_eq!(said["ok"], true, "{said}");
     look.until_line("the operator's words", |line| line["text"] == "get me the bowl");
     assert_eq!(page.until_part("control", |control| control["name"] == "ann")["name"], "ann");
     for what in ["stop", "resume", "say"] {

@@ -48,7 +48,7 @@ fn journal_of_any_service_is_lost_and_set_aside() {
         let before = if service == "arm" { 0 } else { deliveries(&group) };
         if service == "arm" {
             assert_eq!(group.arm()["stopped"], true, "it may have been stopped, or hold something");
-            group.must(&["resume-motion"]);
+            group.release_stop();
         }
         let outcome = group.fetch("get me the bowl", "metal2");
         assert_eq!(outcome["outcome"], "delivered", "{service}: {outcome}\n{}", group.logs());

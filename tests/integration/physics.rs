@@ -193,7 +193,7 @@ fn motion_stop_and_emergency_stop_in_the_carry_keep_hold_of_the_object() {
         wait_for_arm(&group, "at rest", |arm| arm["stopped"] == true && arm["moving"] == false);
         std::thread::sleep(Duration::from_secs(1));
         assert_eq!(records(&group), [] as [Value; 0], "it is still held");
-        group.must(&["resume-motion"]);
+        group.release_stop();
         wait_for_carry(&group);
         group.drill(&["press-estop"]);
         wait_for_arm(&group, "latched", |arm| arm["stopped"] == true && arm["moving"] == false);
@@ -204,7 +204,7 @@ fn motion_stop_and_emergency_stop_in_the_carry_keep_hold_of_the_object() {
             group.drill(&[word]);
         }
         wait_for_arm(&group, "the robot is back", |arm| arm["hindrance"] == "none");
-        group.must(&["resume-motion"]);
+        group.release_stop();
     });
     assert_delivered(&group, &outcome, "clear");
     assert_carried(&group, "clear");
@@ -222,7 +222,7 @@ fn obstructed_arm_gives_up_and_fetches_once_it_is_free() {
     assert_eq!(outcome["outcome"], "failed", "{outcome}\n{}", group.logs());
     assert_eq!(group.arm()["outcome"], "blocked");
     std::thread::sleep(Duration::from_secs(3));
-    group.must(&["resume-motion"]);
+    group.release_stop();
     assert_delivered(&group, &group.fetch("the clear bowl", "clear"), "clear");
     assert_carried(&group, "clear");
     group.down();

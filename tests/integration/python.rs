@@ -149,6 +149,7 @@ with Client() as robot:
     robot.stop()
     while not robot.look().arm.stopped:
         time.sleep(0.01)
+    time.sleep(2.2)
     robot.resume()
     while robot.look().arm.stopped:
         time.sleep(0.01)

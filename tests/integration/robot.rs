@@ -43,7 +43,7 @@ fn object_denied_in_the_gripper_goes_back_through_a_stop_and_a_killed_arm() {
     group.signal("arm", Signal::KILL);
     group.wait_for_restart("arm", before);
     assert_eq!(group.arm()["phase"], "returning", "{}", group.logs());
-    group.must(&["resume-motion"]);
+    group.release_stop();
     wait_for_arm(&group, "the object in its place", |arm| arm["outcome"] == "cancelled");
     let dialogue = wait_for("the dialogue goes on", 20.0, || {
         Some(group.dialogue()).filter(|it| it["decision"] != "cancel")
@@ -87,7 +87,7 @@ fn emergency_stop_latches_until_resume() {
         }
         wait_for_arm(&group, "the robot is back", |arm| arm["hindrance"] == "none");
         assert_eq!(group.arm()["stopped"], true, "latched until an operator resumes");
-        group.must(&["resume-motion"]);
+        group.release_stop();
     });
     assert_delivered(&group, &outcome);
     group.down();

@@ -43,18 +43,18 @@ fn arm_stops_with_a_hung_supervisor_a_stopped_policy_and_no_free_descriptor() {
         joints.wait_moving();
         kill_process(supervisor, Signal::STOP).unwrap();
         stop(&group, &joints);
-        group.must(&["resume-motion"]);
+        group.release_stop();
         kill_process(supervisor, Signal::CONT).unwrap();
 
         group.signal("policy", Signal::STOP);
         stop(&group, &joints);
-        group.must(&["resume-motion"]);
+        group.release_stop();
         group.signal("policy", Signal::CONT);
 
         let no_descriptors = NoDescriptors::of(group.pid("arm"));
         stop(&group, &joints);
         drop(no_descriptors);
-        group.must(&["resume-motion"]);
+        group.release_stop();
     });
     assert_delivered(&group, &outcome, "clear");
     drop(joints);
@@ -81,7 +81,7 @@ mod as_root {
             disk.free();
             group.wait_for_restart("arm", before);
             assert_eq!(group.arm()["stopped"], true, "the stop has survived");
-            group.must(&["resume-motion"]);
+            group.release_stop();
         });
         assert_delivered(&group, &outcome, "clear");
         drop(joints);
@@ -198,7 +198,7 @@ mod as_root {
                 shared_memory.fill();
                 stop(&group, &joints);
                 shared_memory.free();
-                group.must(&["resume-motion"]);
+                group.release_stop();
             });
             assert_delivered(&group, &outcome, "clear");
             drop(joints);

@@ -96,7 +96,7 @@ impl Trial {
 
     /// Releases the stop and has the arm give up what it fetches.
     fn finish(&self) {
-        self.group.must(&["resume-motion"]);
+        self.group.release_stop();
         self.group.say("never mind");
         wait_for("an idle arm", 30.0, || {
             let status = self.watch.status();
@@ -192,7 +192,11 @@ fn said_stop_waits_for_an_arm_that_is_held() {
     trial.watch.wait_moving();
     trial.group.must(&["hold", "arm"]);
     trial.watch.clear();
-    trial.group.say("stop");
+    let ended = trial.group.call(&["say", "stop", "--timeout", "2"]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    for words in ["not confirmed", "arm is held", "the stop is kept"] {
+        assert!(ended.stderr.contains(words), "{words}: {ended:?}");
+    }
     wait_for("the robot's warning", 10.0, || {
         trial.watch.line().contains("has not confirmed the stop").then_some(())
     });

@@ -5,7 +5,9 @@ use rustix::process::{Pid, Signal, kill_process};
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
+use service::clock;
 use std::time::Duration;
+use whichone_tests::motion_watch::MotionWatch;
 use whichone_tests::shortage::JointWatch;
 use whichone_tests::{Group, run, wait_for};
 
@@ -15,6 +17,9 @@ const REAL_TIME: &str = "arm.time_scale=1";
 /// The pause before a restart, as long as it is after many crashes in a row.
 const LONG_FIRST: &str = "group.restart.backoff_first_ms=5000";
 const LONG_MAX: &str = "group.restart.backoff_max_ms=5000";
+
+/// Time after a stop in which no release counts, and some more.
+const RELEASED_AFTER: Duration = Duration::from_millis(2_200);
 
 /// `stop-motion` that goes on while the test does something else.
 struct StopOrder {
@@ -135,6 +140,107 @@ fn stop_outlasts_the_end_of_the_supervisor_and_ends_with_the_group() {
     assert!(ended.stderr.contains("is not running"), "{ended:?}");
 }
 
+#[test]
+fn stop_that_its_giver_no_longer_repeats_is_obeyed_by_the_arm_that_returns() {
+    let group = Group::up(&[REAL_TIME]);
+    let watch = MotionWatch::start(group.paths());
+    for how in ["timeout", "interrupt", "say", "kill"] {
+        group.say("get me the clear bowl");
+        watch.wait_moving();
+        group.must(&["hold", "arm"]);
+        wait_for("the hold", 10.0, || (group.service("arm")["actual"] == "held").then_some(()));
+        let given = clock::now();
+        match how {
+            "timeout" => {
+                let ended = group.call(&["stop-motion", "--timeout", "0.1"]);
+                assert_eq!(ended.code, Some(1), "{ended:?}");
+                assert!(ended.stderr.contains("the stop is kept"), "{ended:?}");
+            }
+            "say" => {
+                let mut say = group.command(&["say", "stop"]).spawn().unwrap();
+                std::thread::sleep(Duration::from_millis(100));
+                kill_process(Pid::from_child(&say), Signal::INT).unwrap();
+                assert_ne!(say.wait().unwrap().code(), Some(0));
+            }
+            _ => {
+                let mut order = StopOrder::give(&group, &[]);
+                order.wait_for_warning(&["not confirmed"]);
+                let signal = if how == "kill" { Signal::KILL } else { Signal::INT };
+                // A giver that is killed has kept its stop since the arm was silent for a quarter of a second.
+                std::thread::sleep(Duration::from_secs(1));
+                kill_process(Pid::from_child(&order.child), signal).unwrap();
+                assert_ne!(order.child.wait().unwrap().code(), Some(0));
+            }
+        }
+        group.must(&["release", "arm"]);
+        watch.wait_stopped(how);
+        watch.wait_states(clock::now(), 0.5);
+        assert_eq!(watch.movements_since(given), 0, "{how}");
+        group.release_stop();
+        group.say("never mind");
+        wait_for("an idle arm", 30.0, || (watch.status().moving == 0).then_some(()));
+    }
+    group.down();
+}
+
+#[test]
+fn said_stop_needs_no_speech_service_and_tells_whether_the_arm_stopped() {
+    let group = Group::up(&[REAL_TIME]);
+    let watch = MotionWatch::start(group.paths());
+    for state in ["held", "suspended"] {
+        group.say("get me the clear bowl");
+        watch.wait_moving();
+        match state {
+            "held" => drop(group.must(&["hold", "speech"])),
+            _ => group.signal("speech", Signal::STOP),
+        }
+        let ended = group.call(&["say", "stop", "--timeout", "1"]);
+        assert_ne!(ended.code, Some(0), "the words are lost: {ended:?}");
+        assert!(ended.stderr.contains("the arm is stopped, at rest"), "{state}: {ended:?}");
+        watch.wait_stopped(state);
+        match state {
+            "held" => drop(group.must(&["release", "speech"])),
+            _ => group.signal("speech", Signal::CONT),
+        }
+        group.release_stop();
+        group.say("never mind");
+    }
+    group.down();
+}
+
+#[test]
+fn latched_stop_survives_a_fresh_start() {
+    let mut group = Group::up(&[]);
+    group.must(&["down"]);
+    assert_eq!(group.start_fresh().code, Some(0));
+    assert_eq!(group.arm()["stopped"], false, "it was free");
+    group.must(&["stop"]);
+    group.must(&["down"]);
+    assert_eq!(group.start_fresh().code, Some(0));
+    assert_eq!(group.arm()["stopped"], true);
+    // The old journal cannot be read.
+    group.release_stop();
+    group.must(&["down"]);
+    std::fs::write(group.paths().journal_file("arm"), "dear diary").unwrap();
+    assert_eq!(group.start_fresh().code, Some(0));
+    assert_eq!(group.arm()["stopped"], true, "whether it was free is not known");
+    group.down();
+}
+
+#[test]
+fn release_counts_two_seconds_after_any_stop_and_says_so() {
+    let group = Group::up(&[]);
+    group.must(&["stop-motion"]);
+    let ended = group.call(&["resume-motion"]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert!(ended.stderr.contains("less than 2 s before"), "{ended:?}");
+    std::thread::sleep(RELEASED_AFTER);
+    assert_eq!(group.arm()["stopped"], true, "not released later either");
+    group.must(&["resume-motion"]);
+    assert_eq!(group.arm()["stopped"], false);
+    group.down();
+}
+
 /// A container may have a monotonic clock of its own, before or after the machine's.
 #[test]
 #[ignore = "needs root: makes time namespaces"]
@@ -152,11 +258,12 @@ fn stop_and_release_from_another_time_namespace_are_obeyed() {
     for offset in ["-50", "3600"] {
         within(offset, "stop-motion");
         assert_eq!(group.arm()["stopped"], true, "{offset}");
+        std::thread::sleep(RELEASED_AFTER);
         within(offset, "resume-motion");
         assert_eq!(group.arm()["stopped"], false, "{offset}");
         // Orders of both clocks are in one sequence.
         within(offset, "stop-motion");
-        group.must(&["resume-motion"]);
+        group.release_stop();
         assert_eq!(group.arm()["stopped"], false, "{offset}");
     }
     group.down();
@@ -193,7 +300,7 @@ fn hammered_stop_keys_of_watch_never_release() {
         terminal.press("\x1b");
         std::thread::sleep(Duration::from_millis(100));
     }
-    std::thread::sleep(Duration::from_millis(2_200));
+    std::thread::sleep(RELEASED_AFTER);
     terminal.press("rresume\r");
     terminal.wait_for("the release", |lines| has(lines, "the arm may move"));
     assert_eq!(group.arm()["stopped"], false);
@@ -223,7 +330,7 @@ fn hammered_stop_lines_of_chat_never_release_and_are_confirmed_without_speech() 
         chat.line(words);
         chat.wait_for("to let it move, type resume");
     }
-    std::thread::sleep(Duration::from_millis(2_200));
+    std::thread::sleep(RELEASED_AFTER);
     assert_never_released(&group, "go on");
     chat.line("resume");
     chat.wait_for("the arm may move");

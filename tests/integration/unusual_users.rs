@@ -129,7 +129,7 @@ fn spoken_stop_latches_until_resume() {
         let before = group.arm()["phase"].clone();
         std::thread::sleep(std::time::Duration::from_millis(500));
         assert_eq!(group.arm()["phase"], before, "the arm stays halted");
-        group.must(&["resume-motion"]);
+        group.release_stop();
     });
     assert_eq!(outcome["object"], "clear", "{outcome}");
     group.verify_journals();

@@ -11,7 +11,7 @@ use messages::{
     ActKind, ArmStatus, MessageRef, MotionInhibit, MotionOrder, PickOutcome, PickPhase, RobotAct,
     Sighting, TableView,
 };
-use service::stop_socket::{Caller, StopOrder};
+use service::stop_socket::{Caller, RESUME_AFTER, StopOrder};
 use service::{Span, Time};
 use std::path::Path;
 use whichone_tests::simulated_group::{Faults, Host};
@@ -124,6 +124,9 @@ impl World {
     }
 
     pub(crate) fn motion(&mut self, order: MotionOrder) {
+        if order == MotionOrder::Resume {
+            self.run(RESUME_AFTER.s());
+        }
         let given_ns = self.now.ns();
         let order = StopOrder { order, given_ns };
         self.to_arm.push(In::StopOrder(order, Caller::named(b"a client")));

@@ -128,6 +128,16 @@ impl Group {
         ended
     }
 
+    /// Releases the motion stop, as soon as a release counts.
+    pub fn release_stop(&self) {
+        wait_for("the release", 20.0, || {
+            let ended = self.call(&["resume-motion"]);
+            let is_early = ended.stderr.contains("less than 2 s before");
+            assert!(is_early || ended.code == Some(0), "{ended:?}\n{}", self.logs());
+            (!is_early).then_some(())
+        });
+    }
+
     /// Submits a typed utterance.
     pub fn say(&self, text: &str) {
         self.must(&["say", text]);

@@ -69,12 +69,13 @@ fn progress(pick: &Pick) -> &'static str {
     }
 }
 
-/// The picks taken on, with their objects.
+/// The picks taken on, with their objects, and the motion stop.
 pub(crate) fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
-    let records = parts.iter().flat_map(|part| part.records());
-    let picks = records.filter_map(|record| record.state.pick);
+    let records = || parts.iter().flat_map(|part| part.records());
+    let picks = records().filter_map(|record| record.state.pick);
     let picks = picks.map(|pick| (pick.id.interaction.0, pick.id.attempt, pick.object.0));
-    SharedFacts { picks: picks.collect(), ..SharedFacts::default() }
+    let stopped = records().last().is_some_and(|record| record.state.stopped);
+    SharedFacts { picks: picks.collect(), stopped: Some(stopped), ..SharedFacts::default() }
 }
 
 /// Results of one interaction.

@@ -9,7 +9,7 @@ use messages::{
 };
 use scene::{ObjectId, Question};
 use service::Time;
-use service::stop_socket::StopOrder;
+use service::stop_socket::{RESUME_AFTER, StopOrder};
 
 /// The relevant part of the policy's latest act.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -178,6 +178,12 @@ impl ArmNode {
         }
         if order == MotionOrder::Resume && given > now {
             tracing::warn!("motion stop release with a future timestamp ignored");
+            return;
+        }
+        // Where the stop is of an earlier boot, its time is not known, and long ago.
+        let stopped_at = Some(self.state.obeyed).filter(|at| self.state.stopped && *at > Time(0));
+        if order == MotionOrder::Resume && stopped_at.is_some_and(|at| given < at + RESUME_AFTER) {
+            tracing::warn!("release of the motion stop ignored: too soon after the stop");
             return;
         }
         // A time in the future would outrank every later order.

@@ -15,7 +15,7 @@ use service::inspection::{Part, SharedFacts};
 use service::journal_record::JournalRecord;
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
-use service::stop_socket::StopListener;
+use service::stop_socket::{KeptStop, StopListener};
 use std::os::fd::BorrowedFd;
 
 mod planner;
@@ -75,6 +75,8 @@ pub struct ArmShell {
     world: EncodedWriter<WorldView>,
     trajectory: EncodedWriter<TrajectoryView>,
     stop: StopListener,
+    /// A stop that was given while no arm listened.
+    kept_stop: Option<KeptStop>,
     planner: PlannerThread,
     /// Topics of a real robot.
     robot: Option<RobotTopics>,
@@ -88,14 +90,15 @@ impl Shell<ArmNode> for ArmShell {
         let perceives = context.settings.group.perception.enabled;
         let table = perceives.then(|| bus.encoded_reader(&topics::OBJECTS));
         let robot = (context.settings.arm.driver == Driver::Baxter).then(|| RobotTopics::open(bus));
+        let stop_failure = |error| Failure::file(&paths.stop_socket(), &error);
         Ok(Self {
             acts: bus.reader(&topics::ACT)?,
             status: bus.writer(&topics::STATUS)?,
             joints: bus.writer(&topics::JOINTS)?,
             world: bus.encoded_writer(&topics::WORLD)?,
             trajectory: bus.encoded_writer(&topics::TRAJECTORY)?,
-            stop: StopListener::bind(paths)
-                .map_err(|error| Failure::file(&paths.stop_socket(), &error))?,
+            stop: StopListener::bind(paths).map_err(stop_failure)?,
+            kept_stop: KeptStop::open(paths).map_err(stop_failure)?,
             planner: PlannerThread::start(context.devices.clone())
                 .map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?,
             robot: robot.transpose()?,
@@ -119,6 +122,7 @@ impl Shell<ArmNode> for ArmShell {
     }
 
     fn drain(&mut self, take: &mut dyn FnMut(In<'_>)) -> Result<(), PortError> {
+        self.kept_stop.take_if(KeptStop::pass);
         if let Some(table) = &mut self.table
             && let Some(view) = table.latest()?
         {

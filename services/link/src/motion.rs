@@ -2,20 +2,23 @@
 //!
 //! A stop is stamped with the robot's own clock when it first arrives there, and keeps that stamp however often it is
 //! repeated. A release names the stop that it lifts, by that stop's stamp, and the state that the person saw. The
-//! robot gives it the very next stamp after the named stop's: the arm, which ignores orders older than the last one obeyed,
-//! cannot release a later stop by it, whichever order messages arrive in. Both machines' clocks are never compared: how
+//! robot gives it the first stamp that releases the named stop, [`RESUME_AFTER`] after it: the arm, which ignores orders
+//! older than the last one obeyed and releases sooner after a stop, cannot release a later stop by it, whichever order
+//! messages arrive in. Both machines' clocks are never compared: how
 //! old the seen state is, is the robot's own time since it sent it.
 
 use std::collections::VecDeque;
 
 use messages::MotionOrder;
 use serde::{Deserialize, Serialize};
-use service::stop_socket::{Progress, StopClient, StopState, default_patience};
+use service::stop_socket::{
+    Progress, RESUME_AFTER, StopClient, StopError, StopState, default_patience,
+};
 use service::{Span, Time};
 
 /// Greatest age of the state that a release is based on.
 pub const RELEASE_AGE_MAX: Span = Span::from_ms(2_000);
-/// Stops whose stamps are remembered. An older one that is repeated stops again.
+/// Most requests of each kind that are remembered. An older stop that is repeated stops again.
 const KNOWN_MAX: usize = 64;
 
 /// The motion stop's state as the robot sends it, in the robot's time.
@@ -67,7 +70,7 @@ impl Stamped {
     /// overrules it comes right after.
     pub fn here(&self, given_ns: u64) -> StopState {
         let in_force_ns = match self.0.in_force_ns.cmp(&self.0.given_ns) {
-            std::cmp::Ordering::Less => given_ns.saturating_sub(1),
+            std::cmp::Ordering::Less => given_ns.saturating_sub(RESUME_AFTER.0),
             std::cmp::Ordering::Equal => given_ns,
             std::cmp::Ordering::Greater => given_ns.saturating_add(1),
         };
@@ -80,6 +83,8 @@ impl Stamped {
 pub struct Register {
     known: VecDeque<([u8; 16], Time)>,
     latest: Time,
+    /// Releases that came too soon after a stop: no repetition of one may be late enough.
+    too_soon: VecDeque<[u8; 16]>,
 }
 
 impl Register {
@@ -100,7 +105,14 @@ impl Register {
                         RELEASE_AGE_MAX.s()
                     ));
                 }
-                Ok((MotionOrder::Resume, Time(seen.in_force_ns.saturating_add(1))))
+                let stamp = Time(seen.in_force_ns) + RESUME_AFTER;
+                if stamp > now && !self.too_soon.contains(&request.key) {
+                    remember(&mut self.too_soon, request.key);
+                }
+                match self.too_soon.contains(&request.key) {
+                    true => Err(StopError::TooSoon.to_string()),
+                    false => Ok((MotionOrder::Resume, stamp)),
+                }
             }
         }
     }
@@ -112,11 +124,16 @@ impl Register {
         // Each has a stamp of its own, so that each can be named.
         let stamp = now.max(self.latest + Span(1));
         self.latest = stamp;
-        self.known.push_back((key, stamp));
-        if self.known.len() > KNOWN_MAX {
-            self.known.pop_front();
-        }
+        remember(&mut self.known, (key, stamp));
         stamp
+    }
+}
+
+/// Adds an entry, and forgets the oldest one where there are too many.
+fn remember<T>(entries: &mut VecDeque<T>, entry: T) {
+    entries.push_back(entry);
+    if entries.len() > KNOWN_MAX {
+        entries.pop_front();
     }
 }
 
@@ -297,7 +314,7 @@ mod tests {
         Request { key: [key; 16], order: Order::Release(seen) }
     }
 
-    /// The arm's rule.
+    /// The arm's rules.
     #[derive(Default)]
     struct Arm {
         stopped: bool,
@@ -306,7 +323,8 @@ mod tests {
 
     impl Arm {
         fn obey(&mut self, (order, given): (MotionOrder, Time)) {
-            if given > self.obeyed {
+            let is_too_soon = order == MotionOrder::Resume && given < self.obeyed + RESUME_AFTER;
+            if given > self.obeyed && !(self.stopped && is_too_soon) {
                 (self.stopped, self.obeyed) = (order == MotionOrder::Stop, given);
             }
         }
@@ -324,20 +342,30 @@ mod tests {
 
     #[test]
     fn release_lifts_the_stop_that_it_names_and_no_later_one_in_every_order_of_arrival() {
-        let (mut register, one) = (Register::default(), at(1_000));
-        let requests = [stop(1), release(3, 1_500, one), stop(2), release(3, 1_500, one), stop(1)];
+        let one = at(1_000);
+        let requests = [stop(1), release(3, 0, one), stop(2), release(4, 0, one), stop(1)];
         // Every sequence of five arrivals out of these, repeated and swapped as a network may.
         for word in 0..5_usize.pow(5) {
             let mut arm = Arm::default();
-            register.known.clear();
-            register.latest = Time(0);
+            let mut register = Register::default();
             arm.obey(register.stamp(&stop(1), one).unwrap());
             let mut is_stopped_again = false;
             for place in 0..5_u32 {
                 let request = requests[word / 5_usize.pow(place) % 5];
-                let now = at(1_600 + u64::from(place));
+                // The first half comes too soon to release anything.
+                let now = at(2_600 + 200 * u64::from(place));
                 is_stopped_again |= request.key == [2; 16];
-                arm.obey(register.stamp(&request, now).unwrap());
+                let request = match request.order {
+                    Order::Stop => request,
+                    Order::Release(seen) => {
+                        let seen = Seen { at_ns: now.ns(), ..seen };
+                        Request { order: Order::Release(seen), ..request }
+                    }
+                };
+                match register.stamp(&request, now) {
+                    Ok(order) => arm.obey(order),
+                    Err(why) => assert!(why.contains("less than 2 s"), "{why}"),
+                }
             }
             assert!(arm.stopped || !is_stopped_again, "{word}: a later stop was released");
         }
@@ -387,6 +415,15 @@ mod tests {
         let error = register.stamp(&release(1, 1_000, at(900)), at(3_001)).unwrap_err();
         assert!(error.contains("2.0 s old"), "{error}");
         assert!(register.stamp(&release(1, 9_000, at(900)), at(3_000)).is_err(), "from the future");
+    }
+
+    #[test]
+    fn release_that_came_too_soon_stays_refused_however_often_it_is_repeated() {
+        let mut register = Register::default();
+        assert!(register.stamp(&release(1, 2_800, at(900)), at(2_899)).is_err());
+        assert!(register.stamp(&release(1, 2_950, at(900)), at(3_000)).is_err());
+        let given_again = register.stamp(&release(2, 2_950, at(900)), at(3_000));
+        assert_eq!(given_again, Ok((MotionOrder::Resume, at(2_900))));
     }
 
     #[test]

@@ -161,6 +161,7 @@ pub(crate) fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
             first => first.map_or(0, |record| record.state.last_interaction.0),
         },
         delivered: records().last().map_or(0, delivered),
+        ..SharedFacts::default()
     }
 }
 

@@ -40,13 +40,13 @@ pub(crate) fn open(paths: &GroupPaths, fresh: bool) -> Result<u64, EpochError> {
         found => found?,
     };
     let old = found.as_ref().map_or(0, |set| set.epoch);
+    let (set, is_new) = match found {
+        Some(set) if !fresh => (set, false),
+        _ => (JournalSet::renewed(paths, now_s().max(old + 1)), true),
+    };
     if fresh {
         put_journals_aside(paths, old)?;
     }
-    let (set, is_new) = match found {
-        Some(set) if !fresh => (set, false),
-        _ => (JournalSet::new(now_s().max(old + 1)), true),
-    };
     let unusable = set.check(paths);
     if !unusable.is_empty() {
         return Err(EpochError::Journals(unusable));

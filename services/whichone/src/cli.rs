@@ -24,7 +24,7 @@ pub use arm::{ArmPlotArgs, ArmVerb};
 pub use batch::{ArmArgs, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm};
 pub use group::{
     CheckArgs, ConfigArgs, ConformArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs,
-    ServiceArgs, SwapArgs, UpArgs, WaitFor,
+    ServiceArgs, StopArgs, SwapArgs, UpArgs, WaitFor,
 };
 pub use link::LinkArgs;
 pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
@@ -91,6 +91,7 @@ struct QuickCli {
 enum QuickVerb {
     Say(SayArgs),
     Status,
+    #[command(alias = "halt")]
     StopMotion(MotionArgs),
     ResumeMotion(MotionArgs),
 }
@@ -198,8 +199,8 @@ pub enum Verb {
     Status,
     /// Start a service or release its hold, and wait until it is ready.
     Start(ServiceArgs),
-    /// Stop a service and wait for its end.
-    Stop(ServiceArgs),
+    /// Stop a service and wait for its end; without a name, stop the arm's motion.
+    Stop(StopArgs),
     /// Stop a service, start it again, and wait until it is ready.
     Restart(RestartArgs),
     /// Stop a service and keep it stopped until it is released.
@@ -266,6 +267,7 @@ pub enum Verb {
     /// Wait for the outcome of an interaction and print it.
     Await(AwaitArgs),
     /// Stop the arm at once and latch the stop.
+    #[command(visible_alias = "halt")]
     StopMotion(MotionArgs),
     /// Release the motion stop.
     ResumeMotion(MotionArgs),

@@ -6,7 +6,9 @@ use service::group::GroupPaths;
 
 use crate::Outcome;
 use crate::batch;
-use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, GroundArgs, StudyVerb, Verb};
+use crate::cli::{
+    ArmArgs, ArmVerb, Awaited, Cli, GroundArgs, ServiceArgs, StopArgs, StudyVerb, Verb,
+};
 use crate::described_arm::DescribedArm;
 use crate::output::Output;
 use service::exit::Failure;
@@ -58,7 +60,11 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Down(args) => operate::down(&paths()?, args.timeout, out),
         Verb::Status => status::status(&paths()?, out),
         Verb::Start(args) => operate::on_service(&paths()?, Request::Start, args, out),
-        Verb::Stop(args) => operate::on_service(&paths()?, Request::Stop, args, out),
+        Verb::Stop(StopArgs { service: Some(service), timeout }) => {
+            operate::on_service(&paths()?, Request::Stop, ServiceArgs { service, timeout }, out)
+        }
+        // Whoever types it in a fright means the arm.
+        Verb::Stop(_) => motion::motion(&paths()?, MotionOrder::Stop, None, out),
         Verb::Restart(args) => operate::restart(&paths()?, args, out),
         Verb::Hold(args) => operate::on_service(&paths()?, Request::Hold, args, out),
         Verb::Release(args) => operate::on_service(&paths()?, Request::Release, args, out),

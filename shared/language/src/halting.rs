@@ -18,6 +18,10 @@ use crate::tokens::{Gap, Token, Tokens};
 /// Phrases that say nothing before a command or after it.
 const BESIDE: &[Class] = classes![Filler Courtesy No Yes Repair WeakYes And But Join Plain];
 
+/// Number of words before a final "stop" among which a negator denies it ("do not stop", "don't let it stop"); one more
+/// before "to stop".
+const NEAR: usize = 2;
+
 /// Returns whether the words halt the arm. That is a matter of safety: it depends neither on the scene nor on the
 /// language, and the careful reading of such words is always a stop.
 pub fn is_stop(text: &str) -> bool {
@@ -133,9 +137,10 @@ impl<'t, 'a> Utterance<'t, 'a> {
     /// "the white one stop", "what are you doing stop": called out at the end of a breath.
     fn is_called_out(&self, at: usize, breath: &Range<usize>) -> bool {
         const BEFORE: &[Class] = classes![One Head It No Yes WeakYes Courtesy Filler];
-        let negates = |token: &Token<'_>| matches!(token.word, "not" | "never" | "let");
         let is_stop = self.tokens[at].word == "stop";
-        if self.tokens[breath.start..at].iter().any(negates) {
+        let reach = NEAR + usize::from(self.tokens[at - 1].word == "to");
+        let near = at.saturating_sub(reach).max(breath.start);
+        if self.tokens[near..at].iter().any(|token| PATTERNS.is_in("negators", token.word)) {
             return false;
         }
         let before = self.own.word(self.tokens[at - 1].word).and_then(class);
@@ -145,22 +150,11 @@ impl<'t, 'a> Utterance<'t, 'a> {
 
     /// "the bus stop", "did you stop", "how to stop": a name, a question, or what somebody does.
     fn is_no_order(&self, start: usize, at: usize) -> bool {
-        let word = |back: usize| (at >= start + back).then(|| self.tokens[at - back].word);
-        let asks = |word: Option<&str>| {
-            matches!(
-                word,
-                Some("did" | "do" | "does" | "will" | "would" | "can" | "could" | "should" | "may")
-                    | Some("how" | "when" | "where" | "why" | "what" | "if" | "until" | "going")
-            )
+        let is_in = |set: &str, back: usize| {
+            at >= start + back && PATTERNS.is_in(set, self.tokens[at - back].word)
         };
-        let is_subject = matches!(word(1), Some("you" | "it" | "he" | "she" | "they" | "we" | "i"));
-        let names = matches!(
-            word(1),
-            Some("the" | "a" | "an" | "this" | "each" | "every" | "my" | "your" | "next" | "last")
-                | Some("first" | "bus" | "tram" | "truck" | "pit" | "door" | "full" | "rest")
-                | Some("called" | "named" | "labelled")
-        );
-        names || asks(word(1)) || (is_subject || word(1) == Some("to")) && asks(word(2))
+        let is_told = is_in("subjects", 1) && is_in("asking", 2);
+        is_in("naming", 1) || is_in("asking", 1) || is_told
     }
 
     /// "stop sign", "hold it in": what goes on belongs to the words before.

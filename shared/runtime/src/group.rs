@@ -255,6 +255,11 @@ impl GroupPaths {
         self.run().join("stop.sock")
     }
 
+    /// A motion stop that no arm has confirmed. It outlives the group, because the next one's arm must not move either.
+    pub fn kept_stop(&self) -> PathBuf {
+        self.root.join("stop.kept")
+    }
+
     /// The address of the console, while it serves one.
     pub fn console_url(&self) -> PathBuf {
         self.run().join("console.url")

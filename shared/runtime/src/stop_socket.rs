@@ -7,7 +7,9 @@
 //!
 //! An order is a JSON object in one datagram, `{"order":"stop","given_ns":N}`, and is answered by the
 //! arm's [`StopState`]. A stop is repeated until the arm has confirmed it, however long its service is away
-//! ([`Progress`]); `given_ns`, its time on the machine's monotonic clock, makes repetitions harmless. Only the group's
+//! ([`Progress`]); one whose giver ends first is kept in a file for the arm's return ([`KeptStop`]). `given_ns`, its
+//! time on the machine's monotonic clock, makes repetitions harmless, and keeps a release from lifting a stop that was
+//! given less than [`RESUME_AFTER`] before it. Only the group's
 //! own user and root are heard: the socket lies in the private folder `run/`, and both sides check the credentials
 //! that the kernel attaches to each datagram.
 
@@ -28,11 +30,16 @@ use progress::RESEND_EVERY;
 pub use progress::{Progress, default_patience};
 
 mod datagram;
+mod kept;
 mod progress;
-
 mod repeated;
 
+pub use kept::{KeptStop, is_kept};
 pub use repeated::RepeatedStop;
+
+/// Time after a stop in which no release counts, whoever gives either: a frightened person presses again and again, and
+/// two people press at once.
+pub const RESUME_AFTER: Span = Span::from_ms(2_000);
 
 /// Most datagrams of one pass.
 const DATAGRAMS_MAX: usize = 64;
@@ -171,17 +178,23 @@ pub enum StopError {
     #[error("the arm's service is not running; the robot may still move; {EMERGENCY}")]
     Absent,
     /// No answer.
-    #[error("the arm's service does not answer after {0} s; the robot may still move; {EMERGENCY}")]
+    #[error("the arm's service does not answer after {0:.1} s; the robot may still move; {EMERGENCY}")]
     Silent(f64),
     /// The arm has the order, and is not at rest yet.
-    #[error("the arm is stopping but not at rest after {0} s; {EMERGENCY}")]
+    #[error("the arm is stopping but not at rest after {0:.1} s; {EMERGENCY}")]
     Moving(f64),
     /// A later order is in force.
     #[error("overruled by a later order; help: see `whichone watch`")]
     Overruled,
+    /// A release that was given too soon after a stop.
+    #[error(
+        "a stop was given less than {} s before the release; help: give the release again",
+        RESUME_AFTER.s()
+    )]
+    TooSoon,
     /// The arm answers, and the motion stop stays as it is.
     #[error(
-        "the arm has not taken the order after {0} s (motion inhibited: {1:?}); help: release the robot's \
+        "the arm has not taken the order after {0:.1} s (motion inhibited: {1:?}); help: release the robot's \
          emergency stop, reset and enable the robot, then give the order again"
     )]
     NotTaken(f64, MotionInhibit),
@@ -220,7 +233,7 @@ impl StopClient {
     pub fn send(&self, order: MotionOrder, given: Time) -> Result<(), StopError> {
         let socket_error = |error: Errno| StopError::Socket(error.to_string());
         let to = SocketAddrUnix::new(self.paths.stop_socket()).map_err(socket_error)?;
-        let given_ns = self.clock.machine_ns(given.ns());
+        let given_ns = self.machine_ns(given);
         match self.endpoint.send(&StopOrder { order, given_ns }, &to) {
             Ok(()) | Err(Errno::AGAIN | Errno::NOBUFS | Errno::NOMEM | Errno::INTR) => Ok(()),
             Err(Errno::NOENT | Errno::CONNREFUSED) if !self.paths.run().is_dir() => {
@@ -242,6 +255,10 @@ impl StopClient {
         Some(state.translated(|ns| self.clock.own_ns(ns)))
     }
 
+    fn machine_ns(&self, given: Time) -> u64 {
+        self.clock.machine_ns(given.ns())
+    }
+
     /// Returns whether this is the user whom the group belongs to. Root alone needs it: others reach no group but
     /// their own.
     fn is_groups_user(&self, uid: Uid) -> bool {
@@ -257,6 +274,7 @@ impl StopClient {
 /// `keep_trying` is asked with each repetition, and gets the reason for which the order is not confirmed whenever a
 /// warning is due; where it returns false, the order ends. It must not wait.
 ///
+/// A stop that is returned unconfirmed is kept for the arm's return ([`KeptStop`]).
 /// # Errors
 /// Not confirmed within `patience` ([`default_patience`]), which no error exceeds; without one a stop ends
 /// unconfirmed only if it is overruled, if the group ends, or if the robot is not heard; see [`StopError`].
@@ -268,17 +286,21 @@ pub fn give(
 ) -> Result<StopState, StopError> {
     let client = StopClient::open(paths).map_err(|error| StopError::Socket(error.to_string()))?;
     let mut progress = Progress::new(order, clock::now(), patience);
-    loop {
+    let result = loop {
         progress.advance(&client, clock::now());
         let now = clock::now();
         if let Some(result) = progress.result(now) {
-            return result;
+            break result;
         }
         if !keep_trying(progress.warning(now)) {
-            return Err(StopError::Ended);
+            break Err(StopError::Ended);
         }
         wait(&client, RESEND_EVERY);
+    };
+    if result.is_err() {
+        progress.leave(&client);
     }
+    result
 }
 
 fn wait(client: &StopClient, longest: Span) {

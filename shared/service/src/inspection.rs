@@ -40,6 +40,9 @@ pub struct SharedFacts {
     /// The latest interaction, if it ended with a delivery by the arm (policy); else 0.
     #[serde(default)]
     pub delivered: u64,
+    /// Whether the motion stop is latched (arm); none where that is not known.
+    #[serde(default)]
+    pub stopped: Option<bool>,
 }
 
 /// Result of a verification.

@@ -159,6 +159,26 @@ impl JournalSet {
         }
     }
 
+    /// The set of a new epoch in the place of journals that are put aside. An arm whose stop was latched, or is not known
+    /// not to be, starts without its own memory: it waits for a person.
+    pub fn renewed(paths: &GroupPaths, epoch: u64) -> Self {
+        let mut set = Self::new(epoch);
+        let was_free = || agreement::is_free(paths) == Some(true);
+        if paths.journal_file(Service::Arm.name()).exists() && !was_free() {
+            set.lose(&[Service::Arm], 1);
+        }
+        set
+    }
+
+    /// Notes that the journals of these services are gone, and that as many numbers more are over.
+    fn lose(&mut self, services: &[Service], numbers: u64) {
+        for service in services {
+            let entry = self.entry(service.name());
+            *entry = Entry { generation: entry.generation + 1, exists: false };
+        }
+        self.numbers_over = self.numbers_over.saturating_add(numbers);
+    }
+
     fn entry(&mut self, service: &str) -> &mut Entry {
         let first = Entry { generation: 1, exists: false };
         self.journals.entry(service.to_owned()).or_insert(first)
@@ -275,11 +295,7 @@ pub fn set_aside(paths: &GroupPaths, services: &[Service]) -> Result<Option<Path
         true => None,
         false => Some(move_parts(paths, &parts).map_err(|e| Failure::file(paths.root(), &e))?),
     };
-    for service in services {
-        let entry = set.entry(service.name());
-        *entry = Entry { generation: entry.generation + 1, exists: false };
-    }
-    set.numbers_over = set.numbers_over.saturating_add(NUMBERS_SKIPPED);
+    set.lose(services, NUMBERS_SKIPPED);
     set.save(paths).map_err(|error| Failure::file(&file, &error))?;
     Ok(folder)
 }

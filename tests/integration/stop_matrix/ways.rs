@@ -166,7 +166,7 @@ impl Givers {
     pub(super) fn give(&self, way: Way, group: &Group) -> Report {
         match way {
             Way::CommandLine => confirmed(&group.call(&["stop-motion"])),
-            Way::Words => accepted(&group.call(&["say", "stop"])),
+            Way::Words => said(&group.call(&["say", "stop"])),
             Way::Spoken => {
                 let (_, recording) = self.recording.as_ref().expect("a recording");
                 accepted(&group.call(&["listen", recording]))
@@ -198,6 +198,14 @@ fn participant() -> Visitor<'static> {
 fn accepted(ended: &Ended) -> Report {
     let text = format!("{}{}", ended.stdout, ended.stderr);
     Report { is_accepted: ended.code == Some(0), stopped: None, text }
+}
+
+/// Words that were typed: the arm's confirmation, or else their receipt, counts.
+fn said(ended: &Ended) -> Report {
+    let report = accepted(ended);
+    let is_stopped = report.text.contains("the arm is stopped, at rest");
+    let is_accepted = is_stopped || report.text.contains("heard as utterance");
+    Report { is_accepted, stopped: is_stopped.then(clock::now), ..report }
 }
 
 fn confirmed(ended: &Ended) -> Report {

@@ -41,6 +41,7 @@ fn motion_stop_halts_within_100_ms_on_a_full_disk() {
         machine.run(0.02);
         assert!(machine.order_by_socket(MotionOrder::Stop).durable);
         assert_eq!((machine.status().stopped, machine.status().moving), (1, 0));
+        machine.awaits_release();
         assert!(!machine.order_by_socket(MotionOrder::Resume).stopped);
         machine.delivers(1, object);
     }

@@ -33,7 +33,7 @@ use messages::{
 use preflight::ArmSetup;
 use robot::Robot;
 use scene::{ObjectId, Question};
-use service::stop_socket::{Caller, StopOrder, StopState};
+use service::stop_socket::{Caller, RESUME_AFTER, StopOrder, StopState};
 use service::{Effects, Event, Node, Span, Time};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -302,7 +302,19 @@ impl Machine {
     }
 
     fn motion(&mut self, order: MotionOrder) {
+        if order == MotionOrder::Resume {
+            self.awaits_release();
+        }
         self.order(order, self.now.ns());
+    }
+
+    /// Runs until a release counts.
+    fn awaits_release(&mut self) {
+        self.go(None);
+        let (stopped, obeyed) = (self.node.state().stopped, self.node.state().obeyed);
+        while stopped && obeyed > Time(0) && self.now < obeyed + RESUME_AFTER {
+            self.go(None);
+        }
     }
 
     /// Receives an order that was given at that time.

@@ -78,6 +78,14 @@ fn arm_applies_newer_motion_orders_only() {
     machine.run(0.02);
     assert!(machine.node.state().stopped, "older, repeated, from the future");
     machine.order(MotionOrder::Resume, now - 4);
+    machine.run(1.95);
+    assert!(machine.node.state().stopped, "too soon after the stop");
+    machine.order(MotionOrder::Stop, machine.now.ns());
+    machine.run(1.95);
+    machine.order(MotionOrder::Resume, machine.now.ns());
+    machine.run(0.5);
+    assert!(machine.node.state().stopped, "too soon after another one, and not later either");
+    machine.order(MotionOrder::Resume, machine.now.ns());
     machine.run(0.02);
     assert!(!machine.node.state().stopped);
 }

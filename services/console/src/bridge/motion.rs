@@ -10,23 +10,15 @@ use messages::{MotionOrder, Service};
 use serde::Serialize;
 use service::group::GroupPaths;
 use service::status::{GroupStatus, ServiceState};
-use service::stop_socket::{StopClient, StopError, StopState};
-use service::{Span, Time, clock};
+use service::stop_socket::{Progress, StopClient, StopError, default_patience};
+use service::{Span, Time};
 
 use crate::hub::Hub;
 use crate::hub::command::Motion;
 use crate::hub::outbound::Answer;
 
-/// Interval at which an unconfirmed order is repeated.
-const RESEND_EVERY: Span = Span::from_ms(50);
 /// Deadline for the arm to confirm a stop before pages warn.
 const ALARM_AFTER: Span = Span::from_ms(1_000);
-/// Deadline for the arm to confirm a release; a later one would surprise.
-const PATIENCE: Span = Span::from_ms(5_000);
-/// Age from which the arm's answer that it moves is no longer true.
-const ANSWER_AGE_MAX: Span = Span::from_ms(500);
-/// Answer to a release that a later stop overrules.
-const OVERRULED: &str = "overruled by a later stop";
 /// Most orders that wait for a confirmation; the latest is in force.
 const ORDERS_MAX: usize = 64;
 
@@ -36,19 +28,13 @@ pub(super) struct Motions {
     client: StopClient,
     waiting: Vec<Motion>,
     latest: Option<Latest>,
-    /// `true` if nobody listens at the arm's end.
-    is_absent: bool,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 struct Latest {
-    stop: bool,
-    given: Time,
-    sent: Time,
-    /// It is a stop that pages warn about.
-    is_late: bool,
-    /// Time of the arm's latest answer that it is latched, but not at rest.
-    moved: Option<Time>,
+    progress: Progress,
+    /// It is a stop that pages warn about, with the reason.
+    late: Option<StopError>,
 }
 
 /// The section `motion`: the stop that the arm has not confirmed, if any.
@@ -71,32 +57,36 @@ impl Motions {
     /// No descriptor is left.
     pub(super) fn open(paths: &GroupPaths) -> io::Result<Self> {
         let client = StopClient::open(paths)?;
-        Ok(Self { client, waiting: Vec::new(), latest: None, is_absent: false })
+        Ok(Self { client, waiting: Vec::new(), latest: None })
     }
 
     /// Sends an order at once.
     pub(super) fn order(&mut self, motion: Motion, hub: &Hub, now: Time) {
         self.accept(motion, hub, now);
-        self.send();
+        self.latest.iter_mut().for_each(|latest| latest.progress.advance(&self.client, now));
     }
 
     fn accept(&mut self, motion: Motion, hub: &Hub, now: Time) {
         // The latest order overrules contrary ones.
-        let overruled = |waiting: &Motion| waiting.stop != motion.stop;
-        for old in self.waiting.extract_if(.., |waiting| overruled(waiting)) {
+        for old in self.waiting.extract_if(.., |waiting| waiting.stop != motion.stop) {
             let outcome = match old.stop {
-                true => Ok(Some(Answer::Motion { stopped: false })),
-                false => Err(OVERRULED.to_owned()),
+                true => Ok(false),
+                false => Err(StopError::Overruled.to_string()),
             };
-            hub.answer(old.viewer, old.id, outcome);
+            answer(hub, old, outcome);
         }
         if self.waiting.len() < ORDERS_MAX {
             self.waiting.push(motion);
         }
-        // A stop that its user repeats is as late as before.
-        let is_late = motion.stop && self.latest.is_some_and(|before| before.is_late);
-        self.latest =
-            Some(Latest { stop: motion.stop, given: now, sent: now, is_late, moved: None });
+        let order = if motion.stop { MotionOrder::Stop } else { MotionOrder::Resume };
+        match &mut self.latest {
+            // A stop that its user repeats is as late as before.
+            Some(latest) if latest.progress.order() == order => latest.progress.renew(now),
+            latest => {
+                let progress = Progress::new(order, now, default_patience(order));
+                *latest = Some(Latest { progress, late: None });
+            }
+        }
     }
 
     pub(super) fn is_waiting(&self) -> bool {
@@ -106,99 +96,61 @@ impl Motions {
     /// Takes in the arm's answers, repeats the order until it is confirmed, warns of a late stop, and gives up
     /// a late release.
     pub(super) fn pass(&mut self, group: Option<&GroupStatus>, hub: &Hub, now: Time) {
-        while let Some(state) = self.client.take() {
-            self.confirm(&state, hub, now);
-        }
+        self.latest.iter_mut().for_each(|latest| latest.progress.advance(&self.client, now));
         self.judge(group, hub, now);
-        if self.latest.is_some_and(|latest| now >= latest.sent + RESEND_EVERY) {
-            self.send();
-        }
     }
 
-    /// Takes in an answer; one to another order does not confirm this one.
-    fn confirm(&mut self, state: &StopState, hub: &Hub, now: Time) {
-        let is_it = |latest: &&mut Latest| state.given_ns == latest.given.ns();
-        let Some(latest) = self.latest.as_mut().filter(is_it) else { return };
-        match state.stopped {
-            true if latest.stop && !state.at_rest => latest.moved = Some(now),
-            stopped if stopped == latest.stop => {
-                self.latest = None;
-                self.done(hub, stopped);
-            }
-            // Of the command line, or of another console.
-            stopped if state.in_force_ns > state.given_ns => {
-                self.latest = None;
-                match stopped {
-                    true => self.refuse(hub, OVERRULED),
-                    // A stop that is over is not repeated.
-                    false => self.done(hub, false),
-                }
+    fn judge(&mut self, group: Option<&GroupStatus>, hub: &Hub, now: Time) {
+        let Some(Latest { progress, late }) = &mut self.latest else { return };
+        let is_stop = progress.order() == MotionOrder::Stop;
+        match progress.result(now) {
+            Some(Ok(state)) => self.done(hub, &Ok(state.stopped)),
+            // A stop that another order has released is not repeated.
+            Some(Err(StopError::Overruled)) if is_stop => self.done(hub, &Ok(false)),
+            Some(Err(why)) if !is_stop => self.done(hub, &Err(why.to_string())),
+            _ if is_stop && now >= progress.since() + ALARM_AFTER => {
+                let why = progress.why(now);
+                let text = match why_in_a_word(&why, group) {
+                    "moving" | "silent" => why.to_string(),
+                    state => format!("the arm's service is not ready ({state}): {why}"),
+                };
+                *late = Some(why);
+                let text = format!("{text}; the stop is repeated until it is confirmed");
+                self.waiting.drain(..).for_each(|motion| answer(hub, motion, Err(text.clone())));
             }
             _ => {}
         }
     }
 
-    fn done(&mut self, hub: &Hub, stopped: bool) {
-        for motion in self.waiting.drain(..) {
-            hub.answer(motion.viewer, motion.id, Ok(Some(Answer::Motion { stopped })));
-        }
-    }
-
-    /// Sends the order with its original time, which makes repetitions harmless.
-    fn send(&mut self) {
-        let Some(latest) = &mut self.latest else { return };
-        latest.sent = clock::now();
-        let order = if latest.stop { MotionOrder::Stop } else { MotionOrder::Resume };
-        let sent = self.client.send(order, latest.given);
-        self.is_absent = matches!(sent, Err(StopError::Absent));
-        if let Err(error) = sent {
-            tracing::debug!(%error, "order to the motion stop not sent");
-        }
-    }
-
-    fn judge(&mut self, group: Option<&GroupStatus>, hub: &Hub, now: Time) {
-        let Some(latest) = &mut self.latest else { return };
-        latest.moved = latest.moved.filter(|moved| now < *moved + ANSWER_AGE_MAX);
-        if latest.stop {
-            latest.is_late |= now >= latest.given + ALARM_AFTER;
-        } else if now >= latest.given + PATIENCE {
-            self.latest = None;
-            return self.refuse(hub, "the arm does not answer; help: see the list of services");
-        }
-        if let Some(latest) =
-            self.latest.filter(|latest| latest.is_late && !self.waiting.is_empty())
-        {
-            let what = match why(&latest, group) {
-                "moving" => "the arm has the stop, but is not at rest".to_owned(),
-                "silent" if self.is_absent => "the arm's service is not running".to_owned(),
-                "silent" => "the arm does not answer".to_owned(),
-                state => format!("the arm's service is not ready ({state})"),
-            };
-            let help = "help: use the robot's own emergency stop; the stop is repeated until it is confirmed";
-            self.refuse(hub, &format!("{what}, and the robot may still move; {help}"));
-        }
-    }
-
-    fn refuse(&mut self, hub: &Hub, why: &str) {
-        for motion in self.waiting.drain(..) {
-            hub.answer(motion.viewer, motion.id, Err(why.to_owned()));
-        }
+    /// Ends the order.
+    fn done(&mut self, hub: &Hub, outcome: &Result<bool, String>) {
+        self.latest = None;
+        self.waiting.drain(..).for_each(|motion| answer(hub, motion, outcome.clone()));
     }
 
     /// Returns what pages show.
     pub(super) fn section(&self, group: Option<&GroupStatus>) -> MotionSection {
-        let late = self.latest.filter(|latest| latest.is_late);
-        MotionSection { unconfirmed: late.map(|latest| Unconfirmed { why: why(&latest, group) }) }
+        let late = self.latest.as_ref().and_then(|latest| latest.late.as_ref());
+        let unconfirmed = |why| Unconfirmed { why: why_in_a_word(why, group) };
+        MotionSection { unconfirmed: late.map(unconfirmed) }
+    }
+}
+
+/// Answers who gave an order: whether the stop is latched, or why that is not known.
+fn answer(hub: &Hub, motion: Motion, outcome: Result<bool, String>) {
+    if let Some(id) = motion.id {
+        let outcome = outcome.map(|stopped| Some(Answer::Motion { stopped }));
+        hub.answer(motion.viewer, id, outcome);
     }
 }
 
 /// Returns why the arm does not confirm, in a word.
-fn why(latest: &Latest, group: Option<&GroupStatus>) -> &'static str {
+fn why_in_a_word(why: &StopError, group: Option<&GroupStatus>) -> &'static str {
     let arm = group.and_then(|group| {
         group.services.iter().find(|service| service.name == Service::Arm.name())
     });
     match arm.map(|arm| arm.state) {
-        _ if latest.moved.is_some() => "moving",
+        _ if matches!(why, StopError::Moving(_)) => "moving",
         None | Some(ServiceState::Ready) => "silent",
         Some(state) => state.word(),
     }
@@ -207,6 +159,7 @@ fn why(latest: &Latest, group: Option<&GroupStatus>) -> &'static str {
 #[cfg(test)]
 mod tests {
     use serde_json::{Value as Json, json};
+    use service::stop_socket::StopState;
 
     use super::*;
     use crate::hub::tests::{Page, hub, received};
@@ -250,7 +203,14 @@ mod tests {
     }
 
     fn stops(hub: &Hub, viewer: ViewerId, motions: &mut Motions, stop: bool, ms: u64) {
-        motions.accept(Motion { viewer, id: ms, stop }, hub, at(ms));
+        motions.accept(Motion { viewer, id: Some(ms), stop }, hub, at(ms));
+    }
+
+    /// Takes in an answer of the arm.
+    fn confirm(motions: &mut Motions, state: StopState, hub: &Hub, now: Time) {
+        let latest = motions.latest.as_mut().unwrap();
+        latest.progress.on_answer(state, now);
+        motions.judge(None, hub, now);
     }
 
     #[test]
@@ -273,10 +233,10 @@ mod tests {
         assert_eq!(section(&motions, &ready)["unconfirmed"]["why"], "silent");
         assert_eq!(received(&mut frames)["ok"], false, "answered at once");
         for other in [answer(3_600_000, false), answer(1, true)] {
-            motions.confirm(&other, &hub, at(3_600_000));
+            confirm(&mut motions, other, &hub, at(3_600_000));
             assert!(motions.is_waiting(), "{other:?}");
         }
-        motions.confirm(&answer(3_600_000, true), &hub, at(3_600_000));
+        confirm(&mut motions, answer(3_600_000, true), &hub, at(3_600_000));
         assert_eq!(section(&motions, &ready)["unconfirmed"], Json::Null);
         assert!(!motions.is_waiting());
     }
@@ -288,18 +248,18 @@ mod tests {
         let (_home, mut motions) = motions();
         stops(&hub, viewer, &mut motions, true, 1);
         let later = |stopped| StopState { in_force_ns: at(2).ns(), ..answer(1, stopped) };
-        motions.confirm(&later(false), &hub, at(3));
+        confirm(&mut motions, later(false), &hub, at(3));
         assert!(!motions.is_waiting());
         let over = received(&mut frames);
         assert!(over["ok"] == true && over["stopped"] == false, "no page repeats it: {over}");
 
         stops(&hub, viewer, &mut motions, true, 1);
-        motions.confirm(&later(true), &hub, at(3));
+        confirm(&mut motions, later(true), &hub, at(3));
         assert!(!motions.is_waiting());
         assert_eq!(received(&mut frames)["stopped"], true, "another stop is in force");
 
         stops(&hub, viewer, &mut motions, false, 1);
-        motions.confirm(&later(true), &hub, at(3));
+        confirm(&mut motions, later(true), &hub, at(3));
         assert!(received(&mut frames)["error"].as_str().unwrap().contains("overruled"));
     }
 
@@ -310,7 +270,7 @@ mod tests {
         let ((_home, mut motions), ready) = (motions(), group("ready"));
         stops(&hub, viewer, &mut motions, true, 1);
         let moving = StopState { at_rest: false, ..answer(1, true) };
-        motions.confirm(&moving, &hub, at(950));
+        confirm(&mut motions, moving, &hub, at(950));
         motions.judge(Some(&ready), &hub, at(1_000));
         assert!(motions.is_waiting() && frames.try_recv().is_err());
         assert_eq!(section(&motions, &ready)["unconfirmed"], Json::Null);
@@ -322,8 +282,8 @@ mod tests {
         // It falls silent: that it moves is no longer known.
         motions.judge(Some(&ready), &hub, at(1_450));
         assert_eq!(section(&motions, &ready)["unconfirmed"]["why"], "silent");
-        motions.confirm(&moving, &hub, at(1_500));
-        motions.confirm(&answer(1, true), &hub, at(1_550));
+        confirm(&mut motions, moving, &hub, at(1_500));
+        confirm(&mut motions, answer(1, true), &hub, at(1_550));
         assert_eq!(section(&motions, &ready)["unconfirmed"], Json::Null);
         assert!(!motions.is_waiting());
     }

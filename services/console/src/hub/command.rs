@@ -63,7 +63,8 @@ pub fn typed(text: &str) -> Words {
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
     pub viewer: ViewerId,
-    pub id: u64,
+    /// The command's number; none where the order comes with words, which are answered.
+    pub id: Option<u64>,
     /// `true` latches the stop, `false` releases it.
     pub stop: bool,
 }

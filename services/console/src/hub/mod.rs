@@ -199,7 +199,19 @@ impl Hub {
     }
 
     /// Passes a command to the bridge, which answers by [`Hub::answer`].
+    ///
+    /// Words that tell the robot to stop go to the arm first, on the motion stop's own path, whoever may speak to it and
+    /// whatever becomes of the words.
     pub fn ask(&self, viewer: ViewerId, id: u64, verb: Verb) -> Result<(), String> {
+        let stops = matches!(&verb, Verb::Say(words) if language::is_stop(&words.text));
+        if stops {
+            self.order(Motion { viewer, id: None, stop: true })?;
+        }
+        let asked = self.ask_verb(viewer, id, verb);
+        asked.map_err(|why| if stops { format!("{why}; the stop is given all the same") } else { why })
+    }
+
+    fn ask_verb(&self, viewer: ViewerId, id: u64, verb: Verb) -> Result<(), String> {
         match is_of_own_participant(&verb) {
             true => self.mark_participant(viewer),
             false => self.must_hold(viewer)?,
@@ -220,7 +232,11 @@ impl Hub {
         if !stop {
             self.must_release(viewer)?;
         }
-        let offered = self.channels.motions.offer(Motion { viewer, id, stop });
+        self.order(Motion { viewer, id: Some(id), stop })
+    }
+
+    fn order(&self, motion: Motion) -> Result<(), String> {
+        let offered = self.channels.motions.offer(motion);
         let help = "the console is busy; help: use the robot's emergency stop";
         offered.map_err(|_| help.to_owned())
     }

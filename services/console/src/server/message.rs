@@ -82,7 +82,9 @@ pub fn message(text: &str, now: Time) -> Result<Message, String> {
         Some("ping") if json["at"].is_number() => Ok(Message::Ping(json["at"].clone())),
         Some("ping") => Err("at: expected a number".to_owned()),
         Some("do") => {
-            let id = json["id"].as_u64().ok_or("id: expected a whole number from 0 on")?;
+            // A stop counts without a number as well.
+            let id = json["id"].as_u64().or((json["do"] == "stop").then_some(0));
+            let id = id.ok_or("id: expected a whole number from 0 on")?;
             Ok(match what(&json, now) {
                 Ok(what) => Message::Do(id, what),
                 Err(why) => Message::Wrong(id, why),

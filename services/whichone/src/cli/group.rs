@@ -74,6 +74,16 @@ pub struct ServiceArgs {
     pub timeout: Duration,
 }
 
+/// Arguments of `stop`.
+#[derive(Debug, Args)]
+pub struct StopArgs {
+    /// Name of the service; without one, the arm stops at once, as by `stop-motion`.
+    pub service: Option<String>,
+    /// Timeout, seconds; 0 returns at once.
+    #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]
+    pub timeout: Duration,
+}
+
 /// Arguments of `restart`.
 #[derive(Debug, Args)]
 pub struct RestartArgs {

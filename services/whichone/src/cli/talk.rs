@@ -27,7 +27,7 @@ pub struct SayArgs {
     /// Confidence of each word of TEXT, 0 to 1, separated by commas.
     #[arg(long, value_name = "P,P,…", value_delimiter = ',')]
     pub confidence: Vec<f32>,
-    /// Timeout for the receipt, seconds.
+    /// Timeout for the receipt, and after words that stop the arm for its confirmation, seconds.
     #[arg(long, value_name = "S", default_value = "10", value_parser = seconds)]
     pub timeout: Duration,
 }

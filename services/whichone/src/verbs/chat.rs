@@ -47,7 +47,7 @@ pub(super) fn chat(paths: &GroupPaths, args: &ChatArgs, out: &mut Output<'_>) ->
 fn talk(paths: &GroupPaths, interrupt: &Interrupt, out: &mut Output<'_>) -> Outcome {
     let mut chat = Chat::new(Conversation::join(paths)?, MotionOrders::open(paths)?, out);
     let talked = chat.run(paths, interrupt);
-    chat.orders.finish(interrupt, talked)
+    chat.orders.finish(interrupt, None, talked)
 }
 
 /// Lines from standard input, read on a thread of their own because reading blocks.

@@ -27,6 +27,9 @@ const ARM: &[Service] = &[Service::Arm];
 const NOT_DURABLE: &str = "the stop is not on the disk yet: it holds as long as the arm's service runs; \
      help: free some space on the disk of the group's folder";
 
+/// Note on a stop that its giver no longer repeats.
+const KEPT: &str = "the stop is kept: the arm obeys it before it moves, as soon as its service runs again";
+
 /// State of the motion stop.
 #[derive(Serialize)]
 struct MotionStop {
@@ -50,7 +53,12 @@ pub(super) fn motion(
         why.into_iter().for_each(|why| note(warnings.line(order, &why)));
         !interrupt.is_requested()
     });
-    let state = state.map_err(|error| warnings.failure(&error))?;
+    let state = state.map_err(|error| {
+        if order == MotionOrder::Stop && stop_socket::is_kept(paths) {
+            note(KEPT);
+        }
+        warnings.failure(&error)
+    })?;
     let StopState { stopped, at_rest, durable, .. } = state;
     if out.is_json() {
         out.json(&MotionStop { stopped, at_rest, durable })?;

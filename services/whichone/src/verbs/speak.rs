@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use messages::{
-    GateVerdict, Hypothesis, Receipt, ReceiptStatus, SecondState, Service, Sound, Source, WireError,
+    GateVerdict, Hypothesis, MotionOrder, Receipt, ReceiptStatus, SecondState, Service, Sound, Source, WireError,
 };
 use serde::Serialize;
 use service::client::{Client, ClientError, submit};
@@ -16,21 +16,36 @@ use service::{Span, Time};
 
 use super::availability::{AFTER_SPEECH, Availability, Lookout};
 use super::hearing;
+use super::interrupt::Interrupt;
+use super::motion::MotionOrders;
 use crate::Outcome;
 use crate::cli::{PointArgs, SayArgs, TalkArgs};
 use crate::output::{Ink, Output, note};
 
+/// Time for the arm to confirm a stop before its words go to the speech service, which may be held up.
+const STOPS_WITHIN: Duration = Duration::from_millis(300);
+
 /// Submits an utterance and prints its receipt.
 pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> Outcome {
+    let text = args.text.join(" ");
     let spoken = args.began_ago.is_some()
         || args.ended_ago.is_some()
         || !args.alternatives.is_empty()
         || !args.confidence.is_empty();
-    if !spoken {
-        return give(paths, Sound::Text(args.text.join(" ")), args.timeout, out);
+    let (sound, said) = match spoken {
+        true => (transcript(args)?, when(args)?),
+        false => (Sound::Text(text.clone()), (clock::now(), Time(0))),
+    };
+    if !language::is_stop(&text) {
+        return give_said(paths, sound, said, args.timeout, None, out);
     }
-    let (sound, said) = (transcript(args)?, when(args)?);
-    give_said(paths, sound, said, args.timeout, out)
+    // The stop needs no speech service: it goes to the arm at once, on its own path, and outlives the words.
+    let interrupt = Interrupt::listen()?;
+    let orders = MotionOrders::open(paths)?;
+    orders.give(MotionOrder::Stop);
+    orders.await_news(STOPS_WITHIN);
+    let given = give_said(paths, sound, said, args.timeout, Some(&interrupt), out);
+    orders.finish(&interrupt, Some(args.timeout), given)
 }
 
 /// When it was said.
@@ -82,7 +97,7 @@ pub(super) fn give(
     timeout: Duration,
     out: &mut Output<'_>,
 ) -> Outcome {
-    give_said(paths, sound, (clock::now(), Time(0)), timeout, out)
+    give_said(paths, sound, (clock::now(), Time(0)), timeout, None, out)
 }
 
 fn give_said(
@@ -90,6 +105,7 @@ fn give_said(
     sound: Sound,
     said: (Time, Time),
     timeout: Duration,
+    interrupt: Option<&Interrupt>,
     out: &mut Output<'_>,
 ) -> Outcome {
     let patience = Span::from_s(timeout.as_secs_f64());
@@ -105,6 +121,9 @@ fn give_said(
         services.require(Service::Speech)?;
         let mut is_replaced = false;
         let standstill = || {
+            if interrupt.is_some_and(Interrupt::is_requested) {
+                return Some("interrupted".to_owned());
+            }
             let news = lookout.news(paths);
             // A supervisor that was killed has a successor with other shared memory.
             is_replaced = paths.shm_name().is_ok_and(|now| memory.as_ref() != Some(&now));

@@ -62,6 +62,8 @@ pub(super) type WordNumber = u16;
 pub(super) struct Patterns {
     pub(super) numbers: HashMap<String, WordNumber>,
     words: Vec<Beginnings>,
+    /// Sets of words by their names.
+    sets: HashMap<&'static str, Vec<String>>,
 }
 
 /// The patterns that begin with one word.
@@ -76,7 +78,7 @@ pub(super) static PATTERNS: LazyLock<Patterns> = LazyLock::new(Patterns::read);
 
 impl Patterns {
     fn read() -> Self {
-        let mut sets: HashMap<&str, Vec<String>> = HashMap::new();
+        let mut sets: HashMap<&'static str, Vec<String>> = HashMap::new();
         let mut patterns = Self::default();
         for (section, line) in halting() {
             match (line.split_once(" = "), Place::named(section)) {
@@ -92,7 +94,13 @@ impl Patterns {
                 _ => {}
             }
         }
+        patterns.sets = sets;
         patterns
+    }
+
+    /// Returns whether a set has the word.
+    pub(super) fn is_in(&self, set: &str, word: &str) -> bool {
+        self.sets.get(set).is_some_and(|words| words.iter().any(|it| it == word))
     }
 
     pub(super) fn beginnings(&self, word: WordNumber) -> &Beginnings {

@@ -1,8 +1,10 @@
 //! Progress of one order: when it is repeated, when its giver is warned, and when it is over.
 
+use std::thread;
+
 use messages::{MotionInhibit, MotionOrder};
 
-use super::{StopClient, StopError, StopState};
+use super::{RESUME_AFTER, StopClient, StopError, StopState, kept};
 use crate::{Span, Time};
 
 /// Interval at which an order is repeated.
@@ -11,6 +13,8 @@ pub(super) const RESEND_EVERY: Span = Span::from_ms(10);
 const SILENCE: Span = Span::from_ms(250);
 /// Time for an arm that has answered to come to rest, before the giver is warned.
 const HALTS_WITHIN: Span = Span::from_ms(1_000);
+/// Age from which an answer says nothing about the present.
+const ANSWER_AGE_MAX: Span = Span::from_ms(500);
 /// Interval between warnings.
 const WARN_EVERY: Span = Span::from_ms(3_000);
 /// Time that a stop of an arm at rest is given to become durable.
@@ -40,7 +44,10 @@ pub struct Progress {
     is_absent: bool,
     /// The order cannot be sent.
     failure: Option<StopError>,
-    state: Option<StopState>,
+    /// The latest answer, and when it came.
+    state: Option<(StopState, Time)>,
+    /// The stop is kept in a file as well.
+    is_kept: bool,
     /// Time since which the arm has been stopped and at rest.
     rests_since: Option<Time>,
     /// Time since which the stop has been latched while the robot is not heard.
@@ -61,6 +68,7 @@ impl Progress {
             is_absent: false,
             failure: None,
             state: None,
+            is_kept: false,
             rests_since: None,
             unheard_since: None,
         }
@@ -74,6 +82,11 @@ impl Progress {
     /// Time at which it was given, latest.
     pub fn given(&self) -> Time {
         self.given
+    }
+
+    /// Time at which it was given first.
+    pub fn since(&self) -> Time {
+        self.since
     }
 
     /// The same order is given again, at `given`. Deadline and warnings count from the first time, so that a flood
@@ -92,6 +105,33 @@ impl Progress {
         while let Some(state) = client.take() {
             self.on_answer(state, now);
         }
+        if self.is_settled(now) {
+            if std::mem::take(&mut self.is_kept) {
+                kept::forget(&client.paths.kept_stop());
+            }
+        } else if !self.is_kept && self.must_be_kept() && now.since(self.since) >= SILENCE {
+            self.is_kept = true;
+            // A disk that hangs must not hold up the repetitions.
+            let (paths, given_ns) = (client.paths.clone(), client.machine_ns(self.given));
+            let keep = move || kept::keep(&paths, given_ns);
+            let _ = thread::Builder::new().name("keep-stop".into()).spawn(keep);
+        }
+    }
+
+    /// Keeps a stop that is not carried out for the arm's return, because its giver ends.
+    pub fn leave(&self, client: &StopClient) {
+        if self.must_be_kept()
+            && let Err(error) = kept::keep(&client.paths, client.machine_ns(self.given))
+        {
+            tracing::warn!(%error, "stop not kept for the arm's return");
+        }
+    }
+
+    /// Returns whether the order is a stop that no arm is known to have.
+    fn must_be_kept(&self) -> bool {
+        let is_taken = self.state.is_some_and(|(state, _)| state.stopped);
+        let is_open = self.order == MotionOrder::Stop && self.failure.is_none();
+        is_open && !is_taken
     }
 
     /// Returns whether the order is due to be sent, with its time [`Progress::given`], which makes repetitions harmless.
@@ -122,7 +162,7 @@ impl Progress {
         let since = |before: Option<Time>, holds: bool| holds.then(|| before.unwrap_or(now));
         self.rests_since = since(self.rests_since, state.stopped && state.at_rest && is_heard);
         self.unheard_since = since(self.unheard_since, state.stopped && !is_heard);
-        self.state = Some(state);
+        self.state = Some((state, now));
     }
 
     fn forget_answers(&mut self) {
@@ -140,7 +180,8 @@ impl Progress {
         }
         let is_late = self.patience.is_some_and(|patience| now.since(self.since) >= patience);
         let lasts = |since: Option<Time>, span| since.is_some_and(|since| now.since(since) >= span);
-        let done = self.state.filter(|state| match self.order {
+        let state = self.state.map(|(state, _)| state);
+        let done = state.filter(|state| match self.order {
             MotionOrder::Resume => !state.stopped,
             MotionOrder::Stop => {
                 self.rests_since.is_some()
@@ -150,8 +191,12 @@ impl Progress {
         if let Some(state) = done {
             return Some(Ok(state));
         }
-        if self.state.is_some_and(|state| self.is_overruled(&state)) {
+        if state.is_some_and(|state| self.is_overruled(&state)) {
             return Some(Err(StopError::Overruled));
+        }
+        let is_too_soon = |state: StopState| Time(state.in_force_ns) + RESUME_AFTER > self.given;
+        if self.order == MotionOrder::Resume && state.is_some_and(is_too_soon) {
+            return Some(Err(StopError::TooSoon));
         }
         if self.order == MotionOrder::Stop && lasts(self.unheard_since, HEARD_GRACE) {
             return Some(Err(StopError::Unheard));
@@ -193,7 +238,8 @@ impl Progress {
     /// Returns why the order is not confirmed.
     pub fn why(&self, now: Time) -> StopError {
         let waited_s = now.since(self.since).s();
-        match self.state {
+        let is_recent = |(_, at): &(StopState, Time)| now.since(*at) < ANSWER_AGE_MAX;
+        match self.state.filter(is_recent).map(|(state, _)| state) {
             None if self.is_absent => StopError::Absent,
             None => StopError::Silent(waited_s),
             Some(state) if state.stopped != (self.order == MotionOrder::Stop) => {

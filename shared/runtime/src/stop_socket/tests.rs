@@ -95,9 +95,59 @@ fn unconfirmed_orders_end_with_the_reason() {
     });
     assert_eq!(overruled, Err(StopError::Overruled));
     let latched = give_to(&paths, MotionOrder::Resume, 100, |command, _| {
-        Some(StopState { stopped: true, inhibit: MotionInhibit::Stopped, ..obeyed(command) })
+        let in_force_ns = command.given_ns - RESUME_AFTER.0;
+        let inhibit = MotionInhibit::Stopped;
+        Some(StopState { stopped: true, inhibit, in_force_ns, ..obeyed(command) })
     });
     assert!(matches!(latched, Err(StopError::NotTaken(_, MotionInhibit::Stopped))), "{latched:?}");
+    let soon = give_to(&paths, MotionOrder::Resume, 20_000, |command, _| {
+        let in_force_ns = command.given_ns - RESUME_AFTER.0 + 1;
+        Some(StopState { stopped: true, in_force_ns, ..obeyed(command) })
+    });
+    assert_eq!(soon, Err(StopError::TooSoon));
+}
+
+#[test]
+fn stop_that_its_giver_leaves_waits_for_the_arm() {
+    let (_home, paths) = group();
+    assert!(give(&paths, MotionOrder::Stop, Span::from_ms(20), &mut |_| true).is_err());
+    assert!(is_kept(&paths));
+    // Its giver is gone; a new arm binds the socket.
+    let arm = StopListener::bind(&paths).unwrap();
+    let mut kept = KeptStop::open(&paths).unwrap().unwrap();
+    let mut orders = Vec::new();
+    arm.drain(|order, caller| orders.push((order, caller)));
+    let (order, caller) = orders.pop().unwrap();
+    assert_eq!(order.order, MotionOrder::Stop);
+    assert!(!kept.pass() && is_kept(&paths), "until the arm is at rest, for good");
+    arm.answer(&caller, &StopState { durable: false, ..obeyed(&order) });
+    assert!(!kept.pass() && is_kept(&paths));
+    arm.answer(&caller, &obeyed(&order));
+    assert!(kept.pass() && !is_kept(&paths));
+    assert!(KeptStop::open(&paths).unwrap().is_none());
+
+    // A file without a time is a stop as well, given now.
+    std::fs::write(paths.kept_stop(), "").unwrap();
+    let before = clock::now();
+    let _kept = KeptStop::open(&paths).unwrap().unwrap();
+    arm.drain(|order, _| orders.push((order, Caller::named(b"it"))));
+    assert!(orders.pop().unwrap().0.given_ns >= before.ns());
+}
+
+#[test]
+fn stop_that_is_not_answered_is_kept_while_it_is_repeated() {
+    let (_home, paths) = group();
+    let mut stop = RepeatedStop::open(&paths).unwrap();
+    stop.give(clock::now());
+    while !is_kept(&paths) {
+        assert_eq!(stop.pass(), None);
+        thread::yield_now();
+    }
+    let arm = StopListener::bind(&paths).unwrap();
+    while stop.pass().is_none() {
+        arm.drain(|order, caller| arm.answer(&caller, &obeyed(&order)));
+    }
+    assert!(!is_kept(&paths), "carried out");
 }
 
 #[test]

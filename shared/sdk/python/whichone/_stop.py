@@ -24,6 +24,8 @@ DURABLE_GRACE_S = 0.5
 """Time for a stop of an arm at rest to become durable."""
 HEARD_GRACE_S = 1.0
 """Time for the robot to be heard, which an arm that has just started needs."""
+RESUME_AFTER_S = 2.0
+"""Time after a stop in which no release counts."""
 EMERGENCY = "help: use the robot's own emergency stop, then see `whichone status`"
 MACHINE_CLOCK = "/proc/self/timens_offsets"
 
@@ -70,6 +72,9 @@ class Order:
                 return self.state["durable"] or is_late or now - self.rests_since >= DURABLE_GRACE_S
             if self.state["stopped"] != (self.order == "stop") and self.state["in_force_ns"] > self.state["given_ns"]:
                 raise NotStopped("overruled by a later order; help: see `whichone watch`")
+            if self.order == "resume" and self.state["in_force_ns"] + RESUME_AFTER_S * 1e9 > self.state["given_ns"]:
+                raise NotStopped(f"a stop was given less than {RESUME_AFTER_S:.0f} s before the release; "
+                                 "help: give the release again")
         is_unheard = self.unheard_since is not None and now - self.unheard_since >= HEARD_GRACE_S
         if is_late or (self.order == "stop" and is_unheard):
             raise NotStopped(self.why(now))
@@ -102,8 +107,8 @@ class Order:
 
 
 def give(group: Group, order: str, timeout: float | None) -> None:
-    """Repeats an order until the arm has carried it out; for at most `timeout` seconds, if it is given. Raises
-    `NotStopped` or `GroupNotRunning`."""
+    """Repeats an order until the arm has carried it out; for at most `timeout` seconds, if it is given. A stop that is
+    left unconfirmed is kept for the arm's return. Raises `NotStopped` or `GroupNotRunning`."""
     given_ns = time.monotonic_ns()
     progress = Order(order, given_ns / 1e9, timeout)
     request = json.dumps({"order": order, "given_ns": max(given_ns - _clock_offset_ns(), 1)}).encode()
@@ -113,15 +118,39 @@ def give(group: Group, order: str, timeout: float | None) -> None:
         arm.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
         arm.bind("")
         arm.settimeout(RESEND_S)
-        while not progress.is_done(time.monotonic()):
-            progress.on_sent(not _send(arm, request, group))
-            answer = None if progress.is_absent else _receive(arm, group)
-            if answer is not None and answer.get("given_ns") == stamp:
-                progress.on_answer(answer, time.monotonic())
-            if why := progress.warning(time.monotonic()):
-                log.warning("not confirmed: %s; the order is repeated", why)
-            if progress.is_absent or answer is not None:
-                time.sleep(RESEND_S)
+        try:
+            _repeat(arm, request, progress, group)
+        except BaseException:
+            if order == "stop" and (progress.state is None or not progress.state["stopped"]):
+                _keep(group, stamp)
+            raise
+
+
+def _repeat(arm: socket.socket, request: bytes, progress: Order, group: Group) -> None:
+    """Repeats an order until it is carried out."""
+    stamp = json.loads(request)["given_ns"]
+    while not progress.is_done(time.monotonic()):
+        progress.on_sent(not _send(arm, request, group))
+        answer = None if progress.is_absent else _receive(arm, group)
+        if answer is not None and answer.get("given_ns") == stamp:
+            progress.on_answer(answer, time.monotonic())
+        if why := progress.warning(time.monotonic()):
+            log.warning("not confirmed: %s; the order is repeated", why)
+        if progress.is_absent or answer is not None:
+            time.sleep(RESEND_S)
+
+
+def _keep(group: Group, given_ns: int) -> None:
+    """Leaves a stop for the arm's service, which obeys it before it moves."""
+    if not group.run.is_dir():
+        return
+    draft = group.run.parent / f"stop.kept.{os.getpid()}"
+    try:
+        with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="ascii") as file:
+            file.write(f"{given_ns}\n")
+        draft.rename(group.run.parent / "stop.kept")
+    except OSError as error:
+        log.warning("stop not kept for the arm's return: %s", error)
 
 
 def _send(arm: socket.socket, request: bytes, group: Group) -> bool:

@@ -78,6 +78,12 @@ pub fn check_agreement(paths: &GroupPaths, set: &JournalSet) -> Result<(), Behin
     agree(set, [speech, policy, arm]).map(drop)
 }
 
+/// Returns whether the arm of a group that is down may move, by its journal; none where its program cannot tell.
+pub(super) fn is_free(paths: &GroupPaths) -> Option<bool> {
+    let facts = start_reading(paths, Service::Arm).and_then(facts)?;
+    facts.stopped.map(|stopped| !stopped)
+}
+
 fn start_reading(paths: &GroupPaths, service: Service) -> Option<Child> {
     let mut command = launch::command(launch::program_of(service.name()));
     command.args(["journal", "--facts"]).arg(paths.journal_file(service.name()));
@@ -96,7 +102,7 @@ mod tests {
 
     fn facts(utterance: u64, picks: &[(u64, u32, u16)], since: u64) -> SharedFacts {
         let picks = picks.iter().copied().collect();
-        SharedFacts { utterance, picks, since, delivered: 0 }
+        SharedFacts { utterance, picks, since, ..SharedFacts::default() }
     }
 
     fn behind(set: &JournalSet, facts: [SharedFacts; 3]) -> (Service, String) {

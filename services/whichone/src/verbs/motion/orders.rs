@@ -2,18 +2,20 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, SendError, Sender, channel};
-use std::thread;
-use std::time::Duration;
+use std::sync::mpsc::{Receiver, SendError, Sender, TryRecvError, channel};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 use messages::MotionOrder;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
-use service::stop_socket::{Progress, StopClient, StopError, StopState, default_patience};
+use service::stop_socket::{
+    self, Progress, RESUME_AFTER, StopClient, StopError, StopState, default_patience,
+};
 use service::{Span, Time, clock};
 
-use super::{NOT_DURABLE, Warnings};
+use super::{KEPT, NOT_DURABLE, Warnings};
 use crate::Outcome;
 use crate::output::note;
 use crate::verbs::interrupt::Interrupt;
@@ -22,11 +24,9 @@ use crate::verbs::interrupt::Interrupt;
 const LOOK_EVERY: Span = Span::from_ms(10);
 /// Interval at which the end of an order is waited for.
 const WAIT_EVERY: Duration = Duration::from_millis(20);
-/// Time after the latest stop in which no key and no line releases it: a frightened user presses again and again.
-const DEAD_TIME: Span = Span::from_ms(2_000);
 
-/// Keeps the presses of a frightened user from releasing the motion stop. Every stop prolongs the time in which
-/// nothing does.
+/// Keeps the presses of a frightened user from releasing the motion stop, also where the arm has not heard of the stop
+/// yet. Every stop prolongs the time in which nothing does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::verbs) struct ResumeGuard(Option<Time>);
 
@@ -38,7 +38,7 @@ impl ResumeGuard {
 
     /// Returns whether a release counts.
     pub(in crate::verbs) fn may_resume(self, now: Time) -> bool {
-        self.0.is_none_or(|stopped| now >= stopped + DEAD_TIME)
+        self.0.is_none_or(|stopped| now >= stopped + RESUME_AFTER)
     }
 }
 
@@ -53,10 +53,25 @@ pub(in crate::verbs) struct News {
 
 /// Gives orders to the motion stop on a thread of its own, so that neither a service that hangs nor a terminal that
 /// is held up delays them. The latest is in force; a stop is repeated until it is confirmed.
+///
+/// At its end a stop that is not confirmed is kept for the arm's return.
 pub(in crate::verbs) struct MotionOrders {
-    orders: Sender<MotionOrder>,
+    /// None at the end.
+    orders: Option<Sender<MotionOrder>>,
     news: Receiver<News>,
     state: Arc<State>,
+    worker: Option<JoinHandle<()>>,
+    paths: GroupPaths,
+}
+
+impl Drop for MotionOrders {
+    fn drop(&mut self) {
+        self.orders = None;
+        self.worker.take().into_iter().for_each(|worker| drop(worker.join()));
+        if self.state.open.load(Ordering::Relaxed) > 0 && stop_socket::is_kept(&self.paths) {
+            note(KEPT);
+        }
+    }
 }
 
 /// State of the orders.
@@ -84,15 +99,16 @@ impl MotionOrders {
             taken: 0,
             state: Arc::clone(&state),
         };
-        thread::Builder::new().name("stop".into()).spawn(move || worker.run()).map_err(failed)?;
-        Ok(Self { orders, news, state })
+        let worker = thread::Builder::new().name("stop".into()).spawn(move || worker.run());
+        let worker = Some(worker.map_err(failed)?);
+        Ok(Self { orders: Some(orders), news, state, worker, paths: paths.clone() })
     }
 
     /// Gives an order; [`MotionOrders::news`] reports its outcome.
     pub(in crate::verbs) fn give(&self, order: MotionOrder) {
         self.state.open.fetch_add(1, Ordering::Relaxed);
         // The thread ends after this handle.
-        let _ = self.orders.send(order);
+        let _ = self.orders.as_ref().map(|orders| orders.send(order));
     }
 
     /// Returns the next news.
@@ -100,18 +116,27 @@ impl MotionOrders {
         self.news.try_recv().ok()
     }
 
-    /// Waits until no order is open, or the user interrupts; notes the news. `outcome` is that of what was shown
-    /// besides.
-    pub(in crate::verbs) fn finish(&self, interrupt: &Interrupt, outcome: Outcome) -> Outcome {
-        let is_open = || self.state.open.load(Ordering::Relaxed) > 0;
+    /// Waits for the next news, and notes it.
+    pub(in crate::verbs) fn await_news(&self, longest: Duration) {
+        self.news.recv_timeout(longest).into_iter().for_each(|news| note(news.text));
+    }
+
+    /// Waits until no order is open, the user interrupts, or `patience` is over; notes the news. `outcome` is that of
+    /// what was shown besides.
+    pub(in crate::verbs) fn finish(
+        &self,
+        interrupt: &Interrupt,
+        patience: Option<Duration>,
+        outcome: Outcome,
+    ) -> Outcome {
+        let (is_open, began) = (|| self.state.open.load(Ordering::Relaxed) > 0, Instant::now());
+        let is_late = || patience.is_some_and(|patience| began.elapsed() >= patience);
         let was_open = is_open();
-        while is_open() && !interrupt.is_requested() {
+        while is_open() && !interrupt.is_requested() && !is_late() {
             self.news().into_iter().for_each(|news| note(news.text));
             thread::sleep(WAIT_EVERY);
         }
-        if was_open {
-            std::iter::from_fn(|| self.news()).for_each(|news| note(news.text));
-        }
+        std::iter::from_fn(|| self.news()).for_each(|news| note(news.text));
         if is_open() {
             return outcome.and(Err(StopError::Ended.into()));
         }
@@ -141,11 +166,14 @@ impl Worker {
                 let Ok(order) = self.given.recv() else { return };
                 self.on_order(order);
             }
-            while let Ok(order) = self.given.try_recv() {
-                self.on_order(order);
-            }
-            if self.advance().is_err() {
-                return;
+            let is_over = loop {
+                match self.given.try_recv() {
+                    Ok(order) => self.on_order(order),
+                    Err(error) => break error == TryRecvError::Disconnected,
+                }
+            };
+            if self.advance().is_err() || is_over {
+                return self.current.iter().for_each(|order| order.leave(&self.client));
             }
         }
     }

@@ -44,7 +44,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 pub(super) fn run(model: &mut WatchModel, interrupt: &Interrupt, style: Style) -> Outcome {
     let orders = MotionOrders::open(model.paths())?;
     let shown = show(model, interrupt, style, &orders);
-    orders.finish(interrupt, shown.map(|()| Exit::Ok))
+    orders.finish(interrupt, None, shown.map(|()| Exit::Ok))
 }
 
 fn show(
