@@ -218,9 +218,7 @@ fn every_topic_is_seen_with_its_contents(implementation: Implementation) {
 
 /// Releases the motion stop, once a release counts.
 fn resume(peer: &mut Ros2Peer) {
-    wait_for("the release", 20.0, || {
-        (peer.tell("call resume")["success"] == true).then_some(())
-    });
+    wait_for("the release", 20.0, || (peer.tell("call resume")["success"] == true).then_some(()));
 }
 
 fn motion_stop_and_cancel_are_services(implementation: Implementation) {

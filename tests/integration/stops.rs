@@ -2,10 +2,10 @@
 
 use crate::dashboard::{Terminal, has};
 use rustix::process::{Pid, Signal, kill_process};
+use service::clock;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
-use service::clock;
 use std::time::Duration;
 use whichone_tests::motion_watch::MotionWatch;
 use whichone_tests::shortage::JointWatch;

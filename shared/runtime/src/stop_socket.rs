@@ -178,7 +178,9 @@ pub enum StopError {
     #[error("the arm's service is not running; the robot may still move; {EMERGENCY}")]
     Absent,
     /// No answer.
-    #[error("the arm's service does not answer after {0:.1} s; the robot may still move; {EMERGENCY}")]
+    #[error(
+        "the arm's service does not answer after {0:.1} s; the robot may still move; {EMERGENCY}"
+    )]
     Silent(f64),
     /// The arm has the order, and is not at rest yet.
     #[error("the arm is stopping but not at rest after {0:.1} s; {EMERGENCY}")]

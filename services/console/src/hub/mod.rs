@@ -208,7 +208,9 @@ impl Hub {
             self.order(Motion { viewer, id: None, stop: true })?;
         }
         let asked = self.ask_verb(viewer, id, verb);
-        asked.map_err(|why| if stops { format!("{why}; the stop is given all the same") } else { why })
+        asked.map_err(
+            |why| if stops { format!("{why}; the stop is given all the same") } else { why },
+        )
     }
 
     fn ask_verb(&self, viewer: ViewerId, id: u64, verb: Verb) -> Result<(), String> {

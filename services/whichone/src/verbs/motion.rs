@@ -28,7 +28,8 @@ const NOT_DURABLE: &str = "the stop is not on the disk yet: it holds as long as 
      help: free some space on the disk of the group's folder";
 
 /// Note on a stop that its giver no longer repeats.
-const KEPT: &str = "the stop is kept: the arm obeys it before it moves, as soon as its service runs again";
+const KEPT: &str =
+    "the stop is kept: the arm obeys it before it moves, as soon as its service runs again";
 
 /// State of the motion stop.
 #[derive(Serialize)]

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use messages::{
-    GateVerdict, Hypothesis, MotionOrder, Receipt, ReceiptStatus, SecondState, Service, Sound, Source, WireError,
+    GateVerdict, Hypothesis, MotionOrder, Receipt, ReceiptStatus, SecondState, Service, Sound,
+    Source, WireError,
 };
 use serde::Serialize;
 use service::client::{Client, ClientError, submit};
