@@ -114,7 +114,11 @@ impl Reader {
         }
     }
 
-    fn parse<'a>(&'a self, tokens: &Tokens<'a>, last_question: Question) -> ParsedUtterance<'a> {
+    pub(crate) fn parse<'a>(
+        &'a self,
+        tokens: &Tokens<'a>,
+        last_question: Question,
+    ) -> ParsedUtterance<'a> {
         let mut tags = tag(&self.lexicon, tokens);
         let clauses = clauses(&tags, tokens.code);
         hedge(&mut tags, &clauses);

@@ -1,0 +1,84 @@
+//! What an utterance says of each value word in it.
+
+use scene::{Question, Reading, WordId};
+
+use crate::normalise::normalise;
+use crate::parsed::ParsedUtterance;
+use crate::reader::{Language, Reader};
+use crate::tokens::Tokens;
+
+/// Probability that what the rules read is what was said, as they state it.
+const RULES: f64 = 0.999;
+
+/// A value word of an utterance, and the probabilities of what is said of it; they sum to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mention {
+    /// The scene's word that it stands for.
+    pub word: WordId,
+    /// The words as they were said, in plain lower case.
+    pub surface: String,
+    /// The wanted object has the value.
+    pub wanted: f64,
+    /// The wanted object does not have it.
+    pub denied: f64,
+    /// Nothing about the wanted object.
+    pub neither: f64,
+}
+
+/// What is said of a value word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Polarity {
+    /// The wanted object has the value.
+    Wanted,
+    /// The wanted object does not have it.
+    Denied,
+    /// Nothing about the wanted object.
+    Neither,
+}
+
+impl Reader {
+    /// Returns the value words of an utterance that followed `last_question`, in their order, with what is said of them;
+    /// none in the paper's language.
+    pub fn mentions(&self, text: &str, last_question: Question) -> Vec<Mention> {
+        if self.language() == Language::Paper {
+            return Vec::new();
+        }
+        let text = normalise(text);
+        let tokens = Tokens::of(&text);
+        let parsed = self.parse(&tokens, last_question);
+        let reading = parsed.reading();
+        let mention = |(at, word): (usize, WordId)| {
+            let tag = &parsed.tags[at];
+            let end = parsed.tags.get(at + 1).map_or(tokens.words.len(), |next| next.at);
+            let words = tokens.words[tag.at..end].iter().map(|token| token.word);
+            let surface = words.collect::<Vec<_>>().join(" ");
+            let proposed = proposal(&parsed, &reading, at, word);
+            let of = |polarity| if proposed == polarity { RULES } else { (1.0 - RULES) / 2.0 };
+            let (wanted, denied) = (of(Polarity::Wanted), of(Polarity::Denied));
+            Mention { word, surface, wanted, denied, neither: of(Polarity::Neither) }
+        };
+        values(&parsed).map(mention).collect()
+    }
+}
+
+/// The places of the value words among the tags, and what they stand for.
+pub(crate) fn values(parsed: &ParsedUtterance<'_>) -> impl Iterator<Item = (usize, WordId)> {
+    let word = |(at, tag): (usize, &crate::tagger::Tag<'_>)| Some((at, tag.value()?.word));
+    parsed.tags.iter().enumerate().filter_map(word)
+}
+
+/// What the rules read of the value word at `at`.
+pub(crate) fn proposal(
+    parsed: &ParsedUtterance<'_>,
+    reading: &Reading,
+    at: usize,
+    word: WordId,
+) -> Polarity {
+    let is_asserted = parsed.content.base.iter().any(|value| value.at == at);
+    let is_described = !matches!(reading.intent, scene::Intent::None);
+    match () {
+        () if is_asserted && is_described => Polarity::Wanted,
+        () if reading.excluded.iter().any(|group| group.contains(&word)) => Polarity::Denied,
+        () => Polarity::Neither,
+    }
+}

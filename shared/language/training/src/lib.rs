@@ -1,0 +1,18 @@
+//! Labelled lines: what people say to the robot, with what they say of each value word.
+//!
+//! One line is `scene | question | act | utterance`; in the utterance every word that names a value of the scene
+//! stands in brackets with a sign: `[red+]` wanted, `[red-]` denied, `[red0]` neither.
+//!
+//! | folder | |
+//! |---|---|
+//! | `lines/` | by authors who had seen neither the code nor each other's lines; the judge is trained on them |
+//! | `held_out/` | by two more authors: scored three times at most, and read by nobody (`scores.txt`) |
+//! | `scenes/` | scenes that were made for the lines |
+
+mod line;
+mod scenes;
+mod score;
+
+pub use line::{Line, Marked, lines};
+pub use scenes::{Scenes, files, question};
+pub use score::{Score, Scored, pairs};
