@@ -61,6 +61,7 @@ mod disambiguate;
 mod distractors;
 mod errands;
 mod extractor;
+mod features;
 mod halting;
 mod hedges;
 mod indifference;
@@ -97,6 +98,7 @@ mod tests;
 
 pub use completeness::{Completeness, CompletenessJudge};
 pub use confusion::confusion;
+pub use features::{Example, ROWS};
 pub use halting::is_stop;
 pub use mentions::{Mention, Polarity};
 pub use normalise::TEXT_CHARS_MAX;

@@ -2,6 +2,7 @@
 
 use scene::{Question, Reading, WordId};
 
+use crate::features::{Example, examples};
 use crate::normalise::normalise;
 use crate::parsed::ParsedUtterance;
 use crate::reader::{Language, Reader};
@@ -58,6 +59,15 @@ impl Reader {
             Mention { word, surface, wanted, denied, neither: of(Polarity::Neither) }
         };
         values(&parsed).map(mention).collect()
+    }
+}
+
+impl Reader {
+    /// Returns the value words of an utterance that followed `last_question`, with what the judge looks at; for its
+    /// training.
+    pub fn examples(&self, text: &str, last_question: Question) -> Vec<Example> {
+        let text = normalise(text);
+        examples(&self.parse(&Tokens::of(&text), last_question))
     }
 }
 

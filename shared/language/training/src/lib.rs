@@ -10,9 +10,13 @@
 //! | `scenes/` | scenes that were made for the lines |
 
 mod line;
+mod linear;
 mod scenes;
 mod score;
+mod table;
 
 pub use line::{Line, Marked, lines};
+pub use linear::{Lesson, Linear, random, softmax};
 pub use scenes::{Scenes, files, question};
+pub use table::{Row, table};
 pub use score::{Score, Scored, pairs};

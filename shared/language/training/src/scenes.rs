@@ -17,10 +17,20 @@ impl Scenes {
     /// A file that cannot be read, or is no scene.
     pub fn load() -> Result<Self, String> {
         let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let folders = ["scenes", "../../../config/scenes", "../../../tests/talk/scenes"];
+        let folders = [
+            "scenes",
+            "../../../config/scenes",
+            "../../../tests/talk/scenes",
+            "../../../tests/fixtures/utterances",
+        ];
         let mut scenes = BTreeMap::new();
         for path in folders.iter().flat_map(|folder| files(&here.join(folder))) {
-            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            if path.extension().is_none_or(|extension| extension != "toml") {
+                continue;
+            }
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let is_fixture = path.components().any(|part| part.as_os_str() == "utterances");
+            let name = if is_fixture { format!("table {stem}") } else { stem };
             let text = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
             let scene = Scene::from_toml(&name, &text).map_err(|problems| problems.to_string())?;
             let reader = Reader::new(&scene, Language::Careful);

@@ -1,0 +1,301 @@
+//! What the judge looks at around a value word: words and classes near it, the rules' proposals, and the question.
+//!
+//! A feature is the number of a row of weights; which one, a hash decides.
+
+use scene::{Intent, WordId};
+
+use crate::mentions::{Polarity, proposal, values};
+use crate::parsed::ParsedUtterance;
+use crate::question_words::QuestionWords;
+use crate::tagger::Tag;
+use crate::token_class::{Class, classes};
+
+/// Number of rows.
+pub const ROWS: usize = 1 << 16;
+/// Words that belong to a noun phrase, besides its values.
+const NOUN_PHRASE: &[Class] =
+    classes![Determiner Possessive Pointer Quantifier Head One Attribute Unlisted Ordinal];
+/// Number of elements on each side whose places count.
+const NEAR: usize = 4;
+
+/// A value word to be judged.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Example {
+    /// Its tag.
+    pub(crate) at: usize,
+    /// The scene's word.
+    pub word: WordId,
+    /// Number of its noun phrase in the utterance: the values of one phrase share their fate.
+    pub phrase: usize,
+    /// What the rules make of it.
+    pub proposal: Polarity,
+    /// Its features, each a row of weights.
+    pub rows: Vec<u32>,
+}
+
+/// One element of an utterance as the judge sees it.
+#[derive(Clone, Copy)]
+enum Element<'a> {
+    Pause,
+    /// A noun phrase with a value, by its number.
+    Phrase(usize),
+    Word(&'a Tag<'a>),
+}
+
+/// Returns the value words of an utterance with their features.
+pub(crate) fn examples(parsed: &ParsedUtterance<'_>) -> Vec<Example> {
+    let reading = parsed.reading();
+    let found: Vec<(usize, WordId, Polarity)> = values(parsed)
+        .map(|(at, word)| (at, word, proposal(parsed, &reading, at, word)))
+        .collect();
+    let spans = phrases(parsed, &found);
+    let elements = elements(parsed, &spans);
+    let context = Context { parsed, found: &found, elements: &elements, intent: reading.intent };
+    let example = |(number, (at, word, proposal)): (usize, &(usize, WordId, Polarity))| {
+        let phrase = spans.iter().position(|span| span.contains(at)).unwrap_or(0);
+        let rows = context.features(number, phrase, &spans[phrase]);
+        Example { at: *at, word: *word, phrase, proposal: *proposal, rows }
+    };
+    found.iter().enumerate().map(example).collect()
+}
+
+/// The noun phrases that hold values, as ranges of tags.
+fn phrases(
+    parsed: &ParsedUtterance<'_>,
+    found: &[(usize, WordId, Polarity)],
+) -> Vec<std::ops::Range<usize>> {
+    let tags = &parsed.tags;
+    let belongs = |at: usize| tags[at].is_value() || tags[at].is_any(NOUN_PHRASE);
+    let mut spans: Vec<std::ops::Range<usize>> = Vec::new();
+    for (at, ..) in found {
+        if spans.last().is_some_and(|span| span.contains(at)) {
+            continue;
+        }
+        let least = spans.last().map_or(0, |span| span.end);
+        let mut start = *at;
+        while start > least && !tags[start].pauses() && belongs(start - 1) {
+            start -= 1;
+        }
+        let mut end = *at + 1;
+        // A determiner begins the next phrase.
+        let begins = |at: usize| tags[at].pauses() || tags[at].is_any(classes![Determiner Possessive]);
+        while end < tags.len() && belongs(end) && !begins(end) {
+            end += 1;
+        }
+        spans.push(start..end);
+    }
+    spans
+}
+
+fn elements<'a>(
+    parsed: &'a ParsedUtterance<'a>,
+    spans: &[std::ops::Range<usize>],
+) -> Vec<Element<'a>> {
+    let mut elements = Vec::new();
+    let mut at = 0;
+    while let Some(tag) = parsed.tags.get(at) {
+        if at > 0 && tag.pauses() {
+            elements.push(Element::Pause);
+        }
+        match spans.iter().position(|span| span.start == at) {
+            Some(number) => {
+                elements.push(Element::Phrase(number));
+                at = spans[number].end;
+            }
+            None => {
+                if !tag.is_any(classes![Filler Courtesy]) {
+                    elements.push(Element::Word(tag));
+                }
+                at += 1;
+            }
+        }
+    }
+    elements
+}
+
+struct Context<'a> {
+    parsed: &'a ParsedUtterance<'a>,
+    found: &'a [(usize, WordId, Polarity)],
+    elements: &'a [Element<'a>],
+    intent: Intent,
+}
+
+impl Context<'_> {
+    fn features(&self, number: usize, phrase: usize, span: &std::ops::Range<usize>) -> Vec<u32> {
+        let (at, word, proposal) = self.found[number];
+        let mut rows = Rows { rows: Vec::with_capacity(400), proposal };
+        let place = self.elements.iter().position(|it| matches!(it, Element::Phrase(n) if *n == phrase));
+        let place = place.unwrap_or(0);
+        let before: Vec<_> = self.elements[..place].iter().rev().copied().collect();
+        let after = &self.elements[place + 1..];
+        rows.add(b"bias", &[]);
+        for (side, elements) in [(b"L", &before[..]), (b"R", after)] {
+            Self::side(&mut rows, side[0], elements);
+        }
+        Self::both(&mut rows, &before, after);
+        self.phrase(&mut rows, span, at);
+        self.others(&mut rows, number);
+        self.question(&mut rows, word);
+        rows.rows
+    }
+
+    /// One side of the phrase, nearest first.
+    fn side(rows: &mut Rows, side: u8, elements: &[Element<'_>]) {
+        let kind = |n: usize| kind(elements.get(n));
+        let text = |n: usize| text(elements.get(n));
+        for n in 0..NEAR {
+            rows.add(b"kind", &[u64::from(side), n as u64, kind(n)]);
+            rows.add(b"text", &[u64::from(side), n as u64, text(n)]);
+            rows.add(b"letters", &[u64::from(side), n as u64, letters(elements.get(n))]);
+        }
+        let side = u64::from(side);
+        rows.add(b"kinds2", &[side, kind(0), kind(1)]);
+        rows.add(b"kinds3", &[side, kind(0), kind(1), kind(2)]);
+        rows.add(b"texts2", &[side, text(0), text(1)]);
+        rows.add(b"texts3", &[side, text(0), text(1), text(2)]);
+        rows.add(b"text1+2", &[side, text(1), text(2)]);
+        rows.add(b"mixed2", &[side, kind(0), text(1)]);
+        let breath = elements.iter().take_while(|it| !matches!(it, Element::Pause)).count();
+        rows.add(b"breath", &[side, breath.min(6) as u64]);
+        for (n, element) in elements.iter().enumerate() {
+            let is_near = u64::from(n < breath);
+            let (kind, text) = (self::kind(Some(element)), self::text(Some(element)));
+            rows.add(b"bag kind", &[side, is_near, kind]);
+            rows.add(b"bag text", &[side, is_near, text]);
+            rows.add(b"anywhere", &[text]);
+            let next = elements.get(n + 1);
+            rows.add(b"bag two", &[side, is_near, text, self::text(next)]);
+        }
+    }
+
+    fn both(rows: &mut Rows, before: &[Element<'_>], after: &[Element<'_>]) {
+        let kinds = |side: &[Element<'_>], n: usize| kind(side.get(n));
+        let texts = |side: &[Element<'_>], n: usize| text(side.get(n));
+        rows.add(b"kind kind", &[kinds(before, 0), kinds(after, 0)]);
+        rows.add(b"text text", &[texts(before, 0), texts(after, 0)]);
+        rows.add(b"text kind", &[texts(before, 0), kinds(after, 0)]);
+        rows.add(b"kind text", &[kinds(before, 0), texts(after, 0)]);
+        let four = [kinds(before, 1), kinds(before, 0), kinds(after, 0), kinds(after, 1)];
+        rows.add(b"four kinds", &four);
+        let four = [texts(before, 1), texts(before, 0), texts(after, 0), texts(after, 1)];
+        rows.add(b"four texts", &four);
+        rows.add(b"right texts", &[texts(before, 0), texts(after, 0), texts(after, 1)]);
+        let first = before.last().or(after.first());
+        rows.add(b"first", &[text(first)]);
+        rows.add(b"last", &[text(after.last().or(before.first()))]);
+    }
+
+    fn phrase(&self, rows: &mut Rows, span: &std::ops::Range<usize>, at: usize) {
+        let tags = &self.parsed.tags[span.clone()];
+        for tag in tags.iter().filter(|tag| !tag.is_value()) {
+            rows.add(b"in kind", &[kind_of(tag)]);
+            rows.add(b"in text", &[text_of(tag)]);
+        }
+        let own = &self.parsed.tags[at];
+        let role = own.value().map_or(9, |value| value.role as u64);
+        rows.add(b"role", &[role]);
+        rows.add(b"exact", &[u64::from(own.exact)]);
+        let count = tags.iter().filter(|tag| tag.is_value()).count();
+        rows.add(b"values", &[count as u64]);
+        rows.add(b"begins", &[tags.first().map_or(0, text_of)]);
+    }
+
+    /// The other value words, and what the rules make of them.
+    fn others(&self, rows: &mut Rows, number: usize) {
+        let own = self.parsed.tags[self.found[number].0].value();
+        for (n, (at, word, proposal)) in self.found.iter().enumerate() {
+            if n == number {
+                continue;
+            }
+            let value = self.parsed.tags[*at].value();
+            let rivals = own.zip(value).is_some_and(|(own, other)| own.rivals(other));
+            let is_same = *word == self.found[number].1;
+            let side = u64::from(n > number);
+            let relation = u64::from(rivals) + 2 * u64::from(is_same);
+            rows.add(b"other", &[side, relation, *proposal as u64]);
+        }
+        rows.add(b"mentions", &[self.found.len().min(5) as u64, number.min(5) as u64]);
+        rows.add(b"intent", &[self.intent as u64]);
+    }
+
+    fn question(&self, rows: &mut Rows, word: WordId) {
+        let (kind, is_asked) = match self.parsed.asked {
+            QuestionWords::Nothing => (0, false),
+            QuestionWords::Object(words) => (1, words.contains(&word)),
+            QuestionWords::PerceivedObject => (2, false),
+            QuestionWords::Value(_, asked) => (3, asked == word),
+            QuestionWords::Attribute => (4, false),
+        };
+        let asked = [kind, u64::from(is_asked)];
+        rows.add(b"question", &asked);
+        for answer in self.parsed.tags.iter().filter(|tag| tag.is_any(classes![Yes No WeakYes WeakNo])) {
+            rows.add(b"answer", &[asked[0], asked[1], kind_of(answer)]);
+        }
+    }
+}
+
+fn kind(element: Option<&Element<'_>>) -> u64 {
+    match element {
+        None => 1,
+        Some(Element::Pause) => 2,
+        Some(Element::Phrase(_)) => 3,
+        Some(Element::Word(tag)) => kind_of(tag),
+    }
+}
+
+fn kind_of(tag: &Tag<'_>) -> u64 {
+    match tag.class() {
+        Some(class) => 16 + class as u64,
+        None if tag.is_value() => 4,
+        None => 5,
+    }
+}
+
+fn text(element: Option<&Element<'_>>) -> u64 {
+    match element {
+        Some(Element::Word(tag)) => text_of(tag),
+        other => kind(other),
+    }
+}
+
+fn text_of(tag: &Tag<'_>) -> u64 {
+    let mut hash = hash(tag.word.bytes());
+    if tag.last != tag.word {
+        hash = mix(hash, self::hash(tag.last.bytes()));
+    }
+    hash
+}
+
+/// A word without the order of its letters: two of them change places in a slip of the finger.
+fn letters(element: Option<&Element<'_>>) -> u64 {
+    let Some(Element::Word(tag)) = element else { return kind(element) };
+    let mut letters: Vec<u8> = tag.word.bytes().filter(|byte| *byte != b'\'').collect();
+    letters.sort_unstable();
+    hash(letters.into_iter())
+}
+
+const SEED: u64 = 0xcbf2_9ce4_8422_2325;
+
+/// FNV-1a.
+fn hash(bytes: impl Iterator<Item = u8>) -> u64 {
+    bytes.fold(SEED, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+fn mix(one: u64, other: u64) -> u64 {
+    let mixed = (one.rotate_left(25) ^ other).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    mixed ^ (mixed >> 29)
+}
+
+struct Rows {
+    rows: Vec<u32>,
+    proposal: Polarity,
+}
+
+impl Rows {
+    /// Adds a feature alone, and together with what the rules propose.
+    fn add(&mut self, name: &[u8], parts: &[u64]) {
+        let alone = parts.iter().fold(hash(name.iter().copied()), |hash, part| mix(hash, *part));
+        let proposed = mix(alone, 1 + self.proposal as u64);
+        self.rows.extend([alone, proposed].map(|hash| (hash >> 16) as u32 % ROWS as u32));
+    }
+}

@@ -1,0 +1,110 @@
+//! A linear model over hashed features, trained by steps that shrink with what a weight has seen (AdaGrad).
+//!
+//! Everything happens in a fixed order, so that the same lines give the same weights on every machine.
+
+use language::ROWS;
+
+/// Rate of the first step of a weight.
+const RATE: f64 = 0.1;
+/// Pull of each weight towards zero, a step.
+const SHRINK: f64 = 3e-6;
+
+/// What a model learns from: rows of weights, the label's number, how much it counts.
+#[derive(Clone, Debug)]
+pub struct Lesson {
+    /// Rows.
+    pub rows: Vec<u32>,
+    /// Number of the label.
+    pub label: usize,
+    /// How much it counts.
+    pub weight: f64,
+}
+
+/// Weights of three labels by row.
+#[derive(Clone, Debug)]
+pub struct Linear {
+    weights: Vec<[f64; 3]>,
+    /// By what the sums are divided: fitted to lines that the weights have not seen.
+    pub temperature: f64,
+}
+
+impl Linear {
+    /// Trains on the lessons.
+    pub fn train(lessons: &[Lesson], epochs: usize, rate: f64, seed: u64) -> Self {
+        let mut linear = Self { weights: vec![[0.0; 3]; ROWS], temperature: 1.0 };
+        let mut seen = vec![[1e-2; 3]; ROWS];
+        let mut order: Vec<usize> = (0..lessons.len()).collect();
+        let mut state = seed;
+        for _ in 0..epochs {
+            shuffle(&mut order, &mut state);
+            for lesson in order.iter().map(|n| &lessons[*n]) {
+                linear.step(lesson, rate, &mut seen);
+            }
+        }
+        linear
+    }
+
+    fn step(&mut self, lesson: &Lesson, rate: f64, seen: &mut [[f64; 3]]) {
+        let stated = self.stated(&lesson.rows, 1.0);
+        for (label, stated) in stated.into_iter().enumerate() {
+            let error = (stated - f64::from(u8::from(label == lesson.label))) * lesson.weight;
+            // Each row takes its part of the step.
+            for row in &lesson.rows {
+                let (row, n) = (*row as usize, label);
+                let gradient = error + SHRINK * self.weights[row][n];
+                seen[row][n] += gradient * gradient;
+                self.weights[row][n] -= rate * gradient / seen[row][n].sqrt();
+                self.weights[row][n] *= 1.0 - SHRINK;
+            }
+        }
+    }
+
+    /// Returns the probabilities of the labels.
+    pub fn stated(&self, rows: &[u32], temperature: f64) -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        for row in rows {
+            for (sum, weight) in sums.iter_mut().zip(self.weights[*row as usize]) {
+                *sum += weight;
+            }
+        }
+        softmax(sums.map(|sum| sum / temperature))
+    }
+
+    /// Fits the temperature to lessons that were not trained on.
+    pub fn fit_temperature(&mut self, lessons: &[Lesson]) {
+        let loss = |temperature: f64| -> f64 {
+            lessons.iter().map(|it| -self.stated(&it.rows, temperature)[it.label].max(1e-9).ln()).sum()
+        };
+        let candidates = (0..60).map(|n| 0.5 * 1.05_f64.powi(n));
+        let best = candidates.min_by(|a, b| loss(*a).total_cmp(&loss(*b)));
+        self.temperature = best.unwrap_or(1.0);
+    }
+
+    /// The weights of a row.
+    pub fn row(&self, row: usize) -> [f64; 3] {
+        self.weights[row]
+    }
+}
+
+/// Returns probabilities for sums.
+pub fn softmax(sums: [f64; 3]) -> [f64; 3] {
+    let most = sums.into_iter().fold(f64::MIN, f64::max);
+    let powers = sums.map(|sum| (sum - most).exp());
+    let all: f64 = powers.iter().sum();
+    powers.map(|power| power / all)
+}
+
+/// A pseudo-random number (SplitMix64).
+pub fn random(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut mixed = *state;
+    mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    mixed ^ (mixed >> 31)
+}
+
+fn shuffle(order: &mut [usize], state: &mut u64) {
+    for last in (1..order.len()).rev() {
+        order.swap(last, (random(state) % (last as u64 + 1)) as usize);
+    }
+}

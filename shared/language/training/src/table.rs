@@ -1,0 +1,59 @@
+//! The reader's own tables, `scene ? question : text => meaning`, all of whose lines the rules read right: what the rules
+//! propose there is the label.
+
+use std::fs;
+use std::path::Path;
+
+use scene::{Question, Scene, question_from_json};
+use serde_json::json;
+
+use crate::scenes::Scenes;
+
+/// A line of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Name of its scene among [`Scenes`].
+    pub scene: String,
+    /// The question before it.
+    pub question: Question,
+    /// The words.
+    pub text: String,
+}
+
+/// Reads a table.
+///
+/// # Errors
+/// The file cannot be read, or is no table.
+pub fn table(scenes: &Scenes, path: &Path) -> Result<Vec<Row>, String> {
+    let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let is_row = |line: &&str| !line.is_empty() && !line.starts_with(['#', '~']);
+    let row = |line: &str| {
+        row(scenes, line).ok_or_else(|| format!("{}: expected a row, found {line}", path.display()))
+    };
+    text.lines().filter(is_row).map(row).collect()
+}
+
+fn row(scenes: &Scenes, line: &str) -> Option<Row> {
+    let (input, _) = line.rsplit_once("=>")?;
+    let (context, text) = input.split_once(':')?;
+    let (name, asked) = context.split_once('?')?;
+    let (name, asked) = (name.trim(), asked.trim());
+    let name = match name {
+        "mugs" | "garments" | "pantry" => format!("table {name}"),
+        name => name.trim_start_matches("talk_").to_owned(),
+    };
+    let (scene, _) = scenes.get(&name).ok()?;
+    Some(Row { question: question(scene, asked)?, scene: name, text: text.trim().to_owned() })
+}
+
+fn question(scene: &Scene, text: &str) -> Option<Question> {
+    let json = match (text.strip_prefix('@'), text.split_once('=')) {
+        _ if text.is_empty() => json!(null),
+        (Some(object), _) => json!({ "type": "point", "object": object }),
+        (None, Some((attribute, value))) => {
+            json!({ "type": "attr", "attribute": attribute, "value": value })
+        }
+        (None, None) => json!({ "type": "which", "attribute": text }),
+    };
+    question_from_json(scene, &json).ok()
+}
