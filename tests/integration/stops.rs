@@ -183,6 +183,41 @@ fn stop_that_its_giver_no_longer_repeats_is_obeyed_by_the_arm_that_returns() {
     group.down();
 }
 
+/// The queue of the arm's socket holds few orders: a release that fills it must not keep a later stop out.
+#[test]
+fn stop_of_a_hung_arm_counts_before_every_order_that_waited_there() {
+    let group = Group::up(&[REAL_TIME]);
+    let watch = MotionWatch::start(group.paths());
+    group.say("get me the clear bowl");
+    watch.wait_moving();
+    group.signal("arm", Signal::STOP);
+    group.call(&["resume-motion", "--timeout", "0.5"]);
+    let given = clock::now();
+    let ended = group.call(&["stop-motion", "--timeout", "0.5"]);
+    assert!(ended.stderr.contains("the stop is kept"), "{ended:?}");
+    group.signal("arm", Signal::CONT);
+    watch.wait_stopped("the stop that did not fit");
+    let latched = clock::now();
+    watch.wait_states(latched, 1.0);
+    assert_eq!(watch.movements_since(latched), 0);
+    assert!(watch.said_stopped().is_none_or(|said| said > given));
+    group.down();
+}
+
+#[test]
+fn stop_around_the_end_of_a_group_is_kept_for_the_next() {
+    let group = Group::up(&[]);
+    group.must(&["hold", "arm"]);
+    let order = StopOrder::give(&group, &[]);
+    order.wait_for_warning(&["not confirmed"]);
+    group.must(&["down"]);
+    order.wait_for_warning(&["the stop is kept"]);
+    assert_eq!(order.end().0, Some(1));
+    assert_eq!(group.start_again(&[]).code, Some(0));
+    wait_for("the stop", 10.0, || (group.arm()["stopped"] == true).then_some(()));
+    group.down();
+}
+
 #[test]
 fn said_stop_needs_no_speech_service_and_tells_whether_the_arm_stopped() {
     let group = Group::up(&[REAL_TIME]);
@@ -218,12 +253,14 @@ fn latched_stop_survives_a_fresh_start() {
     group.must(&["down"]);
     assert_eq!(group.start_fresh().code, Some(0));
     assert_eq!(group.arm()["stopped"], true);
-    // The old journal cannot be read.
-    group.release_stop();
-    group.must(&["down"]);
-    std::fs::write(group.paths().journal_file("arm"), "dear diary").unwrap();
-    assert_eq!(group.start_fresh().code, Some(0));
-    assert_eq!(group.arm()["stopped"], true, "whether it was free is not known");
+    // The old journal cannot be read, or is lost.
+    for lose in [|path| std::fs::write(path, "dear diary"), |path| std::fs::remove_file(path)] {
+        group.release_stop();
+        group.must(&["down"]);
+        lose(group.paths().journal_file("arm")).unwrap();
+        assert_eq!(group.start_fresh().code, Some(0));
+        assert_eq!(group.arm()["stopped"], true, "whether it was free is not known");
+    }
     group.down();
 }
 

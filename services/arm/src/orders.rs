@@ -9,7 +9,7 @@ use messages::{
 };
 use scene::{ObjectId, Question};
 use service::Time;
-use service::stop_socket::{RESUME_AFTER, StopOrder};
+use service::stop_socket::{RELEASE_PATIENCE, RESUME_AFTER, StopOrder};
 
 /// The relevant part of the policy's latest act.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -178,6 +178,11 @@ impl ArmNode {
         }
         if order == MotionOrder::Resume && given > now {
             tracing::warn!("motion stop release with a future timestamp ignored");
+            return;
+        }
+        // Its giver has given it up; it has waited here, in a queue that was not read.
+        if order == MotionOrder::Resume && now.since(given) > RELEASE_PATIENCE && given > Time(0) {
+            tracing::warn!("motion stop release ignored: too old");
             return;
         }
         // Where the stop is of an earlier boot, its time is not known, and long ago.

@@ -3,23 +3,27 @@
 use crate::state::Record;
 use crate::{ArmNode, Config, In, Out, inspection, journal_record};
 use config::{Driver, Settings};
-use messages::Service;
 use messages::{ArmStatus, JointStates, RobotAct, TableView, TrajectoryView, WorldView, topics};
+use messages::{MotionOrder, Service};
 use planner::PlannerThread;
 use preflight::ArmSetup;
 use robot::RobotTopics;
-use service::Time;
 use service::bus::{EncodedReader, EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
+use service::group::GroupPaths;
 use service::inspection::{Part, SharedFacts};
 use service::journal_record::JournalRecord;
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
-use service::stop_socket::{KeptStop, StopListener};
+use service::stop_socket::{Caller, KeptStop, StopListener};
+use service::{Span, Time, clock};
 use std::os::fd::BorrowedFd;
 
 mod planner;
 mod robot;
+
+/// A longer time between two passes: orders may have been lost meanwhile, because the socket's queue is short.
+const STOOD_STILL: Span = Span::from_ms(100);
 
 /// The arm as a program.
 #[derive(Debug)]
@@ -77,11 +81,28 @@ pub struct ArmShell {
     stop: StopListener,
     /// A stop that was given while no arm listened.
     kept_stop: Option<KeptStop>,
+    paths: GroupPaths,
+    /// Time of the latest pass.
+    passed: Time,
     planner: PlannerThread,
     /// Topics of a real robot.
     robot: Option<RobotTopics>,
     /// Where the objects come from perception.
     table: Option<EncodedReader<TableView>>,
+}
+
+impl ArmShell {
+    /// Takes a stop that was kept while this service did not listen, before anything else moves the arm.
+    fn look_for_kept_stop(&mut self, take: &mut dyn FnMut(In<'_>)) {
+        match KeptStop::find(&self.paths) {
+            Ok(Some(kept)) => {
+                take(In::StopOrder(kept.order(), Caller::named(b"kept")));
+                self.kept_stop = Some(kept);
+            }
+            Ok(None) => {}
+            Err(error) => tracing::error!(%error, "kept stop not looked for"),
+        }
+    }
 }
 
 impl Shell<ArmNode> for ArmShell {
@@ -98,7 +119,9 @@ impl Shell<ArmNode> for ArmShell {
             world: bus.encoded_writer(&topics::WORLD)?,
             trajectory: bus.encoded_writer(&topics::TRAJECTORY)?,
             stop: StopListener::bind(paths).map_err(stop_failure)?,
-            kept_stop: KeptStop::open(paths).map_err(stop_failure)?,
+            kept_stop: None,
+            paths: paths.clone(),
+            passed: Time(0),
             planner: PlannerThread::start(context.devices.clone())
                 .map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?,
             robot: robot.transpose()?,
@@ -111,9 +134,19 @@ impl Shell<ArmNode> for ArmShell {
         is_readable: bool,
         take: &mut dyn FnMut(In<'_>),
     ) -> Result<(), PortError> {
+        let now = clock::now();
+        let (mut orders, stood_still) = (Vec::new(), now.since(self.passed) >= STOOD_STILL);
+        self.passed = now;
         if is_readable {
-            self.stop.drain(|order, caller| take(In::StopOrder(order, caller)));
+            self.stop.drain(|order, caller| orders.push((order, caller)));
         }
+        let releases = orders
+            .iter()
+            .any(|(order, _)| order.order == MotionOrder::Resume && order.given_ns > 0);
+        if stood_still || releases {
+            self.look_for_kept_stop(take);
+        }
+        orders.into_iter().for_each(|(order, caller)| take(In::StopOrder(order, caller)));
         Ok(())
     }
 

@@ -1,10 +1,10 @@
 //! Orders to the motion stop over a link, exactly as safe as on the robot.
 //!
 //! A stop is stamped with the robot's own clock when it first arrives there, and keeps that stamp however often it is
-//! repeated. A release names the stop that it lifts, by that stop's stamp, and the state that the person saw. The
-//! robot gives it the first stamp that releases the named stop, [`RESUME_AFTER`] after it: the arm, which ignores orders
-//! older than the last one obeyed and releases sooner after a stop, cannot release a later stop by it, whichever order
-//! messages arrive in. Both machines' clocks are never compared: how
+//! repeated; so is a release. A release names the stop that it lifts, by that stop's stamp, and the state that the person
+//! saw, which is younger than [`RELEASE_AGE_MAX`]: a later stop is younger still, and the arm ignores a release that was
+//! stamped less than [`RESUME_AFTER`] after a stop, and orders older than the last one obeyed. So no release lifts another
+//! stop than the one it names, whichever order messages arrive in. Both machines' clocks are never compared: how
 //! old the seen state is, is the robot's own time since it sent it.
 
 use std::collections::VecDeque;
@@ -17,7 +17,7 @@ use service::stop_socket::{
 use service::{Span, Time};
 
 /// Greatest age of the state that a release is based on.
-pub const RELEASE_AGE_MAX: Span = Span::from_ms(2_000);
+pub const RELEASE_AGE_MAX: Span = RESUME_AFTER;
 /// Most requests of each kind that are remembered. An older stop that is repeated stops again.
 const KNOWN_MAX: usize = 64;
 
@@ -94,8 +94,15 @@ impl Register {
     /// Why a release is refused.
     pub fn stamp(&mut self, request: &Request, now: Time) -> Result<(MotionOrder, Time), String> {
         match request.order {
-            Order::Stop => Ok((MotionOrder::Stop, self.stamp_stop(request.key, now))),
+            Order::Stop => {
+                let known = self.known(request.key);
+                let stamp = known.unwrap_or_else(|| self.stamp_first(request.key, now));
+                Ok((MotionOrder::Stop, stamp))
+            }
             Order::Release(seen) => {
+                if let Some(stamp) = self.known(request.key) {
+                    return Ok((MotionOrder::Resume, stamp));
+                }
                 let age = now.since(Time(seen.at_ns));
                 if seen.at_ns > now.ns() || age > RELEASE_AGE_MAX {
                     return Err(format!(
@@ -105,22 +112,23 @@ impl Register {
                         RELEASE_AGE_MAX.s()
                     ));
                 }
-                let stamp = Time(seen.in_force_ns) + RESUME_AFTER;
-                if stamp > now && !self.too_soon.contains(&request.key) {
+                let is_too_soon = now < Time(seen.in_force_ns) + RESUME_AFTER;
+                if is_too_soon && !self.too_soon.contains(&request.key) {
                     remember(&mut self.too_soon, request.key);
                 }
                 match self.too_soon.contains(&request.key) {
                     true => Err(StopError::TooSoon.to_string()),
-                    false => Ok((MotionOrder::Resume, stamp)),
+                    false => Ok((MotionOrder::Resume, self.stamp_first(request.key, now))),
                 }
             }
         }
     }
 
-    fn stamp_stop(&mut self, key: [u8; 16], now: Time) -> Time {
-        if let Some((_, stamp)) = self.known.iter().find(|(known, _)| *known == key) {
-            return *stamp;
-        }
+    fn known(&self, key: [u8; 16]) -> Option<Time> {
+        self.known.iter().find(|(known, _)| *known == key).map(|(_, stamp)| *stamp)
+    }
+
+    fn stamp_first(&mut self, key: [u8; 16], now: Time) -> Time {
         // Each has a stamp of its own, so that each can be named.
         let stamp = now.max(self.latest + Span(1));
         self.latest = stamp;
@@ -412,9 +420,9 @@ mod tests {
     fn old_release_is_refused() {
         let mut register = Register::default();
         assert!(register.stamp(&release(1, 1_000, at(900)), at(3_000)).is_ok());
-        let error = register.stamp(&release(1, 1_000, at(900)), at(3_001)).unwrap_err();
+        let error = register.stamp(&release(2, 1_000, at(900)), at(3_001)).unwrap_err();
         assert!(error.contains("2.0 s old"), "{error}");
-        assert!(register.stamp(&release(1, 9_000, at(900)), at(3_000)).is_err(), "from the future");
+        assert!(register.stamp(&release(3, 9_000, at(900)), at(3_000)).is_err(), "from the future");
     }
 
     #[test]
@@ -423,7 +431,7 @@ mod tests {
         assert!(register.stamp(&release(1, 2_800, at(900)), at(2_899)).is_err());
         assert!(register.stamp(&release(1, 2_950, at(900)), at(3_000)).is_err());
         let given_again = register.stamp(&release(2, 2_950, at(900)), at(3_000));
-        assert_eq!(given_again, Ok((MotionOrder::Resume, at(2_900))));
+        assert_eq!(given_again, Ok((MotionOrder::Resume, at(3_000))));
     }
 
     #[test]

@@ -42,7 +42,7 @@ pub(crate) fn open(paths: &GroupPaths, fresh: bool) -> Result<u64, EpochError> {
     let old = found.as_ref().map_or(0, |set| set.epoch);
     let (set, is_new) = match found {
         Some(set) if !fresh => (set, false),
-        _ => (JournalSet::renewed(paths, now_s().max(old + 1)), true),
+        found => (JournalSet::renewed(paths, found.as_ref(), now_s().max(old + 1)), true),
     };
     if fresh {
         put_journals_aside(paths, old)?;

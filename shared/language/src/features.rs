@@ -45,9 +45,8 @@ enum Element<'a> {
 /// Returns the value words of an utterance with their features.
 pub(crate) fn examples(parsed: &ParsedUtterance<'_>) -> Vec<Example> {
     let reading = parsed.reading();
-    let found: Vec<(usize, WordId, Polarity)> = values(parsed)
-        .map(|(at, word)| (at, word, proposal(parsed, &reading, at, word)))
-        .collect();
+    let found: Vec<(usize, WordId, Polarity)> =
+        values(parsed).map(|(at, word)| (at, word, proposal(parsed, &reading, at, word))).collect();
     let spans = phrases(parsed, &found);
     let elements = elements(parsed, &spans);
     let context = Context { parsed, found: &found, elements: &elements, intent: reading.intent };
@@ -78,7 +77,8 @@ fn phrases(
         }
         let mut end = *at + 1;
         // A determiner begins the next phrase.
-        let begins = |at: usize| tags[at].pauses() || tags[at].is_any(classes![Determiner Possessive]);
+        let begins =
+            |at: usize| tags[at].pauses() || tags[at].is_any(classes![Determiner Possessive]);
         while end < tags.len() && belongs(end) && !begins(end) {
             end += 1;
         }
@@ -124,7 +124,8 @@ impl Context<'_> {
     fn features(&self, number: usize, phrase: usize, span: &std::ops::Range<usize>) -> Vec<u32> {
         let (at, word, proposal) = self.found[number];
         let mut rows = Rows { rows: Vec::with_capacity(400), proposal };
-        let place = self.elements.iter().position(|it| matches!(it, Element::Phrase(n) if *n == phrase));
+        let place =
+            self.elements.iter().position(|it| matches!(it, Element::Phrase(n) if *n == phrase));
         let place = place.unwrap_or(0);
         let before: Vec<_> = self.elements[..place].iter().rev().copied().collect();
         let after = &self.elements[place + 1..];
@@ -228,7 +229,9 @@ impl Context<'_> {
         };
         let asked = [kind, u64::from(is_asked)];
         rows.add(b"question", &asked);
-        for answer in self.parsed.tags.iter().filter(|tag| tag.is_any(classes![Yes No WeakYes WeakNo])) {
+        for answer in
+            self.parsed.tags.iter().filter(|tag| tag.is_any(classes![Yes No WeakYes WeakNo]))
+        {
             rows.add(b"answer", &[asked[0], asked[1], kind_of(answer)]);
         }
     }

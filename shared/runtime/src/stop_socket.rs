@@ -27,7 +27,7 @@ use crate::group::GroupPaths;
 use crate::{Span, Time, clock};
 use datagram::{ClockOffset, Endpoint};
 use progress::RESEND_EVERY;
-pub use progress::{Progress, default_patience};
+pub use progress::{Progress, RELEASE_PATIENCE, default_patience};
 
 mod datagram;
 mod kept;
@@ -203,6 +203,11 @@ pub enum StopError {
     /// The stop is latched, and what the robot does is not known.
     #[error("the stop is latched, but the robot is not heard and may still move; {EMERGENCY}")]
     Unheard,
+    /// A stop that is not confirmed, and that nothing repeats any more.
+    #[error(
+        "the stop is not confirmed, and cannot be kept for the arm's return: {0}; the robot may still move; {EMERGENCY}"
+    )]
+    NotKept(String),
     /// The giver ended the order before it was confirmed.
     #[error("the order is not confirmed; the robot may still move; {EMERGENCY}")]
     Ended,
@@ -299,10 +304,10 @@ pub fn give(
         }
         wait(&client, RESEND_EVERY);
     };
-    if result.is_err() {
-        progress.leave(&client);
+    match result.is_err().then(|| progress.leave(&client)) {
+        Some(Err(error)) => Err(StopError::NotKept(error.to_string())),
+        _ => result,
     }
-    result
 }
 
 fn wait(client: &StopClient, longest: Span) {

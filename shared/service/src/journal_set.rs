@@ -161,10 +161,11 @@ impl JournalSet {
 
     /// The set of a new epoch in the place of journals that are put aside. An arm whose stop was latched, or is not known
     /// not to be, starts without its own memory: it waits for a person.
-    pub fn renewed(paths: &GroupPaths, epoch: u64) -> Self {
+    pub fn renewed(paths: &GroupPaths, old: Option<&Self>, epoch: u64) -> Self {
         let mut set = Self::new(epoch);
-        let was_free = || agreement::is_free(paths) == Some(true);
-        if paths.journal_file(Service::Arm.name()).exists() && !was_free() {
+        let (arm, was_free) = (Service::Arm.name(), || agreement::is_free(paths) == Some(true));
+        let had_journal = old.is_some_and(|old| old.journals.get(arm).is_some_and(|it| it.exists));
+        if (had_journal || paths.journal_file(arm).exists()) && !was_free() {
             set.lose(&[Service::Arm], 1);
         }
         set

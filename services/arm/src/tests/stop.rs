@@ -83,8 +83,11 @@ fn arm_applies_newer_motion_orders_only() {
     machine.order(MotionOrder::Stop, machine.now.ns());
     machine.run(1.95);
     machine.order(MotionOrder::Resume, machine.now.ns());
-    machine.run(0.5);
+    machine.run(8.0);
     assert!(machine.node.state().stopped, "too soon after another one, and not later either");
+    machine.order(MotionOrder::Resume, (machine.now - Span::from_ms(5_001)).ns());
+    machine.run(0.02);
+    assert!(machine.node.state().stopped, "given up by its giver");
     machine.order(MotionOrder::Resume, machine.now.ns());
     machine.run(0.02);
     assert!(!machine.node.state().stopped);

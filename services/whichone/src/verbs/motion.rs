@@ -13,6 +13,7 @@ use service::stop_socket::{self, StopError, StopState, default_patience};
 
 use super::availability::Availability;
 use super::interrupt::Interrupt;
+use super::up;
 use crate::Outcome;
 use crate::output::{Output, note};
 
@@ -30,6 +31,9 @@ const NOT_DURABLE: &str = "the stop is not on the disk yet: it holds as long as 
 /// Note on a stop that its giver no longer repeats.
 const KEPT: &str =
     "the stop is kept: the arm obeys it before it moves, as soon as its service runs again";
+
+/// Reason for the lack of an arm where the group's supervisor was killed.
+const NO_SUPERVISOR: &str = "the group has no supervisor; help: `whichone up`";
 
 /// State of the motion stop.
 #[derive(Serialize)]
@@ -99,7 +103,11 @@ impl Warnings {
         if !std::mem::replace(&mut self.is_asked, true) {
             let (paths, reasons) = (self.paths.clone(), self.reasons.0.clone());
             thread::spawn(move || {
-                reasons.send(Availability::now(&paths).first_missing(ARM, |_| true))
+                let found = Availability::now(&paths);
+                let ended = || up::is_running(&paths).is_ok_and(|is_running| !is_running);
+                let reason = found.first_missing(ARM, |_| true);
+                let no_supervisor = || ended().then(|| NO_SUPERVISOR.to_owned());
+                reasons.send(reason.or_else(no_supervisor))
             });
         }
         let order = match order {

@@ -18,5 +18,5 @@ mod table;
 pub use line::{Line, Marked, lines};
 pub use linear::{Lesson, Linear, random, softmax};
 pub use scenes::{Scenes, files, question};
-pub use table::{Row, table};
 pub use score::{Score, Scored, pairs};
+pub use table::{Row, table};

@@ -4,8 +4,6 @@
 
 use language::ROWS;
 
-/// Rate of the first step of a weight.
-const RATE: f64 = 0.1;
 /// Pull of each weight towards zero, a step.
 const SHRINK: f64 = 3e-6;
 
@@ -73,7 +71,10 @@ impl Linear {
     /// Fits the temperature to lessons that were not trained on.
     pub fn fit_temperature(&mut self, lessons: &[Lesson]) {
         let loss = |temperature: f64| -> f64 {
-            lessons.iter().map(|it| -self.stated(&it.rows, temperature)[it.label].max(1e-9).ln()).sum()
+            lessons
+                .iter()
+                .map(|it| -self.stated(&it.rows, temperature)[it.label].max(1e-9).ln())
+                .sum()
         };
         let candidates = (0..60).map(|n| 0.5 * 1.05_f64.powi(n));
         let best = candidates.min_by(|a, b| loss(*a).total_cmp(&loss(*b)));

@@ -1,41 +1,63 @@
 //! A stop that outlives whoever gave it.
 //!
 //! A giver repeats its stop only as long as it lives: a command line is interrupted, a page is closed, a service is
-//! killed. What it cannot get confirmed it leaves as a file in the group's folder, and the arm's service obeys the file
-//! before it moves. Its presence alone is the stop; its content, the time at which the stop was given, only keeps it
-//! from undoing a later release.
+//! killed. What it cannot get confirmed it leaves as a file in the group's folder. The arm's service obeys the file when
+//! it starts, when it has stood still, and before any release; so it counts also where the arm's socket is full or gone.
+//! Its presence alone is the stop; its content, the time at which the stop was given, only keeps it from undoing a later
+//! release.
 
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use super::datagram::ClockOffset;
-use super::{Progress, StopClient};
+use super::{Progress, StopClient, StopOrder};
 use crate::group::GroupPaths;
 use crate::{Time, clock};
 use messages::MotionOrder;
 
 /// Returns whether a stop waits for the arm's service.
 pub fn is_kept(paths: &GroupPaths) -> bool {
-    paths.kept_stop().exists()
+    is_there(&paths.kept_stop())
 }
 
-/// Keeps a stop; `given_ns` is in the machine's time. A later one replaces an earlier one.
+/// A link that leads nowhere is there, too.
+fn is_there(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok()
+}
+
+/// Keeps a stop; `given_ns` is in the machine's time. The latest one is kept. A disk without space may have room for an
+/// empty file.
 pub(super) fn keep(paths: &GroupPaths, given_ns: u64) -> io::Result<()> {
-    safe_files::replace_private_synced(&paths.kept_stop(), format!("{given_ns}\n"))
+    let path = paths.kept_stop();
+    if is_there(&path) && read(&path).is_none_or(|kept| kept >= given_ns) {
+        return Ok(());
+    }
+    let kept = safe_files::replace_private_synced(&path, format!("{given_ns}\n"));
+    kept.or_else(|error| match safe_files::create_private(&path) {
+        Ok(_) => Ok(()),
+        Err(_) if is_there(&path) => Ok(()),
+        Err(_) => Err(error),
+    })
+}
+
+/// Returns when the kept stop was given, in the machine's time; none where the file does not tell.
+fn read(path: &Path) -> Option<u64> {
+    safe_files::read_private(path)?.trim().parse().ok()
 }
 
 /// Removes a stop that the arm has carried out.
 pub(super) fn forget(path: &Path) {
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != ErrorKind::NotFound => {
-            tracing::warn!(%error, path = %path.display(), "kept stop not removed");
-        }
-        _ => {}
+    let removed = fs::remove_file(path).or_else(|error| match error.kind() {
+        ErrorKind::NotFound => Ok(()),
+        _ => fs::remove_dir(path).map_err(|_| error),
+    });
+    if let Err(error) = removed {
+        tracing::warn!(%error, path = %path.display(), "kept stop not removed; help: remove it by hand");
     }
 }
 
-/// The arm's end: a stop that was kept while its service was away, given to it as any other.
+/// The arm's end: a stop that was kept while its service did not listen.
 #[derive(Debug)]
 pub struct KeptStop {
     client: StopClient,
@@ -44,30 +66,31 @@ pub struct KeptStop {
 }
 
 impl KeptStop {
-    /// Returns the group's kept stop, after sending it to the arm's socket, which must be bound. One that cannot be read
-    /// counts as given now.
+    /// Returns the group's kept stop, if there is one. One whose time cannot be read counts as given now.
     /// # Errors
     /// The process or the system has no descriptor left.
-    pub fn open(paths: &GroupPaths) -> io::Result<Option<Self>> {
+    pub fn find(paths: &GroupPaths) -> io::Result<Option<Self>> {
         let path = paths.kept_stop();
-        if !path.exists() {
+        if !is_there(&path) {
             return Ok(None);
         }
-        let text = safe_files::read_private(&path).unwrap_or_default();
         let now = clock::now();
         let own = |machine_ns| Time(ClockOffset::of_process().own_ns(machine_ns));
-        let given = text.trim().parse().map_or(now, own).min(now);
-        let mut kept = Self {
-            client: StopClient::open(paths)?,
-            progress: Progress::new(MotionOrder::Stop, given, None),
-            path,
-        };
-        tracing::warn!("a stop was given while the arm's service was away; the arm obeys it now");
-        kept.pass();
-        Ok(Some(kept))
+        let given = read(&path).map_or(now, own).min(now);
+        let progress = Progress::new(MotionOrder::Stop, given, None);
+        tracing::warn!(
+            "a stop was given while the arm's service did not listen; the arm obeys it now"
+        );
+        Ok(Some(Self { client: StopClient::open(paths)?, progress, path }))
     }
 
-    /// Repeats the stop where that is due. Returns true once it is carried out, or overruled, and its file is removed.
+    /// The order.
+    pub fn order(&self) -> StopOrder {
+        StopOrder { order: MotionOrder::Stop, given_ns: self.progress.given().ns() }
+    }
+
+    /// Repeats the stop on the arm's socket where that is due. Returns true once it is carried out, or overruled, and its
+    /// file is removed.
     pub fn pass(&mut self) -> bool {
         let now = clock::now();
         self.progress.advance(&self.client, now);

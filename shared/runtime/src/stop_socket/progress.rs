@@ -1,5 +1,6 @@
 //! Progress of one order: when it is repeated, when its giver is warned, and when it is over.
 
+use std::io;
 use std::thread;
 
 use messages::{MotionInhibit, MotionOrder};
@@ -22,7 +23,7 @@ const DURABLE_GRACE: Span = Span::from_ms(500);
 /// Time for the robot to be heard, which an arm that has just started needs.
 const HEARD_GRACE: Span = Span::from_ms(1_000);
 /// Time for a release; a later one would surprise.
-const RELEASE_PATIENCE: Span = Span::from_ms(5_000);
+pub const RELEASE_PATIENCE: Span = Span::from_ms(5_000);
 
 /// Returns how long an order is repeated unless its giver says otherwise: a stop for as long as the group's folder
 /// `run` exists, because no restart of the arm's service and no hold by an operator may outlast it.
@@ -109,7 +110,10 @@ impl Progress {
             if std::mem::take(&mut self.is_kept) {
                 kept::forget(&client.paths.kept_stop());
             }
-        } else if !self.is_kept && self.must_be_kept() && now.since(self.since) >= SILENCE {
+        } else if !self.is_kept
+            && self.must_be_kept()
+            && (self.is_absent || now.since(self.since) >= SILENCE)
+        {
             self.is_kept = true;
             // A disk that hangs must not hold up the repetitions.
             let (paths, given_ns) = (client.paths.clone(), client.machine_ns(self.given));
@@ -118,20 +122,21 @@ impl Progress {
         }
     }
 
-    /// Keeps a stop that is not carried out for the arm's return, because its giver ends.
-    pub fn leave(&self, client: &StopClient) {
-        if self.must_be_kept()
-            && let Err(error) = kept::keep(&client.paths, client.machine_ns(self.given))
-        {
-            tracing::warn!(%error, "stop not kept for the arm's return");
+    /// Keeps a stop that no arm is known to have for the arm's return, because its giver ends. A group that was never
+    /// started has no arm.
+    /// # Errors
+    /// It cannot be kept: nothing repeats it any more.
+    pub fn leave(&self, client: &StopClient) -> io::Result<()> {
+        match self.must_be_kept() && client.paths.root().is_dir() {
+            true => kept::keep(&client.paths, client.machine_ns(self.given)),
+            false => Ok(()),
         }
     }
 
     /// Returns whether the order is a stop that no arm is known to have.
     fn must_be_kept(&self) -> bool {
         let is_taken = self.state.is_some_and(|(state, _)| state.stopped);
-        let is_open = self.order == MotionOrder::Stop && self.failure.is_none();
-        is_open && !is_taken
+        self.order == MotionOrder::Stop && !is_taken
     }
 
     /// Returns whether the order is due to be sent, with its time [`Progress::given`], which makes repetitions harmless.

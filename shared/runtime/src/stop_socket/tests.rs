@@ -114,7 +114,8 @@ fn stop_that_its_giver_leaves_waits_for_the_arm() {
     assert!(is_kept(&paths));
     // Its giver is gone; a new arm binds the socket.
     let arm = StopListener::bind(&paths).unwrap();
-    let mut kept = KeptStop::open(&paths).unwrap().unwrap();
+    let mut kept = KeptStop::find(&paths).unwrap().unwrap();
+    assert!(!kept.pass());
     let mut orders = Vec::new();
     arm.drain(|order, caller| orders.push((order, caller)));
     let (order, caller) = orders.pop().unwrap();
@@ -124,14 +125,35 @@ fn stop_that_its_giver_leaves_waits_for_the_arm() {
     assert!(!kept.pass() && is_kept(&paths));
     arm.answer(&caller, &obeyed(&order));
     assert!(kept.pass() && !is_kept(&paths));
-    assert!(KeptStop::open(&paths).unwrap().is_none());
+    assert!(KeptStop::find(&paths).unwrap().is_none());
 
-    // A file without a time is a stop as well, given now.
+    // What has no time is a stop as well, given now.
+    let before = clock::now().ns();
+    let given = || KeptStop::find(&paths).unwrap().unwrap().order().given_ns;
     std::fs::write(paths.kept_stop(), "").unwrap();
-    let before = clock::now();
-    let _kept = KeptStop::open(&paths).unwrap().unwrap();
-    arm.drain(|order, _| orders.push((order, Caller::named(b"it"))));
-    assert!(orders.pop().unwrap().0.given_ns >= before.ns());
+    assert!(given() >= before);
+    std::fs::remove_file(paths.kept_stop()).unwrap();
+    std::os::unix::fs::symlink("nowhere", paths.kept_stop()).unwrap();
+    assert!(given() >= before);
+    kept::forget(&paths.kept_stop());
+    std::fs::create_dir(paths.kept_stop()).unwrap();
+    assert!(given() >= before);
+    kept::forget(&paths.kept_stop());
+    assert!(!is_kept(&paths));
+}
+
+#[test]
+fn latest_stop_is_kept_whoever_ends_last() {
+    let (_home, paths) = group();
+    for given_ns in [200, 100, 300] {
+        kept::keep(&paths, given_ns).unwrap();
+    }
+    assert_eq!(std::fs::read_to_string(paths.kept_stop()).unwrap(), "300\n");
+    // The group is down; the next one's arm must not move either.
+    std::fs::remove_dir_all(paths.run()).unwrap();
+    kept::forget(&paths.kept_stop());
+    let ended = give(&paths, MotionOrder::Stop, None, &mut |_| true);
+    assert!(matches!(ended, Err(StopError::NoGroup(_))) && is_kept(&paths), "{ended:?}");
 }
 
 #[test]

@@ -7,6 +7,7 @@ import logging
 import os
 import socket
 import struct
+import threading
 import time
 from typing import Any
 
@@ -129,6 +130,7 @@ def give(group: Group, order: str, timeout: float | None) -> None:
 def _repeat(arm: socket.socket, request: bytes, progress: Order, group: Group) -> None:
     """Repeats an order until it is carried out."""
     stamp = json.loads(request)["given_ns"]
+    is_kept = False
     while not progress.is_done(time.monotonic()):
         progress.on_sent(not _send(arm, request, group))
         answer = None if progress.is_absent else _receive(arm, group)
@@ -136,19 +138,31 @@ def _repeat(arm: socket.socket, request: bytes, progress: Order, group: Group) -
             progress.on_answer(answer, time.monotonic())
         if why := progress.warning(time.monotonic()):
             log.warning("not confirmed: %s; the order is repeated", why)
+        is_open = progress.order == "stop" and (progress.state is None or not progress.state["stopped"])
+        if is_open and not is_kept and (progress.is_absent or time.monotonic() - progress.given >= SILENCE_S):
+            is_kept = True
+            threading.Thread(target=_keep, args=(group, stamp), daemon=True).start()
         if progress.is_absent or answer is not None:
             time.sleep(RESEND_S)
+    if is_kept:
+        (group.run.parent / "stop.kept").unlink(missing_ok=True)
 
 
 def _keep(group: Group, given_ns: int) -> None:
-    """Leaves a stop for the arm's service, which obeys it before it moves."""
-    if not group.run.is_dir():
+    """Leaves a stop for the arm's service, which obeys it before it moves. The latest one is kept."""
+    file = group.run.parent / "stop.kept"
+    draft = file.with_name(f"stop.kept.{os.getpid()}.{threading.get_ident()}")
+    if not file.parent.is_dir():
         return
-    draft = group.run.parent / f"stop.kept.{os.getpid()}"
     try:
-        with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="ascii") as file:
-            file.write(f"{given_ns}\n")
-        draft.rename(group.run.parent / "stop.kept")
+        if file.exists() and int(file.read_text(encoding="ascii") or given_ns) >= given_ns:
+            return
+    except (OSError, ValueError):
+        return
+    try:
+        with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="ascii") as new:
+            new.write(f"{given_ns}\n")
+        draft.rename(file)
     except OSError as error:
         log.warning("stop not kept for the arm's return: %s", error)
 

@@ -173,8 +173,15 @@ impl Worker {
                 }
             };
             if self.advance().is_err() || is_over {
-                return self.current.iter().for_each(|order| order.leave(&self.client));
+                return self.current.iter().for_each(|order| self.leave(order));
             }
+        }
+    }
+
+    /// Keeps a stop that is no longer repeated for the arm's return.
+    fn leave(&self, order: &Progress) {
+        if let Err(error) = order.leave(&self.client) {
+            note(StopError::NotKept(error.to_string()));
         }
     }
 
@@ -197,7 +204,8 @@ impl Worker {
             self.news.send(News { text, is_bad: true })?;
         }
         if let Some(result) = current.result(now) {
-            self.current = None;
+            let order = self.current.take();
+            order.iter().filter(|_| result.is_err()).for_each(|order| self.leave(order));
             self.state.has_failed.store(result.is_err(), Ordering::Relaxed);
             self.news.send(outcome(result))?;
             self.state.open.fetch_sub(std::mem::take(&mut self.taken), Ordering::Relaxed);

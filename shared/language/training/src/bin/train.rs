@@ -6,7 +6,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use language::Mention;
-use reader_training::{Lesson, Line, Linear, Scenes, Score, files, lines, pairs, question, table, Row};
+use reader_training::{
+    Lesson, Line, Linear, Row, Scenes, Score, files, lines, pairs, question, table,
+};
 
 /// Share of the floor under every probability: nothing was said.
 const FLOOR: f64 = 0.01;
@@ -34,7 +36,8 @@ fn run() -> Result<(), String> {
     let mut authors: BTreeMap<String, Vec<Taught>> = BTreeMap::new();
     for path in files(&folder) {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let text =
+            std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
         for line in lines(&name, &text)? {
             let (scene, reader) = scenes.get(&line.scene)?;
             let asked = question(scene, &line.question);
@@ -49,18 +52,30 @@ fn run() -> Result<(), String> {
         let lessons = |row: &Row| {
             let (_, reader) = scenes.get(&row.scene)?;
             let examples = reader.examples(&row.text, row.question).into_iter();
-            Ok(examples.map(|it| Lesson { rows: it.rows, label: it.proposal as usize, weight: 1.0 }).collect())
+            Ok(examples
+                .map(|it| Lesson { rows: it.rows, label: it.proposal as usize, weight: 1.0 })
+                .collect())
         };
         rows.iter().map(lessons).collect()
     };
-    let known: Vec<Lesson> = ["shared/language/src/tests/cases.txt", "tests/fixtures/utterances/fresh_1.txt"].iter().map(|file| of_table(file)).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().flatten().collect();
-    let ordinary: Vec<Lesson> = of_table("tests/fixtures/utterances/fresh_2.txt")?.into_iter().flatten().collect();
+    let known: Vec<Lesson> =
+        ["shared/language/src/tests/cases.txt", "tests/fixtures/utterances/fresh_1.txt"]
+            .iter()
+            .map(|file| of_table(file))
+            .collect::<Result<Vec<_>, _>>()?
+            .into_iter()
+            .flatten()
+            .flatten()
+            .collect();
+    let ordinary: Vec<Lesson> =
+        of_table("tests/fixtures/utterances/fresh_2.txt")?.into_iter().flatten().collect();
     println!("{} known, {} ordinary", known.len(), ordinary.len());
     let mut all = Score::default();
     let mut fresh = [0usize; 4];
     for left_out in authors.keys() {
         let others = authors.iter().filter(|(name, _)| *name != left_out);
-        let lessons: Vec<Lesson> = others.flat_map(|(_, taught)| taught).flat_map(lessons).collect();
+        let lessons: Vec<Lesson> =
+            others.flat_map(|(_, taught)| taught).flat_map(lessons).collect();
         let lessons: Vec<Lesson> = lessons.into_iter().chain(known.iter().cloned()).collect();
         let mut model = Linear::train(&lessons, var("E", 8.0) as usize, var("R", 0.0125), 1);
         let own = &authors[left_out];
@@ -78,12 +93,25 @@ fn run() -> Result<(), String> {
         for taught in own {
             let judged = judge(&model, taught);
             if std::env::var("SHOW").is_ok() {
-                for ((m, j), truth) in taught.mentions.iter().zip(&judged).zip(pairs(&taught.line, &taught.mentions)) {
+                for ((m, j), truth) in
+                    taught.mentions.iter().zip(&judged).zip(pairs(&taught.line, &taught.mentions))
+                {
                     let Some(truth) = truth else { continue };
                     let s = [j.wanted, j.denied, j.neither];
                     let best = (0..3).max_by(|a, b| s[*a].total_cmp(&s[*b])).unwrap_or(0);
                     if best != truth as usize {
-                        println!("ERR {truth:?}->{best} {:.2} r{:.0}{:.0}{:.0} {} | {} | {} | {} [{}]", s[best], m.wanted, m.denied, m.neither, taught.line.act, taught.line.scene, taught.line.question, taught.line.text, m.surface);
+                        println!(
+                            "ERR {truth:?}->{best} {:.2} r{:.0}{:.0}{:.0} {} | {} | {} | {} [{}]",
+                            s[best],
+                            m.wanted,
+                            m.denied,
+                            m.neither,
+                            taught.line.act,
+                            taught.line.scene,
+                            taught.line.question,
+                            taught.line.text,
+                            m.surface
+                        );
                     }
                 }
             }
@@ -93,11 +121,18 @@ fn run() -> Result<(), String> {
         println!("{score}  {left_out} (T {:.2})", model.temperature);
     }
     println!("{all}  all");
-    println!("fresh_2: right {:.3} certain and wrong {:.3} unsure {:.3}", fresh[1] as f64 / fresh[0] as f64, fresh[2] as f64 / fresh[0] as f64, fresh[3] as f64 / fresh[0] as f64);
+    println!(
+        "fresh_2: right {:.3} certain and wrong {:.3} unsure {:.3}",
+        fresh[1] as f64 / fresh[0] as f64,
+        fresh[2] as f64 / fresh[0] as f64,
+        fresh[3] as f64 / fresh[0] as f64
+    );
     Ok(())
 }
 
-fn var(name: &str, otherwise: f64) -> f64 { std::env::var(name).ok().and_then(|it| it.parse().ok()).unwrap_or(otherwise) }
+fn var(name: &str, otherwise: f64) -> f64 {
+    std::env::var(name).ok().and_then(|it| it.parse().ok()).unwrap_or(otherwise)
+}
 
 fn lessons_of(taught: &Taught) -> Vec<Lesson> {
     lessons(taught)
