@@ -15,6 +15,10 @@ pub const ROWS: usize = 1 << 16;
 /// Words that belong to a noun phrase, besides its values.
 const NOUN_PHRASE: &[Class] =
     classes![Determiner Possessive Pointer Quantifier Head One Attribute Unlisted Ordinal];
+/// Most value words of an utterance that are judged; a longer list of them is no description.
+pub(crate) const MENTIONS_MAX: usize = 16;
+/// Most elements on each side that count.
+const FAR: usize = 32;
 /// Number of elements on each side whose places count.
 const NEAR: usize = 4;
 
@@ -46,7 +50,9 @@ enum Element<'a> {
 pub(crate) fn examples(parsed: &ParsedUtterance<'_>) -> Vec<Example> {
     let reading = parsed.reading();
     let found: Vec<(usize, WordId, Polarity)> =
-        values(parsed).map(|(at, word)| (at, word, proposal(parsed, &reading, at, word))).collect();
+        values(parsed)
+        .take(MENTIONS_MAX)
+        .map(|(at, word)| (at, word, proposal(parsed, &reading, at, word))).collect();
     let spans = phrases(parsed, &found);
     let elements = elements(parsed, &spans);
     let context = Context { parsed, found: &found, elements: &elements, intent: reading.intent };
@@ -127,8 +133,9 @@ impl Context<'_> {
         let place =
             self.elements.iter().position(|it| matches!(it, Element::Phrase(n) if *n == phrase));
         let place = place.unwrap_or(0);
-        let before: Vec<_> = self.elements[..place].iter().rev().copied().collect();
+        let before: Vec<_> = self.elements[..place].iter().rev().take(FAR).copied().collect();
         let after = &self.elements[place + 1..];
+        let after = &after[..after.len().min(FAR)];
         rows.add(b"bias", &[]);
         for (side, elements) in [(b"L", &before[..]), (b"R", after)] {
             Self::side(&mut rows, side[0], elements);

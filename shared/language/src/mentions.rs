@@ -3,13 +3,11 @@
 use scene::{Question, Reading, WordId};
 
 use crate::features::{Example, examples};
+use crate::judge::judge;
 use crate::normalise::normalise;
 use crate::parsed::ParsedUtterance;
 use crate::reader::{Language, Reader};
 use crate::tokens::Tokens;
-
-/// Probability that what the rules read is what was said, as they state it.
-const RULES: f64 = 0.999;
 
 /// A value word of an utterance, and the probabilities of what is said of it; they sum to 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,22 +45,17 @@ impl Reader {
         let text = normalise(text);
         let tokens = Tokens::of(&text);
         let parsed = self.parse(&tokens, last_question);
-        let reading = parsed.reading();
-        let mention = |(at, word): (usize, WordId)| {
-            let tag = &parsed.tags[at];
-            let end = parsed.tags.get(at + 1).map_or(tokens.words.len(), |next| next.at);
+        let mention = |example: Example| {
+            let (tag, next) = (&parsed.tags[example.at], parsed.tags.get(example.at + 1));
+            let end = next.map_or(tokens.words.len(), |next| next.at);
             let words = tokens.words[tag.at..end].iter().map(|token| token.word);
+            let [wanted, denied, neither] = judge(&example.rows);
             let surface = words.collect::<Vec<_>>().join(" ");
-            let proposed = proposal(&parsed, &reading, at, word);
-            let of = |polarity| if proposed == polarity { RULES } else { (1.0 - RULES) / 2.0 };
-            let (wanted, denied) = (of(Polarity::Wanted), of(Polarity::Denied));
-            Mention { word, surface, wanted, denied, neither: of(Polarity::Neither) }
+            Mention { word: example.word, surface, wanted, denied, neither }
         };
-        values(&parsed).map(mention).collect()
+        examples(&parsed).into_iter().map(mention).collect()
     }
-}
 
-impl Reader {
     /// Returns the value words of an utterance that followed `last_question`, with what the judge looks at; for its
     /// training.
     pub fn examples(&self, text: &str, last_question: Question) -> Vec<Example> {

@@ -4,6 +4,7 @@ use scene::{Doubt, Intent, Reading, Reference, Response, WordId};
 
 use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
+use crate::evidence::weighed;
 use crate::hedges::MAYBE;
 use crate::objects::objects;
 use crate::question_words::{QuestionWords, SceneQuestions};
@@ -29,6 +30,8 @@ pub(crate) struct ParsedUtterance<'a> {
     pub(crate) tags: Vec<Tag<'a>>,
     pub(crate) clauses: Vec<Clause>,
     pub(crate) questions: &'a SceneQuestions,
+    /// Braces, tags or shell characters, which do not occur in speech.
+    pub(crate) code: bool,
 }
 
 impl ParsedUtterance<'_> {
@@ -147,7 +150,7 @@ impl ParsedUtterance<'_> {
             let yes = Reading { response: Response::Yes, doubt, ..best.clone() };
             return vec![(1.0 - MAYBE_WEIGHT, best), (MAYBE_WEIGHT, yes)];
         }
-        vec![(1.0, best)]
+        weighed(self, best)
     }
 
     /// "red or blue": each with what is said of both; none if nothing is to be chosen from.

@@ -64,14 +64,15 @@ impl Reader {
         &self.lexicon
     }
 
-    /// Returns the best reading of an utterance that followed `last_question`. Any text is an
+    /// Returns the most probable reading of an utterance that followed `last_question`. Any text is an
     /// utterance; only its first [`TEXT_CHARS_MAX`](crate::TEXT_CHARS_MAX) characters are read.
     pub fn read(&self, text: &str, last_question: Question) -> Reading {
         match self.language {
             Language::Paper => self.spotter.read(text),
             Language::Careful => {
                 let text = normalise(text);
-                self.parse(&Tokens::of(&text), last_question).reading()
+                let mut readings = self.parse(&Tokens::of(&text), last_question).readings();
+                readings.swap_remove(0).1
             }
         }
     }
@@ -93,7 +94,7 @@ impl Reader {
     /// Returns the alternative readings of an utterance that followed `last_question`, each with its
     /// weight, best first; the weights sum to 1 and there are at most
     /// [`READINGS_MAX`](crate::READINGS_MAX). The first equals that of [`Self::read`] except for its
-    /// doubts.
+    /// doubts, unless these change which one is the most probable.
     ///
     /// `confidence` holds the probability of each blank-separated word of the text, 0 to 1; words
     /// beyond its end are certain. It becomes the doubt of the scene words, groups and answers that
@@ -158,7 +159,7 @@ impl Reader {
                 intent = Intent::Inform;
             }
         }
-        let questions = &self.questions;
-        ParsedUtterance { content, response, intent, refers, asked, tags, clauses, questions }
+        let (questions, code) = (&self.questions, tokens.code);
+        ParsedUtterance { content, response, intent, refers, asked, tags, clauses, questions, code }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use language::{Language, Reader};
+use language::{Language, Mention, Reader};
 use scene::{Question, Scene, question_from_json, reading_to_json};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
@@ -30,7 +30,7 @@ struct Line {
     scene: Option<String>,
 }
 
-/// Answers each utterance with `{"id","base","response","excluded","intent"}`.
+/// Answers each utterance with `{"id","base","response","excluded","intent","mentions"}`.
 ///
 /// # Errors
 /// See [`run`].
@@ -48,13 +48,23 @@ impl Grounder {
     fn answer(&self, line: &Line) -> Result<Json, String> {
         let question = self.question(line).map_err(|e| format!("last_question: {e}"))?;
         let reading = self.reader.read(&line.text, question);
-        let mut answer = json!({ "id": line.id });
+        let mentions = self.reader.mentions(&line.text, question);
+        let mut answer = json!({ "id": line.id, "mentions": self.mentions(&mentions) });
         if let (Some(answer), Json::Object(members)) =
             (answer.as_object_mut(), reading_to_json(&self.scene, &reading))
         {
             answer.extend(members);
         }
         Ok(answer)
+    }
+
+    /// What is said of each value word.
+    fn mentions(&self, mentions: &[Mention]) -> Json {
+        let mention = |it: &Mention| {
+            let value = &self.scene.words()[it.word.index()];
+            json!({ "value": value, "wanted": it.wanted, "denied": it.denied, "neither": it.neither })
+        };
+        mentions.iter().map(mention).collect()
     }
 
     /// A question about another scene's objects was not asked here, so it counts as none; a line

@@ -57,28 +57,30 @@ impl Linear {
         }
     }
 
-    /// Returns the probabilities of the labels.
-    pub fn stated(&self, rows: &[u32], temperature: f64) -> [f64; 3] {
+    /// Returns the sums of the labels.
+    pub fn sums(&self, rows: &[u32]) -> [f64; 3] {
         let mut sums = [0.0; 3];
         for row in rows {
             for (sum, weight) in sums.iter_mut().zip(self.weights[*row as usize]) {
                 *sum += weight;
             }
         }
-        softmax(sums.map(|sum| sum / temperature))
+        sums
     }
 
-    /// Fits the temperature to lessons that were not trained on.
-    pub fn fit_temperature(&mut self, lessons: &[Lesson]) {
+    /// Returns the probabilities of the labels.
+    pub fn stated(&self, rows: &[u32], temperature: f64) -> [f64; 3] {
+        softmax(self.sums(rows).map(|sum| sum / temperature))
+    }
+
+    /// Returns the temperature that fits sums of lines which the weights had not seen, each with its label.
+    pub fn temperature_for(unseen: &[([f64; 3], usize)]) -> f64 {
         let loss = |temperature: f64| -> f64 {
-            lessons
-                .iter()
-                .map(|it| -self.stated(&it.rows, temperature)[it.label].max(1e-9).ln())
-                .sum()
+            let stated = |sums: &[f64; 3]| softmax(sums.map(|sum| sum / temperature));
+            unseen.iter().map(|(sums, label)| -stated(sums)[*label].max(1e-9).ln()).sum()
         };
         let candidates = (0..60).map(|n| 0.5 * 1.05_f64.powi(n));
-        let best = candidates.min_by(|a, b| loss(*a).total_cmp(&loss(*b)));
-        self.temperature = best.unwrap_or(1.0);
+        candidates.min_by(|a, b| loss(*a).total_cmp(&loss(*b))).unwrap_or(1.0)
     }
 
     /// The weights of a row.
@@ -88,7 +90,7 @@ impl Linear {
 }
 
 /// Returns probabilities for sums.
-pub fn softmax(sums: [f64; 3]) -> [f64; 3] {
+fn softmax(sums: [f64; 3]) -> [f64; 3] {
     let most = sums.into_iter().fold(f64::MIN, f64::max);
     let powers = sums.map(|sum| (sum - most).exp());
     let all: f64 = powers.iter().sum();
@@ -96,7 +98,7 @@ pub fn softmax(sums: [f64; 3]) -> [f64; 3] {
 }
 
 /// A pseudo-random number (SplitMix64).
-pub fn random(state: &mut u64) -> u64 {
+fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut mixed = *state;
     mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,5 +1,7 @@
 //! `cargo run -p reader_training --bin score -- FILE…`: scores the reader on labelled lines.
 
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
+
 use std::process::ExitCode;
 
 use language::Polarity;
