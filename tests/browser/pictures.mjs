@@ -79,7 +79,7 @@ async function dialogue() {
   await page.getByRole("button", { name: t("resume.words"), exact: true }).waitFor();
   await drawnFinely(page);
   await take(page, "console-stopped");
-  await group.must("resume-motion");
+  await group.release();
   await until("the hand-over", async () => (await group.state()).dialogue.last);
   await page.getByRole("button", { name: t("history.show") }).click();
   await page.locator(".story-one").nth(1).click();

@@ -49,10 +49,10 @@ enum Element<'a> {
 /// Returns the value words of an utterance with their features.
 pub(crate) fn examples(parsed: &ParsedUtterance<'_>) -> Vec<Example> {
     let reading = parsed.reading();
-    let found: Vec<(usize, WordId, Polarity)> =
-        values(parsed)
+    let found: Vec<(usize, WordId, Polarity)> = values(parsed)
         .take(MENTIONS_MAX)
-        .map(|(at, word)| (at, word, proposal(parsed, &reading, at, word))).collect();
+        .map(|(at, word)| (at, word, proposal(parsed, &reading, word)))
+        .collect();
     let spans = phrases(parsed, &found);
     let elements = elements(parsed, &spans);
     let context = Context { parsed, found: &found, elements: &elements, intent: reading.intent };

@@ -16,7 +16,8 @@
 //! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`, `errands.rs`, `statements.rs`) | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
 //! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
-//! | readings | `parsed.rs` (`hedges.rs`) | alternative readings with weights and doubts |
+//! | judge | `features.rs`, `judge.rs` (`vocabulary/judge.bin`), `mentions.rs` | how probable each value word is wanted, denied, neither |
+//! | readings | `parsed.rs` (`hedges.rs`), `evidence.rs` | alternative readings with weights and doubts |
 //!
 //! [`CompletenessJudge`] judges whether a speaker will go on after a pause.
 //! [`confusion`] gives the probabilities of mishearing one of a scene's words for another.

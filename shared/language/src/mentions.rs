@@ -70,14 +70,10 @@ pub(crate) fn values(parsed: &ParsedUtterance<'_>) -> impl Iterator<Item = (usiz
     parsed.tags.iter().enumerate().filter_map(word)
 }
 
-/// What the rules read of the value word at `at`.
-pub(crate) fn proposal(
-    parsed: &ParsedUtterance<'_>,
-    reading: &Reading,
-    at: usize,
-    word: WordId,
-) -> Polarity {
-    let is_asserted = parsed.content.base.iter().any(|value| value.at == at);
+/// What the rules read of a value word.
+pub(crate) fn proposal(parsed: &ParsedUtterance<'_>, reading: &Reading, word: WordId) -> Polarity {
+    // A word that is repeated is said of the object wherever it stands.
+    let is_asserted = parsed.content.base.iter().any(|value| value.word == word);
     let is_described = !matches!(reading.intent, scene::Intent::None);
     match () {
         () if is_asserted && is_described => Polarity::Wanted,

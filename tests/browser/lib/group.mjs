@@ -6,6 +6,9 @@ import { join } from "node:path";
 import { ROOT, whichone } from "./program.mjs";
 import { until } from "./until.mjs";
 
+/** Waits until a release counts. The page's clock may stand still: this is the arm's. */
+export const releaseCounts = () => new Promise((done) => setTimeout(done, 2_100));
+
 /** A running group. */
 export class Group {
   /** @param {string} home @param {string} name */
@@ -70,6 +73,12 @@ export class Group {
     if (ended.code === 0) return ended.stdout;
     const logs = await this.logs();
     throw new Error(`whichone ${words.join(" ")}: ${ended.code}\n${ended.stderr}\n${logs}`);
+  }
+
+  /** Releases the motion stop, once a release counts: 2 s after the latest stop, by the arm's clock. */
+  async release() {
+    await releaseCounts();
+    await this.must("resume-motion");
   }
 
   /** As `must`, read as JSON. @param {string[]} words */
