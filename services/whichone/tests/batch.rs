@@ -164,14 +164,19 @@ fn grounded(text: &str) -> (Vec<Json>, Exit) {
 
 #[test]
 fn utterances_are_read_with_the_scenes_words() {
-    let (found, exit) = grounded(
+    let (mut found, exit) = grounded(
         "{\"id\":\"a\",\"text\":\"get me the small white bowl\",\"last_question\":null}\n\
          {\"id\":\"b\",\"text\":\"yes\",\"last_question\":{\"type\":\"attr\",\
          \"attribute\":\"size\",\"value\":\"big\"}}\n",
     );
     let reading = json!({"id": "a", "base": ["small", "white"], "response": "none",
                          "excluded": [], "intent": "inform"});
+    let mentions = found[0].as_object_mut().unwrap().remove("mentions").unwrap();
     assert_eq!((&found[0], exit), (&reading, Exit::Ok));
+    let stated = mentions.as_array().unwrap().iter().map(|it| (&it["value"], &it["wanted"]));
+    let stated: Vec<_> =
+        stated.map(|(value, wanted)| (value, wanted.as_f64() > Some(0.9))).collect();
+    assert_eq!(stated, [(&json!("small"), true), (&json!("white"), true)], "{mentions}");
     assert_eq!(found[1]["response"], "yes");
 }
 
