@@ -39,7 +39,10 @@ fn metrics_are_read_by_prometheus_client() {
         let counted = |name: &str, of: &Json| sample(&metrics, name, &format!("{name}_total"), of);
         let synced = |it: &Json| counted("whichone_journal_syncs", it) > Some(0.0);
         let restarts = counted("whichone_service_restarts", &grounding);
-        (restarts == Some(1.0) && journaling.iter().all(synced)).then_some(metrics)
+        let ready = "whichone_service_ready";
+        let is_back =
+            restarts == Some(1.0) && sample(&metrics, ready, ready, &grounding) == Some(1.0);
+        (is_back && journaling.iter().all(synced)).then_some(metrics)
     });
     let counted =
         |family: &str, labels: &Json| sample(&metrics, family, &format!("{family}_total"), labels);

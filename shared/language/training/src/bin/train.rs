@@ -102,7 +102,7 @@ fn run() -> Result<(), String> {
     model.temperature = Linear::temperature_for(&unseen);
     println!("{} lessons, temperature {:.2}", lessons.len(), model.temperature);
     let path = root.join("shared/language/src/vocabulary/judge.bin");
-    std::fs::write(&path, bytes(&model, trained_on()?))
+    safe_files::write_output(&path, &bytes(&model, trained_on()?))
         .map_err(|e| format!("{}: {e}", path.display()))
 }
 
