@@ -22,3 +22,15 @@ pub use linear::{Lesson, Linear};
 pub use scenes::{Scenes, files, question};
 pub use score::{Score, Scored, pairs};
 pub use table::{Row, table};
+
+/// Prints why a program of this crate failed, and returns its exit code.
+#[allow(clippy::print_stderr, reason = "for programs of the terminal")]
+pub fn exit_code(outcome: Result<(), String>) -> std::process::ExitCode {
+    match outcome {
+        Ok(()) => std::process::ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("error: {why}");
+            std::process::ExitCode::FAILURE
+        }
+    }
+}

@@ -154,7 +154,8 @@ impl Progress {
         match sent {
             Err(StopError::Absent) => self.forget_answers(),
             Err(error) => self.failure = Some(error.clone()),
-            Ok(()) => {}
+            // A failure that has passed must not hide the arm's confirmation.
+            Ok(()) => self.failure = None,
         }
     }
 

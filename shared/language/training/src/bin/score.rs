@@ -1,22 +1,16 @@
 //! `cargo run -p reader_training --bin score -- FILE…`: scores the reader on labelled lines.
 
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
+#![allow(clippy::print_stdout, reason = "a program for the terminal")]
 
 use std::process::ExitCode;
 
 use language::{Mention, Polarity, Reader};
 use scene::{Question, Reading};
 
-use reader_training::{Scenes, Score, lines, pairs, question};
+use reader_training::{Scenes, Score, exit_code, lines, pairs, question};
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            eprintln!("error: {why}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run())
 }
 
 fn run() -> Result<(), String> {

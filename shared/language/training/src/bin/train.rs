@@ -1,7 +1,7 @@
 //! `cargo run --release -p reader_training --bin train [--write]`: trains the judge. It prints how the judge does on each author's
 //! lines when it has seen the others' alone, and with `--write` replaces `vocabulary/judge.bin`.
 
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for the terminal")]
+#![allow(clippy::print_stdout, reason = "a program for the terminal")]
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -9,7 +9,8 @@ use std::process::ExitCode;
 
 use language::{Mention, Polarity, ROWS};
 use reader_training::{
-    Lesson, Line, Linear, Row, Scenes, Score, files, lines, pairs, question, table, trained_on,
+    Lesson, Line, Linear, Row, Scenes, Score, exit_code, files, lines, pairs, question, table,
+    trained_on,
 };
 
 /// Passes over the lessons.
@@ -32,13 +33,7 @@ const TABLES: [&str; 4] = [
 ];
 
 fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            eprintln!("error: {why}");
-            ExitCode::FAILURE
-        }
-    }
+    exit_code(run())
 }
 
 /// A labelled line with what the judge looks at.
