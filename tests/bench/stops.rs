@@ -79,7 +79,7 @@ impl Stopped<'_> {
                     std::thread::sleep(Duration::from_millis(u64::from(n % 4) * 40));
                     stops_ms.extend(joints.stop(self.group));
                     if n + 1 < STOPS {
-                        self.group.must(&["resume-motion"]);
+                        self.group.release_stop();
                     }
                 }
                 if self.kills_arm {
@@ -89,7 +89,7 @@ impl Stopped<'_> {
                 let ended = Instant::now();
                 wait_for("the whole group", 60.0, || self.is_whole().then_some(()));
                 recoveries_s.push(ended.elapsed().as_secs_f64());
-                self.group.must(&["resume-motion"]);
+                self.group.release_stop();
             });
             assert_eq!(outcome["outcome"], "delivered", "{outcome}");
         }
