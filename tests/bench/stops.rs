@@ -112,21 +112,20 @@ impl Stopped<'_> {
 /// Adds the time from a stop order to the arm's answer: what its main loop adds to the motion.
 fn add_answers(report: &mut Report, situation: &str, group: &Group) {
     let client = StopClient::open(group.paths()).expect("a socket");
-    let orders = (0..ANSWERS).flat_map(|_| [MotionOrder::Stop, MotionOrder::Resume]);
-    let answers_ms: Vec<f64> = orders
-        .map(|order| {
-            std::thread::sleep(Duration::from_millis(20));
-            answer_ms(&client, order)
-        })
-        .collect();
+    let stop = || {
+        std::thread::sleep(Duration::from_millis(20));
+        answer_ms(&client)
+    };
+    let answers_ms: Vec<f64> = (0..ANSWERS).map(|_| stop()).collect();
+    group.release_stop();
     let note = format!("max {:.2} ms", percentile(&answers_ms, 1.0));
     report.add(&format!("stop order to the arm's answer: {situation}"), "ms", &answers_ms, &note);
 }
 
-/// Gives an order and returns the milliseconds until it is answered.
-fn answer_ms(client: &StopClient, order: MotionOrder) -> f64 {
+/// Gives a stop and returns the milliseconds until it is answered.
+fn answer_ms(client: &StopClient) -> f64 {
     let (begun, given) = (Instant::now(), clock::now());
-    client.send(order, given).expect("a running arm");
+    client.send(MotionOrder::Stop, given).expect("a running arm");
     let is_answer = |state: StopState| state.given_ns == given.ns();
     while !client.take().is_some_and(is_answer) {
         assert!(begun.elapsed() < Duration::from_secs(30), "no answer");

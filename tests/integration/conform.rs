@@ -94,6 +94,17 @@ fn each_fault_of_a_grounder_is_found_by_its_rule() {
 }
 
 #[test]
+fn service_that_does_not_become_ready_is_started_once() {
+    let broken = program("examples/broken_grounder").display().to_string();
+    let soon = ["--set", "group.services.grounding.start_deadline_s=1.0"];
+    let ended = conform("grounding", &soon, &[&broken, "--fault", "never-ready"]);
+    let found: Vec<_> = rules(&ended).iter().map(|rule| rule["found"].to_string()).collect();
+    let [first, others @ ..] = &found[..] else { panic!("{ended:?}") };
+    assert!(first.contains("expected READY=1"), "{found:?}");
+    assert!(others.iter().all(|other| other.contains("not tested")), "{found:?}");
+}
+
+#[test]
 fn wrong_command_lines_of_conform_are_refused() {
     for (options, command, what) in [
         (&["--rule", "beat"][..], "whichone-grounding", "did you mean `beats`?"),

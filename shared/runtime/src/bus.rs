@@ -3,16 +3,16 @@
 
 use crate::cleaner::await_cleanup;
 use crate::group::{GroupPaths, ShmName};
+use crate::shm_cleanup;
 use crate::wakes::Wakes;
 use iceoryx2::prelude::*;
 use messages::topics::{self, Topic};
 use messages::{Epoch, Incarnation, Service, Stamp};
 use std::cell::{Cell, RefCell};
+use std::os::unix::fs::MetadataExt;
 use std::rc::{Rc, Weak};
 
-mod alarm;
 mod any;
-mod counter;
 mod encoded;
 mod fixed;
 mod gate;
@@ -25,8 +25,6 @@ mod renewed;
 mod segment;
 mod segment_error;
 mod sender;
-mod sleeper;
-mod trigger;
 mod variant;
 mod wake;
 
@@ -37,9 +35,8 @@ pub use gate::rejected;
 pub use open::Topics;
 pub use raw::{RawReader, RawWriter};
 pub use segment_error::SegmentError;
-pub use sleeper::Woken;
 pub(crate) use variant::Ipc;
-pub use wake::{Joined, WakeListener, WakeNotifier};
+pub use wake::{Joined, WakeListener, WakeNotifier, Woken};
 
 /// A process's access to the group's topics. Not shared between threads.
 #[derive(Debug)]
@@ -174,6 +171,16 @@ pub(crate) fn config(name: &ShmName) -> Result<Config, BusError> {
     Ok(config)
 }
 
+fn open_node(place: &ShmName, name: &str) -> Result<Node<Ipc>, BusError> {
+    let config = config(place)?;
+    let name = NodeName::new(name).map_err(|e| BusError::ipc("node name", format!("{e:?}")))?;
+    let node = NodeBuilder::new()
+        .name(&name)
+        .config(&config)
+        .signal_handling_mode(SignalHandlingMode::Disabled);
+    create("node", || node.create::<Ipc>())
+}
+
 impl Bus {
     /// Opens the group's shared memory as process `name`.
     ///
@@ -188,17 +195,17 @@ impl Bus {
         if is_service {
             await_cleanup(paths);
         }
-        let config = config(&place)?;
-        let node_name =
-            NodeName::new(name).map_err(|e| BusError::ipc("node name", format!("{e:?}")))?;
-        let node = create("node", || {
-            NodeBuilder::new()
-                .name(&node_name)
-                .config(&config)
-                .signal_handling_mode(SignalHandlingMode::Disabled)
-                .create::<Ipc>()
-        })?;
-        let node = Rc::new(node);
+        let folder = || place.folder().metadata().map(|folder| folder.ino()).ok();
+        let ended = || BusError::ipc("shared memory", "the group has ended".to_owned());
+        let found = folder().ok_or_else(ended)?;
+        let node = open_node(&place, name);
+        // iceoryx2 makes its files again if the group ends meanwhile.
+        if folder() != Some(found) {
+            drop(node);
+            shm_cleanup::remove_entries(place.prefix());
+            return Err(ended());
+        }
+        let node = Rc::new(node?);
         let joins = if is_service { Joined::Service } else { Joined::Client };
         let (notifiers, writers) = (RefCell::default(), RefCell::default());
         let (paths, wakes) = (paths.clone(), Wakes::load(paths));

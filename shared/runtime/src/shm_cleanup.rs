@@ -185,21 +185,32 @@ pub fn remove_leftovers(paths: &GroupPaths) -> Vec<PathBuf> {
     if let Some(config) = place.as_ref().and_then(|place| config(place).ok()) {
         cleaner::clean(&config);
     }
-    let folder = place.map(|place| place.folder());
-    let left = leftovers(paths);
-    left.iter().for_each(|path| {
-        let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
-    });
+    // The folder goes first: a client that opens the group from now on removes what it makes again.
+    if let Some(place) = place {
+        let _ = fs::remove_dir_all(place.folder());
+    }
     // The bookkeeping of the group as a whole is always the last to go and not a leftover.
-    let is_left = |path: &PathBuf| !is_management(path) && folder.as_ref() != Some(path);
-    left.into_iter().filter(is_left).collect()
+    let removed = remove_entries(&paths.shm_stem());
+    removed.into_iter().filter(|path| !is_management(path)).collect()
+}
+
+/// Removes what this user has in shared memory under names that begin with `prefix`. Returns it.
+pub(crate) fn remove_entries(prefix: &str) -> Vec<PathBuf> {
+    let all: Vec<_> = own_entries(prefix).collect();
+    for path in &all {
+        let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    }
+    all
 }
 
 /// Files of the group in shared memory, of all its starts.
 pub fn leftovers(paths: &GroupPaths) -> Vec<PathBuf> {
+    own_entries(&paths.shm_stem()).collect()
+}
+
+fn own_entries(prefix: &str) -> impl Iterator<Item = PathBuf> {
     let user = geteuid().as_raw();
-    let is_ours = |path: &PathBuf| path.symlink_metadata().is_ok_and(|file| file.uid() == user);
-    entries(&paths.shm_stem()).filter(is_ours).collect()
+    entries(prefix).filter(move |path| path.symlink_metadata().is_ok_and(|file| file.uid() == user))
 }
 
 fn is_management(path: &Path) -> bool {
@@ -226,6 +237,18 @@ mod tests {
     use messages::Incarnation;
     use std::sync::mpsc;
     use std::time::Duration;
+
+    #[test]
+    fn process_that_opens_a_group_that_has_ended_leaves_nothing() {
+        let home = tempfile::tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &GroupName::new("ended").unwrap()).unwrap();
+        drop(Admin::open(&paths, Epoch(1)).unwrap());
+        assert_eq!(remove_leftovers(&paths), Vec::<PathBuf>::new());
+        // It has read the name before.
+        let opened = Bus::open(&paths, "client", Identity::default());
+        assert!(opened.unwrap_err().to_string().contains("the group has ended"));
+        assert_eq!(leftovers(&paths), Vec::<PathBuf>::new());
+    }
 
     #[test]
     fn service_that_starts_during_the_cleanup_joins_after_it() {

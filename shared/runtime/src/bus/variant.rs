@@ -1,15 +1,15 @@
 //! The variant of iceoryx2's services that a group uses: its `ipc::Service`, with segments that are
-//! reserved, private and never waited for without end (see [`Segment`]), and cheaper wake-ups (see
-//! [`super::trigger`]). Names and layout in shared
-//! memory are the same, so programs with iceoryx2's own variant take part.
+//! reserved, private and never waited for without end (see [`Segment`]). Names and layout in shared memory are the
+//! same, so programs with iceoryx2's own variant take part.
 
 use super::segment::Segment;
-use super::trigger::Trigger;
 use iceoryx2::service::Service;
 use iceoryx2::service::internal::ServiceInternal;
 use iceoryx2::unique_id_generator::unique_system_id::UniqueSystemId;
 use iceoryx2_bb_elementary_traits::testing::abandonable::Abandonable;
 use iceoryx2_bb_elementary_traits::zero_copy_send::ZeroCopySend;
+use iceoryx2_bb_lock_free::mpmc::counting_bit_set::RelocatableCountingBitSet;
+use iceoryx2_cal::event::trigger::{State, unix_datagram_socket::GenericUnixDatagramSocketTrigger};
 use iceoryx2_cal::resizable_shared_memory::dynamic::DynamicMemory;
 use iceoryx2_cal::shared_memory::common::details::{AllocatorDetails, Memory};
 use iceoryx2_cal::shm_allocator::{bump_allocator::BumpAllocator, pool_allocator::PoolAllocator};
@@ -19,6 +19,11 @@ use std::fmt::Debug;
 
 /// Payload memory of a writer.
 type Payload<A> = Memory<A, Segment<AllocatorDetails<A>>>;
+
+type Event = GenericUnixDatagramSocketTrigger<
+    RelocatableCountingBitSet,
+    Segment<State<RelocatableCountingBitSet, ()>>,
+>;
 
 /// Services between the processes of a group.
 #[derive(Clone, Debug)]
@@ -34,7 +39,7 @@ impl Service for Ipc {
     type SharedMemory = Payload<PoolAllocator>;
     type ResizableSharedMemory = DynamicMemory<PoolAllocator, Payload<PoolAllocator>>;
     type Connection = Connection<Segment<SharedManagementData>>;
-    type Event = Trigger;
+    type Event = Event;
     type Monitoring = monitoring::recommended::Ipc;
     type Reactor = reactor::recommended::Ipc;
     type ArcThreadSafetyPolicy<T: Send + Debug + Abandonable> =

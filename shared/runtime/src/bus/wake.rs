@@ -1,8 +1,6 @@
 //! Wake-ups. An event says only "look": it may come once for many messages, or never where its
 //! listener was dead, so the woken side always drains everything and also polls from time to time.
 
-use super::sleeper::{Sleeper, Woken};
-use super::trigger::borrow;
 use super::{Bus, BusError, Ipc, create};
 use crate::Span;
 use iceoryx2::port::{listener::Listener, notifier::Notifier};
@@ -10,16 +8,27 @@ use iceoryx2::prelude::*;
 use iceoryx2::service::port_factory::event::PortFactory;
 use messages::Service;
 use messages::topics::NODES_MAX;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use std::cell::OnceCell;
 use std::os::fd::BorrowedFd;
 use std::rc::Rc;
+use std::time::Duration;
+use std::{array, iter};
 
 /// Listens for wake-ups of one service.
 #[derive(Debug)]
 pub struct WakeListener {
-    sleeper: Sleeper,
     listener: Listener<Ipc>,
     _topic: PortFactory<Ipc>,
+}
+
+/// What has ended a sleep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Woken<const N: usize> {
+    /// A wake-up.
+    pub by_wake: bool,
+    /// Which of the sources are readable.
+    pub sources: [bool; N],
 }
 
 /// Who has joined the group and asks writers for their latest messages.
@@ -84,27 +93,34 @@ impl Bus {
     pub fn wake_listener(&self, service: Service) -> Result<WakeListener, BusError> {
         let topic = open(&self.node, service)?;
         let listener = create(service.name(), || topic.listener_builder().create())?;
-        let sleeper = create(service.name(), || Sleeper::new(borrow(listener.file_descriptor())))?;
-        Ok(WakeListener { sleeper, listener, _topic: topic })
+        Ok(WakeListener { listener, _topic: topic })
     }
 }
 
 impl WakeListener {
     /// Sleeps until there is a wake-up, one of `sources` is readable, or `longest` has passed. After an
-    /// interruption everything counts as ready. A source is open from the first sleep on it to the last
-    /// one of all.
+    /// interruption everything counts as ready.
     pub fn sleep<const N: usize>(
         &self,
         sources: &[Option<BorrowedFd<'_>>; N],
         longest: Span,
     ) -> Woken<N> {
-        self.sleeper.sleep(sources, longest)
+        sleep(self.socket(), sources, longest)
+    }
+
+    fn socket(&self) -> BorrowedFd<'_> {
+        let descriptor = self.listener.file_descriptor();
+        // SAFETY: the listener holds the descriptor open as long as the result borrows it; nobody closes it
+        // through the result.
+        #[allow(unsafe_code)]
+        unsafe {
+            BorrowedFd::borrow_raw(descriptor.native_handle())
+        }
     }
 
     /// Takes all pending wake-ups, to be called before topics are read. Returns who has joined, if
     /// anybody: its readers wait for [`Bus::connect`].
     pub fn take(&self) -> Option<Joined> {
-        self.sleeper.empty(borrow(self.listener.file_descriptor()));
         let mut joined = None;
         let taken = self.listener.try_wait(|event| joined = joined.max(Joined::of_event(event.id)));
         if let Err(error) = taken {
@@ -112,6 +128,28 @@ impl WakeListener {
         }
         joined
     }
+}
+
+fn sleep<const N: usize>(
+    socket: BorrowedFd<'_>,
+    sources: &[Option<BorrowedFd<'_>>; N],
+    longest: Span,
+) -> Woken<N> {
+    // A source that is not there stands as the socket, asked for nothing, so that each keeps its place.
+    let source = |fd: &Option<_>| match fd {
+        Some(fd) => PollFd::from_borrowed_fd(*fd, PollFlags::IN),
+        None => PollFd::from_borrowed_fd(socket, PollFlags::empty()),
+    };
+    let own = PollFd::from_borrowed_fd(socket, PollFlags::IN);
+    let mut polled: Vec<_> = iter::once(own).chain(sources.iter().map(source)).collect();
+    // A span that no timeout can state is longer than any process lives.
+    let longest = Timespec::try_from(Duration::from_nanos(longest.0)).ok();
+    if poll(&mut polled, longest.as_ref()).is_err() {
+        return Woken { by_wake: true, sources: [true; N] };
+    }
+    let is_ready = |n: usize| !polled[n].revents().is_empty();
+    let sources = array::from_fn(|n| sources[n].is_some() && is_ready(n + 1));
+    Woken { by_wake: is_ready(0), sources }
 }
 
 impl WakeNotifier {
@@ -165,5 +203,32 @@ impl Port {
         let topic = open(node, service)?;
         let notifier = create(service.name(), || topic.notifier_builder().create())?;
         Ok(Self { notifier, _topic: topic })
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+mod tests {
+    use super::*;
+    use crate::clock;
+    use std::os::fd::AsFd;
+    use std::os::unix::net::UnixDatagram;
+
+    #[test]
+    fn sleep_ends_on_time_or_by_what_it_waits_for() {
+        let (here, there) = UnixDatagram::pair().unwrap();
+        let (source, other) = UnixDatagram::pair().unwrap();
+        let sources = [None, Some(source.as_fd())];
+        let asleep = |longest| sleep(here.as_fd(), &sources, longest);
+        let woken = |by_wake, by_source| Woken { by_wake, sources: [false, by_source] };
+        for ms in [20, 1, 0, 5] {
+            let began = clock::now();
+            assert_eq!(asleep(Span::from_ms(ms)), woken(false, false));
+            assert!(clock::now().since(began) >= Span::from_ms(ms));
+        }
+        there.send(&[0]).unwrap();
+        assert_eq!(asleep(Span(u64::MAX)), woken(true, false));
+        other.send(&[0]).unwrap();
+        assert_eq!(asleep(Span::from_ms(1_000)), woken(true, true));
     }
 }
