@@ -12,14 +12,12 @@ use whichone_tests::shortage::{
 };
 use whichone_tests::{Group, wait_for};
 
-/// Stops in one pick: all of them in its first motion. One of an arm that stands does not count.
-const STOPS: u32 = 8;
-/// Picks in each situation.
-const PICKS: u32 = 3;
-/// Orders to stop, and as many to resume, whose answers are timed.
+/// Picks in each situation, each stopped once in its first motion. A stop of an arm that stands does not count.
+const PICKS: u32 = 5;
+/// Orders to stop whose answers are timed.
 const ANSWERS: usize = 100;
 
-/// A group in which one pick after another is stopped several times.
+/// A group in which one pick after another is stopped.
 struct Stopped<'a> {
     name: &'a str,
     group: &'a Group,
@@ -70,18 +68,12 @@ impl Stopped<'_> {
     fn measure<T>(&self, report: &mut Report, begin: impl Fn() -> T, end: impl Fn(T)) {
         let joints = JointWatch::open(self.group);
         let (mut stops_ms, mut recoveries_s) = (Vec::new(), Vec::new());
-        for _ in 0..self.picks {
+        for pick in 0..self.picks {
             let outcome = self.group.fetch_while("the clear bowl", "clear", || {
                 joints.wait_moving();
                 let shortage = begin();
-                for n in 0..STOPS {
-                    joints.wait_moving();
-                    std::thread::sleep(Duration::from_millis(u64::from(n % 4) * 40));
-                    stops_ms.extend(joints.stop(self.group));
-                    if n + 1 < STOPS {
-                        self.group.release_stop();
-                    }
-                }
+                std::thread::sleep(Duration::from_millis(u64::from(pick % 4) * 40));
+                stops_ms.extend(joints.stop(self.group));
                 if self.kills_arm {
                     self.group.signal("arm", Signal::KILL);
                 }
