@@ -12,12 +12,14 @@ use whichone_tests::shortage::{
 };
 use whichone_tests::{Group, wait_for};
 
-/// Picks in each situation, each stopped once in its first motion. A stop of an arm that stands does not count.
-const PICKS: u32 = 5;
+/// Stops in one pick: all of them in its first motion. One of an arm that stands does not count.
+const STOPS: u32 = 3;
+/// Picks in each situation.
+const PICKS: u32 = 4;
 /// Orders to stop whose answers are timed.
 const ANSWERS: usize = 100;
 
-/// A group in which one pick after another is stopped.
+/// A group in which one pick after another is stopped several times.
 struct Stopped<'a> {
     name: &'a str,
     group: &'a Group,
@@ -39,7 +41,8 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
     add_answers(report, busy_disk, &group);
     drop(busy);
     let hang = |pid: Pid| kill_process(pid, Signal::STOP).map(|()| pid).expect("a process of ours");
-    let go_on = |pid| kill_process(pid, Signal::CONT).expect("a process of ours");
+    // The supervisor may have ended a service that hung for so long.
+    let go_on = |pid| drop(kill_process(pid, Signal::CONT));
     stopped("hung supervisor").measure(report, || hang(supervisor(&group)), go_on);
     stopped("stopped policy").measure(report, || hang(group.pid("policy")), go_on);
     let arm = || NoDescriptors::of(group.pid("arm"));
@@ -72,8 +75,14 @@ impl Stopped<'_> {
             let outcome = self.group.fetch_while("the clear bowl", "clear", || {
                 joints.wait_moving();
                 let shortage = begin();
-                std::thread::sleep(Duration::from_millis(u64::from(pick % 4) * 40));
-                stops_ms.extend(joints.stop(self.group));
+                for n in 0..STOPS {
+                    joints.wait_moving();
+                    std::thread::sleep(Duration::from_millis(u64::from((pick + n) % 4) * 40));
+                    stops_ms.extend(joints.stop(self.group));
+                    if n + 1 < STOPS {
+                        self.group.release_stop();
+                    }
+                }
                 if self.kills_arm {
                     self.group.signal("arm", Signal::KILL);
                 }
