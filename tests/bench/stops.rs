@@ -42,7 +42,9 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
     drop(busy);
     let hang = |pid: Pid| kill_process(pid, Signal::STOP).map(|()| pid).expect("a process of ours");
     // The supervisor may have ended a service that hung for so long.
-    let go_on = |pid| drop(kill_process(pid, Signal::CONT));
+    let go_on = |pid| {
+        let _ = kill_process(pid, Signal::CONT);
+    };
     stopped("hung supervisor").measure(report, || hang(supervisor(&group)), go_on);
     stopped("stopped policy").measure(report, || hang(group.pid("policy")), go_on);
     let arm = || NoDescriptors::of(group.pid("arm"));

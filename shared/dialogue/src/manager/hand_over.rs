@@ -10,6 +10,7 @@ use super::evidence::Mark;
 use super::line::Preface;
 use super::put_back::{WithUser, refuse};
 use super::state::{Interaction, Preference, State, Utterance};
+use super::turn::Turn;
 use crate::ids::PromptId;
 use crate::time::{Span, Time};
 
@@ -78,19 +79,14 @@ impl Manager {
     }
 
     /// Takes up the interaction whose object was refused, without that object.
-    pub(super) fn reopen(
-        &mut self,
-        state: &mut State,
-        utterance: &Utterance,
-        (heard, refusal): (Heard<'_>, Heard<'_>),
-        at: Time,
-    ) {
+    pub(super) fn reopen(&mut self, state: &mut State, turn: Turn<'_>) {
+        let Turn { utterance, heard, refusal, at, .. } = turn;
         let Some(refused) = Self::refuse_last(state, at) else { return };
         self.open_like(state, utterance, refused);
         self.retract(state, &heard);
         let Some(open) = &mut state.open else { return };
         self.take_in(open, heard);
-        self.take_in(open, refusal);
+        refusal.into_iter().for_each(|refusal| self.take_in(open, refusal));
         self.defer(state, utterance, Preference::Best, Preface::Sorry, at);
         if !utterance.more {
             self.decide_deferred(state, at);

@@ -10,6 +10,7 @@ use super::acts::{say, set};
 use super::attribution::Heard;
 use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, MotionStop, State};
+use super::turn::Turn;
 use crate::ActKind;
 use crate::ids::PromptId;
 use crate::time::Time;
@@ -59,34 +60,33 @@ impl Manager {
         set(state, Act { kind: ActKind::Say, prompt, presentation: 1, line, ..reasons });
     }
 
-    /// Processes an answer to the announcement of a pick that was held back; returns whether it was
-    /// confirmed.
-    pub(super) fn confirms(&mut self, state: &mut State, heard: &Heard<'_>, at: Time) -> bool {
-        let held = state.open.as_ref().and_then(|open| open.held_back.as_ref());
-        let Some(object) = held.and_then(|held| self.setup.scene.object_named(&held.name)) else {
-            return false;
-        };
+    /// Returns the object of the pick that was held back, if an answer confirms it.
+    pub(super) fn confirmed(&self, state: &State, heard: &Heard<'_>) -> Option<ObjectId> {
+        let held = state.open.as_ref()?.held_back.as_ref()?;
+        let object = self.setup.scene.object_named(&held.name)?;
         let yes = heard.interpretations.first().is_some_and(|(_, question, reading)| {
             let has = |word: &scene::WordId| self.setup.model.has_word(object, *word);
             *question == Question::Point(object)
                 && reading.response == Response::Yes
                 && reading.base.iter().all(has)
         });
-        if !yes && !self.asks_for_kept(state, heard) {
-            return false;
-        }
+        (yes || self.asks_for_kept(state, heard)).then_some(object)
+    }
+
+    /// Carries out the pick that was held back, as soon as it can be.
+    pub(super) fn confirm(&mut self, state: &mut State, turn: &Turn<'_>) {
+        let Some(object) = self.confirmed(state, &turn.heard) else { return };
         if let Some(held) = state.open.as_mut().and_then(|open| open.held_back.as_mut()) {
             held.is_confirmed = true;
         }
         if state.to_put_back().is_some() {
             // Its turn comes once the other object is back.
-            self.reply(state, Remark::AllRight, at);
+            self.reply(state, Remark::AllRight, turn.at);
         } else if state.motion_stop.is_latched() {
-            say(state, Content::Confirmed, at);
+            say(state, Content::Confirmed, turn.at);
         } else {
-            self.release(state, object, at);
+            self.release(state, object, turn.at);
         }
-        true
     }
 
     /// Reports the effect of a stop that a user ordered, as the arm does: it is at rest, or the stop is not

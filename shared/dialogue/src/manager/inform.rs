@@ -1,75 +1,48 @@
 //! Content of an utterance about the wanted object.
 
-use scene::{Question, Reading, Reference, Response, Role};
+use scene::{Question, Reading, Reference, Response};
 
 use super::Manager;
 use super::attribution::Heard;
 use super::concede::likeliest;
 use super::evidence::{Evidence, Mark};
 use super::line::{AboutObjects, Preface, Remark};
-use super::references::reference;
+use super::rules::CONTENT;
 use super::state::{Basis, Deferred, Interaction, Preference, State, Utterance};
+use super::turn::Turn;
 use crate::Interpretation;
 use crate::time::Time;
 
 impl Manager {
-    /// Scores an utterance against the questions that it may answer, and decides again.
-    pub(super) fn inform(
-        &mut self,
-        state: &mut State,
-        utterance: &Utterance,
-        shares: &[f64],
-        at: Time,
-    ) {
-        let mut heard = self.interpret(state, utterance, shares);
-        let refers = reference(&heard);
-        if self.answers_put_back(state, &heard, at) {
-            return;
-        }
-        let mut is_refused = false;
-        if state.open.is_none() {
-            let is_request = self.is_request(utterance);
-            let mut spoken_of =
-                self.accepted(state, &heard).or_else(|| self.resolve(state, &heard));
-            if let Some(refusal) = self.refusal(state, &heard) {
-                if spoken_of.is_none() {
-                    return self.reopen(state, utterance, (heard, refusal), at);
-                }
-                // "and the other one" refuses nothing.
-                is_refused = refers != Reference::Other;
-            } else if is_request && spoken_of.is_none() {
-                spoken_of = self.listed(state, &heard);
-            }
-            if spoken_of.is_none() && !is_request {
-                return;
-            }
-            // Of a quality there may be another way to say it.
-            let thing = heard.unknown.filter(|word| word.role == Role::Kind);
-            if let (Some(thing), None, true) = (thing, &spoken_of, says_nothing(&heard)) {
-                return self.reply(state, Remark::Unknown(thing.clone()), at);
-            }
-            let refused = is_refused.then(|| Self::refuse_last(state, at)).flatten();
-            let refused = refused.map(|it| Mark::Not(it.picked));
-            self.begin(state, utterance, spoken_of.into_iter().chain(refused));
-            // What was asked before is over.
-            heard.interpretations.iter_mut().for_each(|(_, asked, _)| *asked = Question::None);
-        }
+    /// Handles what an utterance says of the wanted object.
+    pub(super) fn inform(&mut self, state: &mut State, turn: Turn<'_>) {
+        self.apply(CONTENT, state, turn);
+    }
+
+    /// Opens an interaction with what is known of its object: what was spoken of, or refused.
+    pub(super) fn begin(&mut self, state: &mut State, mut turn: Turn<'_>) {
+        // "and the other one" refuses nothing.
+        let is_refused = turn.refusal.is_some() && turn.refers != Reference::Other;
+        let refused = is_refused.then(|| Self::refuse_last(state, turn.at)).flatten();
+        let refused = refused.map(|it| Mark::Not(it.picked));
+        self.open(state, turn.utterance);
         let Some(open) = &mut state.open else { return };
-        open.utterances.1 = utterance.seq;
-        open.silences = 0;
-        if open.pick.is_some() {
-            return self.reconsider(state, heard, at);
+        for mark in turn.spoken_of.take().into_iter().chain(refused) {
+            self.take_in(open, Heard { mark: Some(mark), ..Heard::default() });
         }
-        let preference = self.concede(open, &heard.interpretations);
-        let preface = match self.enqueue(state, &heard) {
-            _ if is_refused => Preface::Sorry,
-            Preface::None => self.preface(&heard),
-            queued => queued,
-        };
-        self.retract(state, &heard);
-        if self.confirms(state, &heard, at) {
-            return;
-        }
+        // What was asked before is over.
+        turn.heard.interpretations.iter_mut().for_each(|(_, asked, _)| *asked = Question::None);
+        let preface = if is_refused { Preface::Sorry } else { Preface::None };
+        self.consider(state, turn, preface);
+    }
+
+    /// Scores an utterance against the questions that it may answer, and decides again. The preface stands in the
+    /// place of a remark on the utterance.
+    pub(super) fn consider(&mut self, state: &mut State, turn: Turn<'_>, preface: Preface) {
+        self.note_said(state, &turn);
+        let (preference, remark) = self.note_concessions(state, &turn.heard);
+        let preface = if preface == Preface::None { remark } else { preface };
+        let Turn { utterance, shares, heard, refers, at, .. } = turn;
         let Some(open) = &mut state.open else { return };
         let held_back = open.held_back.take_if(|it| !it.is_kept);
         let held_back = held_back.and_then(|it| self.setup.scene.object_named(&it.name));
@@ -79,33 +52,43 @@ impl Manager {
         if let mark @ Some(_) = self.compared(open, refers) {
             self.take_in(open, Heard { mark, ..Heard::default() });
         }
-        self.note_answer(state, utterance, shares);
+        self.note_answer(state, utterance, &shares);
         self.defer(state, utterance, preference, preface, at);
         if !utterance.more {
             self.decide_deferred(state, at);
         }
     }
 
+    /// Notes an utterance in the open interaction.
+    pub(super) fn note_said(&self, state: &mut State, turn: &Turn<'_>) {
+        let Some(open) = &mut state.open else { return };
+        open.utterances.1 = turn.utterance.seq;
+        open.silences = 0;
+    }
+
+    /// Notes what an utterance concedes, asks for further, and takes back. Returns what the user wants to be
+    /// decided, and what is said about it before the next question.
+    pub(super) fn note_concessions(
+        &self,
+        state: &mut State,
+        heard: &Heard<'_>,
+    ) -> (Preference, Preface) {
+        let Some(open) = &mut state.open else { return Default::default() };
+        let preference = self.concede(open, &heard.interpretations);
+        let preface = match self.enqueue(state, heard) {
+            Preface::None => self.preface(heard),
+            queued => queued,
+        };
+        self.retract(state, heard);
+        (preference, preface)
+    }
+
     /// Returns the object that the robot has just offered to fetch, where that is accepted.
-    fn accepted(&self, state: &State, heard: &Heard<'_>) -> Option<Mark> {
+    pub(super) fn accepted(&self, state: &State, heard: &Heard<'_>) -> Option<Mark> {
         let offered = self.offered(state)?;
         let (_, question, reading) = heard.interpretations.first()?;
         let accepts = *question == Question::Point(offered) && reading.response == Response::Yes;
         (accepts && self.fits(reading, offered)).then(|| self.one_of(&[offered]))
-    }
-
-    /// Opens an interaction with what is known of its object: what was spoken of, or refused.
-    fn begin(
-        &mut self,
-        state: &mut State,
-        utterance: &Utterance,
-        marks: impl Iterator<Item = Mark>,
-    ) {
-        self.open(state, utterance);
-        let Some(open) = &mut state.open else { return };
-        for mark in marks {
-            self.take_in(open, Heard { mark: Some(mark), ..Heard::default() });
-        }
     }
 
     /// Updates the interaction's posterior with an utterance, and remembers its content.
@@ -173,7 +156,7 @@ impl Manager {
 
     /// Returns whether the utterance can open an interaction: a mere answer means nothing where no
     /// question was asked, and neither does a gesture that does not count.
-    fn is_request(&self, utterance: &Utterance) -> bool {
+    pub(super) fn is_request(&self, utterance: &Utterance) -> bool {
         let all = utterance.interpretations.iter().map(|it| &it.reading);
         let only_gesture =
             utterance.gesture.is_some() && all.clone().all(|it| *it == Reading::default());
@@ -213,7 +196,8 @@ impl Manager {
     }
 }
 
-fn says_nothing(heard: &Heard) -> bool {
+/// Returns whether no reading has a content.
+pub(super) fn says_nothing(heard: &Heard) -> bool {
     heard.interpretations.iter().all(|(.., it)| *it == Reading::default())
 }
 

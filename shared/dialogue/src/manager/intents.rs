@@ -1,15 +1,17 @@
-//! Dispatch of an utterance by the user's intent.
+//! What the user wants of the robot beside an object: intents, cancelling, starting over.
 
 use scene::{Intent, Reading, Reference, Response};
 
 use super::Manager;
-use super::acts::{call_off, repeat, say};
+use super::acts::{call_off, say};
 use super::attribution::{content, share_of};
 use super::concede::Conceded;
 use super::line::{Content, Preface, Remark};
 use super::put_back::{Progress, PuttingBack};
 use super::replies::likeliest;
+use super::rules::INTENTS;
 use super::state::{State, StopOrder, Utterance};
+use super::turn::Turn;
 use crate::time::Time;
 use crate::{ActKind, Interpretation, Outcome};
 
@@ -21,66 +23,25 @@ impl Manager {
         self.expire(state, at);
         let shares = self.attribute(state, utterance);
         let before = state.act.id;
-        if self.asks_for_another(state, utterance) {
-            let alone = alone(utterance);
-            self.inform(state, utterance, &alone, at);
-            return;
+        let turn = self.turn(state, utterance, shares, at);
+        // The arm's report is on its way.
+        let is_stop = matches!(turn.intent, Intent::Stop | Intent::StopAndCancel);
+        self.apply(INTENTS, state, turn);
+        let is_silent = state.act.id == before && !is_stop && !is_about_to_speak(state);
+        if utterance.typed && is_silent {
+            let remark = self.status(state);
+            self.reply(state, remark, at);
         }
-        let intent = match intent(utterance, &shares, state.open.is_some()) {
+    }
+
+    /// Returns the intent of an utterance in the present state.
+    pub(super) fn intent(&self, state: &State, utterance: &Utterance, shares: &[f64]) -> Intent {
+        match likeliest_intent(utterance, shares, state.open.is_some()) {
             Intent::Inform if self.asks_to_put_back(state, utterance) => Intent::PutBack,
             Intent::GoOn if !state.motion_stop.is_latched() || is_confirmed(state, utterance) => {
                 answered(utterance)
             }
             intent => intent,
-        };
-        match intent {
-            Intent::Inform => self.inform(state, utterance, &shares, at),
-            // "That one over there" has no word of the scene, but the gesture counts.
-            Intent::None if self.is_pointing(utterance) => {
-                self.inform(state, utterance, &shares, at);
-            }
-            // Talk that is not meant for the robot stays without an answer.
-            Intent::None if !utterance.typed => {}
-            Intent::None => self.reply(state, Remark::NotUnderstood, at),
-            // "Don't get me the red one": another one may be wanted.
-            Intent::Cancel if excludes(utterance) => match state.open {
-                Some(_) => self.inform(state, utterance, &shares, at),
-                None => self.reply(state, Remark::AllRight, at),
-            },
-            Intent::Cancel => self.cancel(state, at),
-            // "Stop, not that one": what it says of the object counts as well.
-            Intent::Stop if state.open.is_some() && is_about_object(utterance) => {
-                self.inform(state, utterance, &shares, at);
-                order_stop(state, utterance);
-            }
-            Intent::StopAndCancel => {
-                self.cancel(state, at);
-                order_stop(state, utterance);
-            }
-            Intent::Stop => order_stop(state, utterance),
-            Intent::Repeat if state.act.line.content != Content::Silence => repeat(state, at),
-            Intent::StartOver => {
-                self.start_over(state, at);
-                if let Some(request) = request_after(utterance) {
-                    self.inform(state, &request, &alone(&request), at);
-                }
-            }
-            Intent::PutBack => self.put_back(state, utterance, at),
-            intent => {
-                let remark = self.answer(state, utterance, intent);
-                self.reply(state, remark, at);
-            }
-        }
-        let is_deferred = state.open.as_ref().is_some_and(|open| open.deferred.is_some());
-        // The standing question is on its way.
-        let is_asked = state.open.is_some() && state.act.kind == ActKind::Ask;
-        let is_deferred = is_deferred && state.to_put_back().is_none();
-        // The arm's report is on its way.
-        let is_stop = matches!(intent, Intent::Stop | Intent::StopAndCancel);
-        let is_answered = is_deferred || is_asked || is_stop;
-        if utterance.typed && state.act.id == before && !is_answered {
-            let remark = self.status(state);
-            self.reply(state, remark, at);
         }
     }
 
@@ -105,7 +66,7 @@ impl Manager {
     }
 
     /// "again!" after a hand-over.
-    fn asks_for_another(&self, state: &State, utterance: &Utterance) -> bool {
+    pub(super) fn asks_for_another(&self, state: &State, utterance: &Utterance) -> bool {
         let is_again = |it: &Interpretation| {
             it.answers.is_none()
                 && it.reading.refers == Reference::Same
@@ -115,8 +76,16 @@ impl Manager {
         is_over && utterance.interpretations.iter().any(is_again)
     }
 
-    /// Forgets what was said of the wanted object, and waits for it.
-    fn start_over(&mut self, state: &mut State, at: Time) {
+    /// Forgets what was said of the wanted object, and waits for it, unless the same utterance tells it.
+    pub(super) fn start_over(&mut self, state: &mut State, turn: &Turn<'_>) {
+        self.forget(state, turn.at);
+        if let Some(request) = request_after(turn.utterance) {
+            let turn = self.turn_alone(state, &request, turn.at);
+            self.inform(state, turn);
+        }
+    }
+
+    fn forget(&mut self, state: &mut State, at: Time) {
         let beginning = self.beginning(state);
         let is_putting_back = state.to_put_back().is_some();
         match &mut state.open {
@@ -145,19 +114,27 @@ impl Manager {
     }
 }
 
+/// Returns whether an answer comes without a further word of the user: a decision is deferred, or the standing
+/// question is on its way.
+fn is_about_to_speak(state: &State) -> bool {
+    let Some(open) = &state.open else { return false };
+    let is_deferred = open.deferred.is_some() && state.to_put_back().is_none();
+    is_deferred || state.act.kind == ActKind::Ask
+}
+
 /// Notes an order to stop, which the speech service has given to the arm: the robot reports its effect once
 /// the arm has.
-fn order_stop(state: &mut State, utterance: &Utterance) {
+pub(super) fn order_stop(state: &mut State, utterance: &Utterance) {
     state.stop_order = Some(StopOrder { accepted: utterance.accepted, is_late: false });
 }
 
 /// Returns whether it withdraws only what it describes.
-fn excludes(utterance: &Utterance) -> bool {
+pub(super) fn excludes(utterance: &Utterance) -> bool {
     likeliest(utterance, Intent::Cancel).is_some_and(|reading| !reading.excluded.is_empty())
 }
 
 /// Returns whether an order to stop also tells what is wanted or not.
-fn is_about_object(utterance: &Utterance) -> bool {
+pub(super) fn is_about_object(utterance: &Utterance) -> bool {
     likeliest(utterance, Intent::Stop).is_some_and(|it| *content(it) != Reading::default())
 }
 
@@ -178,13 +155,6 @@ fn answered(utterance: &Utterance) -> Intent {
     if utterance.interpretations.iter().any(answers) { Intent::Inform } else { Intent::None }
 }
 
-/// Returns the shares of an utterance that answers nothing.
-fn alone(utterance: &Utterance) -> Vec<f64> {
-    let mut shares = vec![0.0; utterance.presentations.len()];
-    shares.push(1.0);
-    shares
-}
-
 /// Returns what is asked for beside starting over: "start over, I want the ladle".
 fn request_after(utterance: &Utterance) -> Option<Utterance> {
     let asks = |it: &&Interpretation| {
@@ -200,7 +170,7 @@ fn request_after(utterance: &Utterance) -> Option<Utterance> {
 
 /// Returns the most probable intent, over all interpretations. Where nothing is open, "thank you, that
 /// is perfect" is thanks and no answer.
-fn intent(utterance: &Utterance, shares: &[f64], is_open: bool) -> Intent {
+fn likeliest_intent(utterance: &Utterance, shares: &[f64], is_open: bool) -> Intent {
     let mut alone = utterance.interpretations.iter().filter(|it| it.answers.is_none());
     if let Some(intent @ (Intent::Thank | Intent::Greet | Intent::Leave)) =
         alone.next().map(|it| it.reading.intent).filter(|_| !is_open)

@@ -5,7 +5,8 @@
 //! |---|---|
 //! | `setup.rs` | what the manager decides by |
 //! | `state.rs`, `line.rs` | state, causes of its changes, acts and lines |
-//! | `intents.rs` | dispatch of an utterance by the user's intent |
+//! | `rules.rs` | the rules for an utterance, in order; `turn.rs`: what they ask of it |
+//! | `intents.rs` | intents: cancelling, starting over, stopping |
 //! | `attribution.rs` | the questions that an utterance answers |
 //! | `inform.rs`, `correct.rs` | content of an utterance: while deciding, and while the arm fetches |
 //! | `concede.rs` | what the user cannot tell, and what does not matter |
@@ -44,8 +45,10 @@ mod reconfigure;
 mod references;
 mod refold;
 mod replies;
+mod rules;
 mod setup;
 mod state;
+mod turn;
 
 pub use concede::Conceded;
 pub use evidence::{Evidence, Mark, NAMES_MAX};
@@ -59,7 +62,7 @@ pub use refold::{Mismatch, refold, refold_since};
 pub use setup::Setup;
 pub use state::{
     Act, Basis, Cause, Deferred, Interaction, KnownObject, MotionStop, PROMPTS_MAX, Preference,
-    Prompt, Record, State, StopOrder, Timing, Utterance,
+    Prompt, Record, Stage, State, StopOrder, Timing, Utterance,
 };
 
 use acts::{order_again, say, set, set_reasons};

@@ -9,6 +9,7 @@ use super::acts::{next_key, say, say_with, set};
 use super::attribution::Heard;
 use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, Basis, State, Utterance, push_bounded};
+use super::turn::Turn;
 use crate::ids::{InteractionId, PickId, PromptId};
 use crate::time::{Span, Time};
 use crate::{ActKind, Outcome, PickOutcome};
@@ -201,29 +202,29 @@ impl Manager {
         }
     }
 
-    /// Processes an answer to a line about the object that goes back to its place; returns whether it
-    /// was one.
-    pub(super) fn answers_put_back(
-        &mut self,
-        state: &mut State,
-        heard: &Heard<'_>,
-        at: Time,
-    ) -> bool {
-        let Some(it) = &state.putting_back else { return false };
-        let (progress, object) = (it.progress, it.object);
+    /// Returns the answer to a line about the object that goes back to its place, if it is one.
+    pub(super) fn put_back_answer(&self, state: &State, heard: &Heard<'_>) -> Option<Response> {
+        let it = state.putting_back.as_ref()?;
         let Some((_, Question::Point(asked), reading)) = heard.interpretations.first() else {
-            return false;
+            return None;
         };
-        let is_of_it = *asked == object
-            && reading.base.iter().all(|word| self.setup.model.has_word(*asked, *word));
-        match (reading.response, progress) {
-            (Response::Yes, Progress::HeldBack { .. }) if is_of_it => {
-                self.confirm_put_back(state, at);
-            }
-            (Response::No, _) if is_of_it => self.withdraw_put_back(state, at),
-            _ => return false,
+        let has = |word: &WordId| self.setup.model.has_word(*asked, *word);
+        let is_of_it = *asked == it.object && reading.base.iter().all(has);
+        let is_answer = match reading.response {
+            Response::Yes => matches!(it.progress, Progress::HeldBack { .. }),
+            Response::No => true,
+            _ => false,
+        };
+        (is_of_it && is_answer).then_some(reading.response)
+    }
+
+    /// Processes an answer to a line about the object that goes back to its place.
+    pub(super) fn answer_put_back(&mut self, state: &mut State, turn: &Turn<'_>) {
+        match self.put_back_answer(state, &turn.heard) {
+            Some(Response::Yes) => self.confirm_put_back(state, turn.at),
+            Some(_) => self.withdraw_put_back(state, turn.at),
+            None => {}
         }
-        true
     }
 
     fn confirm_put_back(&mut self, state: &mut State, at: Time) {

@@ -65,6 +65,31 @@ pub struct State {
     pub timing: Timing,
 }
 
+/// How far the dialogue has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// No interaction is open.
+    Idle,
+    /// The wanted object is being found out.
+    Deciding,
+    /// A pick waits for the release of the motion stop, or for a word about what the gripper has kept.
+    HeldBack,
+    /// The arm has the order to fetch an object, or to leave it.
+    Fetching,
+}
+
+impl State {
+    /// Returns how far the dialogue has come.
+    pub fn stage(&self) -> Stage {
+        match &self.open {
+            None => Stage::Idle,
+            Some(open) if open.pick.is_some() => Stage::Fetching,
+            Some(open) if open.held_back.is_some() => Stage::HeldBack,
+            Some(_) => Stage::Deciding,
+        }
+    }
+}
+
 /// The motion stop as the arm reports it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MotionStop {
