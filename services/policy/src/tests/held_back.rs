@@ -76,10 +76,10 @@ fn the_stop_is_heard_from_the_arm() {
     let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let status = |stopped| In::Arm(ArmStatus { stopped, ..ArmStatus::default() });
     assert_eq!(tell(&mut node, status(1), at(1)).0.len(), 1);
-    assert!(node.state().motion_stop.is_latched());
+    assert!(node.state().stop.motion.is_latched());
     assert!(tell(&mut node, status(1), at(2)).0.is_empty());
     assert_eq!(tell(&mut node, status(0), at(3)).0.len(), 1);
-    assert!(!node.state().motion_stop.is_latched());
+    assert!(!node.state().stop.motion.is_latched());
 }
 
 /// How to resume: words do not.
@@ -103,7 +103,7 @@ fn words_to_go_on_are_told_how_to_resume() {
         let after = reply(&mut manager, &stopped, reading.clone());
         assert_eq!(text(&after), STILL_STOPPED, "{reading:?}");
         assert_eq!((after.act.kind, after.act.pick), (ActKind::Pick, fetching.act.pick));
-        assert!(after.motion_stop.is_latched());
+        assert!(after.stop.motion.is_latched());
     }
     // At rest, too.
     let idle = manager.next(&manager.first(), &Cause::MotionStop(MotionStop::Stopped), at(0));
