@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::Config;
+use dialogue::Rng;
 use messages::{Change, Detection, Look, Sighting, TableView};
 use scene::Scene;
 

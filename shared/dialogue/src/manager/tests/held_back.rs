@@ -1,11 +1,9 @@
 //! Picks that are decided while the motion stop is latched.
 
-use super::{answer, at, first, manager, remark, reply, tell, text, words};
-use crate::{In, PolicyNode};
-use dialogue::manager::{Cause, Manager, MotionStop, State};
-use messages::{ActKind, ArmStatus};
+use super::fixture::{answer, at, first, manager, remark, reply, text, words};
+use crate::ActKind;
+use crate::manager::{Cause, Manager, MotionStop, State};
 use scene::{Intent, Reading, Response};
-use service::Node;
 
 fn stopped(manager: &mut Manager, said: &[&str]) -> State {
     let state = manager.next(&manager.first(), &Cause::MotionStop(MotionStop::Stopped), at(0));
@@ -69,17 +67,6 @@ fn a_stop_changes_no_order() {
     let stop = manager.next(&state, &Cause::MotionStop(MotionStop::Stopped), at(2));
     assert_eq!(stop.act, state.act);
     assert_eq!(resume(&mut manager, &stop).act, state.act);
-}
-
-#[test]
-fn the_stop_is_heard_from_the_arm() {
-    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
-    let status = |stopped| In::Arm(ArmStatus { stopped, ..ArmStatus::default() });
-    assert_eq!(tell(&mut node, status(1), at(1)).0.len(), 1);
-    assert!(node.state().motion_stop.is_latched());
-    assert!(tell(&mut node, status(1), at(2)).0.is_empty());
-    assert_eq!(tell(&mut node, status(0), at(3)).0.len(), 1);
-    assert!(!node.state().motion_stop.is_latched());
 }
 
 /// How to resume: words do not.

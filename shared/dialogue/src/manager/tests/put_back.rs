@@ -1,13 +1,12 @@
 //! "Put it back": what was handed over goes back to its place, and what was open goes on.
 
-use super::{
-    answer, at, delivered, first, heard, manager, remark, reply, settings, tell, text, words,
+use super::fixture::{
+    answer, at, delivered, first, heard, manager, remark, reply, settings, text, words,
 };
-use crate::{In, PolicyNode};
-use dialogue::manager::{Cause, Manager, MotionStop, Progress, Record, State, refold};
-use messages::{ActKind, ArmStatus, Outcome, PickOutcome, PickPhase, Task};
-use scene::{Intent, ObjectId, Question, Reading, Response};
-use service::{Node, Span};
+use crate::manager::{Cause, Manager, MotionStop, Progress, Record, State, refold};
+use crate::time::Span;
+use crate::{ActKind, Outcome, PickOutcome};
+use scene::{Intent, Question, Reading, Response};
 
 fn wish(said: &[&str]) -> Reading {
     Reading { intent: Intent::PutBack, ..words(said) }
@@ -76,7 +75,7 @@ fn an_object_is_put_back_while_a_delivery_can_be_refused() {
     let end = handed_over(&mut manager, &["clear"]);
     let handed_at = end.handed_over.as_ref().expect("a delivery").at;
     let window = Span::from_s(manager.turns().refusal_s);
-    let cause = heard(end.applied.0 + 1, dialogue::ids::PromptId(0), wish(&[]));
+    let cause = heard(end.applied.0 + 1, crate::ids::PromptId(0), wish(&[]));
     let last = manager.next(&end, &cause, handed_at + window);
     assert_eq!(last.act.kind, ActKind::PutBack);
     let late = manager.next(&end, &cause, handed_at + window + Span::from_ms(1));
@@ -135,7 +134,7 @@ fn what_is_said_meanwhile_counts_afterwards() {
     assert_eq!((thanked.act.kind, text(&thanked).as_str()), (ActKind::PutBack, "You are welcome."));
     let again = remark(&mut manager, &thanked, wish(&[]));
     assert_eq!((again.act.kind, again.ordered()), (ActKind::PutBack, state.ordered()));
-    let floor = dialogue::manager::Floor::default();
+    let floor = crate::manager::Floor::default();
     assert!(!manager.quiet_is_due(&again, &floor, at(99)));
     let done = ends(&mut manager, &again, PickOutcome::PutBack);
     assert_eq!((done.act.kind, object(&done).as_str()), (ActKind::Pick, "clear"));
@@ -218,29 +217,6 @@ fn it_can_be_called_off_until_the_arm_holds_it() {
     }
 }
 
-#[test]
-fn an_end_of_another_task_is_no_end() {
-    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
-    node.state = handed_over(&mut manager(), &["clear"]);
-    node.state = remark(&mut manager(), &node.state, wish(&[]));
-    let (pick, ObjectId(object)) = node.state().ordered().expect("an order");
-    let done = |outcome: PickOutcome| ArmStatus {
-        interaction: pick.interaction.0,
-        attempt: pick.attempt,
-        object: object.into(),
-        task: Task::PutBack.into(),
-        phase: PickPhase::Done.into(),
-        outcome: outcome.into(),
-        ..ArmStatus::default()
-    };
-    let mut forged = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
-    forged.state = node.state.clone();
-    tell(&mut forged, In::Arm(done(PickOutcome::Delivered)), at(9));
-    assert!(text(forged.state()).starts_with("I was interrupted"), "{}", text(forged.state()));
-    tell(&mut node, In::Arm(done(PickOutcome::PutBack)), at(9));
-    assert_eq!(text(node.state()), "I have put the clear bowl back.");
-}
-
 /// All of it is in the journal.
 #[test]
 fn putting_back_folds_again() {
@@ -267,5 +243,5 @@ fn putting_back_folds_again() {
     let (pick, _) = state.ordered().expect("an order");
     step(&mut state, Cause::PickEnded { pick, outcome: PickOutcome::PutBack });
     assert_eq!(state.act.question, Question::None);
-    refold(&mut super::manager(), &records).unwrap();
+    refold(&mut settings().manager(), &records).unwrap();
 }

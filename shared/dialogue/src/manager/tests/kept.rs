@@ -1,9 +1,10 @@
 //! What was called off and cannot go back: the robot asks what becomes of it, and decides nothing else
 //! until it knows.
 
-use super::{answer, at, belief, delivered, first, manager, remark, reply, text, words};
-use dialogue::manager::{Cause, Manager, MotionStop, State};
-use messages::{ActKind, Outcome, PickId, PickOutcome};
+use super::fixture::{answer, at, belief, delivered, first, manager, remark, reply, text, words};
+use crate::ids::PickId;
+use crate::manager::{Cause, Manager, MotionStop, State};
+use crate::{ActKind, Outcome, PickOutcome};
 use scene::{Intent, ObjectId, Reading, Response};
 
 const ASKS: &str = "I cannot put the clear bowl back, so I still hold it. Shall I give it to you?";

@@ -1,10 +1,11 @@
 //! What is said while the arm fetches.
 
-use super::{
+use super::fixture::{
     answer, at, belief, delivered, first, manager, remark, reply, settings, text, typed, words,
 };
-use dialogue::manager::{Cause, Manager, State};
-use messages::{ActKind, Outcome, PickId, PickOutcome};
+use crate::ids::PickId;
+use crate::manager::{Cause, Manager, State};
+use crate::{ActKind, Outcome, PickOutcome};
 use scene::{Intent, ObjectId, Reading, Response};
 
 /// A state in which an object is fetched, and which.

@@ -1,8 +1,8 @@
 //! Requests for several objects.
 
-use super::{answer, at, delivered, first, manager, remark, reply, settings, text, words};
-use dialogue::manager::State;
-use messages::{ActKind, Outcome};
+use super::fixture::{answer, at, delivered, first, manager, remark, reply, settings, text, words};
+use crate::manager::State;
+use crate::{ActKind, Outcome};
 use scene::{Intent, Reading, Response};
 
 fn request() -> Reading {

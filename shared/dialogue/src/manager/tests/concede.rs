@@ -1,8 +1,10 @@
 //! "I do not know", "it does not matter", "any".
 
-use super::{answer, at, belief, delivered, first, manager, remark, reply, settings, text, words};
-use dialogue::manager::{Cause, Manager, State};
-use messages::ActKind;
+use super::fixture::{
+    answer, at, belief, delivered, first, manager, remark, reply, settings, text, words,
+};
+use crate::ActKind;
+use crate::manager::{Cause, Manager, State};
 use scene::{AttributeId, ObjectId, Question, Reading, Response};
 
 fn asked_about(state: &State) -> Option<AttributeId> {

@@ -1,12 +1,14 @@
 //! After the hand-over: refusals, "the other one", "the same again".
 
-use super::{answer, at, belief, delivered, first, heard, manager, remark, reply, settings};
-use super::{text, words};
-use dialogue::manager::{Cause, MotionStop, Record};
-use dialogue::manager::{Manager, State, refold};
-use messages::{ActKind, Outcome};
+use super::fixture::{
+    answer, at, belief, delivered, first, heard, manager, remark, reply, settings,
+};
+use super::fixture::{text, words};
+use crate::manager::{Cause, MotionStop, Record};
+use crate::manager::{Manager, State, refold};
+use crate::time::{Span, Time};
+use crate::{ActKind, Outcome};
 use scene::{Intent, Reading, Reference, Response};
-use service::{Span, Time};
 
 fn refers(refers: Reference, said: &[&str]) -> Reading {
     Reading { refers, ..words(said) }
@@ -64,23 +66,6 @@ fn a_refusal_counts_for_a_while() {
     let late = manager.next(&end, &no(seq), Time((handed_at + window).0 + 1));
     assert!(late.open.is_none() && late.handed_over.is_none());
     assert_eq!(late.ended.map(|ended| ended.outcome), Some(Outcome::Delivered));
-}
-
-/// Clients learn what can be refused, and until when.
-#[test]
-fn the_view_shows_what_can_be_refused() {
-    let mut manager = manager();
-    let (end, _) = handed_over(&mut manager, &["clear"]);
-    let refusable = |state: &State| crate::view::view(&manager, state, 0).refusable;
-    let delivery = refusable(&end).expect("a delivery");
-    assert_eq!(delivery.object, settings().scene.object_named("clear").unwrap().0);
-    assert_eq!(Some(delivery.interaction), end.ended.as_ref().map(|ended| ended.interaction.0));
-    let handed_at = end.handed_over.as_ref().expect("a delivery").at;
-    let window = Span::from_s(manager.turns().refusal_s);
-    assert_eq!(delivery.until_ns, (handed_at + window).ns());
-    let mut manager = self::manager();
-    let next = remark(&mut manager, &end, words(&["metallic"]));
-    assert_eq!(refusable(&next), None, "a request is open");
 }
 
 #[test]

@@ -1,11 +1,18 @@
 //! Gestures: evidence about the object, and nothing else.
 
-use super::*;
+use super::fixture::{
+    Settings, answer, asked, at, belief, manager, remark, settings, settings_with, typed, words,
+};
+use crate::ids::{PromptId, UtteranceSeq};
+use crate::manager::{Cause, Manager, Utterance};
+use scene::{Intent, Reading, Response};
 
-pub(super) const GESTURES: [(&str, &str); 1] = [("dialogue.gesture.enabled", "true")];
+pub(super) fn with_gestures(settings: &mut Settings) {
+    settings.gestures = true;
+}
 
 fn pointing_manager() -> Manager {
-    settings_with(&GESTURES).manager().unwrap()
+    settings_with(with_gestures).manager()
 }
 
 fn place(bowl: &str) -> [f64; 3] {
