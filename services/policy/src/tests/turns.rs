@@ -4,7 +4,7 @@ use super::*;
 use messages::Activity;
 
 #[test]
-fn what_was_held_is_decided_when_the_person_has_ended() {
+fn a_deferred_decision_is_made_when_the_person_has_ended() {
     let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let speaks = Activity { onset_ns: at(1).ns(), pending: 1, ..Activity::default() };
     tell(&mut node, In::Activity(speaks), at(1));

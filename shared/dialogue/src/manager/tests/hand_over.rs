@@ -27,7 +27,7 @@ fn picked(state: &State) -> String {
 }
 
 #[test]
-fn what_was_handed_over_can_be_refused_and_does_not_come_again() {
+fn a_delivery_can_be_refused_and_does_not_come_again() {
     let mut manager = manager();
     let (end, name) = handed_over(&mut manager, &["white", "dishwasher"]);
     assert_eq!((name.as_str(), end.history.of("white")), ("white", 1));
@@ -109,7 +109,7 @@ fn the_other_one_is_not_the_one_that_was_delivered() {
 }
 
 #[test]
-fn the_other_one_calls_off_what_is_being_fetched() {
+fn the_other_one_calls_off_the_fetch() {
     let mut manager = manager();
     let fetching = first(&mut manager, words(&["white", "dishwasher"]));
     let other = remark(&mut manager, &fetching, refers(Reference::Other, &[]));
@@ -127,7 +127,7 @@ fn the_same_again_is_the_one_delivered_last() {
 }
 
 #[test]
-fn comparisons_are_resolved_among_what_is_left() {
+fn comparisons_are_resolved_among_the_objects_left() {
     let mut manager = manager();
     let scene = settings().scene;
     let volume = |name: &str| {

@@ -36,7 +36,7 @@ fn assert_hands_over(manager: &mut Manager, state: &State, (before, object): (Pi
 }
 
 #[test]
-fn a_yes_hands_over_what_was_kept() {
+fn a_yes_hands_over_the_kept_object() {
     let again = words(&["clear"]);
     for word in [answer(Response::Yes), again] {
         let mut manager = manager();
@@ -69,7 +69,7 @@ fn nothing_else_is_ordered_while_an_object_is_kept() {
 }
 
 #[test]
-fn what_is_wanted_instead_is_fetched_once_the_gripper_is_free() {
+fn another_wish_counts_once_the_gripper_is_free() {
     let mut manager = manager();
     let instead = Reading { response: Response::No, ..words(&["metallic", "big"]) };
     let (state, _, object) = kept(&mut manager, instead);

@@ -83,3 +83,18 @@ fn starting_over_forgets_what_was_said() {
     let over = reply(&mut manager, &informed, over);
     assert_eq!(belief(&over), belief(&state));
 }
+
+#[test]
+fn silences_are_counted_from_the_last_utterance() {
+    let mut manager = manager();
+    let mut state = asked(&mut manager);
+    for n in 0..manager.turns().repeats_max {
+        state = manager.next(&state, &Cause::Silence, at(10 + u64::from(n)));
+    }
+    let murmur = Reading { intent: Intent::None, ..Reading::default() };
+    for said in [answer(Response::Yes), murmur] {
+        let heard = reply(&mut manager, &state, said);
+        let silent = manager.next(&heard, &Cause::Silence, at(100));
+        assert!(silent.open.is_some(), "the person is still there");
+    }
+}

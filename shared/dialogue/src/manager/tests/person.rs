@@ -52,7 +52,7 @@ fn talk(manager: &mut Manager, state: &State, errs: f64, seed: u64) -> State {
 }
 
 #[test]
-fn who_errs_is_expected_to_err_in_the_next_interaction_too() {
+fn a_user_who_errs_is_expected_to_err_in_the_next_interaction_too() {
     let mut manager = learning_manager();
     let (_, at_first) = manager.user_params(&manager.first()).unwrap();
     let mut expected = |errs: f64| {
@@ -84,7 +84,7 @@ fn silence_and_answers_are_counted_once_each() {
 
 /// A restart with other settings scores the interaction again, and counts nothing twice.
 #[test]
-fn looking_anew_learns_nothing_twice() {
+fn reconfiguration_learns_nothing_twice() {
     let mut manager = learning_manager();
     let mut state = asked(&mut manager);
     for seq in 2..5 {

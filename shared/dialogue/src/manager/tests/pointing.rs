@@ -73,7 +73,7 @@ fn a_far_off_gesture_is_outvoted() {
 }
 
 #[test]
-fn where_gestures_do_not_count_they_change_nothing_and_words_with_them_do() {
+fn gestures_change_nothing_where_they_do_not_count_and_words_with_them_do() {
     let mut manager = manager();
     let alone = shown(1, PromptId(0), Reading::default(), "clear");
     let state = manager.next(&manager.first(), &alone, at(1));

@@ -60,7 +60,7 @@ fn history_survives_another_scene() {
 }
 
 #[test]
-fn who_denies_everything_is_told_that_it_is_not_here() {
+fn a_user_who_denies_everything_is_told_that_it_is_not_here() {
     let mut manager = manager_with(perhaps_absent);
     let mut state = asked(&mut manager);
     assert_eq!(belief(&state).len(), 7);
@@ -79,7 +79,7 @@ fn who_denies_everything_is_told_that_it_is_not_here() {
 }
 
 #[test]
-fn whoever_wants_what_is_here_gets_it_though_it_might_not_be() {
+fn an_object_that_is_here_is_fetched_though_it_might_not_be_here() {
     let settings = settings_with(perhaps_absent);
     let model = Model::new(&settings.scene, settings.params);
     for wanted in (0..6).map(ObjectId::from) {

@@ -33,7 +33,7 @@ fn outcome(state: &State) -> Option<Outcome> {
 }
 
 #[test]
-fn what_was_handed_over_is_put_back_and_counts_as_refused() {
+fn a_delivery_that_is_put_back_counts_as_refused() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["clear"]);
     assert_eq!(end.history.of("clear"), 1);
@@ -56,7 +56,7 @@ fn what_was_handed_over_is_put_back_and_counts_as_refused() {
 
 /// A user who answers "Here is the clear bowl." with "put it back" does not merely deny it.
 #[test]
-fn the_wish_is_no_mere_denial() {
+fn the_wish_to_put_back_is_no_mere_denial() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["clear"]);
     let Cause::Utterance(mut said) = heard(end.applied.0 + 1, end.act.prompt, answer(Response::No))
@@ -118,7 +118,7 @@ fn a_question_that_was_open_comes_after_it() {
 }
 
 #[test]
-fn what_is_said_meanwhile_counts_afterwards() {
+fn words_said_while_an_object_is_put_back_count_afterwards() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["white", "dishwasher"]);
     let state = remark(&mut manager, &end, wish(&[]));
@@ -142,7 +142,7 @@ fn what_is_said_meanwhile_counts_afterwards() {
 }
 
 #[test]
-fn while_something_else_is_fetched_it_has_its_turn_afterwards() {
+fn putting_back_has_its_turn_after_a_fetch() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["clear"]);
     let fetching = remark(&mut manager, &end, words(&["white", "dishwasher"]));
@@ -162,7 +162,7 @@ fn while_something_else_is_fetched_it_has_its_turn_afterwards() {
 
 /// With nothing handed over, what is being fetched is meant.
 #[test]
-fn with_nothing_handed_over_the_fetch_is_called_off() {
+fn the_fetch_is_called_off_where_nothing_was_handed_over() {
     let mut manager = manager();
     let fetching = first(&mut manager, words(&["clear"]));
     assert_eq!(remark(&mut manager, &fetching, wish(&[])).act.kind, ActKind::Cancel);
@@ -173,7 +173,7 @@ fn with_nothing_handed_over_the_fetch_is_called_off() {
 }
 
 #[test]
-fn while_stopped_it_waits_for_a_yes_and_the_release() {
+fn putting_back_waits_for_a_yes_and_the_release_while_stopped() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["clear"]);
     let stop = |manager: &mut Manager, state: &State, stopped| {
@@ -196,7 +196,7 @@ fn while_stopped_it_waits_for_a_yes_and_the_release() {
 }
 
 #[test]
-fn it_can_be_called_off_until_the_arm_holds_it() {
+fn putting_back_can_be_called_off_until_the_arm_holds_the_object() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["clear"]);
     let state = remark(&mut manager, &end, wish(&[]));
@@ -244,4 +244,30 @@ fn putting_back_folds_again() {
     step(&mut state, Cause::PickEnded { pick, outcome: PickOutcome::PutBack });
     assert_eq!(state.act.question, Question::None);
     refold(&mut settings().manager(), &records).unwrap();
+}
+
+/// A person must look first.
+#[test]
+fn putting_back_is_dropped_where_the_fetch_before_it_was_interrupted() {
+    let mut manager = manager();
+    let end = handed_over(&mut manager, &["clear"]);
+    let fetching = remark(&mut manager, &end, words(&["white", "dishwasher"]));
+    let in_turn = remark(&mut manager, &fetching, wish(&[]));
+    for interrupted in [PickOutcome::Interrupted, PickOutcome::Blocked] {
+        let state = ends(&mut manager, &in_turn, interrupted);
+        assert_eq!((state.act.kind, state.ordered()), (ActKind::Say, None));
+        assert!(state.putting_back.is_none());
+    }
+}
+
+/// "No, the white one" is about another object.
+#[test]
+fn a_no_with_words_of_another_object_does_not_call_putting_back_off() {
+    let mut manager = manager();
+    let end = handed_over(&mut manager, &["clear"]);
+    let state = remark(&mut manager, &end, wish(&[]));
+    let no = |said: &[&str]| Reading { response: Response::No, ..words(said) };
+    assert_eq!(reply(&mut manager, &state, no(&["clear"])).act.kind, ActKind::Cancel);
+    let other = reply(&mut manager, &state, no(&["white"]));
+    assert_eq!((other.act.kind, other.ordered()), (ActKind::PutBack, state.ordered()));
 }

@@ -44,7 +44,7 @@ fn probability(settings: &Settings, state: &State, name: &str) -> f64 {
 }
 
 #[test]
-fn a_bowl_that_is_gone_drops_out_and_a_new_one_counts_with_what_was_said() {
+fn a_bowl_that_is_gone_drops_out_and_a_new_one_counts_with_the_words_said() {
     let state = white_asked(&mut manager());
     let changed = bowls(&["metal2"], SEVENTH);
     let after = changed.manager().next(&state, &Cause::Reconfigured, at(2));
@@ -161,7 +161,7 @@ fn a_pick_that_the_person_gave_up_is_not_ordered_again() {
 }
 
 #[test]
-fn where_nothing_is_left_the_interaction_ends() {
+fn the_interaction_ends_where_nothing_is_left() {
     let state = white_asked(&mut manager());
     let markers = markers();
     let after = markers.manager().next(&state, &Cause::Reconfigured, at(2));
@@ -170,7 +170,7 @@ fn where_nothing_is_left_the_interaction_ends() {
 }
 
 #[test]
-fn a_word_that_nothing_had_counts_for_what_has_it_now() {
+fn a_word_that_nothing_had_counts_for_an_object_that_has_it_now() {
     let mut manager = manager();
     let state = asked(&mut manager);
     let utterance = typed(2, PromptId(0), Reading::default());
@@ -189,7 +189,7 @@ fn a_word_that_nothing_had_counts_for_what_has_it_now() {
 /// An endless talker: memory stays bounded, the belief loses nothing, and only a change of the
 /// scene finds that the beginning is forgotten.
 #[test]
-fn what_is_remembered_is_bounded() {
+fn memory_of_an_interaction_is_bounded() {
     let mut manager = settings_with(|it| it.turns.questions_max = 1_000).manager();
     let mut state = asked(&mut manager);
     let said = words(&["white", "metallic"]);

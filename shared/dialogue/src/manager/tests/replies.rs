@@ -175,7 +175,7 @@ fn silence_is_met_with_fewer_words_and_then_with_silence() {
 }
 
 #[test]
-fn who_starts_over_is_asked_what_is_wanted() {
+fn a_user_who_starts_over_is_asked_for_the_object() {
     let mut manager = manager();
     let state = first(&mut manager, words(&["white"]));
     let over = reply(&mut manager, &state, intent(Intent::StartOver));
@@ -188,7 +188,7 @@ fn who_starts_over_is_asked_what_is_wanted() {
 
 /// Nothing begins with a request for what is not here; of another way to say a quality it may.
 #[test]
-fn what_the_scene_has_nothing_of_is_said_at_once() {
+fn absence_from_the_scene_is_said_at_once() {
     let mut manager = manager();
     let request = |text: &str, role: Role| {
         let said = typed(1, PromptId(0), Reading::default());

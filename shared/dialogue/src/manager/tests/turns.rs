@@ -135,7 +135,7 @@ fn words_count_whatever_they_answer() {
 }
 
 #[test]
-fn what_is_said_in_doubt_says_less() {
+fn words_in_doubt_say_less() {
     let mut manager = manager();
     let (state, asked) = two_questions(&mut manager);
     let after = |doubt: f64, manager: &mut Manager| {
@@ -148,7 +148,7 @@ fn what_is_said_in_doubt_says_less() {
 }
 
 #[test]
-fn how_soon_the_person_answers_is_learned_in_any_planner() {
+fn reaction_times_are_learned_in_any_planner() {
     let mut manager = manager();
     let (state, asked) = two_questions(&mut manager);
     assert_eq!(state.timing.spoken.map(|reaction| reaction.seen()), Some(1));
@@ -160,7 +160,7 @@ fn how_soon_the_person_answers_is_learned_in_any_planner() {
 }
 
 #[test]
-fn while_the_person_speaks_on_nothing_is_decided() {
+fn nothing_is_decided_while_the_person_speaks_on() {
     let mut manager = manager();
     let request = Utterance { more: true, ..typed(1, PromptId(0), Reading::default()) };
     let held = manager.next(&manager.first(), &Cause::Utterance(request), at(1));
