@@ -178,3 +178,15 @@ fn words_replace_those_of_the_same_attribute_where_they_are_certain() {
     assert!(!remembers_white(Doubt::default()));
     assert!(remembers_white(Doubt { base: vec![0.3], ..Doubt::default() }));
 }
+
+/// The user has it, and named another one before it arrived.
+#[test]
+fn an_object_that_came_too_late_is_not_fetched_again() {
+    let mut manager = manager();
+    let (state, pick, object) = fetching(&mut manager);
+    let changed = remark(&mut manager, &state, words(&["clear"]));
+    let after = manager.next(&changed, &delivered(pick), at(3));
+    assert_ne!(after.act.pick.expect("the clear one").1, object);
+    let again = remark(&mut manager, &after, words(&["white", "dishwasher"]));
+    assert!(belief(&again)[object.index()] < 1e-3, "{:?}", belief(&again));
+}

@@ -177,3 +177,14 @@ fn refusals_fold_again() {
     assert_eq!(state.act.kind, ActKind::Pick);
     refold(&mut manager, &records).unwrap();
 }
+
+/// In answer to the hand-over, other words are read as a no that is implied.
+#[test]
+fn the_other_one_in_answer_to_a_hand_over_refuses_nothing() {
+    let mut manager = manager();
+    let (end, name) = handed_over(&mut manager, &["small", "metallic"]);
+    let implied = Reading { response: Response::No, ..refers(Reference::Other, &[]) };
+    let other = reply(&mut manager, &end, implied);
+    assert_ne!(picked(&other), name);
+    assert_eq!(other.ended.map(|ended| ended.outcome), Some(Outcome::Delivered));
+}
