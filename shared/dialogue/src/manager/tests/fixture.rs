@@ -28,6 +28,9 @@ pub(super) struct Settings {
     pub(super) turns: TurnTaking,
 }
 
+/// A change of settings.
+pub(super) type Change = fn(&mut Settings);
+
 impl Settings {
     pub(super) fn manager(&self) -> Manager {
         let setup = self.setup();

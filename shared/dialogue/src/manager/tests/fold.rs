@@ -1,6 +1,6 @@
 //! Journals fold again.
 
-use super::fixture::{Settings, answer, at, heard, manager, settings, settings_with};
+use super::fixture::{Change, Settings, answer, at, heard, manager, settings, settings_with};
 use super::{person, pointing, prior, seconds};
 use crate::ids::PromptId;
 use crate::manager::{Cause, Interaction, Record, State, refold};
@@ -11,7 +11,7 @@ use scene::{Intent, ObjectId, Question, Reading, Response};
 /// journal folds again to the same states. So it is with gestures, and where deliveries, the user or the robot's own seconds count.
 #[test]
 fn journals_fold_again_bit_for_bit() {
-    let cases: [(fn(&mut Settings), u64); 5] = [
+    let cases: [(Change, u64); 5] = [
         (|_| {}, 40),
         (pointing::with_gestures, 8),
         (prior::by_history, 8),

@@ -1,8 +1,8 @@
 //! What is believed before anything is said: alike, by history, or that it may not be here.
 
 use super::fixture::{
-    Settings, answer, asked, at, belief, delivered, manager, markers, remark, reply, settings,
-    settings_with, text,
+    Change, Settings, answer, asked, at, belief, delivered, manager, markers, remark, reply,
+    settings, settings_with, text,
 };
 use crate::manager::{Cause, Manager, State};
 use crate::{ActKind, Answer, Model, Outcome, PriorObjects};
@@ -16,7 +16,7 @@ fn perhaps_absent(settings: &mut Settings) {
     settings.prior.absent = 0.1;
 }
 
-fn manager_with(change: fn(&mut Settings)) -> Manager {
+fn manager_with(change: Change) -> Manager {
     settings_with(change).manager()
 }
 

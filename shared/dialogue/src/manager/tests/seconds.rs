@@ -1,6 +1,6 @@
 //! Questions that cost the robot's own seconds.
 
-use super::fixture::{Settings, answer, first, reply, settings_with};
+use super::fixture::{Change, Settings, answer, first, reply, settings_with};
 use crate::{ActKind, Answer, Durations, Mode};
 use scene::{ObjectId, Question, Reading, Response};
 
@@ -24,7 +24,7 @@ pub(super) fn pointing(settings: &mut Settings) {
 /// The promises that hold with the written costs hold with the robot's own.
 #[test]
 fn truthful_users_are_asked_as_few_questions() {
-    let cases: [(fn(&mut Settings), u32); 2] = [(with_durations, 3), (pointing, 5)];
+    let cases: [(Change, u32); 2] = [(with_durations, 3), (pointing, 5)];
     for (change, questions_max) in cases {
         let mut manager = settings_with(change).manager();
         let model = manager.model().clone();
