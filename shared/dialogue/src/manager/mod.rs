@@ -48,6 +48,8 @@ mod replies;
 mod rules;
 mod setup;
 mod state;
+#[cfg(test)]
+mod tests;
 mod turn;
 
 pub use concede::Conceded;

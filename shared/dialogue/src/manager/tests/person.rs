@@ -1,17 +1,26 @@
 //! What is learned about the person goes on from one interaction to the next.
 
-use super::*;
+use super::fixture::{
+    Settings, answer, asked, at, delivered, heard, manager, reply, settings, settings_with, typed,
+};
+use crate::ids::PromptId;
+use crate::manager::{Cause, Manager, State};
+use crate::time::{Span, Time};
+use crate::{ActKind, Answer, Model, PickOutcome, Rng};
+use scene::{ObjectId, Reading, Response};
 
-pub(super) const LEARNING: [(&str, &str); 1] = [("dialogue.planner", "information-seeking")];
+pub(super) fn learning(settings: &mut Settings) {
+    settings.planner = "information-seeking";
+}
 
 fn learning_manager() -> Manager {
-    settings_with(&LEARNING).manager().unwrap()
+    settings_with(learning).manager()
 }
 
 /// The state after one interaction with a user who answers wrongly with that probability.
 fn talk(manager: &mut Manager, state: &State, errs: f64, seed: u64) -> State {
     let settings = settings();
-    let model = Model::new(&settings.scene, settings.dialogue.params);
+    let model = Model::new(&settings.scene, settings.params);
     let mut rng = Rng::new(seed);
     let wanted = ObjectId::from(rng.below(6));
     let mut state = state.clone();
@@ -43,7 +52,7 @@ fn talk(manager: &mut Manager, state: &State, errs: f64, seed: u64) -> State {
 }
 
 #[test]
-fn who_errs_is_expected_to_err_in_the_next_interaction_too() {
+fn a_user_who_errs_is_expected_to_err_in_the_next_interaction_too() {
     let mut manager = learning_manager();
     let (_, at_first) = manager.user_params(&manager.first()).unwrap();
     let mut expected = |errs: f64| {
@@ -75,7 +84,7 @@ fn silence_and_answers_are_counted_once_each() {
 
 /// A restart with other settings scores the interaction again, and counts nothing twice.
 #[test]
-fn looking_anew_learns_nothing_twice() {
+fn reconfiguration_learns_nothing_twice() {
     let mut manager = learning_manager();
     let mut state = asked(&mut manager);
     for seq in 2..5 {
@@ -85,7 +94,7 @@ fn looking_anew_learns_nothing_twice() {
         assert_eq!(again.person, state.person);
     }
     // Another planner takes people as configured, and keeps what is known for later.
-    let plain = super::manager().next(&state, &Cause::Reconfigured, at(20));
+    let plain = settings().manager().next(&state, &Cause::Reconfigured, at(20));
     assert!(plain.open.as_ref().unwrap().posterior.person().is_none());
     assert_eq!(plain.person, state.person);
     let back = manager.next(&plain, &Cause::Reconfigured, at(21));
@@ -128,7 +137,7 @@ fn the_response_window_follows_a_person_whose_answers_were_seen() {
         let (manager, state) = acquainted(reaction_s, answers);
         manager.response_window_s(&state)
     };
-    let configured = settings().dialogue.turns.response_window_s;
+    let configured = settings().turns.response_window_s;
     assert_eq!(window(0.5, 3), configured, "not known yet");
     assert!(window(0.5, 12) < 0.6 * configured, "{}", window(0.5, 12));
     assert!(window(12.0, 12) > configured, "{}", window(12.0, 12));
@@ -139,7 +148,7 @@ fn the_response_window_follows_a_person_whose_answers_were_seen() {
 #[test]
 fn a_quick_person_is_not_given_up_sooner_than_configured() {
     let (mut manager, mut state) = acquainted(0.5, 40);
-    let turns = settings().dialogue.turns;
+    let turns = settings().turns;
     let mut waited_s = 0.0;
     while state.open.is_some() {
         assert_eq!(state.act.kind, ActKind::Ask);

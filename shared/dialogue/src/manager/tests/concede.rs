@@ -1,9 +1,12 @@
 //! "I do not know", "it does not matter", "any".
 
-use super::{answer, at, belief, delivered, first, manager, remark, reply, settings, text, words};
-use dialogue::manager::{Cause, Manager, State};
-use messages::ActKind;
-use scene::{AttributeId, ObjectId, Question, Reading, Response};
+use super::fixture::{
+    answer, at, belief, delivered, first, manager, remark, reply, settings, text, typed, words,
+};
+use crate::ids::PromptId;
+use crate::manager::{Cause, Manager, State};
+use crate::{ActKind, Interpretation};
+use scene::{AttributeId, ObjectId, Question, Reading, Reference, Response};
 
 fn asked_about(state: &State) -> Option<AttributeId> {
     match state.act.question {
@@ -31,7 +34,7 @@ fn until_pick(manager: &mut Manager, mut state: State, wanted: &str) -> (State, 
 }
 
 #[test]
-fn nothing_more_is_asked_about_what_the_user_cannot_tell() {
+fn an_attribute_that_the_user_cannot_tell_is_not_asked_about_again() {
     let mut manager = manager();
     let state = first(&mut manager, words(&["white"]));
     let k = asked_about(&state).expect("a question");
@@ -58,7 +61,7 @@ fn objects_that_the_user_cannot_tell_apart_are_named() {
 }
 
 #[test]
-fn what_does_not_matter_is_not_asked_about_and_any_of_it_is_right() {
+fn an_attribute_that_does_not_matter_is_not_asked_about_and_any_of_it_is_right() {
     let mut manager = manager();
     let mut state = first(&mut manager, words(&["metallic"]));
     let mut questions = Vec::new();
@@ -73,7 +76,7 @@ fn what_does_not_matter_is_not_asked_about_and_any_of_it_is_right() {
 }
 
 #[test]
-fn who_wants_any_gets_one_at_once() {
+fn a_user_who_wants_any_gets_one_at_once() {
     let mut manager = manager();
     let scene = settings().scene;
     let of = |state: &State| scene.object(state.act.pick.expect("a pick").1).name.clone();
@@ -103,4 +106,25 @@ fn concessions_end_with_the_interaction() {
     let rest = manager.next(&end, &ended, at(seq));
     let again = remark(&mut manager, &rest, words(&["white"]));
     assert_eq!(asked_about(&again), Some(k));
+}
+
+#[test]
+fn any_in_answer_to_a_question_is_about_the_object() {
+    let mut manager = manager();
+    let state = first(&mut manager, words(&["metallic"]));
+    assert_eq!(state.act.kind, ActKind::Ask);
+    let any = Reading { refers: Reference::Any, ..answer(Response::DoesNotMatter) };
+    assert_eq!(reply(&mut manager, &state, any).act.kind, ActKind::Pick);
+}
+
+/// "The white one or the clear one, I don't mind."
+#[test]
+fn readings_that_concede_the_same_concede_it_together() {
+    let mut manager = manager();
+    let mut said = typed(1, PromptId(0), Reading::default());
+    let wordings = ["white", "clear"].map(|word| any(&[word]));
+    let as_likely = |reading| Interpretation { weight: 0.5, answers: None, reading };
+    said.interpretations = wordings.map(as_likely).to_vec();
+    let state = manager.next(&manager.first(), &Cause::Utterance(said), at(1));
+    assert_eq!(state.act.kind, ActKind::Pick, "{}", text(&state));
 }

@@ -1,11 +1,12 @@
 //! What is said while the arm fetches.
 
-use super::{
+use super::fixture::{
     answer, at, belief, delivered, first, manager, remark, reply, settings, text, typed, words,
 };
-use dialogue::manager::{Cause, Manager, State};
-use messages::{ActKind, Outcome, PickId, PickOutcome};
-use scene::{Intent, ObjectId, Reading, Response};
+use crate::ids::PickId;
+use crate::manager::{Cause, Manager, State};
+use crate::{ActKind, Outcome, PickOutcome};
+use scene::{Doubt, Intent, ObjectId, Reading, Response};
 
 /// A state in which an object is fetched, and which.
 fn fetching(manager: &mut Manager) -> (State, PickId, ObjectId) {
@@ -20,7 +21,7 @@ fn left(pick: PickId) -> Cause {
 }
 
 #[test]
-fn a_denial_calls_the_pick_off_and_what_was_said_before_still_counts() {
+fn a_denial_calls_the_pick_off_and_the_words_before_it_still_count() {
     let mut manager = manager();
     let (state, pick, object) = fetching(&mut manager);
     let denied = reply(&mut manager, &state, answer(Response::No));
@@ -80,7 +81,7 @@ fn an_object_ruled_out_in_words_is_denied_too() {
 }
 
 #[test]
-fn what_fits_and_what_is_about_something_else_leaves_the_arm_alone() {
+fn words_that_fit_or_are_about_something_else_leave_the_arm_alone() {
     let mut manager = manager();
     let (state, ..) = fetching(&mut manager);
     // A "no" to nothing that the robot has said is not about what it fetches.
@@ -122,7 +123,7 @@ fn a_late_no_to_the_question_before_denies_nothing() {
 
 /// The fingers had begun to open.
 #[test]
-fn what_has_arrived_already_is_handed_over() {
+fn an_object_that_has_arrived_already_is_handed_over() {
     let mut manager = manager();
     let (state, pick, object) = fetching(&mut manager);
     let denied = reply(&mut manager, &state, answer(Response::No));
@@ -139,7 +140,7 @@ fn what_has_arrived_already_is_handed_over() {
 }
 
 #[test]
-fn what_was_not_wanted_any_more_is_handed_over_with_these_words() {
+fn an_object_not_wanted_any_more_is_handed_over_with_these_words() {
     let mut manager = manager();
     let (state, pick, _) = fetching(&mut manager);
     let never_mind = Reading { intent: Intent::Cancel, ..Reading::default() };
@@ -151,7 +152,7 @@ fn what_was_not_wanted_any_more_is_handed_over_with_these_words() {
 }
 
 #[test]
-fn who_wants_nothing_any_more_after_a_denial_gets_nothing() {
+fn a_user_who_wants_nothing_any_more_after_a_denial_gets_nothing() {
     let mut manager = manager();
     let (state, pick, _) = fetching(&mut manager);
     let denied = reply(&mut manager, &state, answer(Response::No));
@@ -161,4 +162,31 @@ fn who_wants_nothing_any_more_after_a_denial_gets_nothing() {
     let ended = manager.next(&withdrawn, &left(pick), at(4));
     assert!(ended.open.is_none());
     assert_eq!(ended.ended.map(|ended| ended.outcome), Some(Outcome::Cancelled));
+}
+
+/// Only where they are certain: what may be misheard replaces nothing.
+#[test]
+fn words_replace_those_of_the_same_attribute_where_they_are_certain() {
+    let remembers_white = |doubt: Doubt| {
+        let mut manager = manager();
+        let state = first(&mut manager, words(&["white"]));
+        let after = remark(&mut manager, &state, Reading { doubt, ..words(&["metallic"]) });
+        let evidence = &after.open.as_ref().expect("an open interaction").evidence;
+        let mut said = evidence.iter().flat_map(|it| &it.interpretations);
+        said.any(|(.., reading)| reading.base.iter().any(|word| word == "white"))
+    };
+    assert!(!remembers_white(Doubt::default()));
+    assert!(remembers_white(Doubt { base: vec![0.3], ..Doubt::default() }));
+}
+
+/// The user has it, and named another one before it arrived.
+#[test]
+fn an_object_that_came_too_late_is_not_fetched_again() {
+    let mut manager = manager();
+    let (state, pick, object) = fetching(&mut manager);
+    let changed = remark(&mut manager, &state, words(&["clear"]));
+    let after = manager.next(&changed, &delivered(pick), at(3));
+    assert_ne!(after.act.pick.expect("the clear one").1, object);
+    let again = remark(&mut manager, &after, words(&["white", "dishwasher"]));
+    assert!(belief(&again)[object.index()] < 1e-3, "{:?}", belief(&again));
 }

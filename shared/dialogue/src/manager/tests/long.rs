@@ -1,10 +1,12 @@
 //! Interactions of thousands of utterances.
 
-use super::*;
+use super::fixture::{answer, asked, manager, reply, words};
+use crate::manager::State;
+use scene::Response;
 
-/// Bytes of the state in a journal record.
+/// Bytes of the state, serialised.
 fn bytes(state: &State) -> usize {
-    postcard::to_allocvec(state).unwrap().len()
+    serde_json::to_vec(state).unwrap().len()
 }
 
 /// A user who never makes up her mind.
@@ -21,15 +23,4 @@ fn state_stays_bounded_however_long_an_interaction_is() {
         *half = bytes(&state).max(*half);
     }
     assert!(largest[1] < largest[0] * 11 / 10, "bytes of the state, by halves: {largest:?}");
-}
-
-#[test]
-fn policy_is_recovered_from_a_snapshot_in_the_middle_of_an_interaction() {
-    let mut manager = manager();
-    let state = asked(&mut manager);
-    let record = Record { cause: Cause::Silence, at: at(1), state };
-    let node = PolicyNode::recover(manager.into(), vec![record.clone()]).unwrap();
-    let snapshot = node.snapshot().expect("a snapshot");
-    let again = PolicyNode::recover(super::manager().into(), snapshot).unwrap();
-    assert_eq!(again.state(), &record.state);
 }

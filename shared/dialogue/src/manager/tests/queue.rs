@@ -1,8 +1,8 @@
 //! Requests for several objects.
 
-use super::{answer, at, delivered, first, manager, remark, reply, settings, text, words};
-use dialogue::manager::State;
-use messages::{ActKind, Outcome};
+use super::fixture::{answer, at, delivered, first, manager, remark, reply, settings, text, words};
+use crate::manager::State;
+use crate::{ActKind, Outcome};
 use scene::{Intent, Reading, Response};
 
 fn request() -> Reading {
@@ -36,7 +36,7 @@ fn several_objects_are_fetched_in_turn() {
 }
 
 #[test]
-fn who_withdraws_a_request_gets_nothing_of_it() {
+fn a_request_that_is_withdrawn_is_withdrawn_whole() {
     let mut manager = manager();
     let state = first(&mut manager, request());
     let cancel = Reading { intent: Intent::Cancel, ..Reading::default() };
@@ -60,4 +60,30 @@ fn the_next_request_is_no_refusal() {
     assert!(picked(&next).starts_with("metal"));
     let refused = reply(&mut manager, &end, answer(Response::No));
     assert_eq!(refused.ended.map(|ended| ended.outcome), Some(Outcome::Refused));
+}
+
+/// "Two clear bowls", of which there is one.
+#[test]
+fn an_object_asked_for_twice_is_fetched_once() {
+    let mut manager = manager();
+    let twice = Reading { further: vec![words(&["clear"]).base], ..words(&["clear"]) };
+    let state = first(&mut manager, twice);
+    assert_eq!(picked(&state), "clear");
+    assert!(state.queue.is_empty(), "{:?}", state.queue);
+    assert_eq!(text(&state), "There is one: the clear bowl. I will get the clear bowl.");
+}
+
+#[test]
+fn both_of_a_kind_are_fetched_without_a_question_about_the_second() {
+    let mut manager = manager();
+    let both = Reading { further: vec![words(&["metallic"]).base], ..words(&["metallic"]) };
+    let mut state = first(&mut manager, both);
+    while state.act.kind == ActKind::Ask {
+        state = reply(&mut manager, &state, answer(Response::Yes));
+    }
+    let one = picked(&state);
+    let (pick, _) = state.act.pick.unwrap();
+    let next = manager.next(&state, &delivered(pick), at(9));
+    let other = picked(&next);
+    assert!(other != one && other.starts_with("metal"), "{one}, then {other}");
 }

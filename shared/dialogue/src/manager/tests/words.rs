@@ -1,9 +1,8 @@
 //! Words that are certain.
 
+use super::fixture::{first, manager, settings, settings_with, text, words};
 use super::reconfigure::bowls;
-use super::{first, manager, settings, settings_with, text, words};
-use dialogue::rendering;
-use messages::ActKind;
+use crate::{ActKind, rendering};
 use scene::{Doubt, Reading};
 
 #[test]
@@ -28,7 +27,7 @@ attributes = { color = "clear", material = "metal", size = "big", shape = "round
 #[test]
 fn an_object_without_a_place_is_named_and_not_promised() {
     let settings = bowls(&[], STORED);
-    let mut manager = settings.manager().unwrap();
+    let mut manager = settings.manager();
     let state = first(&mut manager, words(&["clear", "metal", "big", "cabinet"].repeat(4)));
     let (_, object) = state.act.pick.expect("a pick");
     assert_eq!(settings.scene.object(object).name, "stored");
@@ -53,6 +52,6 @@ fn words_that_may_have_been_others_ask() {
     };
     assert_eq!(first(&mut manager(), doubted(0.1)).act.kind, ActKind::Ask);
     assert_eq!(first(&mut manager(), doubted(0.005)).act.kind, ActKind::Pick);
-    let mut paper = settings_with(&[("dialogue.language", "paper")]).manager().unwrap();
+    let mut paper = settings_with(|it| it.alpha_typed = None).manager();
     assert_eq!(first(&mut paper, words(&["clear"])).act.kind, ActKind::Ask);
 }

@@ -1,13 +1,12 @@
 //! "Put it back": what was handed over goes back to its place, and what was open goes on.
 
-use super::{
-    answer, at, delivered, first, heard, manager, remark, reply, settings, tell, text, words,
+use super::fixture::{
+    answer, at, delivered, first, heard, manager, remark, reply, settings, text, words,
 };
-use crate::{In, PolicyNode};
-use dialogue::manager::{Cause, Manager, MotionStop, Progress, Record, State, refold};
-use messages::{ActKind, ArmStatus, Outcome, PickOutcome, PickPhase, Task};
-use scene::{Intent, ObjectId, Question, Reading, Response};
-use service::{Node, Span};
+use crate::manager::{Cause, Manager, MotionStop, Progress, Record, State, refold};
+use crate::time::Span;
+use crate::{ActKind, Outcome, PickOutcome};
+use scene::{Intent, Question, Reading, Response};
 
 fn wish(said: &[&str]) -> Reading {
     Reading { intent: Intent::PutBack, ..words(said) }
@@ -34,7 +33,7 @@ fn outcome(state: &State) -> Option<Outcome> {
 }
 
 #[test]
-fn what_was_handed_over_is_put_back_and_counts_as_refused() {
+fn a_delivery_that_is_put_back_counts_as_refused() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["clear"]);
     assert_eq!(end.history.of("clear"), 1);
@@ -57,7 +56,7 @@ fn what_was_handed_over_is_put_back_and_counts_as_refused() {
 
 /// A user who answers "Here is the clear bowl." with "put it back" does not merely deny it.
 #[test]
-fn the_wish_is_no_mere_denial() {
+fn the_wish_to_put_back_is_no_mere_denial() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["clear"]);
     let Cause::Utterance(mut said) = heard(end.applied.0 + 1, end.act.prompt, answer(Response::No))
@@ -76,7 +75,7 @@ fn an_object_is_put_back_while_a_delivery_can_be_refused() {
     let end = handed_over(&mut manager, &["clear"]);
     let handed_at = end.handed_over.as_ref().expect("a delivery").at;
     let window = Span::from_s(manager.turns().refusal_s);
-    let cause = heard(end.applied.0 + 1, dialogue::ids::PromptId(0), wish(&[]));
+    let cause = heard(end.applied.0 + 1, crate::ids::PromptId(0), wish(&[]));
     let last = manager.next(&end, &cause, handed_at + window);
     assert_eq!(last.act.kind, ActKind::PutBack);
     let late = manager.next(&end, &cause, handed_at + window + Span::from_ms(1));
@@ -119,7 +118,7 @@ fn a_question_that_was_open_comes_after_it() {
 }
 
 #[test]
-fn what_is_said_meanwhile_counts_afterwards() {
+fn words_said_while_an_object_is_put_back_count_afterwards() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["white", "dishwasher"]);
     let state = remark(&mut manager, &end, wish(&[]));
@@ -135,7 +134,7 @@ fn what_is_said_meanwhile_counts_afterwards() {
     assert_eq!((thanked.act.kind, text(&thanked).as_str()), (ActKind::PutBack, "You are welcome."));
     let again = remark(&mut manager, &thanked, wish(&[]));
     assert_eq!((again.act.kind, again.ordered()), (ActKind::PutBack, state.ordered()));
-    let floor = dialogue::manager::Floor::default();
+    let floor = crate::manager::Floor::default();
     assert!(!manager.quiet_is_due(&again, &floor, at(99)));
     let done = ends(&mut manager, &again, PickOutcome::PutBack);
     assert_eq!((done.act.kind, object(&done).as_str()), (ActKind::Pick, "clear"));
@@ -143,7 +142,7 @@ fn what_is_said_meanwhile_counts_afterwards() {
 }
 
 #[test]
-fn while_something_else_is_fetched_it_has_its_turn_afterwards() {
+fn putting_back_has_its_turn_after_a_fetch() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["clear"]);
     let fetching = remark(&mut manager, &end, words(&["white", "dishwasher"]));
@@ -163,7 +162,7 @@ fn while_something_else_is_fetched_it_has_its_turn_afterwards() {
 
 /// With nothing handed over, what is being fetched is meant.
 #[test]
-fn with_nothing_handed_over_the_fetch_is_called_off() {
+fn the_fetch_is_called_off_where_nothing_was_handed_over() {
     let mut manager = manager();
     let fetching = first(&mut manager, words(&["clear"]));
     assert_eq!(remark(&mut manager, &fetching, wish(&[])).act.kind, ActKind::Cancel);
@@ -174,7 +173,7 @@ fn with_nothing_handed_over_the_fetch_is_called_off() {
 }
 
 #[test]
-fn while_stopped_it_waits_for_a_yes_and_the_release() {
+fn putting_back_waits_for_a_yes_and_the_release_while_stopped() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["clear"]);
     let stop = |manager: &mut Manager, state: &State, stopped| {
@@ -197,7 +196,7 @@ fn while_stopped_it_waits_for_a_yes_and_the_release() {
 }
 
 #[test]
-fn it_can_be_called_off_until_the_arm_holds_it() {
+fn putting_back_can_be_called_off_until_the_arm_holds_the_object() {
     let mut manager = manager();
     let end = handed_over(&mut manager, &["clear"]);
     let state = remark(&mut manager, &end, wish(&[]));
@@ -216,29 +215,6 @@ fn it_can_be_called_off_until_the_arm_holds_it() {
         let held = ends(&mut manager, &called_off, PickOutcome::PutBack);
         assert_eq!(text(&held), "I have put the clear bowl back.");
     }
-}
-
-#[test]
-fn an_end_of_another_task_is_no_end() {
-    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
-    node.state = handed_over(&mut manager(), &["clear"]);
-    node.state = remark(&mut manager(), &node.state, wish(&[]));
-    let (pick, ObjectId(object)) = node.state().ordered().expect("an order");
-    let done = |outcome: PickOutcome| ArmStatus {
-        interaction: pick.interaction.0,
-        attempt: pick.attempt,
-        object: object.into(),
-        task: Task::PutBack.into(),
-        phase: PickPhase::Done.into(),
-        outcome: outcome.into(),
-        ..ArmStatus::default()
-    };
-    let mut forged = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
-    forged.state = node.state.clone();
-    tell(&mut forged, In::Arm(done(PickOutcome::Delivered)), at(9));
-    assert!(text(forged.state()).starts_with("I was interrupted"), "{}", text(forged.state()));
-    tell(&mut node, In::Arm(done(PickOutcome::PutBack)), at(9));
-    assert_eq!(text(node.state()), "I have put the clear bowl back.");
 }
 
 /// All of it is in the journal.
@@ -267,5 +243,31 @@ fn putting_back_folds_again() {
     let (pick, _) = state.ordered().expect("an order");
     step(&mut state, Cause::PickEnded { pick, outcome: PickOutcome::PutBack });
     assert_eq!(state.act.question, Question::None);
-    refold(&mut super::manager(), &records).unwrap();
+    refold(&mut settings().manager(), &records).unwrap();
+}
+
+/// A person must look first.
+#[test]
+fn putting_back_is_dropped_where_the_fetch_before_it_was_interrupted() {
+    let mut manager = manager();
+    let end = handed_over(&mut manager, &["clear"]);
+    let fetching = remark(&mut manager, &end, words(&["white", "dishwasher"]));
+    let in_turn = remark(&mut manager, &fetching, wish(&[]));
+    for interrupted in [PickOutcome::Interrupted, PickOutcome::Blocked] {
+        let state = ends(&mut manager, &in_turn, interrupted);
+        assert_eq!((state.act.kind, state.ordered()), (ActKind::Say, None));
+        assert!(state.putting_back.is_none());
+    }
+}
+
+/// "No, the white one" is about another object.
+#[test]
+fn a_no_with_words_of_another_object_does_not_call_putting_back_off() {
+    let mut manager = manager();
+    let end = handed_over(&mut manager, &["clear"]);
+    let state = remark(&mut manager, &end, wish(&[]));
+    let no = |said: &[&str]| Reading { response: Response::No, ..words(said) };
+    assert_eq!(reply(&mut manager, &state, no(&["clear"])).act.kind, ActKind::Cancel);
+    let other = reply(&mut manager, &state, no(&["white"]));
+    assert_eq!((other.act.kind, other.ordered()), (ActKind::PutBack, state.ordered()));
 }

@@ -1,26 +1,19 @@
 //! Objects that appear and disappear under a dialogue.
 
-use super::*;
-use dialogue::manager::NAMES_MAX;
-use scene::{Role, UnknownWord};
+use super::fixture::{
+    Settings, answer, asked, at, belief, bowls_file, delivered, first, heard, manager, markers,
+    remark, reply, settings, settings_of, settings_with, text, typed, words,
+};
+use super::fold::{random_dialogue, shift};
+use crate::ids::{PickId, PromptId};
+use crate::manager::NAMES_MAX;
+use crate::manager::{Cause, Manager, Record, State, Utterance, refold_since};
+use crate::{ActKind, Model, Outcome, PickOutcome};
+use scene::{Intent, Reading, Response, Role, UnknownWord};
 
 /// The shipped bowls without those in `gone`, and with these TOML lines behind them.
 pub(super) fn bowls(gone: &[&str], more: &str) -> Settings {
-    bowls_with(gone, more, &[])
-}
-
-fn bowls_with(gone: &[&str], more: &str, over: &[(&str, &str)]) -> Settings {
-    let folder = tempfile::tempdir().unwrap();
-    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml");
-    let text = std::fs::read_to_string(shipped).unwrap();
-    let mut parts = text.split("[[objects]]");
-    let head = parts.next().unwrap().to_owned();
-    let is_gone = |part: &&str| gone.iter().any(|name| part.contains(&format!("\"{name}\"\n")));
-    let kept: String =
-        parts.filter(|part| !is_gone(part)).map(|part| format!("[[objects]]{part}")).collect();
-    let path = folder.path().join("edited.toml");
-    std::fs::write(&path, format!("{head}{kept}\n{more}")).unwrap();
-    settings_with(&[over, &[("group.scene", path.to_str().unwrap())]].concat())
+    settings_of(&bowls_file(gone, more))
 }
 
 /// A seventh bowl: a small white one in the cabinet, before the others' numbers or behind them.
@@ -33,10 +26,6 @@ size = [0.12, 0.12, 0.05]
 grasp_width = 0.006
 form = "hollow"
 "#;
-
-fn manager_of(settings: &Settings) -> Manager {
-    settings.manager().unwrap()
-}
 
 /// After "the white one", with a question standing.
 fn white_asked(manager: &mut Manager) -> State {
@@ -55,10 +44,10 @@ fn probability(settings: &Settings, state: &State, name: &str) -> f64 {
 }
 
 #[test]
-fn a_bowl_that_is_gone_drops_out_and_a_new_one_counts_with_what_was_said() {
+fn a_bowl_that_is_gone_drops_out_and_a_new_one_counts_with_the_words_said() {
     let state = white_asked(&mut manager());
     let changed = bowls(&["metal2"], SEVENTH);
-    let after = manager_of(&changed).next(&state, &Cause::Reconfigured, at(2));
+    let after = changed.manager().next(&state, &Cause::Reconfigured, at(2));
     assert_eq!(after.scene_key, changed.scene.key());
     assert_eq!(after.open.as_ref().unwrap().id, state.open.as_ref().unwrap().id, "it goes on");
     assert_eq!(belief(&after).len(), 6);
@@ -97,13 +86,13 @@ fn an_answer_to_a_question_from_before_still_counts() {
     let state = white_asked(&mut manager());
     let question = state.act.prompt;
     let changed = bowls(&["white"], "");
-    let mut manager = manager_of(&changed);
+    let mut manager = changed.manager();
     let after = manager.next(&state, &Cause::Reconfigured, at(2));
     let asked = &after.open.as_ref().unwrap().prompts[0].named;
     let asked = asked.question(&changed.scene);
     let late = manager.next(&after, &heard(2, question, answer(Response::Yes)), at(3));
     let mut expected = after.open.as_ref().unwrap().belief();
-    let model = Model::new(&changed.scene, changed.dialogue.params);
+    let model = Model::new(&changed.scene, changed.params);
     expected.update(&model, asked, &answer(Response::Yes));
     assert_eq!(belief(&late), expected.probabilities());
 }
@@ -114,7 +103,7 @@ fn a_change_of_the_scene_folds_again_bit_for_bit_from_the_record_before() {
     records.truncate(6);
     let before = records.last().unwrap().state.clone();
     let changed = bowls(&["metal"], SEVENTH);
-    let mut manager = manager_of(&changed);
+    let mut manager = changed.manager();
     let mut state = before;
     for (n, cause) in [Cause::Reconfigured, Cause::Silence].into_iter().enumerate() {
         let when = at(100 + n as u64);
@@ -122,15 +111,16 @@ fn a_change_of_the_scene_folds_again_bit_for_bit_from_the_record_before() {
         records.push(Record { cause, at: when, state: state.clone() });
     }
     let key = manager.key();
-    assert_eq!(refold_since(&mut manager_of(&changed), &records, key), Ok(2));
+    assert_eq!(refold_since(&mut changed.manager(), &records, key), Ok(2));
     // Settings that decide nothing about these records may differ.
-    let slower = bowls_with(&["metal"], SEVENTH, &[("dialogue.turns.response_window_s", "99")]);
-    let mut slower = manager_of(&slower);
+    let mut slower = changed.clone();
+    slower.turns.response_window_s = 99.0;
+    let mut slower = slower.manager();
     assert_ne!(slower.key(), key);
     assert_eq!(refold_since(&mut slower, &records, key), Ok(2));
     let open = records[6].state.open.as_mut().expect("an open interaction");
     shift(open, 1e-12);
-    let error = refold_since(&mut manager_of(&changed), &records, key).unwrap_err();
+    let error = refold_since(&mut changed.manager(), &records, key).unwrap_err();
     assert_eq!((error.index, error.part), (6, "belief"));
 }
 
@@ -139,11 +129,11 @@ fn a_pick_whose_object_is_gone_ends_the_interaction_and_another_goes_on() {
     let mut manager = manager();
     let state = first(&mut manager, all_about_metal2());
     let (pick, _) = state.act.pick.expect("sure enough");
-    let gone = manager_of(&bowls(&["metal2"], "")).next(&state, &Cause::Reconfigured, at(2));
+    let gone = bowls(&["metal2"], "").manager().next(&state, &Cause::Reconfigured, at(2));
     assert_eq!(gone.ended.map(|ended| ended.outcome), Some(Outcome::SceneChanged));
 
     let changed = bowls(&["white"], "");
-    let mut manager = manager_of(&changed);
+    let mut manager = changed.manager();
     let moved = manager.next(&state, &Cause::Reconfigured, at(2));
     let metal2 = changed.scene.object_named("metal2").unwrap();
     assert_eq!(moved.act.pick, Some((pick, metal2)), "the same order with the new number");
@@ -171,16 +161,16 @@ fn a_pick_that_the_person_gave_up_is_not_ordered_again() {
 }
 
 #[test]
-fn where_nothing_is_left_the_interaction_ends() {
+fn the_interaction_ends_where_nothing_is_left() {
     let state = white_asked(&mut manager());
-    let markers = settings_with(&[("group.scene", "markers")]);
-    let after = manager_of(&markers).next(&state, &Cause::Reconfigured, at(2));
+    let markers = markers();
+    let after = markers.manager().next(&state, &Cause::Reconfigured, at(2));
     assert_eq!(after.ended.map(|ended| ended.outcome), Some(Outcome::SceneChanged));
     assert_eq!(after.scene_key, markers.scene.key());
 }
 
 #[test]
-fn a_word_that_nothing_had_counts_for_what_has_it_now() {
+fn a_word_that_nothing_had_counts_for_an_object_that_has_it_now() {
     let mut manager = manager();
     let state = asked(&mut manager);
     let utterance = typed(2, PromptId(0), Reading::default());
@@ -189,14 +179,9 @@ fn a_word_that_nothing_had_counts_for_what_has_it_now() {
     let state = manager.next(&state, &cause, at(2));
     let copper =
         SEVENTH.replace("white4", "copper1").replace("color = \"white\"", "color = \"copper\"");
-    let folder = tempfile::tempdir().unwrap();
-    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml");
-    let text = std::fs::read_to_string(shipped).unwrap();
-    let text = text.replacen("  \"white\",\n", "  \"white\",\n  \"copper\",\n", 1) + &copper;
-    let path = folder.path().join("copper.toml");
-    std::fs::write(&path, text).unwrap();
-    let changed = settings_with(&[("group.scene", path.to_str().unwrap())]);
-    let after = manager_of(&changed).next(&state, &Cause::Reconfigured, at(3));
+    let file = bowls_file(&[], &copper);
+    let changed = settings_of(&file.replacen("  \"white\",\n", "  \"white\",\n  \"copper\",\n", 1));
+    let after = changed.manager().next(&state, &Cause::Reconfigured, at(3));
     let p = |name| probability(&changed, &after, name);
     assert!(p("copper1") > 2.0 * p("white"), "{:?}", belief(&after));
 }
@@ -204,8 +189,8 @@ fn a_word_that_nothing_had_counts_for_what_has_it_now() {
 /// An endless talker: memory stays bounded, the belief loses nothing, and only a change of the
 /// scene finds that the beginning is forgotten.
 #[test]
-fn what_is_remembered_is_bounded() {
-    let mut manager = settings_with(&[("dialogue.turns.questions_max", "1000")]).manager().unwrap();
+fn memory_of_an_interaction_is_bounded() {
+    let mut manager = settings_with(|it| it.turns.questions_max = 1_000).manager();
     let mut state = asked(&mut manager);
     let said = words(&["white", "metallic"]);
     for _ in 2..600 {
@@ -215,24 +200,4 @@ fn what_is_remembered_is_bounded() {
     assert!(open.forgotten > 0 && open.evidence.len() <= NAMES_MAX / 4, "{}", open.evidence.len());
     let again = manager.next(&state, &Cause::Reconfigured, at(1000));
     assert_eq!(again.open.unwrap().forgotten, open.forgotten);
-}
-
-#[test]
-fn settings_that_change_at_rest_are_recorded_and_change_nothing_else() {
-    let mut manager = manager();
-    let before = manager.first();
-    let other = settings_with(&[("dialogue.epsilon", "0.02")]);
-    let mut node = PolicyNode::recover(
-        manager_of(&other).into(),
-        vec![Record { cause: Cause::Snapshot, at: at(1), state: before.clone() }],
-    )
-    .unwrap();
-    let mut effects: Effects<Out, Record> = Effects::default();
-    node.on(Event::Started, at(2), &mut effects);
-    let records = effects.take_records();
-    assert_eq!(records.len(), 1);
-    assert_eq!(records[0].cause, Cause::Reconfigured);
-    let after = &records[0].state;
-    let same = State { settings_key: before.settings_key, ..after.clone() };
-    assert_eq!(same, manager.next(&before, &Cause::Snapshot, at(2)));
 }

@@ -1,11 +1,9 @@
 //! Picks that are decided while the motion stop is latched.
 
-use super::{answer, at, first, manager, remark, reply, tell, text, words};
-use crate::{In, PolicyNode};
-use dialogue::manager::{Cause, Manager, MotionStop, State};
-use messages::{ActKind, ArmStatus};
+use super::fixture::{answer, at, first, manager, remark, reply, text, words};
+use crate::ActKind;
+use crate::manager::{Cause, Manager, MotionStop, State};
 use scene::{Intent, Reading, Response};
-use service::Node;
 
 fn stopped(manager: &mut Manager, said: &[&str]) -> State {
     let state = manager.next(&manager.first(), &Cause::MotionStop(MotionStop::Stopped), at(0));
@@ -33,7 +31,7 @@ fn a_pick_while_stopped_is_announced_and_not_ordered() {
 }
 
 #[test]
-fn what_was_confirmed_while_stopped_starts_with_the_release() {
+fn a_pick_confirmed_while_stopped_starts_with_the_release() {
     let mut manager = manager();
     let state = stopped(&mut manager, &["clear"]);
     let confirmed = reply(&mut manager, &state, answer(Response::Yes));
@@ -45,7 +43,7 @@ fn what_was_confirmed_while_stopped_starts_with_the_release() {
 }
 
 #[test]
-fn what_was_denied_or_withdrawn_while_stopped_does_not_start() {
+fn a_pick_denied_or_withdrawn_while_stopped_does_not_start() {
     let mut manager = manager();
     let state = stopped(&mut manager, &["clear"]);
     let denied = reply(&mut manager, &state, answer(Response::No));
@@ -69,17 +67,6 @@ fn a_stop_changes_no_order() {
     let stop = manager.next(&state, &Cause::MotionStop(MotionStop::Stopped), at(2));
     assert_eq!(stop.act, state.act);
     assert_eq!(resume(&mut manager, &stop).act, state.act);
-}
-
-#[test]
-fn the_stop_is_heard_from_the_arm() {
-    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
-    let status = |stopped| In::Arm(ArmStatus { stopped, ..ArmStatus::default() });
-    assert_eq!(tell(&mut node, status(1), at(1)).0.len(), 1);
-    assert!(node.state().stop.motion.is_latched());
-    assert!(tell(&mut node, status(1), at(2)).0.is_empty());
-    assert_eq!(tell(&mut node, status(0), at(3)).0.len(), 1);
-    assert!(!node.state().stop.motion.is_latched());
 }
 
 /// How to resume: words do not.
@@ -125,10 +112,33 @@ fn words_to_go_on_mean_what_they_did_where_nothing_is_stopped() {
 }
 
 #[test]
-fn yes_go_on_confirms_what_waits_for_the_release() {
+fn yes_go_on_confirms_a_pick_that_waits_for_the_release() {
     let mut manager = manager();
     let state = stopped(&mut manager, &["clear"]);
     let yes = Reading { intent: Intent::GoOn, ..answer(Response::Yes) };
     let confirmed = reply(&mut manager, &state, yes);
     assert_eq!(text(&confirmed), "All right, once you resume.");
+}
+
+/// "Yes, the big metallic one" is no yes to the clear one.
+#[test]
+fn a_yes_with_words_of_another_object_confirms_nothing() {
+    let mut manager = manager();
+    let state = stopped(&mut manager, &["clear"]);
+    let other = Reading { response: Response::Yes, ..words(&["metallic", "big"]) };
+    let after = reply(&mut manager, &state, other);
+    assert_ne!(text(&after), "All right, once you resume.");
+    assert_ne!(resume(&mut manager, &after).act.kind, ActKind::Pick);
+}
+
+#[test]
+fn the_release_ends_the_wait_for_the_report_of_a_stop() {
+    let mut manager = manager();
+    let fetching = first(&mut manager, words(&["clear"]));
+    let stop = Reading { intent: Intent::Stop, ..Reading::default() };
+    let ordered = remark(&mut manager, &fetching, stop);
+    assert!(ordered.stop.order.is_some());
+    let stopping = manager.next(&ordered, &Cause::MotionStop(MotionStop::Stopping), at(3));
+    assert!(stopping.stop.order.is_some(), "it is not at rest yet");
+    assert_eq!(resume(&mut manager, &stopping).stop.order, None);
 }

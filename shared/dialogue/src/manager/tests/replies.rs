@@ -1,28 +1,10 @@
 //! Every text that is typed gets an answer, and no question comes twice in the same words.
 
-use super::{answer, at, first, heard, manager, remark, reply, text, typed, words};
-use dialogue::manager::{Cause, Manager, Reason, Remark, State};
-use messages::{ActKind, PromptId};
+use super::fixture::{answer, at, first, heard, manager, remark, reply, text, typed, words};
+use crate::ActKind;
+use crate::ids::PromptId;
+use crate::manager::{Cause, Manager, State, Utterance};
 use scene::{Intent, Reading, Response, Role, UnknownWord};
-
-/// Journals hold what was said last: a remark inserted before others made the next start after an upgrade fail.
-#[test]
-fn remarks_keep_their_numbers_in_journals() {
-    let number = |remark: Remark| postcard::to_stdvec(&remark).unwrap()[0];
-    for (remark, expected) in [
-        (Remark::Stopped, 0),
-        (Remark::AllRight, 7),
-        (Remark::Idle, 9),
-        (Remark::PuttingBack(String::new()), 13),
-        (Remark::Why(Reason::None), 16),
-        (Remark::OnlyFetches(None), 17),
-        (Remark::TooLate(String::new()), 18),
-        (Remark::StillStopped, 19),
-        (Remark::StopUnconfirmed, 20),
-    ] {
-        assert_eq!(number(remark.clone()), expected, "{remark:?}");
-    }
-}
 
 fn intent(intent: Intent) -> Reading {
     Reading { intent, ..Reading::default() }
@@ -193,7 +175,7 @@ fn silence_is_met_with_fewer_words_and_then_with_silence() {
 }
 
 #[test]
-fn who_starts_over_is_asked_what_is_wanted() {
+fn a_user_who_starts_over_is_asked_for_the_object() {
     let mut manager = manager();
     let state = first(&mut manager, words(&["white"]));
     let over = reply(&mut manager, &state, intent(Intent::StartOver));
@@ -206,12 +188,12 @@ fn who_starts_over_is_asked_what_is_wanted() {
 
 /// Nothing begins with a request for what is not here; of another way to say a quality it may.
 #[test]
-fn what_the_scene_has_nothing_of_is_said_at_once() {
+fn absence_from_the_scene_is_said_at_once() {
     let mut manager = manager();
     let request = |text: &str, role: Role| {
         let said = typed(1, PromptId(0), Reading::default());
         let unknown = Some(UnknownWord { text: text.to_owned(), role });
-        let said = dialogue::manager::Utterance { unknown, ..said };
+        let said = Utterance { unknown, ..said };
         Cause::Utterance(said)
     };
     let plate = manager.next(&manager.first(), &request("plate", Role::Kind), at(1));

@@ -1,11 +1,18 @@
 //! Gestures: evidence about the object, and nothing else.
 
-use super::*;
+use super::fixture::{
+    Settings, answer, asked, at, belief, manager, remark, settings, settings_with, typed, words,
+};
+use crate::ids::{PromptId, UtteranceSeq};
+use crate::manager::{Cause, Manager, Utterance};
+use scene::{Intent, Reading, Response};
 
-pub(super) const GESTURES: [(&str, &str); 1] = [("dialogue.gesture.enabled", "true")];
+pub(super) fn with_gestures(settings: &mut Settings) {
+    settings.gestures = true;
+}
 
 fn pointing_manager() -> Manager {
-    settings_with(&GESTURES).manager().unwrap()
+    settings_with(with_gestures).manager()
 }
 
 fn place(bowl: &str) -> [f64; 3] {
@@ -66,7 +73,7 @@ fn a_far_off_gesture_is_outvoted() {
 }
 
 #[test]
-fn where_gestures_do_not_count_they_change_nothing_and_words_with_them_do() {
+fn gestures_change_nothing_where_they_do_not_count_and_words_with_them_do() {
     let mut manager = manager();
     let alone = shown(1, PromptId(0), Reading::default(), "clear");
     let state = manager.next(&manager.first(), &alone, at(1));

@@ -1,9 +1,10 @@
 //! What was called off and cannot go back: the robot asks what becomes of it, and decides nothing else
 //! until it knows.
 
-use super::{answer, at, belief, delivered, first, manager, remark, reply, text, words};
-use dialogue::manager::{Cause, Manager, MotionStop, State};
-use messages::{ActKind, Outcome, PickId, PickOutcome};
+use super::fixture::{answer, at, belief, delivered, first, manager, remark, reply, text, words};
+use crate::ids::PickId;
+use crate::manager::{Cause, Manager, MotionStop, State};
+use crate::{ActKind, Outcome, PickOutcome};
 use scene::{Intent, ObjectId, Reading, Response};
 
 const ASKS: &str = "I cannot put the clear bowl back, so I still hold it. Shall I give it to you?";
@@ -35,7 +36,7 @@ fn assert_hands_over(manager: &mut Manager, state: &State, (before, object): (Pi
 }
 
 #[test]
-fn a_yes_hands_over_what_was_kept() {
+fn a_yes_hands_over_the_kept_object() {
     let again = words(&["clear"]);
     for word in [answer(Response::Yes), again] {
         let mut manager = manager();
@@ -68,7 +69,7 @@ fn nothing_else_is_ordered_while_an_object_is_kept() {
 }
 
 #[test]
-fn what_is_wanted_instead_is_fetched_once_the_gripper_is_free() {
+fn another_wish_counts_once_the_gripper_is_free() {
     let mut manager = manager();
     let instead = Reading { response: Response::No, ..words(&["metallic", "big"]) };
     let (state, _, object) = kept(&mut manager, instead);

@@ -1,12 +1,14 @@
 //! After the hand-over: refusals, "the other one", "the same again".
 
-use super::{answer, at, belief, delivered, first, heard, manager, remark, reply, settings};
-use super::{text, words};
-use dialogue::manager::{Cause, MotionStop, Record};
-use dialogue::manager::{Manager, State, refold};
-use messages::{ActKind, Outcome};
+use super::fixture::{
+    answer, at, belief, delivered, first, heard, manager, remark, reply, settings,
+};
+use super::fixture::{text, words};
+use crate::manager::{Cause, MotionStop, Record};
+use crate::manager::{Manager, State, refold};
+use crate::time::{Span, Time};
+use crate::{ActKind, Outcome};
 use scene::{Intent, Reading, Reference, Response};
-use service::{Span, Time};
 
 fn refers(refers: Reference, said: &[&str]) -> Reading {
     Reading { refers, ..words(said) }
@@ -25,7 +27,7 @@ fn picked(state: &State) -> String {
 }
 
 #[test]
-fn what_was_handed_over_can_be_refused_and_does_not_come_again() {
+fn a_delivery_can_be_refused_and_does_not_come_again() {
     let mut manager = manager();
     let (end, name) = handed_over(&mut manager, &["white", "dishwasher"]);
     assert_eq!((name.as_str(), end.history.of("white")), ("white", 1));
@@ -64,23 +66,6 @@ fn a_refusal_counts_for_a_while() {
     let late = manager.next(&end, &no(seq), Time((handed_at + window).0 + 1));
     assert!(late.open.is_none() && late.handed_over.is_none());
     assert_eq!(late.ended.map(|ended| ended.outcome), Some(Outcome::Delivered));
-}
-
-/// Clients learn what can be refused, and until when.
-#[test]
-fn the_view_shows_what_can_be_refused() {
-    let mut manager = manager();
-    let (end, _) = handed_over(&mut manager, &["clear"]);
-    let refusable = |state: &State| crate::view::view(&manager, state, 0).refusable;
-    let delivery = refusable(&end).expect("a delivery");
-    assert_eq!(delivery.object, settings().scene.object_named("clear").unwrap().0);
-    assert_eq!(Some(delivery.interaction), end.ended.as_ref().map(|ended| ended.interaction.0));
-    let handed_at = end.handed_over.as_ref().expect("a delivery").at;
-    let window = Span::from_s(manager.turns().refusal_s);
-    assert_eq!(delivery.until_ns, (handed_at + window).ns());
-    let mut manager = self::manager();
-    let next = remark(&mut manager, &end, words(&["metallic"]));
-    assert_eq!(refusable(&next), None, "a request is open");
 }
 
 #[test]
@@ -124,7 +109,7 @@ fn the_other_one_is_not_the_one_that_was_delivered() {
 }
 
 #[test]
-fn the_other_one_calls_off_what_is_being_fetched() {
+fn the_other_one_calls_off_the_fetch() {
     let mut manager = manager();
     let fetching = first(&mut manager, words(&["white", "dishwasher"]));
     let other = remark(&mut manager, &fetching, refers(Reference::Other, &[]));
@@ -142,7 +127,7 @@ fn the_same_again_is_the_one_delivered_last() {
 }
 
 #[test]
-fn comparisons_are_resolved_among_what_is_left() {
+fn comparisons_are_resolved_among_the_objects_left() {
     let mut manager = manager();
     let scene = settings().scene;
     let volume = |name: &str| {
@@ -191,4 +176,15 @@ fn refusals_fold_again() {
     step(&mut manager, &mut state, Cause::MotionStop(MotionStop::Released));
     assert_eq!(state.act.kind, ActKind::Pick);
     refold(&mut manager, &records).unwrap();
+}
+
+/// In answer to the hand-over, other words are read as a no that is implied.
+#[test]
+fn the_other_one_in_answer_to_a_hand_over_refuses_nothing() {
+    let mut manager = manager();
+    let (end, name) = handed_over(&mut manager, &["small", "metallic"]);
+    let implied = Reading { response: Response::No, ..refers(Reference::Other, &[]) };
+    let other = reply(&mut manager, &end, implied);
+    assert_ne!(picked(&other), name);
+    assert_eq!(other.ended.map(|ended| ended.outcome), Some(Outcome::Delivered));
 }

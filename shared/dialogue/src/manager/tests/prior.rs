@@ -1,13 +1,24 @@
 //! What is believed before anything is said: alike, by history, or that it may not be here.
 
-use super::*;
+use super::fixture::{
+    Change, Settings, answer, asked, at, belief, delivered, manager, markers, remark, reply,
+    settings, settings_with, text,
+};
+use crate::manager::{Cause, Manager, State};
+use crate::{ActKind, Answer, Model, Outcome, PriorObjects};
+use scene::{ObjectId, Reading, Response};
 
-fn manager_with(over: &[(&str, &str)]) -> Manager {
-    settings_with(over).manager().unwrap()
+pub(super) fn by_history(settings: &mut Settings) {
+    settings.prior.objects = PriorObjects::History;
 }
 
-pub(super) const HISTORY: [(&str, &str); 1] = [("dialogue.prior.objects", "history")];
-const ABSENT: [(&str, &str); 1] = [("dialogue.prior.absent", "0.1")];
+fn perhaps_absent(settings: &mut Settings) {
+    settings.prior.absent = 0.1;
+}
+
+fn manager_with(change: Change) -> Manager {
+    settings_with(change).manager()
+}
 
 /// Has `name` asked for with every word that it has, and delivered.
 fn deliver(manager: &mut Manager, state: &State, name: &str) -> State {
@@ -22,7 +33,7 @@ fn deliver(manager: &mut Manager, state: &State, name: &str) -> State {
 
 #[test]
 fn history_raises_the_prior_only_where_that_is_configured() {
-    let mut manager = manager_with(&HISTORY);
+    let mut manager = manager_with(by_history);
     let mut state = manager.first();
     for name in ["clear", "clear", "metal", "clear"] {
         state = deliver(&mut manager, &state, name);
@@ -33,24 +44,24 @@ fn history_raises_the_prior_only_where_that_is_configured() {
     for (p, expected) in next(&mut manager).iter().zip(expected) {
         assert!((p - expected).abs() < 1e-12, "{p} {expected}");
     }
-    let uniform = next(&mut super::manager());
+    let uniform = next(&mut settings().manager());
     assert!(uniform.iter().all(|p| (p - 1.0 / 6.0).abs() < 1e-12), "{uniform:?}");
 }
 
 #[test]
 fn history_survives_another_scene() {
-    let mut manager = manager_with(&HISTORY);
+    let mut manager = manager_with(by_history);
     let first = manager.first();
     let state = deliver(&mut manager, &first, "clear");
-    let markers = settings_with(&[("group.scene", "markers")]);
-    let there = markers.manager().unwrap().next(&state, &Cause::Reconfigured, at(99));
+    let markers = markers();
+    let there = markers.manager().next(&state, &Cause::Reconfigured, at(99));
     let back = manager.next(&there, &Cause::Reconfigured, at(100));
     assert_eq!((back.history.of("clear"), back.history), (1, state.history));
 }
 
 #[test]
-fn who_denies_everything_is_told_that_it_is_not_here() {
-    let mut manager = manager_with(&ABSENT);
+fn a_user_who_denies_everything_is_told_that_it_is_not_here() {
+    let mut manager = manager_with(perhaps_absent);
     let mut state = asked(&mut manager);
     assert_eq!(belief(&state).len(), 7);
     for _ in 2..40 {
@@ -68,11 +79,11 @@ fn who_denies_everything_is_told_that_it_is_not_here() {
 }
 
 #[test]
-fn whoever_wants_what_is_here_gets_it_though_it_might_not_be() {
-    let settings = settings_with(&ABSENT);
-    let model = Model::new(&settings.scene, settings.dialogue.params);
+fn an_object_that_is_here_is_fetched_though_it_might_not_be_here() {
+    let settings = settings_with(perhaps_absent);
+    let model = Model::new(&settings.scene, settings.params);
     for wanted in (0..6).map(ObjectId::from) {
-        let mut manager = manager_with(&ABSENT);
+        let mut manager = manager_with(perhaps_absent);
         let mut state = asked(&mut manager);
         for _ in 2..30 {
             let truth = Answer::truthful(&model, state.act.question, wanted).reading(&model);
@@ -85,25 +96,11 @@ fn whoever_wants_what_is_here_gets_it_though_it_might_not_be() {
     }
 }
 
-#[test]
-fn clients_see_objects_and_absence_apart() {
-    let mut manager = manager_with(&[ABSENT[0], HISTORY[0]]);
-    let state = asked(&mut manager);
-    for state in [&manager.first(), &state] {
-        let view = crate::view::view(&manager, state, 0);
-        assert_eq!(view.belief.len(), 6);
-        assert!((view.absent - 0.1).abs() < 1e-12, "{view:?}");
-        assert!((view.belief.iter().sum::<f64>() - 0.9).abs() < 1e-12, "{view:?}");
-    }
-    let uniform = super::manager();
-    assert_eq!(crate::view::view(&uniform, &uniform.first(), 0).absent, 0.0);
-}
-
 /// Turning absence on under an open interaction gives every belief one entry more.
 #[test]
 fn absence_may_be_switched_while_a_question_stands() {
     let state = asked(&mut manager());
-    let on = manager_with(&ABSENT).next(&state, &Cause::Reconfigured, at(2));
+    let on = manager_with(perhaps_absent).next(&state, &Cause::Reconfigured, at(2));
     assert_eq!((belief(&on).len(), on.act.kind), (7, ActKind::Ask));
     let off = manager().next(&on, &Cause::Reconfigured, at(3));
     assert_eq!(belief(&off), belief(&state));
