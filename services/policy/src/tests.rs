@@ -25,8 +25,8 @@ use config::Settings;
 use dialogue::manager::{
     Cause, Interaction, Manager, Record, State, Utterance, refold, refold_since,
 };
-use dialogue::{ActKind, Interpretation, Outcome, PickOutcome, PickPhase, Presentation, rendering};
-use dialogue::{Answer, Belief, Model, Posterior, Rng};
+use dialogue::rendering;
+use dialogue::{Answer, Belief, Model, Posterior};
 use messages::WireCode;
 use messages::{
     ArmStatus, AskedQuestion, FixedText, MessageRef, Observation, PickId, PresentationState,
@@ -34,8 +34,11 @@ use messages::{
 };
 use scene::{Intent, ObjectId, Question, Reading, Response};
 use service::{Effects, Event, Node, Span, Time};
+use setup::DialogueSettings;
 use std::path::Path;
 use std::sync::OnceLock;
+use vocabulary::Rng;
+use vocabulary::{ActKind, Interpretation, Outcome, PickOutcome, PickPhase, Presentation};
 
 /// The shipped ones. They are loaded once: whether the arm reaches every bowl takes its time.
 fn settings() -> Settings {

@@ -88,10 +88,8 @@ mod tests {
 
     use super::*;
     use crate::testing::{random_scene, scene_of};
-    use crate::{
-        Action, Actions, Costs, DecisionProblem, Mode, ModelUser, Params, Rng, Step, evaluate,
-        registry,
-    };
+    use crate::{DecisionProblem, ModelUser, Step, evaluate, registry};
+    use vocabulary::{Action, Actions, Costs, Mode, Params, Rng};
 
     const ALL: [Actions; 3] = [
         Actions { mode: Mode::Remote, attribute: true, which: false },

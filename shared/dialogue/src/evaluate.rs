@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use scene::{ObjectId, Question};
 
-use crate::{Action, Answer, Belief, Decision, DecisionProblem, Planner, Step};
+use crate::{Answer, Belief, Decision, DecisionProblem, Planner, Step};
+use vocabulary::Action;
 
 /// What a policy achieves from a belief, in expectation over wanted object and answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,7 +185,8 @@ fn hear(
 mod tests {
     use super::*;
     use crate::testing::{bowls, markers};
-    use crate::{Actions, Costs, Lookahead, Mode, Model, Params, registry};
+    use crate::{Lookahead, Model, registry};
+    use vocabulary::{Actions, Costs, Mode, Params};
 
     const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
 

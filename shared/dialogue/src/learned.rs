@@ -83,8 +83,9 @@ mod tests {
     use scene::{ObjectId, Perceived};
 
     use super::*;
+    use crate::Belief;
     use crate::testing::{heard, markers};
-    use crate::{Belief, Params};
+    use vocabulary::Params;
 
     /// Two objects of which one may be red: asking the same again tells no more than a person's error.
     #[test]

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::stable_hash::StableHash128;
-use crate::{Action, Actions, Announce, Decision, DecisionProblem};
+use crate::{Decision, DecisionProblem};
+use vocabulary::{Action, Actions, Announce};
 
 /// The decisions of one problem, by belief.
 ///

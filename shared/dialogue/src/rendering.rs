@@ -7,7 +7,7 @@ mod remarks;
 use scene::{ObjectId, Question, Role, Scene, UnknownWord};
 
 use crate::manager::{Act, Content, Preface};
-use crate::{ActKind, Action, PickOutcome};
+use vocabulary::{ActKind, Action, PickOutcome};
 
 pub use foreseen::foreseen;
 pub use readings::reading;

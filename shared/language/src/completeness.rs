@@ -5,7 +5,9 @@
 use scene::{Intent, Question, Reading, Response, Role, Scene, WordId};
 
 use crate::normalise::normalise;
-use crate::reader::{Language, Reader};
+use ::vocabulary::Language;
+
+use crate::reader::Reader;
 use crate::tagger::{Tag, tag};
 use crate::token_class::{Class, classes};
 use crate::tokens::Tokens;

@@ -28,8 +28,9 @@
 //! # Example
 //!
 //! ```
-//! use language::{Language, Reader};
+//! use language::Reader;
 //! use scene::{Question, Scene};
+//! use vocabulary::Language;
 //!
 //! let scene = Scene::from_json(
 //!     "markers",
@@ -108,4 +109,4 @@ pub use mentions::{Mention, Polarity};
 pub use normalise::TEXT_CHARS_MAX;
 pub use own_words::own_words;
 pub use parsed::READINGS_MAX;
-pub use reader::{Language, Reader};
+pub use reader::Reader;

@@ -6,7 +6,9 @@ use crate::features::{Example, examples};
 use crate::judge::judge;
 use crate::normalise::normalise;
 use crate::parsed::ParsedUtterance;
-use crate::reader::{Language, Reader};
+use ::vocabulary::Language;
+
+use crate::reader::Reader;
 use crate::tokens::Tokens;
 
 /// A value word of an utterance, and the probabilities of what is said of it; they sum to 1.

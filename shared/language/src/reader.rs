@@ -1,5 +1,6 @@
 //! The reader: runs the pipeline on an utterance.
 
+use ::vocabulary::Language;
 use scene::{Intent, Question, Reading, Reference, Response, Scene, UnknownWord};
 
 use crate::answer::response;
@@ -20,19 +21,6 @@ use crate::references::reference;
 use crate::tagger::tag;
 use crate::tokens::Tokens;
 use crate::unknown::unknown_words;
-
-/// Options of the reader.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum Language {
-    /// Word spotting, exactly as in section 3.6 of the paper.
-    Paper,
-    /// A careful extractor: synonyms, negation with scope, repairs, intents.
-    #[default]
-    Careful,
-}
 
 /// Reads utterances about one scene. Holds all that it needs of the scene.
 #[derive(Clone, Debug)]

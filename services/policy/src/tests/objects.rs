@@ -4,6 +4,7 @@ use super::*;
 use crate::Config;
 use messages::{Change, Detection, Look, Sighting, TableView};
 use scene::Scene;
+use setup::DialogueSettings;
 
 fn perceiving() -> Settings {
     static PERCEIVING: OnceLock<Settings> = OnceLock::new();

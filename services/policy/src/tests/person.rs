@@ -1,6 +1,7 @@
 //! What is learned about the person goes on from one interaction to the next.
 
 use super::*;
+use setup::DialogueSettings;
 
 pub(super) const LEARNING: [(&str, &str); 1] = [("dialogue.planner", "information-seeking")];
 

@@ -1,6 +1,7 @@
 //! Gestures: evidence about the object, and nothing else.
 
 use super::*;
+use setup::DialogueSettings;
 
 pub(super) const GESTURES: [(&str, &str); 1] = [("dialogue.gesture.enabled", "true")];
 

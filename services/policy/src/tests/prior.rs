@@ -1,6 +1,7 @@
 //! What is believed before anything is said: alike, by history, or that it may not be here.
 
 use super::*;
+use setup::DialogueSettings;
 
 fn manager_with(over: &[(&str, &str)]) -> Manager {
     settings_with(over).manager().unwrap()

@@ -3,6 +3,7 @@
 use super::*;
 use dialogue::manager::NAMES_MAX;
 use scene::{Role, UnknownWord};
+use setup::DialogueSettings;
 
 /// The shipped bowls without those in `gone`, and with these TOML lines behind them.
 pub(super) fn bowls(gone: &[&str], more: &str) -> Settings {

@@ -5,6 +5,7 @@ use config::Settings;
 use dialogue::Answer;
 use messages::ActKind;
 use scene::{ObjectId, Question, Reading, Response};
+use setup::DialogueSettings;
 
 const ROBOT: (&str, &str) = ("dialogue.costs.from", "robot");
 pub(super) const POINTING: [(&str, &str); 3] =

@@ -2,6 +2,7 @@
 
 use super::*;
 use messages::Activity;
+use setup::DialogueSettings;
 
 fn manager_with(attribution: &str) -> Manager {
     settings_with(&[("dialogue.turns.attribution", attribution)]).manager().unwrap()

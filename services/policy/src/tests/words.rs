@@ -5,6 +5,7 @@ use super::{first, manager, settings, settings_with, text, words};
 use dialogue::rendering;
 use messages::ActKind;
 use scene::{Doubt, Reading};
+use setup::DialogueSettings;
 
 #[test]
 fn a_unique_description_is_fetched_without_a_question() {

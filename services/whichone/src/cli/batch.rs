@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use dialogue::{Announce, Costs, Mode};
-use language::Language;
+use vocabulary::Language;
+use vocabulary::{Announce, Costs, Mode};
 
 use super::ConfigArgs;
 

@@ -3,8 +3,8 @@
 use serde_json::Value as Json;
 
 use super::*;
-use crate::Params;
 use crate::testing::{heard, scene_of};
+use vocabulary::Params;
 
 /// Every case of the fixture to 1e-9, and every figure that the paper prints to its three digits.
 #[test]

@@ -25,7 +25,7 @@ pub(super) fn escape(kind: &str, texts: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Rng;
+    use vocabulary::Rng;
 
     #[test]
     fn escape_keeps_plain_names_readable() {

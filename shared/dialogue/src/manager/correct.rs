@@ -11,8 +11,8 @@ use super::evidence::Mark;
 use super::line::{Content, Preface};
 use super::references::reference;
 use super::state::{Basis, State, Utterance};
-use crate::ActKind;
-use crate::time::Time;
+use vocabulary::ActKind;
+use vocabulary::time::Time;
 
 /// Probability below which the object being fetched is fetched no further.
 const LIKELY: f64 = 0.5;

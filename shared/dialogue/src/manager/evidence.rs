@@ -5,7 +5,7 @@ use scene::{Question, Reading, Response, Scene, UnknownWord};
 use serde::{Deserialize, Serialize};
 
 use super::state::Interaction;
-use crate::{NamedQuestion, NamedReading};
+use vocabulary::{NamedQuestion, NamedReading};
 
 /// Names that the evidence of one interaction may hold, all utterances together. Beyond it the
 /// oldest utterance is dropped: the belief keeps its content, but a change of the scene scores the

@@ -1,9 +1,9 @@
 //! The floor: whose turn it is to speak, and what time alone brings about.
 
 use super::{Manager, State};
-use crate::ids::PromptId;
-use crate::time::{Span, Time};
-use crate::{ActKind, Presentation};
+use vocabulary::ids::PromptId;
+use vocabulary::time::{Span, Time};
+use vocabulary::{ActKind, Presentation};
 
 /// Longest time for which a sound being heard defers a decision or a repetition: noise must not
 /// silence the robot.

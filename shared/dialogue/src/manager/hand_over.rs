@@ -11,8 +11,8 @@ use super::line::Preface;
 use super::put_back::{WithUser, refuse};
 use super::state::{Interaction, Preference, State, Utterance};
 use super::turn::Turn;
-use crate::ids::PromptId;
-use crate::time::{Span, Time};
+use vocabulary::ids::PromptId;
+use vocabulary::time::{Span, Time};
 
 /// A delivery that can still be refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

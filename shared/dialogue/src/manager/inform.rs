@@ -10,8 +10,8 @@ use super::line::{AboutObjects, Preface, Remark};
 use super::rules::CONTENT;
 use super::state::{Basis, Deferred, Interaction, Preference, State, Utterance};
 use super::turn::Turn;
-use crate::Interpretation;
-use crate::time::Time;
+use vocabulary::Interpretation;
+use vocabulary::time::Time;
 
 impl Manager {
     /// Handles what an utterance says of the wanted object.

@@ -12,8 +12,8 @@ use super::replies::likeliest;
 use super::rules::INTENTS;
 use super::state::{State, StopOrder, Utterance};
 use super::turn::Turn;
-use crate::time::Time;
-use crate::{ActKind, Interpretation, Outcome};
+use vocabulary::time::Time;
+use vocabulary::{ActKind, Interpretation, Outcome};
 
 impl Manager {
     /// Processes one utterance. Whatever its content, it counts as applied, and what was typed gets an

@@ -10,7 +10,7 @@ use super::held_back::HeldBack;
 use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, State};
 use crate::rendering;
-use crate::time::Time;
+use vocabulary::time::Time;
 
 impl State {
     /// Returns the name of the object that the gripper has kept.

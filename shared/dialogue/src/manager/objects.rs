@@ -5,7 +5,8 @@ use scene::Scene;
 use super::pointing::Pointing;
 use super::state::{Cause, Interaction, State};
 use super::{Manager, Setup};
-use crate::{Durations, Model, Table};
+use crate::Model;
+use vocabulary::{Durations, Table};
 
 /// What a setup was made of: words, and what objects may be.
 pub(super) struct SceneFile {

@@ -7,7 +7,7 @@ use super::attribution::Heard;
 use super::evidence::Mark;
 use super::line::{AboutObjects, Preface, Remark};
 use super::state::{Basis, Interaction, Preference, State, Utterance};
-use crate::time::Time;
+use vocabulary::time::Time;
 
 /// Most objects that wait for their turn.
 const QUEUE_MAX: usize = 8;

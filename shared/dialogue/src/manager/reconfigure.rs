@@ -9,8 +9,8 @@ use scene::{ObjectId, Question};
 use super::Manager;
 use super::line::{Content, Preface};
 use super::state::{Basis, Interaction, KnownObject, State};
-use crate::time::Time;
-use crate::{ActKind, Outcome};
+use vocabulary::time::Time;
+use vocabulary::{ActKind, Outcome};
 
 /// Objects that are remembered by name and description while an interaction is open. With more, the
 /// robot only says that something has changed.

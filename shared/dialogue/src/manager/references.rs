@@ -9,7 +9,7 @@ use super::evidence::Mark;
 use super::line::{Content, Remark};
 use super::replies::said;
 use super::state::{Interaction, State};
-use crate::Outcome;
+use vocabulary::Outcome;
 
 /// Names of sizes, from small to large; values of an attribute that has no other names are ordered by
 /// it.

@@ -6,7 +6,7 @@ use super::Manager;
 use super::hand_over::HandedOver;
 use super::line::{AboutObjects, Content, Reason, Remark};
 use super::state::{Interaction, State, Utterance};
-use crate::ActKind;
+use vocabulary::ActKind;
 
 /// Most objects that a reason names.
 const RIVALS_MAX: usize = 3;

@@ -2,8 +2,9 @@
 
 use scene::Scene;
 
-use crate::gesture::Gestures;
-use crate::{Actions, Announce, Costs, DecisionProblem, Durations, Model, Prior, TurnTaking};
+use crate::{DecisionProblem, Model};
+use vocabulary::gesture::Gestures;
+use vocabulary::{Actions, Announce, Costs, Durations, Prior, TurnTaking};
 
 /// Everything that the manager decides by, besides its planner.
 #[derive(Clone, Debug, PartialEq)]

@@ -11,13 +11,14 @@ use super::held_back::HeldBack;
 use super::history::History;
 use super::line::{Line, Preface};
 use super::put_back::{PuttingBack, WithUser};
-use crate::answer_attribution::Attributed;
-use crate::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
-use crate::time::Time;
-use crate::user_model::{Person, Reaction};
-use crate::{
-    ActKind, Action, Belief, Ended, Interpretation, NamedQuestion, PickOutcome, Posterior,
-    Presentation, Table,
+use crate::user_model::Person;
+use crate::{Belief, Posterior};
+use vocabulary::Attributed;
+use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
+use vocabulary::reaction::Reaction;
+use vocabulary::time::Time;
+use vocabulary::{
+    ActKind, Action, Ended, Interpretation, NamedQuestion, PickOutcome, Presentation, Table,
 };
 
 /// The dialogue's state.

@@ -7,7 +7,7 @@ use super::attribution::Heard;
 use super::evidence::Mark;
 use super::references::reference;
 use super::state::{State, Utterance};
-use crate::time::Time;
+use vocabulary::time::Time;
 
 /// An utterance while it is handled.
 pub(super) struct Turn<'a> {

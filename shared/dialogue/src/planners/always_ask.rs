@@ -1,6 +1,7 @@
 //! `always-ask`: the predecessor's baseline that never picks without having asked.
 
-use crate::{Actions, Belief, Decision, DecisionProblem, Mode, Planner, Step};
+use crate::{Belief, Decision, DecisionProblem, Planner, Step};
+use vocabulary::{Actions, Mode};
 
 use super::{Entry, Outlook};
 

@@ -2,7 +2,8 @@
 
 use crate::planning::{Choice, Effort};
 use crate::user_model::{Joint, Person};
-use crate::{Action, Answer, Belief, Decision, DecisionProblem, Model, Planner, Step};
+use crate::{Answer, Belief, Decision, DecisionProblem, Model, Planner, Step};
+use vocabulary::Action;
 
 use scene::{ObjectId, Question};
 

@@ -1,7 +1,8 @@
 //! `no-attribute`: the paper's baseline, which cannot ask about attributes (section 5).
 
 use super::Entry;
-use crate::{Actions, Belief, Decision, DecisionProblem, Lookahead, Planner, Step};
+use crate::{Belief, Decision, DecisionProblem, Lookahead, Planner, Step};
+use vocabulary::Actions;
 
 /// The registry's entry.
 pub(super) const ENTRY: Entry = Entry {

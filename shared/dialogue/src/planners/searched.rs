@@ -4,7 +4,8 @@ use std::panic::resume_unwind;
 use std::thread;
 
 use crate::planning::{Bound, Certify, Effort, Move, Reduced, Revealed, Search, Value};
-use crate::{Action, Belief, Decision, DecisionProblem};
+use crate::{Belief, Decision, DecisionProblem};
+use vocabulary::Action;
 
 use super::{alternatives, stop};
 
@@ -98,8 +99,9 @@ fn questions_left(search: &Search<'_>, reduced: &Reduced, node: usize, reached: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Model;
     use crate::testing::{bowls, perceived};
-    use crate::{Actions, Costs, Model, Params, Rng};
+    use vocabulary::{Actions, Costs, Params, Rng};
 
     /// A decision about objects in doubt took seconds: each of its beliefs is far more work.
     #[test]

@@ -6,9 +6,8 @@ use crate::testing::{
     bowls, everyone, heard, markers, random_durations, random_scene, scene, scene_of, tools,
     uniform,
 };
-use crate::{
-    Actions, Answer, Costs, Mode, Model, ModelUser, Params, Planner, Rng, Step, evaluate, registry,
-};
+use crate::{Answer, Model, ModelUser, Planner, Step, evaluate, registry};
+use vocabulary::{Actions, Costs, Mode, Params, Rng};
 
 const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
 const OPEN: Actions = Actions { mode: Mode::Remote, attribute: true, which: true };

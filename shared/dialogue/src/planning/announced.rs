@@ -1,7 +1,8 @@
 //! Announced picks in the reduced problem: what they pay, and what bounds the value with them.
 
 use super::channel::Price;
-use crate::{Announce, Costs, DecisionProblem};
+use crate::DecisionProblem;
+use vocabulary::{Announce, Costs};
 
 /// A pick that can be denied; see [`Announce`]. Every class has one object to announce.
 #[derive(Clone, Copy, Debug, PartialEq)]

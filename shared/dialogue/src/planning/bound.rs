@@ -26,7 +26,7 @@ use super::announced::Announced;
 use super::channel::Price;
 use super::doubt::Doubt;
 use super::reduced::Reduced;
-use crate::Costs;
+use vocabulary::Costs;
 
 /// The bounds for one reduced problem.
 #[derive(Clone, Debug)]

@@ -2,7 +2,8 @@
 
 use scene::{AttributeId, Question};
 
-use crate::{Action, Costs, DecisionProblem, OpenQuestion, Params};
+use crate::{DecisionProblem, OpenQuestion};
+use vocabulary::{Action, Costs, Params};
 
 /// A question about classes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -14,7 +14,7 @@
 use super::announced::Announced;
 use super::channel::Price;
 use super::reduced::Reduced;
-use crate::Costs;
+use vocabulary::Costs;
 
 /// Upper bound on the value as a function of the probability of the one class.
 #[derive(Clone, Debug)]

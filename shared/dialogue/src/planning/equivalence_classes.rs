@@ -6,7 +6,8 @@ use std::ops::Range;
 
 use scene::{AttributeId, ObjectId, Question};
 
-use crate::{Action, Belief, DecisionProblem};
+use crate::{Belief, DecisionProblem};
+use vocabulary::Action;
 
 /// Equivalence classes of objects, in the scene's order.
 pub(super) struct EquivalenceClasses {

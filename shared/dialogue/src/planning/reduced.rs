@@ -14,7 +14,8 @@ use super::announced::Announced;
 use super::channel::{Channel, Channels, Query};
 use super::equivalence_classes::EquivalenceClasses;
 use super::partition::Partition;
-use crate::{Belief, DecisionProblem, Rng};
+use crate::{Belief, DecisionProblem};
+use vocabulary::Rng;
 
 /// Equivalence classes of objects and the questions that tell them apart.
 #[derive(Debug)]

@@ -19,7 +19,7 @@ use super::channel::{Channel, Query};
 use super::partition::Partition;
 use super::reduced::Reduced;
 use super::told::{Kind, Split, Told};
-use crate::{Costs, Rng};
+use vocabulary::{Costs, Rng};
 
 /// The easier problem.
 #[derive(Debug)]

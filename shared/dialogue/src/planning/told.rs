@@ -20,7 +20,7 @@
 //! iterate is an upper bound.
 
 use super::channel::Channel;
-use crate::Costs;
+use vocabulary::Costs;
 
 /// Upper bounds `w(x)`.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use scene::{Attribute, ObjectId, Role, Scene, Value};
 
-use crate::ActKind;
 use crate::manager::{AboutObjects, Reason, Remark};
+use vocabulary::ActKind;
 
 /// Length of a list from which it is cut short, bytes: what is said has room for 244, and a question
 /// may follow.

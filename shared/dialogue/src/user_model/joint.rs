@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{ERROR_RATES, Person};
 use crate::observation::log_mixture;
-use crate::{Answer, Belief, BeliefError, Model, Params};
+use crate::{Answer, Belief, BeliefError, Model};
+use vocabulary::Params;
 
 /// A belief over objects for every error rate, and how probable each error rate is.
 ///

@@ -14,7 +14,9 @@ use scene::{Reading, Scene, WordId};
 
 use super::scene;
 use super::table::{Case, cases, question};
-use crate::{Language, Reader};
+use ::vocabulary::Language;
+
+use crate::Reader;
 
 /// The reading in the words of the table, those of a list in alphabetical order.
 fn written(scene: &Scene, reading: &Reading) -> String {

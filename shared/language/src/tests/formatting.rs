@@ -4,7 +4,9 @@ use proptest::prelude::*;
 use scene::{Intent, Question, Reading, Response};
 
 use super::{TOOLS_READERS, fixture, scene, sentences};
-use crate::{Language, Reader};
+use ::vocabulary::Language;
+
+use crate::Reader;
 
 /// A name and what it does to a text.
 type Dress<'a> = (&'a str, &'a dyn Fn(&str) -> String);

@@ -7,7 +7,9 @@
 use scene::{Intent, Question, Scene};
 
 use super::{fixture, scene};
-use crate::{Language, Reader, is_stop as halts_arm};
+use ::vocabulary::Language;
+
+use crate::{Reader, is_stop as halts_arm};
 
 /// The sentences of the fixture, each with whether it halts.
 fn sentences() -> impl Iterator<Item = (bool, &'static str)> {

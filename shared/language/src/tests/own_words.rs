@@ -5,7 +5,9 @@ use proptest::sample::{Index, select};
 use scene::{AttributeId, Question, Response, Role, Scene, ValueId};
 
 use super::scene;
-use crate::{Language, Reader, own_words};
+use ::vocabulary::Language;
+
+use crate::{Reader, own_words};
 
 const ADJECTIVES: &[&str] = &[
     "red",

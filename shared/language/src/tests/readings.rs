@@ -6,7 +6,9 @@ use proptest::sample::{Index, select};
 use scene::{AttributeId, Doubt, Question, Reading, Response, ValueId};
 
 use super::{QUESTIONS, TOOLS_READERS, scene, sentences};
-use crate::{Language, READINGS_MAX, Reader};
+use ::vocabulary::Language;
+
+use crate::{READINGS_MAX, Reader};
 
 const ASKED: Question = Question::Attribute(AttributeId(0), ValueId(0));
 

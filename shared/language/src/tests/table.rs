@@ -14,7 +14,9 @@ use scene::{Question, Scene, question_from_json};
 use serde_json::json;
 
 use super::{Meaning, fixture, scene};
-use crate::{Language, Reader};
+use ::vocabulary::Language;
+
+use crate::Reader;
 
 pub(super) fn question(scene: &Scene, text: &str) -> Question {
     let json = match (text.strip_prefix('@'), text.split_once('=')) {

@@ -13,8 +13,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Costs;
-use crate::params::Fault;
+use crate::{Costs, Fault};
 
 /// Whether a pick that was announced can still be denied, and what that costs. The default: a pick
 /// is final.
@@ -64,7 +63,7 @@ impl Announce {
 
     /// Expected reward of announcing an object that is wanted with that probability, up to the
     /// denial and its cost; and the probability of the denial.
-    pub(crate) fn settle(&self, costs: &Costs, epsilon: f64, right: f64) -> (f64, f64) {
+    pub fn settle(&self, costs: &Costs, epsilon: f64, right: f64) -> (f64, f64) {
         let (own, other) = self.denials(epsilon);
         let wrong = 1.0 - right;
         let denied = right * own + wrong * other;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::params::Fault;
+use crate::Fault;
 
 /// Costs of the actions and worth of a pick. All are positive magnitudes.
 ///
