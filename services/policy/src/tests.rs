@@ -37,8 +37,7 @@ use service::{Effects, Event, Node, Span, Time};
 use setup::DialogueSettings;
 use std::path::Path;
 use std::sync::OnceLock;
-use vocabulary::Rng;
-use vocabulary::{ActKind, Interpretation, Outcome, PickOutcome, PickPhase, Presentation};
+use vocabulary::{ActKind, Interpretation, Outcome, PickOutcome, PickPhase, Presentation, Rng};
 
 /// The shipped ones. They are loaded once: whether the arm reaches every bowl takes its time.
 fn settings() -> Settings {

@@ -5,9 +5,8 @@ use dialogue::rendering;
 use messages::{Delivery, FixedText, PolicyView, RobotAct, WireCode};
 use scene::{ObjectId, Question, Scene};
 use service::Span;
-use vocabulary::ActKind;
-use vocabulary::Action;
 use vocabulary::ids::UtteranceSeq;
+use vocabulary::{ActKind, Action};
 
 /// Returns the standing decision as it is published.
 pub(crate) fn act(manager: &Manager, state: &State) -> RobotAct {

@@ -6,9 +6,9 @@ use serde_json::json;
 use vocabulary::gesture::{Direction, Gestures};
 use vocabulary::reaction::Reaction;
 use vocabulary::{
-    Actions, Announce, Attribution, Costs, Fault, Mode, Params, Prior, PriorObjects, TurnTaking,
+    Actions, Announce, Attribution, Costs, Fault, Language, Mode, PLANNERS, Params, Prior,
+    PriorObjects, TurnTaking,
 };
-use vocabulary::{Language, PLANNERS};
 
 use crate::model::{self, LanguageModel};
 

@@ -102,10 +102,11 @@ impl Answer {
 
 #[cfg(test)]
 mod tests {
+    use vocabulary::{Actions, Mode, Params, Rng};
+
     use super::*;
     use crate::Belief;
     use crate::testing::{bowls, everyone, random_scene};
-    use vocabulary::{Actions, Mode, Params, Rng};
 
     fn models() -> Vec<Model> {
         let mut rng = Rng::new(51);

@@ -125,9 +125,10 @@ impl Shares {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use vocabulary::Rng;
     use vocabulary::reaction::Reaction;
+
+    use super::*;
 
     fn asked(began_s: f64, ended_s: f64) -> Candidate {
         Candidate { began_s, ended_s, complete: true, answered_s: None }

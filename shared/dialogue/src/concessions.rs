@@ -85,11 +85,11 @@ impl Concessions {
 mod tests {
     use scene::{ObjectId, Scene};
     use serde_json::json;
+    use vocabulary::{Action, Actions, Costs, Mode, Params, Rng};
 
     use super::*;
     use crate::testing::{random_scene, scene_of};
     use crate::{DecisionProblem, ModelUser, Step, evaluate, registry};
-    use vocabulary::{Action, Actions, Costs, Mode, Params, Rng};
 
     const ALL: [Actions; 3] = [
         Actions { mode: Mode::Remote, attribute: true, which: false },

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use scene::{ObjectId, Question};
+use vocabulary::Action;
 
 use crate::{Answer, Belief, Decision, DecisionProblem, Planner, Step};
-use vocabulary::Action;
 
 /// What a policy achieves from a belief, in expectation over wanted object and answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -183,10 +183,11 @@ fn hear(
 
 #[cfg(test)]
 mod tests {
+    use vocabulary::{Actions, Costs, Mode, Params};
+
     use super::*;
     use crate::testing::{bowls, markers};
     use crate::{Lookahead, Model, registry};
-    use vocabulary::{Actions, Costs, Mode, Params};
 
     const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
 

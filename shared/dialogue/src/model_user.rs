@@ -1,9 +1,9 @@
 //! The user whom the observation model assumes.
 
 use scene::{ObjectId, Question};
+use vocabulary::{Announce, Rng};
 
 use crate::{Answer, Model};
-use vocabulary::{Announce, Rng};
 
 /// A person who answers with the probabilities of eq. (6) and (7): silent with `1 − p_l`, wrong
 /// with `ε`. The same seed answers the same.
@@ -50,9 +50,10 @@ impl ModelUser {
 
 #[cfg(test)]
 mod tests {
+    use vocabulary::{Actions, Mode, Params};
+
     use super::*;
     use crate::testing::bowls;
-    use vocabulary::{Actions, Mode, Params};
 
     #[test]
     fn people_answer_with_the_models_probabilities() {

@@ -20,9 +20,9 @@
 //! misheard, what a person was not sure of.
 
 use scene::{AttributeId, ObjectId, Question, Reading, Response, ValueId, WordId};
+use vocabulary::Params;
 
 use crate::Model;
-use vocabulary::Params;
 
 /// Doubt up to which a word counts as certain: it was typed, or recognised beyond doubt.
 pub const CERTAIN_DOUBT: f64 = 0.02;

@@ -2,10 +2,10 @@
 
 use scene::Question;
 use serde::{Deserialize, Serialize};
+use vocabulary::{Action, Actions, Announce, Costs, Durations};
 
 use crate::user_model::Joint;
 use crate::{Belief, Concessions, Decision, Model, PolicyTable};
-use vocabulary::{Action, Actions, Announce, Costs, Durations};
 
 /// The decision problem `(S, A, T, R, Ω, O)` of section 3, but for the belief.
 ///

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use vocabulary::{Action, Actions, Announce};
 
 use crate::stable_hash::StableHash128;
 use crate::{Decision, DecisionProblem};
-use vocabulary::{Action, Actions, Announce};
 
 /// The decisions of one problem, by belief.
 ///

@@ -2,9 +2,9 @@
 
 use scene::{ObjectId, Perceived, Reading, Response, Scene};
 use serde_json::{Value as Json, json};
+use vocabulary::{Costs, Durations, Rng};
 
 use crate::Model;
-use vocabulary::{Costs, Durations, Rng};
 
 pub(crate) fn scene(text: &str) -> Scene {
     let json: Json = serde_json::from_str(text).unwrap();

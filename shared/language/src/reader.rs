@@ -2,6 +2,7 @@
 
 use ::vocabulary::Language;
 use scene::{Intent, Question, Reading, Reference, Response, Scene, UnknownWord};
+use words::{Tokens, normalise};
 
 use crate::answer::response;
 use crate::clauses::clauses;
@@ -12,14 +13,12 @@ use crate::hedges::hedge;
 use crate::indifference::{indifference, is_of_attribute};
 use crate::intent::{intent, is_side_talk, is_statement};
 use crate::lexicon::Lexicon;
-use crate::normalise::normalise;
 use crate::paper::WordSpotter;
 use crate::parsed::ParsedUtterance;
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::questions::{fetches_it, question};
 use crate::references::reference;
 use crate::tagger::tag;
-use crate::tokens::Tokens;
 use crate::unknown::unknown_words;
 
 /// Reads utterances about one scene. Holds all that it needs of the scene.

@@ -1,6 +1,6 @@
 //! Settings put into effect: the dialogue manager and the observation model that a configuration describes.
 //!
-//! `config` parses and checks values and knows neither planners nor readers; this crate knows them all.
+//! `config` parses and checks values and knows no planner; this crate knows them all.
 
 use config::Settings;
 use dialogue::manager::{Manager, Setup};
@@ -77,7 +77,7 @@ impl DialogueSettings for Settings {
 
     fn manager_setup(&self) -> Result<Setup, NotAConfusion> {
         let dialogue = &self.dialogue;
-        let confusion = Confusion::from_rows(language::confusion(&self.scene))?;
+        let confusion = Confusion::from_rows(words::confusion(&self.scene))?;
         let gesture = dialogue.gesture;
         Ok(Setup {
             scene: self.scene.clone(),

@@ -8,8 +8,7 @@ use dialogue::{DecisionProblem, Model, registry};
 use evaluation::simulation::{CHUNK, CachedPlanner, Room, UserKind, interactions};
 use language::Reader;
 use preflight::{Pace, Voice};
-use vocabulary::Language;
-use vocabulary::{Costs, Params, TurnTaking};
+use vocabulary::{Costs, Language, Params, TurnTaking};
 
 /// Chunks of interactions that are timed, after one that fills the planner's memory.
 const CHUNKS: u64 = 20;

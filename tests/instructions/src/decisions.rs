@@ -5,8 +5,7 @@ use language::Reader;
 use scene::{AttributeId, Question, Reading, Response, Scene, ValueId};
 use serde_json::{Value, json};
 use std::hint::black_box;
-use vocabulary::Language;
-use vocabulary::{Actions, Costs, Mode, Params, Rng};
+use vocabulary::{Actions, Costs, Language, Mode, Params, Rng};
 
 const ATTRIBUTES: [&str; 3] = ["colour", "size", "place"];
 const VALUES: [&str; 4] = ["one", "two", "three", "four"];

@@ -17,8 +17,7 @@ use service::client::Client;
 use service::clock;
 use service::{Span, Time};
 use speech::devices::voice::Synthesiser;
-use vocabulary::Language;
-use vocabulary::{Params, Rng};
+use vocabulary::{Language, Params, Rng};
 
 use super::room::Room;
 use super::sound::{Noise, SPEAKERS, SPEECH_RMS, levelled};

@@ -48,8 +48,7 @@ mod tests {
     use evaluation::simulation::SimulatedUser;
     use evaluation::simulation::users::{Domain, Manners, Policy};
     use scene::ObjectId;
-    use vocabulary::Language;
-    use vocabulary::{Params, Rng};
+    use vocabulary::{Language, Params, Rng};
 
     #[test]
     fn every_question_of_the_scene_is_understood_from_its_words() {

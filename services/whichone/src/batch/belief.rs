@@ -7,8 +7,7 @@ use language::Reader;
 use scene::{Question, Reading, Response, Scene, question_from_json};
 use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
-use vocabulary::Language;
-use vocabulary::Params;
+use vocabulary::{Language, Params};
 
 use super::{parse, run};
 use crate::Outcome;

@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use vocabulary::Language;
-use vocabulary::{Announce, Costs, Mode};
+use vocabulary::{Announce, Costs, Language, Mode};
 
 use super::ConfigArgs;
 

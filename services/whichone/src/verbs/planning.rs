@@ -8,8 +8,7 @@ use dialogue::{Model, registry};
 use preflight::ArmSetup;
 use scene::Scene;
 use service::exit::{Exit, Failure};
-use vocabulary::Language;
-use vocabulary::{Actions, Announce, Costs, Mode, Params};
+use vocabulary::{Actions, Announce, Costs, Language, Mode, Params};
 
 use super::paths;
 use crate::batch::{Calibrator, Decider, Grounder, Problem};

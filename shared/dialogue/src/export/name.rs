@@ -24,8 +24,9 @@ pub(super) fn escape(kind: &str, texts: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use vocabulary::Rng;
+
+    use super::*;
 
     #[test]
     fn escape_keeps_plain_names_readable() {

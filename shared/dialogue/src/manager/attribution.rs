@@ -1,17 +1,17 @@
 //! The questions that an utterance answers.
 
 use scene::{Intent, Question, Reading, UnknownWord};
-
-use super::Manager;
-use super::evidence::Mark;
-use super::state::{State, Utterance};
-use crate::answer_attribution::{Candidate, QUESTION_S, Shares};
 use vocabulary::ids::PromptId;
 use vocabulary::reaction::Reaction;
 use vocabulary::time::{Span, Time};
 use vocabulary::{
     ActKind, Attribution, Interpretation, NamedQuestion, NamedReading, Presentation, QuestionShare,
 };
+
+use super::Manager;
+use super::evidence::Mark;
+use super::state::{State, Utterance};
+use crate::answer_attribution::{Candidate, QUESTION_S, Shares};
 
 /// Weights below this say nothing.
 const NEGLIGIBLE: f64 = 1e-9;

@@ -1,9 +1,10 @@
 //! The floor: whose turn it is to speak, and what time alone brings about.
 
-use super::{Manager, State};
 use vocabulary::ids::PromptId;
 use vocabulary::time::{Span, Time};
 use vocabulary::{ActKind, Presentation};
+
+use super::{Manager, State};
 
 /// Longest time for which a sound being heard defers a decision or a repetition: noise must not
 /// silence the robot.

@@ -1,9 +1,9 @@
 //! Likelihood of pointing gestures, given the places of one scene's objects.
 
 use scene::Scene;
+use vocabulary::gesture::{Direction, Gestures};
 
 use crate::gesture;
-use vocabulary::gesture::{Direction, Gestures};
 
 /// The user's place, and the direction in which each object lies from there.
 #[derive(Clone, Debug)]

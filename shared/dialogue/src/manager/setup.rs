@@ -1,10 +1,10 @@
 //! What the manager decides by.
 
 use scene::Scene;
-
-use crate::{DecisionProblem, Model};
 use vocabulary::gesture::Gestures;
 use vocabulary::{Actions, Announce, Costs, Durations, Prior, TurnTaking};
+
+use crate::{DecisionProblem, Model};
 
 /// Everything that the manager decides by, besides its planner.
 #[derive(Clone, Debug, PartialEq)]

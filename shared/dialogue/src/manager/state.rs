@@ -3,6 +3,13 @@
 
 use scene::{ObjectId, Question, UnknownWord};
 use serde::{Deserialize, Serialize};
+use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
+use vocabulary::reaction::Reaction;
+use vocabulary::time::Time;
+use vocabulary::{
+    ActKind, Action, Attributed, Ended, Interpretation, NamedQuestion, PickOutcome, Presentation,
+    Table,
+};
 
 use super::concede::Conceded;
 use super::evidence::Evidence;
@@ -13,13 +20,6 @@ use super::line::{Line, Preface};
 use super::put_back::{PuttingBack, WithUser};
 use crate::user_model::Person;
 use crate::{Belief, Posterior};
-use vocabulary::Attributed;
-use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
-use vocabulary::reaction::Reaction;
-use vocabulary::time::Time;
-use vocabulary::{
-    ActKind, Action, Ended, Interpretation, NamedQuestion, PickOutcome, Presentation, Table,
-};
 
 /// The dialogue's state.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,8 +1,8 @@
 use scene::ObjectId;
+use vocabulary::Params;
 
 use super::*;
 use crate::testing::{bowls, everyone, heard, scene};
-use vocabulary::Params;
 
 const P_L: f64 = 0.9;
 const EPSILON: f64 = 0.1;

@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 
 use scene::{ObjectId, Question};
+use vocabulary::{Actions, Announce, Costs, Mode, Params, Rng};
 
 use super::*;
 use crate::testing::{bowls, markers, random_durations, random_scene};
 use crate::{Answer, Evaluation, Model, Step, evaluate, registry};
-use vocabulary::{Actions, Announce, Costs, Mode, Params, Rng};
 
 const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
 const OPEN: Actions = Actions { mode: Mode::Remote, attribute: true, which: true };

@@ -27,10 +27,11 @@ planners! {
 pub use lookahead::Lookahead;
 pub use optimal::Optimal;
 
+use vocabulary::{Action, PLANNERS};
+
 use crate::Planner;
 use crate::planning::{Bound, Choice, OneStepEvaluator, OneStepLookahead, Reduced};
 use crate::{Belief, Decision, DecisionProblem};
-use vocabulary::{Action, PLANNERS};
 
 /// A planner in the registry.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,9 @@
 //! `no-attribute`: the paper's baseline, which cannot ask about attributes (section 5).
 
+use vocabulary::Actions;
+
 use super::Entry;
 use crate::{Belief, Decision, DecisionProblem, Lookahead, Planner, Step};
-use vocabulary::Actions;
 
 /// The registry's entry.
 pub(super) const ENTRY: Entry = Entry {

@@ -1,5 +1,6 @@
 use scene::{ObjectId, Question, Response, Scene};
 use serde_json::json;
+use vocabulary::{Actions, Costs, Mode, Params, Rng};
 
 use super::*;
 use crate::testing::{
@@ -7,7 +8,6 @@ use crate::testing::{
     uniform,
 };
 use crate::{Answer, Model, ModelUser, Planner, Step, evaluate, registry};
-use vocabulary::{Actions, Costs, Mode, Params, Rng};
 
 const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
 const OPEN: Actions = Actions { mode: Mode::Remote, attribute: true, which: true };

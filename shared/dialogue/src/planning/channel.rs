@@ -1,9 +1,9 @@
 //! Questions as noisy channels: what they cost and how their answers depend on the class.
 
 use scene::{AttributeId, Question};
+use vocabulary::{Action, Costs, Params};
 
 use crate::{DecisionProblem, OpenQuestion};
-use vocabulary::{Action, Costs, Params};
 
 /// A question about classes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

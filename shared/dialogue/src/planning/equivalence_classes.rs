@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use scene::{AttributeId, ObjectId, Question};
+use vocabulary::Action;
 
 use crate::{Belief, DecisionProblem};
-use vocabulary::Action;
 
 /// Equivalence classes of objects, in the scene's order.
 pub(super) struct EquivalenceClasses {

@@ -1,9 +1,9 @@
 use scene::{ObjectId, Question, Scene};
+use vocabulary::{Actions, Announce, Costs, Durations, Mode, Params, Rng};
 
 use super::*;
 use crate::testing::{bowls, perceived, random_durations, random_scene, scene, uniform};
 use crate::{Answer, Belief, DecisionProblem, Model};
-use vocabulary::{Actions, Announce, Costs, Durations, Mode, Params, Rng};
 
 mod announced;
 

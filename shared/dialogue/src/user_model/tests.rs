@@ -1,11 +1,10 @@
 use scene::{ObjectId, Question, Reading, Response};
+use vocabulary::{Action, Actions, Costs, Rng};
 
 use super::*;
 use crate::Answer;
 use crate::testing::bowls;
 use crate::{Belief, DecisionProblem, Model, ModelUser, Step, registry};
-use vocabulary::Actions;
-use vocabulary::{Action, Costs, Rng};
 
 fn yes_no(response: Response) -> Reading {
     Reading { response, ..Reading::default() }

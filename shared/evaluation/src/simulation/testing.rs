@@ -4,8 +4,7 @@ use dialogue::{DecisionProblem, Model, registry};
 use language::Reader;
 use preflight::{Pace, Voice};
 use scene::Scene;
-use vocabulary::Language;
-use vocabulary::{Actions, Costs, Mode, Params, TurnTaking};
+use vocabulary::{Actions, Costs, Language, Mode, Params, TurnTaking};
 
 use crate::simulation::users::Domain;
 use crate::simulation::{CachedPlanner, Room};

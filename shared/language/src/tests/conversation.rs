@@ -10,11 +10,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use ::vocabulary::Language;
 use scene::{Reading, Scene, WordId};
 
 use super::scene;
 use super::table::{Case, cases, question};
-use ::vocabulary::Language;
 
 use crate::Reader;
 

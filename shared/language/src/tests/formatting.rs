@@ -1,10 +1,10 @@
 //! Letters in another dress, other scripts and code: nothing but the plain meaning counts.
 
+use ::vocabulary::Language;
 use proptest::prelude::*;
 use scene::{Intent, Question, Reading, Response};
 
 use super::{TOOLS_READERS, fixture, scene, sentences};
-use ::vocabulary::Language;
 
 use crate::Reader;
 

@@ -1,12 +1,12 @@
 //! Readings with weights and doubts.
 
+use ::vocabulary::Language;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use scene::{AttributeId, Doubt, Question, Reading, Response, ValueId};
 
 use super::{QUESTIONS, TOOLS_READERS, scene, sentences};
-use ::vocabulary::Language;
 
 use crate::{READINGS_MAX, Reader};
 

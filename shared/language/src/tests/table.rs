@@ -10,11 +10,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use ::vocabulary::Language;
 use scene::{Question, Scene, question_from_json};
 use serde_json::json;
 
 use super::{Meaning, fixture, scene};
-use ::vocabulary::Language;
 
 use crate::Reader;
 

@@ -7,8 +7,7 @@ use messages::{
     PresentationState, Presented, PromptId, Receipt, ReceiptStatus, UtteranceSeq,
 };
 use scene::{AttributeId, Question, ValueId};
-use vocabulary::Action;
-use vocabulary::{Attributed, QuestionShare};
+use vocabulary::{Action, Attributed, QuestionShare};
 
 const BOWLS: &str = include_str!("../../../../config/scenes/bowls.toml");
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/view.json");

@@ -8,8 +8,7 @@ use language::Reader;
 use manipulation::Robot;
 use preflight::{ArmSetup, Extent, Motions, Pace, Voice, measure};
 use service::exit::{Exit, Failure};
-use vocabulary::Language;
-use vocabulary::{Durations, Mode, TurnTaking};
+use vocabulary::{Durations, Language, Mode, TurnTaking};
 
 use crate::batch::Problem;
 use crate::cli::{Preset, ProblemArgs, StudyArgs};
