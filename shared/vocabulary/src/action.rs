@@ -45,6 +45,7 @@ impl Default for Actions {
 
 impl Actions {
     /// Whether the robot may point.
+    #[inline]
     pub fn point(&self) -> bool {
         self.mode == Mode::Present
     }
@@ -55,6 +56,7 @@ impl Actions {
     }
 
     /// Whether the action space holds that action.
+    #[inline]
     pub fn allow(&self, action: Action) -> bool {
         match action {
             Action::Wait | Action::Pick(_) => true,

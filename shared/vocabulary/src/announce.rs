@@ -35,6 +35,7 @@ impl Announce {
     pub const COST_S: f64 = 8.0;
 
     /// Whether picks are final.
+    #[inline]
     pub fn is_final(&self) -> bool {
         self.heard <= 0.0
     }
@@ -55,6 +56,7 @@ impl Announce {
     }
 
     /// Probability of a denial if the announced object is wanted, and if another one is.
+    #[inline]
     pub fn denials(&self, epsilon: f64) -> (f64, f64) {
         let odds = (epsilon / (1.0 - epsilon)).powi(2);
         let erroneous = odds / (1.0 + odds);
@@ -63,6 +65,7 @@ impl Announce {
 
     /// Expected reward of announcing an object that is wanted with that probability, up to the
     /// denial and its cost; and the probability of the denial.
+    #[inline]
     pub fn settle(&self, costs: &Costs, epsilon: f64, right: f64) -> (f64, f64) {
         let (own, other) = self.denials(epsilon);
         let wrong = 1.0 - right;

@@ -28,6 +28,7 @@ pub struct Durations {
 
 impl Durations {
     /// Seconds of a question, if they were measured.
+    #[inline]
     pub fn question_s(&self, question: Question) -> Option<f64> {
         match question {
             Question::None => None,
@@ -38,11 +39,13 @@ impl Durations {
     }
 
     /// Seconds from the decision to fetch an object to its hand-over, if they were measured.
+    #[inline]
     pub fn pick_s(&self, object: ObjectId) -> Option<f64> {
         self.pick.get(object.index()).copied()
     }
 
     /// Cost of an action, if it was measured.
+    #[inline]
     pub fn of(&self, action: Action) -> Option<f64> {
         match action {
             Action::Ask(question) => self.question_s(question),

@@ -2,7 +2,8 @@
 //! and the plain settings of the dialogue.
 //!
 //! This crate is pure, and plans nothing: almost every crate depends on it, so that a change of a planner or of the reader
-//! rebuilds few of them. What computes with these types is in `dialogue`.
+//! rebuilds few of them. What computes with these types is in `dialogue`. Its searches call the functions marked `#[inline]`
+//! millions of times, and a release is linked without optimisation.
 
 mod action;
 mod announce;
