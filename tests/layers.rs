@@ -54,7 +54,62 @@ fn grounding_links_neither_kinematics_nor_charts() {
 #[test]
 fn messages_depend_on_no_configuration() {
     let tree = tree("messages", "99");
-    assert!(tree.contains("dialogue") && !tree.contains("config"), "{tree:?}");
+    assert!(tree.contains("vocabulary") && !tree.contains("config"), "{tree:?}");
+}
+
+/// Almost every crate depends on it.
+#[test]
+fn vocabulary_knows_scenes_alone() {
+    let direct = tree("vocabulary", "1");
+    assert_eq!(direct, ["vocabulary", "scene", "serde"].map(str::to_owned).into());
+}
+
+/// Everything in the workspace that is built from `package`, with every feature that is shipped, itself excluded.
+fn dependents(package: &str) -> BTreeSet<String> {
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--locked", "--edges", "normal", "--prefix", "none"])
+        .args(["--workspace", "--features", "ros2/dds,link/zenoh,grounding/tls"])
+        .args(["--invert", package])
+        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let lines = String::from_utf8(output.stdout).unwrap();
+    let names = lines.lines().filter_map(|line| line.split(' ').next());
+    names.filter(|name| !name.is_empty() && *name != package).map(str::to_owned).collect()
+}
+
+/// What decides, or renders what was decided: all that a change of a planner rebuilds. What others share with them is in
+/// `vocabulary`.
+#[test]
+fn few_crates_depend_on_the_dialogue() {
+    let allowed = [
+        "console",
+        "evaluation",
+        "instructions",
+        "policy",
+        "setup",
+        "speech",
+        "whichone",
+        "whichone-tests",
+    ];
+    assert_eq!(dependents("dialogue"), allowed.map(str::to_owned).into());
+}
+
+/// What reads utterances: all that a change of the reader rebuilds. Its words and their sounds are in `words`.
+#[test]
+fn few_crates_depend_on_the_language() {
+    let allowed = [
+        "console",
+        "evaluation",
+        "grounding",
+        "instructions",
+        "reader_training",
+        "speech",
+        "whichone",
+        "whichone-tests",
+    ];
+    assert_eq!(dependents("language"), allowed.map(str::to_owned).into());
 }
 
 /// What a program from outside is built on has neither configuration nor journal, and no shell of a service.
@@ -62,8 +117,16 @@ fn messages_depend_on_no_configuration() {
 fn sdk_links_little() {
     let tree = tree("whichone-sdk", "99");
     assert!(tree.contains("runtime") && tree.contains("messages"), "{tree:?}");
-    let heavy =
-        ["service", "config", "journal", "language", "tracing-subscriber", "flate2", "tokio"];
+    let heavy = [
+        "service",
+        "config",
+        "journal",
+        "dialogue",
+        "language",
+        "tracing-subscriber",
+        "flate2",
+        "tokio",
+    ];
     for absent in heavy {
         assert!(!tree.contains(absent), "whichone-sdk depends on {absent}");
     }

@@ -4,12 +4,12 @@
 use crate::options::Options;
 use crate::peers::resident_mib;
 use crate::report::{Report, percentile, print};
-use dialogue::Rng;
 use scene::Scene;
 use serde_json::Value as Json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use vocabulary::Rng;
 use whichone_tests::Group;
 use whichone_tests::console::{Page, Visitor, http};
 

@@ -3,10 +3,10 @@
 use crate::kind::Kind;
 use crate::machine::Machine;
 use crate::tally::Tally;
-use dialogue::Rng;
 use std::fs;
 use std::path::Path;
 use std::time::Instant;
+use vocabulary::Rng;
 use whichone_tests::second_user::assert_closed;
 
 /// Services with a journal.

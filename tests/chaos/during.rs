@@ -4,11 +4,11 @@ use crate::kind::Kind;
 use crate::machine::Machine;
 use crate::person::Client;
 use crate::tally::Tally;
-use dialogue::Rng;
 use messages::Service;
 use rustix::process::{Pid, Signal, kill_process};
 use rustix::time::{ClockId, Timespec, clock_gettime, clock_settime};
 use std::time::{Duration, Instant};
+use vocabulary::Rng;
 use whichone_tests::shortage::{NoDescriptors, SmallDisk};
 use whichone_tests::{Group, wait_for};
 

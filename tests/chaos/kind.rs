@@ -1,7 +1,7 @@
 //! Kinds of faults.
 
 use clap::ValueEnum;
-use dialogue::Rng;
+use vocabulary::Rng;
 
 /// One kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]

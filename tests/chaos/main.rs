@@ -12,7 +12,6 @@ mod person;
 mod tally;
 
 use clap::Parser;
-use dialogue::Rng;
 use kind::Kind;
 use machine::Machine;
 use std::io::Write;
@@ -20,6 +19,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use tally::Tally;
+use vocabulary::Rng;
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
 

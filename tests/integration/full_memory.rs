@@ -1,6 +1,5 @@
 //! Shared memory that is full, in a small one that nothing else on the machine sees.
 
-use dialogue::{ActKind, Ended};
 use messages::{AppliedMark, Epoch, Injection, PolicyView, Receipt, Sound, topics};
 use rustix::fs::{FallocateFlags, fallocate};
 use rustix::process::Signal;
@@ -13,6 +12,7 @@ use std::cell::RefCell;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use vocabulary::{ActKind, Ended};
 use whichone_tests::isolated::with_shared_memory;
 use whichone_tests::{Group, wait_for};
 

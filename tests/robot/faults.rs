@@ -1,10 +1,10 @@
 //! Faults of the robot, of its bridge, and of the arm's process.
 
 use crate::world::World;
-use dialogue::Rng;
 use messages::robot::DrillKind;
 use messages::{MotionInhibit, MotionOrder, PickOutcome, PickPhase};
 use service::Span;
+use vocabulary::Rng;
 
 #[test]
 fn arm_halts_while_joint_states_are_stale() {

@@ -1,11 +1,12 @@
 //! Invariants of any dialogue, checked on the journals.
 
 use config::Settings;
-use dialogue::Ended;
 use dialogue::manager::{Cause, refold, refold_since};
 use messages::{InteractionId, Outcome, PickOutcome, PickPhase};
 use scene::ObjectId;
+use setup::DialogueSettings;
 use speech::record::Record as Spoken;
+use vocabulary::Ended;
 use whichone_tests::simulated_group::SimulatedGroup;
 
 type Verdict = Result<(), String>;

@@ -4,7 +4,6 @@
 //! second quarter of the run with the last. Exit code 70 where something has grown.
 
 use clap::Parser;
-use dialogue::Rng;
 use service::shm_cleanup::leftovers;
 use std::fmt;
 use std::fs;
@@ -12,6 +11,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
+use vocabulary::Rng;
 use whichone_tests::Group;
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];

@@ -1,7 +1,7 @@
 //! A console page without a browser: its socket and the messages that it received.
 
 use crate::{Group, wait_for};
-use dialogue::{Model, Params};
+use dialogue::Model;
 use evaluation::simulation::SimulatedUser;
 use evaluation::simulation::users::Domain;
 use scene::{Scene, question_from_json};
@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::http::HeaderValue;
 use tungstenite::{Message, WebSocket, client};
+use vocabulary::Params;
 
 /// Timeout of one read of the socket.
 const LOOK: Duration = Duration::from_millis(20);

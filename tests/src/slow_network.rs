@@ -188,7 +188,7 @@ impl Drop for Network {
 
 /// Takes packets of one machine and decides when each arrives, if it does.
 fn take(side: usize, mut from: File, state: &State, on_the_way: &Sender<(Instant, Vec<u8>)>) {
-    let mut rng = dialogue::Rng::new(side as u64 + 1);
+    let mut rng = vocabulary::Rng::new(side as u64 + 1);
     let mut bytes = [0; 2 * PACKET_MAX];
     let mut is_free_at = Instant::now();
     while !state.is_over.load(Ordering::Relaxed) {

@@ -6,7 +6,6 @@ use crate::executor::{Program, Purpose, Step};
 use crate::state::{ArmState, Held};
 use crate::world::World;
 use config::Grasps;
-use dialogue::Rng;
 use manipulation::pose_array::from_array;
 use manipulation::{
     ArmShape, Cuboid, Joints, Limb, MotionLimits, Phase, PlanError, PlanSettings, Robot, Stage,
@@ -18,6 +17,7 @@ use messages::{MotionPhase, PickId, PickPhase, Task};
 use nalgebra::Translation3;
 use scene::ObjectId;
 use std::collections::VecDeque;
+use vocabulary::Rng;
 
 /// Inputs of a plan.
 pub(crate) struct Planner<'a> {

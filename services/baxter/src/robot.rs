@@ -5,7 +5,6 @@ use crate::fingers::{Event, Fingers};
 use crate::object_world::{HandedOver, ObjectWorld, Whereabouts};
 use crate::servo::{Servo, Target};
 use crate::{Config, In, publish};
-use dialogue::Rng;
 use manipulation::gripper::Gripper;
 use manipulation::{Joints, Limb};
 use messages::robot::{
@@ -15,6 +14,7 @@ use perception::{Camera, Sighting};
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 use std::collections::VecDeque;
+use vocabulary::Rng;
 
 /// Maximum time step.
 const STRETCH_MAX: Span = Span::from_ms(100);

@@ -1,9 +1,10 @@
 //! The meaning of an utterance in words, weighted by the policy's attribution.
 
-use dialogue::{Attributed, rendering};
+use dialogue::rendering;
 use messages::{Observation, UtteranceSeq};
 use scene::Scene;
 use service::journal_record::InterpretationRecord;
+use vocabulary::Attributed;
 
 use crate::view_model::line::{Answered, Meaning};
 

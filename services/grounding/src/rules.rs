@@ -29,9 +29,9 @@ impl Grounder for Rules<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use language::Language;
     use messages::Source;
     use scene::Response;
+    use vocabulary::Language;
     use whichone_sdk::grounding::Heard;
 
     fn scene() -> Scene {

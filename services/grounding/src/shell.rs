@@ -4,7 +4,7 @@ use crate::io::{In, Out};
 use crate::model_worker::ModelWorker;
 use crate::{Config, GroundingNode, ModelUse};
 use config::{LanguageModel, Settings};
-use language::{Language, Reader as TextReader};
+use language::Reader as TextReader;
 use messages::Service;
 use messages::{Observation, Utterance, topics};
 use model_reader::Client;
@@ -14,6 +14,7 @@ use service::exit::{Exit, Failure};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 use service::worker_channel::DeviceSender;
+use vocabulary::Language;
 
 /// Grounding as a program. `--language paper|careful` overrides the setting, so that a group can
 /// be swapped from one reading to the other while it runs.

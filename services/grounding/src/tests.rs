@@ -3,13 +3,14 @@
 use std::time::Duration;
 
 use config::{Calibration, LanguageModel};
-use language::{Language, Reader};
+use language::Reader;
 use messages::{AskedQuestion, Hypothesis, Interpretation, Observation, Utterance};
 use model_reader::Client;
 use scene::{Response, Scene};
 use serde_json::{Value as Json, json};
 use service::{Effects, Event, Never, Node, Span, Time, clock, worker_channel};
 use stand_in_model::{Reply, StandIn, reading, wants};
+use vocabulary::Language;
 
 use crate::model_worker::ModelWorker;
 use crate::{Config, GroundingNode, In, ModelAnswer, ModelRequest, ModelUse, Out};

@@ -1,9 +1,9 @@
 //! The whole state of the reducer, for flights that begin in the middle of a start.
 
-use dialogue::ids::PromptId;
 use dialogue::manager::{Cause, Floor, Record, State};
 use serde::{Deserialize, Serialize};
 use service::{Node, NodeError, Time};
+use vocabulary::ids::PromptId;
 
 use crate::{Config, PolicyNode};
 

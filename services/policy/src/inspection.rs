@@ -1,15 +1,17 @@
 //! Listing and verification of the policy's journal.
 
+use setup::DialogueSettings;
 use std::collections::BTreeMap;
 
 use config::Settings;
 use dialogue::manager::{Act, Cause, Manager, MotionStop, Record, refold_since};
-use dialogue::{ActKind, Action, Outcome, PickOutcome, rendering};
+use dialogue::rendering;
 use scene::{Scene, count};
 use service::exit::{Exit, Failure};
 use service::flight::Decision;
 use service::inspection::{Part, SharedFacts};
 use service::journal_set::NUMBERS_SKIPPED;
+use vocabulary::{ActKind, Action, Outcome, PickOutcome};
 
 /// Renders a record as one line. Without the scene that it is about, the robot's words are left out.
 pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {

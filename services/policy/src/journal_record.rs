@@ -4,13 +4,14 @@ use std::borrow::Cow;
 
 use config::Settings;
 use dialogue::manager::{Act, Cause, Interaction, MotionStop, Record, State};
-use dialogue::{Action, Ended, Interpretation, Presentation, rendering};
+use dialogue::rendering;
 use scene::{ObjectId, Scene, WordId};
 use service::journal_record::{
     AlternativeRecord, DecisionRecord, EndedRecord, InterpretationRecord, Named, PickKey,
     PolicyCause, PolicyRecord, PresentationKey, UserRecord,
 };
 use service::view::{ActionView, QuestionView};
+use vocabulary::{Action, Ended, Interpretation, Presentation};
 
 /// Scenes of up to this many objects have their descriptions in every record.
 const DESCRIBED_MAX: usize = 64;
@@ -95,7 +96,7 @@ fn descriptions(scene: &Scene) -> Named<String> {
 
 fn user(state: &State) -> Option<UserRecord> {
     let open = state.open.as_ref().and_then(|open| open.posterior.person());
-    let params = open.or(state.person.as_ref())?.params(dialogue::Params::default());
+    let params = open.or(state.person.as_ref())?.params(vocabulary::Params::default());
     Some(UserRecord { p_l: params.p_l, epsilon: params.epsilon })
 }
 

@@ -17,9 +17,7 @@ mod view;
 #[cfg(test)]
 mod tests;
 
-use dialogue::ids::{PromptId, UtteranceSeq};
 use dialogue::manager::{Cause, Floor, HEARING_MAX, Manager, MotionStop, Record, State, Utterance};
-use dialogue::{PickOutcome, PickPhase, Presentation};
 use messages::inbox::{Inbox, Verdict};
 use messages::{
     Activity, AppliedMark, ArmStatus, MessageRef, Observation, PolicyView, PresentationState,
@@ -29,6 +27,8 @@ use perceived::Perceived;
 use serde::{Deserialize, Serialize};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use std::process::ExitCode;
+use vocabulary::ids::{PromptId, UtteranceSeq};
+use vocabulary::{PickOutcome, PickPhase, Presentation};
 
 /// Runs the program: a service of a group, or an inspection of its records.
 pub fn run() -> ExitCode {

@@ -4,11 +4,11 @@
 use std::collections::VecDeque;
 
 use dialogue::manager::Cause;
-use dialogue::{PickPhase, Table};
 use messages::{ArmStatus, Change, ChangeAnswer, Sighting, TableObject, TableView, WorldView};
 use perception::{Hiding, Live, Refusal, Settings, Tracker};
 use scene::ObjectId;
 use service::Time;
+use vocabulary::{PickPhase, Table};
 
 use crate::{Fx, Out, PolicyNode};
 

@@ -2,7 +2,8 @@
 //!
 //! ```no_run
 //! use dialogue::registry::{self, Entry};
-//! use dialogue::{Action, Belief, Decision, DecisionProblem, Planner, Step};
+//! use dialogue::{Belief, Decision, DecisionProblem, Planner, Step};
+//! use vocabulary::Action;
 //! use std::process::ExitCode;
 //!
 //! /// Asks as `entropy` does until an object has 80 %.

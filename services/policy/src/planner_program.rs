@@ -11,10 +11,11 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use dialogue::registry::{self, Entry};
-use dialogue::{Action, Answer, Belief, Costs, Decision, DecisionProblem, Model, Planner, Step};
+use dialogue::{Answer, Belief, Decision, DecisionProblem, Model, Planner, Step};
 use scene::{ObjectId, Question};
 use serde::{Deserialize, Serialize};
 use service::exit::{Exit, Failure};
+use vocabulary::{Action, Costs};
 
 /// Name of the planner.
 pub(crate) const NAME: &str = "program";
@@ -311,8 +312,8 @@ impl Drop for Running {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dialogue::{Actions, Params};
     use scene::Scene;
+    use vocabulary::{Actions, Params};
 
     fn model() -> Model {
         let bowls = include_str!("../../../config/scenes/bowls.toml");
@@ -340,7 +341,7 @@ mod tests {
         let (pick, _) = decision(r#"echo ready; read line; echo '{"pick": 2, "value": 7.5}'"#);
         assert_eq!((pick.action, pick.value), (Action::Pick(2.into()), 7.5));
         let (ask, known) = decision(r#"echo ready; read line; echo '{"ask": 3}'"#);
-        let problem_questions = Actions::default().questions(&model());
+        let problem_questions = model().questions(Actions::default());
         assert_eq!(ask.action, Action::Ask(problem_questions[3]));
         assert!(ask.alternatives.iter().all(|(action, _)| *action != ask.action), "{ask:?}");
         assert!(ask.value <= known.value, "valued as the fallback does: {ask:?}");

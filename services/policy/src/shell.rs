@@ -3,7 +3,7 @@
 use crate::{
     Config, In, Out, PolicyNode, inspection, journal_record, planner_program, policy_cache,
 };
-use config::{ManagerError, Settings};
+use config::Settings;
 use dialogue::manager::Record;
 use messages::Service;
 use messages::{
@@ -18,6 +18,7 @@ use service::inspection::{Part, SharedFacts};
 use service::journal_record::JournalRecord;
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
+use setup::{DialogueSettings, ManagerError};
 
 /// The policy as a program. `--planner NAME` overrides the setting, so that a group can be swapped
 /// from one planner to another while it runs; `--planner-program PROGRAM…` has a program decide.

@@ -13,7 +13,7 @@ mod views;
 use crate::{In, Out, PolicyNode};
 use config::Settings;
 use dialogue::manager::{Cause, Manager, Record, State, Utterance, refold};
-use dialogue::{ActKind, Interpretation, Outcome, PickOutcome, PickPhase, Presentation, rendering};
+use dialogue::rendering;
 use messages::WireCode;
 use messages::{
     ArmStatus, AskedQuestion, FixedText, MessageRef, Observation, PickId, PresentationState,
@@ -21,8 +21,10 @@ use messages::{
 };
 use scene::{Intent, ObjectId, Reading, Response};
 use service::{Effects, Event, Node, Span, Time};
+use setup::DialogueSettings;
 use std::path::Path;
 use std::sync::OnceLock;
+use vocabulary::{ActKind, Interpretation, Outcome, PickOutcome, PickPhase, Presentation};
 
 /// The shipped ones. They are loaded once: whether the arm reaches every bowl takes its time.
 fn settings() -> Settings {

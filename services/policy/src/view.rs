@@ -1,12 +1,12 @@
 //! The state as other services see it.
 
-use dialogue::Action;
-use dialogue::ids::UtteranceSeq;
 use dialogue::manager::{Interaction, Manager, State};
-use dialogue::{ActKind, rendering};
+use dialogue::rendering;
 use messages::{Delivery, FixedText, PolicyView, RobotAct, WireCode};
 use scene::{ObjectId, Question, Scene};
 use service::Span;
+use vocabulary::ids::UtteranceSeq;
+use vocabulary::{ActKind, Action};
 
 /// Returns the standing decision as it is published.
 pub(crate) fn act(manager: &Manager, state: &State) -> RobotAct {

@@ -1,17 +1,19 @@
 //! Inspection of the policy's journal by its own program, on intact and manipulated journals.
 
+use setup::DialogueSettings;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use config::Settings;
 use dialogue::manager::{Cause, MotionStop, Record, State, Utterance};
-use dialogue::{Belief, PickOutcome, Posterior, Presentation};
+use dialogue::{Belief, Posterior};
 use journal::{Header, Journal};
 use messages::{Interpretation, PromptId, Service, UtteranceSeq};
 use scene::{Reading, Response};
 use serde_json::Value;
 use service::Time;
 use service::journal_record::golden;
+use vocabulary::{PickOutcome, Presentation};
 
 /// A journal and a snapshot of the shipped settings in a temporary folder.
 struct Lab(tempfile::TempDir);

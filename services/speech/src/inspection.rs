@@ -2,13 +2,13 @@
 
 use std::collections::HashSet;
 
-use dialogue::Presentation;
 use messages::Source;
 use scene::count;
 use service::Time;
 use service::exit::Failure;
 use service::inspection::{Part, SharedFacts};
 use service::journal_set::NUMBERS_SKIPPED;
+use vocabulary::Presentation;
 
 use crate::record::Record;
 

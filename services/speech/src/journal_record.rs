@@ -1,9 +1,9 @@
 //! The speech service's journal records for programs.
 
 use config::Settings;
-use dialogue::Presentation;
 use service::journal_record::{AcceptedRecord, PresentationRecord, SpeechRecord};
 use service::view::QuestionView;
+use vocabulary::Presentation;
 
 use crate::record::{Accepted, Record};
 

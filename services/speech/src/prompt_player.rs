@@ -3,13 +3,13 @@
 
 use crate::record::Record;
 use crate::{Fx, Out, PlaybackEvent, PlaybackRequest, PlaybackState};
-use dialogue::Presentation;
 use messages::{
     ASKED_MAX, ActId, ActKind, ArmStatus, PresentationState, Presented, PromptId, RobotAct,
 };
 use scene::Question;
 use service::{Span, Time};
 use std::collections::VecDeque;
+use vocabulary::Presentation;
 
 /// Presentations of questions that are remembered.
 const PRESENTATIONS_MAX: usize = 16;

@@ -1,11 +1,11 @@
 //! Journal records of the speech service.
 
-use dialogue::Presentation;
 use messages::{
     AskedQuestion, FixedText, Receipt, ReceiptStatus, RequestKey, Source, Utterance, UtteranceSeq,
 };
 use serde::{Deserialize, Serialize};
 use service::Time;
+use vocabulary::Presentation;
 
 use crate::Hypothesis;
 use crate::utterance_content::as_text;

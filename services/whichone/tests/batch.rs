@@ -3,11 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use dialogue::{Actions, Announce, Costs, Mode, Model, Params};
-use language::Language;
+use dialogue::Model;
 use manipulation::Limb;
 use serde_json::{Value as Json, json};
 use service::exit::Exit;
+use vocabulary::{Actions, Announce, Costs, Language, Mode, Params};
 use whichone::Outcome;
 use whichone::batch::{self, Decider, Grounder, Problem};
 use whichone::cli::WhichArm;

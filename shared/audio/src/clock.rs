@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use dialogue::time::Time;
+use vocabulary::time::Time;
 
 /// Nanoseconds of one sample at [`RATE_HZ`](crate::RATE_HZ), exactly.
 const SAMPLE_NS: i64 = 62_500;

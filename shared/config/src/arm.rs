@@ -1,8 +1,8 @@
 //! `arm.toml`: driver, limb and motion of the arm.
 
-use ::dialogue::time::Span;
 use diagnostics::{Fields, Report, Table};
 use perception::CameraSettings;
+use vocabulary::time::Span;
 
 use crate::detectors::{self, Ros1Objects};
 

@@ -1,14 +1,14 @@
 //! `dialogue.toml`: understanding, belief and decisions.
 
 use diagnostics::{Fields, Report, Table};
-use dialogue::gesture::{Direction, Gestures};
-use dialogue::user_model::Reaction;
-use dialogue::{
-    Actions, Announce, Attribution, Costs, Fault, Mode, Params, Prior, PriorObjects, TurnTaking,
-};
-use language::Language;
 use scene::Scene;
 use serde_json::json;
+use vocabulary::gesture::{Direction, Gestures};
+use vocabulary::reaction::Reaction;
+use vocabulary::{
+    Actions, Announce, Attribution, Costs, Fault, Language, Mode, PLANNERS, Params, Prior,
+    PriorObjects, TurnTaking,
+};
 
 use crate::model::{self, LanguageModel};
 
@@ -23,7 +23,7 @@ pub struct Dialogue {
     pub params: Params,
     /// Smoothing of words that are certain; [`Language::Paper`] has `params.alpha` for all words.
     pub alpha_typed: f64,
-    /// Name of the planner; one of [`dialogue::registry::names`].
+    /// Name of the planner; one of [`PLANNERS`].
     pub planner: String,
     /// Kinds of questions that are allowed.
     pub actions: Actions,
@@ -64,9 +64,9 @@ pub struct Gesture {
 
 pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
     let planner = f.text("planner");
-    f.note_choices("planner", dialogue::registry::names().into_iter());
-    if !f.is_wrong("planner") && !dialogue::registry::names().contains(&planner.as_str()) {
-        f.not_one_of("planner", &planner, &dialogue::registry::names());
+    f.note_choices("planner", PLANNERS.into_iter());
+    if !f.is_wrong("planner") && !PLANNERS.contains(&planner.as_str()) {
+        f.not_one_of("planner", &planner, &PLANNERS);
     }
     let (costs, costs_from) = f.table("costs", costs);
     Dialogue {

@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use crate::services::{self, ServiceConfig};
-use ::dialogue::time::Span;
 use diagnostics::Fields;
 use perception::Frame;
 use serde_json::json;
+use vocabulary::time::Span;
 
 /// The process group.
 #[derive(Clone, Debug, PartialEq)]

@@ -17,7 +17,6 @@ mod files;
 mod group;
 mod link;
 mod load;
-mod manager;
 mod model;
 mod resolved;
 mod ros2;
@@ -31,10 +30,10 @@ mod tests;
 
 use std::path::{Path, PathBuf};
 
-use ::dialogue::Durations;
 use diagnostics::{Diagnostic, Diagnostics, Report, Source, Table, TextFile};
 use messages::Service;
-use scene::Scene;
+use scene::{Scene, StableHash};
+use vocabulary::Durations;
 
 pub use crate::arm::{Arm, Baxter, Driver, Grasps, Motion, Ros1, Simulated};
 pub use crate::console::{Access, Camera, Console};
@@ -44,7 +43,6 @@ pub use crate::files::{RobotFiles, read_file};
 pub use crate::group::{Flight, Group, Log, Perception, Recorder, RestartLimits};
 pub use crate::link::Link;
 pub use crate::load::Examined;
-pub use crate::manager::ManagerError;
 pub use crate::model::{Calibration, LanguageModel};
 pub use crate::resolved::{Origin, Section};
 pub use crate::ros2::{Network, Ros2, ServiceMapping};
@@ -117,6 +115,23 @@ impl Settings {
     /// The settings of perception as TOML.
     pub fn perception_text(&self) -> String {
         self.resolved.perception_text()
+    }
+
+    /// Returns the identity of everything that the dialogue manager decides by, with that planner.
+    pub fn manager_key(&self, planner: &str) -> u64 {
+        let mut hash = StableHash::default();
+        if planner != self.dialogue.planner {
+            hash.text(planner);
+        }
+        hash.text(&self.resolved.decision_text());
+        hash.text(&self.scene_file().text);
+        if self.durations.is_some() {
+            hash.text(&self.durations_text());
+        }
+        if self.group.perception.enabled {
+            hash.text("objects from perception");
+        }
+        hash.value()
     }
 
     /// The scene file.

@@ -5,9 +5,9 @@ use std::io;
 use std::path::Path;
 
 use diagnostics::{Diagnostic, Diagnostics, Node, Report, Source, Table, TextFile};
-use dialogue::{Durations, Model};
 use scene::Scene;
 use toml::Value;
+use vocabulary::Durations;
 
 use crate::dialogue::CostsFrom;
 use crate::files::{FILE_BYTES_MAX, Files, RobotFiles, read_text};
@@ -167,8 +167,7 @@ pub(crate) fn read_durations(
     }
     let text = node.as_ref().and_then(Node::as_table).map(to_toml);
     let read = text.and_then(|text| toml::from_str::<Durations>(&text).ok());
-    let model = Model::new(scene, dialogue.params);
-    let fits = read.filter(|durations| durations.check(&model).is_empty());
+    let fits = read.filter(|durations| durations.check(scene).is_empty());
     if fits.is_none() {
         let what = "the durations of this scene are missing";
         let help = "stop the group and start it again";

@@ -102,9 +102,11 @@ impl Answer {
 
 #[cfg(test)]
 mod tests {
+    use vocabulary::{Actions, Mode, Params, Rng};
+
     use super::*;
+    use crate::Belief;
     use crate::testing::{bowls, everyone, random_scene};
-    use crate::{Actions, Belief, Mode, Params, Rng};
 
     fn models() -> Vec<Model> {
         let mut rng = Rng::new(51);
@@ -117,7 +119,7 @@ mod tests {
     fn answers_are_a_distribution() {
         for model in models() {
             let actions = Actions { mode: Mode::Present, ..Actions::default() };
-            for question in actions.questions(&model) {
+            for question in model.questions(actions) {
                 for wanted in everyone(model.hypotheses()) {
                     let answers = Answer::possible(&model, question);
                     let sum: f64 =
@@ -133,7 +135,7 @@ mod tests {
     fn answers_move_the_belief_by_their_probability() {
         for model in models() {
             let actions = Actions { mode: Mode::Present, ..Actions::default() };
-            for question in actions.questions(&model) {
+            for question in model.questions(actions) {
                 for answer in Answer::possible(&model, question) {
                     let weights: Vec<f64> = everyone(model.hypotheses())
                         .map(|i| answer.probability(&model, question, i))
@@ -155,7 +157,7 @@ mod tests {
         let scene = bowls();
         let model = Model::new(&scene, Params::default());
         let actions = Actions { mode: Mode::Present, ..Actions::default() };
-        for question in actions.questions(&model) {
+        for question in model.questions(actions) {
             for wanted in everyone(6) {
                 let truth = Answer::truthful(&model, question, wanted);
                 let p = truth.probability(&model, question, wanted);

@@ -11,48 +11,6 @@
 //! would give up a slow answer to the only question there is. A question that was answered draws
 //! second thoughts only, and one that is still being said hardly anything before its last words.
 
-use serde::{Deserialize, Serialize};
-
-use crate::ids::{PromptId, UtteranceSeq};
-
-/// How an utterance is attributed to a question.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum Attribution {
-    /// It counts for each question by its weight.
-    #[default]
-    Mixture,
-    /// It counts for the latest question that had been said when it began.
-    Onset,
-    /// It counts for the question that is pending when the recogniser's result arrives. What naive
-    /// systems do; kept to be compared with.
-    Naive,
-}
-
-/// The questions that an utterance was attributed to.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Attributed {
-    /// The utterance; 0 before the first.
-    pub utterance: UtteranceSeq,
-    /// Probability that it answers each presentation of a question, where that is above 0.
-    pub questions: Vec<QuestionShare>,
-    /// Probability that it answers no question.
-    pub none: f64,
-}
-
-/// Share of one presentation of a question in an utterance.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct QuestionShare {
-    /// The prompt.
-    pub prompt: PromptId,
-    /// Which presentation of it.
-    pub presentation: u32,
-    /// Probability that the utterance answers it.
-    pub share: f64,
-}
-
 /// A presentation of a question that may be answered. Times are seconds on any one clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
@@ -119,7 +77,7 @@ const AGAIN_S: f64 = 2.0;
 impl Shares {
     /// Returns the shares of an utterance spoken from `onset_s` on. `rate` is how many answers to a
     /// question begin per second, so many seconds after its end, while it is unanswered
-    /// ([`Reaction::rate`](crate::user_model::Reaction::rate)).
+    /// ([`Reaction::rate`](vocabulary::reaction::Reaction::rate)).
     pub fn spoken(asked: &[Candidate], onset_s: f64, rate: impl Fn(f64) -> f64) -> Self {
         let weights = asked.iter().map(|asked| asked.rate(onset_s, &rate)).collect();
         Self::of_weights(weights, NONE)
@@ -167,9 +125,10 @@ impl Shares {
 
 #[cfg(test)]
 mod tests {
+    use vocabulary::Rng;
+    use vocabulary::reaction::Reaction;
+
     use super::*;
-    use crate::Rng;
-    use crate::user_model::Reaction;
 
     fn asked(began_s: f64, ended_s: f64) -> Candidate {
         Candidate { began_s, ended_s, complete: true, answered_s: None }

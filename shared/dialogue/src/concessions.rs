@@ -85,13 +85,11 @@ impl Concessions {
 mod tests {
     use scene::{ObjectId, Scene};
     use serde_json::json;
+    use vocabulary::{Action, Actions, Costs, Mode, Params, Rng};
 
     use super::*;
     use crate::testing::{random_scene, scene_of};
-    use crate::{
-        Action, Actions, Costs, DecisionProblem, Mode, ModelUser, Params, Rng, Step, evaluate,
-        registry,
-    };
+    use crate::{DecisionProblem, ModelUser, Step, evaluate, registry};
 
     const ALL: [Actions; 3] = [
         Actions { mode: Mode::Remote, attribute: true, which: false },

@@ -69,8 +69,9 @@ impl Confusion {
 mod tests {
     use super::*;
     use crate::testing::{bowls, heard};
-    use crate::{Belief, Model, Params, log_likelihood};
+    use crate::{Belief, Model, log_likelihood};
     use scene::{Doubt, Question, Reading, Response, Scene};
+    use vocabulary::Params;
 
     fn doubted(scene: &Scene, word: &str, doubt: f64) -> Reading {
         let doubt = Doubt { base: vec![doubt], ..Doubt::default() };

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use scene::{ObjectId, Question};
+use vocabulary::Action;
 
-use crate::{Action, Answer, Belief, Decision, DecisionProblem, Planner, Step};
+use crate::{Answer, Belief, Decision, DecisionProblem, Planner, Step};
 
 /// What a policy achieves from a belief, in expectation over wanted object and answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,9 +183,11 @@ fn hear(
 
 #[cfg(test)]
 mod tests {
+    use vocabulary::{Actions, Costs, Mode, Params};
+
     use super::*;
     use crate::testing::{bowls, markers};
-    use crate::{Actions, Costs, Lookahead, Mode, Model, Params, registry};
+    use crate::{Lookahead, Model, registry};
 
     const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
 

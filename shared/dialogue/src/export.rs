@@ -2,7 +2,7 @@
 //!
 //! The state is the wanted object (or `absent`, where the model allows for that), and one more: a
 //! pick ends the interaction, so it leads to `end`, where nothing is paid or heard; one that can be
-//! denied ([`Announce`](crate::Announce)) may leave the state as it is, with the observation `denied`. Waiting and
+//! denied ([`Announce`](vocabulary::Announce)) may leave the state as it is, with the observation `denied`. Waiting and
 //! asking leave the state unchanged (eq. (2), (3)); the answer depends on it by
 //! [`Answer::probability`]. The format: A. R. Cassandra, "The POMDP file format".
 
@@ -13,8 +13,9 @@ use std::fmt::Write;
 
 use scene::{AttributeId, ObjectId, Question, Scene, ValueId};
 
-use crate::{Action, Answer, DecisionProblem};
+use crate::{Answer, DecisionProblem};
 use name::escape;
+use vocabulary::Action;
 
 /// Largest number of pairs of an action and a state that is exported.
 pub const PAIRS_MAX: usize = 5_000_000;

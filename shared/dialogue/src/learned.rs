@@ -81,10 +81,11 @@ impl Model {
 #[cfg(test)]
 mod tests {
     use scene::{ObjectId, Perceived};
+    use vocabulary::Params;
 
     use super::*;
+    use crate::Belief;
     use crate::testing::{heard, markers};
-    use crate::{Belief, Params};
 
     /// Two objects of which one may be red: asking the same again tells no more than a person's error.
     #[test]

@@ -8,8 +8,9 @@
 //! Two markers that differ in colour: the robot asks, hears "yes", and picks.
 //!
 //! ```
-//! use dialogue::{Action, Actions, Belief, Costs, DecisionProblem, Mode, Model, Params, Step, registry};
+//! use dialogue::{Belief, DecisionProblem, Model, Step, registry};
 //! use scene::{Question, Reading, Response, Scene};
+//! use vocabulary::{Action, Actions, Costs, Mode, Params};
 //!
 //! let scene = Scene::from_json(
 //!     "markers",
@@ -39,70 +40,44 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod action;
-mod announce;
 mod answer;
 mod answer_attribution;
 mod belief;
 mod concessions;
 mod confusion;
-mod costs;
-mod durations;
+mod decision;
 mod evaluate;
 pub mod export;
-pub mod gesture;
-pub mod ids;
-mod interaction;
-mod interpretation;
+mod gesture;
 mod learned;
 pub mod manager;
 mod model;
 mod model_user;
 mod observation;
-mod params;
 mod planner;
 mod planners;
 mod planning;
 mod policy_table;
 mod posterior;
-mod presentation;
-mod prior;
 pub mod registry;
 pub mod rendering;
-mod rng;
 mod stable_hash;
-mod table;
-pub mod time;
-mod turn_taking;
 pub mod user_model;
-pub mod wall_time;
 
 #[cfg(test)]
 mod testing;
 
-pub use action::{Action, Actions, Decision, Mode};
-pub use announce::Announce;
-
 pub use answer::Answer;
-pub use answer_attribution::{Attributed, Attribution, Candidate, QuestionShare, Shares};
+pub use answer_attribution::{Candidate, Shares};
 pub use belief::{Belief, BeliefError};
 pub use concessions::Concessions;
 pub use confusion::{Confusion, NotAConfusion};
-pub use costs::Costs;
-pub use durations::Durations;
+pub use decision::Decision;
 pub use evaluate::{Evaluation, evaluate};
-pub use interaction::{ActKind, Ended, Outcome, PickOutcome, PickPhase, Task};
-pub use interpretation::{Interpretation, NamedReading};
 pub use model::Model;
 pub use model_user::ModelUser;
 pub use observation::{CERTAIN_DOUBT, OpenQuestion, log_likelihood};
-pub use params::{Fault, Params};
 pub use planner::{DecisionProblem, Planner, Step};
 pub use planners::{Lookahead, Optimal};
 pub use policy_table::PolicyTable;
 pub use posterior::Posterior;
-pub use presentation::{NamedQuestion, Presentation};
-pub use prior::{Prior, PriorObjects};
-pub use rng::Rng;
-pub use table::{TABLE_MAX, Table};
-pub use turn_taking::TurnTaking;

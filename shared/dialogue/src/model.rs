@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use scene::{AttributeId, ObjectId, Question, Scene, ValueId, WordId};
 
-use crate::{Confusion, Params};
+use crate::Confusion;
 use tables::{Column, Smoothing, Tables, Vocabulary, Word};
+use vocabulary::Params;
 
 mod tables;
 

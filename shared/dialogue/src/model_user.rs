@@ -1,8 +1,9 @@
 //! The user whom the observation model assumes.
 
 use scene::{ObjectId, Question};
+use vocabulary::{Announce, Rng};
 
-use crate::{Announce, Answer, Model, Rng};
+use crate::{Answer, Model};
 
 /// A person who answers with the probabilities of eq. (6) and (7): silent with `1 − p_l`, wrong
 /// with `ε`. The same seed answers the same.
@@ -49,9 +50,10 @@ impl ModelUser {
 
 #[cfg(test)]
 mod tests {
+    use vocabulary::{Actions, Mode, Params};
+
     use super::*;
     use crate::testing::bowls;
-    use crate::{Actions, Mode, Params};
 
     #[test]
     fn people_answer_with_the_models_probabilities() {
@@ -60,7 +62,7 @@ mod tests {
         let wanted = scene.object_named("metal2").unwrap();
         let mut user = ModelUser::new(wanted, 61);
         let actions = Actions { mode: Mode::Present, ..Actions::default() };
-        for question in actions.questions(&model) {
+        for question in model.questions(actions) {
             const DRAWS: u32 = 2_000;
             let drawn: Vec<Answer> = (0..DRAWS).map(|_| user.answer(&model, question)).collect();
             for answer in Answer::possible(&model, question) {

@@ -20,8 +20,9 @@
 //! misheard, what a person was not sure of.
 
 use scene::{AttributeId, ObjectId, Question, Reading, Response, ValueId, WordId};
+use vocabulary::Params;
 
-use crate::{Model, Params};
+use crate::Model;
 
 /// Doubt up to which a word counts as certain: it was typed, or recognised beyond doubt.
 pub const CERTAIN_DOUBT: f64 = 0.02;

@@ -2,11 +2,10 @@
 
 use scene::Question;
 use serde::{Deserialize, Serialize};
+use vocabulary::{Action, Actions, Announce, Costs, Durations};
 
 use crate::user_model::Joint;
-use crate::{
-    Action, Actions, Announce, Belief, Concessions, Costs, Decision, Durations, Model, PolicyTable,
-};
+use crate::{Belief, Concessions, Decision, Model, PolicyTable};
 
 /// The decision problem `(S, A, T, R, Ω, O)` of section 3, but for the belief.
 ///
@@ -46,9 +45,9 @@ impl<'a> DecisionProblem<'a> {
 }
 
 impl DecisionProblem<'_> {
-    /// Every question that may be asked, useful or not, in the order of [`Actions::questions`].
+    /// Every question that may be asked, useful or not, in the order of [`Model::questions`].
     pub fn questions(&self) -> Vec<Question> {
-        let mut questions = self.actions.questions(self.model);
+        let mut questions = self.model.questions(self.actions);
         questions.retain(|question| match question {
             Question::Attribute(k, _) | Question::Which(k) => !self.concessions.bar(*k),
             Question::Point(_) | Question::None => true,
@@ -123,3 +122,6 @@ pub trait Planner {
     /// the problem at hand.
     fn adopt(&mut self, _table: PolicyTable) {}
 }
+
+#[cfg(test)]
+mod tests;

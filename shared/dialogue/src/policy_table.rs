@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use vocabulary::{Action, Actions, Announce};
 
 use crate::stable_hash::StableHash128;
-use crate::{Action, Actions, Announce, Decision, DecisionProblem};
+use crate::{Decision, DecisionProblem};
 
 /// The decisions of one problem, by belief.
 ///

@@ -110,9 +110,10 @@ impl Posterior {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::registry;
     use crate::testing::bowls;
-    use crate::{Actions, Costs, Params, Rng, registry};
     use scene::Response;
+    use vocabulary::{Actions, Costs, Params, Rng};
 
     /// The same evidence in another order differs by rounding alone, and is decided about alike.
     #[test]

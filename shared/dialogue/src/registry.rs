@@ -76,6 +76,7 @@ mod tests {
             assert_eq!(planner(name).unwrap().name(), name);
         }
         assert_eq!(names()[0], "lookahead", "the default comes first");
+        assert_eq!(names(), vocabulary::PLANNERS, "the list of shared/vocabulary/src/planners.rs");
     }
 
     #[test]

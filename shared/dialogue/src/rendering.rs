@@ -5,9 +5,9 @@ mod readings;
 mod remarks;
 
 use scene::{ObjectId, Question, Role, Scene, UnknownWord};
+use vocabulary::{ActKind, Action, PickOutcome};
 
 use crate::manager::{Act, Content, Preface};
-use crate::{ActKind, Action, PickOutcome};
 
 pub use foreseen::foreseen;
 pub use readings::reading;

@@ -2,8 +2,9 @@
 
 use scene::{ObjectId, Perceived, Reading, Response, Scene};
 use serde_json::{Value as Json, json};
+use vocabulary::{Costs, Durations, Rng};
 
-use crate::{Costs, Durations, Model, Rng};
+use crate::Model;
 
 pub(crate) fn scene(text: &str) -> Scene {
     let json: Json = serde_json::from_str(text).unwrap();

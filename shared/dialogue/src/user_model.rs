@@ -5,17 +5,15 @@
 //! questions under uncertainty about the model that they are to inform): `p_l` by counting what was
 //! answered and what was not, `ε` together with the wanted object, because an answer is only known
 //! to be wrong once the object is known ([`Joint`]), and the time to react by the times seen
-//! ([`Reaction`]).
+//! ([`Reaction`](vocabulary::reaction::Reaction)).
 
 mod joint;
-mod reaction;
 
 pub use joint::Joint;
-pub use reaction::{Reaction, SPOKEN, TYPED};
 
 use serde::{Deserialize, Serialize};
 
-use crate::Params;
+use vocabulary::Params;
 
 /// The values of `ε` that a person may have.
 pub const ERROR_RATES: [f64; 10] = [0.003, 0.01, 0.02, 0.04, 0.07, 0.1, 0.14, 0.2, 0.28, 0.38];

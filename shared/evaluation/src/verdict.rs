@@ -1,7 +1,7 @@
 //! The verdict on an interaction, given what was desired.
 
-use dialogue::{Costs, Outcome};
 use serde::{Deserialize, Serialize};
+use vocabulary::{Costs, Outcome};
 
 /// Verdict on an interaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,10 +1,10 @@
 //! Questions to the robot: "which ones are white", "what can you get me".
 
 use scene::Role;
+use words::Gap;
 
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::tokens::Gap;
 use crate::topic::{ClauseAnalysis, SCENE_NAMES};
 
 impl ClauseAnalysis<'_> {

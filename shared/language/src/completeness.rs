@@ -2,13 +2,13 @@
 //!
 //! The judgement is about words alone, and cautious: what may go on is not complete.
 
+use ::vocabulary::Language;
 use scene::{Intent, Question, Reading, Response, Role, Scene, WordId};
+use words::{Tokens, normalise};
 
-use crate::normalise::normalise;
-use crate::reader::{Language, Reader};
+use crate::reader::Reader;
 use crate::tagger::{Tag, tag};
 use crate::token_class::{Class, classes};
-use crate::tokens::Tokens;
 
 /// How complete an utterance is, the most complete first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

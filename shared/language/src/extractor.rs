@@ -1,5 +1,7 @@
 //! Collects the content of the tags in one pass from left to right, as a person listens.
 
+use words::Gap;
+
 use crate::answer::{self, Answer};
 use crate::clauses::{Clause, Topic};
 use crate::content::{Asserted, Content, Excluded};
@@ -12,7 +14,6 @@ use crate::references::too_much;
 use crate::repair;
 use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
-use crate::tokens::Gap;
 
 /// The pass over the tags.
 struct Extractor<'a, 't> {

@@ -8,12 +8,12 @@ mod patterns;
 
 use std::ops::Range;
 
+use words::{Gap, Token, Tokens, normalise};
+
 use self::patterns::{Element, PATTERNS, Place, WordNumber};
 use crate::lexicon::{Lexicon, Sense};
-use crate::normalise::normalise;
 use crate::spelling::shortened;
 use crate::token_class::{Class, classes};
-use crate::tokens::{Gap, Token, Tokens};
 
 /// Phrases that say nothing before a command or after it.
 const BESIDE: &[Class] = classes![Filler Courtesy No Yes Repair WeakYes And But Join Plain];

@@ -17,12 +17,12 @@
 //! 1990.
 
 use scene::Role;
+use words::Gap;
 
 use crate::clauses::{Clause, Topic};
 use crate::lexicon::Sense;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::tokens::Gap;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 

@@ -8,6 +8,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::LazyLock;
 
 use scene::{AttributeId, Reference, Role, Scene, Value, WordId};
+use words::Token;
 
 use crate::hedges::sureness;
 use crate::lookalikes::Lookalikes;
@@ -15,7 +16,6 @@ use crate::morphology::inflected;
 use crate::references::by_size;
 use crate::relations::{Form, forms, words};
 use crate::token_class::Class;
-use crate::tokens::Token;
 use crate::vocabulary;
 
 /// What a word or phrase is taken for.

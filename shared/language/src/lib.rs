@@ -9,10 +9,10 @@
 //!
 //! | stage | file | output |
 //! |---|---|---|
-//! | normalise | `normalise.rs` | plain lower-case text |
-//! | tokenise | `tokens.rs` | words and the pauses between them |
+//! | normalise | `words` | plain lower-case text |
+//! | tokenise | `words` | words and the pauses between them |
 //! | halting words | `halting.rs` (`vocabulary/halting.txt`) | what halts the arm, whatever the scene |
-//! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `relations.rs`, `spelling.rs`, `phonetics.rs`, `vocabulary/`) | value or class of each word or phrase |
+//! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `relations.rs`, `spelling.rs`, `vocabulary/`) | value or class of each word or phrase |
 //! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`, `errands.rs`, `statements.rs`) | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
 //! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
@@ -20,7 +20,7 @@
 //! | readings | `parsed.rs` (`hedges.rs`), `evidence.rs` | alternative readings with weights and doubts |
 //!
 //! [`CompletenessJudge`] judges whether a speaker will go on after a pause.
-//! [`confusion`] gives the probabilities of mishearing one of a scene's words for another.
+//! [`words::confusion`] gives the probabilities of mishearing one of a scene's words for another.
 //!
 //! Words that belong to a scene come from the scene; the English of a dialogue is data in
 //! `vocabulary/`.
@@ -28,8 +28,9 @@
 //! # Example
 //!
 //! ```
-//! use language::{Language, Reader};
+//! use language::Reader;
 //! use scene::{Question, Scene};
+//! use vocabulary::Language;
 //!
 //! let scene = Scene::from_json(
 //!     "markers",
@@ -56,7 +57,6 @@ mod answer;
 mod asking_back;
 mod clauses;
 mod completeness;
-mod confusion;
 mod content;
 mod disambiguate;
 mod distractors;
@@ -75,12 +75,10 @@ mod mentions;
 mod morphology;
 mod negation;
 mod negation_scope;
-mod normalise;
 mod objects;
 mod own_words;
 mod paper;
 mod parsed;
-mod phonetics;
 mod question_words;
 mod questions;
 mod reader;
@@ -91,7 +89,6 @@ mod spelling;
 mod statements;
 mod tagger;
 mod token_class;
-mod tokens;
 mod topic;
 mod unknown;
 mod vocabulary;
@@ -100,12 +97,10 @@ mod vocabulary;
 mod tests;
 
 pub use completeness::{Completeness, CompletenessJudge};
-pub use confusion::confusion;
 pub use features::{Example, ROWS};
 pub use halting::is_stop;
 pub use judge::trained_on;
 pub use mentions::{Mention, Polarity};
-pub use normalise::TEXT_CHARS_MAX;
 pub use own_words::own_words;
 pub use parsed::READINGS_MAX;
-pub use reader::{Language, Reader};
+pub use reader::Reader;

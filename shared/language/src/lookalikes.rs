@@ -3,8 +3,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::normalise::normalise;
-use crate::phonetics::skeleton;
+use words::{normalise, skeleton};
+
 use crate::spelling::SpellingIndex;
 use crate::vocabulary;
 

@@ -1,13 +1,14 @@
 //! What an utterance says of each value word in it.
 
+use ::vocabulary::Language;
 use scene::{Question, Reading, WordId};
+use words::{Tokens, normalise};
 
 use crate::features::{Example, examples};
 use crate::judge::judge;
-use crate::normalise::normalise;
 use crate::parsed::ParsedUtterance;
-use crate::reader::{Language, Reader};
-use crate::tokens::Tokens;
+
+use crate::reader::Reader;
 
 /// A value word of an utterance, and the probabilities of what is said of it; they sum to 1.
 #[derive(Clone, Debug, PartialEq)]

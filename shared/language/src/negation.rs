@@ -1,11 +1,12 @@
 //! Function of a "no" or "not": an answer, a repair, a determiner, or none.
 
+use words::Gap;
+
 use crate::clauses::Clause;
 use crate::content::Asserted;
 use crate::question_words::QuestionWords;
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
-use crate::tokens::Gap;
 
 /// Function of a "no".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,12 +1,11 @@
 //! Words of the robot that a scene uses for its things.
 
 use scene::Scene;
+use words::{Tokens, normalise};
 
 use crate::halting::halting_words;
 use crate::lexicon::{Lexicon, Sense};
-use crate::normalise::normalise;
 use crate::token_class::Class;
-use crate::tokens::Tokens;
 
 /// Returns a warning for each name in a scene that is one of the robot's own words. A word that halts the arm
 /// always does; any other loses the robot's meaning in that scene.

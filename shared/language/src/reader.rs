@@ -1,6 +1,8 @@
 //! The reader: runs the pipeline on an utterance.
 
+use ::vocabulary::Language;
 use scene::{Intent, Question, Reading, Reference, Response, Scene, UnknownWord};
+use words::{Tokens, normalise};
 
 use crate::answer::response;
 use crate::clauses::clauses;
@@ -11,28 +13,13 @@ use crate::hedges::hedge;
 use crate::indifference::{indifference, is_of_attribute};
 use crate::intent::{intent, is_side_talk, is_statement};
 use crate::lexicon::Lexicon;
-use crate::normalise::normalise;
 use crate::paper::WordSpotter;
 use crate::parsed::ParsedUtterance;
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::questions::{fetches_it, question};
 use crate::references::reference;
 use crate::tagger::tag;
-use crate::tokens::Tokens;
 use crate::unknown::unknown_words;
-
-/// Options of the reader.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
-)]
-#[serde(rename_all = "snake_case")]
-pub enum Language {
-    /// Word spotting, exactly as in section 3.6 of the paper.
-    Paper,
-    /// A careful extractor: synonyms, negation with scope, repairs, intents.
-    #[default]
-    Careful,
-}
 
 /// Reads utterances about one scene. Holds all that it needs of the scene.
 #[derive(Clone, Debug)]

@@ -4,9 +4,8 @@ use std::collections::HashSet;
 use std::sync::LazyLock;
 
 use scene::{Role, Value};
+use words::{Tokens, normalise};
 
-use crate::normalise::normalise;
-use crate::tokens::Tokens;
 use crate::vocabulary;
 
 /// Relations that people say for one another.

@@ -2,12 +2,12 @@
 //! competes with, and leaves the rest standing.
 
 use scene::Role;
+use words::Gap;
 
 use crate::content::Asserted;
 use crate::lexicon::ValueSense;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::tokens::Gap;
 
 /// Strength with which the words before are taken back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

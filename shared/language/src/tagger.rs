@@ -2,6 +2,7 @@
 //! values included.
 
 use scene::Role;
+use words::{Gap, Token, Tokens};
 
 use crate::disambiguate::disambiguate;
 use crate::halting::halting_words;
@@ -9,7 +10,6 @@ use crate::lexicon::{Lexicon, Sense, ValueSense};
 use crate::relations::begins_relation;
 use crate::spelling::shortened;
 use crate::token_class::Class;
-use crate::tokens::{Gap, Token, Tokens};
 
 /// A word or phrase, what it is taken for, and the pause before it.
 #[derive(Clone, Copy, Debug)]

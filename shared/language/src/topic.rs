@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use scene::Role;
+use words::Gap;
 
 use crate::clauses::{Clause, Topic};
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::tokens::Gap;
 
 /// A clause, what its words give away, and the clause before it.
 pub(crate) struct ClauseAnalysis<'a> {

@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use scene::{Reference, Role, UnknownWord};
+use words::Tokens;
 
 use crate::clauses::{Clause, Topic};
 use crate::references::by_size;
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
-use crate::tokens::Tokens;
 use crate::vocabulary::is_unlisted_quality;
 
 /// Most words of a compound.

@@ -1,6 +1,6 @@
 //! English words and phrases of a dialogue about things to fetch, from the folder `vocabulary`.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::sync::LazyLock;
 
 use scene::Role;
@@ -70,24 +70,13 @@ pub(crate) fn common_words() -> impl Iterator<Item = &'static str> {
     include_str!("vocabulary/common_words.txt").split_ascii_whitespace()
 }
 
-/// Returns the words of a contraction that its ending does not spell out.
-pub(crate) fn expansion(word: &str) -> Option<&'static str> {
-    static EXPANSIONS: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| {
-        let lines = include_str!("vocabulary/contractions.txt").lines();
-        let rows = lines.filter_map(|line| line.split_once(" = "));
-        rows.flat_map(|(words, expansion)| words.split(", ").map(move |word| (word, expansion)))
-            .collect()
-    });
-    EXPANSIONS.get(word).copied()
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::HashMap;
 
     use super::{Class, phrases};
-    use crate::normalise::normalise;
-    use crate::tokens::Tokens;
+    use words::Tokens;
+    use words::normalise;
 
     #[test]
     fn phrases_are_written_as_tokens() {

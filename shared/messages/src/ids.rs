@@ -1,4 +1,4 @@
-//! Identifiers of the transport. Those of the dialogue are defined in [`dialogue::ids`].
+//! Identifiers of the transport. Those of the dialogue are defined in [`vocabulary::ids`].
 
 use serde::{Deserialize, Serialize};
 

@@ -44,8 +44,6 @@ pub mod topics;
 pub mod wire;
 mod wire_serde;
 
-pub use dialogue::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
-pub use dialogue::{ActKind, Ended, Interpretation, Outcome, PickOutcome, PickPhase, Task};
 pub use fixed::*;
 pub use ids::{ClientId, Epoch, Incarnation, RequestKey};
 pub use layout::WireMessage;
@@ -56,4 +54,6 @@ pub use services::{SUPERVISOR, Service};
 pub use sound_file::SoundFile;
 pub use text::{FixedText, TextTooLong};
 pub use topics::Topic;
+pub use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
+pub use vocabulary::{ActKind, Ended, Interpretation, Outcome, PickOutcome, PickPhase, Task};
 pub use wire::{Code, WireCode, WireError, WireField};

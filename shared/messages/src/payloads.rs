@@ -2,10 +2,10 @@
 
 use crate::schema::payloads;
 use crate::{Hypothesis, PresentationState, Presented, RequestKey};
-use dialogue::{ActKind, Action, Attributed, Ended, Outcome};
 use perception::{Change, Sighting};
 use scene::{ObjectId, Perceived, Question};
 use serde::{Deserialize, Serialize};
+use vocabulary::{ActKind, Action, Attributed, Ended, Outcome};
 
 payloads! {
     Injection [Sound]

@@ -3,9 +3,9 @@
 
 use std::collections::VecDeque;
 
-use dialogue::Rng;
-use dialogue::time::{Span, Time};
 use scene::{Role, Scene, StableHash};
+use vocabulary::Rng;
+use vocabulary::time::{Span, Time};
 
 use crate::{Change, Detection, Look, Sighting};
 

@@ -1,7 +1,7 @@
-use dialogue::Table;
-use dialogue::time::{Span, Time};
 use proptest::prelude::*;
 use scene::{ObjectId, Scene};
+use vocabulary::Table;
+use vocabulary::time::{Span, Time};
 
 use crate::{Change, Detection, Frame, Hiding, Look, Refusal, Settings, Sighting, Tracker};
 

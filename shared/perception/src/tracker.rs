@@ -1,8 +1,8 @@
 //! The tracker: follows objects through looks, and says which there are.
 
-use dialogue::Table;
-use dialogue::time::{Span, Time};
 use scene::{ObjectId, Perceived, Scene, likeliest};
+use vocabulary::Table;
+use vocabulary::time::{Span, Time};
 
 use crate::estimate::Estimate;
 use crate::{Change, Detection, Frame, Look, Refusal, Sighting};

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use config::{CostsFrom, Examined, Settings};
 use diagnostics::{Diagnostics, TextFile};
-use dialogue::Durations;
 use scene::Scene;
+use vocabulary::Durations;
 
 use crate::{ArmSetup, Extent, MotionError, Motions, Pace, Voice, measure, reach};
 

@@ -1,7 +1,7 @@
 //! The seconds of every question and pick in a scene, on this robot.
 
-use dialogue::Durations;
 use scene::{AttributeId, ObjectId, Question, Scene, ValueId};
+use vocabulary::Durations;
 
 use crate::{Motions, Pace, Voice};
 
@@ -37,7 +37,6 @@ mod tests {
     use super::*;
     use crate::Extent;
     use crate::testing::bowls;
-    use dialogue::{Model, Params};
     use manipulation::{PlanSettings, Robot};
 
     #[test]
@@ -45,7 +44,7 @@ mod tests {
         let scene = bowls();
         let (voice, pace) = (Voice::default(), Pace::default());
         let durations = measure(&scene, &voice, &pace, None);
-        assert_eq!(durations.check(&Model::new(&scene, Params::default())), vec![]);
+        assert_eq!(durations.check(&scene), vec![]);
         assert_eq!((durations.point.len(), durations.pick.len()), (0, 0));
         let is_it = |words: &str| voice.seconds(words) + pace.mean_answer_s();
         let all: Vec<f64> = durations.attribute.iter().flatten().copied().collect();

@@ -1,7 +1,7 @@
 //! Durations of speech: the robot's, the user's, and recognition.
 
-use dialogue::Rng;
-use dialogue::user_model::SPOKEN;
+use vocabulary::Rng;
+use vocabulary::reaction::SPOKEN;
 
 /// The robot's voice.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,4 +21,4 @@ pub mod submission;
 pub mod sync_time;
 pub mod wakes;
 
-pub use dialogue::time::{Span, Time};
+pub use vocabulary::time::{Span, Time};

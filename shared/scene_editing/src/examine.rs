@@ -64,13 +64,17 @@ impl From<&Diagnostic> for Problem {
     }
 }
 
+/// Warnings of the reader of utterances about a scene's words (`language::own_words`); as an argument, so that who edits
+/// scenes does not depend on how English is understood.
+pub type OwnWords = fn(&Scene) -> Vec<String>;
+
 /// Checks the text of a scene as `whichone scene check` does, with reach and clearance.
-pub fn check(configuration: &Configuration, file: TextFile) -> Findings {
+pub fn check(configuration: &Configuration, file: TextFile, own_words: OwnWords) -> Findings {
     let Configuration { folder, profile, set } = configuration;
     let words = Scene::from_toml(&file.label, &file.text).map(|scene| {
         let objects = scene.objects().len();
         let words = (0..objects).map(|n| scene.describe(n.into())).collect();
-        (words, warnings(&scene))
+        (words, warnings(&scene, own_words))
     });
     let (words, warnings) = words.unwrap_or_default();
     let loaded = preflight::load_with_scene(folder, profile.as_deref(), set, Some(file));
@@ -82,9 +86,9 @@ pub fn check(configuration: &Configuration, file: TextFile) -> Findings {
 }
 
 /// Returns what a person cannot say clearly in a scene, a sentence each.
-pub fn warnings(scene: &Scene) -> Vec<String> {
+pub fn warnings(scene: &Scene, own_words: OwnWords) -> Vec<String> {
     let mut warnings = scene.ambiguities();
-    warnings.extend(language::own_words(scene));
+    warnings.extend(own_words(scene));
     warnings
 }
 
@@ -238,13 +242,13 @@ mod tests {
     #[test]
     fn problems_are_those_of_the_check_with_their_keys() {
         let mut edit = bowls();
-        let found = check(&shipped(), TextFile::new("bowls.toml", edit.text()));
+        let found = check(&shipped(), TextFile::new("bowls.toml", edit.text()), |_| Vec::new());
         assert_eq!((found.problems.len(), found.words.len()), (0, 6), "{found:?}");
         let mut document = edit.document().unwrap();
         document.objects[2].xyz = Some([1.9, 0.57, 0.135]);
         document.objects[4].attributes.insert("color".into(), "gren".into());
         edit.apply(&document).unwrap();
-        let found = check(&shipped(), TextFile::new("bowls.toml", edit.text()));
+        let found = check(&shipped(), TextFile::new("bowls.toml", edit.text()), |_| Vec::new());
         let keys: Vec<&str> = found.problems.iter().map(|it| it.key.as_str()).collect();
         assert_eq!(keys, ["objects[4].attributes.color", "objects[2].xyz"], "{found:?}");
         assert!(found.problems[1].cure.contains("move it"), "{found:?}");

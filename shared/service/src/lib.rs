@@ -73,10 +73,10 @@ pub mod storage;
 pub mod view;
 pub mod worker_channel;
 
-pub use dialogue::wall_time;
 pub use reducer::{Effects, Event, Never, Node, NodeError, SetAside};
 pub use runtime::{Span, Time};
 pub use runtime::{
     bus, client, clock, epoch, folders, group, lifecycle, notify, shm_cleanup, stop_socket,
     submission, wakes,
 };
+pub use vocabulary::wall_time;

@@ -4,9 +4,9 @@
 use super::inverse::Solver;
 use super::subject::Subject;
 use super::{BUDGET_S, thread_s};
-use dialogue::Rng;
 use manipulation::{Arm, Joints, Limb};
 use nalgebra::{Isometry3, Matrix6, Vector6};
+use vocabulary::Rng;
 
 /// Distance and angle at which it stops.
 const TOLERANCE: f64 = 1e-5;

@@ -7,11 +7,11 @@ use super::subject::Subject;
 use super::targets::{Judge, Rule, Target, apart};
 use super::{Effort, mean, timed};
 use crate::report::{Report, percentile};
-use dialogue::Rng;
 use manipulation::{Joints, Limb};
 use nalgebra::Isometry3;
 use serde::Deserialize;
 use std::time::Instant;
+use vocabulary::Rng;
 
 /// Something that looks for a posture from a seed.
 pub(super) trait Solver {

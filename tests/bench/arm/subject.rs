@@ -1,10 +1,10 @@
 //! Robots whose arms are measured.
 
-use dialogue::Rng;
 use manipulation::{Arm, Joints, Limb, Robot};
 use robot_model::{Robot as Description, SerialChain};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
+use vocabulary::Rng;
 
 /// A robot, and its description for solvers that read it themselves.
 pub(super) struct Subject {

@@ -1,10 +1,10 @@
 //! Poses to reach, where the solvers begin, and validity of their answers.
 
 use super::subject::Subject;
-use dialogue::Rng;
 use manipulation::{Joints, Limb};
 use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 use robot_model::SerialChain;
+use vocabulary::Rng;
 
 /// A pose of a limb's gripper in `base`.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,9 @@
 
 use super::scenes::{YES_NO, drawn};
 use crate::report::{Report, print};
-use dialogue::{Belief, Costs, DecisionProblem, Lookahead, Optimal, Planner, Step, evaluate};
+use dialogue::{Belief, DecisionProblem, Lookahead, Optimal, Planner, Step, evaluate};
 use std::time::Instant;
+use vocabulary::Costs;
 
 /// Objects of the scenes, of five attributes each.
 const OBJECTS: [usize; 2] = [50, 100];

@@ -3,7 +3,8 @@
 use super::scenes::{OPEN, YES_NO, beliefs, configured, in_doubt, random};
 use super::{Effort, micros};
 use crate::report::{Report, percentile};
-use dialogue::{Actions, Costs, DecisionProblem, Model, Params, Step, registry};
+use dialogue::{DecisionProblem, Model, Step, registry};
+use vocabulary::{Actions, Costs, Params};
 
 /// A scene, its size (objects times attributes), and its model.
 struct Place {

@@ -3,7 +3,8 @@
 use super::scenes::{OPEN, YES_NO, configured, random};
 use super::{Effort, micros};
 use crate::report::{Report, percentile};
-use dialogue::{Actions, Belief, Costs, DecisionProblem, Model, Optimal, Params, Planner, Step};
+use dialogue::{Belief, DecisionProblem, Model, Optimal, Planner, Step};
+use vocabulary::{Actions, Costs, Params};
 
 /// Beliefs looked at.
 const BELIEFS: [usize; 7] = [4, 16, 64, 256, 1_024, 4_096, 16_384];

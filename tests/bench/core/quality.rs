@@ -4,11 +4,9 @@
 use super::Effort;
 use super::scenes::{OPEN, POINTING, PRESENT, PRESENT_OPEN, YES_NO, configured, random};
 use crate::report::Report;
-use dialogue::{
-    Actions, Belief, Costs, DecisionProblem, Model, Optimal, Params, Planner, Step, evaluate,
-    registry,
-};
+use dialogue::{Belief, DecisionProblem, Model, Optimal, Planner, Step, evaluate, registry};
 use std::time::Instant;
+use vocabulary::{Actions, Costs, Params};
 
 const ACTIONS: [(&str, Actions); 5] = [
     ("remote, yes/no", YES_NO),

@@ -2,10 +2,11 @@
 
 use super::scenes::configured;
 use crate::report::Report;
-use language::{Language, Reader};
+use language::Reader;
 use scene::Question;
 use std::hint::black_box;
 use std::time::Instant;
+use vocabulary::Language;
 
 const UTTERANCES: &str = include_str!("../../fixtures/utterances/public.jsonl");
 /// Readings that make one sample, so that the clock's own cost does not count.

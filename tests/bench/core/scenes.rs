@@ -1,8 +1,9 @@
 //! Scenes to measure on: those of the configuration, and random ones of any size.
 
-use dialogue::{Actions, Belief, DecisionProblem, Mode, Model, ModelUser, Params, Rng};
+use dialogue::{Belief, DecisionProblem, Model, ModelUser};
 use scene::{Attribute, ObjectId, Perceived, Scene};
 use serde_json::{Map, Value, json};
+use vocabulary::{Actions, Mode, Params, Rng};
 
 /// Values of an attribute in random scenes.
 pub(super) const VALUES: usize = 6;
@@ -83,7 +84,7 @@ pub(super) fn beliefs(problem: &DecisionProblem<'_>, dialogues: u64) -> Vec<Beli
             beliefs.push(belief.clone());
             let step = dialogue::Step { interaction: seed, step };
             let decision = planner.decide(problem, &belief, step);
-            let dialogue::Action::Ask(question) = decision.action else { break };
+            let vocabulary::Action::Ask(question) = decision.action else { break };
             let answer = user.answer(problem.model, question);
             belief.update(problem.model, question, &answer.reading(problem.model));
         }

@@ -4,10 +4,11 @@ use super::Effort;
 use super::scenes::{YES_NO, configured};
 use crate::arm::thread_s;
 use crate::report::Report;
-use dialogue::{Costs, DecisionProblem, Model, Params, TurnTaking, registry};
+use dialogue::{DecisionProblem, Model, registry};
 use evaluation::simulation::{CHUNK, CachedPlanner, Room, UserKind, interactions};
-use language::{Language, Reader};
+use language::Reader;
 use preflight::{Pace, Voice};
+use vocabulary::{Costs, Language, Params, TurnTaking};
 
 /// Chunks of interactions that are timed, after one that fills the planner's memory.
 const CHUNKS: u64 = 20;

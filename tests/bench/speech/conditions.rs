@@ -2,7 +2,7 @@
 
 use super::noise::{self, bursts, pink, samples};
 use super::room;
-use dialogue::Rng;
+use vocabulary::Rng;
 use whichone_tests::spoken::babble;
 
 /// What is heard beside the voice.

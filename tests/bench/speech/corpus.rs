@@ -4,9 +4,10 @@ use super::conditions::{Condition, Noise};
 use super::noise::samples;
 use super::score::has_content;
 use super::voices::Voices;
-use language::{Language, Reader};
+use language::Reader;
 use scene::{ObjectId, Question, Scene};
 use std::ops::Range;
+use vocabulary::Language;
 use whichone_tests::spoken::{SPEAKERS, Speaker};
 
 /// Sentences of one kind, and who speaks them.

@@ -15,10 +15,11 @@ use ::speech::devices::stream::{Closings, SpeechSegment, Stream};
 use ::speech::devices::vad::SegmenterOptions;
 use ::speech::stream_events::{Began, LIVE_FROM, StreamEvent};
 use ::speech::{EarlyDecoding, Endpointing, PreparedJudge, RecognisedSegment};
-use language::{Completeness, Language, Reader};
+use language::{Completeness, Reader};
 use messages::{RequestKey, Source};
 use scene::{Question, Reading, Scene};
 use service::{Span, Time};
+use vocabulary::Language;
 use whichone_tests::spoken::{Pink, SPEAKERS, SPEECH_RMS, levelled};
 
 use super::conditions::QUIET;

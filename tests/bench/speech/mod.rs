@@ -21,10 +21,11 @@ use ::speech::devices::recogniser::RecogniserUnavailable;
 use ::speech::devices::vad::SegmenterOptions;
 use conditions::Condition;
 use corpus::{Corpus, Sentence};
-use language::{Language, Reader};
+use language::Reader;
 use listener::Listener;
 use score::Score;
 use std::path::PathBuf;
+use vocabulary::Language;
 use voices::Voices;
 
 /// One clip's score, and what clip it is.

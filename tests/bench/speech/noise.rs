@@ -3,10 +3,10 @@
 //! All have power 1 unless stated otherwise, and are the same for the same seed.
 
 use ::speech::devices::audio::RATE_HZ;
-use dialogue::Rng;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
+use vocabulary::Rng;
 
 /// Returns noise that falls by 3 dB an octave, as that of most rooms does. Every frequency gets a
 /// random amplitude and phase (Box and Muller), divided by the root of the frequency.

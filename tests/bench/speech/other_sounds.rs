@@ -5,8 +5,9 @@ use super::listener::Listener;
 use super::noise::{bursts, hum, melody, pink, samples};
 use super::score::is_acted_on;
 use crate::report::Report;
-use language::{Language, Reader};
+use language::Reader;
 use scene::{ObjectId, Question, Scene};
+use vocabulary::Language;
 
 /// Length of a clip, seconds.
 const CLIP_S: f64 = 4.0;

@@ -2,8 +2,8 @@
 
 use super::noise::samples;
 use ::speech::devices::audio::RATE_HZ;
-use dialogue::Rng;
 use realfft::RealFftPlanner;
+use vocabulary::Rng;
 
 /// Time in which the tail falls by 60 dB, seconds: a furnished kitchen.
 const REVERBERATION_S: f64 = 0.4;

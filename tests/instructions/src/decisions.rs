@@ -1,12 +1,11 @@
 //! Belief, decision and reading.
 
-use dialogue::{
-    Actions, Belief, Costs, DecisionProblem, Lookahead, Mode, Model, Params, Planner, Rng, Step,
-};
-use language::{Language, Reader};
+use dialogue::{Belief, DecisionProblem, Lookahead, Model, Planner, Step};
+use language::Reader;
 use scene::{AttributeId, Question, Reading, Response, Scene, ValueId};
 use serde_json::{Value, json};
 use std::hint::black_box;
+use vocabulary::{Actions, Costs, Language, Mode, Params, Rng};
 
 const ATTRIBUTES: [&str; 3] = ["colour", "size", "place"];
 const VALUES: [&str; 4] = ["one", "two", "three", "four"];

@@ -3,12 +3,13 @@
 use crate::decisions::bowls;
 use ::config::Settings;
 use ::messages::{AskedQuestion, Interpretation, MessageRef, Observation, PolicyView, WireReading};
-use dialogue::{ActKind, Action};
 use policy::{In, Out, PolicyNode};
 use scene::{AttributeId, Intent, ObjectId, Question, Reading, Scene, ValueId};
 use service::{Effects, Event, Node, Time};
+use setup::DialogueSettings;
 use std::hint::black_box;
 use std::path::Path;
+use vocabulary::{ActKind, Action};
 
 /// An observation of one reading of these words.
 fn observation(scene: &Scene, seq: u64, words: &[&str], intent: Intent) -> Observation {

@@ -1,5 +1,6 @@
 //! The reducers of a group that take turns in one thread, as peers of a forged message.
 
+use setup::DialogueSettings;
 use std::sync::LazyLock;
 
 use arm::shell::ArmProgram;

@@ -2,9 +2,11 @@
 
 use std::sync::LazyLock;
 
-use language::{Language, READINGS_MAX, Reader};
+use language::{READINGS_MAX, Reader};
+
 use messages::{ASKED_MAX, Interpretation, WireReading};
 use scene::{AttributeId, ObjectId, Question, Reading, Scene, ValueId};
+use vocabulary::Language;
 
 use super::bytes::{Input, chosen, project_file};
 

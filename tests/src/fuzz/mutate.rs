@@ -1,6 +1,6 @@
 //! Mutation of inputs from a seed, for runs without libFuzzer.
 
-use dialogue::Rng;
+use vocabulary::Rng;
 
 /// Tokens that formats give a meaning.
 const TOKENS: [&[u8]; 24] = [

@@ -1,7 +1,9 @@
 //! Scenes in TOML and JSON.
 
-use language::{Language, Reader};
+use language::Reader;
+
 use scene::{Question, Scene};
+use vocabulary::Language;
 
 use super::bytes::{Input, chosen, project_file};
 

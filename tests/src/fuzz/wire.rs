@@ -2,11 +2,11 @@
 
 use std::fmt::Debug;
 
-use dialogue::Presentation;
 use messages::robot::*;
 use messages::schema::Schema;
 use messages::*;
 use scene::Question;
+use vocabulary::Presentation;
 
 use super::bytes::{Input, chosen};
 

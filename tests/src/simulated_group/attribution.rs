@@ -4,10 +4,11 @@
 //! pick is caused by timing where the same user with good timing gets the right object.
 
 use config::Settings;
+use dialogue::Model;
 use dialogue::manager::{Cause, Record};
-use dialogue::{Model, NamedQuestion};
 use evaluation::simulation::users::{Domain, Habits};
 use scene::ObjectId;
+use vocabulary::NamedQuestion;
 
 use super::{Channel, GroupUser, SimulatedGroup};
 use crate::settings;

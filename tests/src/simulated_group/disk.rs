@@ -4,11 +4,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use dialogue::Rng;
 use journal::{Header, Journal};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tempfile::TempDir;
+use vocabulary::Rng;
 
 /// Bytes that a disk writes as a whole.
 const SECTOR: usize = 512;

@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use dialogue::Rng;
 use service::{Span, Time};
+use vocabulary::Rng;
 
 use super::Crash;
 

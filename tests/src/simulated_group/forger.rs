@@ -1,13 +1,13 @@
 //! Forged messages: well-typed, with numbers and contents that no service of the group sends. What
 //! could be true (the next number from the only writer) is not among them: that is believed.
 
-use dialogue::Rng;
 use messages::judge::COUNT_MAX;
 use messages::{
     ActKind, Activity, AppliedMark, ArmStatus, Code, FixedText, Hypothesis, Injection, MessageRef,
     MotionOrder, Observation, PickOutcome, PickPhase, PresentationState, Presented, RequestKey,
     RobotAct, Sound, Utterance, WireCode, WireQuestion,
 };
+use vocabulary::Rng;
 
 use service::stop_socket::{Caller, StopOrder};
 

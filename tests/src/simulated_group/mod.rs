@@ -30,7 +30,7 @@ use std::iter::repeat_n;
 use std::path::Path;
 
 use config::Settings;
-use dialogue::{Model, Rng};
+use dialogue::Model;
 use evaluation::simulation::users::Domain;
 use grounding::GroundingNode;
 use messages::{ActKind, Outcome, PolicyView};
@@ -38,6 +38,7 @@ use policy::PolicyNode;
 use scene::{ObjectId, Scene};
 use service::{Span, Time};
 use speech::{PlaybackEvent, PlaybackRequest, PlaybackState, SpeechNode};
+use vocabulary::Rng;
 
 pub use attribution::{Count, study};
 pub use client::Client;

@@ -1,11 +1,11 @@
 //! Many dialogues about perceived objects, each beside the same dialogue about a certain scene.
 
 use config::Settings;
-use dialogue::Rng;
 use messages::Outcome;
 use perception::{Camera, CameraSettings, Change, Detection, Standing};
 use scene::{ObjectId, Perceived};
 use service::{Span, Time};
+use vocabulary::Rng;
 
 use super::table::{FORGIVEN_M, Happening, TableTop, fits_best};
 use super::{Faults, GroupUser, SimulatedGroup};

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use dialogue::{Model, Rng};
+use dialogue::Model;
 use evaluation::simulation::SimulatedUser;
 use evaluation::simulation::users::{
     Domain, Habits, Policy, Reply, TimedUser, TimedUtterance, Timing,
@@ -10,6 +10,7 @@ use evaluation::simulation::users::{
 use messages::{Hypothesis, Injection, Receipt, RequestKey, Sound};
 use scene::{ObjectId, Question, Scene};
 use service::{Span, Time};
+use vocabulary::Rng;
 
 /// Input channel of a user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

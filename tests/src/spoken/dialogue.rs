@@ -5,10 +5,10 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use dialogue::{Model, Params, Rng};
+use dialogue::Model;
 use evaluation::simulation::SimulatedUser;
 use evaluation::simulation::users::{Domain, Manners, Policy, Turn};
-use language::{Language, Reader};
+use language::Reader;
 use messages::{EarState, Outcome, ReceiptStatus};
 use preflight::Pace;
 use scene::{Question, Reading, Scene};
@@ -17,6 +17,7 @@ use service::client::Client;
 use service::clock;
 use service::{Span, Time};
 use speech::devices::voice::Synthesiser;
+use vocabulary::{Language, Params, Rng};
 
 use super::room::Room;
 use super::sound::{Noise, SPEAKERS, SPEECH_RMS, levelled};

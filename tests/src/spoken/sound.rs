@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use dialogue::Rng;
 use speech::devices::voice::{Program, Synthesiser, VoiceOptions};
+use vocabulary::Rng;
 
 /// Level of every voice: root mean square of its samples.
 pub const SPEECH_RMS: f64 = 2_000.0;

@@ -44,11 +44,11 @@ fn asked_about(scene: &Scene, question: &str) -> Question {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dialogue::{Belief, Model, Params, Rng};
+    use dialogue::{Belief, Model};
     use evaluation::simulation::SimulatedUser;
     use evaluation::simulation::users::{Domain, Manners, Policy};
-    use language::Language;
     use scene::ObjectId;
+    use vocabulary::{Language, Params, Rng};
 
     #[test]
     fn every_question_of_the_scene_is_understood_from_its_words() {

@@ -3,8 +3,8 @@
 
 use super::*;
 use crate::world::World;
-use dialogue::Rng;
 use std::sync::Arc;
+use vocabulary::Rng;
 
 const OBJECT: u16 = 4;
 

@@ -1,7 +1,8 @@
 //! A slow or full disk: what moves is stopped all the same, and nothing begins that is not durable.
 
+use vocabulary::Rng;
+
 use super::*;
-use dialogue::Rng;
 
 impl Machine {
     /// A client orders a stop or a release and asks until the arm rests; returns the last answer.

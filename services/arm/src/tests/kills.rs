@@ -1,7 +1,8 @@
 //! Killed at any point, any number of times, the arm brings the ordered object once.
 
+use vocabulary::Rng;
+
 use super::*;
-use dialogue::Rng;
 
 /// A pick with up to `kills` deaths anywhere in it, and now and then a motion stop.
 fn story(seed: u64, kills: u32, restart: fn(&mut Machine)) {

@@ -1,8 +1,8 @@
 //! What was handed over is put back in its place, once, whatever happens on the way.
 
 use super::*;
-use dialogue::Rng;
 use messages::Task;
+use vocabulary::Rng;
 
 /// Returns the policy's order to put back what that interaction delivered.
 fn put_back(interaction: u64, object: u16) -> RobotAct {

@@ -2,12 +2,12 @@
 
 mod simulated_study;
 
-use dialogue::Rng;
 use evaluation::Verdict;
 use evaluation::user_study::{Event, Participant, Protocol, Stage, Status};
 use messages::{ActKind, Outcome};
 use scene::Scene;
 use serde_json::{Map, json};
+use vocabulary::Rng;
 
 use super::section::StudySection;
 use super::study_controller::{Command, StudyController};

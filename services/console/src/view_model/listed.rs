@@ -4,9 +4,9 @@
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
-use dialogue::Action;
 use messages::{ArmStatus, PolicyView};
 use scene::{ObjectId, Question, Scene};
+use vocabulary::Action;
 
 /// Scenes of up to this many objects are listed whole.
 pub(super) const WHOLE_MAX: usize = 64;

@@ -2,7 +2,6 @@
 
 use super::line::{Line, Recognisers};
 use super::*;
-use dialogue::{Attributed, QuestionShare};
 use messages::{
     ActKind, Ended, FixedText, GateVerdict, InteractionId, Interpretation, MicrophoneState,
     Outcome, PickPhase, PresentationState, PromptId, ReceiptStatus, SecondState, UtteranceSeq,
@@ -11,6 +10,7 @@ use messages::{
 use scene::{AttributeId, Question, Reading, Response, ValueId};
 use serde_json::{Map, Value as Json};
 use service::view::Speaker;
+use vocabulary::{Attributed, QuestionShare};
 
 const BOWLS: &str = include_str!("../../../../config/scenes/bowls.toml");
 const WHITE: Question = Question::Attribute(AttributeId(0), ValueId(0));

@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::Config;
-use dialogue::Rng;
 use messages::{Change, Detection, Look, Sighting, TableView};
 use scene::Scene;
+use setup::DialogueSettings;
+use vocabulary::Rng;
 
 fn perceiving() -> Settings {
     static PERCEIVING: OnceLock<Settings> = OnceLock::new();

@@ -1,6 +1,6 @@
 //! Draws from the deterministic generator: the same on every machine and in every run.
 
-pub(crate) use dialogue::Rng;
+pub(crate) use vocabulary::Rng;
 
 /// Returns a number below `n`; 0 for an `n` of 0. The language model of a scene depends on these
 /// very draws.

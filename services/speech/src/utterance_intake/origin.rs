@@ -5,12 +5,12 @@ use crate::devices::recogniser::{Heard, SecondView};
 use crate::pending_sounds::PendingSound;
 use crate::record::Accepted;
 use crate::utterance_content::UtteranceContent;
-use dialogue::Presentation;
-use dialogue::ids::PromptId;
 use messages::{
     FixedText, Injection, Receipt, ReceiptStatus, RequestKey, SecondState, Source, UtteranceSeq,
 };
 use service::{Span, Time};
+use vocabulary::Presentation;
+use vocabulary::ids::PromptId;
 
 /// Origin of an utterance.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]

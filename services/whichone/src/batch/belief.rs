@@ -2,11 +2,12 @@
 
 use std::io::Read;
 
-use dialogue::{Belief, Model, Params};
-use language::{Language, Reader};
+use dialogue::{Belief, Model};
+use language::Reader;
 use scene::{Question, Reading, Response, Scene, question_from_json};
 use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
+use vocabulary::{Language, Params};
 
 use super::{parse, run};
 use crate::Outcome;

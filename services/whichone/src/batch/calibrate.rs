@@ -5,12 +5,13 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use config::{Calibration, LanguageModel};
-use language::{Language, Reader};
+use language::Reader;
 use model_reader::{Case, Client, fit, held_out_loss, log_loss, parse, utterance};
 use scene::{Question, Reading, Scene, question_from_json, reading_to_json};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
+use vocabulary::Language;
 
 use crate::Outcome;
 use crate::output::Output;

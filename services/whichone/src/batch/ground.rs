@@ -2,10 +2,12 @@
 
 use std::io::Read;
 
-use language::{Language, Mention, Reader};
+use language::{Mention, Reader};
+
 use scene::{Question, Scene, question_from_json, reading_to_json};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
+use vocabulary::Language;
 
 use super::{parse, run};
 use crate::Outcome;

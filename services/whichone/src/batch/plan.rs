@@ -4,12 +4,11 @@ use std::io::Read;
 use std::time::Instant;
 
 use config::Settings;
-use dialogue::{
-    Action, Actions, Announce, Belief, Costs, DecisionProblem, Durations, Model, Planner, Step,
-};
+use dialogue::{Belief, DecisionProblem, Model, Planner, Step};
 use scene::{Scene, question_to_json};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
+use vocabulary::{Action, Actions, Announce, Costs, Durations};
 
 use super::{parse, run};
 use crate::Outcome;

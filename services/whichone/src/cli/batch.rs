@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use dialogue::{Announce, Costs, Mode};
-use language::Language;
+use vocabulary::{Announce, Costs, Language, Mode};
 
 use super::ConfigArgs;
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use config::Settings;
 use diagnostics::{Diagnostic, Diagnostics};
+use language::own_words;
 use scene::Scene;
 use scene_editing::warnings;
 use serde_json::{Value as Json, json};
@@ -40,7 +41,7 @@ pub(super) fn verdict(
             for line in summary(&settings) {
                 out.line(line)?;
             }
-            for warning in warnings(&settings.scene) {
+            for warning in warnings(&settings.scene, own_words) {
                 note(format_args!("warning: scene {}: {warning}", settings.scene.name()));
             }
             if with_values {
@@ -148,7 +149,7 @@ fn as_json(settings: &Settings, values: bool) -> Json {
         "ok": true,
         "scene": { "name": settings.scene.name(), "objects": settings.scene.objects().len(),
                    "placed": settings.scene.placed().count() },
-        "warnings": warnings(&settings.scene),
+        "warnings": warnings(&settings.scene, own_words),
         "planner": settings.dialogue.planner,
         "params": settings.dialogue.params,
         "costs": settings.dialogue.costs,

@@ -1,13 +1,14 @@
 //! The decision problem of `plan`, `export` and `study`.
 
+use setup::DialogueSettings;
 use std::path::{Path, PathBuf};
 
 use config::CostsFrom;
-use dialogue::{Actions, Announce, Costs, Mode, Model, Params, registry};
-use language::Language;
+use dialogue::{Model, registry};
 use preflight::ArmSetup;
 use scene::Scene;
 use service::exit::{Exit, Failure};
+use vocabulary::{Actions, Announce, Costs, Language, Mode, Params};
 
 use super::paths;
 use crate::batch::{Calibrator, Decider, Grounder, Problem};

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use diagnostics::Fields;
 use serde_json::json;
+use vocabulary::PLANNERS;
 
 mod item;
 mod protocol;
@@ -55,7 +56,7 @@ pub(crate) fn read(f: &mut Fields<'_>, configured_planner: &str) -> Study {
 
 fn policies(f: &mut Fields<'_>, configured: &str) -> Vec<String> {
     let policies = f.texts("policies");
-    let known = ::dialogue::registry::names();
+    let known = PLANNERS;
     f.note("policies", || json!({ "items": { "enum": known }, "uniqueItems": true }));
     for (n, policy) in policies.iter().enumerate() {
         if !known.contains(&policy.as_str()) {

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use language::Language;
+use vocabulary::Language;
 
 use super::{Folder, ONE_BOWL, shipped};
 use crate::{Recogniser, Restart, Section, Settings, Voice};
@@ -69,8 +69,8 @@ fn defaults_are_as_documented() {
     assert_eq!(arm_service.stop_deadline, Duration::from_secs(15));
     assert_eq!((group.restart.exits_max, group.restart.window.as_secs()), (5, 60));
 
-    assert_eq!(dialogue.params, dialogue::Params::default());
-    assert_eq!(dialogue.costs, dialogue::Costs::default());
+    assert_eq!(dialogue.params, vocabulary::Params::default());
+    assert_eq!(dialogue.costs, vocabulary::Costs::default());
     assert_eq!((dialogue.language, &*dialogue.planner), (Language::Careful, "lookahead"));
     assert!(dialogue.actions.attribute && !dialogue.actions.which);
     assert_eq!((speech.voice, speech.recogniser), (Voice::Auto, Recogniser::Auto));

@@ -1,9 +1,9 @@
 //! The belief update tests of the paper's section 4, and their like for the six bowls.
 
 use serde_json::Value as Json;
+use vocabulary::Params;
 
 use super::*;
-use crate::Params;
 use crate::testing::{heard, scene_of};
 
 /// Every case of the fixture to 1e-9, and every figure that the paper prints to its three digits.

@@ -1,8 +1,9 @@
 use scene::{AttributeId, Question, Response, ValueId, WordId};
+use vocabulary::{Params, Rng};
 
 use super::*;
+use crate::log_likelihood;
 use crate::testing::{bowls, heard, random_scene, scene_of};
-use crate::{Params, Rng, log_likelihood};
 
 /// A random question and reading of the scene; contradictions welcome.
 fn random_turn(rng: &mut Rng, model: &Model, words: usize) -> (Question, Reading) {

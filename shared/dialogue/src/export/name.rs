@@ -24,8 +24,9 @@ pub(super) fn escape(kind: &str, texts: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use vocabulary::Rng;
+
     use super::*;
-    use crate::Rng;
 
     #[test]
     fn escape_keeps_plain_names_readable() {

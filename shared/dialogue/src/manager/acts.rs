@@ -1,13 +1,14 @@
 //! Decisions as standing acts: asking, picking, calling off, saying, repeating.
 
 use scene::{ObjectId, Question};
+use vocabulary::ids::{PickId, PromptId};
+use vocabulary::time::Time;
+use vocabulary::{ActKind, NamedQuestion};
 
 use super::Manager;
 use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, Basis, Interaction, Prompt, State, push_bounded};
-use crate::ids::{PickId, PromptId};
-use crate::time::Time;
-use crate::{ActKind, Belief, NamedQuestion};
+use crate::Belief;
 
 /// Share of the likeliest object's probability from which another one may well be wanted.
 const LEFT_SHARE: f64 = 0.1;

@@ -1,15 +1,17 @@
 //! The questions that an utterance answers.
 
 use scene::{Intent, Question, Reading, UnknownWord};
+use vocabulary::ids::PromptId;
+use vocabulary::reaction::Reaction;
+use vocabulary::time::{Span, Time};
+use vocabulary::{
+    ActKind, Attribution, Interpretation, NamedQuestion, NamedReading, Presentation, QuestionShare,
+};
 
 use super::Manager;
 use super::evidence::Mark;
 use super::state::{State, Utterance};
-use crate::answer_attribution::{Attributed, Candidate, QUESTION_S, QuestionShare, Shares};
-use crate::ids::PromptId;
-use crate::time::{Span, Time};
-use crate::user_model::Reaction;
-use crate::{ActKind, Attribution, Interpretation, NamedQuestion, NamedReading, Presentation};
+use crate::answer_attribution::{Candidate, QUESTION_S, Shares};
 
 /// Weights below this say nothing.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -216,11 +218,4 @@ fn answered_after(state: &State, prompt: PromptId) -> Option<Question> {
 
 fn seconds(time: Time) -> f64 {
     time.since(Time(0)).s()
-}
-
-impl Attributed {
-    /// Returns the share of a prompt, all its presentations together.
-    pub fn share(&self, prompt: PromptId) -> f64 {
-        self.questions.iter().filter(|it| it.prompt == prompt).map(|it| it.share).sum()
-    }
 }

@@ -6,8 +6,9 @@ use super::Manager;
 use super::evidence::{Evidence, Mark};
 use super::state::{Interaction, State};
 use crate::user_model::Person;
-use crate::{Belief, Model, Posterior, PriorObjects};
+use crate::{Belief, Model, Posterior};
 use std::borrow::Cow;
+use vocabulary::PriorObjects;
 
 /// Interpretations, the point that is pointed at, and objects that are refused or meant.
 type Content<'a> = (&'a [(f64, Question, Reading)], Option<[f64; 3]>, Option<&'a Mark>);

@@ -2,6 +2,8 @@
 //! against the object, the pick is called off and the interaction continues.
 
 use scene::{AttributeId, Doubt, ObjectId, Question, Reading, Reference, Response, WordId};
+use vocabulary::ActKind;
+use vocabulary::time::Time;
 
 use super::Manager;
 use super::acts::call_off;
@@ -11,8 +13,6 @@ use super::evidence::Mark;
 use super::line::{Content, Preface};
 use super::references::reference;
 use super::state::{Basis, State, Utterance};
-use crate::ActKind;
-use crate::time::Time;
 
 /// Probability below which the object being fetched is fetched no further.
 const LIKELY: f64 = 0.5;

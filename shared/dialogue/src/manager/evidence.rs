@@ -3,9 +3,9 @@
 
 use scene::{Question, Reading, Response, Scene, UnknownWord};
 use serde::{Deserialize, Serialize};
+use vocabulary::{NamedQuestion, NamedReading};
 
 use super::state::Interaction;
-use crate::{NamedQuestion, NamedReading};
 
 /// Names that the evidence of one interaction may hold, all utterances together. Beyond it the
 /// oldest utterance is dropped: the belief keeps its content, but a change of the scene scores the

@@ -1,9 +1,10 @@
 //! The floor: whose turn it is to speak, and what time alone brings about.
 
+use vocabulary::ids::PromptId;
+use vocabulary::time::{Span, Time};
+use vocabulary::{ActKind, Presentation};
+
 use super::{Manager, State};
-use crate::ids::PromptId;
-use crate::time::{Span, Time};
-use crate::{ActKind, Presentation};
 
 /// Longest time for which a sound being heard defers a decision or a repetition: noise must not
 /// silence the robot.

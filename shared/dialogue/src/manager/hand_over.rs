@@ -3,6 +3,8 @@
 
 use scene::{ObjectId, Question, Response};
 use serde::{Deserialize, Serialize};
+use vocabulary::ids::PromptId;
+use vocabulary::time::{Span, Time};
 
 use super::Manager;
 use super::attribution::Heard;
@@ -11,8 +13,6 @@ use super::line::Preface;
 use super::put_back::{WithUser, refuse};
 use super::state::{Interaction, Preference, State, Utterance};
 use super::turn::Turn;
-use crate::ids::PromptId;
-use crate::time::{Span, Time};
 
 /// A delivery that can still be refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

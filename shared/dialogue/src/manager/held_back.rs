@@ -4,6 +4,9 @@
 
 use scene::{ObjectId, Question, Response};
 use serde::{Deserialize, Serialize};
+use vocabulary::ActKind;
+use vocabulary::ids::PromptId;
+use vocabulary::time::Time;
 
 use super::Manager;
 use super::acts::{say, set};
@@ -11,9 +14,6 @@ use super::attribution::Heard;
 use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, MotionStop, State};
 use super::turn::Turn;
-use crate::ActKind;
-use crate::ids::PromptId;
-use crate::time::Time;
 
 /// A pick that waits for the release of the motion stop, or for a word about what the gripper has kept.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

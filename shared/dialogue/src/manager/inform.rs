@@ -1,6 +1,8 @@
 //! Content of an utterance about the wanted object.
 
 use scene::{Question, Reading, Reference, Response};
+use vocabulary::Interpretation;
+use vocabulary::time::Time;
 
 use super::Manager;
 use super::attribution::Heard;
@@ -10,8 +12,6 @@ use super::line::{AboutObjects, Preface, Remark};
 use super::rules::CONTENT;
 use super::state::{Basis, Deferred, Interaction, Preference, State, Utterance};
 use super::turn::Turn;
-use crate::Interpretation;
-use crate::time::Time;
 
 impl Manager {
     /// Handles what an utterance says of the wanted object.

@@ -1,6 +1,8 @@
 //! What the user wants of the robot beside an object: intents, cancelling, starting over.
 
 use scene::{Intent, Reading, Reference, Response};
+use vocabulary::time::Time;
+use vocabulary::{ActKind, Interpretation, Outcome};
 
 use super::Manager;
 use super::acts::{call_off, say};
@@ -12,8 +14,6 @@ use super::replies::likeliest;
 use super::rules::INTENTS;
 use super::state::{State, StopOrder, Utterance};
 use super::turn::Turn;
-use crate::time::Time;
-use crate::{ActKind, Interpretation, Outcome};
 
 impl Manager {
     /// Processes one utterance. Whatever its content, it counts as applied, and what was typed gets an

@@ -2,6 +2,7 @@
 //! nothing else is decided until the user has said what becomes of it.
 
 use scene::{ObjectId, Response};
+use vocabulary::time::Time;
 
 use super::Manager;
 use super::acts::{call_off, next_key};
@@ -10,7 +11,6 @@ use super::held_back::{HeldBack, Wait};
 use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, State};
 use crate::rendering;
-use crate::time::Time;
 
 impl State {
     /// Returns the name of the object that the gripper has kept.

@@ -3,7 +3,7 @@
 use scene::UnknownWord;
 use serde::{Deserialize, Serialize};
 
-use crate::PickOutcome;
+use vocabulary::PickOutcome;
 
 /// A line that goes with an act.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

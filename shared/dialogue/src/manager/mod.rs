@@ -71,13 +71,11 @@ use acts::{order_again, say, set, set_reasons};
 use objects::SceneFile;
 use pointing::Pointing;
 use scene::{ObjectId, Scene};
+use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
+use vocabulary::time::Time;
+use vocabulary::{ActKind, Action, Ended, Outcome, PickOutcome, Table, TurnTaking};
 
-use crate::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
-use crate::time::Time;
-use crate::{
-    ActKind, Action, Belief, Decision, DecisionProblem, Ended, Model, Outcome, PickOutcome,
-    Planner, PolicyTable, Step, Table, TurnTaking, rendering,
-};
+use crate::{Belief, Decision, DecisionProblem, Model, Planner, PolicyTable, Step, rendering};
 
 /// Objects that are named before one of them is picked.
 const LEFT_MAX: usize = 3;

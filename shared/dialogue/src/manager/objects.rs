@@ -1,11 +1,12 @@
 //! Objects from perception: the setup follows the table in the state.
 
 use scene::Scene;
+use vocabulary::{Durations, Table};
 
 use super::pointing::Pointing;
 use super::state::{Cause, Interaction, State};
 use super::{Manager, Setup};
-use crate::{Durations, Model, Table};
+use crate::Model;
 
 /// What a setup was made of: words, and what objects may be.
 pub(super) struct SceneFile {

@@ -1,8 +1,9 @@
 //! Likelihood of pointing gestures, given the places of one scene's objects.
 
 use scene::Scene;
+use vocabulary::gesture::{Direction, Gestures};
 
-use crate::gesture::{Direction, Gestures};
+use crate::gesture;
 
 /// The user's place, and the direction in which each object lies from there.
 #[derive(Clone, Debug)]
@@ -25,6 +26,6 @@ impl Pointing {
         // The hypothesis beyond the objects has no place.
         let mut directions = self.objects.clone();
         directions.resize(hypotheses, None);
-        Some(self.model.log_likelihood(Some(ray), &directions))
+        Some(gesture::log_likelihood(&self.model, Some(ray), &directions))
     }
 }

@@ -3,6 +3,9 @@
 
 use scene::{Intent, ObjectId, Question, Response, WordId};
 use serde::{Deserialize, Serialize};
+use vocabulary::ids::{InteractionId, PickId, PromptId};
+use vocabulary::time::{Span, Time};
+use vocabulary::{ActKind, Outcome, PickOutcome};
 
 use super::Manager;
 use super::acts::{next_key, say, say_with, set};
@@ -10,9 +13,6 @@ use super::attribution::Heard;
 use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, Basis, State, Utterance, push_bounded};
 use super::turn::Turn;
-use crate::ids::{InteractionId, PickId, PromptId};
-use crate::time::{Span, Time};
-use crate::{ActKind, Outcome, PickOutcome};
 
 /// Share of an utterance's readings from which it is plain that it asks to put something back.
 const PLAIN: f64 = 0.5;
@@ -314,7 +314,7 @@ impl Manager {
 /// Counts the delivery as refused.
 pub(super) fn refuse(state: &mut State, with_user: &WithUser) {
     drop(state.handed_over.take_if(|it| it.interaction.id == with_user.interaction));
-    let delivered = |it: &&mut crate::Ended| {
+    let delivered = |it: &&mut vocabulary::Ended| {
         it.interaction == with_user.interaction && it.outcome == Outcome::Delivered
     };
     if let Some(ended) = state.ended.as_mut().filter(delivered) {

@@ -1,13 +1,13 @@
 //! Requests for several objects: one after the other.
 
 use scene::{ObjectId, Question, Reading, WordId};
+use vocabulary::time::Time;
 
 use super::Manager;
 use super::attribution::Heard;
 use super::evidence::Mark;
 use super::line::{AboutObjects, Preface, Remark};
 use super::state::{Basis, Interaction, Preference, State, Utterance};
-use crate::time::Time;
 
 /// Most objects that wait for their turn.
 const QUEUE_MAX: usize = 8;

@@ -5,12 +5,12 @@
 //! former scene but the names in the state.
 
 use scene::{ObjectId, Question};
+use vocabulary::time::Time;
+use vocabulary::{ActKind, Outcome};
 
 use super::Manager;
 use super::line::{Content, Preface};
 use super::state::{Basis, Interaction, KnownObject, State};
-use crate::time::Time;
-use crate::{ActKind, Outcome};
 
 /// Objects that are remembered by name and description while an interaction is open. With more, the
 /// robot only says that something has changed.

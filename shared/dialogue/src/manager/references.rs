@@ -2,6 +2,7 @@
 //! one".
 
 use scene::{ObjectId, Reference, Role, WordId};
+use vocabulary::Outcome;
 
 use super::Manager;
 use super::attribution::Heard;
@@ -9,7 +10,6 @@ use super::evidence::Mark;
 use super::line::{Content, Remark};
 use super::replies::said;
 use super::state::{Interaction, State};
-use crate::Outcome;
 
 /// Names of sizes, from small to large; values of an attribute that has no other names are ordered by
 /// it.

@@ -1,12 +1,12 @@
 //! Answers to what the user asks the robot: from the scene, the state and the evidence.
 
 use scene::{Intent, ObjectId, Reading, WordId};
+use vocabulary::ActKind;
 
 use super::Manager;
 use super::hand_over::HandedOver;
 use super::line::{AboutObjects, Content, Reason, Remark};
 use super::state::{Interaction, State, Utterance};
-use crate::ActKind;
 
 /// Most objects that a reason names.
 const RIVALS_MAX: usize = 3;

@@ -1,9 +1,10 @@
 //! What the manager decides by.
 
 use scene::Scene;
+use vocabulary::gesture::Gestures;
+use vocabulary::{Actions, Announce, Costs, Durations, Prior, TurnTaking};
 
-use crate::gesture::Gestures;
-use crate::{Actions, Announce, Costs, DecisionProblem, Durations, Model, Prior, TurnTaking};
+use crate::{DecisionProblem, Model};
 
 /// Everything that the manager decides by, besides its planner.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,6 +7,13 @@
 
 use scene::{ObjectId, Question, UnknownWord};
 use serde::{Deserialize, Serialize};
+use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
+use vocabulary::reaction::Reaction;
+use vocabulary::time::Time;
+use vocabulary::{
+    ActKind, Action, Attributed, Ended, Interpretation, NamedQuestion, PickOutcome, Presentation,
+    Table,
+};
 
 use super::concede::Conceded;
 use super::evidence::Evidence;
@@ -15,14 +22,8 @@ use super::held_back::HeldBack;
 use super::history::History;
 use super::line::{Line, Preface};
 use super::put_back::{PuttingBack, WithUser};
-use crate::answer_attribution::Attributed;
-use crate::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
-use crate::time::Time;
-use crate::user_model::{Person, Reaction};
-use crate::{
-    ActKind, Action, Belief, Ended, Interpretation, NamedQuestion, PickOutcome, Posterior,
-    Presentation, Table,
-};
+use crate::user_model::Person;
+use crate::{Belief, Posterior};
 
 /// The dialogue's state.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

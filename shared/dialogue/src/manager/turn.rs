@@ -1,13 +1,13 @@
 //! An utterance with what the rules ask of it.
 
 use scene::{Intent, Reference};
+use vocabulary::time::Time;
 
 use super::Manager;
 use super::attribution::Heard;
 use super::evidence::Mark;
 use super::references::reference;
 use super::state::{State, Utterance};
-use crate::time::Time;
 
 /// An utterance while it is handled.
 pub(super) struct Turn<'a> {

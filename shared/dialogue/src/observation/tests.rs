@@ -1,7 +1,7 @@
 use scene::ObjectId;
+use vocabulary::Params;
 
 use super::*;
-use crate::Params;
 use crate::testing::{bowls, everyone, heard, scene};
 
 const P_L: f64 = 0.9;

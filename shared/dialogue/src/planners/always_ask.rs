@@ -1,6 +1,8 @@
 //! `always-ask`: the predecessor's baseline that never picks without having asked.
 
-use crate::{Actions, Belief, Decision, DecisionProblem, Mode, Planner, Step};
+use vocabulary::{Actions, Mode};
+
+use crate::{Belief, Decision, DecisionProblem, Planner, Step};
 
 use super::{Entry, Outlook};
 

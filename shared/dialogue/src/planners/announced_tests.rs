@@ -3,13 +3,11 @@
 use std::collections::HashMap;
 
 use scene::{ObjectId, Question};
+use vocabulary::{Actions, Announce, Costs, Mode, Params, Rng};
 
 use super::*;
 use crate::testing::{bowls, markers, random_durations, random_scene};
-use crate::{
-    Actions, Announce, Answer, Costs, Evaluation, Mode, Model, Params, Rng, Step, evaluate,
-    registry,
-};
+use crate::{Answer, Evaluation, Model, Step, evaluate, registry};
 
 const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
 const OPEN: Actions = Actions { mode: Mode::Remote, attribute: true, which: true };
@@ -56,7 +54,7 @@ impl Exact<'_> {
         for i in 0..self.problem.model.objects() {
             offer(self.pick(belief, i, depth));
         }
-        for question in self.problem.actions.questions(self.problem.model) {
+        for question in self.problem.model.questions(self.problem.actions) {
             offer(self.ask(belief, question, depth));
         }
         self.known.insert(key, best);

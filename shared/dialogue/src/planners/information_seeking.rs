@@ -1,8 +1,10 @@
 //! `information-seeking`: asks under uncertainty about the person who answers.
 
+use vocabulary::Action;
+
 use crate::planning::{Choice, Effort};
 use crate::user_model::{Joint, Person};
-use crate::{Action, Answer, Belief, Decision, DecisionProblem, Model, Planner, Step};
+use crate::{Answer, Belief, Decision, DecisionProblem, Model, Planner, Step};
 
 use scene::{ObjectId, Question};
 

@@ -7,12 +7,12 @@ macro_rules! planners {
     ($($module:ident),+ $(,)?) => {
         $(mod $module;)+
 
-        /// Every planner, the default first.
-        pub(crate) const ALL: [Entry; [$(stringify!($module)),+].len()] = [$($module::ENTRY),+];
+        /// Every planner, the default first, as in [`PLANNERS`].
+        pub(crate) const ALL: [Entry; PLANNERS.len()] = [$($module::ENTRY),+];
     };
 }
 
-// The default comes first. A new planner is one file here and its name in this list.
+// The default comes first. A new planner is one file here and its name in two lists: this one, and that of `vocabulary`.
 planners! {
     lookahead,
     optimal,
@@ -27,9 +27,11 @@ planners! {
 pub use lookahead::Lookahead;
 pub use optimal::Optimal;
 
+use vocabulary::{Action, PLANNERS};
+
 use crate::Planner;
 use crate::planning::{Bound, Choice, OneStepEvaluator, OneStepLookahead, Reduced};
-use crate::{Action, Belief, Decision, DecisionProblem};
+use crate::{Belief, Decision, DecisionProblem};
 
 /// A planner in the registry.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,9 @@
 //! `no-attribute`: the paper's baseline, which cannot ask about attributes (section 5).
 
+use vocabulary::Actions;
+
 use super::Entry;
-use crate::{Actions, Belief, Decision, DecisionProblem, Lookahead, Planner, Step};
+use crate::{Belief, Decision, DecisionProblem, Lookahead, Planner, Step};
 
 /// The registry's entry.
 pub(super) const ENTRY: Entry = Entry {

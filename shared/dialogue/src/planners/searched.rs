@@ -3,8 +3,10 @@
 use std::panic::resume_unwind;
 use std::thread;
 
+use vocabulary::Action;
+
 use crate::planning::{Bound, Certify, Effort, Move, Reduced, Revealed, Search, Value};
-use crate::{Action, Belief, Decision, DecisionProblem};
+use crate::{Belief, Decision, DecisionProblem};
 
 use super::{alternatives, stop};
 
@@ -97,9 +99,11 @@ fn questions_left(search: &Search<'_>, reduced: &Reduced, node: usize, reached: 
 
 #[cfg(test)]
 mod tests {
+    use vocabulary::{Actions, Costs, Params, Rng};
+
     use super::*;
+    use crate::Model;
     use crate::testing::{bowls, perceived};
-    use crate::{Actions, Costs, Model, Params, Rng};
 
     /// A decision about objects in doubt took seconds: each of its beliefs is far more work.
     #[test]

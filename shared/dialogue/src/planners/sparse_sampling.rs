@@ -1,7 +1,9 @@
 //! `sparse-sampling`: the predecessor's planner (Kearns, Mansour and Ng 2002, over beliefs).
 
+use vocabulary::{Action, Rng};
+
 use crate::planning::{Query, Reduced, outcomes};
-use crate::{Action, Belief, Decision, DecisionProblem, Planner, Rng, Step};
+use crate::{Belief, Decision, DecisionProblem, Planner, Step};
 
 use super::{Entry, Outlook, alternatives};
 

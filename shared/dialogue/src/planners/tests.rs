@@ -1,14 +1,13 @@
 use scene::{ObjectId, Question, Response, Scene};
 use serde_json::json;
+use vocabulary::{Actions, Costs, Mode, Params, Rng};
 
 use super::*;
 use crate::testing::{
     bowls, everyone, heard, markers, random_durations, random_scene, scene, scene_of, tools,
     uniform,
 };
-use crate::{
-    Actions, Answer, Costs, Mode, Model, ModelUser, Params, Planner, Rng, Step, evaluate, registry,
-};
+use crate::{Answer, Model, ModelUser, Planner, Step, evaluate, registry};
 
 const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
 const OPEN: Actions = Actions { mode: Mode::Remote, attribute: true, which: true };

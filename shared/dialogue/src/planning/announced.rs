@@ -1,7 +1,9 @@
 //! Announced picks in the reduced problem: what they pay, and what bounds the value with them.
 
+use vocabulary::{Announce, Costs};
+
 use super::channel::Price;
-use crate::{Announce, Costs, DecisionProblem};
+use crate::DecisionProblem;
 
 /// A pick that can be denied; see [`Announce`]. Every class has one object to announce.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -22,11 +22,12 @@
 
 use std::ops::Range;
 
+use vocabulary::Costs;
+
 use super::announced::Announced;
 use super::channel::Price;
 use super::doubt::Doubt;
 use super::reduced::Reduced;
-use crate::Costs;
 
 /// The bounds for one reduced problem.
 #[derive(Clone, Debug)]

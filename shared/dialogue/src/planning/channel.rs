@@ -1,8 +1,9 @@
 //! Questions as noisy channels: what they cost and how their answers depend on the class.
 
 use scene::{AttributeId, Question};
+use vocabulary::{Action, Costs, Params};
 
-use crate::{Action, Costs, DecisionProblem, OpenQuestion, Params};
+use crate::{DecisionProblem, OpenQuestion};
 
 /// A question about classes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,10 +11,11 @@
 //! Between two classes every question is a symmetric channel: an open one at best confuses two of
 //! its values, and its other answers tell the two apart no more than silence does.
 
+use vocabulary::Costs;
+
 use super::announced::Announced;
 use super::channel::Price;
 use super::reduced::Reduced;
-use crate::Costs;
 
 /// Upper bound on the value as a function of the probability of the one class.
 #[derive(Clone, Debug)]

@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use scene::{AttributeId, ObjectId, Question};
+use vocabulary::Action;
 
-use crate::{Action, Belief, DecisionProblem};
+use crate::{Belief, DecisionProblem};
 
 /// Equivalence classes of objects, in the scene's order.
 pub(super) struct EquivalenceClasses {

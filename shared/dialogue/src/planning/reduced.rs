@@ -9,12 +9,13 @@ use std::hash::Hash;
 use std::ops::Range;
 
 use scene::{AttributeId, ObjectId, Question, ValueId};
+use vocabulary::Rng;
 
 use super::announced::Announced;
 use super::channel::{Channel, Channels, Query};
 use super::equivalence_classes::EquivalenceClasses;
 use super::partition::Partition;
-use crate::{Belief, DecisionProblem, Rng};
+use crate::{Belief, DecisionProblem};
 
 /// Equivalence classes of objects and the questions that tell them apart.
 #[derive(Debug)]

@@ -15,11 +15,12 @@
 
 use std::collections::HashMap;
 
+use vocabulary::{Costs, Rng};
+
 use super::channel::{Channel, Query};
 use super::partition::Partition;
 use super::reduced::Reduced;
 use super::told::{Kind, Split, Told};
-use crate::{Costs, Rng};
 
 /// The easier problem.
 #[derive(Debug)]

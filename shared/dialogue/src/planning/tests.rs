@@ -1,10 +1,9 @@
 use scene::{ObjectId, Question, Scene};
+use vocabulary::{Actions, Announce, Costs, Durations, Mode, Params, Rng};
 
 use super::*;
 use crate::testing::{bowls, perceived, random_durations, random_scene, scene, uniform};
-use crate::{
-    Actions, Announce, Answer, Belief, Costs, DecisionProblem, Durations, Mode, Model, Params, Rng,
-};
+use crate::{Answer, Belief, DecisionProblem, Model};
 
 mod announced;
 
@@ -174,7 +173,7 @@ fn ask_once(problem: &DecisionProblem<'_>, belief: &Belief, question: Question) 
             unheard += probability;
         }
     }
-    let cost = problem.cost(crate::Action::Ask(question));
+    let cost = problem.cost(vocabulary::Action::Ask(question));
     let discount = problem.costs.discount;
     (discount * after - cost) / (1.0 - discount * unheard)
 }
@@ -203,7 +202,7 @@ fn nothing_better_is_dropped() {
         let one_step = OneStepEvaluator::new(reduced, &bound).look_ahead(&reduced.mass);
         let kept = one_step.choices.iter().map(|choice| choice.value.lower);
         let best = kept.fold(one_step.stop, f64::max);
-        for question in problem.actions.questions(problem.model) {
+        for question in problem.model.questions(problem.actions) {
             let value = ask_once(problem, belief, question);
             // A question that tells nothing is asked for ever here, which is never worth it.
             assert!(value <= best + 1e-6, "{label} {question:?}: {value} above {best}");

@@ -19,8 +19,9 @@
 //! The iteration starts from a function that this operation does not increase, as is checked, so each
 //! iterate is an upper bound.
 
+use vocabulary::Costs;
+
 use super::channel::Channel;
-use crate::Costs;
 
 /// Upper bounds `w(x)`.
 #[derive(Clone, Debug)]

@@ -1,8 +1,8 @@
 //! English of the robot's remarks: answers to what the user asks.
 
 use scene::{Attribute, ObjectId, Role, Scene, Value};
+use vocabulary::ActKind;
 
-use crate::ActKind;
 use crate::manager::{AboutObjects, Reason, Remark};
 
 /// Length of a list from which it is cut short, bytes: what is said has room for 244, and a question

@@ -2,10 +2,11 @@
 
 use scene::{Question, Reading};
 use serde::{Deserialize, Serialize};
+use vocabulary::Params;
 
 use super::{ERROR_RATES, Person};
 use crate::observation::log_mixture;
-use crate::{Answer, Belief, BeliefError, Model, Params};
+use crate::{Answer, Belief, BeliefError, Model};
 
 /// A belief over objects for every error rate, and how probable each error rate is.
 ///

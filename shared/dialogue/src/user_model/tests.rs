@@ -1,9 +1,10 @@
 use scene::{ObjectId, Question, Reading, Response};
+use vocabulary::{Action, Actions, Costs, Rng};
 
 use super::*;
+use crate::Answer;
 use crate::testing::bowls;
-use crate::{Action, Belief, Costs, DecisionProblem, Model, ModelUser, Rng, Step, registry};
-use crate::{Actions, Answer};
+use crate::{Belief, DecisionProblem, Model, ModelUser, Step, registry};
 
 fn yes_no(response: Response) -> Reading {
     Reading { response, ..Reading::default() }
@@ -124,34 +125,4 @@ fn success(planner: &str, seed: u64) -> f64 {
 fn people_who_err_are_asked_more() {
     let adaptive = success("information-seeking", 7_000);
     assert!(adaptive > 0.93, "{adaptive}");
-}
-
-#[test]
-fn reaction_times_are_learned() {
-    let mut rng = Rng::new(23);
-    // A slow person: median 2.5 s, deviation 0.3.
-    let mut reaction = Reaction::default();
-    assert!((reaction.median_s() - 0.9).abs() < 1e-12);
-    let before = reaction.patience_s();
-    for _ in 0..200 {
-        let normal: f64 = (0..12).map(|_| rng.uniform()).sum::<f64>() - 6.0;
-        reaction.see(2.5 * (0.3 * normal).exp());
-    }
-    assert!((2.3..2.7).contains(&reaction.median_s()), "{reaction:?}");
-    assert!((5.0..8.0).contains(&reaction.patience_s()), "{reaction:?} before {before}");
-    reaction.see(f64::NAN);
-    assert!(reaction.median_s().is_finite());
-}
-
-#[test]
-fn the_density_of_reaction_times_is_one() {
-    let mut reaction = Reaction::default();
-    for times in [0, 1, 7, 3_000] {
-        (0..times).for_each(|_| reaction.see(1.3));
-        let step = 1e-3;
-        let density = |n: i32| reaction.log_density(f64::from(n).mul_add(step, 0.5 * step)).exp();
-        let mass: f64 = (0..400_000).map(density).sum::<f64>() * step;
-        assert!((mass - 1.0).abs() < 2e-2, "after {times}: {mass}");
-        assert_eq!(reaction.log_density(0.0), f64::NEG_INFINITY);
-    }
 }

@@ -5,9 +5,10 @@
 mod parser;
 
 use dialogue::export::{self, Pomdp};
-use dialogue::{Action, Actions, Announce, Answer, Costs, DecisionProblem, Mode, Model, Params};
+use dialogue::{Answer, DecisionProblem, Model};
 use scene::{ObjectId, Question, Scene};
 use serde_json::json;
+use vocabulary::{Action, Actions, Announce, Costs, Mode, Params};
 
 use parser::{Parsed, parse};
 
@@ -67,7 +68,7 @@ fn export_is_the_problem_that_planners_solve_bit_for_bit() {
     for_every_problem(|_, problem, exported| {
         let parsed = parse(&exported.text);
         let (model, costs) = (problem.model, problem.costs);
-        let questions = problem.actions.questions(model);
+        let questions = model.questions(problem.actions);
         let (objects, end) = (model.objects(), model.hypotheses());
         let sizes = [&parsed.states, &parsed.actions, &parsed.observations].map(Vec::len);
         assert_eq!(sizes, [exported.states, exported.actions, exported.observations]);

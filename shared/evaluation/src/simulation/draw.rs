@@ -1,6 +1,6 @@
 //! Random draws, and how the randomness of a study is divided.
 
-use dialogue::Rng;
+use vocabulary::Rng;
 
 /// Purpose of a stream of random numbers. Each has its own, so that one more utterance of a user
 /// does not change any duration.

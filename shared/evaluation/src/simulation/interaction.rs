@@ -2,14 +2,15 @@
 //! costs. The dialogue itself is conducted by the dialogue manager.
 
 use dialogue::manager::{Cause, Manager, Setup, State, Utterance};
-use dialogue::time::{Span, Time};
-use dialogue::{
-    ActKind, Action, Attribution, DecisionProblem, Interpretation, PickOutcome, Planner,
-    Presentation, Prior, PriorObjects, Rng, TurnTaking, rendering,
-};
+use dialogue::{DecisionProblem, Planner, rendering};
 use language::Reader;
 use preflight::{Motions, Pace, Voice};
 use scene::{Intent, ObjectId, Question, Reading, Response, Scene};
+use vocabulary::time::{Span, Time};
+use vocabulary::{
+    ActKind, Action, Attribution, Interpretation, PickOutcome, Presentation, Prior, PriorObjects,
+    Rng, TurnTaking,
+};
 
 use crate::Verdict;
 use crate::simulation::cached_planner::CachedPlanner;

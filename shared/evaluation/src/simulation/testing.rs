@@ -1,9 +1,10 @@
 //! A scene with everything that simulations need of it, for the tests of this crate.
 
-use dialogue::{Actions, Costs, DecisionProblem, Mode, Model, Params, TurnTaking, registry};
-use language::{Language, Reader};
+use dialogue::{DecisionProblem, Model, registry};
+use language::Reader;
 use preflight::{Pace, Voice};
 use scene::Scene;
+use vocabulary::{Actions, Costs, Language, Mode, Params, TurnTaking};
 
 use crate::simulation::users::Domain;
 use crate::simulation::{CachedPlanner, Room};

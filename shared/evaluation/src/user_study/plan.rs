@@ -1,7 +1,7 @@
 //! Random choices of a study, from recorded seeds: the order of policies, and the objects.
 
-use dialogue::Rng;
 use serde::{Deserialize, Serialize};
+use vocabulary::Rng;
 
 use config::study::{Design, Objects, Order, Protocol};
 

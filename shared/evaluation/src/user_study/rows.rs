@@ -9,7 +9,7 @@ use crate::user_study::event::Source;
 use crate::user_study::participant::Participant;
 use crate::user_study::trial::{End, Trial};
 use config::study::Item;
-use dialogue::wall_time;
+use vocabulary::wall_time;
 
 /// The files of an export.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -10,11 +10,13 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use ::vocabulary::Language;
 use scene::{Reading, Scene, WordId};
 
 use super::scene;
 use super::table::{Case, cases, question};
-use crate::{Language, Reader};
+
+use crate::Reader;
 
 /// The reading in the words of the table, those of a list in alphabetical order.
 fn written(scene: &Scene, reading: &Reading) -> String {

@@ -1,10 +1,12 @@
 //! Letters in another dress, other scripts and code: nothing but the plain meaning counts.
 
+use ::vocabulary::Language;
 use proptest::prelude::*;
 use scene::{Intent, Question, Reading, Response};
 
 use super::{TOOLS_READERS, fixture, scene, sentences};
-use crate::{Language, Reader};
+
+use crate::Reader;
 
 /// A name and what it does to a text.
 type Dress<'a> = (&'a str, &'a dyn Fn(&str) -> String);

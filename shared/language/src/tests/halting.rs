@@ -4,10 +4,12 @@
 //! should halted then, and 89 of the 91 others did not. The rest was written after that code and before it
 //! was measured on them: 60 of 80 halted, and 74 of 78 others did not.
 
+use ::vocabulary::Language;
 use scene::{Intent, Question, Scene};
 
 use super::{fixture, scene};
-use crate::{Language, Reader, is_stop as halts_arm};
+
+use crate::{Reader, is_stop as halts_arm};
 
 /// The sentences of the fixture, each with whether it halts.
 fn sentences() -> impl Iterator<Item = (bool, &'static str)> {
@@ -159,6 +161,6 @@ fn patterns_are_written_in_known_sections_and_sets() {
 
 /// Returns whether the word is written as tokens read it: contractions opened, no hyphens.
 fn is_one_word(word: &str) -> bool {
-    let tokens = crate::tokens::Tokens::of(word);
+    let tokens = words::Tokens::of(word);
     matches!(&tokens.words[..], [token] if token.word == word)
 }

@@ -13,7 +13,9 @@ use std::time::Instant;
 use scene::{Question, Role, Scene, question_from_json};
 use serde_json::Value as Json;
 
-use crate::{Language, Reader};
+use ::vocabulary::Language;
+
+use crate::Reader;
 
 /// A file of the utterance fixtures.
 macro_rules! fixture {

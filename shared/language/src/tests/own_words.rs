@@ -1,11 +1,13 @@
 //! It understands what it says: every value of every scene as its questions name it.
 
+use ::vocabulary::Language;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use scene::{AttributeId, Question, Response, Role, Scene, ValueId};
 
 use super::scene;
-use crate::{Language, Reader, own_words};
+
+use crate::{Reader, own_words};
 
 const ADJECTIVES: &[&str] = &[
     "red",

@@ -1,12 +1,14 @@
 //! Readings with weights and doubts.
 
+use ::vocabulary::Language;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use scene::{AttributeId, Doubt, Question, Reading, Response, ValueId};
 
 use super::{QUESTIONS, TOOLS_READERS, scene, sentences};
-use crate::{Language, READINGS_MAX, Reader};
+
+use crate::{READINGS_MAX, Reader};
 
 const ASKED: Question = Question::Attribute(AttributeId(0), ValueId(0));
 

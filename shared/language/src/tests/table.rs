@@ -10,11 +10,13 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use ::vocabulary::Language;
 use scene::{Question, Scene, question_from_json};
 use serde_json::json;
 
 use super::{Meaning, fixture, scene};
-use crate::{Language, Reader};
+
+use crate::Reader;
 
 pub(super) fn question(scene: &Scene, text: &str) -> Question {
     let json = match (text.strip_prefix('@'), text.split_once('=')) {

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use language::{Language, Reader};
+use language::Reader;
+
 use scene::{AttributeId, Question, Scene, ValueId};
+use vocabulary::Language;
 
 /// Scenes by their names.
 pub struct Scenes(BTreeMap<String, (Scene, Reader)>);

@@ -2,11 +2,11 @@
 
 use crate::schema::wire_struct;
 use crate::wire::WireError;
-use dialogue::Presentation;
-use dialogue::ids::PromptId;
-use dialogue::time::Time;
 use iceoryx2::prelude::ZeroCopySend;
 use scene::{AttributeId, ObjectId, Question, ValueId};
+use vocabulary::Presentation;
+use vocabulary::ids::PromptId;
+use vocabulary::time::Time;
 
 wire_struct! {
     /// The sender of a message; the user header of every topic.

@@ -5,9 +5,9 @@ use crate::fixed::utterance::{ASKED_MAX, Source};
 use crate::schema::wire_struct;
 use crate::text::FixedText;
 use crate::wire::{Code, WireError, WireField};
-use dialogue::Interpretation;
 use iceoryx2::prelude::ZeroCopySend;
 use scene::{Doubt, Intent, Reading, Reference, Response, Role, UnknownWord, WordId};
+use vocabulary::Interpretation;
 
 /// Readings of one utterance, for all questions together.
 pub const READINGS_MAX: usize = 32;

@@ -1,7 +1,7 @@
 //! Looks: which detection is of which object, what is new, and what was missed.
 
-use dialogue::time::{Span, Time};
 use scene::{ObjectId, Perceived, likeliest};
+use vocabulary::time::{Span, Time};
 
 use super::track::{Candidate, Track, named};
 use super::{Hiding, Tracker};
@@ -213,7 +213,7 @@ impl Tracker {
         at: Time,
     ) -> Option<ObjectId> {
         let number = self.next;
-        if self.tracks.len() >= dialogue::TABLE_MAX || number.0 == u16::MAX {
+        if self.tracks.len() >= vocabulary::TABLE_MAX || number.0 == u16::MAX {
             return None;
         }
         self.next = ObjectId(number.0 + 1);

@@ -1,7 +1,7 @@
 //! One object that is followed, and one that may yet be.
 
-use dialogue::time::{Span, Time};
 use scene::{ObjectId, Perceived};
+use vocabulary::time::{Span, Time};
 
 use super::CHANCE_STEP;
 use crate::Detection;

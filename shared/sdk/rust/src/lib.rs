@@ -41,7 +41,6 @@ mod log;
 pub mod service;
 pub mod settings;
 
-pub use dialogue::Interpretation;
 pub use log::init as init_log;
 pub use messages::{self, Hypothesis, Topic, payloads, topics};
 pub use runtime::bus::{self, EncodedReader, EncodedWriter, PortError, Reader, Writer};
@@ -52,3 +51,4 @@ pub use scene::{
     AttributeId, Doubt, Intent, ObjectId, Question, Reading, Reference, Response, Role, Scene,
     UnknownWord, ValueId, WordId,
 };
+pub use vocabulary::Interpretation;

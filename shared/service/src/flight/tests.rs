@@ -225,7 +225,7 @@ fn event_at_which_the_reducer_panics_is_in_the_flight() {
 
 /// Numbers that do not compress.
 fn noise(seed: u64, count: usize) -> Vec<u64> {
-    let mut random = dialogue::Rng::new(seed);
+    let mut random = vocabulary::Rng::new(seed);
     (0..count).map(|_| random.below(usize::MAX) as u64).collect()
 }
 

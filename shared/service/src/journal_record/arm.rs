@@ -1,6 +1,6 @@
-use dialogue::{PickOutcome, PickPhase, Task};
 use messages::MotionOrder;
 use serde::{Deserialize, Serialize};
+use vocabulary::{PickOutcome, PickPhase, Task};
 
 /// A record of the arm: why its state changed, and the state after it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,6 +1,6 @@
-use dialogue::{ActKind, Attributed, Outcome, PickOutcome};
 use scene::{Intent, Response};
 use serde::{Deserialize, Serialize};
+use vocabulary::{ActKind, Attributed, Outcome, PickOutcome};
 
 use super::Named;
 use crate::view::{ActionView, QuestionView};

@@ -1,7 +1,7 @@
-use dialogue::{Action, Attributed};
 use messages::{ActKind, Delivery, Outcome, PolicyView};
 use scene::{Question, Scene};
 use serde::ser::{Serialize, Serializer};
+use vocabulary::{Action, Attributed};
 
 use super::ms;
 use crate::Time;

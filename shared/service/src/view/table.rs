@@ -1,9 +1,9 @@
 //! The scene as a client shows it where the objects come from perception: the scene file's words about
 //! the objects of the latest table. Messages that name objects by number are translated at this edge.
 
-use dialogue::Action;
 use messages::{ArmStatus, Observation, PolicyView, TableView, WorldView, topics};
 use scene::{ObjectId, Question, Scene};
+use vocabulary::Action;
 
 use super::quiet;
 use crate::bus::{Bus, BusError, EncodedReader};

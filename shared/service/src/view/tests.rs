@@ -2,13 +2,12 @@
 //! file.
 
 use super::*;
-use ::dialogue::Action;
-use ::dialogue::{Attributed, QuestionShare};
 use messages::{
     ActKind, Activity, Delivery, Ended, FixedText, InteractionId, Outcome, PolicyView,
     PresentationState, Presented, PromptId, Receipt, ReceiptStatus, UtteranceSeq,
 };
 use scene::{AttributeId, Question, ValueId};
+use vocabulary::{Action, Attributed, QuestionShare};
 
 const BOWLS: &str = include_str!("../../../../config/scenes/bowls.toml");
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/view.json");

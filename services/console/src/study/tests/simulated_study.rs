@@ -1,11 +1,11 @@
 //! A controller with its disk, a robot and services, for the tests of the study's rules.
 
-use dialogue::ids::{InteractionId, UtteranceSeq};
 use evaluation::user_study::{
     Design, Entry, Event, Item, Kind, Objects, Order, Participant, Protocol, Stage, Status,
 };
 use messages::{Ended, Outcome, PolicyView, Receipt};
 use scene::Scene;
+use vocabulary::ids::{InteractionId, UtteranceSeq};
 
 use crate::study::study_controller::{Command, StudyController, kept};
 use crate::study::trial_monitor::{RobotRequest, RobotState};

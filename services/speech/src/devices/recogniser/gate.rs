@@ -2,9 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use language::{Language, Reader};
+use language::Reader;
+
 use messages::GateVerdict;
 use scene::{Intent, ObjectId, Question, Reading, Response, Scene, WordId};
+use vocabulary::Language;
 
 use super::{Heard, SecondView};
 use crate::Hypothesis;

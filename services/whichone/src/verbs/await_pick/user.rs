@@ -2,10 +2,11 @@
 
 use std::collections::HashSet;
 
-use dialogue::{Model, Params};
+use dialogue::Model;
 use evaluation::simulation::SimulatedUser;
 use evaluation::simulation::users::Domain;
 use scene::Scene;
+use vocabulary::Params;
 
 use service::view::Latest;
 

@@ -1,6 +1,7 @@
 //! `scene show`: the objects with their words and places, and which arm fetches what.
 
 use config::Settings;
+use language::own_words;
 use preflight::{ArmSetup, Arrangement};
 use scene::{ObjectId, Scene, Value};
 use scene_editing::warnings;
@@ -46,7 +47,7 @@ pub(super) fn show(args: &SceneShowArgs, out: &mut Output<'_>) -> Outcome {
             ));
         }
     }
-    warnings(scene).iter().for_each(|text| note(format_args!("warning: {text}")));
+    warnings(scene, own_words).iter().for_each(|text| note(format_args!("warning: {text}")));
     Ok(Exit::Ok)
 }
 
@@ -112,6 +113,6 @@ fn to_json(settings: &Settings, reach: &[Reach]) -> Json {
     json!({
         "name": scene.name(), "noun": scene.noun(), "file": settings.scene_file().label,
         "objects": json["objects"], "attributes": attributes.collect::<Vec<_>>(),
-        "warnings": warnings(scene),
+        "warnings": warnings(scene, own_words),
     })
 }

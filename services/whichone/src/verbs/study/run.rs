@@ -9,10 +9,11 @@ use std::sync::{Arc, mpsc};
 use std::thread;
 
 use dialogue::manager::Manager;
-use dialogue::{Attribution, TurnTaking, registry};
+use dialogue::registry;
 use evaluation::simulation::{
     CHUNK, CachedPlanner, Room, SharedDecisions, Tally, interactions, turns,
 };
+use vocabulary::{Attribution, TurnTaking};
 
 use super::design::{People, Row};
 use super::progress::Progress;

@@ -1,8 +1,8 @@
 //! Durations of the robot's questions and picks, as text and as data.
 
-use dialogue::Action;
 use scene::{ObjectId, Question};
 use serde_json::{Value as Json, json};
+use vocabulary::Action;
 
 use super::setup::Setup;
 use crate::output::table;
@@ -79,7 +79,7 @@ pub(super) fn to_json(setup: &Setup) -> Json {
 /// Returns the questions in words alone.
 fn spoken(setup: &Setup) -> impl Iterator<Item = Question> {
     let problem = setup.room().problem;
-    let questions = problem.actions.questions(problem.model).into_iter();
+    let questions = problem.model.questions(problem.actions).into_iter();
     questions.filter(|question| !matches!(question, Question::Point(_)))
 }
 

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use dialogue::{Durations, Mode, TurnTaking};
+use ::setup::DialogueSettings;
 use evaluation::simulation::Room;
-use language::{Language, Reader};
+use language::Reader;
 use manipulation::Robot;
 use preflight::{ArmSetup, Extent, Motions, Pace, Voice, measure};
 use service::exit::{Exit, Failure};
+use vocabulary::{Durations, Language, Mode, TurnTaking};
 
 use crate::batch::Problem;
 use crate::cli::{Preset, ProblemArgs, StudyArgs};

@@ -3,10 +3,10 @@
 use super::fixture::{
     answer, at, belief, delivered, first, manager, remark, reply, settings, text, typed, words,
 };
-use crate::ids::PromptId;
 use crate::manager::{Cause, Manager, State};
-use crate::{ActKind, Interpretation};
 use scene::{AttributeId, ObjectId, Question, Reading, Reference, Response};
+use vocabulary::ids::PromptId;
+use vocabulary::{ActKind, Interpretation};
 
 fn asked_about(state: &State) -> Option<AttributeId> {
     match state.act.question {

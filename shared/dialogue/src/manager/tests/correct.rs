@@ -3,10 +3,10 @@
 use super::fixture::{
     answer, at, belief, delivered, first, manager, remark, reply, settings, text, typed, words,
 };
-use crate::ids::PickId;
 use crate::manager::{Cause, Manager, State};
-use crate::{ActKind, Outcome, PickOutcome};
 use scene::{Doubt, Intent, ObjectId, Reading, Response};
+use vocabulary::ids::PickId;
+use vocabulary::{ActKind, Outcome, PickOutcome};
 
 /// A state in which an object is fetched, and which.
 fn fetching(manager: &mut Manager) -> (State, PickId, ObjectId) {

@@ -1,14 +1,15 @@
 //! Settings, readings and causes for the tests of the manager.
 
-use crate::gesture::Gestures;
-use crate::ids::{PickId, PromptId, UtteranceSeq};
 use crate::manager::{Cause, Manager, Setup, State, Utterance};
-use crate::time::Time;
-use crate::{
-    ActKind, Actions, Announce, Costs, Durations, Interpretation, Mode, Model, Params, PickOutcome,
-    Presentation, Prior, PriorObjects, TurnTaking, registry, rendering,
-};
+use crate::{Model, registry, rendering};
 use scene::{Reading, Response, Scene, StableHash};
+use vocabulary::gesture::Gestures;
+use vocabulary::ids::{PickId, PromptId, UtteranceSeq};
+use vocabulary::time::Time;
+use vocabulary::{
+    ActKind, Actions, Announce, Costs, Durations, Interpretation, Mode, Params, PickOutcome,
+    Presentation, Prior, PriorObjects, TurnTaking,
+};
 
 const BOWLS: &str = include_str!("../../../../../config/scenes/bowls.toml");
 const MARKERS: &str = include_str!("../../../../../config/scenes/markers.toml");

@@ -2,10 +2,11 @@
 
 use super::fixture::{Change, Settings, answer, at, heard, manager, settings, settings_with};
 use super::{person, pointing, prior, seconds};
-use crate::ids::PromptId;
 use crate::manager::{Cause, Interaction, Record, State, refold};
-use crate::{ActKind, Answer, Belief, Model, PickOutcome, Posterior, Rng};
+use crate::{Answer, Belief, Model, Posterior};
 use scene::{Intent, ObjectId, Question, Reading, Response};
+use vocabulary::ids::PromptId;
+use vocabulary::{ActKind, PickOutcome, Rng};
 
 /// Whole dialogues with a person who sometimes lies, falls silent, speaks late or starts over: the
 /// journal folds again to the same states. So it is with gestures, and where deliveries, the user or the robot's own seconds count.

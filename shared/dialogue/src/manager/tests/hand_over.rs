@@ -6,9 +6,9 @@ use super::fixture::{
 use super::fixture::{text, words};
 use crate::manager::{Cause, MotionStop, Record};
 use crate::manager::{Manager, State, refold};
-use crate::time::{Span, Time};
-use crate::{ActKind, Outcome};
 use scene::{Intent, Reading, Reference, Response};
+use vocabulary::time::{Span, Time};
+use vocabulary::{ActKind, Outcome};
 
 fn refers(refers: Reference, said: &[&str]) -> Reading {
     Reading { refers, ..words(said) }

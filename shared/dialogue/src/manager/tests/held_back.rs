@@ -1,9 +1,9 @@
 //! Picks that are decided while the motion stop is latched.
 
 use super::fixture::{answer, at, first, manager, remark, reply, text, words};
-use crate::ActKind;
 use crate::manager::{Cause, Manager, MotionStop, State};
 use scene::{Intent, Reading, Response};
+use vocabulary::ActKind;
 
 fn stopped(manager: &mut Manager, said: &[&str]) -> State {
     let state = manager.next(&manager.first(), &Cause::MotionStop(MotionStop::Stopped), at(0));

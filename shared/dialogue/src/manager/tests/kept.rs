@@ -2,10 +2,10 @@
 //! until it knows.
 
 use super::fixture::{answer, at, belief, delivered, first, manager, remark, reply, text, words};
-use crate::ids::PickId;
 use crate::manager::{Cause, Manager, MotionStop, State};
-use crate::{ActKind, Outcome, PickOutcome};
 use scene::{Intent, ObjectId, Reading, Response};
+use vocabulary::ids::PickId;
+use vocabulary::{ActKind, Outcome, PickOutcome};
 
 const ASKS: &str = "I cannot put the clear bowl back, so I still hold it. Shall I give it to you?";
 

@@ -20,10 +20,10 @@ mod turns;
 mod words;
 
 use super::{Cause, State};
-use crate::Outcome;
-use crate::ids::{PromptId, UtteranceSeq};
 use fixture::{answer, asked, at, belief, heard, manager, reply, settings};
 use scene::{Intent, ObjectId, Question, Reading, Response};
+use vocabulary::Outcome;
+use vocabulary::ids::{PromptId, UtteranceSeq};
 
 #[test]
 fn a_late_answer_is_scored_against_the_question_that_was_heard() {

@@ -3,11 +3,12 @@
 use super::fixture::{
     Settings, answer, asked, at, delivered, heard, manager, reply, settings, settings_with, typed,
 };
-use crate::ids::PromptId;
 use crate::manager::{Cause, Manager, State};
-use crate::time::{Span, Time};
-use crate::{ActKind, Answer, Model, PickOutcome, Rng};
+use crate::{Answer, Model};
 use scene::{ObjectId, Reading, Response};
+use vocabulary::ids::PromptId;
+use vocabulary::time::{Span, Time};
+use vocabulary::{ActKind, PickOutcome, Rng};
 
 pub(super) fn learning(settings: &mut Settings) {
     settings.planner = "information-seeking";

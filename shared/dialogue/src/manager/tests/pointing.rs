@@ -3,9 +3,9 @@
 use super::fixture::{
     Settings, answer, asked, at, belief, manager, remark, settings, settings_with, typed, words,
 };
-use crate::ids::{PromptId, UtteranceSeq};
 use crate::manager::{Cause, Manager, Utterance};
 use scene::{Intent, Reading, Response};
+use vocabulary::ids::{PromptId, UtteranceSeq};
 
 pub(super) fn with_gestures(settings: &mut Settings) {
     settings.gestures = true;

@@ -5,8 +5,9 @@ use super::fixture::{
     settings, settings_with, text,
 };
 use crate::manager::{Cause, Manager, State};
-use crate::{ActKind, Answer, Model, Outcome, PriorObjects};
+use crate::{Answer, Model};
 use scene::{ObjectId, Reading, Response};
+use vocabulary::{ActKind, Outcome, PriorObjects};
 
 pub(super) fn by_history(settings: &mut Settings) {
     settings.prior.objects = PriorObjects::History;

@@ -4,9 +4,9 @@ use super::fixture::{
     answer, at, delivered, first, heard, manager, remark, reply, settings, text, words,
 };
 use crate::manager::{Cause, Manager, MotionStop, Progress, Record, State, refold};
-use crate::time::Span;
-use crate::{ActKind, Outcome, PickOutcome};
 use scene::{Intent, Question, Reading, Response};
+use vocabulary::time::Span;
+use vocabulary::{ActKind, Outcome, PickOutcome};
 
 fn wish(said: &[&str]) -> Reading {
     Reading { intent: Intent::PutBack, ..words(said) }
@@ -75,7 +75,7 @@ fn an_object_is_put_back_while_a_delivery_can_be_refused() {
     let end = handed_over(&mut manager, &["clear"]);
     let handed_at = end.handed_over.as_ref().expect("a delivery").at;
     let window = Span::from_s(manager.turns().refusal_s);
-    let cause = heard(end.applied.0 + 1, crate::ids::PromptId(0), wish(&[]));
+    let cause = heard(end.applied.0 + 1, vocabulary::ids::PromptId(0), wish(&[]));
     let last = manager.next(&end, &cause, handed_at + window);
     assert_eq!(last.act.kind, ActKind::PutBack);
     let late = manager.next(&end, &cause, handed_at + window + Span::from_ms(1));

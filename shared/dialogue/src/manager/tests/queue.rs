@@ -2,8 +2,8 @@
 
 use super::fixture::{answer, at, delivered, first, manager, remark, reply, settings, text, words};
 use crate::manager::State;
-use crate::{ActKind, Outcome};
 use scene::{Intent, Reading, Response};
+use vocabulary::{ActKind, Outcome};
 
 fn request() -> Reading {
     let further = [&["big", "metallic"][..], &["white"]];

@@ -5,11 +5,12 @@ use super::fixture::{
     remark, reply, settings, settings_of, settings_with, text, typed, words,
 };
 use super::fold::{random_dialogue, shift};
-use crate::ids::{PickId, PromptId};
+use crate::Model;
 use crate::manager::NAMES_MAX;
 use crate::manager::{Cause, Manager, Record, State, Utterance, refold_since};
-use crate::{ActKind, Model, Outcome, PickOutcome};
 use scene::{Intent, Reading, Response, Role, UnknownWord};
+use vocabulary::ids::{PickId, PromptId};
+use vocabulary::{ActKind, Outcome, PickOutcome};
 
 /// The shipped bowls without those in `gone`, and with these TOML lines behind them.
 pub(super) fn bowls(gone: &[&str], more: &str) -> Settings {

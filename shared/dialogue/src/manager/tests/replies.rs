@@ -1,10 +1,10 @@
 //! Every text that is typed gets an answer, and no question comes twice in the same words.
 
 use super::fixture::{answer, at, first, heard, manager, remark, reply, text, typed, words};
-use crate::ActKind;
-use crate::ids::PromptId;
 use crate::manager::{Cause, Manager, State, Utterance};
 use scene::{Intent, Reading, Response, Role, UnknownWord};
+use vocabulary::ActKind;
+use vocabulary::ids::PromptId;
 
 fn intent(intent: Intent) -> Reading {
     Reading { intent, ..Reading::default() }

@@ -1,8 +1,9 @@
 //! Questions that cost the robot's own seconds.
 
 use super::fixture::{Change, Settings, answer, first, reply, settings_with};
-use crate::{ActKind, Answer, Durations, Mode};
+use crate::Answer;
 use scene::{ObjectId, Question, Reading, Response};
+use vocabulary::{ActKind, Durations, Mode};
 
 /// Roughly as Baxter takes them: questions by their length, bowls by their distance.
 fn with_durations(settings: &mut Settings) {

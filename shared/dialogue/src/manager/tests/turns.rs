@@ -3,11 +3,11 @@
 use super::fixture::{
     answer, asked, at, belief, first, manager, remark, settings, settings_with, typed, words,
 };
-use crate::ids::{PromptId, UtteranceSeq};
 use crate::manager::{Cause, Manager, State, Utterance};
-use crate::time::{Span, Time};
-use crate::{ActKind, Attribution, Interpretation, Presentation};
 use scene::{ObjectId, Question, Reading, Response};
+use vocabulary::ids::{PromptId, UtteranceSeq};
+use vocabulary::time::{Span, Time};
+use vocabulary::{ActKind, Attribution, Interpretation, Presentation};
 
 fn manager_with(attribution: Attribution) -> Manager {
     settings_with(|it| it.turns.attribution = attribution).manager()

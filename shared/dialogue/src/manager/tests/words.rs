@@ -2,8 +2,9 @@
 
 use super::fixture::{first, manager, settings, settings_with, text, words};
 use super::reconfigure::bowls;
-use crate::{ActKind, rendering};
+use crate::rendering;
 use scene::{Doubt, Reading};
+use vocabulary::ActKind;
 
 #[test]
 fn a_unique_description_is_fetched_without_a_question() {

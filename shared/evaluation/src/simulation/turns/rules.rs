@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use dialogue::Attribution;
+use vocabulary::Attribution;
 
 /// The robot's turn-taking rules.
 #[derive(Clone, Copy, Debug, PartialEq)]

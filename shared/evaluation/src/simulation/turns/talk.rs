@@ -2,10 +2,10 @@
 //! conducted by the dialogue manager.
 
 use dialogue::manager::{Cause, Floor, Manager, State, Utterance};
-use dialogue::time::{Span, Time};
-use dialogue::user_model::Reaction;
-use dialogue::{ActKind, Action, Attribution, Interpretation, Presentation, Rng, TurnTaking};
 use scene::Question;
+use vocabulary::reaction::Reaction;
+use vocabulary::time::{Span, Time};
+use vocabulary::{ActKind, Action, Attribution, Interpretation, Presentation, Rng, TurnTaking};
 
 use super::rules::Rules;
 use crate::Verdict;

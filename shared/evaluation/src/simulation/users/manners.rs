@@ -1,7 +1,7 @@
 //! Users who talk in sentences: by value, with more than was asked, corrections, hedges, and late.
 
-use dialogue::Rng;
 use scene::{AttributeId, ObjectId, Question, Role, ValueId};
+use vocabulary::Rng;
 
 use super::recogniser::Recogniser;
 use super::wording::{Wording, number, own_values};

@@ -19,8 +19,9 @@ mod recogniser;
 mod timing;
 mod wording;
 
-use dialogue::{Announce, Answer, Model, Rng};
+use dialogue::{Answer, Model};
 use scene::{ObjectId, Question, Scene};
+use vocabulary::{Announce, Rng};
 
 pub use manners::Manners;
 pub use timing::{Habits, TimedKind, TimedUser, TimedUtterance, Timing};

@@ -1,7 +1,7 @@
 //! A recogniser that drops and confuses words.
 
-use dialogue::Rng;
 use scene::Scene;
+use vocabulary::Rng;
 
 use super::Reply;
 use crate::simulation::draw::{chance, one_of};

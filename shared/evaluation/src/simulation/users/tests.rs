@@ -1,13 +1,13 @@
 use super::*;
 use crate::simulation::testing::House;
-use dialogue::{Actions, Mode};
 use preflight::Pace;
 use scene::AttributeId;
+use vocabulary::{Actions, Mode};
 
 /// Every question that can be asked.
 fn questions(house: &House) -> Vec<Question> {
     let actions = Actions { mode: Mode::Present, attribute: true, which: true };
-    actions.questions(&house.model)
+    house.model.questions(actions)
 }
 
 /// The probability of the wanted object after a turn, from a uniform belief.

@@ -1,9 +1,9 @@
 //! When a user speaks: reaction times, and answers that come late, early, into the next question, or
 //! twice. Times are seconds since the dialogue began.
 
-use dialogue::Rng;
 use preflight::Pace;
 use scene::Question;
+use vocabulary::Rng;
 
 use super::{Domain, Policy, Reply, SimulatedUser, Turn};
 use crate::simulation::draw::chance;

@@ -1,7 +1,7 @@
 //! Names of objects and values as users say them.
 
-use dialogue::Rng;
 use scene::{AttributeId, ObjectId, Role, Scene, Value, ValueId};
+use vocabulary::Rng;
 
 use crate::simulation::draw::{chance, one_of};
 

@@ -39,7 +39,7 @@ fn watch_frame_shows_the_dialogue_with_reasons() {
         decision: messages::ActKind::Ask,
         value: 41.26,
         bounds: Some((41.2, 41.3)),
-        alternatives: vec![(::dialogue::Action::Pick(::scene::ObjectId(0)), -25.0)],
+        alternatives: vec![(vocabulary::Action::Pick(::scene::ObjectId(0)), -25.0)],
         questions: 1,
         expected_questions: 0.4,
         ..PolicyView::default()

@@ -1,12 +1,13 @@
-//! The dialogue manager that the settings describe.
+//! Settings put into effect: the dialogue manager and the observation model that a configuration describes.
+//!
+//! `config` parses and checks values and knows no planner; this crate knows them all.
 
+use config::Settings;
 use dialogue::manager::{Manager, Setup};
 use dialogue::registry::{self, UnknownPlanner};
 use dialogue::{Confusion, Model, NotAConfusion};
-use language::Language;
-use scene::{Scene, StableHash};
-
-use crate::Settings;
+use scene::Scene;
+use vocabulary::Language;
 
 /// Error of building a dialogue manager from settings.
 #[derive(Debug, thiserror::Error)]
@@ -19,23 +20,19 @@ pub enum ManagerError {
     Confusion(#[from] NotAConfusion),
 }
 
-impl Settings {
+/// The dialogue manager of a group's settings, and its observation model.
+pub trait DialogueSettings {
     /// Returns the dialogue manager of these settings.
     ///
     /// # Errors
     /// An unknown planner.
-    pub fn manager(&self) -> Result<Manager, ManagerError> {
-        self.manager_with(&self.dialogue.planner)
-    }
+    fn manager(&self) -> Result<Manager, ManagerError>;
 
     /// Returns the dialogue manager of these settings, with another planner.
     ///
     /// # Errors
     /// An unknown planner.
-    pub fn manager_with(&self, planner: &str) -> Result<Manager, ManagerError> {
-        let made = registry::planner(planner)?;
-        Ok(Manager::new(self.manager_setup()?, made, self.manager_key(planner)))
-    }
+    fn manager_with(&self, planner: &str) -> Result<Manager, ManagerError>;
 
     /// Returns the manager that decided under the key `settings_key`: that of these settings, or the
     /// same with another planner, which may have been swapped in. That of these settings where the
@@ -43,24 +40,44 @@ impl Settings {
     ///
     /// # Errors
     /// An unknown planner.
-    pub fn manager_of_key(&self, settings_key: u64) -> Result<Manager, ManagerError> {
-        let mut known = registry::known().into_iter();
-        let planner = known.find(|planner| self.manager_key(planner) == settings_key);
-        self.manager_with(planner.unwrap_or(&self.dialogue.planner))
-    }
+    fn manager_of_key(&self, settings_key: u64) -> Result<Manager, ManagerError>;
 
     /// Returns whether the key is that of these settings, perhaps with another planner.
-    pub fn makes_key(&self, settings_key: u64) -> bool {
-        registry::known().into_iter().any(|planner| self.manager_key(planner) == settings_key)
-    }
+    fn makes_key(&self, settings_key: u64) -> bool;
 
     /// Returns everything that the manager decides by, besides its planner.
     ///
     /// # Errors
     /// An inconsistent table of similar words.
-    pub fn manager_setup(&self) -> Result<Setup, NotAConfusion> {
+    fn manager_setup(&self) -> Result<Setup, NotAConfusion>;
+
+    /// Returns the observation model of a scene under these settings, without similar words.
+    fn model_of(&self, scene: &Scene) -> Model;
+}
+
+impl DialogueSettings for Settings {
+    fn manager(&self) -> Result<Manager, ManagerError> {
+        self.manager_with(&self.dialogue.planner)
+    }
+
+    fn manager_with(&self, planner: &str) -> Result<Manager, ManagerError> {
+        let made = registry::planner(planner)?;
+        Ok(Manager::new(self.manager_setup()?, made, self.manager_key(planner)))
+    }
+
+    fn manager_of_key(&self, settings_key: u64) -> Result<Manager, ManagerError> {
+        let mut known = registry::known().into_iter();
+        let planner = known.find(|planner| self.manager_key(planner) == settings_key);
+        self.manager_with(planner.unwrap_or(&self.dialogue.planner))
+    }
+
+    fn makes_key(&self, settings_key: u64) -> bool {
+        registry::known().into_iter().any(|planner| self.manager_key(planner) == settings_key)
+    }
+
+    fn manager_setup(&self) -> Result<Setup, NotAConfusion> {
         let dialogue = &self.dialogue;
-        let confusion = Confusion::from_rows(language::confusion(&self.scene))?;
+        let confusion = Confusion::from_rows(words::confusion(&self.scene))?;
         let gesture = dialogue.gesture;
         Ok(Setup {
             scene: self.scene.clone(),
@@ -76,29 +93,11 @@ impl Settings {
         })
     }
 
-    /// Returns the observation model of a scene under these settings, without similar words.
-    pub fn model_of(&self, scene: &Scene) -> Model {
+    fn model_of(&self, scene: &Scene) -> Model {
         let model = Model::new(scene, self.dialogue.params);
         match self.dialogue.language {
             Language::Paper => model,
             Language::Careful => model.with_certain_words(self.dialogue.alpha_typed),
         }
-    }
-
-    /// Returns the identity of everything that the manager decides by, with that planner.
-    pub fn manager_key(&self, planner: &str) -> u64 {
-        let mut hash = StableHash::default();
-        if planner != self.dialogue.planner {
-            hash.text(planner);
-        }
-        hash.text(&self.resolved.decision_text());
-        hash.text(&self.scene_file().text);
-        if self.durations.is_some() {
-            hash.text(&self.durations_text());
-        }
-        if self.group.perception.enabled {
-            hash.text("objects from perception");
-        }
-        hash.value()
     }
 }

@@ -3,7 +3,7 @@
 
 /// The consonants of a word as classes that recognisers confuse, voicing and spelling aside:
 /// "white" and "wide" are both `WT`. `None` for words with anything but ASCII letters.
-pub(crate) fn skeleton(word: &str) -> Option<String> {
+pub fn skeleton(word: &str) -> Option<String> {
     let letters = word.as_bytes();
     if letters.is_empty() || !letters.iter().all(u8::is_ascii_lowercase) {
         return None;

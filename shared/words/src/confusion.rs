@@ -1,6 +1,6 @@
 //! Which of a scene's words are heard for one another, judged by how alike they sound.
 //!
-//! A word's spelling becomes a row of sounds: consonants in the classes of `sound.rs`, vowels in
+//! A word's spelling becomes a row of sounds: consonants in the classes of `phonetics.rs`, vowels in
 //! three. Two rows are as far apart as the cheapest way to turn one into the other costs, divided
 //! by what the rows cost themselves; of a value with synonyms the nearest pair counts.
 //!
@@ -189,7 +189,14 @@ mod tests {
     use scene::Scene;
 
     use super::{confusion, edits, sounds};
-    use crate::tests::scene;
+
+    fn scene(name: &str) -> Scene {
+        let text = match name {
+            "bowls" => include_str!("../../../config/scenes/bowls.toml"),
+            _ => include_str!("../../../config/scenes/tools.toml"),
+        };
+        Scene::from_toml(name, text).expect("a scene")
+    }
 
     fn nearest(scene: &Scene, heard: &str) -> String {
         let row = &confusion(scene)[scene.word_named(heard).expect("a word").index()];

@@ -1,11 +1,12 @@
 //! Normalised text to words: contractions opened ("isn't" is "is not"), compounds taken apart at
 //! their hyphens, punctuation kept as the pause that it stands for.
 
-use crate::vocabulary;
+use std::collections::HashMap;
+use std::sync::LazyLock;
 
 /// The pause before a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Gap {
+pub enum Gap {
     /// Written with a hyphen to the word before.
     Glued,
     /// A space.
@@ -18,36 +19,39 @@ pub(crate) enum Gap {
 
 /// A word and what stood before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Token<'a> {
-    pub(crate) word: &'a str,
-    pub(crate) gap: Gap,
+pub struct Token<'a> {
+    /// Letters and digits, in lower case.
+    pub word: &'a str,
+    /// The pause before it.
+    pub gap: Gap,
     /// Probability that this was said.
-    pub(crate) confidence: f32,
+    pub confidence: f32,
 }
 
 impl Token<'_> {
     /// Returns whether there is a pause before it.
-    pub(crate) fn pauses(&self) -> bool {
+    pub fn pauses(&self) -> bool {
         self.gap >= Gap::Pause
     }
 }
 
 /// The words of a text.
 #[derive(Debug, Default)]
-pub(crate) struct Tokens<'a> {
-    pub(crate) words: Vec<Token<'a>>,
+pub struct Tokens<'a> {
+    /// The words, in order.
+    pub words: Vec<Token<'a>>,
     /// Braces, tags or shell characters, which do not occur in speech.
-    pub(crate) code: bool,
+    pub code: bool,
 }
 
 impl<'a> Tokens<'a> {
     /// Splits a normalised text of which every word is certain.
-    pub(crate) fn of(text: &'a str) -> Self {
+    pub fn of(text: &'a str) -> Self {
         Self::heard(text, &[])
     }
 
     /// Splits a normalised text; `confidence` is by blank-separated word, those beyond it certain.
-    pub(crate) fn heard(text: &'a str, confidence: &[f32]) -> Self {
+    pub fn heard(text: &'a str, confidence: &[f32]) -> Self {
         let mut tokens =
             Self { words: Vec::with_capacity(text.len() / 5 + 1), code: is_code(text) };
         let mut gap = Gap::Stop;
@@ -85,7 +89,7 @@ impl<'a> Tokens<'a> {
                 gap = Gap::None;
             }
         };
-        if let Some(expanded) = vocabulary::expansion(word) {
+        if let Some(expanded) = expansion(word) {
             expanded.split(' ').for_each(push);
             return;
         }
@@ -106,6 +110,17 @@ impl<'a> Tokens<'a> {
             _ => word.split('\'').for_each(push),
         }
     }
+}
+
+/// Returns the words of a contraction that its ending does not spell out.
+fn expansion(word: &str) -> Option<&'static str> {
+    static EXPANSIONS: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| {
+        let lines = include_str!("contractions.txt").lines();
+        let rows = lines.filter_map(|line| line.split_once(" = "));
+        rows.flat_map(|(words, expansion)| words.split(", ").map(move |word| (word, expansion)))
+            .collect()
+    });
+    EXPANSIONS.get(word).copied()
 }
 
 /// Returns whether "…'s" is "… is" and not a possessive.

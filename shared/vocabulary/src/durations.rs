@@ -1,11 +1,10 @@
 //! Seconds of single actions, where they were measured: what a question costs on this robot, in
 //! this scene.
 
-use scene::{ObjectId, Question};
+use scene::{ObjectId, Perceived, Question, Scene};
 use serde::{Deserialize, Serialize};
 
-use crate::params::Fault;
-use crate::{Action, Model};
+use crate::{Action, Fault};
 
 /// Seconds that single actions take. A list that is empty was not measured: these questions cost
 /// what [`Costs`](crate::Costs) says of all of their kind, which is the special case in which all
@@ -29,6 +28,7 @@ pub struct Durations {
 
 impl Durations {
     /// Seconds of a question, if they were measured.
+    #[inline]
     pub fn question_s(&self, question: Question) -> Option<f64> {
         match question {
             Question::None => None,
@@ -39,24 +39,26 @@ impl Durations {
     }
 
     /// Seconds from the decision to fetch an object to its hand-over, if they were measured.
+    #[inline]
     pub fn pick_s(&self, object: ObjectId) -> Option<f64> {
         self.pick.get(object.index()).copied()
     }
 
     /// Cost of an action, if it was measured.
-    pub(crate) fn of(&self, action: Action) -> Option<f64> {
+    #[inline]
+    pub fn of(&self, action: Action) -> Option<f64> {
         match action {
             Action::Ask(question) => self.question_s(question),
             Action::Wait | Action::Pick(_) => None,
         }
     }
 
-    /// Everything that does not fit the model, or is no amount of seconds; empty if planners can
+    /// Everything that does not fit the scene, or is no amount of seconds; empty if planners can
     /// use it.
-    pub fn check(&self, model: &Model) -> Vec<Fault> {
+    pub fn check(&self, scene: &Scene) -> Vec<Fault> {
         let fits = |len: usize, of: usize| len == 0 || len == of;
-        let values = |k: usize| model.values(k.into());
-        let (objects, attributes) = (model.objects(), model.attributes());
+        let values = |k: usize| scene.attributes()[k].values.len();
+        let (objects, attributes) = (scene.objects().len(), scene.attributes().len());
         let right = |seconds: &f64| *seconds > 0.0 && seconds.is_finite();
         let each = fits(self.attribute.len(), attributes)
             && self.attribute.iter().enumerate().all(|(k, list)| list.len() == values(k));
@@ -78,67 +80,25 @@ impl Durations {
     }
 
     /// Tells every number, list by list.
-    pub(crate) fn identify(&self, tell: &mut dyn FnMut(u64)) {
+    pub fn identify(&self, tell: &mut dyn FnMut(u64)) {
         let lists = self.attribute.iter().chain([&self.which, &self.point, &self.pick]);
         for list in lists {
             tell(list.len() as u64);
             list.iter().for_each(|seconds| tell(seconds.to_bits()));
         }
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::{bowls, uniform};
-    use crate::{Actions, Costs, DecisionProblem, Mode, Params};
-    use scene::{AttributeId, ValueId};
-
-    const ALL: Actions = Actions { mode: Mode::Present, attribute: true, which: true };
-
-    #[test]
-    fn what_was_measured_counts_and_the_rest_is_uniform() {
-        let model = Model::new(&bowls(), Params::default());
-        let none = Durations::default();
-        let mut own = uniform(&model, Costs::SECONDS);
-        own.attribute[1][0] = 7.5;
-        own.point.clear();
-        assert_eq!((none.check(&model), own.check(&model)), (vec![], vec![]));
-        let plain = DecisionProblem::new(&model, Costs::SECONDS, ALL);
-        let problem = DecisionProblem { durations: Some(&own), ..plain };
-        let dear = Question::Attribute(AttributeId(1), ValueId(0));
-        for question in ALL.questions(&model) {
-            let cost = problem.cost(Action::Ask(question));
-            let expected = if question == dear { 7.5 } else { plain.cost(Action::Ask(question)) };
-            assert_eq!(cost, expected, "{question:?}");
-        }
-        assert_eq!(problem.cost(Action::Wait), 1.0);
-        assert_eq!(problem.cost(Action::Pick(ObjectId(2))), 0.0);
-    }
-
-    #[test]
-    fn durations_of_another_scene_are_told() {
-        let model = Model::new(&bowls(), Params::default());
-        let mut own = uniform(&model, Costs::SECONDS);
-        own.point.pop();
-        own.attribute[0].push(1.0);
-        own.which[2] = 0.0;
-        own.pick = vec![f64::NAN; 6];
-        let keys: Vec<_> = own.check(&model).into_iter().map(|fault| fault.0).collect();
-        assert_eq!(keys, ["attribute", "which", "point", "pick"]);
-    }
-
-    #[test]
-    fn every_number_is_part_of_the_problems_key() {
-        let model = Model::new(&bowls(), Params::default());
-        let own = uniform(&model, Costs::SECONDS);
-        let key = |own: Option<&Durations>| {
-            let plain = DecisionProblem::new(&model, Costs::SECONDS, ALL);
-            DecisionProblem { durations: own, ..plain }.key()
+    /// Returns the durations for other objects of the same words: those of the objects' classes, or
+    /// else the mean of the scene file's.
+    #[must_use]
+    pub fn with_objects(&self, file: &Scene, perceived: &[Perceived]) -> Self {
+        let of = |known: &[f64]| -> Vec<f64> {
+            let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
+            let class = |it: &Perceived| it.class().and_then(|class| file.object_named(class));
+            let seconds = |it| class(it).and_then(|class| known.get(class.index()).copied());
+            let all = perceived.iter().map(|it| seconds(it).unwrap_or(mean));
+            if known.is_empty() { Vec::new() } else { all.collect() }
         };
-        let mut other = own.clone();
-        other.point[3] += 1e-9;
-        assert_ne!(key(Some(&own)), key(Some(&other)));
-        assert_ne!(key(Some(&own)), key(None));
+        Self { point: of(&self.point), pick: of(&self.pick), ..self.clone() }
     }
 }

@@ -1,9 +1,7 @@
 //! The objects on the table, where they come from perception.
 
-use scene::{ObjectId, Perceived, Scene};
+use scene::{ObjectId, Perceived};
 use serde::{Deserialize, Serialize};
-
-use crate::Durations;
 
 /// Most objects on a table.
 pub const TABLE_MAX: usize = 64;
@@ -42,21 +40,5 @@ impl Table {
             self.edits.remove(0);
         }
         self.edits.push((key, object));
-    }
-}
-
-impl Durations {
-    /// Returns the durations for other objects of the same words: those of the objects' classes, or
-    /// else the mean of the scene file's.
-    #[must_use]
-    pub fn with_objects(&self, file: &Scene, perceived: &[Perceived]) -> Self {
-        let of = |known: &[f64]| -> Vec<f64> {
-            let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
-            let class = |it: &Perceived| it.class().and_then(|class| file.object_named(class));
-            let seconds = |it| class(it).and_then(|class| known.get(class.index()).copied());
-            let all = perceived.iter().map(|it| seconds(it).unwrap_or(mean));
-            if known.is_empty() { Vec::new() } else { all.collect() }
-        };
-        Self { point: of(&self.point), pick: of(&self.pick), ..self.clone() }
     }
 }

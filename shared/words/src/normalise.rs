@@ -11,7 +11,7 @@ pub const TEXT_CHARS_MAX: usize = 16_384;
 
 /// Lower-cases, takes letters apart from their accents, maps typographic quotes and dashes to
 /// plain ones, drops invisible characters, and spells out the emoji that answer a question.
-pub(crate) fn normalise(text: &str) -> Cow<'_, str> {
+pub fn normalise(text: &str) -> Cow<'_, str> {
     if text.is_ascii() {
         let text = &text[..text.len().min(TEXT_CHARS_MAX)];
         return match text.bytes().any(|byte| byte.is_ascii_uppercase()) {

@@ -1,7 +1,7 @@
 //! Settings of turn-taking.
 
 use crate::Attribution;
-use crate::user_model::{Reaction, TYPED};
+use crate::reaction::{Reaction, TYPED};
 
 /// How the robot takes turns with the user.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,6 +15,7 @@ impl Rng {
     }
 
     /// The next 64 random bits.
+    #[inline]
     pub fn next_u64(&mut self) -> u64 {
         self.state = self.state.wrapping_add(GOLDEN_GAMMA);
         let mut z = self.state;
@@ -24,12 +25,14 @@ impl Rng {
     }
 
     /// Uniform in `[0, 1)`, with 53 random bits.
+    #[inline]
     pub fn uniform(&mut self) -> f64 {
         const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
         (self.next_u64() >> 11) as f64 * STEP
     }
 
     /// Uniform between two numbers.
+    #[inline]
     pub fn between(&mut self, (low, high): (f64, f64)) -> f64 {
         low + (high - low) * self.uniform()
     }
@@ -50,12 +53,14 @@ impl Rng {
     ///
     /// # Panics
     /// If `bound` is 0.
+    #[inline]
     pub fn below(&mut self, bound: usize) -> usize {
         assert!(bound > 0, "nothing to draw from");
         ((u128::from(self.next_u64()) * bound as u128) >> 64) as usize
     }
 
     /// An index with these probabilities; none with what they fall short of 1.
+    #[inline]
     pub fn index(&mut self, probabilities: impl IntoIterator<Item = f64>) -> Option<usize> {
         let mut left = self.uniform();
         probabilities.into_iter().position(|probability| {

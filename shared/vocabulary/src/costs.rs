@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::params::Fault;
+use crate::Fault;
 
 /// Costs of the actions and worth of a pick. All are positive magnitudes.
 ///
@@ -107,11 +107,13 @@ impl Costs {
     }
 
     /// Expected reward of picking an object that is wanted with that probability.
+    #[inline]
     pub fn pick_value(&self, probability: f64) -> f64 {
         probability * (self.correct + self.wrong) - self.wrong
     }
 
     /// Return of waiting for ever: what every other plan has to beat.
+    #[inline]
     pub fn wait_value(&self) -> f64 {
         -self.wait_s / (1.0 - self.discount)
     }

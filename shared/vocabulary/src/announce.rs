@@ -13,8 +13,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Costs;
-use crate::params::Fault;
+use crate::{Costs, Fault};
 
 /// Whether a pick that was announced can still be denied, and what that costs. The default: a pick
 /// is final.
@@ -36,6 +35,7 @@ impl Announce {
     pub const COST_S: f64 = 8.0;
 
     /// Whether picks are final.
+    #[inline]
     pub fn is_final(&self) -> bool {
         self.heard <= 0.0
     }
@@ -56,6 +56,7 @@ impl Announce {
     }
 
     /// Probability of a denial if the announced object is wanted, and if another one is.
+    #[inline]
     pub fn denials(&self, epsilon: f64) -> (f64, f64) {
         let odds = (epsilon / (1.0 - epsilon)).powi(2);
         let erroneous = odds / (1.0 + odds);
@@ -64,7 +65,8 @@ impl Announce {
 
     /// Expected reward of announcing an object that is wanted with that probability, up to the
     /// denial and its cost; and the probability of the denial.
-    pub(crate) fn settle(&self, costs: &Costs, epsilon: f64, right: f64) -> (f64, f64) {
+    #[inline]
+    pub fn settle(&self, costs: &Costs, epsilon: f64, right: f64) -> (f64, f64) {
         let (own, other) = self.denials(epsilon);
         let wrong = 1.0 - right;
         let denied = right * own + wrong * other;

@@ -1,0 +1,76 @@
+//! Decisions of the planners, and the questions that they choose from.
+
+use scene::{AttributeId, Question, ValueId};
+use serde::{Deserialize, Serialize};
+use vocabulary::{Action, Actions};
+
+use crate::Model;
+
+/// What a planner chose, and what it knows about the choice.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Decision {
+    /// What to do.
+    pub action: Action,
+    /// Expected discounted return of doing it, in the unit of the costs. Planners that do not look
+    /// ahead value a question as if they had to pick after its answer.
+    pub value: f64,
+    /// The other actions that were weighed, best first, with their values; at most
+    /// [`Decision::ALTERNATIVES_MAX`].
+    pub alternatives: Vec<(Action, f64)>,
+    /// How many questions are still to be expected, this one and repetitions after silence
+    /// included.
+    pub expected_questions: f64,
+    /// Certified lower and upper bound on the value of the best policy, where the planner has
+    /// them.
+    pub bounds: Option<(f64, f64)>,
+}
+
+impl Decision {
+    /// Most alternatives that a decision lists.
+    pub const ALTERNATIVES_MAX: usize = 16;
+}
+
+impl Model {
+    /// Every question of the action space, useful or not: attribute by attribute the open question
+    /// and the yes/no questions, then the objects to point at.
+    pub fn questions(&self, actions: Actions) -> Vec<Question> {
+        let mut questions = Vec::new();
+        for k in (0..self.attributes()).map(AttributeId::from) {
+            if actions.which {
+                questions.push(Question::Which(k));
+            }
+            if actions.attribute {
+                let values = (0..self.values(k)).map(ValueId::from);
+                questions.extend(values.map(|v| Question::Attribute(k, v)));
+            }
+        }
+        if actions.point() {
+            questions.extend((0..self.objects()).map(|i| Question::Point(i.into())));
+        }
+        questions
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use vocabulary::{Mode, Params};
+
+    use super::*;
+    use crate::testing::bowls;
+
+    #[test]
+    fn the_action_space_of_the_bowls() {
+        let model = Model::new(&bowls(), Params::default());
+        let count = |mode, attribute, which| {
+            let actions = Actions { mode, attribute, which };
+            let questions = model.questions(actions);
+            assert!(questions.iter().all(|q| actions.allow(Action::Ask(*q)) && model.contains(*q)));
+            questions.len()
+        };
+        assert_eq!(count(Mode::Remote, true, true), 5 + 11);
+        assert_eq!(count(Mode::Remote, true, false), 11);
+        assert_eq!(count(Mode::Present, true, false), 11 + 6);
+        assert_eq!(count(Mode::Present, false, false), 6);
+        assert_eq!(count(Mode::Remote, false, false), 0);
+    }
+}

@@ -1,0 +1,48 @@
+//! Attribution of utterances to the questions that they answer: the rule, and its result.
+
+use serde::{Deserialize, Serialize};
+
+use crate::ids::{PromptId, UtteranceSeq};
+
+/// How an utterance is attributed to a question.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Attribution {
+    /// It counts for each question by its weight.
+    #[default]
+    Mixture,
+    /// It counts for the latest question that had been said when it began.
+    Onset,
+    /// It counts for the question that is pending when the recogniser's result arrives. What naive
+    /// systems do; kept to be compared with.
+    Naive,
+}
+
+/// The questions that an utterance was attributed to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Attributed {
+    /// The utterance; 0 before the first.
+    pub utterance: UtteranceSeq,
+    /// Probability that it answers each presentation of a question, where that is above 0.
+    pub questions: Vec<QuestionShare>,
+    /// Probability that it answers no question.
+    pub none: f64,
+}
+
+impl Attributed {
+    /// Returns the share of a prompt, all its presentations together.
+    pub fn share(&self, prompt: PromptId) -> f64 {
+        self.questions.iter().filter(|it| it.prompt == prompt).map(|it| it.share).sum()
+    }
+}
+
+/// Share of one presentation of a question in an utterance.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct QuestionShare {
+    /// The prompt.
+    pub prompt: PromptId,
+    /// Which presentation of it.
+    pub presentation: u32,
+    /// Probability that the utterance answers it.
+    pub share: f64,
+}

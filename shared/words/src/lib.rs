@@ -1,0 +1,13 @@
+//! Words of a text: normalised, taken apart, and compared by their sounds.
+//!
+//! This crate is pure, and knows no meaning: `language` reads what the words say.
+
+mod confusion;
+mod normalise;
+mod phonetics;
+mod tokens;
+
+pub use confusion::confusion;
+pub use normalise::{TEXT_CHARS_MAX, normalise};
+pub use phonetics::skeleton;
+pub use tokens::{Gap, Token, Tokens};
