@@ -1,18 +1,18 @@
 //! Whom a request comes from, and whether it is meant for this gateway.
 
 use axum::http::{HeaderMap, header};
+use roster::Name;
 
-use super::people::People;
-use super::sessions::Sessions;
-use crate::names::Name;
+use crate::people::People;
+use crate::sessions::Sessions;
 
 /// The address under which people reach the gateway.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Address {
+pub(crate) struct Address {
     /// `https` or `http`.
-    pub(super) scheme: String,
+    pub(crate) scheme: String,
     /// Host, with its port where it is not the scheme's.
-    pub(super) host: String,
+    pub(crate) host: String,
 }
 
 impl std::fmt::Display for Address {
@@ -39,13 +39,13 @@ impl std::str::FromStr for Address {
 impl Address {
     /// Returns whether a request is addressed to this gateway: another host name is an attack by another site (DNS
     /// rebinding). The loopback address always is, for tunnels.
-    pub(super) fn is_addressed(&self, headers: &HeaderMap) -> bool {
+    pub(crate) fn is_addressed(&self, headers: &HeaderMap) -> bool {
         let host = text(headers, &header::HOST);
         host.is_some_and(|host| host.eq_ignore_ascii_case(&self.host) || is_loopback(host))
     }
 
     /// The cookie of a session. Browsers send cookies to every port of a host, so it names the port.
-    pub(super) fn cookie(&self, headers: &HeaderMap, value: &str, life_s: u64) -> String {
+    pub(crate) fn cookie(&self, headers: &HeaderMap, value: &str, life_s: u64) -> String {
         let name = cookie_name(headers);
         let secure = if self.scheme == "https" { "; Secure" } else { "" };
         format!("{name}={value}; Path=/; Max-Age={life_s}; HttpOnly; SameSite=Strict{secure}")
@@ -53,7 +53,7 @@ impl Address {
 }
 
 /// Returns whether the request comes from a page of this gateway: its origin is its host.
-pub(super) fn is_own(headers: &HeaderMap) -> bool {
+pub(crate) fn is_own(headers: &HeaderMap) -> bool {
     let origin = text(headers, &header::ORIGIN);
     let place = origin.and_then(|origin| {
         origin.strip_prefix("http://").or_else(|| origin.strip_prefix("https://"))
@@ -63,7 +63,7 @@ pub(super) fn is_own(headers: &HeaderMap) -> bool {
 }
 
 /// Returns the person who makes a request, by the secret as a bearer or by the cookie of a session.
-pub(super) fn person(headers: &HeaderMap, people: &People, sessions: &Sessions) -> Option<Name> {
+pub(crate) fn person(headers: &HeaderMap, people: &People, sessions: &Sessions) -> Option<Name> {
     if let Some(secret) = bearer(headers) {
         return people.with_secret(secret).cloned();
     }
@@ -71,12 +71,12 @@ pub(super) fn person(headers: &HeaderMap, people: &People, sessions: &Sessions) 
 }
 
 /// Returns whether a request carries a secret.
-pub(super) fn bearer(headers: &HeaderMap) -> Option<&str> {
+pub(crate) fn bearer(headers: &HeaderMap) -> Option<&str> {
     text(headers, &header::AUTHORIZATION)?.strip_prefix("Bearer ")
 }
 
 /// Returns the value of the session's cookie.
-pub(super) fn cookie(headers: &HeaderMap) -> Option<String> {
+pub(crate) fn cookie(headers: &HeaderMap) -> Option<String> {
     let wanted = cookie_name(headers);
     let all = headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
     let mut pairs = all.flat_map(|cookies| cookies.split(';')).filter_map(|pair| {
@@ -87,7 +87,7 @@ pub(super) fn cookie(headers: &HeaderMap) -> Option<String> {
 }
 
 /// Returns a header's text.
-pub(super) fn text<'a>(headers: &'a HeaderMap, name: &header::HeaderName) -> Option<&'a str> {
+pub(crate) fn text<'a>(headers: &'a HeaderMap, name: &header::HeaderName) -> Option<&'a str> {
     headers.get(name)?.to_str().ok()
 }
 

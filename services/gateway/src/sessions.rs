@@ -5,19 +5,19 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use roster::Name;
 use safe_files::{read_private, replace_private};
 use serde::{Deserialize, Serialize};
 use service::console_link::random_secret;
 
-use super::people::{People, hash};
-use crate::names::Name;
+use crate::people::{People, hash};
 
 /// The file in the gateway's folder.
-pub(super) const FILE: &str = "sessions.json";
+pub(crate) const FILE: &str = "sessions.json";
 /// Most sessions; the oldest gives way.
 const SESSIONS_MAX: usize = 512;
 /// Life of a session, seconds.
-pub(super) const SESSION_S: u64 = 7 * 24 * 3_600;
+pub(crate) const SESSION_S: u64 = 7 * 24 * 3_600;
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Session {
@@ -31,21 +31,21 @@ struct Session {
 
 /// All of them, oldest first.
 #[derive(Debug)]
-pub(super) struct Sessions {
+pub(crate) struct Sessions {
     file: PathBuf,
     open: Mutex<Vec<Session>>,
 }
 
 impl Sessions {
     /// Reads the file; one that cannot be read has none.
-    pub(super) fn open(file: PathBuf) -> Self {
+    pub(crate) fn open(file: PathBuf) -> Self {
         let text = read_private(&file).unwrap_or_default();
         let open = serde_json::from_str(&text).unwrap_or_default();
         Self { file, open: Mutex::new(open) }
     }
 
     /// Begins a session of the person with this secret; returns the person and the cookie's value.
-    pub(super) fn begin(&self, people: &People, secret: &str) -> Option<(Name, String)> {
+    pub(crate) fn begin(&self, people: &People, secret: &str) -> Option<(Name, String)> {
         let person = people.with_secret(secret)?.clone();
         let value = random_secret().ok()?;
         let session = Session {
@@ -64,7 +64,7 @@ impl Sessions {
     }
 
     /// Returns the person of a session.
-    pub(super) fn person(&self, people: &People, value: &str) -> Option<Name> {
+    pub(crate) fn person(&self, people: &People, value: &str) -> Option<Name> {
         let (cookie, now_s) = (hash(value), now_s());
         let open = self.lock();
         let mut known = open.iter().filter(|known| known.is_alive(people, now_s));
@@ -72,7 +72,7 @@ impl Sessions {
     }
 
     /// Ends a session.
-    pub(super) fn end(&self, value: &str) {
+    pub(crate) fn end(&self, value: &str) {
         let cookie = hash(value);
         let mut open = self.lock();
         open.retain(|known| known.cookie != cookie);
@@ -106,8 +106,8 @@ fn now_s() -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::people::{self, PeopleFile};
     use super::*;
+    use crate::people::{self, PeopleFile};
 
     #[test]
     fn sessions_live_through_a_restart_and_end_with_the_secret() {

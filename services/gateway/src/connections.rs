@@ -23,14 +23,14 @@ const PAUSE: Duration = Duration::from_millis(20);
 
 /// A listener with places for so many.
 #[derive(Debug)]
-pub(super) struct Gate {
+pub(crate) struct Gate {
     listener: TcpListener,
     places: Arc<Semaphore>,
 }
 
 impl Gate {
     /// Guards a listener.
-    pub(super) fn new(listener: TcpListener) -> Self {
+    pub(crate) fn new(listener: TcpListener) -> Self {
         Self { listener, places: Arc::new(Semaphore::new(CONNECTIONS_MAX)) }
     }
 }
@@ -64,7 +64,7 @@ impl Listener for Gate {
 
 /// A stream that ends when its client is silent for too long.
 #[derive(Debug)]
-pub(super) struct Guarded {
+pub(crate) struct Guarded {
     stream: TcpStream,
     deadline: Pin<Box<Sleep>>,
     _place: OwnedSemaphorePermit,

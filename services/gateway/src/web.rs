@@ -11,15 +11,15 @@ use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Response, StatusCod
 use axum::middleware::{self, Next};
 use axum::response::{AppendHeaders, IntoResponse, Redirect};
 use axum::routing::{get, post};
+use roster::Name;
 use serde_json::json;
 
-use super::audit::{Entry, Outcome};
-use super::people::Right;
-use super::robots::Unreached;
-use super::sessions::SESSION_S;
-use super::socket::{self, FRAME_BYTES_MAX, Visit};
-use super::{Gateway, access, proxy};
-use crate::names::Name;
+use crate::audit::{Entry, Outcome};
+use crate::people::Right;
+use crate::robots::Unreached;
+use crate::sessions::SESSION_S;
+use crate::socket::{self, FRAME_BYTES_MAX, Visit};
+use crate::{Gateway, access, proxy};
 
 /// Delay after a wrong secret, against guessing.
 const PAUSE: std::time::Duration = std::time::Duration::from_secs(1);
@@ -28,19 +28,19 @@ const FORM_MAX: usize = 2_048;
 
 /// The gateway's own files: path, type, contents. Colours and type are those of the console's page.
 const FILES: [(&str, &str, &str); 5] = [
-    ("base.css", "text/css", include_str!("../../../console/page/css/base.css")),
-    ("icon.svg", "image/svg+xml", include_str!("../../../console/page/icon.svg")),
-    ("fleet.css", "text/css", include_str!("../../page/fleet.css")),
-    ("fleet.js", "text/javascript", include_str!("../../page/fleet.js")),
-    ("early.js", "text/javascript", include_str!("../../../console/page/js/early.js")),
+    ("base.css", "text/css", include_str!("../../console/page/css/base.css")),
+    ("icon.svg", "image/svg+xml", include_str!("../../console/page/icon.svg")),
+    ("fleet.css", "text/css", include_str!("../page/fleet.css")),
+    ("fleet.js", "text/javascript", include_str!("../page/fleet.js")),
+    ("early.js", "text/javascript", include_str!("../../console/page/js/early.js")),
 ];
-const LIST: &str = include_str!("../../page/fleet.html");
-const LOGIN: &str = include_str!("../../page/login.html");
+const LIST: &str = include_str!("../page/fleet.html");
+const LOGIN: &str = include_str!("../page/login.html");
 
 type Shared = State<Arc<Gateway>>;
 
 /// Makes the routes.
-pub(super) fn router(gateway: Arc<Gateway>) -> Router {
+pub(crate) fn router(gateway: Arc<Gateway>) -> Router {
     Router::new()
         .route("/", get(list))
         .route("/_/robots", get(robots))
@@ -186,7 +186,7 @@ async fn open(
     upgrade: WebSocketUpgrade,
     person: Name,
     (robot, right): (Name, Right),
-    console: super::robots::Console,
+    console: crate::robots::Console,
 ) -> Response<Body> {
     if !access::is_own(headers) {
         let why = "only pages of this gateway may open a robot's socket\n";

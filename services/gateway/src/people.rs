@@ -5,13 +5,12 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use roster::Name;
 use safe_files::{read_private, replace_private_synced};
 use serde::{Deserialize, Serialize};
 use service::console_link::{is_token, random_secret};
 use service::exit::{Exit, Failure};
 use sha2::{Digest, Sha256};
-
-use crate::names::Name;
 
 /// The file in the gateway's folder.
 pub const FILE: &str = "people.toml";
