@@ -2,9 +2,16 @@
 
 use axum::http::{HeaderMap, header};
 use roster::Name;
+use web_server::request::{bearer, is_for_this_machine, text};
+use web_server::sessions::{Rules, Sessions, unix_s};
 
 use crate::people::People;
-use crate::sessions::Sessions;
+
+/// The rules of people's sessions.
+pub(crate) const SESSIONS: Rules =
+    Rules { cookie: "whichone_gateway", most: 512, life_s: 7 * 24 * 3_600 };
+/// Their file in the gateway's folder.
+pub(crate) const SESSIONS_FILE: &str = "sessions.json";
 
 /// The address under which people reach the gateway.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,75 +48,44 @@ impl Address {
     /// rebinding). The loopback address always is, for tunnels.
     pub(crate) fn is_addressed(&self, headers: &HeaderMap) -> bool {
         let host = text(headers, &header::HOST);
-        host.is_some_and(|host| host.eq_ignore_ascii_case(&self.host) || is_loopback(host))
+        host.is_some_and(|host| host.eq_ignore_ascii_case(&self.host))
+            || is_for_this_machine(headers)
     }
 
-    /// The cookie of a session. Browsers send cookies to every port of a host, so it names the port.
-    pub(crate) fn cookie(&self, headers: &HeaderMap, value: &str, life_s: u64) -> String {
-        let name = cookie_name(headers);
-        let secure = if self.scheme == "https" { "; Secure" } else { "" };
-        format!("{name}={value}; Path=/; Max-Age={life_s}; HttpOnly; SameSite=Strict{secure}")
+    /// Returns whether people reach the gateway by https.
+    pub(crate) fn is_https(&self) -> bool {
+        self.scheme == "https"
     }
-}
-
-/// Returns whether the request comes from a page of this gateway: its origin is its host.
-pub(crate) fn is_own(headers: &HeaderMap) -> bool {
-    let origin = text(headers, &header::ORIGIN);
-    let place = origin.and_then(|origin| {
-        origin.strip_prefix("http://").or_else(|| origin.strip_prefix("https://"))
-    });
-    let host = text(headers, &header::HOST);
-    place.zip(host).is_some_and(|(place, host)| place.eq_ignore_ascii_case(host))
 }
 
 /// Returns the person who makes a request, by the secret as a bearer or by the cookie of a session.
-pub(crate) fn person(headers: &HeaderMap, people: &People, sessions: &Sessions) -> Option<Name> {
-    if let Some(secret) = bearer(headers) {
-        return people.with_secret(secret).cloned();
+pub(crate) fn person(
+    headers: &HeaderMap,
+    people: &People,
+    sessions: &Sessions<Name>,
+) -> Option<Name> {
+    match bearer(headers) {
+        Some(secret) => people.with_secret(secret).cloned(),
+        None => sessions.person(headers, unix_s(), |of, secret| people.has_secret(of, secret)),
     }
-    cookie(headers).and_then(|value| sessions.person(people, &value))
 }
 
-/// Returns whether a request carries a secret.
-pub(crate) fn bearer(headers: &HeaderMap) -> Option<&str> {
-    text(headers, &header::AUTHORIZATION)?.strip_prefix("Bearer ")
-}
-
-/// Returns the value of the session's cookie.
-pub(crate) fn cookie(headers: &HeaderMap) -> Option<String> {
-    let wanted = cookie_name(headers);
-    let all = headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
-    let mut pairs = all.flat_map(|cookies| cookies.split(';')).filter_map(|pair| {
-        let (name, value) = pair.trim().split_once('=')?;
-        (name == wanted).then(|| value.to_owned())
-    });
-    pairs.next()
-}
-
-/// Returns a header's text.
-pub(crate) fn text<'a>(headers: &'a HeaderMap, name: &header::HeaderName) -> Option<&'a str> {
-    headers.get(name)?.to_str().ok()
-}
-
-fn cookie_name(headers: &HeaderMap) -> String {
-    let port = text(headers, &header::HOST).and_then(|host| host.rsplit_once(':'));
-    let port = port.and_then(|(_, port)| port.parse::<u16>().ok()).unwrap_or(0);
-    format!("whichone_gateway_{port}")
-}
-
-fn is_loopback(host: &str) -> bool {
-    let name = match host.rsplit_once(':') {
-        Some((name, port)) if port.bytes().all(|byte| byte.is_ascii_digit()) => name,
-        _ => host,
-    };
-    let name = name.trim_start_matches('[').trim_end_matches(']');
-    let is_loopback = |ip: std::net::IpAddr| ip.is_loopback();
-    name.eq_ignore_ascii_case("localhost") || name.parse().is_ok_and(is_loopback)
+/// Begins a session of the person with this secret; returns the person and the cookie's value.
+pub(crate) fn log_in(
+    people: &People,
+    sessions: &Sessions<Name>,
+    secret: &str,
+) -> Option<(Name, String)> {
+    let person = people.with_secret(secret)?;
+    let is_valid = |of: &Name, secret: &str| people.has_secret(of, secret);
+    let value = sessions.begin(person.clone(), secret, unix_s(), is_valid)?;
+    Some((person.clone(), value))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::people::{self, PeopleFile};
 
     fn headers(pairs: &[(&'static str, &str)]) -> HeaderMap {
         pairs.iter().map(|(name, value)| (name.parse().unwrap(), value.parse().unwrap())).collect()
@@ -133,19 +109,31 @@ mod tests {
         for bad in ["robots.example", "ftp://a", "https://", "https://a/b", "https://a\"b"] {
             assert!(bad.parse::<Address>().is_err(), "{bad}");
         }
-        let cookie = address.cookie(&headers(&[("host", "robots.example")]), "v", 9);
-        assert!(cookie.starts_with("whichone_gateway_0=v; ") && cookie.ends_with("; Secure"));
-        assert_eq!(
-            super::cookie(&headers(&[("cookie", "a=b; whichone_gateway_0=v")])),
-            Some("v".into())
-        );
+        assert!(address.is_https());
     }
 
     #[test]
-    fn pages_of_other_sites_are_not_own() {
-        let own = |origin, host| is_own(&headers(&[("origin", origin), ("host", host)]));
-        assert!(own("https://robots.example", "robots.example"));
-        assert!(!own("https://evil.example", "robots.example"));
-        assert!(!own("null", "robots.example") && !is_own(&headers(&[("host", "a")])));
+    fn sessions_live_through_a_restart_and_end_with_the_secret() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(people::FILE);
+        let ann = Name::new("ann").unwrap();
+        let secret = people::add(&path, &ann, &[], &[], false).unwrap().unwrap();
+        let file = PeopleFile::open(path.clone()).unwrap();
+        let sessions = || Sessions::open(SESSIONS, folder.path().join(SESSIONS_FILE));
+        let begun = sessions();
+        assert_eq!(log_in(&file.current(), &begun, "0123456789abcdef"), None);
+        let (of, value) = log_in(&file.current(), &begun, &secret).unwrap();
+        assert_eq!(of, ann);
+        let stored = std::fs::read_to_string(folder.path().join(SESSIONS_FILE)).unwrap();
+        assert!(!stored.contains(&value) && !stored.contains(&secret));
+        let again = sessions();
+        let with = |value: &str| headers(&[("cookie", &format!("whichone_gateway_0={value}"))]);
+        let known = |value: &str| person(&with(value), &file.current(), &again);
+        assert_eq!(known(&value), Some(ann.clone()));
+        assert_eq!(known(&secret), None);
+        people::add(&path, &ann, &[], &[], true).unwrap();
+        assert_eq!(known(&value), None);
+        again.end(&with(&value));
+        assert_eq!(std::fs::read_to_string(folder.path().join(SESSIONS_FILE)).unwrap(), "[]");
     }
 }

@@ -6,8 +6,9 @@
 
 use roster::Name;
 use serde_json::{Value, json};
+use web_server::sessions::hash;
 
-use crate::people::{Right, hash};
+use crate::people::Right;
 
 /// Longest text in the audit, characters: as long as an utterance may be.
 const TEXT_MAX: usize = 1_000;
