@@ -9,14 +9,12 @@
 mod access;
 pub mod audit;
 pub mod cli;
-mod connections;
 pub mod feed;
 mod mirrors;
 pub mod people;
 mod proxy;
 mod robots;
 pub mod rules;
-mod sessions;
 mod socket;
 mod web;
 
@@ -26,20 +24,25 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
+use service::clock;
 use service::exit::{Exit, Failure};
 use service::folders::make_private;
 use service::group::GroupName;
 use tokio::sync::watch;
+use web_server::connections::{Gate, Of, Pages};
+use web_server::sessions::Sessions;
 
-use access::Address;
+use access::{Address, SESSIONS, SESSIONS_FILE};
 use audit::Audit;
 use people::PeopleFile;
 use robots::Robots;
-use sessions::Sessions;
+use roster::Name;
 
-/// Interval at which unused mirrors are looked for, and the wish to end.
+/// Intervals at which unused mirrors are looked for, and expired connections and the wish to end.
 const TIDY_EVERY: Duration = Duration::from_secs(10);
 const LOOK_EVERY: Duration = Duration::from_millis(100);
+/// Most connections, pages among them.
+const CONNECTIONS_MAX: usize = 1_024;
 /// Time for open pages to be closed.
 const CLOSE: Duration = Duration::from_secs(2);
 
@@ -62,7 +65,7 @@ struct Options {
 #[derive(Debug)]
 struct Gateway {
     people: PeopleFile,
-    sessions: Sessions,
+    sessions: Sessions<Name>,
     audit: Audit,
     robots: Robots,
     address: Address,
@@ -106,7 +109,9 @@ fn serve(
         let address = options.address.clone().unwrap_or(own);
         let gateway = Arc::new(Gateway::open(options, address)?);
         ready(&gateway.address)?;
-        run(&gateway, connections::Gate::new(listener), &is_ending).await.map_err(failed("gateway"))
+        run(&gateway, Gate::new(listener, CONNECTIONS_MAX, Pages::Among), &is_ending)
+            .await
+            .map_err(failed("gateway"))
     })?;
     runtime.shutdown_timeout(Duration::from_millis(500));
     Ok(())
@@ -120,7 +125,7 @@ impl Gateway {
             .map_err(|error| Failure::file(&folder.join(audit::FILE), &error))?;
         Ok(Self {
             people: PeopleFile::open(folder.join(people::FILE))?,
-            sessions: Sessions::open(folder.join(sessions::FILE)),
+            sessions: Sessions::open(SESSIONS, folder.join(SESSIONS_FILE)),
             audit,
             robots: Robots::new(&options.groups, options.keys.as_deref(), folder)?,
             address,
@@ -130,11 +135,7 @@ impl Gateway {
     }
 }
 
-async fn run(
-    gateway: &Arc<Gateway>,
-    gate: connections::Gate,
-    is_ending: &AtomicBool,
-) -> std::io::Result<()> {
+async fn run(gateway: &Arc<Gateway>, gate: Gate, is_ending: &AtomicBool) -> std::io::Result<()> {
     let tidying = Arc::clone(gateway);
     let tidy = tokio::spawn(async move {
         loop {
@@ -143,17 +144,19 @@ async fn run(
         }
     });
     let mut ending = gateway.ending.subscribe();
-    let served =
-        axum::serve(gate, web::router(Arc::clone(gateway))).with_graceful_shutdown(async move {
-            // A gateway that is gone ends the server, too.
-            let _ = ending.wait_for(|ending| *ending).await;
-        });
+    let table = gate.table();
+    let router = web::router(Arc::clone(gateway)).into_make_service_with_connect_info::<Of>();
+    let served = axum::serve(gate, router).with_graceful_shutdown(async move {
+        // A gateway that is gone ends the server, too.
+        let _ = ending.wait_for(|ending| *ending).await;
+    });
     let mut served = tokio::spawn(async move { served.await });
     let ended = loop {
         tokio::select! {
             ended = &mut served => break ended.map_err(std::io::Error::other)?,
             () = tokio::time::sleep(LOOK_EVERY) => {}
         }
+        table.tick(clock::now());
         if is_ending.load(Ordering::Relaxed) {
             gateway.ending.send_replace(true);
             // Connections that stay open do not keep the program from ending.

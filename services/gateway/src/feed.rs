@@ -9,34 +9,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use messages::Service;
-use serde::{Deserialize, Serialize};
+use roster::{Change, Name, Presence};
 use service::exit::{Exit, Failure};
 use service::launch::program_of;
 
-use crate::names::Name;
-use crate::presence::Presence;
-
 /// Pause before a child that has ended is started again.
 const PAUSE: Duration = Duration::from_secs(2);
-
-/// A line of `whichone fleet --watch`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-#[expect(clippy::large_enum_variant, reason = "one is held at a time")]
-pub enum Change {
-    /// A robot is connected no more.
-    Gone {
-        /// Its name.
-        gone: Name,
-    },
-    /// A robot is connected, or says something else of itself.
-    Here {
-        /// Its name.
-        robot: Name,
-        /// What it says of itself; `None` until it does.
-        presence: Option<Presence>,
-    },
-}
 
 /// The connected robots.
 #[derive(Debug)]
@@ -105,7 +83,7 @@ fn launch(keys: &Path) -> Result<Child, Failure> {
 }
 
 /// The link's program cannot be started.
-pub(super) fn missing(program: &Path, error: &std::io::Error) -> Failure {
+pub(crate) fn missing(program: &Path, error: &std::io::Error) -> Failure {
     let help = "help: robots elsewhere need it: `scripts/link build`";
     Failure::new(Exit::NotReached, format!("{}: {error}; {help}", program.display()))
 }
@@ -138,21 +116,4 @@ fn follow(
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     // Every change leaves a consistent value.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn changes_of_the_fleet_are_lines() {
-        let r1 = Name::new("r1").unwrap();
-        let here = Change::Here { robot: r1.clone(), presence: Some(Presence::default()) };
-        let gone = Change::Gone { gone: r1.clone() };
-        let silent = Change::Here { robot: r1, presence: None };
-        for change in [here, gone, silent] {
-            let line = serde_json::to_string(&change).unwrap();
-            assert_eq!(serde_json::from_str::<Change>(&line).unwrap(), change, "{line}");
-        }
-    }
 }

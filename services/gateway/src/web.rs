@@ -6,41 +6,41 @@ use std::sync::Arc;
 use axum::Router;
 use axum::body::{Body, Bytes};
 use axum::extract::ws::WebSocketUpgrade;
-use axum::extract::{FromRequestParts, Path, Request, State};
+use axum::extract::{ConnectInfo, FromRequestParts, Path, Request, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Response, StatusCode, Uri, header};
 use axum::middleware::{self, Next};
 use axum::response::{AppendHeaders, IntoResponse, Redirect};
 use axum::routing::{get, post};
+use roster::Name;
 use serde_json::json;
+use web_server::connections::{Connection, Of};
+use web_server::login::{pause, secret_of, stepping_stone, token_of};
+use web_server::request::{bearer, is_own, wants_page};
+use web_server::security::{content_policy, harden};
 
-use super::audit::{Entry, Outcome};
-use super::people::Right;
-use super::robots::Unreached;
-use super::sessions::SESSION_S;
-use super::socket::{self, FRAME_BYTES_MAX, Visit};
-use super::{Gateway, access, proxy};
-use crate::names::Name;
-
-/// Delay after a wrong secret, against guessing.
-const PAUSE: std::time::Duration = std::time::Duration::from_secs(1);
-/// Longest form with a secret, bytes.
-const FORM_MAX: usize = 2_048;
+use crate::audit::{Entry, Outcome};
+use crate::people::Right;
+use crate::robots::Unreached;
+use crate::socket::{self, FRAME_BYTES_MAX, Visit};
+use crate::{Gateway, access, proxy};
 
 /// The gateway's own files: path, type, contents. Colours and type are those of the console's page.
 const FILES: [(&str, &str, &str); 5] = [
-    ("base.css", "text/css", include_str!("../../../console/page/css/base.css")),
-    ("icon.svg", "image/svg+xml", include_str!("../../../console/page/icon.svg")),
-    ("fleet.css", "text/css", include_str!("../../page/fleet.css")),
-    ("fleet.js", "text/javascript", include_str!("../../page/fleet.js")),
-    ("early.js", "text/javascript", include_str!("../../../console/page/js/early.js")),
+    ("base.css", "text/css", include_str!("../../console/page/css/base.css")),
+    ("icon.svg", "image/svg+xml", include_str!("../../console/page/icon.svg")),
+    ("fleet.css", "text/css", include_str!("../page/fleet.css")),
+    ("fleet.js", "text/javascript", include_str!("../page/fleet.js")),
+    ("early.js", "text/javascript", include_str!("../../console/page/js/early.js")),
 ];
-const LIST: &str = include_str!("../../page/fleet.html");
-const LOGIN: &str = include_str!("../../page/login.html");
+const LIST: &str = include_str!("../page/fleet.html");
+const LOGIN: &str = include_str!("../page/login.html");
 
 type Shared = State<Arc<Gateway>>;
+/// The connection of a request.
+type On = ConnectInfo<Of>;
 
 /// Makes the routes.
-pub(super) fn router(gateway: Arc<Gateway>) -> Router {
+pub(crate) fn router(gateway: Arc<Gateway>) -> Router {
     Router::new()
         .route("/", get(list))
         .route("/_/robots", get(robots))
@@ -63,38 +63,32 @@ async fn guard(State(gateway): Shared, request: Request, next: Next) -> Response
     let mut response = if !gateway.address.is_addressed(headers) {
         let why = format!("this gateway serves {} only\n", gateway.address);
         (StatusCode::MISDIRECTED_REQUEST, why).into_response()
-    } else if let Some(secret) = form_field(request.uri().query().unwrap_or_default(), "token")
+    } else if let Some((secret, page)) = token_of(request.uri())
         && request.method() == Method::GET
     {
-        enter(&gateway, headers, &secret, request.uri().path()).await
+        enter(&gateway, headers, &secret, &page).await
     } else {
         next.run(request).await
     };
     let headers = response.headers_mut();
     // A console has said already what its page may load.
-    headers.entry(header::CONTENT_SECURITY_POLICY).or_insert(HeaderValue::from_static(
-        "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
-    ));
-    for (name, value) in [
-        ("x-content-type-options", "nosniff"),
-        ("x-frame-options", "DENY"),
-        ("referrer-policy", "same-origin"),
-        ("cross-origin-opener-policy", "same-origin"),
-        ("cross-origin-resource-policy", "same-origin"),
-        ("permissions-policy", "microphone=(self), camera=(), geolocation=()"),
-    ] {
-        headers.insert(HeaderName::from_static(name), HeaderValue::from_static(value));
-    }
+    headers.entry(header::CONTENT_SECURITY_POLICY).or_insert_with(|| content_policy(""));
+    harden(headers);
     response
 }
 
-/// The person of a request, or the answer to one who is not known.
-async fn known(gateway: &Gateway, headers: &HeaderMap) -> Result<Name, Response<Body>> {
+/// The person of a request, whose connection is proven, or the answer to one who is not known.
+async fn known(
+    gateway: &Gateway,
+    connection: &Connection,
+    headers: &HeaderMap,
+) -> Result<Name, Response<Body>> {
     if let Some(person) = access::person(headers, &gateway.people.current(), &gateway.sessions) {
+        connection.prove();
         return Ok(person);
     }
-    if access::bearer(headers).is_some() {
-        tokio::time::sleep(PAUSE).await;
+    if bearer(headers).is_some() {
+        pause().await;
     }
     if wants_page(headers) {
         return Err(Redirect::to("/_/login").into_response());
@@ -103,19 +97,15 @@ async fn known(gateway: &Gateway, headers: &HeaderMap) -> Result<Name, Response<
     Err((StatusCode::UNAUTHORIZED, why).into_response())
 }
 
-fn wants_page(headers: &HeaderMap) -> bool {
-    access::text(headers, &header::ACCEPT).is_some_and(|accepts| accepts.contains("text/html"))
-}
-
-async fn list(State(gateway): Shared, headers: HeaderMap) -> Response<Body> {
-    match known(&gateway, &headers).await {
+async fn list(State(gateway): Shared, on: On, headers: HeaderMap) -> Response<Body> {
+    match known(&gateway, &on.0.0, &headers).await {
         Ok(_) => html(StatusCode::OK, LIST),
         Err(response) => response,
     }
 }
 
-async fn robots(State(gateway): Shared, headers: HeaderMap) -> Response<Body> {
-    let person = match known(&gateway, &headers).await {
+async fn robots(State(gateway): Shared, on: On, headers: HeaderMap) -> Response<Body> {
+    let person = match known(&gateway, &on.0.0, &headers).await {
         Ok(person) => person,
         Err(response) => return response,
     };
@@ -134,10 +124,11 @@ async fn to_folder(Path(robot): Path<String>) -> Response<Body> {
 }
 
 /// Everything of a robot's console, its socket included.
-async fn robot_page(State(gateway): Shared, request: Request) -> Response<Body> {
+async fn robot_page(State(gateway): Shared, on: On, request: Request) -> Response<Body> {
     let (mut parts, _) = request.into_parts();
     let (headers, uri) = (parts.headers.clone(), parts.uri.clone());
-    let person = match known(&gateway, &headers).await {
+    let ConnectInfo(Of(connection)) = on;
+    let person = match known(&gateway, &connection, &headers).await {
         Ok(person) => person,
         Err(response) => return response,
     };
@@ -163,7 +154,10 @@ async fn robot_page(State(gateway): Shared, request: Request) -> Response<Body> 
     if rest == "/ws" {
         let upgrade = WebSocketUpgrade::from_request_parts(&mut parts, &()).await;
         return match upgrade {
-            Ok(upgrade) => open(gateway, &headers, upgrade, person, (robot, right), console).await,
+            Ok(upgrade) => {
+                let visitor = (person, connection);
+                open(gateway, &headers, upgrade, visitor, (robot, right), console).await
+            }
             Err(rejection) => rejection.into_response(),
         };
     }
@@ -184,11 +178,11 @@ async fn open(
     gateway: Arc<Gateway>,
     headers: &HeaderMap,
     upgrade: WebSocketUpgrade,
-    person: Name,
+    (person, connection): (Name, Arc<Connection>),
     (robot, right): (Name, Right),
-    console: super::robots::Console,
+    console: crate::robots::Console,
 ) -> Response<Body> {
-    if !access::is_own(headers) {
+    if !is_own(headers) {
         let why = "only pages of this gateway may open a robot's socket\n";
         return (StatusCode::FORBIDDEN, why).into_response();
     }
@@ -198,6 +192,7 @@ async fn open(
     };
     let upgrade = upgrade.max_message_size(FRAME_BYTES_MAX).max_frame_size(FRAME_BYTES_MAX);
     upgrade.on_upgrade(move |page| async move {
+        connection.become_page();
         let _used = gateway.robots.used(&robot);
         Visit::new(&gateway, person, robot, right).serve(page, socket).await;
     })
@@ -257,51 +252,37 @@ async fn login_page() -> Response<Body> {
 }
 
 async fn login(State(gateway): Shared, headers: HeaderMap, form: Bytes) -> Response<Body> {
-    if !access::is_own(&headers) {
+    if !is_own(&headers) {
         return (StatusCode::FORBIDDEN, "log in from the gateway's own page\n").into_response();
     }
-    let form = std::str::from_utf8(&form).ok().filter(|form| form.len() <= FORM_MAX);
-    let secret = form.and_then(|form| form_field(form, "token")).unwrap_or_default();
+    let secret = secret_of(&form);
     enter(&gateway, &headers, &secret, "/").await
 }
 
 async fn logout(State(gateway): Shared, headers: HeaderMap) -> Response<Body> {
-    if !access::is_own(&headers) {
+    if !is_own(&headers) {
         return (StatusCode::FORBIDDEN, "log out from the gateway's own page\n").into_response();
     }
-    if let Some(value) = access::cookie(&headers) {
-        gateway.sessions.end(&value);
-    }
-    let cookie = AppendHeaders([(header::SET_COOKIE, gateway.address.cookie(&headers, "", 0))]);
+    gateway.sessions.end(&headers);
+    let cookie = gateway.sessions.cookie(&headers, None, gateway.address.is_https());
+    let cookie = AppendHeaders([(header::SET_COOKIE, cookie)]);
     (cookie, Redirect::to("/_/login")).into_response()
 }
 
 /// Exchanges a secret for a session and leads to a page: the secret does not stay in the address.
 async fn enter(gateway: &Gateway, headers: &HeaderMap, secret: &str, page: &str) -> Response<Body> {
-    let begun = gateway.sessions.begin(&gateway.people.current(), secret);
+    let begun = access::log_in(&gateway.people.current(), &gateway.sessions, secret);
     let Some((person, value)) = begun else {
-        tokio::time::sleep(PAUSE).await;
+        pause().await;
         return Redirect::to("/_/login?wrong").into_response();
     };
     gateway.audit.note(&Entry::new(&person, None, "login", Outcome::Done));
-    let cookie = gateway.address.cookie(headers, &value, SESSION_S);
-    // One slash: two would lead to another host. A redirect of another site's link would not carry the cookie.
-    let page =
-        format!("/{}", page.trim_start_matches('/')).replace('&', "&amp;").replace('"', "&quot;");
-    let go_on = format!(
-        "<!doctype html><meta http-equiv=\"refresh\" content=\"0;url={page}\"><title>whichone</title>\n"
-    );
-    let mut response = html(StatusCode::OK, &go_on);
+    let cookie = gateway.sessions.cookie(headers, Some(&value), gateway.address.is_https());
+    let mut response = html(StatusCode::OK, &stepping_stone(page));
     if let Ok(cookie) = HeaderValue::from_str(&cookie) {
         response.headers_mut().insert(header::SET_COOKIE, cookie);
     }
     response
-}
-
-/// Returns a field of a form or a query whose value needs no decoding, as secrets do not.
-fn form_field(form: &str, name: &str) -> Option<String> {
-    let mut pairs = form.split('&').filter_map(|pair| pair.split_once('='));
-    pairs.find(|(key, _)| *key == name).map(|(_, value)| value.trim().to_owned())
 }
 
 #[cfg(test)]

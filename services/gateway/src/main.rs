@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    link::gateway::cli::run()
+    gateway::cli::run()
 }

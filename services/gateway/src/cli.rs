@@ -6,14 +6,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
+use roster::Name;
 use service::exit::{Exit, Failure};
 use service::folders::make_private;
 use service::group::GroupName;
 
-use super::access::Address;
-use super::people::{self, EVERY_ROBOT, People};
-use super::{Options, serve};
-use crate::names::Name;
+use crate::access::Address;
+use crate::people::{self, EVERY_ROBOT, People};
+use crate::{Options, serve};
 
 /// File with the address of a gateway that runs or ran.
 const ADDRESS: &str = "address";

@@ -10,10 +10,9 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use roster::Name;
 use serde::Serialize;
 use tokio::sync::oneshot;
-
-use crate::names::Name;
 
 /// The file in the gateway's folder; full ones are `audit.1.jsonl`, newest first.
 pub const FILE: &str = "audit.jsonl";

@@ -4,10 +4,11 @@
 //! through but its hello, as a viewer, and its pings. What passes is written from what was read, so that the robot's
 //! console cannot read another order in it.
 
+use roster::Name;
 use serde_json::{Value, json};
+use web_server::sessions::hash;
 
-use super::people::{Right, hash};
-use crate::names::Name;
+use crate::people::Right;
 
 /// Longest text in the audit, characters: as long as an utterance may be.
 const TEXT_MAX: usize = 1_000;

@@ -1,9 +1,8 @@
 //! The open connections: bounded in number and in the time that they may take.
 //!
-//! A connection proves itself by a request with the token or a session. One that has not, gives way to
-//! newer ones and ends after [`PROOF_PATIENCE`] whatever it does; a proven one ends when it is idle. A page's
-//! socket is counted among the viewers instead. So descriptors are left for the next visitor, whatever the
-//! others do or leave undone.
+//! A connection proves itself by a request with a secret or a session. One that has not, gives way to
+//! newer ones and ends after [`PROOF_PATIENCE`] whatever it does; a proven one ends when its client is silent. So places
+//! are left for the next visitor, whatever the others do or leave undone.
 
 use std::fmt;
 use std::io;
@@ -21,41 +20,20 @@ use service::{Span, Time, clock};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
 
-/// Most connections besides those of pages.
-const OTHERS_MAX: usize = 96;
-/// Fewest connections besides those of pages: a browser opens six to load a page.
-const OTHERS_MIN: usize = 16;
-/// Descriptors that are kept for everything else.
-const RESERVE: usize = 32;
 /// Life of a connection without a request that proves it.
 const PROOF_PATIENCE: Span = Span::from_ms(10_000);
-/// Longest silence of a proven connection.
-const IDLE_MAX: Span = Span::from_ms(75_000);
-/// Pause after a failure to accept: no descriptor is left.
+/// Longest silence of a proven client: the bytes that it takes do not count. Pings every 20 s let an open page speak.
+const SILENCE_MAX: Span = Span::from_ms(75_000);
+/// Pause where no descriptor or no place is left.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Numbers of connections that a limit of descriptors allows.
+/// The places that the sockets of pages take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// Pages.
-    pub viewers: usize,
-    /// Connections besides.
-    pub others: usize,
-}
-
-impl Limits {
-    /// Returns the descriptors that are ever used with so many pages.
-    pub fn most(viewers_max: usize) -> usize {
-        RESERVE + viewers_max + OTHERS_MAX
-    }
-
-    /// Divides `free` descriptors: first what a page needs to load, then pages, then more connections.
-    pub fn new(viewers_max: usize, free: usize) -> Self {
-        let free = free.saturating_sub(RESERVE);
-        let viewers = viewers_max.min(free.saturating_sub(OTHERS_MIN)).max(2);
-        let others = free.saturating_sub(viewers).clamp(OTHERS_MIN, OTHERS_MAX);
-        Self { viewers, others }
-    }
+pub enum Pages {
+    /// None: their server counts them, and ends silent ones itself.
+    Apart,
+    /// One each, as other connections do, and their silence ends them. New connections wait while all are pages.
+    Among,
 }
 
 /// The stage of a connection.
@@ -70,7 +48,7 @@ enum Stage {
 #[derive(Debug)]
 pub struct Connection {
     began: Time,
-    /// When bytes went last, nanoseconds.
+    /// When the client sent bytes last, nanoseconds.
     active: AtomicU64,
     stage: AtomicU8,
     is_closed: AtomicBool,
@@ -88,7 +66,7 @@ impl Connection {
         }
     }
 
-    /// Notes a request with the token or a session.
+    /// Notes a request with a secret or a session.
     pub fn prove(&self) {
         self.stage.fetch_max(Stage::Proven as u8, Ordering::Relaxed);
     }
@@ -102,12 +80,16 @@ impl Connection {
         self.stage.load(Ordering::Relaxed) == stage as u8
     }
 
-    fn is_expired(&self, now: Time) -> bool {
+    fn is_expired(&self, now: Time, pages: Pages) -> bool {
         if self.is(Stage::Unproven) {
             return now.since(self.began) >= PROOF_PATIENCE;
         }
         let active = Time(self.active.load(Ordering::Relaxed));
-        self.is(Stage::Proven) && now.since(active) >= IDLE_MAX
+        self.takes_place(pages) && now.since(active) >= SILENCE_MAX
+    }
+
+    fn takes_place(&self, pages: Pages) -> bool {
+        pages == Pages::Among || !self.is(Stage::Page)
     }
 
     fn close(&self) {
@@ -123,47 +105,51 @@ impl Connection {
             false => Ok(()),
         }
     }
-
-    fn note(&self, is_active: bool) {
-        if is_active {
-            self.active.store(clock::now().ns(), Ordering::Relaxed);
-        }
-    }
 }
 
 /// The table of open connections, oldest first.
 #[derive(Debug)]
 pub struct Connections {
     open: Mutex<Vec<Arc<Connection>>>,
-    others_max: usize,
+    most: usize,
+    pages: Pages,
 }
 
 impl Connections {
-    /// Makes an empty table for `others_max` connections besides pages.
-    pub fn new(others_max: usize) -> Self {
-        Self { open: Mutex::default(), others_max }
+    /// Makes an empty table with places for `most` connections.
+    pub fn new(most: usize, pages: Pages) -> Self {
+        Self { open: Mutex::default(), most, pages }
     }
 
     /// Ends connections whose time is over. Returns whether there are any connections.
     pub fn tick(&self, now: Time) -> bool {
         let open = self.open();
-        open.iter().filter(|open| open.is_expired(now)).for_each(|open| open.close());
+        let expired = open.iter().filter(|open| open.is_expired(now, self.pages));
+        expired.for_each(|open| open.close());
         !open.is_empty()
     }
 
     /// Admits a new connection; where there are too many, the oldest unproven one gives way, or else the
-    /// oldest proven one.
-    fn admit(&self, now: Time) -> Arc<Connection> {
+    /// oldest proven one. `None` while pages have all places.
+    fn admit(&self, now: Time) -> Option<Arc<Connection>> {
         let mut open = self.open();
-        let others = open.iter().filter(|open| !open.is(Stage::Page)).count();
-        if others >= self.others_max {
+        if open.iter().filter(|open| open.takes_place(self.pages)).count() >= self.most {
             let oldest = [Stage::Unproven, Stage::Proven];
             let oldest = oldest.iter().find_map(|stage| open.iter().position(|it| it.is(*stage)));
-            oldest.into_iter().for_each(|at| open.remove(at).close());
+            open.remove(oldest?).close();
         }
         let connection = Arc::new(Connection::new(now));
         open.push(Arc::clone(&connection));
-        connection
+        Some(connection)
+    }
+
+    async fn wait_for_place(&self) -> Arc<Connection> {
+        loop {
+            match self.admit(clock::now()) {
+                Some(connection) => return connection,
+                None => tokio::time::sleep(PAUSE).await,
+            }
+        }
     }
 
     fn remove(&self, connection: &Arc<Connection>) {
@@ -179,8 +165,20 @@ impl Connections {
 /// The listener, with the table of what it has accepted.
 #[derive(Debug)]
 pub struct Gate {
-    pub listener: TcpListener,
-    pub table: Arc<Connections>,
+    listener: TcpListener,
+    table: Arc<Connections>,
+}
+
+impl Gate {
+    /// Guards a listener.
+    pub fn new(listener: TcpListener, most: usize, pages: Pages) -> Self {
+        Self { listener, table: Arc::new(Connections::new(most, pages)) }
+    }
+
+    /// The open connections, which need a [`Connections::tick`] every second.
+    pub fn table(&self) -> Arc<Connections> {
+        Arc::clone(&self.table)
+    }
 }
 
 impl Listener for Gate {
@@ -191,8 +189,10 @@ impl Listener for Gate {
         loop {
             match self.listener.accept().await {
                 Ok((stream, address)) => {
+                    // A stop is a small packet.
+                    let _ = stream.set_nodelay(true);
                     let table = Arc::clone(&self.table);
-                    let connection = table.admit(clock::now());
+                    let connection = table.wait_for_place().await;
                     return (Guarded { stream, connection, table }, address);
                 }
                 Err(error) => {
@@ -231,7 +231,9 @@ impl AsyncRead for Guarded {
         self.connection.look(cx)?;
         let before = buf.filled().len();
         let read = Pin::new(&mut self.stream).poll_read(cx, buf);
-        self.connection.note(buf.filled().len() > before);
+        if buf.filled().len() > before {
+            self.connection.active.store(clock::now().ns(), Ordering::Relaxed);
+        }
         read
     }
 }
@@ -243,9 +245,7 @@ impl AsyncWrite for Guarded {
         bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
         self.connection.look(cx)?;
-        let written = Pin::new(&mut self.stream).poll_write(cx, bytes);
-        self.connection.note(matches!(written, Poll::Ready(Ok(1..))));
-        written
+        Pin::new(&mut self.stream).poll_write(cx, bytes)
     }
 
     fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
@@ -284,26 +284,27 @@ mod tests {
 
     #[test]
     fn unproven_connections_give_way_first() {
-        let table = Connections::new(3);
-        let proven = table.admit(at(0));
+        let table = Connections::new(3, Pages::Apart);
+        let admit = |ms| table.admit(at(ms)).unwrap();
+        let proven = admit(0);
         proven.prove();
-        let page = table.admit(at(1));
+        let page = admit(1);
         page.become_page();
-        let crowd: Vec<_> = (2..100).map(|ms| table.admit(at(ms))).collect();
+        let crowd: Vec<_> = (2..100).map(admit).collect();
         let is_closed = |open: &Connection| open.is_closed.load(Ordering::Relaxed);
         assert_eq!(crowd.iter().filter(|open| !is_closed(open)).count(), 2);
         assert!(!is_closed(&proven) && !is_closed(&page));
         crowd.iter().for_each(|open| open.prove());
-        table.admit(at(100));
+        admit(100);
         assert!(is_closed(&proven), "of the proven ones the oldest gives way");
         table.remove(&page);
         assert_eq!(table.open().len(), 3);
     }
 
     #[test]
-    fn connections_end_unproven_or_idle() {
-        let table = Connections::new(9);
-        let (silent, proven, page) = (table.admit(at(0)), table.admit(at(0)), table.admit(at(0)));
+    fn connections_end_unproven_or_silent() {
+        let table = Connections::new(9, Pages::Apart);
+        let [silent, proven, page] = [0; 3].map(|ms| table.admit(at(ms)).unwrap());
         proven.prove();
         page.become_page();
         page.prove();
@@ -325,14 +326,13 @@ mod tests {
     }
 
     #[test]
-    fn limits_fit_the_descriptors() {
-        let limits = |viewers, others| Limits { viewers, others };
-        assert_eq!(Limits::new(32, 100_000), limits(32, OTHERS_MAX));
-        assert_eq!(Limits::new(32, 120), limits(32, 56));
-        assert_eq!(Limits::new(32, 70), limits(22, OTHERS_MIN));
-        assert_eq!(Limits::new(32, 0), limits(2, OTHERS_MIN));
-        let most = Limits::most(32);
-        assert_eq!(Limits::new(32, most), Limits::new(32, 100_000));
-        assert_ne!(Limits::new(32, most - 1), Limits::new(32, most));
+    fn pages_among_the_others_end_silent_and_keep_their_places() {
+        let table = Connections::new(2, Pages::Among);
+        let pages = [0, 1].map(|ms| table.admit(at(ms)).unwrap());
+        pages.iter().for_each(|page| page.become_page());
+        assert!(table.admit(at(2)).is_none(), "no page gives way");
+        pages[0].active.store(at(20_000).ns(), Ordering::Relaxed);
+        table.tick(at(75_001));
+        assert_eq!(pages.map(|page| page.is_closed.load(Ordering::Relaxed)), [false, true]);
     }
 }

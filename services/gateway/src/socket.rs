@@ -10,6 +10,7 @@ use axum::extract::ws::{CloseFrame, Message as Page, WebSocket};
 use axum::http::{HeaderMap, HeaderValue, header};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
+use roster::Name;
 use tokio::net::TcpStream;
 use tokio::sync::mpsc::{self, Receiver, Sender};
 use tokio::time::{Instant, interval, timeout};
@@ -17,15 +18,14 @@ use tokio_tungstenite::tungstenite::Message as Console;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::{WebSocketStream, client_async};
 
-use super::Gateway;
-use super::audit::{Entry, Outcome};
-use super::people::Right;
-use super::robots;
-use super::rules::{Answered, Order, Verdict, answered, judge, refused};
-use crate::names::Name;
+use crate::Gateway;
+use crate::audit::{Entry, Outcome};
+use crate::people::Right;
+use crate::robots;
+use crate::rules::{Answered, Order, Verdict, answered, judge, refused};
 
 /// Largest frame of a page, bytes: the console's own limit.
-pub(super) const FRAME_BYTES_MAX: usize = 64 << 10;
+pub(crate) const FRAME_BYTES_MAX: usize = 64 << 10;
 /// Frames that wait in one direction. A console sends the newest of everything to a page that is slow.
 const QUEUE: usize = 8;
 /// Orders that wait for the audit.
@@ -42,7 +42,7 @@ const RIGHTS_EVERY: Duration = Duration::from_secs(1);
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// A socket to a console.
-pub(super) type ConsoleSocket = WebSocketStream<TcpStream>;
+pub(crate) type ConsoleSocket = WebSocketStream<TcpStream>;
 /// Close code and reason.
 type End = (u16, String);
 
@@ -50,7 +50,7 @@ type End = (u16, String);
 ///
 /// # Errors
 /// The console does not answer, or refuses.
-pub(super) async fn open(
+pub(crate) async fn open(
     console: &robots::Console,
     headers: &HeaderMap,
 ) -> Result<ConsoleSocket, String> {
@@ -78,7 +78,7 @@ pub(super) async fn open(
 
 /// Whose page it is, and of which robot.
 #[derive(Debug)]
-pub(super) struct Visit<'a> {
+pub(crate) struct Visit<'a> {
     gateway: &'a Gateway,
     person: Name,
     robot: Name,
@@ -93,7 +93,7 @@ pub(super) struct Visit<'a> {
 
 impl<'a> Visit<'a> {
     /// A page of `person`.
-    pub(super) fn new(gateway: &'a Gateway, person: Name, robot: Name, right: Right) -> Self {
+    pub(crate) fn new(gateway: &'a Gateway, person: Name, robot: Name, right: Right) -> Self {
         let number = gateway.visits.fetch_add(1, Ordering::Relaxed) + 1;
         Self {
             gateway,
@@ -108,7 +108,7 @@ impl<'a> Visit<'a> {
     }
 
     /// Serves the page until one side ends, or the person's rights change.
-    pub(super) async fn serve(self, page: WebSocket, console: ConsoleSocket) {
+    pub(crate) async fn serve(self, page: WebSocket, console: ConsoleSocket) {
         self.note("open", Outcome::Done, None, Some(self.right.word().to_owned()));
         let (mut page_out, mut page_in) = page.split();
         let (mut console_out, mut console_in) = console.split();

@@ -4,34 +4,33 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use roster::{Name, Presence};
 use serde::Serialize;
 use serde_json::Value;
 use service::console_link;
 use service::exit::{Exit, Failure};
 use service::group::{GroupName, GroupPaths};
 
-use super::feed::Feed;
-use super::mirrors::{Mirrors, Used};
-use super::people::{People, Right};
-use super::proxy;
-use crate::names::Name;
-use crate::presence::Presence;
+use crate::feed::Feed;
+use crate::mirrors::{Mirrors, Used};
+use crate::people::{People, Right};
+use crate::proxy;
 
 /// Folder of the mirrors in the gateway's folder.
 const MIRRORS: &str = "mirrors";
 
 /// A robot's console.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Console {
+pub(crate) struct Console {
     /// Host and port.
-    pub(super) place: String,
+    pub(crate) place: String,
     /// The token that lets one in.
-    pub(super) token: String,
+    pub(crate) token: String,
 }
 
 /// Why a robot's console cannot be reached.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(super) enum Unreached {
+pub(crate) enum Unreached {
     /// The gateway does not know the robot.
     #[error("robot {0} is not connected")]
     Unknown(Name),
@@ -45,20 +44,20 @@ pub(super) enum Unreached {
 
 /// A robot in the list.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Listed {
+pub(crate) struct Listed {
     /// Its name.
-    pub(super) robot: Name,
+    pub(crate) robot: Name,
     /// What the person may do with it.
-    pub(super) right: Right,
+    pub(crate) right: Right,
     /// Whether it is there: `false` for one that the rights name and that is not connected.
-    pub(super) connected: bool,
+    pub(crate) connected: bool,
     /// What it says of itself; `None` while it is silent.
-    pub(super) presence: Option<Presence>,
+    pub(crate) presence: Option<Presence>,
 }
 
 /// All of them.
 #[derive(Debug)]
-pub(super) struct Robots {
+pub(crate) struct Robots {
     groups: BTreeMap<Name, GroupPaths>,
     remote: Option<(Feed, Mirrors)>,
 }
@@ -68,7 +67,7 @@ impl Robots {
     ///
     /// # Errors
     /// A group has no place, or the link's program cannot be started.
-    pub(super) fn new(
+    pub(crate) fn new(
         groups: &[GroupName],
         keys: Option<&Path>,
         folder: &Path,
@@ -90,7 +89,7 @@ impl Robots {
     ///
     /// # Errors
     /// It cannot be reached yet, or at all.
-    pub(super) async fn reach(&self, robot: &Name) -> Result<Console, Unreached> {
+    pub(crate) async fn reach(&self, robot: &Name) -> Result<Console, Unreached> {
         if let Some(paths) = self.groups.get(robot) {
             return console(paths).ok_or_else(|| {
                 Unreached::Failed(format!(
@@ -108,26 +107,26 @@ impl Robots {
     }
 
     /// Notes that a page of the robot is open until the result is dropped.
-    pub(super) fn used(&self, robot: &Name) -> Option<Used> {
+    pub(crate) fn used(&self, robot: &Name) -> Option<Used> {
         self.remote.as_ref().map(|(_, mirrors)| mirrors.used(robot))
     }
 
     /// Ends mirrors that nobody has used for a while.
-    pub(super) async fn tidy(&self) {
+    pub(crate) async fn tidy(&self) {
         if let Some((_, mirrors)) = &self.remote {
             mirrors.end_idle().await;
         }
     }
 
     /// Ends every mirror.
-    pub(super) fn end(&self) {
+    pub(crate) fn end(&self) {
         if let Some((_, mirrors)) = &self.remote {
             mirrors.end();
         }
     }
 
     /// Lists the robots that a person may see.
-    pub(super) async fn list(&self, people: &People, person: &Name) -> Vec<Listed> {
+    pub(crate) async fn list(&self, people: &People, person: &Name) -> Vec<Listed> {
         let remote = self.remote.as_ref().map(|(feed, _)| feed.all()).unwrap_or_default();
         let named = people.iter().filter(|(name, _)| *name == person).flat_map(|(_, person)| {
             let robots = person.operator.iter().chain(&person.viewer);
@@ -153,7 +152,7 @@ impl Robots {
 }
 
 /// Returns a group's console, while one is served for those with a token.
-pub(super) fn console(paths: &GroupPaths) -> Option<Console> {
+pub(crate) fn console(paths: &GroupPaths) -> Option<Console> {
     let address = console_link::address(paths)?;
     let place = address.strip_prefix("http://")?.trim_end_matches('/').to_owned();
     Some(Console { place, token: console_link::token(paths)? })
@@ -186,7 +185,7 @@ async fn look(robot: &Name, console: &Console) -> Option<Presence> {
 }
 
 /// The home of mirrors must leave room for the names of sockets.
-pub(super) fn home_of_mirrors(home: PathBuf) -> Result<PathBuf, Failure> {
+pub(crate) fn home_of_mirrors(home: PathBuf) -> Result<PathBuf, Failure> {
     let longest = GroupName::new(&"x".repeat(32))?;
     GroupPaths::in_home(&home, &longest)?;
     Ok(home)

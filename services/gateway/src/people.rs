@@ -5,20 +5,17 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use roster::Name;
 use safe_files::{read_private, replace_private_synced};
 use serde::{Deserialize, Serialize};
 use service::console_link::{is_token, random_secret};
 use service::exit::{Exit, Failure};
-use sha2::{Digest, Sha256};
-
-use crate::names::Name;
+use web_server::sessions::{HASH, hash};
 
 /// The file in the gateway's folder.
 pub const FILE: &str = "people.toml";
 /// Stands for every robot.
 pub const EVERY_ROBOT: &str = "*";
-/// Before the hash of a secret.
-const HASH: &str = "sha256:";
 /// Head of the file.
 const HEAD: &str = "# People of the gateway (docs/fleet.md): `whichone gateway add` and `remove` write this file. \
                     A secret is stored as its hash.\n\n";
@@ -61,13 +58,6 @@ pub struct Person {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct People(BTreeMap<Name, Person>);
-
-/// Returns what is stored of a secret. Secrets are random numbers of 128 bits, so that a fast hash is enough.
-pub fn hash(secret: &str) -> String {
-    let digest = Sha256::digest(secret.as_bytes());
-    let hex = digest.iter().map(|byte| format!("{byte:02x}"));
-    std::iter::once(HASH.to_owned()).chain(hex).collect()
-}
 
 impl People {
     /// Reads the file; a missing one has nobody in it.
@@ -133,7 +123,6 @@ impl People {
 
     /// Returns the person with this secret.
     pub fn with_secret(&self, secret: &str) -> Option<&Name> {
-        // Hashes are compared: how long that takes says nothing about a secret.
         let wanted = Some(secret).filter(|secret| is_token(secret)).map(hash)?;
         self.0.iter().find(|(_, person)| person.secret == wanted).map(|(name, _)| name)
     }

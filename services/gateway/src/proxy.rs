@@ -9,8 +9,8 @@ use hyper_util::rt::TokioIo;
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
-use super::people::Right;
-use super::robots::Console;
+use crate::people::Right;
+use crate::robots::Console;
 
 /// Timeout of a console's answer.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -42,7 +42,7 @@ const VIEWERS: [&str; 12] = [
 ];
 
 /// Returns why a path of a console, from its `/` on, is not for someone with this right; `None` if it is.
-pub(super) fn denied(path: &str, right: Right) -> Option<&'static str> {
+pub(crate) fn denied(path: &str, right: Right) -> Option<&'static str> {
     let mut parts = path.trim_start_matches('/').split('/');
     let first = parts.next().unwrap_or_default();
     match first {
@@ -58,7 +58,7 @@ pub(super) fn denied(path: &str, right: Right) -> Option<&'static str> {
 ///
 /// # Errors
 /// The status and the reason for which there is no answer.
-pub(super) async fn pass(
+pub(crate) async fn pass(
     console: &Console,
     path_and_query: &str,
     headers: &HeaderMap,
@@ -85,7 +85,7 @@ pub(super) async fn pass(
 }
 
 /// Reads something small from a console; `None` where that fails.
-pub(super) async fn get(console: &Console, path: &str) -> Option<Vec<u8>> {
+pub(crate) async fn get(console: &Console, path: &str) -> Option<Vec<u8>> {
     let read = async {
         let request = Request::get(path).header(header::HOST, &console.place);
         let response = ask(console, request).await.ok()?;

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use messages::Service;
+use roster::Name;
 use rustix::process::{Pid, Signal, kill_process};
 use service::control::{Request, call};
 use service::exit::{Exit, Failure};
@@ -15,9 +16,8 @@ use service::folders::make_private;
 use service::group::{ENV_HOME, GroupName, GroupPaths};
 use service::launch::program_of;
 
-use super::feed::missing;
-use super::robots::{Console, Unreached, console, home_of_mirrors};
-use crate::names::Name;
+use crate::feed::missing;
+use crate::robots::{Console, Unreached, console, home_of_mirrors};
 
 /// Time without use after which a mirror ends.
 const IDLE_MAX: Duration = Duration::from_secs(300);
@@ -32,7 +32,7 @@ const END_PATIENCE: Duration = Duration::from_secs(8);
 
 /// All of them.
 #[derive(Debug)]
-pub(super) struct Mirrors {
+pub(crate) struct Mirrors {
     keys: PathBuf,
     home: PathBuf,
     running: Arc<Mutex<BTreeMap<Name, Mirror>>>,
@@ -49,7 +49,7 @@ struct Mirror {
 
 /// An open page of a robot.
 #[derive(Debug)]
-pub(super) struct Used {
+pub(crate) struct Used {
     robot: Name,
     running: Arc<Mutex<BTreeMap<Name, Mirror>>>,
 }
@@ -59,7 +59,7 @@ impl Mirrors {
     ///
     /// # Errors
     /// The folder cannot be made, or its path is too long.
-    pub(super) fn new(keys: &Path, home: PathBuf) -> Result<Self, Failure> {
+    pub(crate) fn new(keys: &Path, home: PathBuf) -> Result<Self, Failure> {
         let home = home_of_mirrors(home)?;
         make_private(&home).map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
         let keys = std::path::absolute(keys).unwrap_or_else(|_| keys.to_owned());
@@ -67,7 +67,7 @@ impl Mirrors {
     }
 
     /// Returns whether there is one of this robot.
-    pub(super) fn runs(&self, robot: &Name) -> bool {
+    pub(crate) fn runs(&self, robot: &Name) -> bool {
         lock(&self.running).contains_key(robot)
     }
 
@@ -75,7 +75,7 @@ impl Mirrors {
     ///
     /// # Errors
     /// It is not ready yet, or cannot be started.
-    pub(super) async fn reach(&self, robot: &Name) -> Result<Console, Unreached> {
+    pub(crate) async fn reach(&self, robot: &Name) -> Result<Console, Unreached> {
         let failed = |error: Failure| Unreached::Failed(error.to_string());
         let paths = self.paths(robot).map_err(failed)?;
         self.keep(robot, &paths).map_err(failed)?;
@@ -88,7 +88,7 @@ impl Mirrors {
     }
 
     /// Notes that a page is open until the result is dropped.
-    pub(super) fn used(&self, robot: &Name) -> Used {
+    pub(crate) fn used(&self, robot: &Name) -> Used {
         if let Some(mirror) = lock(&self.running).get_mut(robot) {
             mirror.pages += 1;
         }
@@ -137,7 +137,7 @@ impl Mirrors {
     }
 
     /// Ends those that nobody has used for a while.
-    pub(super) async fn end_idle(&self) {
+    pub(crate) async fn end_idle(&self) {
         let is_idle = |mirror: &Mirror| mirror.pages == 0 && mirror.used.elapsed() > IDLE_MAX;
         let mut idle = Vec::new();
         lock(&self.running).retain(|robot, mirror| {
@@ -160,7 +160,7 @@ impl Mirrors {
     }
 
     /// Ends all, and waits for them.
-    pub(super) fn end(&self) {
+    pub(crate) fn end(&self) {
         let all = std::mem::take(&mut *lock(&self.running));
         for (robot, mirror) in &all {
             if let Ok(paths) = self.paths(robot) {
