@@ -1,5 +1,5 @@
 //! Rotations as matrices, for poses that are converted between frames. Without nalgebra: every service reads
-//! settings of this crate, and grounding links no kinematics (`tests/layers.rs`).
+//! settings of this crate, and grounding links no kinematics (`tests/layers`).
 
 /// A rotation; the columns are the axes of the rotated frame.
 #[derive(Clone, Copy, Debug, PartialEq)]

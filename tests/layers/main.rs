@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod measures;
+
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const SERVICES: [&str; 13] = [
@@ -24,10 +26,14 @@ const SERVICES: [&str; 13] = [
 
 /// Everything that `package` is built from, itself included, down to this depth.
 fn tree(package: &str, depth: &str) -> BTreeSet<String> {
+    tree_in("", &["--package", package, "--depth", depth])
+}
+
+fn tree_in(workspace: &str, options: &[&str]) -> BTreeSet<String> {
     let output = Command::new(env!("CARGO"))
         .args(["tree", "--offline", "--locked", "--edges", "normal", "--prefix", "none"])
-        .args(["--package", package, "--depth", depth])
-        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+        .args(options)
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(workspace))
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -131,6 +137,12 @@ fn sdk_links_little() {
     for absent in heavy {
         assert!(!tree.contains(absent), "whichone-sdk depends on {absent}");
     }
+}
+
+#[test]
+fn lock_file_of_the_example_is_up_to_date() {
+    let tree = tree_in("docs/examples/rust", &[]);
+    assert!(tree.contains("lab") && tree.contains("whichone-sdk"), "{tree:?}");
 }
 
 #[test]
