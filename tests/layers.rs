@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::Command;
 
-const SERVICES: [&str; 12] = [
+const SERVICES: [&str; 13] = [
     "speech",
     "grounding",
     "policy",
@@ -15,6 +15,7 @@ const SERVICES: [&str; 12] = [
     "ros1",
     "ros2",
     "link",
+    "gateway",
     "console",
     "recorder",
     "supervisor",

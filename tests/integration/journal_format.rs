@@ -1,4 +1,5 @@
-//! Journals of an earlier format: a group rejects them and offers a fresh start that keeps them.
+//! Journals of earlier versions: a group continues those that it can read, and rejects others with the offer of a fresh
+//! start that keeps them.
 
 use std::path::{Path, PathBuf};
 
@@ -42,4 +43,27 @@ fn journal_of_format_1_stops_the_start_until_a_fresh_start_keeps_it_aside() {
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
     group.verify_journals();
     group.down();
+}
+
+/// Journals of earlier versions, each of a group that was ended while it asked which of the white bowls is wanted. A
+/// change of what a journal holds adds those of the version before.
+const VERSIONS: [&str; 1] = ["2cb64e52"];
+
+#[test]
+fn groups_of_earlier_versions_go_on_where_they_were() {
+    for version in VERSIONS {
+        let mut group = Group::with_journals_of(version);
+        let started = group.start(&[]);
+        assert_eq!(started.code, Some(0), "{version}: {started:?}\n{}", group.logs());
+        let outcome = group.await_pick(Some("white2"));
+        assert_eq!(outcome["object"], "white2", "{version}: {outcome}");
+        let said = group.must(&["say", "the clear bowl", "--json"]).json();
+        assert!(said["utterance"].as_u64() > Some(8), "{version}: numbers go on: {said}");
+        group.verify_journals();
+        // The present version has written into them, and reads them again.
+        group.must(&["down"]);
+        let again = group.start(&[]);
+        assert_eq!(again.code, Some(0), "{version}: {again:?}\n{}", group.logs());
+        group.down();
+    }
 }

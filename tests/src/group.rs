@@ -46,11 +46,25 @@ impl Group {
         Self::at(tempfile::Builder::new().prefix("wo").tempdir(), config)
     }
 
+    /// Creates a group with the journals of a folder below `tests/fixtures/groups`, which know it by the name `old`.
+    pub fn with_journals_of(folder: &str) -> Self {
+        let home = tempfile::Builder::new().prefix("wo").tempdir();
+        let group = Self::named("old", home, shipped_config());
+        let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/groups").join(folder);
+        let root = group.paths.root();
+        let copied = Command::new("cp").arg("-r").arg(fixture.join(".")).arg(root).status();
+        assert!(copied.is_ok_and(|status| status.success()), "{}", fixture.display());
+        group
+    }
+
     fn at(home: std::io::Result<tempfile::TempDir>, config: PathBuf) -> Self {
-        let home = home.expect("a temporary folder");
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let name = format!("{}{number}", name_prefix(std::process::id()));
-        let name = GroupName::new(&name).expect("an allowed name");
+        Self::named(&format!("{}{number}", name_prefix(std::process::id())), home, config)
+    }
+
+    fn named(name: &str, home: std::io::Result<tempfile::TempDir>, config: PathBuf) -> Self {
+        let home = home.expect("a temporary folder");
+        let name = GroupName::new(name).expect("an allowed name");
         let paths = GroupPaths::in_home(home.path(), &name).expect("a short path");
         Self { home, paths, config, is_up: false }
     }

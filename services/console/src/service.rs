@@ -28,7 +28,7 @@ use crate::hub::{Channels, Hub};
 use crate::live::{self, Live};
 use crate::metrics::Metrics;
 use crate::scenes::{Desk, Scenes};
-use crate::server::connections::Limits;
+use crate::server::limits::Limits;
 use crate::server::web::Web;
 use crate::server::{Access, App};
 use crate::study::{self, Study};

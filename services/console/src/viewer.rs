@@ -16,9 +16,10 @@ use axum::routing::get;
 use serde::Deserialize;
 use service::console_link::random_secret;
 use service::exit::{Exit, Failure};
+use web_server::request::is_for_this_machine;
 
 use crate::history::Interaction;
-use crate::server::{Access, page_asset, secure};
+use crate::server::{page_asset, secure};
 
 /// What the page marks a file with.
 const FORMAT: &str = "whichone.interaction/1";
@@ -105,7 +106,7 @@ async fn answer(State(shared): State<Arc<Shared>>, request: Request) -> Response
 
 /// Rejects requests that are not addressed to this machine, and adds the security headers.
 async fn guard(request: Request, next: Next) -> Response<Body> {
-    let mut response = match Access::open().is_addressed(request.headers()) {
+    let mut response = match is_for_this_machine(request.headers()) {
         true => next.run(request).await,
         false => StatusCode::MISDIRECTED_REQUEST.into_response(),
     };

@@ -11,10 +11,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use clap::{Args, Parser, Subcommand};
-use link::gateway::feed::Change;
 use link::keyring::{self, Wanted};
-use link::names::Name;
 use link::simulated::{self, Counts, Fleet};
+use roster::{Change, Name};
 use service::exit::{Exit, Failure};
 
 /// Longest time for everything to be there.

@@ -14,10 +14,11 @@ use link::identity::{Identity, Role};
 use link::line::{Line, Packed};
 use link::mirrored::TOPICS;
 use link::motion::{Order, Request, Seen};
-use link::names::{Call, Keys, Name};
+use link::names::{Call, Keys};
 use link::say::{Said, Sent};
 use link::session::{connect, request};
 use messages::{RequestKey, Sound};
+use roster::Name;
 use zenoh::{Session, Wait};
 
 /// Pause between two rounds.

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
+use roster::Name;
 use service::exit::{Exit, Failure};
 use service::group::{ENV_GROUP, GroupName};
 
 use crate::keyring::{self, Wanted};
-use crate::names::Name;
 use crate::{fleet, mirror, robot, router, watch};
 
 /// Links robots with operators elsewhere (docs/remote.md).

@@ -5,13 +5,13 @@ use std::path::Path;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
+use roster::{Name, Presence};
 use serde::Serialize;
 use service::exit::{Exit, Failure};
 use zenoh::Wait;
 
 use crate::identity::Identity;
-use crate::names::{Call, Keys, Name, robot_of};
-use crate::presence::Presence;
+use crate::names::{Call, Keys, robot_of};
 use crate::session::{connect, request};
 
 /// Time for robots to answer.

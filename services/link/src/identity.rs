@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use roster::Name;
 use serde::{Deserialize, Serialize};
 use service::exit::{Exit, Failure};
-
-use crate::names::Name;
 
 /// Certificate of the authority, in every folder of keys.
 pub const AUTHORITY: &str = "authority.pem";

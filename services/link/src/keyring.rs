@@ -9,13 +9,13 @@ use rcgen::{
     BasicConstraints, CertificateParams, DistinguishedName, DnType, ExtendedKeyUsagePurpose, IsCa,
     Issuer, KeyPair, KeyUsagePurpose, date_time_ymd,
 };
+use roster::Name;
 use serde::{Deserialize, Serialize};
 use service::console_link::random_secret;
 use service::exit::{Exit, Failure};
 use service::folders::{FolderError, make_private};
 
 use crate::identity::{AUTHORITY, CERTIFICATE, Identity, KEY, LINK, Role, user};
-use crate::names::Name;
 use crate::router;
 
 /// What the folder holds.

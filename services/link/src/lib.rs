@@ -3,11 +3,9 @@
 //! The crate is what travels and the rules by which it does: [`frame`] and [`mirrored`] (state), [`line`] (the robot's
 //! voice), [`say`] (words), [`motion`] (orders to the motion stop), [`offset`] (time), [`names`] and [`identity`], all of which neither
 //! know the transport nor do any IO beyond reading a folder of keys. The link itself comes with the feature `zenoh`:
-//! `robot` and `mirror` are its two ends, `router` lies between them, `keyring` makes their keys. The [`gateway`] needs no
-//! transport.
+//! `robot` and `mirror` are its two ends, `router` lies between them, `keyring` makes their keys.
 
 pub mod frame;
-pub mod gateway;
 pub mod identity;
 pub mod line;
 pub mod mirrored;

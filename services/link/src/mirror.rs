@@ -14,6 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use config::Settings;
+use roster::Name;
 use service::exit::{Exit, Failure};
 use service::group::{GroupName, GroupPaths};
 use service::worker_channel::{DeviceReceiver, DeviceSender, channel};
@@ -21,7 +22,7 @@ use zenoh::sample::{Sample, SampleKind};
 use zenoh::{Session, Wait};
 
 use crate::identity::Identity;
-use crate::names::{Call, Keys, Name};
+use crate::names::{Call, Keys};
 use crate::presence::Hello;
 use crate::session::{close, connect_patiently, request};
 use local::Local;

@@ -1,35 +1,13 @@
 //! What a list of robots shows of one, and what a mirror needs to know of it.
 
 use messages::{ArmStatus, PickPhase, PolicyView};
+use roster::Presence;
 use scene::Scene;
 use serde::{Deserialize, Serialize};
 use service::Span;
 
 /// Interval at which a robot says that it is there.
 pub const PRESENCE_EVERY: Span = Span::from_ms(5_000);
-
-/// A robot in a few words.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Presence {
-    /// Its name.
-    pub robot: String,
-    /// Its version of whichone.
-    pub version: String,
-    /// State of its group, as `whichone status` shows it; empty while its supervisor does not answer.
-    pub state: String,
-    /// The scene.
-    pub scene: String,
-    /// What the dialogue is at: `idle`, or the kind of the standing decision (`ask`, `pick` …).
-    pub dialogue: String,
-    /// The question that stands, or the robot's last line; empty for none.
-    pub line: String,
-    /// The likeliest object and its probability, while an interaction is open.
-    pub likeliest: Option<(String, f64)>,
-    /// What the arm does: the phase of its pick; `rest` for none.
-    pub arm: String,
-    /// Whether the motion stop is latched.
-    pub stopped: bool,
-}
 
 /// What a mirror begins with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,29 +20,25 @@ pub struct Hello {
     pub settings: String,
 }
 
-impl Presence {
-    /// Adds what the policy and the arm have said last.
-    #[must_use]
-    pub fn with(
-        mut self,
-        view: Option<&PolicyView>,
-        status: Option<&ArmStatus>,
-        scene: &Scene,
-    ) -> Self {
-        if let Some(view) = view {
-            let is_open = view.interaction > 0;
-            self.dialogue = if is_open { view.decision.name() } else { "idle" }.to_owned();
-            self.line.clone_from(&view.text);
-            self.likeliest = is_open.then(|| likeliest(view, scene)).flatten();
-        }
-        if let Some(status) = status {
-            let phase = status.phase.get();
-            let is_at_rest = matches!(phase, PickPhase::Idle | PickPhase::Done);
-            self.arm =
-                if is_at_rest { "rest".to_owned() } else { format!("{phase:?}").to_lowercase() };
-            self.stopped = status.stopped != 0;
-        }
-        self
+/// Adds what the policy and the arm have said last.
+pub fn add(
+    presence: &mut Presence,
+    view: Option<&PolicyView>,
+    status: Option<&ArmStatus>,
+    scene: &Scene,
+) {
+    if let Some(view) = view {
+        let is_open = view.interaction > 0;
+        presence.dialogue = if is_open { view.decision.name() } else { "idle" }.to_owned();
+        presence.line.clone_from(&view.text);
+        presence.likeliest = is_open.then(|| likeliest(view, scene)).flatten();
+    }
+    if let Some(status) = status {
+        let phase = status.phase.get();
+        let is_at_rest = matches!(phase, PickPhase::Idle | PickPhase::Done);
+        presence.arm =
+            if is_at_rest { "rest".to_owned() } else { format!("{phase:?}").to_lowercase() };
+        presence.stopped = status.stopped != 0;
     }
 }
 

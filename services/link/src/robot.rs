@@ -16,6 +16,7 @@ use std::time::Duration;
 
 use config::Settings;
 use messages::{AudioChunk, Injection, Receipt, Service, SoundFile, topics};
+use roster::Presence;
 use service::bus::{EncodedWriter, Reader, WakeListener, Writer};
 use service::client::{Client, random_number};
 use service::control::{Watched, watch_supervisor};
@@ -28,7 +29,7 @@ use zenoh::query::Query;
 
 use crate::identity::Identity;
 use crate::names::{Call, Keys};
-use crate::presence::{PRESENCE_EVERY, Presence};
+use crate::presence::{self, PRESENCE_EVERY};
 use crate::say::Asked;
 use crate::session::close;
 use senders::Senders;
@@ -179,17 +180,13 @@ impl Robot {
         self.send_line();
         let Some(senders) = &self.senders else { return };
         self.sources.send(senders, now);
-        let presence = self.presence.clone().with(
-            self.sources.view(),
-            self.sources.status(),
-            &self.settings.scene,
-        );
+        let (view, status) = (self.sources.view(), self.sources.status());
+        presence::add(&mut self.presence, view, status, &self.settings.scene);
         let is_due = self.presence_sent.is_none_or(|sent| now >= sent + PRESENCE_EVERY);
         if is_due {
             self.presence_sent = Some(now);
-            senders.presence(&presence);
+            senders.presence(&self.presence);
         }
-        self.presence = presence;
     }
 
     fn on_status(&mut self, status: Watched) {

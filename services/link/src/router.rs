@@ -6,13 +6,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use roster::Name;
 use serde_json::{Value, json};
 use service::exit::{Exit, Failure};
 use zenoh::{Config, Wait};
 
 use crate::identity::{AUTHORITY, Role, absolute};
 use crate::keyring::{Member, PORT, Ring, write_private};
-use crate::names::{Call, Keys, Name};
+use crate::names::{Call, Keys};
 use crate::session::{OPEN_MS, close, transport};
 
 const FILE: &str = "router.json";

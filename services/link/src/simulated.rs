@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use messages::topics;
 use messages::{ArmStatus, FixedText, MotionOrder, PolicyView, Receipt, RequestKey, Sound};
+use roster::{Name, Presence};
 use service::exit::{Exit, Failure};
 use service::stop_socket::StopState;
 use service::{Time, clock};
@@ -23,8 +24,8 @@ use crate::frame::Outgoing;
 use crate::identity::Identity;
 use crate::mirrored::TOPICS;
 use crate::motion::{Answer, Register, Request, Stamped};
-use crate::names::{Call, Keys, Name, call_of};
-use crate::presence::{Hello, PRESENCE_EVERY, Presence};
+use crate::names::{Call, Keys, call_of};
+use crate::presence::{Hello, PRESENCE_EVERY};
 use crate::say::{Receipts, Said, Sent};
 use crate::session::{connect_patiently, reply};
 

@@ -8,15 +8,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 
+use roster::{Change, Name, Presence};
 use service::exit::{Exit, Failure};
 use zenoh::pubsub::Subscriber;
 use zenoh::sample::{Sample, SampleKind};
 use zenoh::{Session, Wait};
 
-use crate::gateway::feed::Change;
 use crate::identity::Identity;
-use crate::names::{Call, Keys, Name, robot_of};
-use crate::presence::Presence;
+use crate::names::{Call, Keys, robot_of};
 use crate::session::{close, connect_patiently, request};
 
 /// Interval of an empty line, by which the end of the reader is noticed.

@@ -2,7 +2,7 @@
 
 use link::identity::{Identity, Role};
 use link::keyring::{Wanted, init};
-use link::names::Name;
+use roster::Name;
 use std::fs;
 
 fn name(text: &str) -> Name {

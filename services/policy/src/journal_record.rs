@@ -63,7 +63,7 @@ pub(crate) fn explain(scene: Option<&Scene>, record: &Record) -> PolicyRecord {
             .and_then(|handed_over| handed_over.object())
             .map(|object| names.object(object)),
         putting_back: state.putting_back.as_ref().map(|back| names.object(back.object)),
-        stopped: state.motion_stop.is_latched(),
+        stopped: state.stop.motion.is_latched(),
     }
 }
 

@@ -250,7 +250,7 @@ impl PolicyNode {
 
     /// Reports the effect of a stop that a user ordered: only a status that is younger than the order shows it.
     fn report_stop(&mut self, now: Time, fx: &mut Fx) {
-        let Some(order) = self.state.stop_order else { return };
+        let Some(order) = self.state.stop.order else { return };
         // A time in the future is of a clock before a restart of the machine.
         let accepted = order.accepted.min(now);
         if self.rested.is_some_and(|rested| rested >= accepted) {
@@ -264,7 +264,7 @@ impl PolicyNode {
     fn watch_arm(&mut self, status: &ArmStatus, now: Time, fx: &mut Fx) {
         let stop = motion_stop(status);
         self.rested = (stop == MotionStop::Stopped).then_some(now);
-        if stop != self.state.motion_stop {
+        if stop != self.state.stop.motion {
             self.apply(Cause::MotionStop(stop), now, fx);
         }
         self.report_stop(now, fx);
@@ -344,6 +344,9 @@ impl PolicyNode {
 
     fn apply(&mut self, cause: Cause, now: Time, fx: &mut Fx) {
         self.manager.step(&mut self.state, &cause, now);
+        if let Cause::Utterance(utterance) = &cause {
+            tracing::debug!(seq = %utterance.seq, rule = self.manager.rule(), "utterance applied");
+        }
         fx.append(Record { cause, at: now, state: self.state.clone() });
         self.sync_table(now);
         self.send(now, fx);

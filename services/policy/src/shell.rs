@@ -27,7 +27,8 @@ pub struct PolicyProgram;
 
 impl Program for PolicyProgram {
     const SERVICE: Service = Service::Policy;
-    const RECORD: Option<&'static str> = Some("policy/11");
+    const RECORD: Option<&'static str> = Some("policy/12");
+    const OLDER_RECORDS: &'static [&'static str] = &["policy/10"];
     const ABOUT: &'static str = "maintains the belief over the objects and decides what to ask or do \
                                  [--planner NAME | --planner-program PROGRAM [ARGUMENT...]]";
     type Node = PolicyNode;

@@ -43,6 +43,7 @@ pub struct SpeechProgram;
 impl Program for SpeechProgram {
     const SERVICE: Service = Service::Speech;
     const RECORD: Option<&'static str> = Some("speech/6");
+    const OLDER_RECORDS: &'static [&'static str] = &["speech/5"];
     const ABOUT: &'static str =
         "recognises what users say or type, and speaks the robot's questions";
     type Node = SpeechNode;

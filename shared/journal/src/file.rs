@@ -68,6 +68,25 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
         Self::open_with(path, header, |_| Err(JournalOpenError::Missing))
     }
 
+    /// As [`Journal::open`], but also takes over a journal of one of the `older` kinds, whose records decode as
+    /// records of the present one. The file states the present kind from its next rotation on.
+    ///
+    /// # Errors
+    /// See [`JournalOpenError`]; the file is left as it is.
+    pub fn take_over(
+        path: &Path,
+        header: &Header,
+        older: &[&str],
+    ) -> Result<(Self, Recovered<R>), JournalOpenError> {
+        let found = load(path).and_then(|bytes| header::decode(&bytes));
+        let record = found.map(|stored| stored.header.record).ok();
+        let Some(record) = record.filter(|record| older.contains(&record.as_str())) else {
+            return Self::open(path, header);
+        };
+        let (journal, recovered) = Self::open(path, &Header { record, ..header.clone() })?;
+        Ok((Self { header: header.clone(), ..journal }, recovered))
+    }
+
     /// As [`Journal::open`], but makes a new journal where there is no file. The folder must exist.
     ///
     /// # Errors

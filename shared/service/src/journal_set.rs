@@ -203,11 +203,13 @@ impl Unusable {
     }
 }
 
-/// Opens a service's journal, or makes it where the set says that there is none yet.
+/// Opens a service's journal, or makes it where the set says that there is none yet. Journals of the `older` kinds of
+/// record are continued.
 pub(crate) fn open<R: Serialize + DeserializeOwned>(
     environment: &Environment,
     service: &str,
     record: &str,
+    older: &[&str],
 ) -> Result<Opened<R>, Failure> {
     let paths = &environment.paths;
     let file = paths.epoch_file();
@@ -225,7 +227,7 @@ pub(crate) fn open<R: Serialize + DeserializeOwned>(
     let path = paths.journal_file(service);
     let header = set.header(record, paths, entry);
     let opened = patiently(|| match entry.exists {
-        true => Journal::open(&path, &header),
+        true => Journal::take_over(&path, &header, older),
         false => Journal::open_or_create(&path, &header),
     });
     let (journal, recovered) = opened.map_err(|error| {

@@ -3,11 +3,11 @@
 use std::path::{Component, Path};
 
 use ::console::inputs::{
-    Do, Message, PcmFrame, Request, Verb, form_field, hello, message, read_binary, read_command,
-    read_text, say,
+    Do, Message, PcmFrame, Request, Verb, hello, message, read_binary, read_command, read_text, say,
 };
 use messages::SoundFile;
 use service::Time;
+use web_server::login::form_field;
 
 use super::bytes::{Input, chosen};
 

@@ -9,6 +9,7 @@ use service::clock;
 use service::console_link::random_secret;
 use tokio::sync::{Notify, mpsc};
 use tokio::time::{Instant, interval_at};
+use web_server::connections::Connection;
 
 use super::protocol::{self, Call, Level, Request};
 use super::say;
@@ -16,7 +17,6 @@ use crate::hub::command::Verb;
 use crate::hub::outbound::Answer;
 use crate::hub::{OutboundFrame, Role, ViewerId};
 use crate::server::App;
-use crate::server::connections::Connection;
 use crate::server::socket::{Ended, Out, PROBE_EVERY, Pace, close, send};
 
 /// Answers that wait for a viewer; one that does not take them is not read meanwhile.

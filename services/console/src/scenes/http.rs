@@ -11,9 +11,10 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use web_server::request::is_own;
 
 use super::desk::Refusal;
-use crate::server::{Access, App};
+use crate::server::App;
 
 /// Largest request: a scene file twice, as its text and as a document.
 const BODY_MAX: usize = 32 << 20;
@@ -82,7 +83,7 @@ async fn use_scene(
 /// The request is of the operator's own page.
 fn must_operate(app: &App, headers: &HeaderMap) -> Result<(), Refusal> {
     let refuse = |why: &str| Refusal::new(StatusCode::FORBIDDEN, why);
-    if !Access::is_own(headers) {
+    if !is_own(headers) {
         return Err(refuse("only the console's own pages may change scenes"));
     }
     let session = headers.get(SESSION).and_then(|session| session.to_str().ok());

@@ -1,20 +1,18 @@
 //! Access rules: the console's own pages, the token, and the sessions of browsers that have shown it.
 //!
-//! Decided by a request's headers. A session is a random name in a cookie; it lives through restarts of
-//! the console, in a file of the console's own; the token's file belongs to the owner of the group.
+//! Decided by a request's headers. The token's file belongs to the owner of the group, the sessions' one to the console.
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use axum::http::{HeaderMap, header};
-use safe_files::{read_private, replace_private, replace_private_synced};
+use safe_files::{read_private, replace_private_synced};
 use service::console_link::{is_token, random_secret};
+use web_server::request::{bearer, is_for_this_machine, text};
+use web_server::sessions::{Rules, Sessions, hash};
 
-/// Most sessions; the oldest gives way.
-const SESSIONS_MAX: usize = 64;
-/// Life of a session, seconds.
-const SESSION_S: u64 = 30 * 24 * 3_600;
+/// The rules of browsers' sessions.
+const SESSIONS: Rules = Rules { cookie: "whichone", most: 64, life_s: 30 * 24 * 3_600 };
 
 /// Who may use the page.
 #[derive(Debug)]
@@ -23,16 +21,9 @@ pub struct Access(Option<Guard>);
 /// The token, and the sessions that were begun with it.
 #[derive(Debug)]
 struct Guard {
+    /// The token's hash.
     token: String,
-    sessions_file: PathBuf,
-    sessions: Mutex<Vec<Session>>,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Session {
-    name: String,
-    /// When it began, Unix seconds.
-    began_s: u64,
+    sessions: Sessions<()>,
 }
 
 impl Access {
@@ -60,22 +51,26 @@ impl Access {
                 token
             }
         };
-        let sessions = Mutex::new(read(&sessions_file, &token));
-        Ok(Self(Some(Guard { token, sessions_file, sessions })))
+        let sessions = Sessions::open(SESSIONS, sessions_file);
+        Ok(Self(Some(Guard { token: hash(&token), sessions })))
     }
 
     /// Returns whether the request is addressed to this console. Without a token it is only reached
     /// from this machine; another host name here is an attack by another site (DNS rebinding).
     pub fn is_addressed(&self, headers: &HeaderMap) -> bool {
-        let Some(host) = text(headers, &header::HOST) else { return false };
-        self.0.is_some() || is_this_machine(host)
+        match &self.0 {
+            Some(_) => text(headers, &header::HOST).is_some(),
+            None => is_for_this_machine(headers),
+        }
     }
 
-    /// Returns whether the request carries the token as a bearer, or the cookie of a session.
+    /// Returns whether the request carries the token as a bearer, or without a bearer the cookie of a session.
     pub fn is_known(&self, headers: &HeaderMap, now_s: u64) -> bool {
         let Some(guard) = &self.0 else { return true };
-        bearer(headers).is_some_and(|said| same(said, &guard.token))
-            || guard.has_session(headers, now_s)
+        match bearer(headers) {
+            Some(said) => guard.is_token(said),
+            None => guard.sessions.person(headers, now_s, guard.is_valid()).is_some(),
+        }
     }
 
     /// Returns why a request is refused that is not known: it carries no token, or a wrong one, be it in its
@@ -89,132 +84,33 @@ impl Access {
 
     /// Returns whether this is the token. Without one, any word is.
     pub fn is_token(&self, said: &str) -> bool {
-        self.0.as_ref().is_none_or(|guard| same(said, &guard.token))
-    }
-
-    /// Returns whether the request comes from a page of this console: its origin is its host.
-    pub fn is_own(headers: &HeaderMap) -> bool {
-        let (Some(origin), Some(host)) = (Self::origin(headers), text(headers, &header::HOST))
-        else {
-            return false;
-        };
-        let place = origin.strip_prefix("http://").or(origin.strip_prefix("https://"));
-        place.is_some_and(|place| place.eq_ignore_ascii_case(host))
-    }
-
-    /// Returns the origin of the page that makes the request.
-    pub fn origin(headers: &HeaderMap) -> Option<&str> {
-        text(headers, &header::ORIGIN)
+        self.0.as_ref().is_none_or(|guard| guard.is_token(said))
     }
 
     /// Begins a session for a browser that shows the token; returns its cookie.
     pub fn log_in(&self, headers: &HeaderMap, said: &str, now_s: u64) -> Option<String> {
-        let guard = self.0.as_ref().filter(|guard| same(said, &guard.token))?;
-        let name = random_secret().ok()?;
-        guard.begin(Session { name: name.clone(), began_s: now_s });
-        let cookie = cookie_name(headers);
-        Some(format!("{cookie}={name}; Path=/; Max-Age={SESSION_S}; HttpOnly; SameSite=Strict"))
+        let guard = self.0.as_ref().filter(|guard| guard.is_token(said))?;
+        let value = guard.sessions.begin((), said, now_s, guard.is_valid())?;
+        Some(guard.sessions.cookie(headers, Some(&value), false))
     }
-}
-
-/// Returns the token that a program sends.
-fn bearer(headers: &HeaderMap) -> Option<&str> {
-    text(headers, &header::AUTHORIZATION)?.strip_prefix("Bearer ")
 }
 
 impl Guard {
-    fn has_session(&self, headers: &HeaderMap, now_s: u64) -> bool {
-        let wanted = cookie_name(headers);
-        let cookies =
-            headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
-        let mut said = cookies.flat_map(|cookies| cookies.split(';')).filter_map(|pair| {
-            let (name, value) = pair.trim().split_once('=')?;
-            (name == wanted).then_some(value)
-        });
-        let sessions = self.sessions();
-        said.any(|said| {
-            sessions.iter().any(|known| known.is_alive(now_s) && same(said, &known.name))
-        })
+    fn is_token(&self, said: &str) -> bool {
+        hash(said) == self.token
     }
 
-    fn begin(&self, session: Session) {
-        let mut sessions = self.sessions();
-        sessions.retain(|known| known.is_alive(session.began_s));
-        while sessions.len() >= SESSIONS_MAX {
-            sessions.remove(0);
-        }
-        sessions.push(session);
-        // Without it the session ends with this process.
-        if let Err(error) = write(&self.sessions_file, &self.token, &sessions) {
-            tracing::warn!(%error, "a browser's session is not stored");
-        }
+    fn is_valid(&self) -> impl Fn(&(), &str) -> bool {
+        |(), secret| secret == self.token
     }
-
-    fn sessions(&self) -> MutexGuard<'_, Vec<Session>> {
-        // Every change leaves a consistent list.
-        self.sessions.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Session {
-    fn is_alive(&self, now_s: u64) -> bool {
-        now_s < self.began_s.saturating_add(SESSION_S)
-    }
-}
-
-/// Reads the sessions that were begun with this token; those of another one are over.
-fn read(file: &Path, token: &str) -> Vec<Session> {
-    let text = read_private(file).unwrap_or_default();
-    let mut lines = text.lines();
-    if !lines.next().is_some_and(|begun_with| same(begun_with, token)) {
-        return Vec::new();
-    }
-    let session = |line: &str| {
-        let (name, began_s) = line.split_once(' ')?;
-        Some(Session { name: name.to_owned(), began_s: began_s.parse().ok()? })
-    };
-    lines.filter_map(session).collect()
-}
-
-fn write(file: &Path, token: &str, sessions: &[Session]) -> io::Result<()> {
-    let lines = sessions.iter().map(|session| format!("{} {}\n", session.name, session.began_s));
-    let text: String = std::iter::once(format!("{token}\n")).chain(lines).collect();
-    replace_private(file, &text)
-}
-
-fn text<'a>(headers: &'a HeaderMap, name: &header::HeaderName) -> Option<&'a str> {
-    headers.get(name)?.to_str().ok()
-}
-
-/// Returns the cookie's name. Browsers send a cookie to every port of a host, so it names the port that the
-/// browser sees: consoles on one host, also behind tunnels, do not take each other's place.
-fn cookie_name(headers: &HeaderMap) -> String {
-    let port = text(headers, &header::HOST).and_then(|host| host.rsplit_once(':'));
-    let port = port.and_then(|(_, port)| port.parse::<u16>().ok()).unwrap_or(0);
-    format!("whichone_{port}")
-}
-
-fn is_this_machine(host: &str) -> bool {
-    let name = match host.rsplit_once(':') {
-        Some((name, port)) if port.bytes().all(|b| b.is_ascii_digit()) => name,
-        _ => host,
-    };
-    let name = name.trim_start_matches('[').trim_end_matches(']');
-    let is_loopback = |ip: std::net::IpAddr| ip.is_loopback();
-    name.eq_ignore_ascii_case("localhost") || name.parse().is_ok_and(is_loopback)
-}
-
-/// Compares in constant time.
-fn same(said: &str, wanted: &str) -> bool {
-    let (said, wanted) = (said.as_bytes(), wanted.as_bytes());
-    let differ = said.iter().zip(wanted).fold(0, |differ, (a, b)| differ | (a ^ b));
-    said.len() == wanted.len() && differ == 0
 }
 
 #[cfg(test)]
 mod tests {
     use std::fs;
     use std::os::unix::fs::PermissionsExt;
+
+    use safe_files::replace_private;
 
     use super::*;
 
@@ -248,13 +144,8 @@ mod tests {
     fn open_access_is_for_this_machine_only() {
         let (_folder, file) = guarded();
         let (open, guarded) = (Access::open(), by_token(&file));
-        for host in ["localhost:8377", "127.0.0.1:9", "[::1]:8377", "LOCALHOST", "127.0.0.1"] {
-            assert!(open.is_addressed(&headers(&[("host", host)])), "{host}");
-        }
-        for host in ["evil.example", "evil.example:8377", "10.0.0.1:8377", "localhost.evil.example"]
-        {
-            assert!(!open.is_addressed(&headers(&[("host", host)])), "{host}");
-        }
+        assert!(open.is_addressed(&headers(&[("host", "localhost:8377")])));
+        assert!(!open.is_addressed(&headers(&[("host", "evil.example:8377")])));
         assert!(!open.is_addressed(&HeaderMap::new()));
         assert!(guarded.is_addressed(&headers(&[("host", "robot.lab:8377")])));
         assert!(open.is_known(&HeaderMap::new(), 0) && !guarded.is_known(&HeaderMap::new(), 0));
@@ -271,8 +162,8 @@ mod tests {
         assert!(!access.is_known(&bearer("correct-hors"), 0));
         assert_eq!(access.log_in(&HeaderMap::new(), "battery-staple", 0), None);
         let browser = logged_in(&access, "localhost:8377", 100);
-        assert!(access.is_known(&browser, 100 + SESSION_S - 1));
-        assert!(!access.is_known(&browser, 100 + SESSION_S), "it ends");
+        assert!(access.is_known(&browser, 100 + SESSIONS.life_s - 1));
+        assert!(!access.is_known(&browser, 100 + SESSIONS.life_s), "it ends");
         let cookie = format!("whichone_8377={TOKEN}");
         let token_as_cookie = headers(&[("host", "localhost:8377"), ("cookie", &cookie)]);
         assert!(!access.is_known(&token_as_cookie, 100));
@@ -286,11 +177,12 @@ mod tests {
         let access = by_token(&file);
         let first = logged_in(&access, "localhost:1", 0);
         let others: Vec<HeaderMap> =
-            (1..=SESSIONS_MAX as u64).map(|n| logged_in(&access, "localhost:1", n)).collect();
+            (1..=SESSIONS.most as u64).map(|n| logged_in(&access, "localhost:1", n)).collect();
         assert!(!access.is_known(&first, 100), "the oldest has given way");
         assert!(others.iter().all(|other| access.is_known(other, 100)));
         let stored = fs::read_to_string(file.with_file_name("console.sessions")).unwrap();
-        assert_eq!(stored.lines().count(), 1 + SESSIONS_MAX);
+        assert!(!stored.contains(TOKEN));
+        assert_eq!(stored.matches("began_s").count(), SESSIONS.most);
         replace_private(&file, "another-token").unwrap();
         let renewed = by_token(&file);
         assert!(others.iter().all(|other| !renewed.is_known(other, 100)));
@@ -322,15 +214,5 @@ mod tests {
         assert!(!restarted.is_known(&browser, 1), "sessions of the former token are over");
         let browser = restarted.log_in(&HeaderMap::new(), "my-own-word-123", 1);
         assert!(browser.is_some());
-    }
-
-    #[test]
-    fn access_knows_the_consoles_own_pages() {
-        let own = |origin, host| Access::is_own(&headers(&[("origin", origin), ("host", host)]));
-        assert!(own("http://localhost:8377", "localhost:8377"));
-        assert!(own("https://robot.lab", "robot.lab"));
-        assert!(!own("http://localhost:9000", "localhost:8377"));
-        assert!(!own("null", "localhost:8377"));
-        assert!(!Access::is_own(&headers(&[("host", "localhost:8377")])));
     }
 }

@@ -2,7 +2,7 @@
 
 mod access;
 mod assets;
-pub mod connections;
+pub mod limits;
 pub mod message;
 pub mod routes;
 pub(crate) mod socket;
@@ -11,15 +11,20 @@ pub mod web;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
 use axum::Router;
 use axum::body::Body;
 use axum::extract::{ConnectInfo, Request, State};
-use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Response, StatusCode, header};
+use axum::http::{HeaderMap, Method, Response, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Redirect};
 use axum::routing::get;
+use web_server::connections::{Gate, Of};
+use web_server::login::{pause, token_of};
+use web_server::request::{bearer, text, wants_page};
+use web_server::security::{content_policy, harden};
+use web_server::sessions::unix_s;
 
 use crate::history::History;
 use crate::hub::Hub;
@@ -27,7 +32,6 @@ use crate::hub::outbound::PageSettings;
 use crate::live::Live;
 use crate::scenes::Scenes;
 pub use access::Access;
-use connections::{Gate, Of};
 pub use routes::page_asset;
 
 /// Intervals of the server's progress reports while somebody is connected, and otherwise.
@@ -54,7 +58,7 @@ pub struct App {
 /// Serves a listener until the hub ends.
 pub async fn serve(gate: Gate, app: Arc<App>) -> std::io::Result<()> {
     let mut ending = app.hub.ending();
-    let (beating, table) = (Arc::clone(&app), Arc::clone(&gate.table));
+    let (beating, table) = (Arc::clone(&app), gate.table());
     let progress = tokio::spawn(async move {
         loop {
             beating.hub.progress.fetch_add(1, Ordering::Relaxed);
@@ -105,7 +109,7 @@ async fn admit(
     next: Next,
 ) -> Response<Body> {
     let (is_get, uri) = (request.method() == Method::GET, request.uri());
-    if let Some((token, rest)) = routes::token_of(uri).filter(|_| is_get) {
+    if let Some((token, rest)) = token_of(uri).filter(|_| is_get) {
         return routes::enter(&app, request.headers(), &token, &rest).await;
     }
     if app.access.is_known(request.headers(), unix_s()) {
@@ -115,12 +119,11 @@ async fn admit(
     if assets::is_open(uri.path()) {
         return next.run(request).await;
     }
-    let wants_page = request
-        .headers()
-        .get(header::ACCEPT)
-        .is_some_and(|accepts| accepts.to_str().is_ok_and(|accepts| accepts.contains("text/html")));
-    if wants_page && is_get {
+    if is_get && wants_page(request.headers()) {
         return Redirect::to("/login").into_response();
+    }
+    if bearer(request.headers()).is_some() {
+        pause().await;
     }
     let what = Access::refusal(request.headers(), false);
     let help =
@@ -128,15 +131,9 @@ async fn admit(
     (StatusCode::UNAUTHORIZED, format!("{what}; help: {help}\n")).into_response()
 }
 
-/// Returns the wall clock's time, Unix seconds.
-fn unix_s() -> u64 {
-    SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs()
-}
-
 /// Rejects requests that are not addressed to this console, and adds the security headers.
 async fn address(State(app): State<Arc<App>>, request: Request, next: Next) -> Response<Body> {
-    let host = request.headers().get(header::HOST);
-    let host = host.and_then(|host| host.to_str().ok()).map(str::to_owned);
+    let host = text(request.headers(), &header::HOST).map(str::to_owned);
     let mut response = if app.access.is_addressed(request.headers()) {
         next.run(request).await
     } else {
@@ -157,26 +154,13 @@ pub fn secure(headers: &mut HeaderMap, host: Option<&str>, camera: Option<&str>)
         |host: &&str| host.bytes().all(|b| b.is_ascii_alphanumeric() || b".-:[]".contains(&b));
     let sockets = host.filter(plain).map(|host| format!(" ws://{host} wss://{host}"));
     let camera = camera.map(|origin| format!(" {origin}")).unwrap_or_default();
-    let policy = format!(
-        "default-src 'self'; img-src 'self' data: blob:{camera}; media-src 'self' blob:; \
-         connect-src 'self'{}; worker-src 'self' blob:; object-src 'none'; base-uri 'none'; \
-         form-action 'self'; frame-ancestors 'none'",
+    let policy = content_policy(&format!(
+        "img-src 'self' data: blob:{camera}; media-src 'self' blob:; connect-src 'self'{}; \
+         worker-src 'self' blob:; ",
         sockets.unwrap_or_default()
-    );
-    if let Ok(policy) = HeaderValue::from_str(&policy) {
-        headers.insert(header::CONTENT_SECURITY_POLICY, policy);
-    }
-    for (name, value) in [
-        ("x-content-type-options", "nosniff"),
-        ("x-frame-options", "DENY"),
-        // Without any, browsers would not name the origin of the login form.
-        ("referrer-policy", "same-origin"),
-        ("cross-origin-opener-policy", "same-origin"),
-        ("cross-origin-resource-policy", "same-origin"),
-        ("permissions-policy", "microphone=(self), camera=(), geolocation=()"),
-    ] {
-        headers.insert(HeaderName::from_static(name), HeaderValue::from_static(value));
-    }
+    ));
+    headers.insert(header::CONTENT_SECURITY_POLICY, policy);
+    harden(headers);
 }
 
 #[cfg(test)]

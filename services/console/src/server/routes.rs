@@ -1,7 +1,6 @@
 //! Responses to single requests.
 
 use std::sync::Arc;
-use std::time::Duration;
 
 use axum::body::{Body, Bytes};
 use axum::extract::rejection::{PathRejection, QueryRejection};
@@ -14,10 +13,13 @@ use serde::{Deserialize, Serialize};
 use service::Span;
 use service::clock;
 use tokio::task::JoinHandle;
+use web_server::connections::Of;
+use web_server::login::{form_field, pause, secret_of, stepping_stone};
+use web_server::request::{bearer, is_own, origin, wants_page};
+use web_server::sessions::unix_s;
 
-use super::connections::Of;
 use super::message::FRAME_BYTES_MAX;
-use super::{Access, App, assets, socket as sockets, unix_s};
+use super::{Access, App, assets, socket as sockets};
 use crate::history::PAGE_MAX;
 use crate::hub::Role;
 use crate::live::{self, protocol::SUBPROTOCOL};
@@ -27,17 +29,13 @@ const WELL: Span = Span::from_ms(3_000);
 /// Largest sound of a line, bytes.
 const SOUND_MAX: u64 = 16 << 20;
 
-const FORM_MAX: usize = 2_048;
-/// Delay after a wrong token, against guessing.
-const PAUSE: Duration = Duration::from_secs(1);
-
 pub(super) async fn socket(
     State(app): State<Arc<App>>,
     ConnectInfo(Of(connection)): ConnectInfo<Of>,
     headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Response<Body> {
-    if !Access::is_own(&headers) {
+    if !is_own(&headers) {
         let why = "only the console's own pages may open its socket\n";
         return (StatusCode::FORBIDDEN, why).into_response();
     }
@@ -90,15 +88,15 @@ async fn admitted(app: &App, headers: &HeaderMap, query: &str) -> Result<(), (St
     let token = form_field(query, "token");
     let is_right = token.as_deref().is_some_and(|token| app.access.is_token(token));
     if !is_right && !app.access.is_known(headers, unix_s()) {
-        if token.is_some() {
-            tokio::time::sleep(PAUSE).await;
+        if token.is_some() || bearer(headers).is_some() {
+            pause().await;
         }
         let what = Access::refusal(headers, token.is_some());
         let help = "add ?token=TOKEN to the address; `whichone console` prints the token in a link";
         return Err((StatusCode::UNAUTHORIZED, format!("{what}; help: {help}\n")));
     }
-    let origin = Access::origin(headers);
-    if Access::is_own(headers) || origin.is_some_and(|origin| app.live.admits(origin)) {
+    let origin = origin(headers);
+    if is_own(headers) || origin.is_some_and(|origin| app.live.admits(origin)) {
         return Ok(());
     }
     let found = origin.unwrap_or("none");
@@ -233,9 +231,7 @@ pub fn page_asset(path: &str, headers: &HeaderMap) -> Response<Body> {
 }
 
 fn missing(headers: &HeaderMap) -> Response<Body> {
-    let accepts = headers.get(header::ACCEPT).and_then(|accepts| accepts.to_str().ok());
-    let page =
-        assets::find("/404.html").filter(|_| accepts.is_some_and(|a| a.contains("text/html")));
+    let page = assets::find("/404.html").filter(|_| wants_page(headers));
     let plain = || (StatusCode::NOT_FOUND, "page not found\n").into_response();
     page.map_or_else(plain, |page| {
         let mut response = page.respond(&HeaderMap::new());
@@ -249,11 +245,10 @@ pub(super) async fn login(
     headers: HeaderMap,
     form: Bytes,
 ) -> Response<Body> {
-    if !Access::is_own(&headers) {
+    if !is_own(&headers) {
         return (StatusCode::FORBIDDEN, "log in from the console's own page\n").into_response();
     }
-    let form = std::str::from_utf8(&form).ok().filter(|form| form.len() <= FORM_MAX);
-    let token = form.and_then(|form| form_field(form, "token")).unwrap_or_default();
+    let token = secret_of(&form);
     enter(&app, &headers, &token, "/").await
 }
 
@@ -277,43 +272,15 @@ pub(super) async fn enter(
                 return (unseen, cookie, Redirect::to(page)).into_response();
             }
             // A redirect of another site's link would not carry the cookie; the page's own one does.
-            let page = page.replace('&', "&amp;").replace('"', "&quot;");
-            let go_on = format!(
-                "<!doctype html><meta http-equiv=\"refresh\" content=\"0;url={page}\"><p>whichone\n"
-            );
+            let go_on = stepping_stone(page);
             let kind = [(header::CONTENT_TYPE, "text/html; charset=utf-8")];
             (unseen, cookie, kind, go_on).into_response()
         }
         None => {
-            tokio::time::sleep(PAUSE).await;
+            pause().await;
             (unseen, Redirect::to("/login?wrong")).into_response()
         }
     }
-}
-
-/// Returns the token of a link, and the link's page without it.
-pub(super) fn token_of(uri: &Uri) -> Option<(String, String)> {
-    let query = uri.query()?;
-    let token = form_field(query, "token")?;
-    let rest: Vec<&str> = query.split('&').filter(|pair| !pair.starts_with("token=")).collect();
-    // One slash: two would lead to another host.
-    let path = format!("/{}", uri.path().trim_start_matches('/'));
-    let mark = if rest.is_empty() { "" } else { "?" };
-    Some((token, format!("{path}{mark}{}", rest.join("&"))))
-}
-
-pub fn form_field(form: &str, name: &str) -> Option<String> {
-    let mut pairs = form.split('&').filter_map(|pair| pair.split_once('='));
-    let (_, value) = pairs.find(|(key, _)| *key == name)?;
-    let bytes = value.as_bytes();
-    let (mut text, mut at) = (Vec::new(), 0);
-    while let Some(&byte) = bytes.get(at) {
-        let hex = bytes.get(at + 1..at + 3).filter(|_| byte == b'%');
-        let hex = hex.and_then(|hex| u8::from_str_radix(std::str::from_utf8(hex).ok()?, 16).ok());
-        text.push(hex.unwrap_or(if byte == b'+' { b' ' } else { byte }));
-        at += if hex.is_some() { 3 } else { 1 };
-    }
-    String::from_utf8(text).ok()
 }
 
 #[cfg(test)]
@@ -331,27 +298,5 @@ mod tests {
             let why = of(query).unwrap_err();
             assert!(why.starts_with("expected before=N and limit=M"), "{query}: {why}");
         }
-    }
-
-    #[test]
-    fn link_leads_to_its_page_without_the_token() {
-        let split = |link: &str| token_of(&link.parse().unwrap());
-        let of = |token: &str, page: &str| Some((token.to_owned(), page.to_owned()));
-        assert_eq!(split("/?token=abc"), of("abc", "/"));
-        assert_eq!(
-            split("/study?lang=de&token=a%2Db&role=screen"),
-            of("a-b", "/study?lang=de&role=screen")
-        );
-        assert_eq!(split("//evil.example/?token=abc"), of("abc", "/evil.example/"));
-        assert_eq!(split("/?tokens=abc"), None);
-        assert_eq!(split("/"), None);
-    }
-
-    #[test]
-    fn login_reads_a_url_encoded_form() {
-        let form = "a=b&token=p%26a+b%25%C3%A9%zz";
-        assert_eq!(form_field(form, "token").as_deref(), Some("p&a b%é%zz"));
-        assert_eq!(form_field("token=%ff", "token"), None);
-        assert_eq!(form_field("", "token"), None);
     }
 }

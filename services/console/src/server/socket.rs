@@ -11,9 +11,9 @@ use tokio::sync::mpsc;
 use tokio::time::{Instant, interval_at, sleep_until, timeout};
 use tungstenite::Error as SocketError;
 use tungstenite::error::ProtocolError;
+use web_server::connections::Connection;
 
 use super::App;
-use super::connections::Connection;
 use super::message::{self, Do, FRAME_BYTES_MAX, Hello, Message, PROTOCOL};
 use crate::hub::board::Cursor;
 use crate::hub::outbound::{Done, PageMessage, Welcome};

@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 
 use service::{Span, Time};
 use tokio::runtime::Runtime;
+use web_server::connections::{Gate, Pages};
 
-use super::connections::{Connections, Gate};
 use super::{App, serve};
 
 /// Ports that are tried from the configured one on.
@@ -108,7 +108,7 @@ impl Web {
             tracing::warn!(%error, "the page's address is not written");
         }
         let app = Arc::clone(&self.app);
-        let gate = Gate { listener, table: Arc::new(Connections::new(self.others_max)) };
+        let gate = Gate::new(listener, self.others_max, Pages::Apart);
         if let Some(runtime) = &self.runtime {
             runtime.spawn(async move {
                 if let Err(error) = serve(gate, app).await {

@@ -6,10 +6,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use roster::Name;
 use service::control::{DownReport, REQUEST_BYTES_MAX, Refusal, RefusalKind, Reply, Request};
 use service::status::{Actual, GroupState, GroupStatus, ServiceState, ServiceStatus, Wanted};
-
-use crate::names::Name;
 
 /// Timeout of a client for its request and its reply.
 const CLIENT_PATIENCE: Duration = Duration::from_secs(2);

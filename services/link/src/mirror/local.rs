@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use config::Settings;
 use messages::{Epoch, Incarnation, Service};
+use roster::Name;
 use rustix::fs::{FlockOperation, flock};
 use service::exit::{Exit, Failure};
 use service::folders::{make_private, make_root};
@@ -15,7 +16,6 @@ use service::shm_cleanup::{Admin, check_room, remove_leftovers};
 
 use super::{Options, own_settings};
 use crate::keyring::storage;
-use crate::names::Name;
 use crate::presence::Hello;
 
 /// The start of every service that the mirror writes as.

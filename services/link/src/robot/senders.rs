@@ -8,6 +8,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::time::Duration;
 
 use messages::topics;
+use roster::Presence;
 use service::group::GroupPaths;
 use service::status::GroupStatus;
 use service::worker_channel::DeviceSender;
@@ -22,7 +23,6 @@ use super::{Inbound, motion};
 use crate::identity::Identity;
 use crate::mirrored::TOPICS;
 use crate::names::{Call, Keys, call_of};
-use crate::presence::Presence;
 use crate::session::{connect_patiently, reply};
 
 /// Messages that wait for a thread that sends.

@@ -5,6 +5,7 @@ use crate::Config;
 use messages::{Change, Detection, Look, Sighting, TableView};
 use scene::Scene;
 use setup::DialogueSettings;
+use vocabulary::Rng;
 
 fn perceiving() -> Settings {
     static PERCEIVING: OnceLock<Settings> = OnceLock::new();
@@ -134,7 +135,7 @@ impl Bench {
 }
 
 #[test]
-fn what_is_seen_is_what_is_asked_about() {
+fn questions_are_about_the_objects_seen() {
     let mut bench = Bench::with(&[seen("white", 0.0), seen("metal2", 0.2), seen("clear", 0.4)]);
     assert_eq!(bench.objects(), ["white-6", "metal2-7", "clear-8"]);
     let white = bench.says(&["white", "white"]);
@@ -203,7 +204,7 @@ fn no_step_is_taken_while_the_arm_has_an_order_and_it_is_afterwards() {
 }
 
 #[test]
-fn what_was_delivered_can_be_refused_and_is_then_off_the_table() {
+fn a_delivery_can_be_refused_and_is_then_off_the_table() {
     let mut bench = Bench::with(&[seen("white", 0.0), seen("white2", 0.2)]);
     let white = bench.says(&["white", "dishwasher", "dishwasher"]);
     bench.hear(&white);
@@ -231,7 +232,7 @@ fn what_was_delivered_can_be_refused_and_is_then_off_the_table() {
 }
 
 #[test]
-fn nothing_on_the_table_is_said() {
+fn an_empty_table_is_said() {
     let mut bench = Bench::new();
     bench.start();
     let white = bench.says(&["white"]);

@@ -67,9 +67,9 @@ fn stop_is_reported_once_the_arm_is_at_rest() {
     assert_eq!(fetching.arm(1, 1, 1), FETCHES, "latched, and still moving");
     assert_eq!(fetching.arm(90, 1, 0), STOPPED);
     fetching.stop();
-    assert!(fetching.node.state().stop_order.is_some(), "only a younger status confirms it");
+    assert!(fetching.node.state().stop.order.is_some(), "only a younger status confirms it");
     fetching.arm(10, 1, 0);
-    assert_eq!(fetching.node.state().stop_order, None);
+    assert_eq!(fetching.node.state().stop.order, None);
 }
 
 #[test]

@@ -37,7 +37,7 @@ pub(super) fn gateway(args: LinkArgs) -> Failure {
         none if none.is_empty() => vec!["--help".into()],
         some => some,
     };
-    hand_over("gateway", "cargo build --release -p link", arguments, None)
+    hand_over("gateway", "cargo build --release -p gateway", arguments, None)
 }
 
 fn hand_over(

@@ -139,7 +139,7 @@ impl Manager {
         preface: Preface,
         reasons: Act,
     ) {
-        if state.motion_stop.is_latched() {
+        if state.stop.motion.is_latched() {
             return self.hold_back(state, object, preface, reasons);
         }
         let id = next_key(state);

@@ -20,10 +20,33 @@ use super::turn::Turn;
 pub struct HeldBack {
     /// Name of the object.
     pub name: String,
-    /// Whether the user has confirmed it.
-    pub is_confirmed: bool,
-    /// Whether the gripper has kept it.
-    pub is_kept: bool,
+    /// What it waits for.
+    pub wait: Wait,
+}
+
+/// What a pick waits for. In journals it once was `is_confirmed: bool`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Wait {
+    /// The user's word and the release.
+    Word,
+    /// The release; the user has confirmed it.
+    Release,
+    /// The user's word about what the gripper has kept.
+    WordOfKept,
+    /// The release; the user has asked for what the gripper has kept.
+    ReleaseOfKept,
+}
+
+impl HeldBack {
+    /// Returns whether the user has confirmed it.
+    pub fn is_confirmed(&self) -> bool {
+        matches!(self.wait, Wait::Release | Wait::ReleaseOfKept)
+    }
+
+    /// Returns whether the gripper has kept the object.
+    pub fn is_kept(&self) -> bool {
+        matches!(self.wait, Wait::WordOfKept | Wait::ReleaseOfKept)
+    }
 }
 
 impl State {
@@ -50,7 +73,7 @@ impl Manager {
         let name = self.setup.scene.object(object).name.clone();
         let content = Content::HeldBack(self.description(object));
         let Some(open) = &mut state.open else { return };
-        open.held_back = Some(HeldBack { name, is_confirmed: false, is_kept: false });
+        open.held_back = Some(HeldBack { name, wait: Wait::Word });
         self.ask_for(state, object, Line { preface, content }, reasons);
     }
 
@@ -77,12 +100,12 @@ impl Manager {
     pub(super) fn confirm(&mut self, state: &mut State, turn: &Turn<'_>) {
         let Some(object) = self.confirmed(state, &turn.heard) else { return };
         if let Some(held) = state.open.as_mut().and_then(|open| open.held_back.as_mut()) {
-            held.is_confirmed = true;
+            held.wait = if held.is_kept() { Wait::ReleaseOfKept } else { Wait::Release };
         }
         if state.to_put_back().is_some() {
             // Its turn comes once the other object is back.
             self.reply(state, Remark::AllRight, turn.at);
-        } else if state.motion_stop.is_latched() {
+        } else if state.stop.motion.is_latched() {
             say(state, Content::Confirmed, turn.at);
         } else {
             self.release(state, object, turn.at);
@@ -92,10 +115,10 @@ impl Manager {
     /// Reports the effect of a stop that a user ordered, as the arm does: it is at rest, or the stop is not
     /// confirmed in time.
     pub(super) fn report_stop(&mut self, state: &mut State, confirmed: bool, at: Time) {
-        let Some(order) = &mut state.stop_order else { return };
+        let Some(order) = &mut state.stop.order else { return };
         order.is_late = true;
         if confirmed {
-            state.stop_order = None;
+            state.stop.order = None;
         }
         let remark = if confirmed { Remark::Stopped } else { Remark::StopUnconfirmed };
         self.reply(state, remark, at);
@@ -103,13 +126,13 @@ impl Manager {
 
     /// Notes the state of the motion stop.
     pub(super) fn note_stop(&mut self, state: &mut State, stop: MotionStop, at: Time) {
-        let (before, is_latched) = (state.motion_stop.is_latched(), stop.is_latched());
-        state.motion_stop = stop;
+        let (before, is_latched) = (state.stop.motion.is_latched(), stop.is_latched());
+        state.stop.motion = stop;
         if before == is_latched {
             return;
         }
         if !is_latched {
-            state.stop_order = None;
+            state.stop.order = None;
         }
         if !is_latched && self.release_put_back(state, at) {
             return;
@@ -118,7 +141,7 @@ impl Manager {
             return;
         };
         let Some(object) = self.setup.scene.object_named(&held.name) else { return };
-        match (is_latched, held.is_confirmed) {
+        match (is_latched, held.is_confirmed()) {
             (true, _) => {}
             (false, true) => self.release(state, object, at),
             (false, false) => self.ask_to_release(state, object, Preface::None, at),
@@ -136,7 +159,7 @@ impl Manager {
         if self.ask_about_kept(state, preface.clone(), at) {
             return;
         }
-        let content = match state.motion_stop.is_latched() {
+        let content = match state.stop.motion.is_latched() {
             true => Content::HeldBack(self.description(object)),
             false => Content::AskToRelease(self.description(object)),
         };

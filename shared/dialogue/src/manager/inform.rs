@@ -44,7 +44,7 @@ impl Manager {
         let preface = if preface == Preface::None { remark } else { preface };
         let Turn { utterance, shares, heard, refers, at, .. } = turn;
         let Some(open) = &mut state.open else { return };
-        let held_back = open.held_back.take_if(|it| !it.is_kept);
+        let held_back = open.held_back.take_if(|it| !it.is_kept());
         let held_back = held_back.and_then(|it| self.setup.scene.object_named(&it.name));
         let denial = held_back.and_then(|object| self.denial(object, &heard.interpretations));
         self.take_in(open, heard);

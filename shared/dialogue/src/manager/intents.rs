@@ -38,7 +38,7 @@ impl Manager {
     pub(super) fn intent(&self, state: &State, utterance: &Utterance, shares: &[f64]) -> Intent {
         match likeliest_intent(utterance, shares, state.open.is_some()) {
             Intent::Inform if self.asks_to_put_back(state, utterance) => Intent::PutBack,
-            Intent::GoOn if !state.motion_stop.is_latched() || is_confirmed(state, utterance) => {
+            Intent::GoOn if !state.stop.motion.is_latched() || is_confirmed(state, utterance) => {
                 answered(utterance)
             }
             intent => intent,
@@ -99,7 +99,7 @@ impl Manager {
                 open.conceded = Conceded::default();
                 open.posterior = beginning;
                 open.deferred = None;
-                open.held_back.take_if(|it| !it.is_kept);
+                open.held_back.take_if(|it| !it.is_kept());
                 state.queue.clear();
             }
         }
@@ -125,7 +125,7 @@ fn is_about_to_speak(state: &State) -> bool {
 /// Notes an order to stop, which the speech service has given to the arm: the robot reports its effect once
 /// the arm has.
 pub(super) fn order_stop(state: &mut State, utterance: &Utterance) {
-    state.stop_order = Some(StopOrder { accepted: utterance.accepted, is_late: false });
+    state.stop.order = Some(StopOrder { accepted: utterance.accepted, is_late: false });
 }
 
 /// Returns whether it withdraws only what it describes.

@@ -7,7 +7,7 @@ use vocabulary::time::Time;
 use super::Manager;
 use super::acts::{call_off, next_key};
 use super::attribution::Heard;
-use super::held_back::HeldBack;
+use super::held_back::{HeldBack, Wait};
 use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, State};
 use crate::rendering;
@@ -16,7 +16,7 @@ impl State {
     /// Returns the name of the object that the gripper has kept.
     pub fn kept(&self) -> Option<&str> {
         let held_back = self.open.as_ref()?.held_back.as_ref();
-        held_back.filter(|it| it.is_kept).map(|it| &*it.name)
+        held_back.filter(|it| it.is_kept()).map(|it| &*it.name)
     }
 }
 
@@ -28,7 +28,7 @@ impl Manager {
             open.pick = None;
             open.picked.clear();
             open.announced.clear();
-            open.held_back = Some(HeldBack { name, is_confirmed: false, is_kept: true });
+            open.held_back = Some(HeldBack { name, wait: Wait::WordOfKept });
         }
         self.ask_about_kept(state, Preface::None, at);
     }

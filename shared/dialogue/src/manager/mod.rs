@@ -48,13 +48,15 @@ mod replies;
 mod rules;
 mod setup;
 mod state;
+#[cfg(test)]
+mod tests;
 mod turn;
 
 pub use concede::Conceded;
 pub use evidence::{Evidence, Mark, NAMES_MAX};
 pub use floor::{Floor, HEARING_MAX};
 pub use hand_over::HandedOver;
-pub use held_back::HeldBack;
+pub use held_back::{HeldBack, Wait};
 pub use history::History;
 pub use line::{AboutObjects, Content, Line, Preface, Reason, Remark};
 pub use put_back::{Progress, PuttingBack, WithUser};
@@ -62,7 +64,7 @@ pub use refold::{Mismatch, refold, refold_since};
 pub use setup::Setup;
 pub use state::{
     Act, Basis, Cause, Deferred, Interaction, KnownObject, MotionStop, PROMPTS_MAX, Preference,
-    Prompt, Record, Stage, State, StopOrder, Timing, Utterance,
+    Prompt, Record, Stage, State, Stop, StopOrder, Timing, Utterance,
 };
 
 use acts::{order_again, say, set, set_reasons};
@@ -93,6 +95,8 @@ pub struct Manager {
     descriptions: Vec<Option<String>>,
     recall: bool,
     key: u64,
+    /// Name of the rule that handled the latest utterance.
+    rule: &'static str,
 }
 
 impl Manager {
@@ -106,7 +110,9 @@ impl Manager {
             setup.gestures.map(|(model, user_m)| Pointing::new(model, user_m, &setup.scene));
         let descriptions = vec![None; setup.scene.objects().len()];
         let (table, recall) = (None, true);
-        let mut manager = Self { setup, file, table, pointing, planner, descriptions, recall, key };
+        let rule = "";
+        let mut manager =
+            Self { setup, file, table, pointing, planner, descriptions, recall, key, rule };
         manager.follow(&manager.first());
         manager
     }
@@ -131,6 +137,11 @@ impl Manager {
     /// Returns the planner's name.
     pub fn planner(&self) -> &'static str {
         self.planner.name()
+    }
+
+    /// Returns the name of the rule that handled the latest utterance, for logs.
+    pub fn rule(&self) -> &'static str {
+        self.rule
     }
 
     /// Returns the settings of turn-taking.

@@ -186,7 +186,7 @@ impl Manager {
         state.last_prompt = state.last_prompt.next();
         let (prompt, utterance) = (state.last_prompt, state.applied);
         state.note_putting_back(prompt);
-        let (kind, pick, progress, content) = if state.motion_stop.is_latched() {
+        let (kind, pick, progress, content) = if state.stop.motion.is_latched() {
             let held_back = Progress::HeldBack { is_confirmed: false };
             (ActKind::Say, None, held_back, Content::PutBackHeldBack(description))
         } else {
@@ -228,7 +228,7 @@ impl Manager {
     }
 
     fn confirm_put_back(&mut self, state: &mut State, at: Time) {
-        if !state.motion_stop.is_latched() {
+        if !state.stop.motion.is_latched() {
             return self.put_back_now(state, Preface::None, at);
         }
         if let Some(it) = &mut state.putting_back {
@@ -301,7 +301,7 @@ impl Manager {
         let held_object = held_back.as_ref().and_then(|it| self.setup.scene.object_named(&it.name));
         if let Some(object) = held_object {
             let reasons = Act { utterance, decided: at, ..Act::default() };
-            return match held_back.is_some_and(|it| it.is_confirmed) {
+            return match held_back.is_some_and(|it| it.is_confirmed()) {
                 true => self.pick(state, object, preface, reasons),
                 false => self.ask_to_release(state, object, preface, at),
             };

@@ -29,7 +29,7 @@ impl Manager {
             Intent::Greet => Remark::Greeting,
             Intent::Leave => Remark::Goodbye,
             Intent::Thank => Remark::Welcome,
-            Intent::AskStatus if state.motion_stop.is_latched() => Remark::StillStopped,
+            Intent::AskStatus if state.stop.motion.is_latched() => Remark::StillStopped,
             Intent::AskHelp => Remark::Help,
             Intent::AskBack => Remark::Inventory,
             Intent::AskCount => self.objects(said, intent, AboutObjects::Count),
@@ -45,7 +45,7 @@ impl Manager {
     /// Returns what the robot is doing.
     pub(super) fn status(&mut self, state: &State) -> Remark {
         // A question that stands is still to be answered; anything else waits for the release.
-        if state.motion_stop.is_latched()
+        if state.stop.motion.is_latched()
             && (state.act.kind != ActKind::Ask || state.open.is_none())
         {
             return Remark::StillStopped;

@@ -14,7 +14,7 @@ use super::turn::Turn;
 /// A rule for an utterance.
 pub(super) struct Rule {
     /// Its name.
-    pub(super) name: &'static str,
+    name: &'static str,
     /// Stages of the dialogue at which it may apply.
     stages: &'static [Stage],
     /// Whether it applies to an utterance.
@@ -210,6 +210,7 @@ impl Manager {
         let stage = state.stage();
         let applies = |it: &&Rule| it.stages.contains(&stage) && (it.applies)(self, state, &turn);
         if let Some(rule) = rules.iter().find(applies) {
+            self.rule = rule.name;
             (rule.apply)(self, state, turn);
         }
     }

@@ -1,5 +1,9 @@
 //! State of the dialogue: everything that must outlive a restart. It is small, so each journal record
 //! holds it whole, and recovery reads one record.
+//!
+//! Journals of earlier versions are read as if they were of this one: an enum gets new variants at its end, and a
+//! struct no new field. What a struct has to state further is a variant of a field that it has ([`Stop`],
+//! [`HeldBack`]).
 
 use scene::{ObjectId, Question, UnknownWord};
 use serde::{Deserialize, Serialize};
@@ -55,9 +59,7 @@ pub struct State {
     /// The object that goes back to its place.
     pub putting_back: Option<PuttingBack>,
     /// The motion stop.
-    pub motion_stop: MotionStop,
-    /// A stop that a user ordered in words and whose effect the robot has not reported yet.
-    pub stop_order: Option<StopOrder>,
+    pub stop: Stop,
     /// Deliveries by object.
     pub history: History,
     /// The user as learned in earlier interactions, where the planner uses it.
@@ -91,16 +93,26 @@ impl State {
     }
 }
 
+/// The motion stop, as the arm reports it and as a user ordered it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "StoredStop", into = "StoredStop")]
+pub struct Stop {
+    /// What the arm reports.
+    pub motion: MotionStop,
+    /// A stop that a user ordered in words and whose effect the robot has not reported yet.
+    pub order: Option<StopOrder>,
+}
+
 /// The motion stop as the arm reports it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MotionStop {
     /// The arm may move.
     #[default]
     Released,
-    /// Latched; the arm is not at rest yet.
-    Stopping,
     /// Latched, and the arm is at rest.
     Stopped,
+    /// Latched; the arm is not at rest yet.
+    Stopping,
 }
 
 impl MotionStop {
@@ -117,6 +129,45 @@ pub struct StopOrder {
     pub accepted: Time,
     /// Whether the user was warned that it is not confirmed.
     pub is_late: bool,
+}
+
+/// The stop in a journal, where it once was `stopped: bool`: the same bytes mean the same, and orders are variants
+/// that came later.
+#[derive(Serialize, Deserialize)]
+enum StoredStop {
+    Released,
+    Stopped,
+    Stopping,
+    ReleasedOrdered(StopOrder),
+    StoppedOrdered(StopOrder),
+    StoppingOrdered(StopOrder),
+}
+
+impl From<StoredStop> for Stop {
+    fn from(stored: StoredStop) -> Self {
+        let (motion, order) = match stored {
+            StoredStop::Released => (MotionStop::Released, None),
+            StoredStop::Stopped => (MotionStop::Stopped, None),
+            StoredStop::Stopping => (MotionStop::Stopping, None),
+            StoredStop::ReleasedOrdered(order) => (MotionStop::Released, Some(order)),
+            StoredStop::StoppedOrdered(order) => (MotionStop::Stopped, Some(order)),
+            StoredStop::StoppingOrdered(order) => (MotionStop::Stopping, Some(order)),
+        };
+        Self { motion, order }
+    }
+}
+
+impl From<Stop> for StoredStop {
+    fn from(Stop { motion, order }: Stop) -> Self {
+        match (motion, order) {
+            (MotionStop::Released, None) => Self::Released,
+            (MotionStop::Stopped, None) => Self::Stopped,
+            (MotionStop::Stopping, None) => Self::Stopping,
+            (MotionStop::Released, Some(order)) => Self::ReleasedOrdered(order),
+            (MotionStop::Stopped, Some(order)) => Self::StoppedOrdered(order),
+            (MotionStop::Stopping, Some(order)) => Self::StoppingOrdered(order),
+        }
+    }
 }
 
 /// Reaction times of the user. None until an answer was observed: the configured one holds then.
@@ -348,13 +399,13 @@ pub enum Cause {
     Objects(Table),
     /// The motion stop was latched, came to rest, or was released.
     MotionStop(MotionStop),
+    /// A journal of the group was set aside: every number up to this one is over.
+    SetAside(u64),
     /// The arm is at rest after a stop that a user ordered, or has not confirmed it in time.
     StopReport {
         /// Whether the arm has confirmed the stop.
         confirmed: bool,
     },
-    /// A journal of the group was set aside: every number up to this one is over.
-    SetAside(u64),
 }
 
 /// An utterance of the user with its interpretations.

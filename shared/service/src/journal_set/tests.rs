@@ -27,7 +27,7 @@ impl Lab {
             incarnation: Incarnation(1),
             arguments: Vec::new(),
         };
-        open(&environment, service, "number/1")
+        open(&environment, service, "number/1", &[])
     }
 
     /// A start in which the service records `number`.

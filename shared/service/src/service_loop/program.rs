@@ -23,6 +23,8 @@ pub trait Program: Sized {
     /// Kind of record in its journal; none for a stateless node. A changed record
     /// type needs a changed name.
     const RECORD: Option<&'static str>;
+    /// Kinds of record of earlier versions that decode as records of this one.
+    const OLDER_RECORDS: &'static [&'static str] = &[];
     /// One paragraph for `--help`.
     const ABOUT: &'static str;
     /// Whether its flights are recorded: not where the reducer only passes things on.

@@ -134,7 +134,7 @@ type Recovered<P> = (Option<Journal<Record<P>>>, Vec<Record<P>>, Option<SetAside
 fn open_journal<P: Program>(environment: &Environment) -> Result<Recovered<P>, Failure> {
     let Some(record) = P::RECORD else { return Ok((None, Vec::new(), None)) };
     let (journal, recovered, set_aside) =
-        journal_set::open(environment, P::SERVICE.name(), record)?;
+        journal_set::open(environment, P::SERVICE.name(), record, P::OLDER_RECORDS)?;
     if recovered.truncated_bytes > 0 {
         tracing::warn!(bytes = recovered.truncated_bytes, "torn tail cut off");
     }

@@ -1,0 +1,143 @@
+//! Single requests to a robot's console.
+
+use std::time::Duration;
+
+use axum::body::{Body, to_bytes};
+use axum::http::{HeaderMap, Request, Response, StatusCode, header};
+use hyper::client::conn::http1::handshake;
+use hyper_util::rt::TokioIo;
+use tokio::net::TcpStream;
+use tokio::time::timeout;
+
+use crate::people::Right;
+use crate::robots::Console;
+
+/// Timeout of a console's answer.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// Timeout of its answer for the list of robots.
+const LOOK_PATIENCE: Duration = Duration::from_millis(1_500);
+/// Largest state for the list of robots, bytes.
+const STATE_MAX: usize = 4 << 20;
+
+/// Headers of a request that matter to a console. Whatever else a browser sends, cookies first of all, stays here.
+const PASSED: [&str; 4] = ["accept", "accept-encoding", "if-none-match", "host"];
+/// Headers of an answer that are about the connection, or that only the gateway may set.
+const KEPT_BACK: [&str; 6] =
+    ["connection", "transfer-encoding", "upgrade", "set-cookie", "location", "www-authenticate"];
+
+/// First parts of paths that a viewer may read.
+const VIEWERS: [&str; 12] = [
+    "",
+    "index.html",
+    "history",
+    "history.html",
+    "audience",
+    "audience.html",
+    "css",
+    "js",
+    "strings",
+    "vendor",
+    "icon.svg",
+    "robot.urdf",
+];
+
+/// Returns why a path of a console, from its `/` on, is not for someone with this right; `None` if it is.
+pub(crate) fn denied(path: &str, right: Right) -> Option<&'static str> {
+    let mut parts = path.trim_start_matches('/').split('/');
+    let first = parts.next().unwrap_or_default();
+    match first {
+        "foxglove" => Some("the live view is served by the robot's own console only"),
+        "voice" => None,
+        "api" if matches!(parts.next(), Some("state" | "history")) => None,
+        _ if right == Right::Operator || VIEWERS.contains(&first) => None,
+        _ => Some("only operators of this robot may see this"),
+    }
+}
+
+/// Passes a request to read on to a console.
+///
+/// # Errors
+/// The status and the reason for which there is no answer.
+pub(crate) async fn pass(
+    console: &Console,
+    path_and_query: &str,
+    headers: &HeaderMap,
+) -> Result<Response<Body>, (StatusCode, String)> {
+    let mut request = Request::get(path_and_query);
+    for name in PASSED {
+        if let Some(value) = headers.get(name) {
+            request = request.header(name, value);
+        }
+    }
+    let away = |what: String| (StatusCode::BAD_GATEWAY, format!("the robot's console: {what}\n"));
+    let mut response = match timeout(PATIENCE, ask(console, request)).await {
+        Ok(answer) => answer.map_err(away)?,
+        Err(_) => return Err(away("no answer within 10 s".to_owned())),
+    };
+    // It knows its token, so that it has nobody to send elsewhere.
+    if response.status().is_redirection() && response.status() != StatusCode::NOT_MODIFIED {
+        return Err(away(format!("unexpected answer {}", response.status())));
+    }
+    for name in KEPT_BACK {
+        response.headers_mut().remove(name);
+    }
+    Ok(response)
+}
+
+/// Reads something small from a console; `None` where that fails.
+pub(crate) async fn get(console: &Console, path: &str) -> Option<Vec<u8>> {
+    let read = async {
+        let request = Request::get(path).header(header::HOST, &console.place);
+        let response = ask(console, request).await.ok()?;
+        let body = to_bytes(response.into_body(), STATE_MAX).await.ok()?;
+        Some(body.to_vec())
+    };
+    timeout(LOOK_PATIENCE, read).await.ok().flatten()
+}
+
+async fn ask(
+    console: &Console,
+    request: axum::http::request::Builder,
+) -> Result<Response<Body>, String> {
+    let bearer = format!("Bearer {}", console.token);
+    let request = request.header(header::AUTHORIZATION, bearer).body(Body::empty());
+    let request = request.map_err(|error| error.to_string())?;
+    let stream = TcpStream::connect(&console.place).await.map_err(|error| error.to_string())?;
+    // Connections of this machine cost little, so that each request has its own.
+    let (mut sender, connection) =
+        handshake(TokioIo::new(stream)).await.map_err(|error| error.to_string())?;
+    tokio::spawn(async move {
+        if let Err(error) = connection.await {
+            tracing::debug!(%error, "a connection to a console has ended");
+        }
+    });
+    let response = sender.send_request(request).await.map_err(|error| error.to_string())?;
+    Ok(response.map(Body::new))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn viewers_read_what_the_page_needs_and_nothing_else() {
+        for path in
+            ["/", "/history", "/api/state", "/api/history/3", "/js/main.js", "/voice/line-1-1.wav"]
+        {
+            assert_eq!(denied(path, Right::Viewer), None, "{path}");
+        }
+        for path in [
+            "/study",
+            "/study/export.csv",
+            "//study/export.csv",
+            "/api/scenes",
+            "/results",
+            "/metrics",
+            "/x",
+        ] {
+            assert!(denied(path, Right::Viewer).is_some(), "{path}");
+            assert_eq!(denied(path, Right::Operator), None, "{path}");
+        }
+        assert!(denied("/foxglove", Right::Operator).is_some());
+    }
+}

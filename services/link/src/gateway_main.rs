@@ -1,7 +1,0 @@
-//! The gateway's program: `whichone gateway …`.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    link::gateway::cli::run()
-}
