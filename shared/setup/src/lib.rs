@@ -101,3 +101,45 @@ impl DialogueSettings for Settings {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn settings(over: &[(String, String)]) -> Settings {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+        Settings::load(&folder, None, over).unwrap()
+    }
+
+    #[test]
+    fn managers_are_found_by_their_keys() {
+        let settings = settings(&[]);
+        let manager = settings.manager().unwrap();
+        assert_eq!(manager.planner(), settings.dialogue.planner);
+        assert!(settings.makes_key(manager.key()) && !settings.makes_key(1));
+        let other = settings.manager_of_key(settings.manager_key("entropy")).unwrap();
+        assert_eq!((other.planner(), other.key() == manager.key()), ("entropy", false));
+        let unknown = settings.manager_of_key(1).unwrap();
+        assert_eq!(unknown.key(), manager.key());
+    }
+
+    #[test]
+    fn unknown_planners_are_told_with_their_key() {
+        let Err(error) = settings(&[]).manager_with("oracle") else { panic!("there is no oracle") };
+        let text = error.to_string();
+        let start =
+            "dialogue.planner: there is no planner \"oracle\"; the planners are lookahead, ";
+        assert!(text.starts_with(start), "{text}");
+    }
+
+    #[test]
+    fn words_that_are_certain_have_their_own_smoothing_but_in_the_paper() {
+        let paper = ("dialogue.language".to_owned(), "paper".to_owned());
+        let [careful, paper] = [&[][..], &[paper]].map(settings);
+        let plain = Model::new(&paper.scene, paper.dialogue.params);
+        assert_eq!(format!("{:?}", paper.model_of(&paper.scene)), format!("{plain:?}"));
+        assert_ne!(format!("{:?}", careful.model_of(&careful.scene)), format!("{plain:?}"));
+    }
+}

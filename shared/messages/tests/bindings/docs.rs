@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// Folders of the sources that declare what messages consist of; those first whose types count where two
 /// have one name.
-const SOURCES: [&str; 4] = ["messages/src", "perception/src", "dialogue/src", "scene/src"];
+const SOURCES: [&str; 4] = ["messages/src", "perception/src", "vocabulary/src", "scene/src"];
 
 /// Documentation by type, and by type and field.
 #[derive(Debug, Default)]
