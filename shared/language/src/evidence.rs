@@ -43,7 +43,7 @@ pub(crate) fn weighed(parsed: &ParsedUtterance<'_>, best: Reading) -> Vec<(f64, 
     if !is_open || is_elsewhere {
         return vec![(1.0, best)];
     }
-    let examples = examples(parsed);
+    let examples = examples(parsed, &best);
     if examples.is_empty() || examples.len() >= MENTIONS_MAX {
         return vec![(1.0, best)];
     }

@@ -2,7 +2,7 @@
 //!
 //! A feature is the number of a row of weights; which one, a hash decides.
 
-use scene::{Intent, WordId};
+use scene::{Intent, Reading, StableHash, WordId};
 
 use crate::mentions::{Polarity, proposal, values};
 use crate::parsed::ParsedUtterance;
@@ -46,12 +46,11 @@ enum Element<'a> {
     Word(&'a Tag<'a>),
 }
 
-/// Returns the value words of an utterance with their features.
-pub(crate) fn examples(parsed: &ParsedUtterance<'_>) -> Vec<Example> {
-    let reading = parsed.reading();
+/// Returns the value words of an utterance with their features; `reading` is what the rules make of it.
+pub(crate) fn examples(parsed: &ParsedUtterance<'_>, reading: &Reading) -> Vec<Example> {
     let found: Vec<(usize, WordId, Polarity)> = values(parsed)
         .take(MENTIONS_MAX)
-        .map(|(at, word)| (at, word, proposal(parsed, &reading, word)))
+        .map(|(at, word)| (at, word, proposal(parsed, reading, word)))
         .collect();
     let spans = phrases(parsed, &found);
     let elements = elements(parsed, &spans);
@@ -284,11 +283,10 @@ fn letters(element: Option<&Element<'_>>) -> u64 {
     hash(letters.into_iter())
 }
 
-const SEED: u64 = 0xcbf2_9ce4_8422_2325;
-
-/// FNV-1a.
 fn hash(bytes: impl Iterator<Item = u8>) -> u64 {
-    bytes.fold(SEED, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    let mut hash = StableHash::default();
+    bytes.for_each(|byte| hash.bytes(&[byte]));
+    hash.value()
 }
 
 fn mix(one: u64, other: u64) -> u64 {

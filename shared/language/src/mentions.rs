@@ -54,14 +54,16 @@ impl Reader {
             let surface = words.collect::<Vec<_>>().join(" ");
             Mention { word: example.word, surface, wanted, denied, neither }
         };
-        examples(&parsed).into_iter().map(mention).collect()
+        examples(&parsed, &parsed.reading()).into_iter().map(mention).collect()
     }
 
     /// Returns the value words of an utterance that followed `last_question`, with what the judge looks at; for its
     /// training.
     pub fn examples(&self, text: &str, last_question: Question) -> Vec<Example> {
         let text = normalise(text);
-        examples(&self.parse(&Tokens::of(&text), last_question))
+        let tokens = Tokens::of(&text);
+        let parsed = self.parse(&tokens, last_question);
+        examples(&parsed, &parsed.reading())
     }
 }
 

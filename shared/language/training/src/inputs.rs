@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use scene::StableHash;
+
 use crate::scenes::files;
 
 /// Returns the hash of the lines, the tables, the scenes and the features: weights of another one are out of date.
@@ -17,14 +19,12 @@ pub fn trained_on() -> Result<u64, String> {
         .collect();
     let sources = ["features.rs", "token_class.rs", "tests/cases.txt", "tests/conversation.txt"];
     paths.extend(sources.map(|source| here.join("../src").join(source)));
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut hash = StableHash::default();
     for path in paths {
         let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        for byte in bytes {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
+        hash.bytes(&bytes);
     }
-    Ok(hash)
+    Ok(hash.value())
 }
 
 #[cfg(test)]

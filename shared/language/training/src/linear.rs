@@ -3,6 +3,7 @@
 //! Everything happens in a fixed order, so that the same lines give the same weights on every machine.
 
 use language::ROWS;
+use vocabulary::Rng;
 
 /// Pull of each weight towards zero, a step.
 const SHRINK: f64 = 3e-6;
@@ -32,9 +33,9 @@ impl Linear {
         let mut linear = Self { weights: vec![[0.0; 3]; ROWS], temperature: 1.0 };
         let mut seen = vec![[1e-2; 3]; ROWS];
         let mut order: Vec<usize> = (0..lessons.len()).collect();
-        let mut state = seed;
+        let mut random = Rng::new(seed);
         for _ in 0..epochs {
-            shuffle(&mut order, &mut state);
+            shuffle(&mut order, &mut random);
             for lesson in order.iter().map(|n| &lessons[*n]) {
                 linear.step(lesson, rate, &mut seen);
             }
@@ -97,17 +98,8 @@ fn softmax(sums: [f64; 3]) -> [f64; 3] {
     powers.map(|power| power / all)
 }
 
-/// A pseudo-random number (SplitMix64).
-fn random(state: &mut u64) -> u64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut mixed = *state;
-    mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    mixed ^ (mixed >> 31)
-}
-
-fn shuffle(order: &mut [usize], state: &mut u64) {
+fn shuffle(order: &mut [usize], random: &mut Rng) {
     for last in (1..order.len()).rev() {
-        order.swap(last, (random(state) % (last as u64 + 1)) as usize);
+        order.swap(last, (random.next_u64() % (last as u64 + 1)) as usize);
     }
 }
