@@ -1,4 +1,4 @@
-//! What the web servers of the console and the gateway have in common: connections that are bounded in number and time,
+//! Common parts of the web servers of console and gateway: connections that are bounded in number and time,
 //! where a request comes from, sessions of browsers, logins, and headers that forbid foreign scripts. Their limits, and who
 //! is let in, are the servers' own.
 

@@ -12,7 +12,8 @@ use super::Manager;
 use super::acts::{say, set};
 use super::attribution::Heard;
 use super::line::{Content, Line, Preface, Remark};
-use super::state::{Act, MotionStop, State};
+use super::state::{Act, State};
+use super::stop::MotionStop;
 use super::turn::Turn;
 
 /// A pick that waits for the release of the motion stop, or for a word about what the gripper has kept.

@@ -12,7 +12,8 @@ use super::line::{Content, Preface, Remark};
 use super::put_back::{Progress, PuttingBack};
 use super::replies::likeliest;
 use super::rules::INTENTS;
-use super::state::{State, StopOrder, Utterance};
+use super::state::{State, Utterance};
+use super::stop::StopOrder;
 use super::turn::Turn;
 
 impl Manager {

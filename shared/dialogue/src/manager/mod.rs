@@ -4,7 +4,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `setup.rs` | what the manager decides by |
-//! | `state.rs`, `line.rs` | state, causes of its changes, acts and lines |
+//! | `state.rs`, `stop.rs`, `line.rs` | state, causes of its changes, acts and lines |
 //! | `rules.rs` | the rules for an utterance, in order; `turn.rs`: what they ask of it |
 //! | `intents.rs` | intents: cancelling, starting over, stopping |
 //! | `attribution.rs` | the questions that an utterance answers |
@@ -48,6 +48,7 @@ mod replies;
 mod rules;
 mod setup;
 mod state;
+mod stop;
 #[cfg(test)]
 mod tests;
 mod turn;
@@ -63,9 +64,10 @@ pub use put_back::{Progress, PuttingBack, WithUser};
 pub use refold::{Mismatch, refold, refold_since};
 pub use setup::Setup;
 pub use state::{
-    Act, Basis, Cause, Deferred, Interaction, KnownObject, MotionStop, PROMPTS_MAX, Preference,
-    Prompt, Record, Stage, State, Stop, StopOrder, Timing, Utterance,
+    Act, Basis, Cause, Deferred, Interaction, KnownObject, PROMPTS_MAX, Preference, Prompt, Record,
+    Stage, State, Timing, Utterance,
 };
+pub use stop::{MotionStop, Stop, StopOrder};
 
 use acts::{order_again, say, set, set_reasons};
 use objects::SceneFile;

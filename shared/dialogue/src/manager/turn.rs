@@ -24,7 +24,7 @@ pub(super) struct Turn<'a> {
     pub(super) refusal: Option<Heard<'static>>,
     /// Objects spoken of before that it points to, if no interaction is open.
     pub(super) spoken_of: Option<Mark>,
-    /// Whether it can open an interaction.
+    /// Whether it can open an interaction, if none is open.
     pub(super) is_request: bool,
     /// The time.
     pub(super) at: Time,
@@ -45,13 +45,14 @@ impl Manager {
             refers: reference(&heard),
             refusal: None,
             spoken_of: None,
-            is_request: self.is_request(utterance),
+            is_request: false,
             utterance,
             shares,
             heard,
             at,
         };
         if state.open.is_none() {
+            turn.is_request = self.is_request(utterance);
             let heard = &turn.heard;
             turn.spoken_of = self.accepted(state, heard).or_else(|| self.resolve(state, heard));
             turn.refusal = self.refusal(state, heard);
