@@ -186,11 +186,12 @@ class Runner:
         processes.sort(key=longest)
         cores = os.cpu_count() or 2
         beside = [f"--skip={part}" for part in self.lanes["alone"]]
-        # Tests with processes wait most of their time.
-        waiting = [*beside, f"--test-threads={2 * cores}", *self.options]
-        computing = [*beside, "--test-threads=1", *self.options]
-        threads = [threading.Thread(target=self.run_queue, args=(processes, waiting, 0))]
-        threads += [threading.Thread(target=self.run_queue, args=(pure, computing, 19)) for _ in range(cores)]
+        # Tests with processes wait most of their time: beside the longest program the others run one by one.
+        queues = [(processes[:1], 2 * cores, 0), (processes[1:], cores, 0)] + [(pure, 1, 19)] * cores
+        threads = [
+            threading.Thread(target=self.run_queue, args=(queue, [*beside, f"--test-threads={at_once}", *self.options], nice))
+            for queue, at_once, nice in queues
+        ]
         for thread in threads:
             thread.start()
         for thread in threads:
