@@ -126,6 +126,14 @@ def in_lane(lanes, lane, found):
     return [p for p in found if p.is_unit or p.name in names]
 
 
+def give_way(session, nice):
+    """Lowers the share of a session: with groups by session, Linux compares `nice` only within each of them."""
+    try:
+        Path(f"/proc/{session}/autogroup").write_text(str(nice))
+    except OSError:
+        pass  # A kernel without such groups, or a program that has ended.
+
+
 class Runner:
     def __init__(self, lanes, options, temporary):
         self.lanes = lanes
@@ -150,6 +158,7 @@ class Runner:
             text=True,
             errors="replace",
         )
+        give_way(process.pid, nice)
         try:
             output, _ = process.communicate(timeout=LIMIT_S)
         except subprocess.TimeoutExpired:
