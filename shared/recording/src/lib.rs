@@ -8,6 +8,10 @@
 //! Times in a file are wall-clock times. The messages themselves keep the machine's monotonic clock; the
 //! offset between both is constant within a file and part of its metadata.
 
+use std::io::ErrorKind;
+
+use service::exit::{Exit, Failure};
+
 pub mod channels;
 pub mod clock;
 pub mod file;
@@ -38,6 +42,19 @@ pub enum RecordingError {
     /// A payload that is not what its topic says.
     #[error("topic {0}: {1}")]
     Payload(String, String),
+}
+
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Self {
+        match &error {
+            RecordingError::Io(path, cause) if cause.kind() == ErrorKind::AlreadyExists => {
+                let help = "help: name another file, or remove this one";
+                let what = format!("{}: it exists already; {help}", path.display());
+                Self::new(Exit::Storage, what)
+            }
+            _ => Self::new(Exit::Storage, error.to_string()),
+        }
+    }
 }
 
 impl RecordingError {
