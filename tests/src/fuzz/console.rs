@@ -3,9 +3,10 @@
 use std::path::{Component, Path};
 
 use ::console::inputs::{
-    Do, Message, PcmFrame, Request, Verb, hello, message, read_binary, read_command, read_text, say,
+    Do, Message, PcmFrame, Request, Verb, hello, message, read_binary, read_text, say,
 };
 use messages::SoundFile;
+use page_study::read_command;
 use service::Time;
 use web_server::login::form_field;
 

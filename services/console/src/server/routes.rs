@@ -163,6 +163,12 @@ pub(super) async fn interaction(
     as_json(tokio::task::spawn_blocking(move || history.interaction(number))).await
 }
 
+/// A file of the studies.
+pub(super) async fn study(State(app): State<Arc<App>>, Path(name): Path<String>) -> Response<Body> {
+    let answer = tokio::task::spawn_blocking(move || app.study.read(&name)).await;
+    answer.unwrap_or_else(|_| StatusCode::INTERNAL_SERVER_ERROR.into_response())
+}
+
 /// The result of a blocking task as JSON, 404 where there is none.
 async fn as_json<T: Serialize>(found: JoinHandle<Option<T>>) -> Response<Body> {
     let json = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];

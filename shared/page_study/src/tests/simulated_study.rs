@@ -4,18 +4,18 @@ use evaluation::user_study::{
     Design, Entry, Event, Item, Kind, Objects, Order, Participant, Protocol, Stage, Status,
 };
 use messages::{Ended, Outcome, PolicyView, Receipt};
+use page_part::DialogueEvent;
 use scene::Scene;
 use vocabulary::ids::{InteractionId, UtteranceSeq};
 
-use crate::study::study_controller::{Command, StudyController, kept};
-use crate::study::trial_monitor::{RobotRequest, RobotState};
-use crate::view_model::DialogueEvent;
+use crate::study_controller::{Command, StudyController, kept};
+use crate::trial_monitor::{RobotRequest, RobotState};
 
 pub(super) const FAULT_MS: f64 = 10_000.0;
 pub(super) const PAGE: &str = "0123456789abcdef0123456789abcdef";
 
 pub(super) fn bowls() -> Scene {
-    let text = include_str!("../../../../../config/scenes/bowls.toml");
+    let text = include_str!("../../../../config/scenes/bowls.toml");
     Scene::from_toml("bowls.toml", text).unwrap_or_else(|problems| panic!("{problems:?}"))
 }
 

@@ -1,31 +1,25 @@
-//! The study's HTTP endpoints: data and results, read from its files on each request.
+//! Data and results, made from the study's files on each request.
 
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
 
-use axum::Router;
-use axum::extract::{Path, State};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use axum::routing::get;
 use evaluation::user_study::{self, Participant};
 
 use super::files;
-use crate::server::App;
 
-/// Everything below `/study/`.
-pub fn routes() -> Router<Arc<App>> {
-    Router::new().route("/study/{file}", get(file))
+/// The files of studies in a folder.
+#[derive(Debug)]
+pub(super) struct Results(pub(super) PathBuf);
+
+impl page_part::Files for Results {
+    fn read(&self, name: &str) -> Response {
+        read(&self.0, name)
+    }
 }
 
-async fn file(State(app): State<Arc<App>>, Path(name): Path<String>) -> Response {
-    let folder = app.study_dir.clone();
-    let answer = tokio::task::spawn_blocking(move || serve(folder, &name)).await;
-    answer.unwrap_or_else(|_| StatusCode::INTERNAL_SERVER_ERROR.into_response())
-}
-
-fn serve(folder: PathBuf, name: &str) -> Response {
-    let people = match files::read(&folder) {
+fn read(folder: &Path, name: &str) -> Response {
+    let people = match files::read(folder) {
         Ok(people) => people,
         Err(why) => return (StatusCode::INTERNAL_SERVER_ERROR, why + "\n").into_response(),
     };

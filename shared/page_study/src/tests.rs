@@ -210,7 +210,7 @@ fn study_repeats_an_interaction_after_a_technical_fault() {
         },
         |study| study.view.planner = "optimal".to_owned(),
         |study| {
-            let text = include_str!("../../../../config/scenes/tools.toml");
+            let text = include_str!("../../../config/scenes/tools.toml");
             study.scene = Scene::from_toml("tools.toml", text).unwrap();
         },
         |study| {

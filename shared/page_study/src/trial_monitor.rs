@@ -6,13 +6,13 @@ use evaluation::user_study::{
     Asked, Ending, Event, Fault, Heard, Participant, Source, Stage, Trial,
 };
 use messages::{ActKind, ArmStatus, Ended, PickPhase, PolicyView, Source as Way};
+use page_part::DialogueEvent;
 use scene::Scene;
 use serde::Serialize;
 use service::Time;
+use service::view::ms;
 
 use super::study_controller::StudyController;
-use crate::hub::ms;
-use crate::view_model::DialogueEvent;
 
 /// Utterances and questions of an interaction that are written down.
 const LINES_MAX: usize = 500;

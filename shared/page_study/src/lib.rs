@@ -1,13 +1,15 @@
-//! User studies, run from the console.
-//!
-//! [`Study`] lives on the main thread: it handles the commands that begin with `study.`
-//! ([`Study::command`]) and the events of the dialogue ([`Study::on_event`]), and is called in every
-//! pass ([`Study::pass`]). It shows the section `study` ([`Study::section`]) and serves [`routes`]
-//! below `/study/`.
+//! User studies on the console's page: an optional [`Part`] of it, with commands that begin with `study.`, the section
+//! `study`, and files below `/study/`.
 //!
 //! The rules are in `study_controller.rs` and `trial_monitor.rs`, which are pure. Their events are
 //! written into the participant's journal and synced before they are applied and answered, so that a
 //! console that is killed resumes where it was.
+
+#![allow(
+    unreachable_pub,
+    missing_docs,
+    reason = "its interface in Rust is that of `page_part`; the console's fuzz target reads commands"
+)]
 
 mod command;
 mod files;
@@ -25,22 +27,18 @@ use std::path::PathBuf;
 
 use config::Settings;
 use evaluation::user_study::{Entry, Event};
-use serde_json::Value as Json;
+use page_part::{DialogueEvent, Now, Part, Robot};
+use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
+use service::view::ms;
 use service::{Span, Time};
 
-use crate::hub::command::{Words, typed};
-use crate::hub::ms;
-use crate::hub::outbound::Answer;
-use crate::view_model::{DialogueEvent, Now, ViewModel, missing};
 use files::Files;
 use planner_switch::PlannerSwitch;
 use section::StudySection;
 use study_controller::StudyController;
 use trial_monitor::{RobotRequest, RobotState};
-
-pub use http::routes;
 
 /// Interval at which an unfulfilled request is repeated.
 const REQUEST_EVERY: Span = Span::from_ms(2_000);
@@ -51,7 +49,7 @@ const CANCEL: &str = "never mind";
 
 /// A study that is offered to pages.
 #[derive(Debug)]
-pub struct Study {
+struct Study {
     controller: StudyController,
     files: Files,
     switch: PlannerSwitch,
@@ -62,91 +60,93 @@ pub struct Study {
     trouble: Option<String>,
 }
 
-pub fn folder(settings: &Settings, paths: &GroupPaths) -> PathBuf {
+/// Opens the study of the settings and recovers its participants; none where no study is configured.
+///
+/// # Errors
+/// The data of a participant cannot be read, or there is no thread for the study.
+pub fn open(settings: &Settings, paths: &GroupPaths) -> Result<Option<Box<dyn Part>>, Failure> {
+    if !settings.study.enabled {
+        return Ok(None);
+    }
+    let folder = folder(settings, paths);
+    let people = files::read(&folder).map_err(|why| Failure::new(Exit::Storage, why))?;
+    let policy = std::env::current_exe().map(|own| own.with_file_name("whichone-policy"));
+    let switch = policy.and_then(|policy| PlannerSwitch::start(paths.control_socket(), policy));
+    let switch = switch
+        .map_err(|error| Failure::new(Exit::NotReached, format!("study's thread: {error}")))?;
+    let protocol = settings.study.protocol.clone();
+    Ok(Some(Box::new(Study {
+        controller: StudyController::new(protocol, paths.name().to_string(), people),
+        files: Files::in_folder(folder),
+        switch,
+        fault_ms: 1e3 * settings.study.fault.as_secs_f64(),
+        requested: None,
+        trouble: None,
+    })))
+}
+
+/// Returns the files of all studies that were conducted with these settings.
+pub fn files(settings: &Settings, paths: &GroupPaths) -> Box<dyn page_part::Files> {
+    Box::new(http::Results(folder(settings, paths)))
+}
+
+fn folder(settings: &Settings, paths: &GroupPaths) -> PathBuf {
     settings.study.data_dir.clone().unwrap_or_else(|| paths.study())
 }
 
-impl Study {
-    /// Reads the settings and recovers the participants; none where no study is configured.
-    pub fn new(settings: &Settings, paths: &GroupPaths) -> Result<Option<Self>, Failure> {
-        if !settings.study.enabled {
-            return Ok(None);
-        }
-        let folder = folder(settings, paths);
-        let people = files::read(&folder).map_err(|why| Failure::new(Exit::Storage, why))?;
-        let policy = std::env::current_exe().map(|own| own.with_file_name("whichone-policy"));
-        let switch = policy.and_then(|policy| PlannerSwitch::start(paths.control_socket(), policy));
-        let switch = switch
-            .map_err(|error| Failure::new(Exit::NotReached, format!("study's thread: {error}")))?;
-        let protocol = settings.study.protocol.clone();
-        Ok(Some(Self {
-            controller: StudyController::new(protocol, paths.name().to_string(), people),
-            files: Files::in_folder(folder),
-            switch,
-            fault_ms: 1e3 * settings.study.fault.as_secs_f64(),
-            requested: None,
-            trouble: None,
-        }))
-    }
-
-    pub fn on_event(&mut self, event: &DialogueEvent, model: &ViewModel, now: Now) {
-        if let Some((id, event)) = self.controller.said(event, &self.robot(model, now)) {
-            self.note(&id, vec![event], now.unix_ms);
-        }
-    }
-
-    /// Takes in the robot's state; returns what is to be said to the robot.
-    pub fn pass(&mut self, model: &ViewModel, now: Now) -> Option<Words> {
-        let robot = self.robot(model, now);
-        self.take_results(now.unix_ms);
-        if let Some((id, event)) = self.controller.look(&robot, self.fault_ms) {
-            self.note(&id, vec![event], now.unix_ms);
-        }
-        self.request(&robot, now)
-    }
-
-    pub fn section(&self, model: &ViewModel, now: Now) -> Option<String> {
-        let robot = self.robot(model, now);
-        let section = StudySection::new(&self.controller, &robot, self.trouble.as_deref());
-        serde_json::to_string(&section).ok()
-    }
-
-    fn robot<'a>(&self, model: &'a ViewModel, now: Now) -> RobotState<'a> {
-        RobotState {
-            at: now.unix_ms,
-            ms: ms(now.at),
-            scene: model.scene(),
-            view: model.latest().view.as_ref(),
-            missing: model.group().and_then(missing).map(|service| service.name.as_str()),
-            arm_is_busy: trial_monitor::arm_is_busy(model.latest().arm.as_ref()),
-            arm_is_stopped: model.latest().arm.is_some_and(|arm| arm.stopped != 0),
-            is_switching: self.switch.is_busy() || self.controller.owing().is_some(),
-        }
-    }
-
-    pub fn command(
-        &mut self,
-        verb: &str,
-        arguments: &Json,
-        model: &ViewModel,
-        now: Now,
-    ) -> Result<Answer, String> {
+impl Part for Study {
+    fn command(&mut self, verb: &str, arguments: &Json, robot: &Robot<'_>) -> Result<Json, String> {
         let page = command::page(arguments)?;
         if verb == "find" {
             let found = self.controller.of_page(&page);
-            return Ok(Answer::Found {
-                participant: found.map(|person| person.id().to_owned()),
-                stage: found.map(|person| person.stage.name()),
-            });
+            let id = found.map(|person| person.id());
+            let stage = found.map(|person| person.stage.name());
+            return Ok(json!({ "participant": id, "stage": stage }));
         }
         let command = command::read(verb, arguments)?;
-        let robot = self.robot(model, now);
-        let (id, events) = self.controller.handle(&page, &command, &robot, command::seed())?;
-        self.write(&id, events, now.unix_ms).map_err(|error| {
+        let (state, at) = (self.state(robot), robot.now.unix_ms);
+        let (id, events) = self.controller.handle(&page, &command, &state, command::seed())?;
+        self.write(&id, events, at).map_err(|error| {
             tracing::error!(participant = id, %error, "the study's data is not written");
             format!("The data cannot be written: {error}. Please tell the experimenter.")
         })?;
-        Ok(Answer::Participant { participant: id })
+        Ok(json!({ "participant": id }))
+    }
+
+    fn on_event(&mut self, event: &DialogueEvent, robot: &Robot<'_>) {
+        if let Some((id, event)) = self.controller.said(event, &self.state(robot)) {
+            self.note(&id, vec![event], robot.now.unix_ms);
+        }
+    }
+
+    fn pass(&mut self, robot: &Robot<'_>) -> Option<String> {
+        let (state, at) = (self.state(robot), robot.now.unix_ms);
+        self.take_results(at);
+        if let Some((id, event)) = self.controller.look(&state, self.fault_ms) {
+            self.note(&id, vec![event], at);
+        }
+        self.request(&state, robot.now)
+    }
+
+    fn section(&self, robot: &Robot<'_>) -> Option<String> {
+        let state = self.state(robot);
+        let section = StudySection::new(&self.controller, &state, self.trouble.as_deref());
+        serde_json::to_string(&section).ok()
+    }
+}
+
+impl Study {
+    fn state<'a>(&self, robot: &Robot<'a>) -> RobotState<'a> {
+        RobotState {
+            at: robot.now.unix_ms,
+            ms: ms(robot.now.at),
+            scene: robot.scene,
+            view: robot.view,
+            missing: robot.missing,
+            arm_is_busy: trial_monitor::arm_is_busy(robot.arm),
+            arm_is_stopped: robot.arm.is_some_and(|arm| arm.stopped != 0),
+            is_switching: self.switch.is_busy() || self.controller.owing().is_some(),
+        }
     }
 
     /// Writes events to the journal and applies them once they are on the disk.
@@ -185,7 +185,7 @@ impl Study {
         }
     }
 
-    fn request(&mut self, robot: &RobotState<'_>, now: Now) -> Option<Words> {
+    fn request(&mut self, robot: &RobotState<'_>, now: Now) -> Option<String> {
         let Some(request) = self.controller.request(robot) else {
             self.requested = None;
             return None;
@@ -198,7 +198,7 @@ impl Study {
         }
         self.requested = Some((request.clone(), now.at));
         match &request {
-            RobotRequest::Cancel => return Some(typed(CANCEL)),
+            RobotRequest::Cancel => return Some(CANCEL.to_owned()),
             RobotRequest::Switch(planner) => {
                 // Before it is done, so that it is given back whatever happens in between.
                 let event = Event::Switched { planner: planner.clone() };
