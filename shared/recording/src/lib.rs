@@ -3,7 +3,8 @@
 //! [`channels`] lists what a file can hold: every topic of the group with the schema of its messages, and the
 //! [`picture`] of the group in schemas that viewers draw. [`file`] writes one file, [`ring`] a ring of them
 //! in bounded space, [`recover`] completes what a killed writer has left, and [`list`] reads them. [`group_reader`]
-//! reads the messages of all channels from a running group, for a recorder and for a live view.
+//! reads the messages of all channels from a running group, for a recorder and for a live view, whose messages are
+//! those of [`live`].
 //!
 //! Times in a file are wall-clock times. The messages themselves keep the machine's monotonic clock; the
 //! offset between both is constant within a file and part of its metadata.
@@ -19,6 +20,7 @@ pub mod foxglove;
 pub mod group_reader;
 pub mod journals;
 pub mod list;
+pub mod live;
 mod log_lines;
 pub mod payload;
 pub mod picture;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use command_line::Outcome;
 use command_line::output::Output;
-use dialogue::export::Pomdp;
+use evaluation::export::{self, Pomdp};
 use serde_json::json;
 use service::exit::{Exit, Failure};
 
@@ -15,10 +15,9 @@ use crate::planning;
 pub(super) fn export(args: &PomdpArgs, out: &mut Output<'_>) -> Outcome {
     let found = planning::of_scene(&args.scene, &args.problem, args.problem.config.is_given())?;
     let comment = comment(found.scene.name());
-    let exported =
-        dialogue::export::pomdp(&found.scene, &found.decision(), &comment).map_err(|error| {
-            Failure::new(Exit::Config, format!("{}: {error}", args.scene.display()))
-        })?;
+    let exported = export::pomdp(&found.scene, &found.decision(), &comment).map_err(|error| {
+        Failure::new(Exit::Config, format!("{}: {error}", args.scene.display()))
+    })?;
     let Pomdp { text, states, actions, observations } = exported;
     let mut written = json!({ "states": states, "actions": actions, "observations": observations });
     match &args.output {

@@ -4,8 +4,8 @@
 
 mod parser;
 
-use dialogue::export::{self, Pomdp};
 use dialogue::{Answer, DecisionProblem, Model};
+use evaluation::export::{self, Pomdp};
 use scene::{ObjectId, Question, Scene};
 use serde_json::json;
 use vocabulary::{Action, Actions, Announce, Costs, Mode, Params};

@@ -11,11 +11,12 @@ mod name;
 use std::collections::HashMap;
 use std::fmt::Write;
 
+use dialogue::{Answer, DecisionProblem};
 use scene::{AttributeId, ObjectId, Question, Scene, ValueId};
 
-use crate::{Answer, DecisionProblem};
-use name::escape;
 use vocabulary::Action;
+
+use name::escape;
 
 /// Largest number of pairs of an action and a state that is exported.
 pub const PAIRS_MAX: usize = 5_000_000;

@@ -1,13 +1,14 @@
-//! Messages of the protocol `foxglove.sdk.v1`, in both directions.
+//! Messages of a live view over the protocol `foxglove.sdk.v1`, in both directions.
 //!
 //! Pure. Texts are JSON objects with `op`; binary messages begin with an operation code, and their numbers
 //! are little-endian.
 
 use std::collections::BTreeMap;
 
-use recording::channels::{Channel, ChannelId, message_encoding};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
+
+use crate::channels::{Channel, ChannelId, message_encoding};
 
 /// Name of the protocol, which a viewer requests when it connects.
 pub const SUBPROTOCOL: &str = "foxglove.sdk.v1";
@@ -21,6 +22,7 @@ const CALL_RESPONSE: u8 = 3;
 /// A message of a viewer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
+    /// Subscriptions that begin.
     Subscribe(Vec<Subscription>),
     /// Numbers of subscriptions that end.
     Unsubscribe(Vec<u32>),
@@ -28,8 +30,11 @@ pub enum Request {
     GetParameters(Vec<String>, Option<String>),
     /// Parameters are read-only; the number of the request.
     SetParameters(Option<String>),
+    /// Names of parameters whose changes are wanted; there are none.
     SubscribeParameters(Vec<String>),
+    /// As above, not wanted any more.
     UnsubscribeParameters,
+    /// A call of a service.
     Call(Call),
 }
 
@@ -53,10 +58,13 @@ impl Subscription {
 /// A call of a service.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Call {
+    /// Number of the service.
     pub service: u32,
     /// Number of the call, chosen by the viewer.
     pub id: u32,
+    /// Encoding of the request.
     pub encoding: String,
+    /// The request.
     pub request: Vec<u8>,
 }
 
@@ -148,10 +156,15 @@ pub fn advertise<'a>(channels: impl Iterator<Item = (ChannelId, &'a Channel)>) -
 /// A service as it is listed: its number, name and type, with the JSON Schemas of request and response.
 #[derive(Clone, Debug)]
 pub struct Service {
+    /// Its number.
     pub id: u32,
+    /// Its name.
     pub name: &'static str,
+    /// Its type.
     pub kind: &'static str,
+    /// The schema of a request.
     pub request: Json,
+    /// The schema of a response.
     pub response: Json,
 }
 
@@ -195,7 +208,9 @@ pub fn parameter_values<'a>(
 /// Severity of a status message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
+    /// Something is missing or late.
     Warning = 1,
+    /// A request has failed.
     Error = 2,
 }
 
