@@ -1,5 +1,5 @@
 //! Message types for other languages, generated from the wire layout: `shared/sdk/python/whichone/messages.py` and
-//! `shared/sdk/c/whichone.h`. `WHICHONE_BLESS=1 cargo test -p messages --test bindings` rewrites them.
+//! `shared/sdk/c/whichone.h`. `WHICHONE_BLESS=1 cargo test -p whichone-sdk --test bindings` rewrites them.
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -12,7 +12,7 @@ mod python;
 use docs::Docs;
 use model::Model;
 
-const SDK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../sdk");
+const SDK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
 #[track_caller]
 fn check(file: &str, text: &str) {

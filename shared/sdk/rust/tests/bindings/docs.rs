@@ -19,7 +19,7 @@ impl Docs {
     pub(crate) fn read() -> Self {
         let mut docs = Self::default();
         for folder in SOURCES {
-            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
+            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(folder);
             let mut files = Vec::new();
             collect(&folder, &mut files);
             files.sort();
