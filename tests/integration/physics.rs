@@ -6,9 +6,10 @@ use std::cell::Cell;
 use std::collections::HashMap;
 use std::ops::Deref;
 use std::path::PathBuf;
+use std::process::Command;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use whichone_tests::{Group, wait_for};
+use whichone_tests::{Group, program, wait_for};
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
 /// Longest time for an event on an idle machine, seconds.
@@ -310,4 +311,21 @@ fn what_was_handed_over_is_taken_back_and_stands_in_its_place() {
     assert_delivered(&group, &group.fetch("the clear bowl", "clear"), "clear");
     assert_carried(&group, "clear");
     group.down();
+}
+
+#[test]
+#[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+fn every_shipped_pick_succeeds_in_a_physics_engine() {
+    let python = std::env::var("WHICHONE_PHYSICS").expect("WHICHONE_PHYSICS names a Python");
+    let ended = Command::new(python)
+        .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts/mujoco/acceptance.py"))
+        .arg("--whichone")
+        .arg(program("whichone"))
+        .arg("accept")
+        .output()
+        .unwrap();
+    let output = String::from_utf8_lossy(&ended.stdout);
+    let errors = String::from_utf8_lossy(&ended.stderr);
+    assert!(ended.status.success(), "{output}{errors}");
+    assert!(output.ends_with("18 of 18 picks as planned\n"), "{output}");
 }

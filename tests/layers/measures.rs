@@ -35,7 +35,7 @@ const BOUNDS: [Bound; 3] = [
 ];
 
 /// Folders of what a robot needs that asks and fetches.
-const CORE: [&str; 25] = [
+const CORE: [&str; 26] = [
     "shared/vocabulary",
     "shared/scene",
     "shared/words",
@@ -53,6 +53,7 @@ const CORE: [&str; 25] = [
     "shared/safe_files",
     "shared/audio",
     "shared/preflight",
+    "shared/command_line",
     "shared/perception",
     "services/speech",
     "services/grounding",

@@ -1,8 +1,6 @@
 //! What browsers send, as the server reads it: for the fuzz targets.
 
 pub use crate::hub::command::{Verb, Words};
-pub use crate::live::protocol::{Request, read_binary, read_text};
 pub use crate::live::say;
 pub use crate::server::message::{Do, Hello, Message, hello, message};
-pub use crate::study::read_command;
 pub use crate::voice::PcmFrame;

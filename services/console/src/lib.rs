@@ -21,7 +21,6 @@ mod metrics;
 mod scenes;
 mod server;
 mod service;
-mod study;
 mod understood;
 mod view_model;
 mod viewer;

@@ -31,7 +31,6 @@ use crate::scenes::{Desk, Scenes};
 use crate::server::limits::Limits;
 use crate::server::web::Web;
 use crate::server::{Access, App};
-use crate::study::{self, Study};
 use crate::viewer;
 
 /// Longest sleep with and without viewers. Prompts, acts and phases of the arm wake the console; it polls
@@ -88,7 +87,7 @@ impl Console {
         let (motions, motion_inbox) =
             worker_channel::channel::<Motion>().map_err(failed("inbox"))?;
         let (restarts, restart_inbox) = crossbeam_channel::bounded(RESTARTS_MAX);
-        let study = Study::new(settings, paths)?;
+        let study = page_study::open(settings, paths)?;
         let handover = Span::from_s(settings.console.handover.as_secs_f64());
         let channels = Channels { commands: commands.clone(), motions, restarts };
         let (limits, is_live_possible) = limits(settings.console.viewers_max);
@@ -107,7 +106,7 @@ impl Console {
             settings: page_settings(settings, study.is_some()),
             urdf: settings.robot_files().urdf.text.clone(),
             voice_dir: settings.voice_dir(&paths.run()),
-            study_dir: study::folder(settings, paths),
+            study: page_study::files(settings, paths),
         });
         bridge::supervisor::watch(paths, &app, restart_inbox, commands)
             .map_err(failed("supervisor's thread"))?;

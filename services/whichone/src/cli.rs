@@ -9,29 +9,22 @@ use clap_complete::Shell;
 use diagnostics::nearest;
 use service::group::{ENV_GROUP, GroupName};
 
-mod arm;
-mod batch;
 mod group;
 mod link;
 mod objects;
 mod record;
-mod replay;
 mod scene;
-mod study;
 mod talk;
 
-pub use arm::{ArmPlotArgs, ArmVerb};
-pub use batch::{ArmArgs, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm};
+pub use command_line::args::ConfigArgs;
 pub use group::{
-    CheckArgs, ConfigArgs, ConformArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs,
-    ServiceArgs, StopArgs, SwapArgs, UpArgs, WaitFor,
+    CheckArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, StopArgs,
+    SwapArgs, UpArgs, WaitFor,
 };
 pub use link::LinkArgs;
 pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
-pub use record::{ExportVerb, McapArgs, OpenArgs, PomdpArgs, RecordVerb, RecorderArgs};
-pub use replay::ReplayArgs;
+pub use record::{OpenArgs, RecordVerb, RecorderArgs};
 pub use scene::{SceneCheckArgs, SceneNewArgs, ScenePlaceArgs, SceneShowArgs, SceneVerb};
-pub use study::{ALL as STUDY_ALL, Preset, ReportArgs, StudyArgs, StudyVerb};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalAction, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
 
@@ -240,7 +233,7 @@ pub enum Verb {
     /// Prints a line for each rule: readiness, heartbeats, identity, topics, messages that make no sense,
     /// restart, end; for a grounder also its answers, and their time. The exit code is 0 if every rule
     /// holds. Nothing of it touches a running group.
-    Conform(ConformArgs),
+    Conform(laboratory::args::ConformArgs),
     /// Say something to the robot.
     Say(SayArgs),
     /// Point at a place, as the user in front of the robot.
@@ -297,7 +290,7 @@ pub enum Verb {
     /// The exit code is 0 if every record and every output is as recorded, and 70 at the first one that is
     /// not: it is shown with its pass, time and field, and with the events before it. With --what-if, the
     /// decisions that differ are listed instead.
-    Replay(ReplayArgs),
+    Replay(laboratory::args::ReplayArgs),
     /// List, verify or set aside the journals.
     Journal(JournalArgs),
     /// Print a completion script for a shell.
@@ -328,38 +321,9 @@ pub enum Verb {
     /// Checks programs, configuration, folders, shared memory, leftovers of killed groups, the
     /// recogniser, the voice and the microphone.
     Doctor(ConfigArgs),
-    /// Read test cases, one JSON object per line, and print the belief after each.
-    Belief(InputArgs),
-    /// Read utterances, one JSON object per line, and print the meaning of each in the scene.
-    ///
-    /// Input: `id`, `text`, and optionally `last_question`, the question that the utterance may
-    /// answer: {"type":"point","object":ID}, {"type":"attr","attribute":K,"value":V},
-    /// {"type":"which","attribute":K} or {"type":"none"}.
-    Ground(GroundArgs),
-    /// Read beliefs, one JSON object per line, and print the robot's next action for each.
-    Plan(PlanArgs),
-    /// Write the decision problem of a scene, recordings or journals for other programs.
-    Export {
-        /// The format.
-        #[command(subcommand)]
-        what: ExportVerb,
-    },
-    /// Compare policies with simulated users, or report the results of a study with people.
-    ///
-    /// With simulated users it prints, per policy and user model, the success rate, the number of
-    /// questions, the duration in seconds and the return, each with its 95 % interval.
-    /// The same seed gives the same table, byte for byte, on any number of threads.
-    Study(StudyArgs),
-    /// Show the arm's motions without a group.
-    Arm {
-        /// Action.
-        #[command(subcommand)]
-        what: ArmVerb,
-    },
-    /// Read joint positions, one JSON object per line, and print the pose of every link.
-    Fk(ArmArgs),
-    /// Read poses of an arm's last link, one JSON object per line, and print joint positions.
-    Ik(ArmArgs),
+    /// Verbs of the laboratory.
+    #[command(flatten)]
+    Laboratory(laboratory::Verb),
 }
 
 #[cfg(test)]

@@ -5,10 +5,10 @@ use std::ffi::CString;
 use std::path::Path;
 use std::process::ExitCode;
 
+use command_line::output::print_error;
 use messages::{SUPERVISOR, Service};
 use service::exit::{Exit, Failure};
 use service::launch::PREFIX;
-use whichone::output::print_error;
 
 /// A program of the group.
 type Program = fn() -> ExitCode;

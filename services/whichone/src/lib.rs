@@ -1,27 +1,20 @@
-//! The command line of users and scripts, and the batch tools.
+//! The command line of users and scripts.
 //!
 //! A verb that talks to a group holds no state of its own: it asks the supervisor over its control
 //! socket, or is one more client of the group's topics, and can be killed at any moment without
-//! harm. The batch tools run the very code that the services run, on lines in place of messages.
+//! harm. Verbs for evaluation and development are in `laboratory`; what both share is in `command_line`.
 
 use std::ffi::OsString;
 
+use command_line::output::{Output, print_error, print_json_error};
+use command_line::shipped;
 use service::exit::{Exit, Failure};
 
 use crate::cli::Cli;
-use crate::output::{Output, print_error, print_json_error};
 
-pub mod batch;
 pub mod cli;
-pub mod described_arm;
-pub mod output;
-pub mod scene_file;
-pub mod shipped;
 
 pub mod verbs;
-
-/// Result of a verb: its exit code, or a failure to report.
-pub type Outcome = Result<Exit, Failure>;
 
 /// Runs the command line `arguments`, program name first, and returns the exit code of the process. The
 /// configuration in `files` is built in.

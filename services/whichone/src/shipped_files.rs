@@ -1,6 +1,6 @@
 //! The shipped configuration, as it was when this was compiled: every file of `config/`.
 
-use whichone::shipped::Files;
+use command_line::shipped::Files;
 
 macro_rules! file {
     ($path:literal) => {

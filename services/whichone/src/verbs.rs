@@ -1,33 +1,24 @@
 //! The verbs, a file each or a family a file.
 
+use command_line::Outcome;
+use command_line::output::Output;
 use messages::MotionOrder;
 use service::control::Request;
 use service::group::GroupPaths;
 
-use crate::Outcome;
-use crate::batch;
-use crate::cli::{
-    ArmArgs, ArmVerb, Awaited, Cli, GroundArgs, ServiceArgs, StopArgs, StudyVerb, Verb,
-};
-use crate::described_arm::DescribedArm;
-use crate::output::Output;
-use service::exit::Failure;
+use crate::cli::{Awaited, Cli, ServiceArgs, StopArgs, Verb};
 
-mod arm;
 mod availability;
 mod await_pick;
 mod chat;
 mod check;
 mod completion;
-mod conform;
 mod console;
 mod conversation;
 mod doctor;
-mod export;
 mod hearing;
 mod init;
 mod inspection;
-mod interrupt;
 mod leftovers;
 mod link;
 mod listen;
@@ -35,14 +26,10 @@ mod logs;
 mod motion;
 mod objects;
 mod operate;
-mod paths;
-mod planning;
 mod record;
-mod replay;
 mod scene;
 mod speak;
 mod status;
-mod study;
 mod up;
 mod watch;
 mod words;
@@ -73,7 +60,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Reload(args) => operate::reload(&paths()?, args, out),
         Verb::Check(args) => check::check(&args, out),
         Verb::Swap(args) => operate::swap(&paths()?, args, out),
-        Verb::Conform(args) => conform::conform(&args, out),
+        Verb::Conform(args) => laboratory::conform(&args, out),
         Verb::Say(args) => speak::say(&paths()?, &args, out),
         Verb::Point(args) => speak::point(&paths()?, &args, out),
         Verb::Objects(args) => objects::objects(&paths()?, &args, out),
@@ -92,7 +79,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Fleet(args) => Err(link::fleet(args, cli.common.json)),
         Verb::Gateway(args) => Err(link::gateway(args)),
         Verb::Record { what } => record::record(&paths()?, what, out),
-        Verb::Replay(args) => replay::replay(paths, &args, out),
+        Verb::Replay(args) => laboratory::replay(paths, &args, out),
         Verb::Scene { what } => scene::scene(what, out),
         Verb::Journal(args) => inspection::journal(&paths()?, &args, out),
         Verb::Completions { shell } => completion::completions(shell, out),
@@ -100,33 +87,8 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Init { folder } => init::init(&folder, out),
         Verb::Man { folder } => init::man(&folder, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
-        Verb::Belief(args) => batch::belief(batch::open(&args)?, out),
-        Verb::Ground(GroundArgs { calibrate: Some(file), scene, config, .. }) => {
-            batch::calibrate(&planning::calibrator(&scene, &config)?, &file, out)
-        }
-        Verb::Ground(args) => {
-            let grounder = planning::grounder(&args)?;
-            batch::ground(&grounder, batch::open(&args.input)?, out)
-        }
-        Verb::Plan(args) => {
-            batch::plan(&mut planning::decider(&args)?, batch::open(&args.input)?, out)
-        }
-        Verb::Export { what } => export::export(paths, &what, out),
-        Verb::Study(args) => match &args.verb {
-            Some(StudyVerb::Report(report)) => study::report(&paths()?, report, out),
-            None => study::study(&args, out),
-        },
-        Verb::Arm { what: ArmVerb::Plot(args) } => arm::plot(&args, out),
-        Verb::Fk(args) => batch::fk(&described_arm(&args)?, batch::open(&args.input)?, out),
-        Verb::Ik(args) => {
-            let chain = described_arm(&args)?.chain()?;
-            batch::ik(&chain, batch::open(&args.input)?, out)
-        }
+        Verb::Laboratory(verb) => laboratory::run(verb, paths, out),
     }
-}
-
-fn described_arm(args: &ArmArgs) -> Result<DescribedArm, Failure> {
-    DescribedArm::load(args.robot.as_deref(), &args.which)
 }
 
 /// A group called lab, for tests, in a home of its own.

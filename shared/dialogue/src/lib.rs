@@ -47,7 +47,6 @@ mod concessions;
 mod confusion;
 mod decision;
 mod evaluate;
-pub mod export;
 mod gesture;
 mod learned;
 pub mod manager;

@@ -7,8 +7,10 @@
 //! | [`simulation`] | simulated users, and interactions with them |
 //! | [`user_study`] | studies with people: journals, results |
 //! | [`charts`] | charts of both |
+//! | [`export`] | the decision problem for public solvers |
 
 pub mod charts;
+pub mod export;
 pub mod simulation;
 pub mod user_study;
 mod verdict;

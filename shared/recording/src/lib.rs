@@ -3,10 +3,15 @@
 //! [`channels`] lists what a file can hold: every topic of the group with the schema of its messages, and the
 //! [`picture`] of the group in schemas that viewers draw. [`file`] writes one file, [`ring`] a ring of them
 //! in bounded space, [`recover`] completes what a killed writer has left, and [`list`] reads them. [`group_reader`]
-//! reads the messages of all channels from a running group, for a recorder and for a live view.
+//! reads the messages of all channels from a running group, for a recorder and for a live view, whose messages are
+//! those of [`live`].
 //!
 //! Times in a file are wall-clock times. The messages themselves keep the machine's monotonic clock; the
 //! offset between both is constant within a file and part of its metadata.
+
+use std::io::ErrorKind;
+
+use service::exit::{Exit, Failure};
 
 pub mod channels;
 pub mod clock;
@@ -15,6 +20,7 @@ pub mod foxglove;
 pub mod group_reader;
 pub mod journals;
 pub mod list;
+pub mod live;
 mod log_lines;
 pub mod payload;
 pub mod picture;
@@ -38,6 +44,19 @@ pub enum RecordingError {
     /// A payload that is not what its topic says.
     #[error("topic {0}: {1}")]
     Payload(String, String),
+}
+
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Self {
+        match &error {
+            RecordingError::Io(path, cause) if cause.kind() == ErrorKind::AlreadyExists => {
+                let help = "help: name another file, or remove this one";
+                let what = format!("{}: it exists already; {help}", path.display());
+                Self::new(Exit::Storage, what)
+            }
+            _ => Self::new(Exit::Storage, error.to_string()),
+        }
+    }
 }
 
 impl RecordingError {

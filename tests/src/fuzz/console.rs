@@ -2,10 +2,10 @@
 
 use std::path::{Component, Path};
 
-use ::console::inputs::{
-    Do, Message, PcmFrame, Request, Verb, hello, message, read_binary, read_command, read_text, say,
-};
+use ::console::inputs::{Do, Message, PcmFrame, Verb, hello, message, say};
 use messages::SoundFile;
+use page_study::read_command;
+use recording::live::{Request, read_binary, read_text};
 use service::Time;
 use web_server::login::form_field;
 

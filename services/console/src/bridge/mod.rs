@@ -16,6 +16,7 @@ use messages::{
     Injection, InteractionId, JointStates, Observation, Outcome, Partial, RobotAct, Service,
     SoundFile, TrajectoryView, WorldView, topics,
 };
+use page_part::{Now, Part};
 use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, Reader};
 use service::client::Client;
 use service::clock;
@@ -26,13 +27,12 @@ use service::worker_channel::DeviceReceiver;
 use service::{Span, Time};
 
 use crate::hub::command::{Command, Motion, Verb, typed};
-use crate::hub::outbound::{Interim, Joints, PageMessage};
+use crate::hub::outbound::{Answer, Interim, Joints, PageMessage};
 use crate::hub::{Hub, ViewerId};
 use crate::live::feed::Feed;
 use crate::metrics::Tally;
 use crate::server::App;
-use crate::study::Study;
-use crate::view_model::{Now, Transcript, ViewModel};
+use crate::view_model::{Transcript, ViewModel};
 use crate::voice::Voice;
 use line_store::LineStore;
 use motion::Motions;
@@ -56,7 +56,7 @@ pub struct Bridge {
     injections: EncodedWriter<Injection>,
     model: ViewModel,
     voice: Voice,
-    study: Option<Study>,
+    study: Option<Box<dyn Part>>,
     feed: Feed,
     tally: Tally,
     submissions: Submissions,
@@ -113,7 +113,7 @@ impl Bridge {
         client: Client,
         paths: &GroupPaths,
         settings: &Settings,
-        study: Option<Study>,
+        study: Option<Box<dyn Part>>,
     ) -> Result<Self, Failure> {
         let bus = client.bus();
         let failed =
@@ -274,7 +274,9 @@ impl Bridge {
             Verb::StartOver => corrections::start_over(latest).map(typed),
             Verb::Study(verb, arguments) => {
                 let outcome = match &mut self.study {
-                    Some(study) => study.command(&verb, &arguments, &self.model, now).map(Some),
+                    Some(study) => study
+                        .command(&verb, &arguments, &self.model.robot(now))
+                        .map(|answer| Some(Answer::Part(answer))),
                     None => Err(NO_STUDY.to_owned()),
                 };
                 return self.hub().answer(viewer, id, outcome);
@@ -299,9 +301,11 @@ impl Bridge {
         self.voice.pass(&self.app.hub, now.at);
         let events = self.model.take_events();
         let Some(study) = &mut self.study else { return };
-        events.iter().for_each(|event| study.on_event(event, &self.model, now));
-        if let Some(words) = study.pass(&self.model, now)
-            && let Err(why) = self.submissions.add(None, words, self.model.accepted(), now.at)
+        let robot = self.model.robot(now);
+        events.iter().for_each(|event| study.on_event(event, &robot));
+        if let Some(words) = study.pass(&robot)
+            && let Err(why) =
+                self.submissions.add(None, typed(&words), self.model.accepted(), now.at)
         {
             tracing::warn!(why, "the study's words are not submitted");
         }
@@ -309,7 +313,7 @@ impl Bridge {
 
     fn show(&mut self, now: Now) {
         let sections = self.model.sections(now);
-        let study = self.study.as_ref().and_then(|study| study.section(&self.model, now));
+        let study = self.study.as_ref().and_then(|study| study.section(&self.model.robot(now)));
         let study = study.map(|study| ("study", study));
         for (name, text) in sections.into_iter().chain(study) {
             self.hub().board.section(name, &text);

@@ -19,7 +19,7 @@ pub enum Command {
     Group(Watched),
 }
 
-/// A command for dialogue or study.
+/// A command for the dialogue or for the study.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verb {
     Say(Words),

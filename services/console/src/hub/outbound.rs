@@ -103,15 +103,8 @@ pub enum Answer {
     Supervisor {
         message: String,
     },
-    /// The participant of a page of the study, and the stage.
-    Found {
-        participant: Option<String>,
-        stage: Option<&'static str>,
-    },
-    /// The participant that a command of the study concerned.
-    Participant {
-        participant: String,
-    },
+    /// The fields that a part of the page answers with.
+    Part(Json),
 }
 
 /// States of the joints, with as many digits as can be seen.

@@ -1,11 +1,11 @@
 //! The service `say`: an utterance of the operator, as if typed.
 
 use messages::{ClientId, RequestKey};
+use recording::live::Service;
 use scene::StableHash;
 use serde::Deserialize;
 use serde_json::json;
 
-use super::protocol::Service;
 use crate::hub::command::{Words, typed};
 use crate::server::message::spoken_text;
 

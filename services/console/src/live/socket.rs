@@ -5,13 +5,13 @@ use std::sync::Arc;
 use axum::extract::ws::{Message as Frame, WebSocket, close_code};
 use futures_util::StreamExt;
 use futures_util::stream::SplitStream;
+use recording::live::{self as protocol, Call, Level, Request};
 use service::clock;
 use service::console_link::random_secret;
 use tokio::sync::{Notify, mpsc};
 use tokio::time::{Instant, interval_at};
 use web_server::connections::Connection;
 
-use super::protocol::{self, Call, Level, Request};
 use super::say;
 use crate::hub::command::Verb;
 use crate::hub::outbound::Answer;

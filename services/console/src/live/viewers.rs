@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use recording::channels::ChannelId;
+use recording::live::Subscription;
 use tokio::sync::Notify;
 
-use super::protocol::Subscription;
 use crate::hub::ViewerId;
 
 /// Most messages that wait for a viewer, and most bytes of them.

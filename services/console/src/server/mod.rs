@@ -20,6 +20,7 @@ use axum::http::{HeaderMap, Method, Response, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Redirect};
 use axum::routing::get;
+use page_part::Files;
 use web_server::connections::{Gate, Of};
 use web_server::login::{pause, token_of};
 use web_server::request::{bearer, text, wants_page};
@@ -51,8 +52,8 @@ pub struct App {
     pub urdf: String,
     /// Folder with the sound of the robot's lines.
     pub voice_dir: Option<PathBuf>,
-    /// Folder with the data of studies.
-    pub study_dir: PathBuf,
+    /// Files of studies.
+    pub study: Box<dyn Files>,
 }
 
 /// Serves a listener until the hub ends.
@@ -88,7 +89,7 @@ fn router(app: Arc<App>) -> Router {
         .route("/metrics", get(routes::metrics))
         .route("/robot.urdf", get(routes::urdf))
         .route("/voice/{line}", get(routes::voice))
-        .merge(crate::study::routes())
+        .route("/study/{file}", get(routes::study))
         .merge(crate::scenes::routes())
         .fallback(routes::asset)
         .layer(middleware::from_fn_with_state(Arc::clone(&app), admit))

@@ -9,6 +9,7 @@ use axum::extract::{ConnectInfo, Path, Query, State};
 use axum::http::{HeaderMap, Method, Response, StatusCode, Uri, header};
 use axum::response::{AppendHeaders, IntoResponse, Redirect};
 use messages::SoundFile;
+use recording::live::SUBPROTOCOL;
 use serde::{Deserialize, Serialize};
 use service::Span;
 use service::clock;
@@ -22,7 +23,7 @@ use super::message::FRAME_BYTES_MAX;
 use super::{Access, App, assets, socket as sockets};
 use crate::history::PAGE_MAX;
 use crate::hub::Role;
-use crate::live::{self, protocol::SUBPROTOCOL};
+use crate::live;
 
 /// Longest silence of a healthy main loop.
 const WELL: Span = Span::from_ms(3_000);
@@ -161,6 +162,12 @@ pub(super) async fn interaction(
     };
     let history = Arc::clone(&app.history);
     as_json(tokio::task::spawn_blocking(move || history.interaction(number))).await
+}
+
+/// A file of the studies.
+pub(super) async fn study(State(app): State<Arc<App>>, Path(name): Path<String>) -> Response<Body> {
+    let answer = tokio::task::spawn_blocking(move || app.study.read(&name)).await;
+    answer.unwrap_or_else(|_| StatusCode::INTERNAL_SERVER_ERROR.into_response())
 }
 
 /// The result of a blocking task as JSON, 404 where there is none.

@@ -22,6 +22,7 @@ use messages::{
     Activity, ArmStatus, Hearing, Observation, PolicyView, Presented, Receipt, RobotAct, Service,
     TrajectoryView, WorldView,
 };
+use page_part::{DialogueEvent, Now, Robot};
 use scene::{ObjectId, Scene};
 use serde::Serialize;
 use service::status::{GroupStatus, ServiceStatus};
@@ -35,30 +36,10 @@ use turn::Turn;
 use crate::understood;
 use listed::Labels;
 use sections::{SceneSection, SpeakingSection, TrajectorySection, TurnSection, WorldSection};
-pub(crate) use services::missing;
+use services::missing;
 
 /// Utterances whose readings are remembered.
 const READINGS_MAX: usize = 16;
-
-/// A moment on both clocks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Now {
-    pub at: Time,
-    /// Milliseconds since 1970.
-    pub unix_ms: u64,
-}
-
-/// Something that was said, for the study; reported once.
-#[derive(Clone, Debug, PartialEq)]
-pub enum DialogueEvent {
-    /// A question of the robot has begun.
-    Asked {
-        prompt: u64,
-        presentation: u32,
-        words: String,
-    },
-    Heard(Box<Receipt>),
-}
 
 /// Silence of the arm's service, which publishes three to four times a second, after which the arm's state is unknown.
 const ARM_SILENCE: Span = Span::from_ms(2_000);
@@ -122,6 +103,17 @@ impl ViewModel {
 
     pub fn latest(&self) -> &Latest {
         &self.latest
+    }
+
+    /// Returns the robot as optional parts of the page see it.
+    pub fn robot(&self, now: Now) -> Robot<'_> {
+        Robot {
+            now,
+            scene: &self.scene,
+            view: self.latest.view.as_ref(),
+            arm: self.latest.arm.as_ref(),
+            missing: self.group.as_ref().and_then(missing).map(|service| service.name.as_str()),
+        }
     }
 
     /// Returns the highest utterance that is known to be accepted.

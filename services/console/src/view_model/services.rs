@@ -26,7 +26,7 @@ pub(super) fn transitions<'a>(
 }
 
 /// Returns a service that the dialogue needs and that is not ready.
-pub(crate) fn missing(group: &GroupStatus) -> Option<&ServiceStatus> {
+pub(super) fn missing(group: &GroupStatus) -> Option<&ServiceStatus> {
     let names = Service::DIALOGUE.map(Service::name);
     let mut needed = group.services.iter().filter(|service| names.contains(&&*service.name));
     needed.find(|service| service.actual != Actual::Ready)

@@ -8,13 +8,13 @@ use service::Time;
 use service::status::ServiceStatus;
 use service::view::Speaker;
 
-use super::Now;
 use super::line::{Line, Note, Recognisers};
 use super::listed::Labels;
 use super::prompts::Prompt;
 use super::understood::Understood;
 use crate::hub::board::LINES_MAX;
 use crate::hub::ms;
+use page_part::Now;
 
 /// Utterances whose meaning has come before their receipt.
 const EARLY_MAX: usize = 16;

@@ -5,29 +5,8 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 
+use super::ConfigArgs;
 use super::talk::seconds;
-
-/// Selection of the configuration.
-#[derive(Clone, Debug, Default, Args)]
-pub struct ConfigArgs {
-    /// Folder of the configuration [default: ./config, `config` beside the program, ~/.config/whichone,
-    /// /etc/whichone, else the built-in one].
-    #[arg(long, value_name = "DIR", env = "WHICHONE_CONFIG", hide_env_values = true)]
-    pub config: Option<PathBuf>,
-    /// A profile from the folder `profiles` of the configuration.
-    #[arg(long, value_name = "NAME")]
-    pub profile: Option<String>,
-    /// Override a configuration value, e.g. group.scene=tools; may be repeated.
-    #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
-    pub set: Vec<(String, String)>,
-}
-
-impl ConfigArgs {
-    /// Returns true if any of them is given.
-    pub fn is_given(&self) -> bool {
-        self.config.is_some() || self.profile.is_some() || !self.set.is_empty()
-    }
-}
 
 /// Arguments of `up`.
 #[derive(Debug, Args)]
@@ -157,26 +136,4 @@ pub struct SwapArgs {
     /// Timeout, seconds.
     #[arg(long, value_name = "S", default_value = "120", value_parser = seconds)]
     pub timeout: Duration,
-}
-
-/// Arguments of `conform`.
-#[derive(Debug, Args)]
-pub struct ConformArgs {
-    /// Kind of the service: its name in a group, e.g. grounding.
-    pub service: String,
-    /// The program to test, and its arguments.
-    #[arg(last = true, required = true, value_name = "COMMAND")]
-    pub command: Vec<String>,
-    /// Test this rule alone; may be repeated.
-    #[arg(long = "rule", value_name = "NAME")]
-    pub rules: Vec<String>,
-    /// The configuration whose scene and settings the service gets.
-    #[command(flatten)]
-    pub config: ConfigArgs,
-}
-
-pub(super) fn key_and_value(text: &str) -> Result<(String, String), String> {
-    let (key, value) =
-        text.split_once('=').ok_or("expected KEY=VALUE, e.g. dialogue.planner=entropy")?;
-    Ok((key.trim().to_owned(), value.trim().to_owned()))
 }

@@ -1,11 +1,10 @@
-//! Arguments of `record` and `export`.
+//! Arguments of `record`.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Subcommand};
 
-use super::ProblemArgs;
 use super::talk::seconds;
 
 /// What `record` does.
@@ -40,40 +39,4 @@ pub struct OpenArgs {
     /// Copy it to this file [default, where a copy is needed: the folder `opened` of the group].
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-}
-
-/// What `export` writes.
-#[derive(Debug, Subcommand)]
-pub enum ExportVerb {
-    /// The decision problem of the planners in Cassandra's text format, which public solvers read.
-    Pomdp(PomdpArgs),
-    /// Recordings, journals or flights as one MCAP file, which Foxglove and other robotics tools open.
-    Mcap(McapArgs),
-}
-
-/// Arguments of `export pomdp`.
-#[derive(Debug, Args)]
-pub struct PomdpArgs {
-    /// The scene: a TOML or JSON file, or the name of a scene of the configuration.
-    pub scene: PathBuf,
-    /// The problem.
-    #[command(flatten)]
-    pub problem: ProblemArgs,
-    /// Write to this file instead of standard output.
-    #[arg(long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
-}
-
-/// Arguments of `export mcap`.
-#[derive(Debug, Args)]
-pub struct McapArgs {
-    /// A recording, a journal, a flight, or a folder of one kind [default: the recordings of the group].
-    ///
-    /// The folder of a group has its recordings in `recordings`, its journals in `journal` and its flights in
-    /// `flight`; `whichone record list` prints where that is.
-    #[arg(value_name = "SOURCE")]
-    pub source: Option<PathBuf>,
-    /// The file to write; an existing one is not replaced.
-    #[arg(long, value_name = "FILE")]
-    pub out: PathBuf,
 }

@@ -3,6 +3,8 @@
 use std::thread;
 use std::time::Instant;
 
+use command_line::Outcome;
+use command_line::output::Output;
 use messages::{ActKind, Ended, Outcome as How};
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
@@ -11,9 +13,7 @@ use service::group::GroupPaths;
 use super::availability::Lookout;
 use super::conversation::{Conversation, LOOK_EVERY};
 use super::words;
-use crate::Outcome;
 use crate::cli::AwaitArgs;
-use crate::output::Output;
 
 pub use user::TruthfulUser;
 pub use waiting::Waiting;

@@ -5,6 +5,9 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use command_line::Outcome;
+use command_line::interrupt::Interrupt;
+use command_line::output::{Ink, Output, note};
 use messages::{MotionOrder, Receipt, ReceiptStatus};
 use scene::ObjectId;
 use serde_json::json;
@@ -15,12 +18,9 @@ use service::printable::one_line;
 
 use super::availability::Lookout;
 use super::conversation::{Conversation, LOOK_EVERY};
-use super::interrupt::Interrupt;
 use super::motion::{MotionOrders, ResumeGuard};
 use super::{await_pick, operate, up};
-use crate::Outcome;
 use crate::cli::ChatArgs;
-use crate::output::{Ink, Output, note};
 
 /// Time that the end of a chat waits for the last interaction to end.
 const LAST_WORDS: Duration = Duration::from_secs(120);

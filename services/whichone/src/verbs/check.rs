@@ -2,6 +2,9 @@
 
 use std::path::Path;
 
+use command_line::Outcome;
+use command_line::configuration;
+use command_line::output::{Ink, Output, note, table};
 use config::Settings;
 use diagnostics::{Diagnostic, Diagnostics};
 use language::own_words;
@@ -10,14 +13,11 @@ use scene_editing::warnings;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
-use super::paths;
-use crate::Outcome;
 use crate::cli::CheckArgs;
-use crate::output::{Ink, Output, note, table};
 
 /// Reports every problem at once, or the services that would run.
 pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
-    let folder = paths::config_folder(&args.config)?;
+    let folder = configuration::folder(&args.config)?;
     let loaded = preflight::load(&folder, args.config.profile.as_deref(), &args.config.set);
     verdict(loaded, &folder, args.values, out)
 }

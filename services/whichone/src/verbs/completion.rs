@@ -4,15 +4,15 @@ use std::fs;
 use std::path::Path;
 
 use clap_complete::{Shell, generate};
+use command_line::Outcome;
+use command_line::configuration;
+use command_line::output::Output;
 use config::Settings;
 use messages::SUPERVISOR;
 use service::exit::{Exit, Failure};
 use service::group::{ENV_GROUP, GroupName, GroupPaths};
 
-use super::paths;
-use crate::Outcome;
 use crate::cli::{Cli, ConfigArgs};
-use crate::output::Output;
 
 /// Start of the function that completes in bash and zsh; the names are asked for first.
 const FUNCTION: &str = "_whichone() {\n";
@@ -129,7 +129,7 @@ impl Line {
     fn settings(&self) -> Option<Settings> {
         let running = (!self.config.is_given()).then(|| self.running()).flatten();
         running.or_else(|| {
-            let folder = paths::config_folder(&self.config).ok()?;
+            let folder = configuration::folder(&self.config).ok()?;
             let profile = self.config.profile.as_deref();
             Settings::examine(&folder, profile, &self.config.set, None).settings
         })
@@ -148,7 +148,7 @@ impl Line {
 
     /// Names of the TOML files in a folder of the configuration.
     fn files(&self, folder: &str) -> Vec<String> {
-        let Ok(config) = paths::config_folder(&self.config) else { return Vec::new() };
+        let Ok(config) = configuration::folder(&self.config) else { return Vec::new() };
         let entries = fs::read_dir(config.join(folder)).into_iter().flatten().flatten();
         let name = |file: fs::DirEntry| {
             Some(Path::new(&file.file_name()).to_str()?.strip_suffix(".toml")?.to_owned())

@@ -4,6 +4,9 @@ use std::os::unix::process::CommandExt;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use command_line::Outcome;
+use command_line::output::{Output, note};
+use command_line::program::{command, failed};
 use safe_files::{replace_private, replace_private_synced};
 use serde::Serialize;
 use service::console_link::{self, random_secret};
@@ -11,11 +14,8 @@ use service::control::Request;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
-use super::inspection::{command, failed};
 use super::operate;
-use crate::Outcome;
 use crate::cli::ConsoleArgs;
-use crate::output::{Output, note};
 
 /// Time for which the console may take to stop or to start.
 const PATIENCE: Duration = Duration::from_secs(20);

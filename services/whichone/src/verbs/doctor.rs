@@ -6,6 +6,8 @@ use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
+use command_line::output::{Ink, Output, Style};
+use command_line::{Outcome, configuration, program};
 use config::Settings;
 use messages::{SUPERVISOR, Service};
 use service::console_link;
@@ -15,14 +17,12 @@ use service::inspection::{Condition, Finding};
 use service::launch;
 use service::shm_cleanup;
 
-use super::{inspection, leftovers, paths as locations, up};
-use crate::Outcome;
+use super::{inspection, leftovers, up};
 use crate::cli::ConfigArgs;
-use crate::output::{Ink, Output, Style};
 
 /// Examines everything that a group needs and suggests fixes.
 pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>) -> Outcome {
-    let settings = locations::settings(args);
+    let settings = configuration::settings(args);
     let mut findings = vec![
         programs(),
         folder(paths),
@@ -53,7 +53,7 @@ pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>
 /// Checks the devices of the speech service by its own program.
 fn devices(settings: &Settings) -> Result<Vec<Finding>, Failure> {
     let snapshot = inspection::snapshot(settings)?;
-    let mut command = inspection::command(Service::Speech.name(), "doctor");
+    let mut command = program::command(Service::Speech.name(), "doctor");
     command.arg("--settings").arg(snapshot.path()).stderr(Stdio::inherit());
     let Ok(output) = command.output() else { return Ok(Vec::new()) };
     let lines = output.stdout.split(|&byte| byte == b'\n');

@@ -2,11 +2,10 @@
 
 use std::time::{Duration, Instant};
 
+use command_line::output::{Ink, Style};
 use messages::{EarState, Hearing, MicrophoneState, topics};
 use service::client::{Client, Polling};
 use service::group::GroupPaths;
-
-use crate::output::{Ink, Style};
 
 /// Time limit for a message.
 const TIMEOUT: Duration = Duration::from_secs(1);

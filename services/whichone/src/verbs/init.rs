@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::{fs, io};
 
+use command_line::Outcome;
+use command_line::output::Output;
+use command_line::shipped;
 use safe_files::{OutputFolder, TemporaryFolder};
 use serde_json::json;
 use service::exit::{Exit, Failure};
 
-use crate::Outcome;
 use crate::cli::Cli;
-use crate::output::Output;
-use crate::shipped;
 
 /// Writes the shipped configuration into a folder.
 pub(super) fn init(folder: &Path, out: &mut Output<'_>) -> Outcome {

@@ -2,10 +2,12 @@
 //! `doctor`.
 
 use std::collections::BTreeMap;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
+use command_line::Outcome;
+use command_line::output::Output;
+use command_line::program::failed;
 use messages::Service;
 use safe_files::TemporaryFolder;
 use serde_json::json;
@@ -15,9 +17,7 @@ use service::inspection::Verdict;
 use service::journal_set::{self, JournalSet};
 use service::{kept_settings, launch};
 
-use crate::Outcome;
 use crate::cli::{JournalAction, JournalArgs};
-use crate::output::Output;
 
 /// Lists, verifies or sets aside journals.
 pub(super) fn journal(paths: &GroupPaths, args: &JournalArgs, out: &mut Output<'_>) -> Outcome {
@@ -160,17 +160,4 @@ pub(super) fn snapshot(settings: &config::Settings) -> Result<TemporaryFolder, F
     written.map_err(|error| {
         Failure::new(Exit::Storage, format!("temporary folder for the settings: {error}"))
     })
-}
-
-/// The command line of a service's program with an inspection verb.
-pub(super) fn command(service: &str, verb: &str) -> Command {
-    let mut command = launch::command(launch::program_of(service));
-    command.arg(verb);
-    command
-}
-
-/// The error of a program that could not be run.
-pub(super) fn failed(command: &Command, error: &io::Error) -> Failure {
-    let program = Path::new(command.get_program()).display();
-    Failure::new(Exit::NotReached, format!("cannot run {program}: {error}"))
 }

@@ -7,6 +7,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use audio::{RATE_HZ, SampleClock, read_wav};
+use command_line::Outcome;
+use command_line::output::Output;
 use messages::{AudioChunk, Receipt, ReceiptStatus, Service, Sound};
 use service::audio::AudioStream;
 use service::client::Client;
@@ -16,9 +18,7 @@ use service::group::GroupPaths;
 
 use super::availability::{Availability, Lookout};
 use super::speak;
-use crate::Outcome;
 use crate::cli::ListenArgs;
-use crate::output::Output;
 
 /// Samples per block of a stream: a twentieth of a second.
 const BLOCK: usize = RATE_HZ as usize / 20;
@@ -116,7 +116,7 @@ impl Printed {
             match speak::print(receipt, out) {
                 // A rejected utterance does not end the stream.
                 Err(trouble) if receipt.status == ReceiptStatus::Refused => {
-                    crate::output::note(trouble);
+                    command_line::output::note(trouble);
                 }
                 printed => printed?,
             }

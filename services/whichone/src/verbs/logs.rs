@@ -6,15 +6,15 @@ use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
+use command_line::Outcome;
+use command_line::output::{Ink, Output};
 use serde::{Deserialize, Serialize};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::log_tail::LogFile;
 use service::printable::one_line;
 
-use crate::Outcome;
 use crate::cli::LogsArgs;
-use crate::output::{Ink, Output};
 
 /// Interval at which logs are polled for new lines.
 const LOOK_EVERY: Duration = Duration::from_millis(200);

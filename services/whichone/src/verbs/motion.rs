@@ -4,6 +4,9 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use std::time::Duration;
 
+use command_line::Outcome;
+use command_line::interrupt::Interrupt;
+use command_line::output::{Output, note};
 use messages::{MotionOrder, Service};
 use serde::Serialize;
 use service::Span;
@@ -12,10 +15,7 @@ use service::group::GroupPaths;
 use service::stop_socket::{self, StopError, StopState, default_patience};
 
 use super::availability::Availability;
-use super::interrupt::Interrupt;
 use super::up;
-use crate::Outcome;
-use crate::output::{Output, note};
 
 mod orders;
 

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::io::BufRead;
 use std::time::{Duration, Instant};
 
+use command_line::Outcome;
+use command_line::output::Output;
 use config::Settings;
 use messages::{Change, Detection, Look, Service, Sighting, TableView, topics};
 use serde::Deserialize;
@@ -17,9 +19,7 @@ use service::view::quiet;
 use service::{Span, Time};
 
 use super::availability::Availability;
-use crate::Outcome;
 use crate::cli::{ObjectsArgs, ObjectsVerb};
-use crate::output::Output;
 
 /// Interval at which a change is sent until it is answered.
 const RESEND_EVERY: Duration = Duration::from_millis(200);

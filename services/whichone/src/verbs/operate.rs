@@ -3,6 +3,8 @@
 use std::os::fd::OwnedFd;
 use std::time::Duration;
 
+use command_line::Outcome;
+use command_line::output::Output;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{Pid, PidfdFlags, pidfd_open};
 use rustix::time::Timespec;
@@ -13,9 +15,7 @@ use service::group::GroupPaths;
 use service::status::GroupStatus;
 
 use super::{leftovers, words};
-use crate::Outcome;
 use crate::cli::{ReloadArgs, RestartArgs, ServiceArgs, SwapArgs};
-use crate::output::Output;
 
 /// Timeout of the supervisor's answer, beyond the requested wait.
 const ANSWER_PATIENCE: Duration = Duration::from_secs(5);

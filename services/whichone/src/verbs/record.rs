@@ -1,13 +1,14 @@
 //! `record`: the recorder and its files.
 
 use std::fs;
-use std::io::ErrorKind;
 use std::path::PathBuf;
 
+use command_line::Outcome;
+use command_line::output::{Output, note, table};
 use messages::Service;
+use recording::EXTENSION;
 use recording::list::{Entry, State, entries};
 use recording::recover::merge;
-use recording::{EXTENSION, RecordingError};
 use serde_json::json;
 use service::control::Request;
 use service::exit::{Exit, Failure};
@@ -15,9 +16,7 @@ use service::folders::make_private;
 use service::group::GroupPaths;
 
 use super::{operate, words};
-use crate::Outcome;
 use crate::cli::{OpenArgs, RecordVerb, RecorderArgs, ServiceArgs};
-use crate::output::{Output, note, table};
 
 /// How a recording is looked at.
 const HOW_TO_OPEN: &str = "open it in Foxglove or Lichtblick with the layout \
@@ -97,7 +96,7 @@ fn open(paths: &GroupPaths, args: &OpenArgs, out: &mut Output<'_>) -> Outcome {
     let path = match copy {
         None => entry.path,
         Some(path) => {
-            merge(&[entry.path], &path).map_err(failure)?;
+            merge(&[entry.path], &path)?;
             path
         }
     };
@@ -134,16 +133,5 @@ fn state(entry: &Entry) -> &'static str {
         State::Incomplete => "incomplete",
         State::Damaged => "damaged",
         State::Foreign => "not of the recorder",
-    }
-}
-
-/// The failure of a verb that writes a recording.
-pub(super) fn failure(error: RecordingError) -> Failure {
-    match &error {
-        RecordingError::Io(path, cause) if cause.kind() == ErrorKind::AlreadyExists => {
-            let help = "help: name another file, or remove this one";
-            Failure::new(Exit::Storage, format!("{}: it exists already; {help}", path.display()))
-        }
-        _ => Failure::new(Exit::Storage, error.to_string()),
     }
 }

@@ -3,17 +3,18 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use command_line::Outcome;
+use command_line::configuration;
+use command_line::output::Output;
+use command_line::scene_file;
 use config::Settings;
 use diagnostics::{Diagnostics, TextFile};
 use scene_editing::SceneEdit;
 use serde_json::json;
 use service::exit::{Exit, Failure};
 
-use super::{check, paths, planning};
-use crate::Outcome;
+use super::check;
 use crate::cli::{ConfigArgs, SceneCheckArgs, SceneNewArgs, SceneVerb};
-use crate::output::Output;
-use crate::scene_file;
 
 mod diff;
 mod place;
@@ -35,8 +36,8 @@ fn check_scene(args: &SceneCheckArgs, out: &mut Output<'_>) -> Outcome {
 }
 
 fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
-    let path = if planning::is_word(&args.file) {
-        let scenes = paths::own_config_folder(&args.config)?.join("scenes");
+    let path = if scene_file::is_word(&args.file) {
+        let scenes = configuration::own_folder(&args.config)?.join("scenes");
         scenes.join(&args.file).with_extension("toml")
     } else {
         args.file.clone()
@@ -46,7 +47,7 @@ fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
         return Err(Failure::new(Exit::Usage, what));
     }
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    let schema = scene_editing::schema_line(&path, &paths::config_folder(&args.config)?);
+    let schema = scene_editing::schema_line(&path, &configuration::folder(&args.config)?);
     let text = scene_editing::new_scene(&name, &schema);
     let label = path.display().to_string();
     let mut edit = SceneEdit::parse(&label, &text)?;
@@ -72,7 +73,7 @@ fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
 
 /// Reads the scene that is named, with its path.
 fn read(named: &Path, config: &ConfigArgs) -> Result<(PathBuf, TextFile), Failure> {
-    let path = planning::scene_path(named, config)?;
+    let path = scene_file::path_of(named, config)?;
     let text = scene_file::read_file(&path)?;
     if scene_file::is_json(&text) {
         let what = format!("{}: expected a scene in TOML, found JSON", path.display());
@@ -84,14 +85,14 @@ fn read(named: &Path, config: &ConfigArgs) -> Result<(PathBuf, TextFile), Failur
 
 /// Loads the configuration with another scene, with all checks.
 fn load(args: &ConfigArgs, scene: TextFile) -> Result<Result<Settings, Diagnostics>, Failure> {
-    let folder = paths::config_folder(args)?;
+    let folder = configuration::folder(args)?;
     let profile = args.profile.as_deref();
     Ok(preflight::load_with_scene(&folder, profile, &args.set, Some(scene)))
 }
 
 /// Reads the configuration with another scene, without checks of the arm's reach.
 fn examine(args: &ConfigArgs, scene: Option<TextFile>) -> Result<Settings, Failure> {
-    let folder = paths::config_folder(args)?;
+    let folder = configuration::folder(args)?;
     let profile = args.profile.as_deref();
     let examined = Settings::examine(&folder, profile, &args.set, scene);
     Ok(examined.report.verdict(examined.settings)?)

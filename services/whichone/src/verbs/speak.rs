@@ -2,6 +2,9 @@
 
 use std::time::Duration;
 
+use command_line::Outcome;
+use command_line::interrupt::Interrupt;
+use command_line::output::{Ink, Output, note};
 use messages::{
     GateVerdict, Hypothesis, MotionOrder, Receipt, ReceiptStatus, SecondState, Service, Sound,
     Source, WireError,
@@ -17,11 +20,8 @@ use service::{Span, Time};
 
 use super::availability::{AFTER_SPEECH, Availability, Lookout};
 use super::hearing;
-use super::interrupt::Interrupt;
 use super::motion::MotionOrders;
-use crate::Outcome;
 use crate::cli::{PointArgs, SayArgs, TalkArgs};
-use crate::output::{Ink, Output, note};
 
 /// Time for the arm to confirm a stop before its words go to the speech service, which may be held up.
 const STOPS_WITHIN: Duration = Duration::from_millis(300);

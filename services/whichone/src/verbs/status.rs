@@ -1,5 +1,7 @@
 //! `status`: the state of a group for operators.
 
+use command_line::Outcome;
+use command_line::output::{Ink, Output, Style, table};
 use serde::Serialize;
 use service::console_link;
 use service::control::CallError;
@@ -10,8 +12,6 @@ use service::view::HearingView;
 
 use super::operate::status_of;
 use super::{hearing, words};
-use crate::Outcome;
-use crate::output::{Ink, Output, Style, table};
 
 /// Shows the group. The exit code is 0 if every service that is wanted up is ready.
 pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use command_line::output::{Output, note};
+use command_line::{Outcome, configuration};
 use serde::Serialize;
 use service::console_link;
 use service::control::{CallError, Request};
@@ -10,10 +12,8 @@ use service::group::GroupPaths;
 use service::launch::{self, LaunchError, Options};
 use service::status::GroupStatus;
 
-use super::{operate, paths};
-use crate::Outcome;
+use super::operate;
 use crate::cli::{ConfigArgs, UpArgs, WaitFor};
-use crate::output::{Output, note};
 
 /// Time for which a new supervisor waits for services of a killed one.
 const EARLIER_SERVICES: Duration = Duration::from_secs(25);
@@ -33,7 +33,7 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
     let name = paths.name();
     if !args.detach {
         // Its problems are printed without the supervisor's log around them.
-        paths::settings(&args.config)?;
+        configuration::settings(&args.config)?;
         note(format_args!("group {name} starts; Ctrl-C or `whichone down` stops it"));
         out.flush()?;
         return Err(launch::foreground(&launch::program(), &options, paths).into());
@@ -96,7 +96,7 @@ fn refuse_twice(paths: &GroupPaths) -> Result<(), Failure> {
 fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Options, Failure> {
     Ok(Options {
         group: paths.name().clone(),
-        config: paths::config_folder(config)?,
+        config: configuration::folder(config)?,
         profile: config.profile.clone(),
         set: config.set.clone(),
         fresh,
@@ -131,7 +131,7 @@ fn not_ready(error: LaunchError, paths: &GroupPaths) -> Failure {
 /// without its log around them; a check of our own before its start would only take time.
 fn explained(error: LaunchError, config: &ConfigArgs) -> Failure {
     let refused = error.exit() == Exit::Config;
-    let problems = refused.then(|| paths::settings(config).err()).flatten();
+    let problems = refused.then(|| configuration::settings(config).err()).flatten();
     problems.unwrap_or_else(|| error.into())
 }
 

@@ -4,16 +4,16 @@ use std::io::{self, IsTerminal};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use command_line::Outcome;
+use command_line::interrupt::Interrupt;
+use command_line::output::Output;
 use service::client::Polling;
 use service::control::{Reply, Request, call};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
 use super::conversation::{Conversation, LOOK_EVERY};
-use super::interrupt::Interrupt;
-use crate::Outcome;
 use crate::cli::WatchArgs;
-use crate::output::Output;
 
 mod dashboard;
 mod frame;

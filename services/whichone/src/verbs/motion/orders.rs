@@ -6,6 +6,9 @@ use std::sync::mpsc::{Receiver, SendError, Sender, TryRecvError, channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use command_line::Outcome;
+use command_line::interrupt::Interrupt;
+use command_line::output::note;
 use messages::MotionOrder;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use service::exit::{Exit, Failure};
@@ -16,9 +19,6 @@ use service::stop_socket::{
 use service::{Span, Time, clock};
 
 use super::{KEPT, NOT_DURABLE, Warnings};
-use crate::Outcome;
-use crate::output::note;
-use crate::verbs::interrupt::Interrupt;
 
 /// Interval at which an order that is not confirmed is looked at.
 const LOOK_EVERY: Span = Span::from_ms(10);

@@ -1,5 +1,7 @@
 //! `scene place`: places for objects that have none or that cannot be fetched.
 
+use command_line::Outcome;
+use command_line::output::{Output, note};
 use diagnostics::TextFile;
 use preflight::{ArmSetup, Arrangement};
 use scene_editing::SceneEdit;
@@ -7,9 +9,7 @@ use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
 use super::{diff, examine, load, read};
-use crate::Outcome;
 use crate::cli::{ConfigArgs, ScenePlaceArgs};
-use crate::output::{Output, note};
 use crate::verbs::check;
 
 /// An object with a new place.

@@ -1,5 +1,7 @@
 //! `scene show`: the objects with their words and places, and which arm fetches what.
 
+use command_line::Outcome;
+use command_line::output::{Output, note, table};
 use config::Settings;
 use language::own_words;
 use preflight::{ArmSetup, Arrangement};
@@ -9,9 +11,7 @@ use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
 use super::{examine, read};
-use crate::Outcome;
 use crate::cli::SceneShowArgs;
-use crate::output::{Output, note, table};
 
 /// Which arm fetches an object, or why none does; none without a place.
 type Reach = Option<Result<String, String>>;

@@ -8,6 +8,9 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use command_line::Outcome;
+use command_line::interrupt::Interrupt;
+use command_line::output::Style;
 use messages::{MotionOrder, Receipt, ReceiptStatus};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
@@ -24,9 +27,6 @@ use service::status::GroupStatus;
 
 use super::model::WatchModel;
 use super::{STATUS_EVERY, STATUS_PATIENCE};
-use crate::Outcome;
-use crate::output::Style;
-use crate::verbs::interrupt::Interrupt;
 use crate::verbs::motion::{MotionOrders, News};
 use draw::{Notice, Picture, draw};
 use keys::{Command, Keyboard};

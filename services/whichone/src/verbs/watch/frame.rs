@@ -1,6 +1,7 @@
 //! `watch` as lines of text.
 
 use ::dialogue::rendering;
+use command_line::output::{Ink, Style};
 use messages::{ArmStatus, PickOutcome, PickPhase, PolicyView, Task};
 use scene::Scene;
 use service::status::GroupState;
@@ -8,7 +9,6 @@ use service::status::{GroupStatus, ServiceStatus};
 use service::view::{SaidView, Speaker};
 
 use super::model::{WatchModel, object_name};
-use crate::output::{Ink, Style};
 use crate::verbs::status::state_ink;
 use crate::verbs::{await_pick, hearing, words};
 

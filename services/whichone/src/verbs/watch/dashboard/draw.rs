@@ -1,5 +1,6 @@
 //! Drawing of the dashboard, for a terminal of any size.
 
+use command_line::output::{Ink, Style};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Position, Rect};
 use ratatui::style::{Color, Modifier, Style as Look};
@@ -11,7 +12,6 @@ use service::status::{GroupState, GroupStatus};
 use service::view::{Latest, SaidView, Speaker};
 
 use super::keys::{Keyboard, Mode};
-use crate::output::{Ink, Style};
 use crate::verbs::status::state_ink;
 use crate::verbs::watch::frame::{arm_line, bars, reasons, summary};
 use crate::verbs::watch::model::WatchModel;

@@ -1,0 +1,15 @@
+//! Arguments of the verbs.
+
+mod arm;
+mod batch;
+mod conform;
+mod export;
+mod replay;
+mod study;
+
+pub use arm::{ArmPlotArgs, ArmVerb};
+pub use batch::{ArmArgs, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm};
+pub use conform::ConformArgs;
+pub use export::{ExportVerb, McapArgs, PomdpArgs};
+pub use replay::ReplayArgs;
+pub use study::{ALL, Preset, ReportArgs, StudyArgs, StudyVerb};

@@ -1,0 +1,22 @@
+//! `export`: data of the project in formats of other programs.
+
+use command_line::Outcome;
+use command_line::output::Output;
+use service::group::{GroupError, GroupPaths};
+
+use crate::args::ExportVerb;
+
+mod mcap;
+mod pomdp;
+
+/// Executes `export`.
+pub(super) fn export(
+    paths: impl FnOnce() -> Result<GroupPaths, GroupError>,
+    verb: &ExportVerb,
+    out: &mut Output<'_>,
+) -> Outcome {
+    match verb {
+        ExportVerb::Pomdp(args) => pomdp::export(args, out),
+        ExportVerb::Mcap(args) => mcap::export(paths, args, out),
+    }
+}

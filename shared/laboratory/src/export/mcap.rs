@@ -1,0 +1,190 @@
+//! `export mcap`: recordings, journals or flights as one MCAP file.
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::UNIX_EPOCH;
+
+use command_line::Outcome;
+use command_line::output::{Output, note};
+use command_line::program::{command, failed};
+use messages::Service;
+use recording::journals::{Entry, Origin, Writer};
+use recording::list::entries;
+use recording::recover::merge;
+use scene::count;
+use serde_json::json;
+use service::exit::{Exit, Failure};
+use service::flight::{self, Direction, Head, Line};
+use service::group::{GroupError, GroupPaths};
+use service::journal_record::JournalLine;
+
+use crate::args::McapArgs;
+use crate::replay::service_of;
+
+/// End of the name of a journal.
+const JOURNAL: &str = "journal";
+/// Folder of kept settings beside the journals.
+const SETTINGS: &str = "settings";
+
+/// Writes the file.
+pub(super) fn export(
+    paths: impl FnOnce() -> Result<GroupPaths, GroupError>,
+    args: &McapArgs,
+    out: &mut Output<'_>,
+) -> Outcome {
+    let McapArgs { source, out: to } = args;
+    let source = &match source {
+        Some(source) => source.clone(),
+        None => paths()?.recordings(),
+    };
+    fs::metadata(source).map_err(|error| Failure::file(source, &error))?;
+    safe_files::check_new_output(to).map_err(|error| Failure::file(to, &error))?;
+    let (journals, flights) = (journals_in(source), flights_in(source)?);
+    let (messages, noun) = if !flights.is_empty() {
+        (steps(&flights, to)?, "step")
+    } else if journals.is_empty() {
+        (recordings(source, to)?, "message")
+    } else {
+        (records(&journals, to)?, "record")
+    };
+    match out.is_json() {
+        true => out.json(&json!({ "file": to, "messages": messages }))?,
+        false => {
+            out.line(format_args!("{}: {}", to.display(), count(messages, noun)))?;
+        }
+    }
+    Ok(Exit::Ok)
+}
+
+fn recordings(source: &Path, to: &Path) -> Result<u64, Failure> {
+    let files: Vec<PathBuf> = match source.is_dir() {
+        true => entries(source).into_iter().map(|entry| entry.path).collect(),
+        false => vec![source.to_owned()],
+    };
+    if files.is_empty() {
+        let what = format!("{}: no recordings, journals or flights in it", source.display());
+        let help = "help: `whichone record list` prints the folder of a group's recordings";
+        return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
+    }
+    let (messages, was_torn) = merge(&files, to)?;
+    if was_torn {
+        note("a recording is damaged; what can be read of it is exported");
+    }
+    Ok(messages)
+}
+
+fn records(journals: &[(Service, PathBuf)], to: &Path) -> Result<u64, Failure> {
+    let mut records = Vec::new();
+    for (service, file) in journals {
+        records.extend(records_of(*service, file)?);
+    }
+    records.sort_by_key(|entry| entry.at_ns);
+    let mut writer = Writer::create(to)?;
+    records.iter().try_for_each(|entry| writer.add(entry))?;
+    writer.finish()?;
+    Ok(records.len() as u64)
+}
+
+/// The flights of a folder, or the one that is named.
+fn flights_in(source: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let is_flight = |path: &PathBuf| path.extension().is_some_and(|it| it == flight::EXTENSION);
+    Ok(flight::list(source)?.into_iter().filter(is_flight).collect())
+}
+
+/// Writes the steps of flights, one flight after another: what each service was given and what it stated.
+fn steps(flights: &[PathBuf], to: &Path) -> Result<u64, Failure> {
+    let mut writer = Writer::create(to)?;
+    let mut steps = 0;
+    for file in flights {
+        let (head, service) = (flight::head(file)?, service_of(file)?);
+        let mut program: Command = command(service.name(), "flight");
+        program.arg(file).stdout(Stdio::piped()).stderr(Stdio::inherit());
+        let mut child = program.spawn().map_err(|error| failed(&program, &error))?;
+        let Some(lines) = child.stdout.take() else { continue };
+        for line in BufReader::new(lines).lines() {
+            let line = line.map_err(|error| Failure::file(file, &error))?;
+            let step = serde_json::from_str(&line).map_err(|error| {
+                let (file, name) = (file.display(), service.name());
+                let what = format!("{file}: unexpected output of {name}: {error}");
+                Failure::new(Exit::Invariant, what)
+            })?;
+            writer.add(&entry(&head, step))?;
+            steps += 1;
+        }
+        let status = child.wait().map_err(|error| failed(&program, &error))?;
+        if !status.success() {
+            return Err(Failure::new(Exit::of_process(status.code()), String::new()));
+        }
+    }
+    writer.finish()?;
+    Ok(steps)
+}
+
+/// A step of a flight at its wall time.
+fn entry(head: &Head, step: Line) -> Entry {
+    let origin = match step.direction {
+        Direction::In => Origin::FlightIn,
+        Direction::Out => Origin::FlightOut,
+    };
+    Entry {
+        origin,
+        service: head.service.clone(),
+        seq: step.pass,
+        at_ns: head.started_wall_ns + step.at_ns.saturating_sub(head.started.ns()),
+        text: None,
+        record: step.value,
+    }
+}
+
+/// The journals of a folder, or the one that is named.
+fn journals_in(source: &Path) -> Vec<(Service, PathBuf)> {
+    let of = |service: Service| {
+        let file = match source.is_dir() {
+            true => source.join(format!("{}.{JOURNAL}", service.name())),
+            false => source.to_owned(),
+        };
+        let is_own = file.file_stem().is_some_and(|stem| stem == service.name());
+        let is_journal = file.extension().is_some_and(|it| it == JOURNAL) && file.is_file();
+        (is_own && is_journal).then_some((service, file))
+    };
+    Service::JOURNALED.into_iter().filter_map(of).collect()
+}
+
+/// The records of a journal. Where their wall time is not known, the last record was written when the file
+/// last changed, which gives that of the others.
+fn records_of(service: Service, file: &Path) -> Result<Vec<Entry>, Failure> {
+    let mut program: Command = command(service.name(), "journal");
+    program.arg(file).arg("--json").stderr(Stdio::inherit());
+    let settings = file.with_file_name(SETTINGS);
+    for folder in fs::read_dir(settings).into_iter().flatten().flatten() {
+        program.arg("--settings").arg(folder.path());
+    }
+    let output = program.output().map_err(|error| failed(&program, &error))?;
+    let lines = String::from_utf8_lossy(&output.stdout);
+    let lines = lines.lines().map(serde_json::from_str::<JournalLine>);
+    let lines: Vec<JournalLine> = lines.collect::<Result<_, _>>().map_err(|error| {
+        let what = format!("{}: unexpected output of {}: {error}", file.display(), service.name());
+        Failure::new(Exit::Invariant, what)
+    })?;
+    if !output.status.success() && lines.is_empty() {
+        return Err(Failure::new(Exit::of_process(output.status.code()), String::new()));
+    }
+    let changed = fs::metadata(file).and_then(|found| found.modified());
+    let changed = changed.map_err(|error| Failure::file(file, &error))?;
+    let changed_ns = changed.duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos() as u64;
+    let offset_ns = changed_ns.saturating_sub(lines.last().map_or(0, |line| line.at_ns));
+    let entry = |line: JournalLine| {
+        let known_ns = line.unix_ms.map(|ms| ms * 1_000_000);
+        Some(Entry {
+            origin: Origin::Journal,
+            service: service.name().to_owned(),
+            seq: line.seq,
+            at_ns: known_ns.unwrap_or(line.at_ns + offset_ns),
+            text: Some(line.text),
+            record: serde_json::to_value(line.record).ok()?,
+        })
+    };
+    Ok(lines.into_iter().filter_map(entry).collect())
+}

@@ -1,0 +1,76 @@
+//! The interface of optional parts of the console's page: their commands, their section, their files.
+//!
+//! The console knows a [`Part`] by this trait alone. It lives on the main thread, which it may not keep waiting; its
+//! [`Files`] are read on threads of the web server.
+
+use std::fmt::Debug;
+
+use axum::response::Response;
+use messages::{ArmStatus, PolicyView, Receipt};
+use scene::Scene;
+use serde_json::Value as Json;
+use service::Time;
+
+/// A moment on both clocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Now {
+    /// On the monotonic clock.
+    pub at: Time,
+    /// Milliseconds since 1970.
+    pub unix_ms: u64,
+}
+
+/// The robot at one moment.
+#[derive(Clone, Copy, Debug)]
+pub struct Robot<'a> {
+    /// The moment.
+    pub now: Now,
+    /// The scene of the dialogue.
+    pub scene: &'a Scene,
+    /// State of the dialogue; none until the policy has published one.
+    pub view: Option<&'a PolicyView>,
+    /// State of the arm; none where it is not known.
+    pub arm: Option<&'a ArmStatus>,
+    /// A service that the dialogue needs and that is not ready.
+    pub missing: Option<&'a str>,
+}
+
+/// Something that was said; reported once.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DialogueEvent {
+    /// A question of the robot has begun.
+    Asked {
+        /// Its number.
+        prompt: u64,
+        /// How often it has been presented.
+        presentation: u32,
+        /// Its words.
+        words: String,
+    },
+    /// An utterance was accepted.
+    Heard(Box<Receipt>),
+}
+
+/// An optional part of the page.
+pub trait Part: Debug {
+    /// Carries out a command of a page, without the part's prefix; returns the fields of its answer.
+    ///
+    /// # Errors
+    /// The words that the page shows.
+    fn command(&mut self, verb: &str, arguments: &Json, robot: &Robot<'_>) -> Result<Json, String>;
+
+    /// Takes in what was said.
+    fn on_event(&mut self, event: &DialogueEvent, robot: &Robot<'_>);
+
+    /// Takes in the robot's state, in each pass of the main loop; returns words that are to be said to the robot.
+    fn pass(&mut self, robot: &Robot<'_>) -> Option<String>;
+
+    /// Returns the text of the part's section.
+    fn section(&self, robot: &Robot<'_>) -> Option<String>;
+}
+
+/// Files of a part, below its own address. They are there also while the part is not enabled.
+pub trait Files: Debug + Send + Sync {
+    /// Reads a file; may block.
+    fn read(&self, name: &str) -> Response;
+}
