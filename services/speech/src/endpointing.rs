@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use language::{Completeness, CompletenessJudge};
 use scene::{Question, Scene};
+use speech_engines::stream::SpeechSegment;
+use speech_engines::vad::Closing;
 
-use crate::devices::stream::SpeechSegment;
-use crate::devices::vad::Closing;
 use crate::{Hypothesis, RecognisedSegment};
 
 /// Pauses that end utterances, by what was said.

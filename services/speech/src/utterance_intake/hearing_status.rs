@@ -2,8 +2,8 @@
 
 use messages::{Activity, EarState, FixedText, Hearing};
 use service::Time;
+use speech_engines::live_events::MicrophoneStatus;
 
-use crate::devices::microphone::MicrophoneStatus;
 use crate::{Fx, Out};
 
 /// State of microphone and recogniser, and measurements of the last utterance.
