@@ -121,6 +121,15 @@ fn few_crates_depend_on_the_language() {
     assert_eq!(dependents("language"), allowed.map(str::to_owned).into());
 }
 
+/// What is for evaluation and development: who else depends on it is rebuilt with it.
+#[test]
+fn laboratory_is_at_the_rim() {
+    let programs = ["whichone", "whichone-tests"].map(str::to_owned);
+    assert_eq!(dependents("laboratory"), programs.clone().into());
+    let with_page = programs.into_iter().chain(["console".to_owned()]);
+    assert_eq!(dependents("page_study"), with_page.collect());
+}
+
 /// What a program from outside is built on has neither configuration nor journal, and no shell of a service.
 #[test]
 fn sdk_links_little() {

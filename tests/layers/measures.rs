@@ -17,7 +17,7 @@ const BOUNDS: [Bound; 3] = [
     Bound {
         name: "lines of the core, with its tests",
         first: 135_525.0,
-        at_most: 136_000.0,
+        at_most: 126_500.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {
@@ -35,7 +35,7 @@ const BOUNDS: [Bound; 3] = [
 ];
 
 /// Folders of what a robot needs that asks and fetches.
-const CORE: [&str; 26] = [
+const CORE: [&str; 27] = [
     "shared/vocabulary",
     "shared/scene",
     "shared/words",
@@ -54,6 +54,7 @@ const CORE: [&str; 26] = [
     "shared/audio",
     "shared/preflight",
     "shared/command_line",
+    "shared/page_part",
     "shared/perception",
     "services/speech",
     "services/grounding",
