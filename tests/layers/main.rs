@@ -132,6 +132,15 @@ fn speech_alone_uses_its_engines() {
     }
 }
 
+/// What is for evaluation and development: who else depends on it is rebuilt with it.
+#[test]
+fn laboratory_is_at_the_rim() {
+    let programs = ["whichone", "whichone-tests"].map(str::to_owned);
+    assert_eq!(dependents("laboratory"), programs.clone().into());
+    let with_page = programs.into_iter().chain(["console".to_owned()]);
+    assert_eq!(dependents("page_study"), with_page.collect());
+}
+
 /// What a program from outside is built on has neither configuration nor journal, and no shell of a service.
 #[test]
 fn sdk_links_little() {

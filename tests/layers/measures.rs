@@ -17,7 +17,7 @@ const BOUNDS: [Bound; 3] = [
     Bound {
         name: "lines of the core, with its tests",
         first: 135_525.0,
-        at_most: 128_000.0,
+        at_most: 118_500.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {
@@ -37,7 +37,7 @@ const BOUNDS: [Bound; 3] = [
 /// Folders of what a robot needs that asks and fetches. `shared/speech_engines` was counted until it became a crate, 8,000
 /// lines that moved and were not deleted: its adapters of recognisers, voices and recorders decide nothing, and each can
 /// be replaced without a change of the core.
-const CORE: [&str; 26] = [
+const CORE: [&str; 27] = [
     "shared/vocabulary",
     "shared/scene",
     "shared/words",
@@ -56,6 +56,7 @@ const CORE: [&str; 26] = [
     "shared/audio",
     "shared/preflight",
     "shared/command_line",
+    "shared/page_part",
     "shared/perception",
     "services/speech",
     "services/grounding",

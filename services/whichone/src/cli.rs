@@ -323,7 +323,7 @@ pub enum Verb {
     Doctor(ConfigArgs),
     /// Verbs of the laboratory.
     #[command(flatten)]
-    Laboratory(laboratory::Verb),
+    Laboratory(Box<laboratory::Verb>),
 }
 
 #[cfg(test)]

@@ -87,7 +87,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Init { folder } => init::init(&folder, out),
         Verb::Man { folder } => init::man(&folder, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
-        Verb::Laboratory(verb) => laboratory::run(verb, paths, out),
+        Verb::Laboratory(verb) => laboratory::run(*verb, paths, out),
     }
 }
 

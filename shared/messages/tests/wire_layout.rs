@@ -7,7 +7,6 @@ use messages::topics::{self, Topic};
 use messages::*;
 use std::fmt::Write;
 
-#[path = "bindings/layouts.rs"]
 mod layouts;
 
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/wire_layout.txt");

@@ -5,6 +5,7 @@
 
 mod c;
 mod docs;
+#[path = "../../../../messages/tests/layouts/mod.rs"]
 mod layouts;
 mod model;
 mod python;
