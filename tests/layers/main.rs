@@ -91,7 +91,6 @@ fn dependents(package: &str) -> BTreeSet<String> {
 #[test]
 fn few_crates_depend_on_the_dialogue() {
     let allowed = [
-        "console",
         "evaluation",
         "instructions",
         "laboratory",

@@ -1,6 +1,5 @@
 //! The meaning of an utterance in words, weighted by the policy's attribution.
 
-use dialogue::rendering;
 use messages::{Observation, UtteranceSeq};
 use scene::Scene;
 use service::journal_record::InterpretationRecord;
@@ -44,7 +43,7 @@ pub(crate) fn read(scene: &Scene, observation: &Observation) -> Option<Readings>
     let interpretations = observation.interpretations(scene.words().len()).ok()?;
     let asked = observation.asked().ok()?;
     let readings = interpretations.iter().map(|interpretation| WeightedReading {
-        text: rendering::reading(scene, &interpretation.reading),
+        text: interpretation.reading.text(scene),
         weight: interpretation.weight,
         answers: (interpretation.answers)
             .and_then(|at| asked.get(at))

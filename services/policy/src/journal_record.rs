@@ -153,11 +153,7 @@ fn interpretation(
         weight: *weight,
         answers: answers
             .map(|put| PresentationKey { prompt: put.prompt.0, presentation: put.number }),
-        text: names
-            .scene
-            .filter(is_known)
-            .map(|scene| rendering::reading(scene, reading))
-            .unwrap_or_default(),
+        text: names.scene.filter(is_known).map(|scene| reading.text(scene)).unwrap_or_default(),
         base: names.words(&reading.base),
         response: reading.response,
         intent: reading.intent,

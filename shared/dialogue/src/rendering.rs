@@ -1,7 +1,6 @@
 //! English of the robot's lines and actions. Nothing else in the dialogue produces text.
 
 mod foreseen;
-mod readings;
 mod remarks;
 
 use scene::{ObjectId, Question, Role, Scene, UnknownWord};
@@ -10,7 +9,6 @@ use vocabulary::{ActKind, Action, PickOutcome};
 use crate::manager::{Act, Content, Preface};
 
 pub use foreseen::foreseen;
-pub use readings::reading;
 
 /// Returns the text of an act's line; empty where nothing is said.
 pub fn text(scene: &Scene, act: &Act) -> String {

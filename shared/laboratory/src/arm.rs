@@ -57,7 +57,7 @@ pub(super) fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
         return Ok(Exit::Ok);
     }
     let chart = figure::chart(&pick, args.width);
-    let picture = evaluation::charts::svg(&chart)
+    let picture = user_study::charts::svg(&chart)
         .map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
     write(&args.out, picture.as_bytes())?;
     let name = &pick.scene.object(pick.object.into()).name;

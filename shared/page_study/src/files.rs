@@ -3,8 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use evaluation::user_study::{self, Entry, FILE_ENDING, Participant};
 use journal::lines::{self, Lines};
+use user_study::{Entry, FILE_ENDING, Participant};
 
 /// Everybody, in the order in which they came; torn ends are left out.
 pub(super) fn read(folder: &Path) -> Result<Vec<Participant>, String> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use evaluation::user_study::{self, Participant};
+use user_study::Participant;
 
 use super::files;
 
@@ -46,7 +46,7 @@ fn picture(people: &[Participant], name: &str) -> Response {
     let Some((_, chart)) = found else {
         return (StatusCode::NOT_FOUND, "the study has no such file\n").into_response();
     };
-    match evaluation::charts::svg(&chart) {
+    match user_study::charts::svg(&chart) {
         Ok(text) => ([(header::CONTENT_TYPE, "image/svg+xml")], text).into_response(),
         Err(error) => (StatusCode::INTERNAL_SERVER_ERROR, format!("{error}\n")).into_response(),
     }

@@ -26,13 +26,13 @@ pub use command::read as read_command;
 use std::path::PathBuf;
 
 use config::Settings;
-use evaluation::user_study::{Entry, Event};
 use page_part::{DialogueEvent, Now, Part, Robot};
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::view::ms;
 use service::{Span, Time};
+use user_study::{Entry, Event};
 
 use files::Files;
 use planner_switch::PlannerSwitch;

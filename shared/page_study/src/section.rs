@@ -1,7 +1,7 @@
 //! The section `study` of the pages.
 
-use evaluation::user_study::{End, Item, Participant, Protocol, Stage, Status, Trial};
 use serde::Serialize;
+use user_study::{End, Item, Participant, Protocol, Stage, Status, Trial};
 
 use super::study_controller::StudyController;
 use super::trial_monitor::{NotReady, RobotState};

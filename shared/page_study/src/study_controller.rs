@@ -3,11 +3,11 @@
 //! Invariant: [`StudyController::people`] is the fold of what was written down. Whatever is asked for or robot
 //! gives events; only when these are on the disk does [`StudyController::apply`] take them in.
 
-use evaluation::user_study::{
-    Begun, Counts, Drawn, Entry, Event, Participant, Protocol, Stage, VERSION, draw, new_id, plan,
-};
 use scene::ObjectId;
 use serde_json::{Map, Value as Json};
+use user_study::{
+    Begun, Counts, Drawn, Entry, Event, Participant, Protocol, Stage, VERSION, draw, new_id, plan,
+};
 
 use super::trial_monitor::{NotReady, RobotState};
 
@@ -100,7 +100,7 @@ impl StudyController {
             }),
             Command::Spoilt(id, why) => self.about(id, |person| match person.stage {
                 Stage::Running => {
-                    let fault = evaluation::user_study::Fault::Experimenter;
+                    let fault = user_study::Fault::Experimenter;
                     Ok(vec![Event::Faulted { fault, why: why.clone() }])
                 }
                 _ => Err("no interaction runs; it can be called spoilt only while it does".into()),

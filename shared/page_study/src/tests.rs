@@ -2,11 +2,11 @@
 
 mod simulated_study;
 
-use evaluation::Verdict;
-use evaluation::user_study::{Event, Participant, Protocol, Stage, Status};
 use messages::{ActKind, Outcome};
 use scene::Scene;
 use serde_json::{Map, json};
+use user_study::Verdict;
+use user_study::{Event, Participant, Protocol, Stage, Status};
 use vocabulary::Rng;
 
 use super::section::StudySection;
@@ -156,7 +156,7 @@ fn running(seconds_max: f64) -> SimulatedStudy {
 
 fn outcome_of(study: &SimulatedStudy) -> String {
     let person = study.controller.of_page(PAGE).unwrap();
-    let json = evaluation::user_study::to_json(std::slice::from_ref(person));
+    let json = user_study::to_json(std::slice::from_ref(person));
     json["participants"][0]["trials"][0]["outcome"].as_str().unwrap().to_owned()
 }
 

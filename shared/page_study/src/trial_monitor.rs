@@ -1,16 +1,14 @@
 //! Progress of the running interaction and the study's requests to the robot, derived from what it
 //! observes. Pure.
 
-use evaluation::Verdict;
-use evaluation::user_study::{
-    Asked, Ending, Event, Fault, Heard, Participant, Source, Stage, Trial,
-};
 use messages::{ActKind, ArmStatus, Ended, PickPhase, PolicyView, Source as Way};
 use page_part::DialogueEvent;
 use scene::Scene;
 use serde::Serialize;
 use service::Time;
 use service::view::ms;
+use user_study::Verdict;
+use user_study::{Asked, Ending, Event, Fault, Heard, Participant, Source, Stage, Trial};
 
 use super::study_controller::StudyController;
 

@@ -48,6 +48,7 @@ mod plural;
 mod question;
 mod question_json;
 mod reading;
+mod reading_text;
 mod stable_hash;
 mod toml_form;
 mod wording;

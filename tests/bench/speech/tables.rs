@@ -6,7 +6,7 @@ use super::score::{Gated, Score};
 use super::{Trial, corpus::Corpus};
 use crate::report::{Report, percentile};
 use ::speech_engines::vad::SegmenterOptions;
-use evaluation::simulation::{Interval, wilson};
+use user_study::{Interval, wilson};
 
 /// A row's name, and what it is about.
 type Row<'t> = (&'static str, Vec<&'t Score>);

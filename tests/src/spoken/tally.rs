@@ -4,8 +4,8 @@ use std::panic::catch_unwind;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use evaluation::simulation::wilson;
 use serde::Serialize;
+use user_study::wilson;
 
 use super::dialogue::{Conditions, Ending, Held, converse};
 

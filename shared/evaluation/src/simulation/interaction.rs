@@ -12,9 +12,9 @@ use vocabulary::{
     Rng, TurnTaking,
 };
 
-use crate::Verdict;
 use crate::simulation::cached_planner::CachedPlanner;
 use crate::simulation::users::{Domain, Reply, SimulatedUser, Turn};
+use user_study::Verdict;
 
 /// Everything about a study but policy and people.
 #[derive(Clone, Copy, Debug)]

@@ -13,12 +13,11 @@
 //! | a planner that remembers its decisions | `cached_planner.rs` |
 //! | the simulated user: errors, wording, recogniser, timing | `users/` |
 //! | the same dialogues with people and robot talking in real time | `turns/` |
-//! | means, intervals, histograms | `stats.rs`, `tally.rs` |
+//! | sums over interactions, histograms | `tally.rs` |
 
 mod cached_planner;
 mod draw;
 mod interaction;
-mod stats;
 mod tally;
 #[cfg(test)]
 mod testing;
@@ -29,7 +28,6 @@ use dialogue::manager::Manager;
 pub use interaction::{Room, SimulatedInteraction, interact};
 
 pub use cached_planner::{CachedPlanner, SharedDecisions};
-pub use stats::{Interval, Mean, wilson};
 pub use tally::{HISTOGRAM, Tally};
 pub use users::{SimulatedUser, UserKind};
 

@@ -1,8 +1,8 @@
 //! Aggregate results of interactions.
 
-use crate::Verdict;
 use crate::simulation::interaction::SimulatedInteraction;
-use crate::simulation::stats::{Interval, Mean, wilson};
+use user_study::Verdict;
+use user_study::{Interval, Mean, wilson};
 
 /// Counts and means over interactions.
 #[derive(Clone, Debug, Default, PartialEq)]

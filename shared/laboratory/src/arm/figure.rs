@@ -1,8 +1,8 @@
 //! Chart of a planned pick: joints over time, and the path of the gripper.
 
-use evaluation::charts::{Axis, Chart, Panel, Point, Shape};
 use manipulation::{ObjectPose, Phase};
 use nalgebra::Vector3;
+use user_study::charts::{Axis, Chart, Panel, Point, Shape};
 
 use super::Pick;
 

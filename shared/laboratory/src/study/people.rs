@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use command_line::Outcome;
 use command_line::configuration;
 use command_line::output::{Output, note, table};
-use evaluation::simulation::{Interval, Mean};
-use evaluation::user_study::{Group, Paired, Participant, Report};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
+use user_study::{Group, Paired, Participant, Report};
+use user_study::{Interval, Mean};
 
 use super::Files;
 use crate::args::ReportArgs;
@@ -17,7 +17,7 @@ use crate::args::ReportArgs;
 pub(crate) fn report(paths: &GroupPaths, args: &ReportArgs, out: &mut Output<'_>) -> Outcome {
     let folder = folder(paths, args)?;
     let people = read(&folder)?;
-    let report = evaluation::user_study::report(&people);
+    let report = user_study::report(&people);
     if let Some(folder) = &args.out {
         export(folder, &people, &report)?;
         note(format_args!("written to {}", folder.display()));
@@ -39,9 +39,9 @@ fn folder(paths: &GroupPaths, args: &ReportArgs) -> Result<PathBuf, Failure> {
 }
 
 fn read(folder: &Path) -> Result<Vec<Participant>, Failure> {
-    let files = journal::lines::read_folder(folder, evaluation::user_study::FILE_ENDING)
+    let files = journal::lines::read_folder(folder, user_study::FILE_ENDING)
         .map_err(|(path, error)| Failure::file(&path, &error))?;
-    let people = evaluation::user_study::people(files).map_err(|(path, error)| {
+    let people = user_study::people(files).map_err(|(path, error)| {
         Failure::new(Exit::Storage, format!("{}: {error}", path.display()))
     })?;
     if people.is_empty() {
@@ -54,17 +54,14 @@ fn read(folder: &Path) -> Result<Vec<Participant>, Failure> {
 
 fn export(folder: &Path, people: &[Participant], report: &Report) -> Result<(), Failure> {
     let files = Files::open(folder)?;
-    let tables = evaluation::user_study::tables(people);
+    let tables = user_study::tables(people);
     files.write("interactions.csv", tables.interactions.as_bytes())?;
     files.write("participants.csv", tables.participants.as_bytes())?;
     files.write("dictionary.csv", tables.dictionary.as_bytes())?;
-    files.write(
-        "study.json",
-        format!("{:#}\n", evaluation::user_study::to_json(people)).as_bytes(),
-    )?;
+    files.write("study.json", format!("{:#}\n", user_study::to_json(people)).as_bytes())?;
     files.write("report.json", format!("{:#}\n", report.to_json()).as_bytes())?;
-    for (name, chart) in evaluation::user_study::pictures(report) {
-        let svg = evaluation::charts::svg(&chart)
+    for (name, chart) in user_study::pictures(report) {
+        let svg = user_study::charts::svg(&chart)
             .map_err(|error| Failure::new(Exit::Storage, format!("{name}: {error}")))?;
         files.write(&format!("{name}.svg"), svg.as_bytes())?;
     }

@@ -1,9 +1,10 @@
 //! Charts of a simulated study, as SVG.
 
-use evaluation::charts::{Axis, Chart, Panel, Shape};
-use evaluation::distinct;
-use evaluation::simulation::{HISTOGRAM, Interval, Mean, Tally};
+use evaluation::simulation::{HISTOGRAM, Tally};
 use service::exit::{Exit, Failure};
+use user_study::charts::{Axis, Chart, Panel, Shape};
+use user_study::distinct;
+use user_study::{Interval, Mean};
 
 use super::design::Row;
 
@@ -26,7 +27,7 @@ pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, Failur
     }
     let mut pictures = Vec::new();
     for (name, chart) in charts {
-        let svg = evaluation::charts::svg(&chart)
+        let svg = user_study::charts::svg(&chart)
             .map_err(|error| Failure::new(Exit::Storage, format!("{name}: {error}")))?;
         pictures.push((format!("{name}.svg"), svg));
     }

@@ -1,7 +1,8 @@
 //! The study as tables for people.
 
 use command_line::output::table;
-use evaluation::simulation::{Interval, Mean, Tally};
+use evaluation::simulation::Tally;
+use user_study::{Interval, Mean};
 
 use super::design::Row;
 use super::setup::Setup;

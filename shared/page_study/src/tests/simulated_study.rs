@@ -1,11 +1,11 @@
 //! A controller with its disk, a robot and services, for the tests of the study's rules.
 
-use evaluation::user_study::{
-    Design, Entry, Event, Item, Kind, Objects, Order, Participant, Protocol, Stage, Status,
-};
 use messages::{Ended, Outcome, PolicyView, Receipt};
 use page_part::DialogueEvent;
 use scene::Scene;
+use user_study::{
+    Design, Entry, Event, Item, Kind, Objects, Order, Participant, Protocol, Stage, Status,
+};
 use vocabulary::ids::{InteractionId, UtteranceSeq};
 
 use crate::study_controller::{Command, StudyController, kept};

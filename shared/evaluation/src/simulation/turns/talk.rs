@@ -8,9 +8,9 @@ use vocabulary::time::{Span, Time};
 use vocabulary::{ActKind, Action, Attribution, Interpretation, Presentation, Rng, TurnTaking};
 
 use super::rules::Rules;
-use crate::Verdict;
 use crate::simulation::interaction::{Room, SimulatedInteraction};
 use crate::simulation::users::{Reply, TimedKind, TimedUser, TimedUtterance};
+use user_study::Verdict;
 
 /// Duration of a spoken question: median, seconds, and standard deviation of the logarithm. It is
 /// the web interface's voice and its delay, not the arm's own voice.

@@ -1,9 +1,9 @@
 use super::*;
 use crate::study::design::People;
-use evaluation::Verdict;
 use evaluation::simulation::turns::Rules;
 use evaluation::simulation::users::TimedKind;
 use evaluation::simulation::{SimulatedInteraction, UserKind};
+use user_study::Verdict;
 
 fn tally(right: u32, wrong: u32) -> Tally {
     let mut tally = Tally::default();

@@ -56,7 +56,7 @@ impl Verdict {
 
     /// Returns the reward of an interaction that ends so; without a pick it is that of waiting for
     /// ever.
-    pub(crate) fn worth(self, costs: &Costs) -> f64 {
+    pub fn worth(self, costs: &Costs) -> f64 {
         match self {
             Self::Right => costs.correct,
             Self::Wrong => -costs.wrong,

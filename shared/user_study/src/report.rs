@@ -1,14 +1,14 @@
 //! Results of a study.
 
 use crate::distinct;
-use crate::simulation::{Interval, Mean, wilson};
+use crate::{Interval, Mean, wilson};
 use serde_json::{Map, Value as Json, json};
 
 use crate::Verdict;
-use crate::user_study::paired::{Paired, paired};
-use crate::user_study::participant::{Participant, Status};
-use crate::user_study::rows::items;
-use crate::user_study::trial::{End, Trial};
+use crate::paired::{Paired, paired};
+use crate::participant::{Participant, Status};
+use crate::rows::items;
+use crate::trial::{End, Trial};
 use config::study::{Item, Kind};
 
 /// Interactions with one policy, or with all.

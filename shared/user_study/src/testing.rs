@@ -3,9 +3,9 @@
 use serde_json::{Map, json};
 
 use crate::Verdict;
-use crate::user_study::event::{Asked, Begun, Drawn, Ending, Entry, Event, Heard, Source, VERSION};
-use crate::user_study::participant::Participant;
-use crate::user_study::plan::{Counts, plan};
+use crate::event::{Asked, Begun, Drawn, Ending, Entry, Event, Heard, Source, VERSION};
+use crate::participant::Participant;
+use crate::plan::{Counts, plan};
 use config::study::{Design, Objects, Order, Protocol};
 use config::study::{Item, Kind};
 

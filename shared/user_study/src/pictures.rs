@@ -1,9 +1,9 @@
 //! Results as charts: means as marks, their 95 % intervals as lines.
 
 use crate::charts::{Axis, Chart, Panel, Shape};
-use crate::simulation::{Interval, Mean};
+use crate::{Interval, Mean};
 
-use crate::user_study::report::{Group, Report};
+use crate::report::{Group, Report};
 
 /// Longest label in full, characters.
 const LABEL_MAX: usize = 44;
@@ -115,8 +115,8 @@ fn chart(title: &str, unit: &str, largest: f64, rows: Vec<Row>) -> Chart {
 mod tests {
     use super::*;
     use crate::charts::svg;
-    use crate::user_study::report;
-    use crate::user_study::testing::{finished, protocol};
+    use crate::report;
+    use crate::testing::{finished, protocol};
 
     #[test]
     fn pictures_show_every_measure_with_data() {

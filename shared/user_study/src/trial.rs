@@ -1,8 +1,8 @@
 //! One interaction of a participant, folded from its lines.
 
 use crate::Verdict;
-use crate::user_study::event::{Asked, Drawn, Ending, Event, Fault, Heard, Source};
-use crate::user_study::plan::Step;
+use crate::event::{Asked, Drawn, Ending, Event, Fault, Heard, Source};
+use crate::plan::Step;
 
 /// End of an interaction.
 #[derive(Clone, Debug, PartialEq)]

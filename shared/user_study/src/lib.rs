@@ -4,7 +4,8 @@
 //! is a fold of it ([`Participant`]), so that the page that conducts the study, the export and the
 //! report of the command line cannot disagree, and a killed program resumes.
 //!
-//! This module is pure: no IO, no clock, no threads.
+//! This crate is pure: no IO, no clock, no threads; it knows no planner and no reader, so that the page, which conducts
+//! studies, is not built again with these.
 //!
 //! | contents | file |
 //! |---|---|
@@ -14,8 +15,10 @@
 //! | a participant and one interaction, folded | `participant.rs`, `trial.rs` |
 //! | rows for statistics programs, and their data dictionary | `rows.rs`, `dictionary.rs` |
 //! | success, seconds and questions by policy, with intervals | `report.rs`, `paired.rs` |
-//! | charts of the results | `pictures.rs` |
+//! | charts of the results, and charts in general | `pictures.rs`, [`charts`] |
+//! | means, intervals; the verdict on an interaction, also for simulated users | `stats.rs`, `verdict.rs` |
 
+pub mod charts;
 mod dictionary;
 mod event;
 mod paired;
@@ -24,11 +27,13 @@ mod pictures;
 mod plan;
 mod report;
 mod rows;
+mod stats;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]
 mod tests;
 mod trial;
+mod verdict;
 
 pub use config::study::{Design, Item, Kind, Objects, Order, Protocol};
 pub use dictionary::{Column, INTERACTIONS, PARTICIPANTS, dictionary};
@@ -42,4 +47,17 @@ pub use pictures::pictures;
 pub use plan::{Counts, Step, draw, new_id, plan};
 pub use report::{Answers, Group, Report, report};
 pub use rows::{Tables, tables, to_json};
+pub use stats::{Interval, Mean, wilson};
 pub use trial::{End, Trial};
+pub use verdict::Verdict;
+
+/// Returns the items in order of appearance, each once.
+pub fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut list = Vec::new();
+    for item in items {
+        if !list.contains(&item) {
+            list.push(item);
+        }
+    }
+    list
+}

@@ -3,10 +3,10 @@
 use serde_json::json;
 
 use crate::Verdict;
-use crate::user_study::event::{Drawn, Entry, Event, Fault, parse};
-use crate::user_study::participant::{Participant, Stage, Status};
-use crate::user_study::testing::{finished, interaction, journal, protocol};
-use crate::user_study::{report, tables, to_json};
+use crate::event::{Drawn, Entry, Event, Fault, parse};
+use crate::participant::{Participant, Stage, Status};
+use crate::testing::{finished, interaction, journal, protocol};
+use crate::{report, tables, to_json};
 use config::study::Protocol;
 
 fn text(entries: &[Entry]) -> String {

@@ -110,7 +110,7 @@ pub fn draw(objects: Objects, own: &[usize], all: &[usize], seed: u64, number: u
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::user_study::testing::protocol;
+    use crate::testing::protocol;
     use std::collections::BTreeSet;
 
     fn comparing(design: Design, order: Order, policies: &[&str]) -> Protocol {

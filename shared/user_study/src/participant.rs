@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value as Json};
 
-use crate::user_study::event::{Begun, Entry, Event, FormatError, parse};
-use crate::user_study::trial::{End, Trial};
+use crate::event::{Begun, Entry, Event, FormatError, parse};
+use crate::trial::{End, Trial};
 
 /// Stage of a participant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,12 +1,12 @@
 //! Two policies compared within the people who met both.
 
-use crate::simulation::Mean;
+use crate::Mean;
 use serde_json::{Value as Json, json};
 
 use crate::Verdict;
-use crate::user_study::participant::Participant;
-use crate::user_study::report::mean_json;
-use crate::user_study::trial::Trial;
+use crate::participant::Participant;
+use crate::report::mean_json;
+use crate::trial::Trial;
 
 /// The differences of one policy from another: of each participant the mean with the one less the
 /// mean with the other.

@@ -3,11 +3,11 @@
 use serde_json::{Map, Value as Json, json};
 
 use crate::Verdict;
+use crate::dictionary::{INTERACTIONS, PARTICIPANTS, dictionary};
 use crate::distinct;
-use crate::user_study::dictionary::{INTERACTIONS, PARTICIPANTS, dictionary};
-use crate::user_study::event::Source;
-use crate::user_study::participant::Participant;
-use crate::user_study::trial::{End, Trial};
+use crate::event::Source;
+use crate::participant::Participant;
+use crate::trial::{End, Trial};
 use config::study::Item;
 use vocabulary::wall_time;
 

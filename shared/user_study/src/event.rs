@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
 use crate::Verdict;
-use crate::user_study::plan::Step;
+use crate::plan::Step;
 use config::study::Protocol;
 
 /// Version of the lines' form.
