@@ -12,7 +12,7 @@ use super::evidence::Mark;
 use super::line::Preface;
 use super::put_back::{WithUser, refuse};
 use super::state::{Interaction, Preference, State, Utterance};
-use super::turn::Turn;
+use super::turn::Statement;
 
 /// A delivery that can still be refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,8 +79,8 @@ impl Manager {
     }
 
     /// Takes up the interaction whose object was refused, without that object.
-    pub(super) fn reopen(&mut self, state: &mut State, turn: Turn<'_>) {
-        let Turn { utterance, heard, refusal, at, .. } = turn;
+    pub(super) fn reopen(&mut self, state: &mut State, said: Statement<'_>) {
+        let Statement { utterance, heard, refusal, at, .. } = said;
         let Some(refused) = Self::refuse_last(state, at) else { return };
         self.open_like(state, utterance, refused);
         self.retract(state, &heard);

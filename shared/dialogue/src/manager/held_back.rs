@@ -14,7 +14,6 @@ use super::attribution::Heard;
 use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, State};
 use super::stop::MotionStop;
-use super::turn::Turn;
 
 /// A pick that waits for the release of the motion stop, or for a word about what the gripper has kept.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -98,18 +97,17 @@ impl Manager {
     }
 
     /// Carries out the pick that was held back, as soon as it can be.
-    pub(super) fn confirm(&mut self, state: &mut State, turn: &Turn<'_>) {
-        let Some(object) = self.confirmed(state, &turn.heard) else { return };
+    pub(super) fn confirm(&mut self, state: &mut State, object: ObjectId, at: Time) {
         if let Some(held) = state.open.as_mut().and_then(|open| open.held_back.as_mut()) {
             held.wait = if held.is_kept() { Wait::ReleaseOfKept } else { Wait::Release };
         }
         if state.to_put_back().is_some() {
             // Its turn comes once the other object is back.
-            self.reply(state, Remark::AllRight, turn.at);
+            self.reply(state, Remark::AllRight, at);
         } else if state.stop.motion.is_latched() {
-            say(state, Content::Confirmed, turn.at);
+            say(state, Content::Confirmed, at);
         } else {
-            self.release(state, object, turn.at);
+            self.release(state, object, at);
         }
     }
 

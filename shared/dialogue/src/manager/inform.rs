@@ -9,40 +9,44 @@ use super::attribution::Heard;
 use super::concede::likeliest;
 use super::evidence::{Evidence, Mark};
 use super::line::{AboutObjects, Preface, Remark};
-use super::rules::CONTENT;
+use super::rules::{CONTENT, first};
 use super::state::{Basis, Deferred, Interaction, Preference, State, Utterance};
-use super::turn::Turn;
+use super::turn::{Statement, Turn};
 
 impl Manager {
-    /// Handles what an utterance says of the wanted object.
+    /// Handles the words about the wanted object.
     pub(super) fn inform(&mut self, state: &mut State, turn: Turn<'_>) {
-        self.apply(CONTENT, state, turn);
+        let said = self.statement(state, turn);
+        if let Some(rule) = first(CONTENT, state.stage(), |applies| applies(&said)) {
+            self.rule = rule.name;
+            (rule.apply)(self, state, said);
+        }
     }
 
-    /// Opens an interaction with what is known of its object: what was spoken of, or refused.
-    pub(super) fn begin(&mut self, state: &mut State, mut turn: Turn<'_>) {
+    /// Opens an interaction with the marks of its object: spoken of before, or refused.
+    pub(super) fn begin(&mut self, state: &mut State, mut said: Statement<'_>) {
         // "and the other one" refuses nothing.
-        let is_refused = turn.refusal.is_some() && turn.refers != Reference::Other;
-        let refused = is_refused.then(|| Self::refuse_last(state, turn.at)).flatten();
+        let is_refused = said.refusal.is_some() && said.refers != Reference::Other;
+        let refused = is_refused.then(|| Self::refuse_last(state, said.at)).flatten();
         let refused = refused.map(|it| Mark::Not(it.picked));
-        self.open(state, turn.utterance);
+        self.open(state, said.utterance);
         let Some(open) = &mut state.open else { return };
-        for mark in turn.spoken_of.take().into_iter().chain(refused) {
+        for mark in said.spoken_of.take().into_iter().chain(refused) {
             self.take_in(open, Heard { mark: Some(mark), ..Heard::default() });
         }
         // What was asked before is over.
-        turn.heard.interpretations.iter_mut().for_each(|(_, asked, _)| *asked = Question::None);
+        said.heard.interpretations.iter_mut().for_each(|(_, asked, _)| *asked = Question::None);
         let preface = if is_refused { Preface::Sorry } else { Preface::None };
-        self.consider(state, turn, preface);
+        self.consider(state, said, preface);
     }
 
     /// Scores an utterance against the questions that it may answer, and decides again. The preface stands in the
     /// place of a remark on the utterance.
-    pub(super) fn consider(&mut self, state: &mut State, turn: Turn<'_>, preface: Preface) {
-        self.note_said(state, &turn);
-        let (preference, remark) = self.note_concessions(state, &turn.heard);
+    pub(super) fn consider(&mut self, state: &mut State, said: Statement<'_>, preface: Preface) {
+        self.note_said(state, said.utterance);
+        let (preference, remark) = self.note_concessions(state, &said.heard);
         let preface = if preface == Preface::None { remark } else { preface };
-        let Turn { utterance, shares, heard, refers, at, .. } = turn;
+        let Statement { utterance, shares, heard, refers, at, .. } = said;
         let Some(open) = &mut state.open else { return };
         let held_back = open.held_back.take_if(|it| !it.is_kept());
         let held_back = held_back.and_then(|it| self.setup.scene.object_named(&it.name));
@@ -60,14 +64,14 @@ impl Manager {
     }
 
     /// Notes an utterance in the open interaction.
-    pub(super) fn note_said(&self, state: &mut State, turn: &Turn<'_>) {
+    pub(super) fn note_said(&self, state: &mut State, utterance: &Utterance) {
         let Some(open) = &mut state.open else { return };
-        open.utterances.1 = turn.utterance.seq;
+        open.utterances.1 = utterance.seq;
         open.silences = 0;
     }
 
-    /// Notes what an utterance concedes, asks for further, and takes back. Returns what the user wants to be
-    /// decided, and what is said about it before the next question.
+    /// Notes the concessions, further objects and retractions of an utterance. Returns the user's preference for the
+    /// next decision, and the preface of the next question.
     pub(super) fn note_concessions(
         &self,
         state: &mut State,
@@ -172,7 +176,7 @@ impl Manager {
         takes_any || self.is_pointing(utterance) || !(is_answer || only_gesture)
     }
 
-    /// Returns what is said before the next question about an utterance with an unknown word, or that describes nothing. A
+    /// Returns the preface of the next question after an utterance with an unknown word, or that describes nothing. A
     /// request that only repeats what is wanted ("the bowl") is understood: the question is put once more.
     fn preface(&self, heard: &Heard<'_>) -> Preface {
         match heard.unknown {

@@ -11,7 +11,7 @@ use super::concede::Conceded;
 use super::line::{Content, Preface, Remark};
 use super::put_back::{Progress, PuttingBack};
 use super::replies::likeliest;
-use super::rules::INTENTS;
+use super::rules::{INTENTS, first};
 use super::state::{State, Utterance};
 use super::stop::StopOrder;
 use super::turn::Turn;
@@ -24,10 +24,14 @@ impl Manager {
         self.expire(state, at);
         let shares = self.attribute(state, utterance);
         let before = state.act.id;
-        let turn = self.turn(state, utterance, shares, at);
+        let intent = self.intent(state, utterance, &shares);
+        let turn = Turn { utterance, shares, intent, at };
+        if let Some(rule) = first(INTENTS, intent, |applies| applies(self, state, &turn)) {
+            self.rule = rule.name;
+            (rule.apply)(self, state, turn);
+        }
         // The arm's report is on its way.
-        let is_stop = matches!(turn.intent, Intent::Stop | Intent::StopAndCancel);
-        self.apply(INTENTS, state, turn);
+        let is_stop = matches!(intent, Intent::Stop | Intent::StopAndCancel);
         let is_silent = state.act.id == before && !is_stop && !is_about_to_speak(state);
         if utterance.typed && is_silent {
             let remark = self.status(state);
@@ -77,12 +81,11 @@ impl Manager {
         is_over && utterance.interpretations.iter().any(is_again)
     }
 
-    /// Forgets what was said of the wanted object, and waits for it, unless the same utterance tells it.
-    pub(super) fn start_over(&mut self, state: &mut State, turn: &Turn<'_>) {
-        self.forget(state, turn.at);
-        if let Some(request) = request_after(turn.utterance) {
-            let turn = self.turn_alone(state, &request, turn.at);
-            self.inform(state, turn);
+    /// Forgets the words about the wanted object, and asks for it unless the same utterance tells it.
+    pub(super) fn start_over(&mut self, state: &mut State, utterance: &Utterance, at: Time) {
+        self.forget(state, at);
+        if let Some(request) = request_after(utterance) {
+            self.inform(state, Turn::alone(&request, at));
         }
     }
 

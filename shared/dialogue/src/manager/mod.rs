@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `setup.rs` | what the manager decides by |
 //! | `state.rs`, `stop.rs`, `line.rs` | state, causes of its changes, acts and lines |
-//! | `rules.rs` | the rules for an utterance, in order; `turn.rs`: what they ask of it |
+//! | `rules.rs` | the rules for an utterance, in order; `turn.rs`: the facts that they ask for |
 //! | `intents.rs` | intents: cancelling, starting over, stopping |
 //! | `attribution.rs` | the questions that an utterance answers |
 //! | `inform.rs`, `correct.rs` | content of an utterance: while deciding, and while the arm fetches |

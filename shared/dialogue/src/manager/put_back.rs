@@ -12,7 +12,6 @@ use super::acts::{next_key, say, say_with, set};
 use super::attribution::Heard;
 use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, Basis, State, Utterance, push_bounded};
-use super::turn::Turn;
 
 /// Share of an utterance's readings from which it is plain that it asks to put something back.
 const PLAIN: f64 = 0.5;
@@ -218,16 +217,8 @@ impl Manager {
         (is_of_it && is_answer).then_some(reading.response)
     }
 
-    /// Processes an answer to a line about the object that goes back to its place.
-    pub(super) fn answer_put_back(&mut self, state: &mut State, turn: &Turn<'_>) {
-        match self.put_back_answer(state, &turn.heard) {
-            Some(Response::Yes) => self.confirm_put_back(state, turn.at),
-            Some(_) => self.withdraw_put_back(state, turn.at),
-            None => {}
-        }
-    }
-
-    fn confirm_put_back(&mut self, state: &mut State, at: Time) {
+    /// The object is to go back: at once, or upon the release of the motion stop.
+    pub(super) fn confirm_put_back(&mut self, state: &mut State, at: Time) {
         if !state.stop.motion.is_latched() {
             return self.put_back_now(state, Preface::None, at);
         }

@@ -24,7 +24,7 @@ const SIZES: [&[&str]; 5] = [
 /// Relative difference up to which sizes are the same.
 const SAME: f64 = 0.01;
 
-/// Returns what the likeliest reading points to.
+/// Returns the reference in the likeliest reading.
 pub(super) fn reference(heard: &Heard<'_>) -> Reference {
     heard.interpretations.first().map_or(Reference::None, |(.., reading)| reading.refers)
 }

@@ -1,6 +1,6 @@
-//! An utterance with what the rules ask of it.
+//! An utterance while it is handled, with the facts that the rules ask for.
 
-use scene::{Intent, Reference};
+use scene::{Intent, ObjectId, Reference, Response};
 use vocabulary::time::Time;
 
 use super::Manager;
@@ -9,69 +9,72 @@ use super::evidence::Mark;
 use super::references::reference;
 use super::state::{State, Utterance};
 
-/// An utterance while it is handled.
+/// An utterance with its intent.
 pub(super) struct Turn<'a> {
     pub(super) utterance: &'a Utterance,
     /// Shares of the questions that it may answer, and last the share of none.
     pub(super) shares: Vec<f64>,
     /// The most probable intent.
     pub(super) intent: Intent,
-    /// What it says of the wanted object.
+    /// The time.
+    pub(super) at: Time,
+}
+
+impl<'a> Turn<'a> {
+    /// Returns the turn of an utterance that answers nothing and informs.
+    pub(super) fn alone(utterance: &'a Utterance, at: Time) -> Self {
+        let mut shares = vec![0.0; utterance.presentations.len()];
+        shares.push(1.0);
+        Self { utterance, shares, intent: Intent::Inform, at }
+    }
+}
+
+/// An utterance about the wanted object.
+pub(super) struct Statement<'a> {
+    pub(super) utterance: &'a Utterance,
+    /// Shares of the questions that it may answer, and last the share of none.
+    pub(super) shares: Vec<f64>,
+    /// Its content.
     pub(super) heard: Heard<'a>,
-    /// What its likeliest reading points to.
+    /// The reference in its likeliest reading.
     pub(super) refers: Reference,
+    /// The answer to a line about the object that goes back to its place.
+    pub(super) of_put_back: Option<Response>,
+    /// The object of the pick that was held back, if this confirms it.
+    pub(super) confirmed: Option<ObjectId>,
     /// The refusal of what was handed over last, if it is likely to be one.
     pub(super) refusal: Option<Heard<'static>>,
     /// Objects spoken of before that it points to, if no interaction is open.
     pub(super) spoken_of: Option<Mark>,
-    /// Whether it can open an interaction, if none is open.
+    /// Whether it can open an interaction.
     pub(super) is_request: bool,
     /// The time.
     pub(super) at: Time,
 }
 
 impl Manager {
-    /// Returns the turn of an utterance.
-    pub(super) fn turn<'a>(
-        &self,
-        state: &State,
-        utterance: &'a Utterance,
-        shares: Vec<f64>,
-        at: Time,
-    ) -> Turn<'a> {
+    /// Returns the statement of a turn in the present state.
+    pub(super) fn statement<'a>(&self, state: &State, turn: Turn<'a>) -> Statement<'a> {
+        let Turn { utterance, shares, at, .. } = turn;
         let heard = self.interpret(state, utterance, &shares);
-        let mut turn = Turn {
-            intent: self.intent(state, utterance, &shares),
+        let is_request = state.open.is_none() && self.is_request(utterance);
+        let refusal = self.refusal(state, &heard);
+        let spoken_of = || {
+            let listed = || self.listed(state, &heard).filter(|_| is_request && refusal.is_none());
+            let accepted = self.accepted(state, &heard);
+            accepted.or_else(|| self.resolve(state, &heard)).or_else(listed)
+        };
+        Statement {
             refers: reference(&heard),
-            refusal: None,
-            spoken_of: None,
-            is_request: false,
+            of_put_back: self.put_back_answer(state, &heard),
+            confirmed: self.confirmed(state, &heard),
+            spoken_of: if state.open.is_none() { spoken_of() } else { None },
             utterance,
             shares,
+            refusal,
+            is_request,
             heard,
             at,
-        };
-        if state.open.is_none() {
-            turn.is_request = self.is_request(utterance);
-            let heard = &turn.heard;
-            turn.spoken_of = self.accepted(state, heard).or_else(|| self.resolve(state, heard));
-            turn.refusal = self.refusal(state, heard);
-            if turn.refusal.is_none() && turn.is_request && turn.spoken_of.is_none() {
-                turn.spoken_of = self.listed(state, heard);
-            }
         }
-        turn
-    }
-
-    /// Returns the turn of an utterance that answers nothing.
-    pub(super) fn turn_alone<'a>(
-        &self,
-        state: &State,
-        utterance: &'a Utterance,
-        at: Time,
-    ) -> Turn<'a> {
-        let mut shares = vec![0.0; utterance.presentations.len()];
-        shares.push(1.0);
-        self.turn(state, utterance, shares, at)
     }
 }
