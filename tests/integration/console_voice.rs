@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use serde_json::{Value as Json, json};
-use speech::devices::audio::read_wav;
+use speech_engines::audio::read_wav;
 use tungstenite::Message;
 use whichone_tests::Group;
 use whichone_tests::console::{Page, Visitor};

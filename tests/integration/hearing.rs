@@ -7,7 +7,7 @@ use std::process::Command;
 use std::time::Duration;
 
 use serde_json::Value;
-use speech::devices::audio::read_wav;
+use speech_engines::audio::read_wav;
 use whichone_tests::{Group, wait_for};
 
 use crate::speech::{answer_by_voice, spoken};

@@ -10,9 +10,9 @@ use serde_json::json;
 use service::bus::Reader;
 use service::client::Client;
 use service::{Span, Time, clock};
-use speech::devices::audio::{read_wav, seconds};
-use speech::devices::recogniser::{PocketSphinx, PocketSphinxOptions, Recogniser};
-use speech::devices::voice::Synthesiser;
+use speech_engines::audio::{read_wav, seconds, write_wav};
+use speech_engines::recogniser::{PocketSphinx, PocketSphinxOptions, Recogniser};
+use speech_engines::voice::Synthesiser;
 use whichone_tests::console::Page;
 use whichone_tests::spoken::{Pink, Room, SPEAKERS, SPEECH_RMS, Speaker, levelled};
 use whichone_tests::{Group, wait_for};
@@ -73,7 +73,7 @@ fn stop_is_obeyed_while_a_long_recording_is_decoded_on_busy_cores() {
     let words = read_wav(Path::new(&spoken(sentence, folder.path())), 20.0).unwrap();
     let long = [words, vec![0; 16_000]].concat().repeat(8);
     let file = folder.path().join("long.wav");
-    write_wav(&file, &long);
+    write_wav(&file, &long).unwrap();
     std::thread::scope(|scope| {
         // Within the scope: what fails here ends it before the scope waits for its thread.
         let load = Load::begin();
@@ -87,20 +87,6 @@ fn stop_is_obeyed_while_a_long_recording_is_decoded_on_busy_cores() {
     });
     drop(page);
     group.down();
-}
-
-/// Samples at 16 kHz as a WAV file.
-fn write_wav(path: &Path, samples: &[i16]) {
-    let length = samples.len() as u32 * 2;
-    let mut bytes = b"RIFF".to_vec();
-    bytes.extend((length + 36).to_le_bytes());
-    bytes.extend(b"WAVEfmt \x10\0\0\0\x01\0\x01\0");
-    bytes.extend(16_000_u32.to_le_bytes());
-    bytes.extend(32_000_u32.to_le_bytes());
-    bytes.extend(b"\x02\0\x10\0data");
-    bytes.extend(length.to_le_bytes());
-    samples.iter().for_each(|sample| bytes.extend(sample.to_le_bytes()));
-    std::fs::write(path, bytes).unwrap();
 }
 
 /// Settings by which every line of the robot lasts a quarter of a minute.

@@ -23,7 +23,7 @@ fn prompt_without_a_sound_card_lasts_as_long_as_its_sound() {
     let entries = std::fs::read_dir(folder.path()).unwrap();
     let files: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
     let [file] = files.as_slice() else { panic!("one question: {files:?}") };
-    let samples = speech::devices::audio::read_wav(file, 60.0).unwrap();
+    let samples = speech_engines::audio::read_wav(file, 60.0).unwrap();
     let sound_s = samples.len() as f64 / 16_000.0;
     let took_s = (said.ended_ns - said.started_ns) as f64 / 1e9;
     // The two ends are noticed by the service's loop, each a little after it happened.

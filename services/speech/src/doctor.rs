@@ -10,11 +10,12 @@ use safe_files::TemporaryFolder;
 use service::Span;
 use service::inspection::Finding;
 
-use crate::In;
-use crate::devices::microphone::{Microphone, MicrophoneOptions, MicrophoneState};
-use crate::devices::recogniser::{Backend, second_opinion};
-use crate::devices::stream::PlaybackMask;
-use crate::devices::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
+use crate::options;
+use speech_engines::live_events::LiveEvent;
+use speech_engines::microphone::{Microphone, MicrophoneOptions, MicrophoneState};
+use speech_engines::recogniser::{Backend, second_opinion};
+use speech_engines::stream::PlaybackMask;
+use speech_engines::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
 
 /// Checks all devices as the service opens them.
 pub(crate) fn examine(settings: &Settings) -> Vec<Finding> {
@@ -34,7 +35,7 @@ fn recogniser(settings: &Settings) -> Finding {
         Ok(work) => work,
         Err(error) => return no_folder(WHAT, &error),
     };
-    let backend = Backend::of(&settings.speech, work.path());
+    let backend = options::backend(&settings.speech, work.path());
     match backend.open(&settings.scene) {
         Ok((_, unpronounceable)) if unpronounceable.is_empty() => Finding::good(
             WHAT,
@@ -77,8 +78,7 @@ fn voice(settings: &Settings) -> Finding {
         Err(error) => return no_folder(WHAT, &error),
     };
     // No prompt is spoken, so no audio is cached.
-    let options =
-        VoiceOptions { audio_dir: None, ..VoiceOptions::of(&settings.speech, work.path()) };
+    let options = VoiceOptions { audio_dir: None, ..options::voice(&settings.speech, work.path()) };
     let program = options.program.name();
     let (_voice, events) = voice::Voice::start(options);
     match events.recv() {
@@ -101,7 +101,7 @@ fn microphone(settings: &Settings) -> Finding {
     if settings.speech.microphone.mode == MicrophoneMode::Off {
         return Finding::good(WHAT, "switched off (speech.microphone.mode)");
     }
-    let options = MicrophoneOptions { hands_free: true, ..MicrophoneOptions::of(&settings.speech) };
+    let options = MicrophoneOptions { hands_free: true, ..options::microphone(&settings.speech) };
     let programs = options.programs.len();
     let (send, events) = mpsc::channel();
     let sink = move |event| {
@@ -115,7 +115,7 @@ fn microphone(settings: &Settings) -> Finding {
     while failed.len() < programs {
         let timeout = until.saturating_duration_since(Instant::now());
         match events.recv_timeout(timeout) {
-            Ok(In::Microphone(status)) => match status.state {
+            Ok(LiveEvent::Microphone(status)) => match status.state {
                 MicrophoneState::Listening => {
                     return Finding::good(WHAT, format!("{} records", status.note));
                 }

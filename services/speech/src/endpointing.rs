@@ -7,9 +7,9 @@ use std::time::Duration;
 use language::{Completeness, CompletenessJudge};
 use scene::{Question, Scene};
 
-use crate::devices::stream::SpeechSegment;
-use crate::devices::vad::Closing;
 use crate::{Hypothesis, RecognisedSegment};
+use speech_engines::stream::SpeechSegment;
+use speech_engines::vad::Closing;
 
 /// Pauses that end utterances, by what was said.
 pub struct Endpointing {

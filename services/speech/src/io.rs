@@ -8,11 +8,12 @@ use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 
 use crate::Hypothesis;
-use crate::devices::microphone::MicrophoneStatus;
-use crate::devices::recogniser::{Heard, Rejected, SecondView};
-use crate::devices::stream::SpeechSegment;
-use crate::devices::vad::Closing;
-use crate::stream_events::StreamEvent;
+use crate::hearing::{Heard, Rejected, SecondView};
+use speech_engines::live_events::{LiveEvent, MicrophoneStatus};
+use speech_engines::stream::SpeechSegment;
+use speech_engines::stream::StreamEvent;
+use speech_engines::vad::Closing;
+use speech_engines::voice::PlaybackEvent;
 
 /// Events delivered to the reducer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -55,6 +56,26 @@ pub enum In<'a> {
     Playback(PlaybackEvent),
 }
 
+impl From<LiveEvent> for In<'_> {
+    fn from(event: LiveEvent) -> Self {
+        match event {
+            LiveEvent::Stream(event) => Self::Stream(event),
+            LiveEvent::Microphone(status) => Self::Microphone(status),
+        }
+    }
+}
+
+impl In<'_> {
+    /// Returns the event of a live source, if it is one.
+    pub(crate) fn live(self) -> Option<LiveEvent> {
+        match self {
+            Self::Stream(event) => Some(LiveEvent::Stream(event)),
+            Self::Microphone(status) => Some(LiveEvent::Microphone(status)),
+            _ => None,
+        }
+    }
+}
+
 /// Messages published and requests to the devices.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Out {
@@ -73,7 +94,7 @@ pub enum Out {
     /// To clients: interim result.
     Partial(Box<Partial>),
     /// To the recogniser: the next samples of a sound in progress.
-    InterimSamples(u64, #[serde(with = "crate::unrecorded_sound")] Vec<i16>),
+    InterimSamples(u64, #[serde(with = "speech_engines::unrecorded_sound")] Vec<i16>),
     /// To the recogniser: a possible end of a sound.
     DecodeEarly(u64, SpeechSegment),
     /// To the live source: the pause that ends a sound in progress.
@@ -108,28 +129,6 @@ pub struct PlaybackRequest {
     pub presentation: u32,
     /// The words.
     pub text: String,
-}
-
-/// Progress of a playback.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct PlaybackEvent {
-    /// Number of the playback.
-    pub playback: u64,
-    /// Its new state.
-    pub state: PlaybackState,
-}
-
-/// State of a playback.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum PlaybackState {
-    /// Its sound began.
-    Started,
-    /// Its sound was played to the end.
-    Ended,
-    /// It was interrupted, or cancelled before it began.
-    Interrupted,
-    /// It could not be spoken, for this reason.
-    Failed(String),
 }
 
 /// Result of the recogniser.

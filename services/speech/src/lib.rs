@@ -4,19 +4,19 @@
 //! it is sent, in order, until the policy's mark confirms that it is applied. A prompt counts as heard
 //! only once it was spoken to its end.
 
+mod asr_worker;
 mod bounded;
-pub mod devices;
 mod doctor;
 mod endpointing;
+pub mod hearing;
 mod inspection;
 mod io;
 mod journal_record;
+pub mod options;
 mod pending_sounds;
 mod prompt_player;
 pub mod record;
 pub mod shell;
-pub mod stream_events;
-mod unrecorded_sound;
 mod utterance_content;
 mod utterance_intake;
 
@@ -27,17 +27,15 @@ use messages::UtteranceSeq;
 use prompt_player::PromptPlayer;
 use record::Record;
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
+use speech_engines::stream::StreamEvent;
 use std::process::ExitCode;
-use stream_events::StreamEvent;
 use utterance_intake::UtteranceIntake;
 
-pub use devices::microphone::MicrophoneStatus;
 pub use endpointing::{EarlyDecoding, Endpointing, PreparedJudge};
-pub use io::{
-    In, Out, PlaybackEvent, PlaybackRequest, PlaybackState, Recognised, RecognisedSegment,
-    RecognitionInput,
-};
+pub use io::{In, Out, PlaybackRequest, Recognised, RecognisedSegment, RecognitionInput};
 pub use messages::Hypothesis;
+pub use speech_engines::live_events::MicrophoneStatus;
+pub use speech_engines::voice::{PlaybackEvent, PlaybackState};
 
 /// Runs the program: a service of a group, or an inspection of its records.
 pub fn run() -> ExitCode {

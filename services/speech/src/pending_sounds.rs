@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::stream_events::Began;
 use messages::{FixedText, Partial, RequestKey, Source};
 use service::Time;
+use speech_engines::stream::Began;
 
 /// A sound that may become an utterance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]

@@ -4,15 +4,10 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::devices::asr_worker::AsrWorker;
-use crate::devices::client_streams::ClientStreams;
-use crate::devices::microphone::Microphone;
-use crate::devices::stream::{Closings, PlaybackMask};
-use crate::devices::vad::SegmenterOptions;
-use crate::devices::voice::Voice;
+use crate::asr_worker::AsrWorker;
 use crate::journal_record;
+use crate::options;
 use crate::record::Record;
-use crate::stream_events::StreamEvent;
 use crate::{
     Config, Endpointing, In, Out, PlaybackRequest, PreparedJudge, Recognised, RecognitionInput,
     SpeechNode, doctor, inspection,
@@ -32,6 +27,11 @@ use service::service_loop::{Context, Program, Shell};
 use service::stop_socket::RepeatedStop;
 use service::worker_channel::DeviceSender;
 use service::{Span, Time};
+use speech_engines::client_streams::ClientStreams;
+use speech_engines::microphone::Microphone;
+use speech_engines::stream::StreamEvent;
+use speech_engines::stream::{Closings, PlaybackMask};
+use speech_engines::voice::Voice;
 
 mod microphone;
 mod voice;
@@ -166,7 +166,7 @@ impl Shell<SpeechNode> for SpeechShell {
             recogniser: start_recogniser(settings, &paths.recogniser(), inbox),
             microphone: microphone::start(settings, &playback_mask, &closings, inbox),
             streams: ClientStreams::start(
-                SegmenterOptions::of(&settings.speech),
+                options::segmenter(&settings.speech),
                 Arc::clone(&playback_mask),
                 Arc::clone(&closings),
                 microphone::sink(inbox),

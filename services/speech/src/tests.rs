@@ -6,11 +6,8 @@ mod prompts;
 mod set_aside;
 mod stop_order;
 
-use crate::devices::recogniser::Rejected;
-use crate::devices::stream::SpeechSegment;
-use crate::devices::testing;
+use crate::hearing::Rejected;
 use crate::record::Record;
-use crate::stream_events::{Began, LIVE_FROM, StreamEvent};
 use crate::{
     Config, Endpointing, Hypothesis, In, Out, PlaybackEvent, PlaybackRequest, PlaybackState,
     PreparedJudge, Recognised, RecognisedSegment, SpeechNode,
@@ -21,6 +18,9 @@ use messages::{
 };
 use scene::{AttributeId, Question, ValueId};
 use service::{Effects, Event, Node, Span, Time};
+use speech_engines::stream::SpeechSegment;
+use speech_engines::stream::{Began, LIVE_FROM, StreamEvent};
+use speech_engines::testing;
 
 const WHITE: Question = Question::Attribute(AttributeId(0), ValueId(0));
 

@@ -8,14 +8,11 @@ mod origin;
 mod stop_order;
 mod waiting_requests;
 
-use crate::devices::microphone::MicrophoneStatus;
-use crate::devices::recogniser::Rejected;
-use crate::devices::vad::Closing;
 use crate::endpointing::EarlyDecoding;
+use crate::hearing::Rejected;
 use crate::pending_sounds::{ClosedStream, PendingSound, PendingSounds};
 use crate::prompt_player::PromptPlayer;
 use crate::record::{Accepted, Record};
-use crate::stream_events::StreamEvent;
 use crate::utterance_content::UtteranceContent;
 use crate::{Config, Fx, Hypothesis, Out, Recognised, RecognisedSegment, RecognitionInput};
 use accepted::{AcceptedUtterances, Receipts};
@@ -25,6 +22,9 @@ use messages::{EarState, GateVerdict, Injection, Receipt, ReceiptStatus, Sound, 
 use origin::Origin;
 use scene::Question;
 use service::{Span, Time};
+use speech_engines::live_events::MicrophoneStatus;
+use speech_engines::stream::StreamEvent;
+use speech_engines::vad::Closing;
 use std::ops::RangeInclusive;
 use stop_order::StopOrder;
 use waiting_requests::{Request, SHARE, WaitingRequests};

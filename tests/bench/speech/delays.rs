@@ -6,8 +6,8 @@ use super::corpus::Corpus;
 use super::voices::Voices;
 use crate::peers::resident_mib;
 use crate::report::{Report, percentile};
-use ::speech::devices::recogniser::RecogniserUnavailable;
-use ::speech::devices::vad::SegmenterOptions;
+use ::speech_engines::recogniser::RecogniserUnavailable;
+use ::speech_engines::vad::SegmenterOptions;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use whichone_tests::spoken::second_model;
@@ -80,7 +80,7 @@ fn hear(
         listener.patience = patience.saturating_sub(Duration::from_secs_f64(early_s));
         if let Some(heard) = listener.hear(&clip).last() {
             let late_s = heard.speech.end as f64 - clip.speech.end as f64;
-            let end_s = late_s / f64::from(::speech::devices::audio::RATE_HZ);
+            let end_s = late_s / f64::from(::speech_engines::audio::RATE_HZ);
             let s = end_s + early_s + heard.took_s.0;
             delays.push(Delay { s, asked: heard.asked, late: heard.late });
         }

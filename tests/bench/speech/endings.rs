@@ -7,14 +7,13 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
-use ::speech::devices::audio::RATE_HZ;
-use ::speech::devices::recogniser::{
-    Gate, Heard, PocketSphinx, PocketSphinxOptions, Recogniser, SecondView,
-};
-use ::speech::devices::stream::{Closings, SpeechSegment, Stream};
-use ::speech::devices::vad::SegmenterOptions;
-use ::speech::stream_events::{Began, LIVE_FROM, StreamEvent};
+use ::speech::hearing::{Gate, Heard, SecondView};
 use ::speech::{EarlyDecoding, Endpointing, PreparedJudge, RecognisedSegment};
+use ::speech_engines::audio::RATE_HZ;
+use ::speech_engines::recogniser::{PocketSphinx, PocketSphinxOptions, Recogniser};
+use ::speech_engines::stream::{Began, LIVE_FROM, StreamEvent};
+use ::speech_engines::stream::{Closings, SpeechSegment, Stream};
+use ::speech_engines::vad::SegmenterOptions;
 use language::{Completeness, Reader};
 use messages::{RequestKey, Source};
 use scene::{Question, Reading, Scene};
@@ -69,7 +68,7 @@ pub(super) fn measure(report: &mut Report, voices: &Voices, quick: bool) {
     let config = whichone_tests::settings(&[]).speech;
     let by_meaning = [config.complete_pause, config.closing_pause, config.open_pause];
     let rule = |name, pauses, interrupts| {
-        let options = SegmenterOptions::of(&config);
+        let options = ::speech::options::segmenter(&config);
         Rule { name, pauses, interrupts, options }
     };
     let rules = [

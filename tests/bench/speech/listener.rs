@@ -3,12 +3,12 @@
 use super::corpus::Clip;
 use crate::arm::thread_s;
 use ::speech::Hypothesis;
-use ::speech::devices::audio::RATE_HZ;
-use ::speech::devices::recogniser::{
-    Ensemble, Gate, Opinion, PocketSphinx, PocketSphinxOptions, RecogniserUnavailable,
-    SecondOpinion, SecondView, is_voice,
+use ::speech::hearing::{Ensemble, Gate, SecondView, is_voice};
+use ::speech_engines::audio::RATE_HZ;
+use ::speech_engines::recogniser::{
+    Opinion, PocketSphinx, PocketSphinxOptions, RecogniserUnavailable, SecondOpinion,
 };
-use ::speech::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
+use ::speech_engines::vad::{Segmenter, SegmenterOptions, VadEvent};
 use crossbeam_channel::{Receiver, Select};
 use scene::Scene;
 use std::ops::Range;

@@ -17,8 +17,8 @@ mod tables;
 mod voices;
 
 use crate::report::{Report, print};
-use ::speech::devices::recogniser::RecogniserUnavailable;
-use ::speech::devices::vad::SegmenterOptions;
+use ::speech_engines::recogniser::RecogniserUnavailable;
+use ::speech_engines::vad::SegmenterOptions;
 use conditions::Condition;
 use corpus::{Corpus, Sentence};
 use language::Reader;

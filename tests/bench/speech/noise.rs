@@ -2,7 +2,7 @@
 //!
 //! All have power 1 unless stated otherwise, and are the same for the same seed.
 
-use ::speech::devices::audio::RATE_HZ;
+use ::speech_engines::audio::RATE_HZ;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;

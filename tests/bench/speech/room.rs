@@ -1,7 +1,7 @@
 //! A synthesised room: direct sound, early reflections and an exponentially decaying tail.
 
 use super::noise::samples;
-use ::speech::devices::audio::RATE_HZ;
+use ::speech_engines::audio::RATE_HZ;
 use realfft::RealFftPlanner;
 use vocabulary::Rng;
 

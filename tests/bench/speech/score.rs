@@ -3,8 +3,8 @@
 use super::corpus::{Clip, Sentence};
 use super::listener::{Heard, THRESHOLDS};
 use ::speech::Hypothesis;
-use ::speech::devices::audio::seconds;
-use ::speech::devices::language_model::words;
+use ::speech_engines::audio::seconds;
+use ::speech_engines::language_model::words;
 use language::Reader;
 use scene::{Intent, Reading, Response, WordId};
 use std::collections::BTreeSet;

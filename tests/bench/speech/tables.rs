@@ -5,7 +5,7 @@ use super::listener::THRESHOLDS;
 use super::score::{Gated, Score};
 use super::{Trial, corpus::Corpus};
 use crate::report::{Report, percentile};
-use ::speech::devices::vad::SegmenterOptions;
+use ::speech_engines::vad::SegmenterOptions;
 use evaluation::simulation::{Interval, wilson};
 
 /// A row's name, and what it is about.

@@ -1,7 +1,7 @@
 //! Synthesised sentences.
 
 use super::conditions::Condition;
-use ::speech::devices::audio::RATE_HZ;
+use ::speech_engines::audio::RATE_HZ;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::{Mutex, PoisonError};

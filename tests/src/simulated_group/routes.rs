@@ -5,9 +5,9 @@ use std::iter::repeat_n;
 use evaluation::simulation::users::TimedUtterance;
 use messages::{ActKind, PresentationState, Presented, Source};
 use service::{Span, Time};
-use speech::devices::stream::SpeechSegment;
-use speech::stream_events::{Began, LIVE_FROM, StreamEvent};
 use speech::{Hypothesis, Recognised, RecognisedSegment};
+use speech_engines::stream::SpeechSegment;
+use speech_engines::stream::{Began, LIVE_FROM, StreamEvent};
 
 use super::user::{Channel, key, seconds, time};
 use super::{Decoding, SimulatedGroup};

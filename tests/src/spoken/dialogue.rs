@@ -16,7 +16,7 @@ use serde::Serialize;
 use service::client::Client;
 use service::clock;
 use service::{Span, Time};
-use speech::devices::voice::Synthesiser;
+use speech_engines::voice::Synthesiser;
 use vocabulary::{Language, Params, Rng};
 
 use super::room::Room;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use speech::devices::voice::{Program, Synthesiser, VoiceOptions};
+use speech_engines::voice::{Program, Synthesiser, VoiceOptions};
 use vocabulary::Rng;
 
 /// Level of every voice: root mean square of its samples.

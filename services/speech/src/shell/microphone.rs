@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::In;
-use crate::devices::microphone::{
-    Microphone, MicrophoneOptions, MicrophoneState, MicrophoneStatus, Sink,
-};
-use crate::devices::stream::{Closings, PlaybackMask};
+use crate::{In, options};
 use config::{MicrophoneMode, Recogniser, Settings};
 use service::worker_channel::DeviceSender;
+use speech_engines::live_events::{MicrophoneStatus, Sink};
+use speech_engines::microphone::{Microphone, MicrophoneState};
+use speech_engines::stream::{Closings, PlaybackMask};
 
 /// Starts the microphone, or returns why it is off.
 pub(super) fn start(
@@ -22,7 +21,7 @@ pub(super) fn start(
         (MicrophoneMode::Off, _) => OFF,
         (_, Recogniser::None) => NO_RECOGNISER,
         _ => {
-            let options = MicrophoneOptions::of(speech);
+            let options = options::microphone(speech);
             return Ok(Microphone::start(
                 options,
                 Arc::clone(mask),
@@ -39,7 +38,10 @@ pub(super) fn start(
 /// Returns a sink for the events of a live source: the main loop, which may be busy.
 pub(super) fn sink(inbox: &DeviceSender<In<'static>>) -> Sink {
     let inbox = inbox.clone();
-    Box::new(move |event| inbox.offer(event))
+    Box::new(move |event| {
+        let refused = inbox.offer(In::from(event)).err();
+        refused.and_then(In::live).map_or(Ok(()), Err)
+    })
 }
 
 const OFF: &str = "set mode = \"push-to-talk\" (file speech.toml, table [microphone]) and run: \

@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::devices::stream::PlaybackMask;
-use crate::devices::voice::{Voice, VoiceEvent, VoiceOptions, VoiceOutput};
-use crate::{In, PlaybackState};
+use crate::{In, PlaybackState, options};
 use config::Settings;
 use service::clock;
 use service::worker_channel::DeviceSender;
+use speech_engines::stream::PlaybackMask;
+use speech_engines::voice::{Voice, VoiceEvent, VoiceOptions, VoiceOutput};
 
 /// Starts the voice.
 pub(super) fn start(
@@ -20,7 +20,7 @@ pub(super) fn start(
     let options = VoiceOptions {
         audio_dir: settings.voice_dir(work),
         foreseen: dialogue::rendering::foreseen(&settings.scene),
-        ..VoiceOptions::of(&settings.speech, &work.join("voice"))
+        ..options::voice(&settings.speech, &work.join("voice"))
     };
     let (voice, events) = Voice::start(options);
     let (inbox, mut is_aloud) = (inbox.clone(), false);

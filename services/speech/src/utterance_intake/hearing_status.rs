@@ -3,8 +3,8 @@
 use messages::{Activity, EarState, FixedText, Hearing};
 use service::Time;
 
-use crate::devices::microphone::MicrophoneStatus;
 use crate::{Fx, Out};
+use speech_engines::live_events::MicrophoneStatus;
 
 /// State of microphone and recogniser, and measurements of the last utterance.
 #[derive(serde::Serialize, serde::Deserialize)]

@@ -1,7 +1,7 @@
 //! Origin of an utterance: its request, segment, source and time.
 
 use crate::RecognisedSegment;
-use crate::devices::recogniser::{Heard, SecondView};
+use crate::hearing::{Heard, SecondView};
 use crate::pending_sounds::PendingSound;
 use crate::record::Accepted;
 use crate::utterance_content::UtteranceContent;

@@ -1,0 +1,96 @@
+//! Interim results of utterances in progress, on a thread of its own.
+//!
+//! Invariant: it delays nothing. It has a decoder of its own, runs at low priority, and omits what it
+//! cannot decode in time.
+
+use crossbeam_channel::{Receiver, Sender};
+
+use crate::In;
+use speech_engines::recogniser::{InterimDecoder, InterimDecoderOpener};
+use speech_engines::worker_thread::lower_priority;
+
+/// Blocks of samples that may wait: more than a second.
+pub(super) const BLOCKS_MAX: usize = 4;
+/// Scheduling priority relative to the threads that return results (nice).
+const NICENESS: i32 = 10;
+
+/// Decodes until there are no more blocks or no receiver of events.
+pub(super) fn run(
+    open: InterimDecoderOpener,
+    blocks: &Receiver<(u64, Vec<i16>)>,
+    events: &Sender<In<'static>>,
+) {
+    lower_priority(NICENESS);
+    let Some(decoder) = open() else { return };
+    let mut utterance = OngoingUtterance { decoder, sound: 0, text: String::new() };
+    for (sound, samples) in blocks {
+        if let Some(text) = utterance.decode(sound, &samples)
+            && events.send(In::InterimResult { sound, text }).is_err()
+        {
+            return;
+        }
+    }
+}
+
+/// The utterance in progress.
+struct OngoingUtterance {
+    decoder: Box<dyn InterimDecoder>,
+    sound: u64,
+    text: String,
+}
+
+impl OngoingUtterance {
+    /// Returns the words so far where they have changed.
+    fn decode(&mut self, sound: u64, samples: &[i16]) -> Option<String> {
+        // Of simultaneous speakers the last to begin is followed: numbers rise.
+        if sound < self.sound {
+            return None;
+        }
+        if sound > self.sound {
+            (self.sound, self.text) = (sound, String::new());
+            self.decoder.begin().ok()?;
+        }
+        let text = self.decoder.decode(samples).ok()?;
+        if text == self.text {
+            return None;
+        }
+        self.text.clone_from(&text);
+        Some(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crossbeam_channel::unbounded;
+    use speech_engines::recogniser::RecogniseError;
+
+    /// Returns other words for each block, the same ones twice.
+    struct Stub(usize);
+
+    impl InterimDecoder for Stub {
+        fn begin(&mut self) -> Result<(), RecogniseError> {
+            self.0 = 0;
+            Ok(())
+        }
+
+        fn decode(&mut self, _: &[i16]) -> Result<String, RecogniseError> {
+            self.0 += 1;
+            Ok(["", "the", "the", "the white"][self.0 - 1].to_owned())
+        }
+    }
+
+    #[test]
+    fn interim_results_are_published_on_change_for_the_latest_speaker() {
+        let ((give, blocks), (events, published)) = (unbounded(), unbounded());
+        for sound in [5, 5, 5, 5, 7, 7, 5, 5] {
+            give.send((sound, vec![0; 10])).unwrap();
+        }
+        drop(give);
+        run(Box::new(|| Some(Box::new(Stub(0)))), &blocks, &events);
+        drop(events);
+        let result = |sound, text: &str| In::InterimResult { sound, text: text.to_owned() };
+        let expected = [result(5, "the"), result(5, "the white"), result(7, "the")];
+        assert_eq!(published.iter().collect::<Vec<_>>(), expected);
+    }
+}

@@ -1,0 +1,12 @@
+//! Judgement of what the recognisers hear: which of them are asked, and what is meant for the robot.
+
+mod ensemble;
+mod gate;
+mod heard;
+
+pub use ensemble::{Ensemble, is_voice};
+pub use gate::{Gate, Rejected};
+pub use heard::{Heard, SecondView};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,302 @@
+//! The robot's voice: prompts are synthesised by one program and played by another, one after the
+//! other; each can be interrupted.
+//!
+//! Invariant: every accepted prompt yields `Started` and then exactly one of `Ended`, `Interrupted` and
+//! `Failed` (which may also come alone), in order, within a deadline that depends on its length only.
+//!
+//! `Started` comes when the player has begun; the audio was synthesised before. `Ended` comes when the
+//! player has exited, and not before the duration of the audio has passed since `Started`: some players
+//! return early, and a null device at once. The duration covers the audible part (`trim.rs`).
+
+mod options;
+mod player;
+mod program;
+mod prompt_audio_cache;
+mod synthesis;
+mod trim;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, SendError, Sender, TryRecvError, unbounded};
+use messages::SoundFile;
+use serde::{Deserialize, Serialize};
+
+use crate::child_process::End;
+use crate::worker_thread::{QueueError, WorkerThread};
+pub use options::{VoiceMode, VoiceOptions};
+pub use player::Player;
+pub use program::Program;
+pub use prompt_audio_cache::CACHED_MAX;
+use prompt_audio_cache::PromptAudioCache;
+use synthesis::{FORESEEN_MAX, Sound};
+pub use synthesis::{SynthesisError, Synthesiser};
+
+/// Progress of a playback.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PlaybackEvent {
+    /// Number of the playback.
+    pub playback: u64,
+    /// Its new state.
+    pub state: PlaybackState,
+}
+
+/// State of a playback.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PlaybackState {
+    /// Its sound began.
+    Started,
+    /// Its sound was played to the end.
+    Ended,
+    /// It was interrupted, or cancelled before it began.
+    Interrupted,
+    /// It could not be spoken, for this reason.
+    Failed(String),
+}
+
+/// Output of the voice.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum VoiceOutput {
+    /// Prompts are played by this program, or by none for as long as they would take.
+    Aloud(Player),
+    /// Prompts are shown as text only.
+    Text {
+        /// Reason, for the operator.
+        reason: String,
+    },
+}
+
+/// An event of the voice.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum VoiceEvent {
+    /// Its output; the first event.
+    Output(VoiceOutput),
+    /// Progress of a playback.
+    Playback(PlaybackEvent),
+}
+
+/// Prompts that may wait.
+pub const WAITING_MAX: usize = 8;
+
+/// The voice, on a thread of its own. Dropping it interrupts the current prompt.
+pub struct Voice {
+    /// Prompts of an earlier generation are cancelled.
+    generation: Arc<AtomicU64>,
+    thread: WorkerThread<Prompt>,
+}
+
+struct Prompt {
+    playback: u64,
+    generation: u64,
+    /// Its file in the cache.
+    file: SoundFile,
+    text: String,
+}
+
+impl Voice {
+    /// Starts the thread.
+    pub fn start(options: VoiceOptions) -> (Self, Receiver<VoiceEvent>) {
+        let (events, happened) = unbounded();
+        let generation = Arc::new(AtomicU64::new(0));
+        let current = Arc::clone(&generation);
+        let thread = WorkerThread::start(WAITING_MAX, move |prompts| {
+            let mut synthesiser = Synthesiser::new(&options);
+            let output = choose(&options, &mut synthesiser);
+            let (mode, cache) = (options.mode, options.audio_dir.as_deref().and_then(cache));
+            // Without a receiver of its events the voice has no more to do.
+            if events.send(VoiceEvent::Output(output.clone())).is_ok() {
+                let (generation, mut foreseen) = (current, options.foreseen);
+                foreseen.truncate(FORESEEN_MAX);
+                foreseen.reverse();
+                Speaker { mode, output, synthesiser, cache, events, generation, foreseen }
+                    .run(prompts);
+            }
+        });
+        (Self { generation, thread }, happened)
+    }
+
+    /// Queues a prompt. `playback` identifies it in the events, `file` is its sound's in the cache.
+    ///
+    /// # Errors
+    /// If [`WAITING_MAX`] prompts wait already, or the thread is gone.
+    pub fn speak(&self, playback: u64, file: SoundFile, text: &str) -> Result<(), QueueError> {
+        let generation = self.generation.load(Ordering::SeqCst);
+        self.thread.offer(Prompt { playback, generation, file, text: text.to_owned() })
+    }
+
+    /// Interrupts the current prompt and cancels those that wait.
+    pub fn interrupt(&self) {
+        self.generation.fetch_add(1, Ordering::SeqCst);
+    }
+}
+
+impl Drop for Voice {
+    fn drop(&mut self) {
+        self.interrupt();
+    }
+}
+
+fn choose(options: &VoiceOptions, synthesiser: &mut Synthesiser) -> VoiceOutput {
+    if options.mode == VoiceMode::Print {
+        return VoiceOutput::Text { reason: "speech.voice is \"print\"".to_owned() };
+    }
+    let player = match synthesiser.try_out().and_then(|()| synthesiser.silence()) {
+        Ok(file) => Player::find(&options.players, &file),
+        Err(error) => Err(error.to_string()),
+    };
+    match player {
+        Ok(player) => VoiceOutput::Aloud(player),
+        Err(reason) => VoiceOutput::Text { reason },
+    }
+}
+
+fn cache(folder: &std::path::Path) -> Option<PromptAudioCache> {
+    match PromptAudioCache::open(folder) {
+        Ok(cache) => Some(cache),
+        Err(error) => {
+            tracing::warn!(%error, folder = %folder.display(), "prompt audio is not cached");
+            None
+        }
+    }
+}
+
+/// The thread's side.
+struct Speaker {
+    mode: VoiceMode,
+    output: VoiceOutput,
+    synthesiser: Synthesiser,
+    cache: Option<PromptAudioCache>,
+    events: Sender<VoiceEvent>,
+    generation: Arc<AtomicU64>,
+    /// Prompts to synthesise in advance, the most likely last.
+    foreseen: Vec<String>,
+}
+
+/// Time beyond the duration of the audio: opening the device and draining its buffer.
+const PLAY_SLACK: Duration = Duration::from_secs(5);
+/// Polling interval of cancellation.
+const POLL_EVERY: Duration = Duration::from_millis(5);
+
+impl Speaker {
+    fn run(mut self, prompts: &Receiver<Prompt>) {
+        while let Some(prompt) = self.next(prompts) {
+            let state = match self.present(&prompt) {
+                Ok(End::Done) => PlaybackState::Ended,
+                Ok(End::Cancelled) => PlaybackState::Interrupted,
+                Err(error) => PlaybackState::Failed(error),
+            };
+            if self.send(&prompt, state).is_err() {
+                return;
+            }
+        }
+    }
+
+    /// Returns the next prompt. Meanwhile foreseen prompts are synthesised, one at a time, so that a prompt
+    /// waits for one at most.
+    fn next(&mut self, prompts: &Receiver<Prompt>) -> Option<Prompt> {
+        loop {
+            match prompts.try_recv() {
+                Ok(prompt) => return Some(prompt),
+                Err(TryRecvError::Disconnected) => return None,
+                Err(TryRecvError::Empty) => {}
+            }
+            let is_aloud = matches!(self.output, VoiceOutput::Aloud(_));
+            let Some(text) = self.foreseen.pop().filter(|_| is_aloud) else {
+                return prompts.recv().ok();
+            };
+            let is_cancelled = || !prompts.is_empty();
+            match self.synthesiser.speak(&text, is_cancelled) {
+                Ok(_) => {}
+                Err(SynthesisError::Cancelled) => self.foreseen.push(text),
+                // A prompt reports what fails when it is spoken.
+                Err(error) => {
+                    tracing::debug!(%error, "prompts are not synthesised in advance");
+                    self.foreseen.clear();
+                }
+            }
+        }
+    }
+
+    fn present(&mut self, prompt: &Prompt) -> Result<End, String> {
+        if self.is_cancelled(prompt) {
+            return Ok(End::Cancelled);
+        }
+        let player = match &self.output {
+            VoiceOutput::Aloud(player) => player.clone(),
+            VoiceOutput::Text { reason } if self.mode == VoiceMode::Aloud => {
+                return Err(reason.clone());
+            }
+            VoiceOutput::Text { .. } => {
+                self.begin(prompt);
+                return Ok(End::Done);
+            }
+        };
+        let current = Arc::clone(&self.generation);
+        let is_cancelled = || prompt.generation < current.load(Ordering::SeqCst);
+        match self.synthesiser.speak(&prompt.text, is_cancelled) {
+            Ok(Some(sound)) => {
+                self.store(prompt, &sound);
+                self.play(prompt, &sound, &player)
+            }
+            Ok(None) => {
+                self.begin(prompt);
+                Ok(End::Done)
+            }
+            Err(SynthesisError::Cancelled) => Ok(End::Cancelled),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    fn send(&self, prompt: &Prompt, state: PlaybackState) -> Result<(), SendError<VoiceEvent>> {
+        self.events.send(VoiceEvent::Playback(PlaybackEvent { playback: prompt.playback, state }))
+    }
+
+    fn begin(&self, prompt: &Prompt) {
+        // A missing receiver is noticed at the end of the prompt.
+        let _ = self.send(prompt, PlaybackState::Started);
+    }
+
+    fn store(&mut self, prompt: &Prompt, sound: &Sound) {
+        let Some(cache) = &mut self.cache else { return };
+        if let Err(error) = cache.store(prompt.file, &sound.file) {
+            tracing::warn!(%error, "prompt audio not cached");
+        }
+    }
+
+    /// Plays audio, for its own duration at least.
+    fn play(&self, prompt: &Prompt, sound: &Sound, player: &Player) -> Result<End, String> {
+        let length = Duration::from_secs_f64(sound.seconds);
+        let mut playing = match player.is_none() {
+            true => None,
+            false => Some(player.play(&sound.file).map_err(|e| e.to_string())?),
+        };
+        let began = Instant::now();
+        self.begin(prompt);
+        if let Some(playing) = &mut playing {
+            let pause = |time| {
+                thread::sleep(time);
+                self.is_cancelled(prompt)
+            };
+            let end = playing.wait(length + PLAY_SLACK, pause).map_err(|e| e.to_string())?;
+            if end == End::Cancelled {
+                return Ok(end);
+            }
+        }
+        while let Some(left) = length.checked_sub(began.elapsed()) {
+            if self.is_cancelled(prompt) {
+                return Ok(End::Cancelled);
+            }
+            thread::sleep(left.min(POLL_EVERY));
+        }
+        Ok(End::Done)
+    }
+
+    fn is_cancelled(&self, prompt: &Prompt) -> bool {
+        prompt.generation < self.generation.load(Ordering::SeqCst)
+    }
+}
+
+#[cfg(test)]
+mod tests;
