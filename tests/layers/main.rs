@@ -119,6 +119,17 @@ fn few_crates_depend_on_the_language() {
     assert_eq!(dependents("language"), allowed.map(str::to_owned).into());
 }
 
+/// Engines of speech are replaceable: one service uses them, and they know nothing of what decides.
+#[test]
+fn speech_alone_uses_its_engines() {
+    let allowed = ["speech", "whichone", "whichone-tests"];
+    assert_eq!(dependents("speech_engines"), allowed.map(str::to_owned).into());
+    let tree = tree("speech_engines", "99");
+    for absent in ["service", "config", "journal", "dialogue", "language", "words"] {
+        assert!(!tree.contains(absent), "speech_engines depends on {absent}");
+    }
+}
+
 /// What a program from outside is built on has neither configuration nor journal, and no shell of a service.
 #[test]
 fn sdk_links_little() {

@@ -17,7 +17,7 @@ const BOUNDS: [Bound; 3] = [
     Bound {
         name: "lines of the core, with its tests",
         first: 135_525.0,
-        at_most: 136_000.0,
+        at_most: 128_000.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {
@@ -34,7 +34,9 @@ const BOUNDS: [Bound; 3] = [
     },
 ];
 
-/// Folders of what a robot needs that asks and fetches.
+/// Folders of what a robot needs that asks and fetches. `shared/speech_engines` was counted until it became a crate, 8,000
+/// lines that moved and were not deleted: its adapters of recognisers, voices and recorders decide nothing, and each can
+/// be replaced without a change of the core.
 const CORE: [&str; 25] = [
     "shared/vocabulary",
     "shared/scene",

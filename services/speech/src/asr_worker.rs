@@ -14,14 +14,14 @@ use std::time::Duration;
 use config::Settings;
 use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
 use messages::EarState;
-
-use crate::hearing::{Ensemble, Gate};
-use crate::{In, RecognitionInput, options};
-use early::EarlyResults;
 use speech_engines::recogniser::{Recogniser, SecondOpinion};
 use speech_engines::stream::SpeechSegment;
 use speech_engines::vad::SegmenterOptions;
 use speech_engines::worker_thread::{QueueError, WorkerThread, in_background};
+
+use crate::hearing::{Ensemble, Gate};
+use crate::{In, RecognitionInput, options};
+use early::EarlyResults;
 use worker::{Channels, Worker};
 
 mod doubt;

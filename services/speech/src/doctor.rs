@@ -9,13 +9,13 @@ use config::{MicrophoneMode, Recogniser, Settings, Voice};
 use safe_files::TemporaryFolder;
 use service::Span;
 use service::inspection::Finding;
-
-use crate::options;
 use speech_engines::live_events::LiveEvent;
 use speech_engines::microphone::{Microphone, MicrophoneOptions, MicrophoneState};
 use speech_engines::recogniser::{Backend, second_opinion};
 use speech_engines::stream::PlaybackMask;
 use speech_engines::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
+
+use crate::options;
 
 /// Checks all devices as the service opens them.
 pub(crate) fn examine(settings: &Settings) -> Vec<Finding> {

@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use language::{Completeness, CompletenessJudge};
 use scene::{Question, Scene};
-
-use crate::{Hypothesis, RecognisedSegment};
 use speech_engines::stream::SpeechSegment;
 use speech_engines::vad::Closing;
+
+use crate::{Hypothesis, RecognisedSegment};
 
 /// Pauses that end utterances, by what was said.
 pub struct Endpointing {

@@ -6,14 +6,13 @@ use messages::{
 };
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};
+use speech_engines::live_events::{LiveEvent, MicrophoneStatus};
+use speech_engines::stream::{SpeechSegment, StreamEvent};
+use speech_engines::vad::Closing;
+use speech_engines::voice::PlaybackEvent;
 
 use crate::Hypothesis;
 use crate::hearing::{Heard, Rejected, SecondView};
-use speech_engines::live_events::{LiveEvent, MicrophoneStatus};
-use speech_engines::stream::SpeechSegment;
-use speech_engines::stream::StreamEvent;
-use speech_engines::vad::Closing;
-use speech_engines::voice::PlaybackEvent;
 
 /// Events delivered to the reducer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -5,13 +5,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::asr_worker::AsrWorker;
-use crate::journal_record;
-use crate::options;
 use crate::record::Record;
 use crate::{
     Config, Endpointing, In, Out, PlaybackRequest, PreparedJudge, Recognised, RecognitionInput,
     SpeechNode, doctor, inspection,
 };
+use crate::{journal_record, options};
 use config::Settings;
 use crossbeam_channel::Receiver;
 use messages::{
@@ -29,8 +28,7 @@ use service::worker_channel::DeviceSender;
 use service::{Span, Time};
 use speech_engines::client_streams::ClientStreams;
 use speech_engines::microphone::Microphone;
-use speech_engines::stream::StreamEvent;
-use speech_engines::stream::{Closings, PlaybackMask};
+use speech_engines::stream::{Closings, PlaybackMask, StreamEvent};
 use speech_engines::voice::Voice;
 
 mod microphone;

@@ -18,8 +18,7 @@ use messages::{
 };
 use scene::{AttributeId, Question, ValueId};
 use service::{Effects, Event, Node, Span, Time};
-use speech_engines::stream::SpeechSegment;
-use speech_engines::stream::{Began, LIVE_FROM, StreamEvent};
+use speech_engines::stream::{Began, LIVE_FROM, SpeechSegment, StreamEvent};
 use speech_engines::testing;
 
 const WHITE: Question = Question::Attribute(AttributeId(0), ValueId(0));

@@ -13,8 +13,9 @@ use runtime::clock;
 use vocabulary::time::{Span, Time};
 
 use crate::live_events::{EventQueue, LiveEvent, Sink};
-use crate::stream::{Began, StreamEvent, next_sound};
-use crate::stream::{Closings, Duplex, MaskedStream, PlaybackMask, shifted};
+use crate::stream::{
+    Began, Closings, Duplex, MaskedStream, PlaybackMask, StreamEvent, next_sound, shifted,
+};
 use crate::vad::SegmenterOptions;
 use crate::worker_thread::WorkerThread;
 

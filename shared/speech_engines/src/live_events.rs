@@ -113,8 +113,7 @@ impl EventQueue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream::Began;
-    use crate::stream::SpeechSegment;
+    use crate::stream::{Began, SpeechSegment};
     use crate::testing;
     use crossbeam_channel::{TrySendError, bounded};
     use vocabulary::time::Time;

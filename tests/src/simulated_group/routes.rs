@@ -6,8 +6,7 @@ use evaluation::simulation::users::TimedUtterance;
 use messages::{ActKind, PresentationState, Presented, Source};
 use service::{Span, Time};
 use speech::{Hypothesis, Recognised, RecognisedSegment};
-use speech_engines::stream::SpeechSegment;
-use speech_engines::stream::{Began, LIVE_FROM, StreamEvent};
+use speech_engines::stream::{Began, LIVE_FROM, SpeechSegment, StreamEvent};
 
 use super::user::{Channel, key, seconds, time};
 use super::{Decoding, SimulatedGroup};

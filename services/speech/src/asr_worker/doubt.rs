@@ -4,11 +4,11 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, TryRecvError, never};
 use service::clock;
-
-use crate::hearing::{Ensemble, Heard, SecondView};
 use speech_engines::audio::seconds;
 use speech_engines::recogniser::{FirstView, Opinion, PendingOpinion};
 use speech_engines::stream::SpeechSegment;
+
+use crate::hearing::{Ensemble, Heard, SecondView};
 
 /// An utterance that the second recogniser listens to while the first one decodes it. Dropping it makes it
 /// stop.

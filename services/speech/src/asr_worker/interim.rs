@@ -4,10 +4,10 @@
 //! cannot decode in time.
 
 use crossbeam_channel::{Receiver, Sender};
-
-use crate::In;
 use speech_engines::recogniser::{InterimDecoder, InterimDecoderOpener};
 use speech_engines::worker_thread::lower_priority;
+
+use crate::In;
 
 /// Blocks of samples that may wait: more than a second.
 pub(super) const BLOCKS_MAX: usize = 4;

@@ -2,12 +2,12 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::*;
-use crate::Hypothesis;
-use crate::{Recognised, RecognisedSegment};
 use speech_engines::audio::write_wav;
 use speech_engines::recogniser::{RecogniseError, Recognition};
 use speech_engines::testing::{self, bowls};
+
+use super::*;
+use crate::{Hypothesis, Recognised, RecognisedSegment};
 
 const PATIENCE: Duration = Duration::from_secs(20);
 

@@ -11,16 +11,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
+use speech_engines::audio::{RATE_HZ, read_wav, seconds, snr_db};
+use speech_engines::recogniser::{FirstView, Opinion};
+use speech_engines::stream::SpeechSegment;
+use speech_engines::vad::{Segmenter, VadEvent};
 
 use super::Limits;
 use super::doubt::{Doubt, Listening};
 use super::early::EarlyResults;
 use crate::hearing::{Ensemble, Heard, SecondView};
 use crate::{In, Recognised, RecognisedSegment};
-use speech_engines::audio::{RATE_HZ, read_wav, seconds, snr_db};
-use speech_engines::recogniser::{FirstView, Opinion};
-use speech_engines::stream::SpeechSegment;
-use speech_engines::vad::{Segmenter, VadEvent};
 
 /// Samples of a file that are searched for speech at a time: one second.
 const PIECE: usize = RATE_HZ as usize;

@@ -2,9 +2,9 @@
 
 use messages::{Activity, EarState, FixedText, Hearing};
 use service::Time;
+use speech_engines::live_events::MicrophoneStatus;
 
 use crate::{Fx, Out};
-use speech_engines::live_events::MicrophoneStatus;
 
 /// State of microphone and recogniser, and measurements of the last utterance.
 #[derive(serde::Serialize, serde::Deserialize)]

@@ -7,8 +7,7 @@ use vocabulary::time::{Span, Time};
 
 use super::*;
 use crate::live_events::{LiveEvent, MicrophoneStatus};
-use crate::stream::SpeechSegment;
-use crate::stream::{Began, StreamEvent};
+use crate::stream::{Began, SpeechSegment, StreamEvent};
 use crate::testing::voice;
 
 const PATIENCE: Duration = Duration::from_secs(20);

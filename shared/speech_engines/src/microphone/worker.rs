@@ -12,8 +12,9 @@ use super::level::Level;
 use super::recorder::{Read, Recorder};
 use super::{MicrophoneOptions, Talk};
 use crate::live_events::{EventQueue, LiveEvent, MicrophoneStatus, QUIETEST_DB, Sink};
-use crate::stream::{Began, StreamEvent, next_sound};
-use crate::stream::{Closings, Duplex, MaskedStream, PlaybackMask, SampleClock};
+use crate::stream::{
+    Began, Closings, Duplex, MaskedStream, PlaybackMask, SampleClock, StreamEvent, next_sound,
+};
 
 /// Timeout of one read.
 const READ_TIMEOUT: Duration = Duration::from_millis(50);

@@ -6,9 +6,8 @@
 
 use std::sync::Arc;
 
-use vocabulary::time::{Span, Time};
-
 use audio::shifted;
+use vocabulary::time::{Span, Time};
 
 use super::closings::Closings;
 use super::events::{Began, Begin, StreamEvent};
