@@ -232,7 +232,7 @@ const WRITERS: [(&str, &str, &str); 7] = [
     (
         "shared/journal/src/rotate.rs",
         "fs::rename(",
-        "older journals move up; crashes between its steps are tested",
+        "the new journal takes the name of the old one; crashes between the steps are tested",
     ),
     (
         "shared/journal/src/rotate.rs",
@@ -240,9 +240,17 @@ const WRITERS: [(&str, &str, &str); 7] = [
         "a second name of the journal where there are no links",
     ),
     ("shared/recording/src/", "fs::rename(", "finished recordings get their names"),
-    ("shared/service/src/log_file.rs", "fs::rename(", "older logs move up"),
+    (
+        "shared/service/src/log_file.rs",
+        "fs::rename(",
+        "a full log becomes the first of the older ones",
+    ),
     ("shared/service/src/journal_set.rs", "fs::rename(", "journals are set aside"),
-    ("services/", "fs::rename(", "the gateway's audit moves up, journals are put aside"),
+    (
+        "services/",
+        "fs::rename(",
+        "a full audit of the gateway becomes the first of the older ones, journals are put aside",
+    ),
 ];
 
 /// The text without items for tests.

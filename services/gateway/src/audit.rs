@@ -169,9 +169,7 @@ impl Log {
 
     fn rotate(&mut self) -> io::Result<()> {
         let name = |number: u32| self.path.with_file_name(format!("audit.{number}.jsonl"));
-        for number in (1..FILES_MAX - 1).rev().filter(|number| name(*number).exists()) {
-            fs::rename(name(number), name(number + 1))?;
-        }
+        safe_files::make_room(FILES_MAX - 1, name)?;
         fs::rename(&self.path, name(1))?;
         (self.file, self.bytes) = open(&self.path)?;
         Ok(())

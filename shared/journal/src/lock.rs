@@ -37,5 +37,5 @@ fn pid_in(mut file: &File) -> Option<u32> {
 }
 
 fn lock_path(path: &Path) -> PathBuf {
-    crate::rotate::beside(path, "lock")
+    safe_files::suffixed(path, "lock")
 }

@@ -3,10 +3,12 @@
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::os::unix::fs::MetadataExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use safe_files::{absent_is_fine, make_room, suffixed};
 
 /// Number of old journals kept.
-pub const KEPT: usize = 4;
+pub const KEPT: u32 = 4;
 
 /// Steps of a replacement, in order. A crash before any of them leaves either the old or the new
 /// journal intact under its name.
@@ -46,10 +48,10 @@ impl Step {
 pub(crate) fn replace(
     path: &Path,
     bytes: &[u8],
-    keep: usize,
+    keep: u32,
     mut before: impl FnMut(Step) -> io::Result<()>,
 ) -> Result<File, (Step, io::Error)> {
-    let new = beside(path, "new");
+    let new = suffixed(path, "new");
     let at = |step| move |error| (step, error);
     let mut enter = |step| before(step).map_err(at(step));
 
@@ -60,7 +62,7 @@ pub(crate) fn replace(
     });
     let file = file.map_err(at(Step::WriteNew))?;
     enter(Step::ShiftOld)?;
-    shift(path, keep).map_err(at(Step::ShiftOld))?;
+    make_room(keep, |number| suffixed(path, number)).map_err(at(Step::ShiftOld))?;
     enter(Step::LinkOld)?;
     link(path, keep).map_err(at(Step::LinkOld))?;
     enter(Step::Replace)?;
@@ -72,8 +74,8 @@ pub(crate) fn replace(
 
 /// Removes what a replacement that did not finish has left.
 pub(crate) fn clear_unfinished(path: &Path) -> io::Result<()> {
-    absent_is_fine(fs::remove_file(beside(path, "new")))?;
-    let old = beside(path, "1");
+    absent_is_fine(fs::remove_file(suffixed(path, "new")))?;
+    let old = suffixed(path, "1");
     // A crash between linking and replacing: both names mean the journal that is still in use.
     match (fs::metadata(path), fs::metadata(&old)) {
         (Ok(now), Ok(then)) if now.ino() == then.ino() && now.dev() == then.dev() => {
@@ -81,14 +83,6 @@ pub(crate) fn clear_unfinished(path: &Path) -> io::Result<()> {
         }
         _ => Ok(()),
     }
-}
-
-/// `<path>.<suffix>`
-pub(crate) fn beside(path: &Path, suffix: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(".");
-    name.push(suffix);
-    name.into()
 }
 
 fn write_new(new: &Path, bytes: &[u8]) -> io::Result<File> {
@@ -99,25 +93,12 @@ fn write_new(new: &Path, bytes: &[u8]) -> io::Result<File> {
     Ok(file)
 }
 
-/// Makes room for `<name>.1` and drops what would be above `<name>.keep`.
-fn shift(path: &Path, keep: usize) -> io::Result<()> {
-    if keep == 0 {
-        return Ok(());
-    }
-    let numbered = |n: usize| beside(path, &n.to_string());
-    absent_is_fine(fs::remove_file(numbered(keep)))?;
-    for n in (1..keep).rev() {
-        absent_is_fine(fs::rename(numbered(n), numbered(n + 1)))?;
-    }
-    Ok(())
-}
-
 /// Gives the old journal its second name. A copy does as well where the file system has no links.
-fn link(path: &Path, keep: usize) -> io::Result<()> {
+fn link(path: &Path, keep: u32) -> io::Result<()> {
     if keep == 0 {
         return Ok(());
     }
-    let old = beside(path, "1");
+    let old = suffixed(path, "1");
     absent_is_fine(fs::hard_link(path, &old).or_else(|_| fs::copy(path, &old).map(drop)))
 }
 
@@ -128,11 +109,4 @@ pub(crate) fn sync_folder(path: &Path) -> io::Result<()> {
         _ => Path::new("."),
     };
     File::open(folder)?.sync_all()
-}
-
-fn absent_is_fine(result: io::Result<()>) -> io::Result<()> {
-    match result {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        other => other,
-    }
 }

@@ -9,11 +9,13 @@
 //! | temporary folders | `temporary.rs` |
 //! | atomic replacement of files | `draft.rs` |
 //! | files and folders that a user names for output | `output.rs` |
+//! | older versions of a file | `older.rs` |
 //! | opening of regular files for reading | `regular.rs` |
 
 mod draft;
 pub mod folders;
 mod leftovers;
+mod older;
 mod output;
 mod regular;
 mod temporary;
@@ -22,6 +24,7 @@ pub use draft::{
     Draft, Readers, create_private, open_lock, probe, replace, replace_private,
     replace_private_synced,
 };
+pub use older::{absent_is_fine, make_room, suffixed};
 pub use output::{OutputFolder, check_new_output, write_new_output, write_output};
 pub use regular::{open_regular, read_private};
 pub use temporary::TemporaryFolder;

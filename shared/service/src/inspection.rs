@@ -16,7 +16,6 @@ use crate::exit::{Exit, Failure};
 use crate::flight;
 use crate::journal_clock::WallTimes;
 use crate::journal_record::JournalLine;
-use crate::log_file;
 use crate::printable::{one_line, printable_json};
 use crate::service_loop::{Program, Record};
 use crate::{Time, wall_time};
@@ -269,7 +268,7 @@ fn parts<P: Program>(request: &Request) -> Result<Vec<Part<Record<P>>>, Failure>
 
 /// Older files of the journal, oldest first.
 fn older(request: &Request) -> impl Iterator<Item = PathBuf> {
-    let older = (1..=journal::KEPT).rev().map(|n| log_file::numbered(&request.file, n));
+    let older = (1..=journal::KEPT).rev().map(|n| safe_files::suffixed(&request.file, n));
     older.filter(|file| file.is_file())
 }
 

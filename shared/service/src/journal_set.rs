@@ -34,7 +34,6 @@ use serde::{Deserialize, Serialize};
 use crate::exit::{Exit, Failure};
 use crate::group::GroupPaths;
 use crate::lifecycle::Environment;
-use crate::log_file::numbered;
 use crate::{SetAside, Span, clock, epoch};
 
 /// Numbers that each setting aside skips: more than a journal ever gives, so that a number which only a
@@ -316,7 +315,7 @@ fn lock_idle(paths: &GroupPaths, path: &Path) -> Result<File, Failure> {
 /// The files of a service's journal, oldest last.
 fn parts(paths: &GroupPaths, service: Service) -> impl Iterator<Item = PathBuf> {
     let file = paths.journal_file(service.name());
-    let older = (1..=KEPT).map(|n| numbered(&file, n)).collect::<Vec<_>>();
+    let older = (1..=KEPT).map(|n| safe_files::suffixed(&file, n)).collect::<Vec<_>>();
     std::iter::once(file).chain(older).filter(|path| path.exists())
 }
 

@@ -1,13 +1,13 @@
 //! The services' logs: files that the services themselves append to, so that nothing is lost when
 //! either side dies and no writer waits for a reader. The supervisor only bounds their size.
 
-use std::fmt::Display;
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use config::Log;
+use safe_files::{Draft, Readers, make_room, suffixed};
 
 use crate::printable::one_line;
 
@@ -24,9 +24,9 @@ const TAIL_BYTES_MAX: u64 = 4096;
 pub fn open(path: &Path, limits: &Log) -> io::Result<File> {
     let log = appended(path)?;
     if size(path) > limits.file_bytes_max {
-        shift(path, limits.files_kept)?;
+        make_room(limits.files_kept, |number| suffixed(path, number))?;
         if limits.files_kept > 0 {
-            fs::rename(path, numbered(path, 1))?;
+            fs::rename(path, suffixed(path, 1))?;
         } else {
             fs::remove_file(path)?;
         }
@@ -56,7 +56,8 @@ pub fn bound(path: &Path, limits: &Log) -> io::Result<bool> {
         return Ok(false);
     }
     let kept = if limits.files_kept > 0 {
-        shift(path, limits.files_kept).and_then(|()| copy_end(path, bytes, limits.file_bytes_max))
+        make_room(limits.files_kept, |number| suffixed(path, number))
+            .and_then(|()| copy_end(path, bytes, limits.file_bytes_max))
     } else {
         Ok(())
     };
@@ -90,27 +91,9 @@ pub fn size(path: &Path) -> u64 {
 fn copy_end(path: &Path, bytes: u64, bytes_max: u64) -> io::Result<()> {
     let mut log = File::open(path)?;
     log.seek(SeekFrom::Start(bytes.saturating_sub(bytes_max)))?;
-    let mut kept = safe_files::Draft::of(&numbered(path, 1), safe_files::Readers::Owner)?;
+    let mut kept = Draft::of(&suffixed(path, 1), Readers::Owner)?;
     io::copy(&mut log.take(bytes_max), &mut kept)?;
     kept.replace()
-}
-
-/// Makes room for a new `.1`: every older one moves one up, the oldest goes.
-fn shift(path: &Path, files_kept: u32) -> io::Result<()> {
-    for number in (1..files_kept).rev() {
-        match fs::rename(numbered(path, number), numbered(path, number + 1)) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-            _ => {}
-        }
-    }
-    Ok(())
-}
-
-/// Path of an older file, e.g. `arm.log.1`.
-pub(crate) fn numbered(path: &Path, number: impl Display) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(format!(".{number}"));
-    name.into()
 }
 
 #[cfg(test)]
@@ -136,8 +119,8 @@ mod tests {
             write!(log, "{round}{}", "x".repeat(100)).unwrap();
         }
         assert!(read(&path).starts_with('4'));
-        assert!(read(&numbered(&path, 1)).starts_with('3'));
-        assert!(read(&numbered(&path, 2)).starts_with('2'));
+        assert!(read(&suffixed(&path, 1)).starts_with('3'));
+        assert!(read(&suffixed(&path, 2)).starts_with('2'));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
     }
 
@@ -154,12 +137,12 @@ mod tests {
             assert_eq!(mode(&path), 0o600);
             write!(log, "{}", "x".repeat(200)).unwrap();
             assert!(bound(&path, &limits(1)).unwrap());
-            assert_eq!(mode(&numbered(&path, 1)), 0o600);
+            assert_eq!(mode(&suffixed(&path, 1)), 0o600);
         }
         fs::write(&path, "large".repeat(100)).unwrap();
         fs::set_permissions(&path, Permissions::from_mode(0o666)).unwrap();
         open(&path, &limits(1)).unwrap();
-        assert_eq!((mode(&path), mode(&numbered(&path, 1))), (0o600, 0o600));
+        assert_eq!((mode(&path), mode(&suffixed(&path, 1))), (0o600, 0o600));
     }
 
     #[test]
@@ -182,7 +165,7 @@ mod tests {
         assert!(bound(&path, &limits(2)).unwrap());
         write!(log, "next").unwrap();
         assert_eq!(read(&path), "next", "the writer continues at the beginning");
-        let kept = read(&numbered(&path, 1));
+        let kept = read(&suffixed(&path, 1));
         assert_eq!(kept.len(), 100);
         assert!(kept.ends_with("new"));
         write!(log, "{}", "x".repeat(200)).unwrap();

@@ -78,7 +78,7 @@ impl TestJournal {
         names
     }
 
-    fn old(&self, n: usize) -> PathBuf {
+    fn old(&self, n: u32) -> PathBuf {
         Path::new(&format!("{}.{n}", self.path.display())).to_owned()
     }
 }

@@ -28,14 +28,14 @@ fn journal_rotation_starts_with_the_snapshot_and_continues_numbering() {
 fn journal_rotation_keeps_the_latest_old_journals() {
     let test = TestJournal::new();
     let (mut journal, _) = test.open();
-    let rotations = KEPT as u32 + 3;
+    let rotations = KEPT + 3;
     for n in 1..=rotations {
         journal.rotate(&[entry(n)]).unwrap();
     }
-    assert_eq!(test.names().len(), KEPT + 2, "{:?}", test.names());
+    assert_eq!(test.names().len(), KEPT as usize + 2, "{:?}", test.names());
     for n in 1..=KEPT {
         let old = read::<Entry>(&test.old(n)).unwrap();
-        assert_eq!(old.records, [entry(rotations - n as u32)]);
+        assert_eq!(old.records, [entry(rotations - n)]);
     }
 }
 

@@ -116,7 +116,7 @@ fn journal_set_aside_is_kept_and_its_numbers_are_over() {
     let lab = Lab::new();
     lab.run("policy", 1);
     lab.run("arm", 5);
-    fs::write(numbered(&lab.file("policy"), 1), "older").unwrap();
+    fs::write(safe_files::suffixed(&lab.file("policy"), 1), "older").unwrap();
     let folder = set_aside(&lab.paths, &[Service::Policy]).unwrap().unwrap();
     assert_eq!(fs::read_to_string(folder.join("policy.journal.1")).unwrap(), "older");
     assert!(folder.join("policy.journal").is_file() && !lab.file("policy").exists());
