@@ -56,6 +56,7 @@
 mod answer;
 mod asking_back;
 mod clauses;
+mod closed_class;
 mod completeness;
 mod content;
 mod disambiguate;

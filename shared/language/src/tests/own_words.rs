@@ -157,10 +157,11 @@ fn echoes(scene: &Scene, k: usize, v: usize) -> Vec<String> {
     ];
     match value.role() {
         Role::Quality => texts.push(format!("the {spoken} one")),
-        Role::Place => {
-            texts.push(format!("the one {spoken}"));
+        Role::Place | Role::Part => {
+            let after = value.after_noun();
+            texts.push(format!("the one {after}"));
             if scene.word_named(scene.noun()).is_none() {
-                texts.push(format!("get me the {} {spoken}", scene.noun()));
+                texts.push(format!("get me the {} {after}", scene.noun()));
             }
         }
         Role::Kind => texts.push(format!("get me {spoken}, please")),
@@ -276,7 +277,7 @@ fn scenes_are_told_of_words_that_are_the_robots_own() {
     let is_told = |part: &str| found.iter().any(|line| line.contains(part));
     assert!(is_told("\"stop\", a value of `title`, halts the arm"), "{found:#?}");
     assert!(is_told("\"hold on\", a value of `title`, halts the arm"), "{found:#?}");
-    assert!(is_told("\"yes\", a value of `title`, no longer means yes"), "{found:#?}");
+    assert!(is_told("\"yes\", a value of `title`, is understood as \"title yes\" only"), "{found:#?}");
     assert!(is_told("\"one\", a value of `title`"), "{found:#?}");
     assert_eq!(found.len(), 4, "{found:#?}");
 }
