@@ -1,5 +1,5 @@
-//! Words of the closed classes: negators, answers, articles, pronouns. Nothing else is taken for what they are: a value
-//! of that name needs the name of its attribute or the noun beside it, and a slip in one of them is mended.
+//! Words of the closed classes: negators, answers, articles, pronouns, and what a dialogue is steered by. No value takes
+//! them away: one of that name needs the name of its attribute or the noun beside it. A slip in one of them is mended.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::LazyLock;
@@ -12,7 +12,8 @@ use crate::vocabulary;
 
 /// The classes whose words no value takes away.
 const CLOSED: &[Class] = classes![
-    Not Except No Yes One Determiner Pointer Possessive First Second It And Or But Be Auxiliary
+    Not Except No Yes One Determiner Pointer Possessive First Second It
+    Cancel StartOver Repeat PutBack Unsure Indifferent AskHelp AskStatus
 ];
 /// Shortest word that is mended if a letter is missing, added or wrong; in a shorter one two neighbours have changed
 /// places, or it is another word.
@@ -25,6 +26,11 @@ pub(crate) fn is_closed(words: &[String]) -> bool {
         closed.map(|(_, phrase)| phrase.trim_end_matches(" .")).collect()
     });
     PHRASES.contains(&*words.join(" "))
+}
+
+/// Returns whether words of the class begin no misspelt value.
+pub(crate) fn is_closed_class(class: Class) -> bool {
+    CLOSED.contains(&class)
 }
 
 /// Returns the class of the closed-class word that is one slip away, if it is the only class.

@@ -11,7 +11,7 @@ use crate::token_class::Class;
 
 /// Returns a warning for each name in a scene that is one of the robot's own words. A word that halts the arm
 /// always does, and a negator, an answer or a pronoun stays one; any other loses the robot's meaning in that scene.
-pub fn own_words(scene: &Scene) -> Vec<String> {
+pub(crate) fn own_words(scene: &Scene) -> Vec<String> {
     let mut found = Vec::new();
     let mut look = |name: &str, of: &str, carrier: Option<&str>| {
         let text = normalise(name);
@@ -39,13 +39,25 @@ pub fn own_words(scene: &Scene) -> Vec<String> {
         let names = |value: &'_ scene::Value| {
             std::iter::once(value.name.clone()).chain(value.synonyms.clone()).collect::<Vec<_>>()
         };
-        attribute.values.iter().flat_map(names).for_each(|name| look(&name, &of_value, Some(&attribute.name)));
+        attribute
+            .values
+            .iter()
+            .flat_map(names)
+            .for_each(|name| look(&name, &of_value, Some(&attribute.name)));
     }
     found
 }
 
+/// Returns whether a name is one of the robot's own words.
+pub(crate) fn is_own(name: &str) -> bool {
+    let text = normalise(name);
+    let tokens = Tokens::of(&text);
+    !halting_words(&tokens).is_empty() || is_closed(&words(name)) || meaning(&tokens).is_some()
+}
+
 /// What the robot takes a whole name for, where the dialogue needs it.
 fn meaning(tokens: &Tokens<'_>) -> Option<&'static str> {
+    tokens.words.first()?;
     let phrase = Lexicon::own().longest(&tokens.words, 0);
     let phrase = phrase.filter(|phrase| phrase.words == tokens.words.len())?;
     let Sense::Class(class) = phrase.sense else { return None };

@@ -4,7 +4,7 @@
 use scene::Role;
 use words::{Gap, Token, Tokens};
 
-use crate::closed_class::{is_answer, misspelt};
+use crate::closed_class::{is_answer, is_closed_class, misspelt};
 use crate::disambiguate::disambiguate;
 use crate::halting::halting_words;
 use crate::lexicon::{Lexicon, Sense, ValueSense};
@@ -121,9 +121,11 @@ impl<'a> Tag<'a> {
         self.value().is_some_and(|value| value.role == role)
     }
 
-    /// Returns whether it is a place with its relation: "next to the sink".
+    /// Returns whether it is a place or a part with its relation: "next to the sink", "with nuts".
     pub(crate) fn is_located(&self) -> bool {
-        self.is_role(Role::Place) && self.word != self.last && begins_relation(self.word)
+        (self.is_role(Role::Place) || self.is_role(Role::Part))
+            && self.word != self.last
+            && begins_relation(self.word)
     }
 
     pub(crate) fn is_unknown(&self) -> bool {
@@ -244,10 +246,13 @@ fn written_apart<'a>(lexicon: &'a Lexicon, tokens: &[Token<'_>]) -> Option<Found
             return Some(Found { words, ..Found::word(sense) });
         }
         let whole = matches!(lexicon.word(run[0].word), Some(Sense::Value(_)));
-        // "me a cup" is no slip of "tea cup".
-        let listed = matches!(lexicon.word(run[0].word), Some(Sense::Class(_)));
+        // "me a cup" is no slip of "tea cup", and "a felt tip" none of "felt tip".
         let ends = matches!(lexicon.word(run[words - 1].word), Some(Sense::Value(_)));
-        let fits = !(whole || listed && ends);
+        let listed = match lexicon.word(run[0].word) {
+            Some(Sense::Class(class)) => ends || is_closed_class(class),
+            _ => false,
+        };
+        let fits = !(whole || listed);
         let value = lexicon.lookalikes().misspelt_compound(&joined).filter(|_| fits)?;
         let sense = Sense::Value(lexicon.value(value));
         Some(Found { words, doubt: doubts::SLIP, ..Found::word(sense) })

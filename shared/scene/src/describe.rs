@@ -145,7 +145,7 @@ impl Scene {
     }
 
     /// Qualities, then the kind (or the scene's noun), then parts and places.
-    fn compose(&self, values: &[(AttributeId, ValueId)]) -> String {
+    pub(crate) fn compose(&self, values: &[(AttributeId, ValueId)]) -> String {
         let values: Vec<&Value> = values.iter().map(|&(k, v)| self.value(k, v)).collect();
         let of = |role: Role| values.iter().filter(move |value| value.role() == role);
         let qualities = of(Role::Quality).rev().map(|value| value.bare());
