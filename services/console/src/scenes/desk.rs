@@ -209,7 +209,8 @@ impl Desk {
         let folder = ScenesFolder::of(&configuration.folder);
         let label = folder.file(name)?.display().to_string();
         let text = applied(&label, &saving.text, &saving.document)?;
-        let findings = check(&configuration, TextFile::new(label.clone(), text.clone()), word_findings);
+        let findings =
+            check(&configuration, TextFile::new(label.clone(), text.clone()), word_findings);
         let must_be_right = !saving.draft || name == in_force;
         if must_be_right && !findings.problems.is_empty() {
             return Err(Refusal::wrong(findings.problems));
