@@ -112,7 +112,7 @@ fn unknown(scene: &Scene, UnknownWord { text, role }: &UnknownWord) -> String {
             format!("There are no {} here, only {there}. ", scene::plural(text))
         }
         Role::Quality => format!("I know of no {text} one here. "),
-        Role::Place => format!("I do not know \"{text}\" here. "),
+        Role::Place | Role::Part => format!("I do not know \"{text}\" here. "),
     }
 }
 

@@ -161,7 +161,7 @@ fn begins_statement(words: &[&str], tags: &[Tag<'_>]) -> bool {
 
 /// Returns whether a description can end here: with its noun or its place.
 fn ends_noun_phrase(last: &Tag<'_>) -> bool {
-    last.is_any(classes![Head One]) || last.is_role(Role::Kind) || last.is_role(Role::Place)
+    last.is_any(classes![Head One]) || last.is_value() && !last.is_role(Role::Quality)
 }
 
 /// "I don't know", "I don't care".

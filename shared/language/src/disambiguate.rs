@@ -169,6 +169,7 @@ impl<'a> Place<'_, 'a> {
         let belongs = match value.role {
             Role::Quality => self.is_where_a_quality_belongs(),
             Role::Kind => self.is_where_a_kind_belongs(),
+            Role::Part => self.is_where_a_quality_belongs() || self.is_where_a_kind_belongs(),
             Role::Place => false,
         };
         belongs.then_some((Sense::Value(value), doubt))

@@ -6,7 +6,7 @@
 
 mod patterns;
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use words::{Gap, Token, Tokens, normalise};
 
@@ -311,10 +311,28 @@ fn forms_of(own: &Lexicon, word: &str) -> [Option<WordNumber>; 3] {
     let begins = |word: WordNumber| PATTERNS.beginnings(word).places != 0;
     let as_it_stands = number(word);
     let is_known = || as_it_stands.is_some_and(begins) || own.word(word).is_some();
-    match shortened(word).filter(|_| !is_known()) {
-        Some([two, one]) => [as_it_stands, number(&two), number(&one)],
-        None => [as_it_stands, None, None],
+    if is_known() {
+        return [as_it_stands, None, None];
     }
+    match shortened(word) {
+        Some([two, one]) => [as_it_stands, number(&two), number(&one)],
+        None => [as_it_stands, order_out_of_order(own, word), None],
+    }
+}
+
+/// "stpo": a word of an order, two letters of which have changed places.
+fn order_out_of_order(own: &Lexicon, word: &str) -> Option<WordNumber> {
+    const LETTERS: RangeInclusive<usize> = 4..=10;
+    if !word.is_ascii() || !LETTERS.contains(&word.len()) || own.lookalikes().is_common(word) {
+        return None;
+    }
+    (1..word.len()).find_map(|at| {
+        let mut letters = word.as_bytes().to_vec();
+        letters.swap(at - 1, at);
+        let mended = std::str::from_utf8(&letters).ok()?;
+        let number = PATTERNS.numbers.get(mended).copied()?;
+        (PATTERNS.beginnings(number).places & Place::Command.bit() != 0).then_some(number)
+    })
 }
 
 fn class(sense: Sense<'_>) -> Option<Class> {

@@ -2,17 +2,19 @@
 //! attributes, and the classes of the dialogue. Where two would match, the longer phrase wins; of two
 //! equally long ones the scene's.
 
+use std::borrow::Cow;
 use std::cell::LazyCell;
 use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 use std::sync::LazyLock;
 
 use scene::{AttributeId, Reference, Role, Scene, Value, WordId};
-use words::Token;
+use words::{Gap, Token, Tokens, normalise};
 
+use crate::closed_class::{is_closed, names_answer};
 use crate::hedges::sureness;
 use crate::lookalikes::Lookalikes;
-use crate::morphology::inflected;
+use crate::morphology::{inflected, singular};
 use crate::references::by_size;
 use crate::relations::{Form, forms, words};
 use crate::token_class::Class;
@@ -84,6 +86,10 @@ pub(crate) struct Lexicon {
     phrases: HashMap<String, Vec<Phrase>>,
     values: Vec<ValueSense>,
     lookalikes: Lookalikes,
+    /// Words of the scene between which it writes a mark: "A/B", "Dr. Lee".
+    marked: HashMap<String, Vec<String>>,
+    /// Whether a word of the scene may be an answer as well: "right".
+    answers: bool,
 }
 
 impl Lexicon {
@@ -109,7 +115,8 @@ impl Lexicon {
 
     fn empty(noun: &str) -> Self {
         let lookalikes = Lookalikes::new(noun);
-        Self { phrases: HashMap::new(), values: Vec::new(), lookalikes }
+        let (phrases, marked) = (HashMap::new(), HashMap::new());
+        Self { phrases, values: Vec::new(), lookalikes, marked, answers: false }
     }
 
     fn add_language(&mut self) {
@@ -186,11 +193,15 @@ impl Lexicon {
             }
         }
         // Names before synonyms before forms: what a scene says outright is never overruled.
-        for (place, value) in &all {
-            self.add_value(&value.name, *place);
-        }
-        for (place, synonym) in all.iter().flat_map(|(n, v)| v.synonyms.iter().map(|s| (*n, s))) {
-            self.add_value(synonym, place);
+        let names = all.iter().map(|(place, value)| (*place, &value.name));
+        let synonyms = all.iter().flat_map(|(n, v)| v.synonyms.iter().map(|s| (*n, s)));
+        for (place, name) in names.chain(synonyms) {
+            self.add_marks(name);
+            if is_closed(&words(name)) {
+                self.add_closed(scene, name, place);
+            } else {
+                self.add_value(name, place);
+            }
         }
         let common = common_synonyms(&all);
         let forms = |(place, value): &(usize, &Value)| {
@@ -206,8 +217,9 @@ impl Lexicon {
             self.add(&form.words, Meaning::Value(place));
         }
         for (place, value) in &all {
-            for text in std::iter::once(&value.name).chain(&value.synonyms) {
-                self.add_value_forms(text, *place);
+            let names = std::iter::once(&value.name).chain(&value.synonyms);
+            for name in names.filter(|name| !is_closed(&words(name))) {
+                self.add_value_forms(name, *place);
             }
         }
         for (place, synonym) in common {
@@ -216,8 +228,48 @@ impl Lexicon {
         }
     }
 
+    /// "number one", "one" being what any of the things is called.
+    fn add_closed(&mut self, scene: &Scene, name: &str, place: usize) {
+        let attributes = self.values[place].attributes.clone();
+        let names = attributes.iter().map(|k| scene.attributes()[k.index()].name.as_str());
+        for carrier in names.chain([scene.noun()]) {
+            self.add(&words(&format!("{carrier} {name}")), Meaning::Value(place));
+        }
+    }
+
+    /// Notes the words of a scene's text that a mark parts.
+    fn add_marks(&mut self, text: &str) {
+        let text = normalise(text);
+        let tokens = Tokens::of(&text).words;
+        for pair in tokens.windows(2).filter(|pair| pair[1].pauses()) {
+            let [one, other] = [pair[0].word, pair[1].word].map(str::to_owned);
+            self.marked.entry(one).or_default().push(other);
+        }
+    }
+
+    /// The tokens without the pauses that are marks within the scene's own words.
+    pub(crate) fn unmarked<'t, 'a>(&self, tokens: &'t [Token<'a>]) -> Cow<'t, [Token<'a>]> {
+        let is_marked = |before: &Token<'_>, token: &Token<'_>| {
+            let after = self.marked.get(before.word).filter(|_| token.pauses());
+            after.is_some_and(|after| after.iter().any(|word| word == token.word))
+        };
+        let mut tokens = Cow::Borrowed(tokens);
+        for at in 1..tokens.len() {
+            if is_marked(&tokens[at - 1], &tokens[at]) {
+                tokens.to_mut()[at].gap = Gap::None;
+            }
+        }
+        tokens
+    }
+
+    /// Returns whether one of the scene's words may be an answer as well: "right".
+    pub(crate) fn may_answer(&self) -> bool {
+        self.answers
+    }
+
     fn add_value(&mut self, text: &str, place: usize) {
         let words = words(text);
+        self.answers |= names_answer(&words);
         self.add(&words, Meaning::Value(place));
         if let [word] = &words[..] {
             self.lookalikes.add_word(word, place);
@@ -234,7 +286,8 @@ impl Lexicon {
         }
         let quality = words.len() == 1 && self.values[place].role == Role::Quality;
         let Some((last, lead)) = words.split_last() else { return };
-        for form in inflected(last, quality) {
+        let singular = singular(last).filter(|form| !self.lookalikes.is_common(form));
+        for form in inflected(last, quality).into_iter().chain(singular) {
             // Of three sizes "smaller" need not be small.
             if self.values[place].one_of_two || by_size(&form) == Reference::None {
                 self.add(&[lead, &[form]].concat(), Meaning::Value(place));

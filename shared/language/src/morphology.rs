@@ -17,6 +17,18 @@ pub(crate) fn inflected(word: &str, quality: bool) -> Vec<String> {
     forms
 }
 
+/// The singular of a word that may be a plural: "nut" of "nuts", "berry" of "berries", "box" of "boxes".
+pub(crate) fn singular(word: &str) -> Option<String> {
+    const LETTERS_MIN: usize = 4;
+    if let Some(stem) = word.strip_suffix("ies").filter(|stem| stem.len() > 1) {
+        return Some(format!("{stem}y"));
+    }
+    let hisses = |stem: &&str| ["ch", "sh", "s", "x", "z"].iter().any(|end| stem.ends_with(end));
+    let stem = word.strip_suffix("es").filter(hisses).or_else(|| word.strip_suffix('s'))?;
+    let is_plural = word.len() >= LETTERS_MIN && !stem.ends_with(['s', 'u', 'i']);
+    (is_plural || hisses(&stem) && word.ends_with("es")).then(|| stem.to_owned())
+}
+
 fn plurals(word: &str, last: char) -> Vec<String> {
     let stem = &word[..word.len() - 1];
     let hisses = word.ends_with("ch") || word.ends_with("sh") || matches!(last, 's' | 'x' | 'z');
@@ -59,7 +71,7 @@ fn is_vowel(c: char) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::inflected;
+    use super::{inflected, singular};
 
     #[test]
     fn morphology_forms_are_english() {
@@ -84,6 +96,23 @@ mod tests {
             ("é", ""),
         ] {
             assert_eq!(inflected(word, false).join(" "), forms);
+        }
+    }
+
+    #[test]
+    fn singulars_are_those_of_plurals() {
+        for (word, form) in [
+            ("nuts", Some("nut")),
+            ("berries", Some("berry")),
+            ("boxes", Some("box")),
+            ("glasses", Some("glass")),
+            ("spices", Some("spice")),
+            ("glass", None),
+            ("gas", None),
+            ("cactus", None),
+            ("red", None),
+        ] {
+            assert_eq!(singular(word).as_deref(), form, "{word}");
         }
     }
 }

@@ -3,20 +3,26 @@
 use scene::Scene;
 use words::{Tokens, normalise};
 
+use crate::closed_class::is_closed;
 use crate::halting::halting_words;
 use crate::lexicon::{Lexicon, Sense};
+use crate::relations::words;
 use crate::token_class::Class;
 
 /// Returns a warning for each name in a scene that is one of the robot's own words. A word that halts the arm
-/// always does; any other loses the robot's meaning in that scene.
-pub fn own_words(scene: &Scene) -> Vec<String> {
+/// always does, and a negator, an answer or a pronoun stays one; any other loses the robot's meaning in that scene.
+pub(crate) fn own_words(scene: &Scene) -> Vec<String> {
     let mut found = Vec::new();
-    let mut look = |name: &str, of: &str| {
+    let mut look = |name: &str, of: &str, carrier: Option<&str>| {
         let text = normalise(name);
         let tokens = Tokens::of(&text);
         if !halting_words(&tokens).is_empty() {
             found.push(format!(
                 "\"{name}\", {of}, halts the arm where it is said alone; help: choose another name"
+            ));
+        } else if let Some(carrier) = carrier.filter(|_| is_closed(&words(name))) {
+            found.push(format!(
+                "\"{name}\", {of}, is understood as \"{carrier} {name}\" only; help: choose another name"
             ));
         } else if let Some(meaning) = meaning(&tokens) {
             found.push(format!(
@@ -24,22 +30,34 @@ pub fn own_words(scene: &Scene) -> Vec<String> {
             ));
         }
     };
-    look(scene.noun(), "the noun of the scene");
+    look(scene.noun(), "the noun of the scene", None);
     for attribute in scene.attributes() {
         let of_attribute = format!("a name of attribute `{}`", attribute.name);
         let names = std::iter::once(&attribute.name).chain(&attribute.synonyms);
-        names.for_each(|name| look(name, &of_attribute));
+        names.for_each(|name| look(name, &of_attribute, None));
         let of_value = format!("a value of `{}`", attribute.name);
         let names = |value: &'_ scene::Value| {
             std::iter::once(value.name.clone()).chain(value.synonyms.clone()).collect::<Vec<_>>()
         };
-        attribute.values.iter().flat_map(names).for_each(|name| look(&name, &of_value));
+        attribute
+            .values
+            .iter()
+            .flat_map(names)
+            .for_each(|name| look(&name, &of_value, Some(&attribute.name)));
     }
     found
 }
 
+/// Returns whether a name is one of the robot's own words.
+pub(crate) fn is_own(name: &str) -> bool {
+    let text = normalise(name);
+    let tokens = Tokens::of(&text);
+    !halting_words(&tokens).is_empty() || is_closed(&words(name)) || meaning(&tokens).is_some()
+}
+
 /// What the robot takes a whole name for, where the dialogue needs it.
 fn meaning(tokens: &Tokens<'_>) -> Option<&'static str> {
+    tokens.words.first()?;
     let phrase = Lexicon::own().longest(&tokens.words, 0);
     let phrase = phrase.filter(|phrase| phrase.words == tokens.words.len())?;
     let Sense::Class(class) = phrase.sense else { return None };

@@ -18,7 +18,7 @@ use crate::parsed::ParsedUtterance;
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::questions::{fetches_it, question};
 use crate::references::reference;
-use crate::tagger::tag;
+use crate::tagger::{answers_alone, tag};
 use crate::unknown::unknown_words;
 
 /// Reads utterances about one scene. Holds all that it needs of the scene.
@@ -107,10 +107,14 @@ impl Reader {
         tokens: &Tokens<'a>,
         last_question: Question,
     ) -> ParsedUtterance<'a> {
+        let asked = self.questions.asked(last_question);
         let mut tags = tag(&self.lexicon, tokens);
+        let is_yes_no = matches!(last_question, Question::Attribute(..) | Question::Point(_));
+        if is_yes_no && self.lexicon.may_answer() && answers_alone(tokens, &tags, asked) {
+            tags = tag(Lexicon::own(), tokens);
+        }
         let clauses = clauses(&tags, tokens.code);
         hedge(&mut tags, &clauses);
-        let asked = self.questions.asked(last_question);
         let mut content = extract(&tags, &clauses, asked);
         let new = matches!(asked, QuestionWords::Nothing);
         let refers = reference(&tags, &clauses, asked);

@@ -55,8 +55,11 @@ pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>)
     let names: Vec<Vec<String>> = names.chain(common).map(words).collect();
     if value.role() != Role::Place {
         let bare = without_article(&spoken).to_vec();
-        let new = !bare.is_empty() && !names.contains(&bare);
-        return new.then_some(Form { words: bare, own: true }).into_iter().collect();
+        let parts = value.synonyms.iter().filter(|_| value.role() == Role::Part);
+        let parts = parts.map(|synonym| words(&value.spoken.replace(&value.name, synonym)));
+        let new = |words: &Vec<String>| !words.is_empty() && !names.contains(words);
+        let forms = std::iter::once(bare).chain(parts).filter(new);
+        return forms.map(|words| Form { words, own: true }).collect();
     }
     let Some((relation, noun)) = split(&spoken) else {
         let new = !names.contains(&spoken);
@@ -85,12 +88,13 @@ pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>)
     forms
 }
 
-/// Returns whether a phrase for a place that begins with this word names the relation as well.
+/// Returns whether a phrase for a place or a part that begins with this word names the relation as well.
 pub(crate) fn begins_relation(word: &str) -> bool {
-    ALIKE
-        .iter()
-        .flat_map(|alike| alike.iter())
-        .any(|relation| relation.split(' ').next() == Some(word))
+    const HAVING: &[&str] =
+        &["with", "without", "of", "for", "made", "full", "filled", "containing"];
+    let places = ALIKE.iter().flat_map(|alike| alike.iter());
+    HAVING.contains(&word)
+        || places.into_iter().any(|relation| relation.split(' ').next() == Some(word))
 }
 
 /// Returns whether the words begin with a phrase of the language.

@@ -4,12 +4,14 @@
 use scene::Role;
 use words::{Gap, Token, Tokens};
 
+use crate::closed_class::{is_answer, is_closed_class, misspelt};
 use crate::disambiguate::disambiguate;
 use crate::halting::halting_words;
 use crate::lexicon::{Lexicon, Sense, ValueSense};
+use crate::question_words::QuestionWords;
 use crate::relations::begins_relation;
 use crate::spelling::shortened;
-use crate::token_class::Class;
+use crate::token_class::{Class, classes};
 
 /// A word or phrase, what it is taken for, and the pause before it.
 #[derive(Clone, Copy, Debug)]
@@ -119,9 +121,11 @@ impl<'a> Tag<'a> {
         self.value().is_some_and(|value| value.role == role)
     }
 
-    /// Returns whether it is a place with its relation: "next to the sink".
+    /// Returns whether it is a place or a part with its relation: "next to the sink", "with nuts".
     pub(crate) fn is_located(&self) -> bool {
-        self.is_role(Role::Place) && self.word != self.last && begins_relation(self.word)
+        (self.is_role(Role::Place) || self.is_role(Role::Part))
+            && self.word != self.last
+            && begins_relation(self.word)
     }
 
     pub(crate) fn is_unknown(&self) -> bool {
@@ -153,7 +157,7 @@ const RUN_ON_LETTERS_MAX: usize = 24;
 pub(crate) fn tag<'a>(lexicon: &'a Lexicon, tokens: &Tokens<'a>) -> Vec<Tag<'a>> {
     // No word of the scene takes these away.
     let mut halting = halting_words(tokens).into_iter().peekable();
-    let tokens = &tokens.words;
+    let tokens = &lexicon.unmarked(&tokens.words);
     let mut tags: Vec<Tag<'a>> = Vec::with_capacity(tokens.len());
     let mut at = 0;
     while at < tokens.len() {
@@ -173,6 +177,26 @@ pub(crate) fn tag<'a>(lexicon: &'a Lexicon, tokens: &Tokens<'a>) -> Vec<Tag<'a>>
     }
     disambiguate(lexicon, &mut tags);
     tags
+}
+
+/// Returns whether an utterance is an answer and nothing else, whatever its words name in a scene ("that's right"),
+/// unless they name what is asked.
+pub(crate) fn answers_alone(
+    tokens: &Tokens<'_>,
+    in_scene: &[Tag<'_>],
+    asked: QuestionWords<'_>,
+) -> bool {
+    let is_asked = |tag: &Tag<'_>| match (asked, tag.value()) {
+        (QuestionWords::Value(_, word), Some(value)) => value.word == word,
+        _ => false,
+    };
+    if in_scene.iter().any(is_asked) {
+        return false;
+    }
+    let tags = tag(Lexicon::own(), tokens);
+    let answers = |tag: &Tag<'_>| tag.class().is_some_and(is_answer);
+    tags.iter().any(answers)
+        && tags.iter().all(|tag| answers(tag) || tag.is_any(classes![Filler Courtesy]))
 }
 
 /// What the words from `at` on are taken for; `described`: inside a noun phrase.
@@ -198,13 +222,21 @@ fn runs<'t, 'a>(tokens: &'t [Token<'a>]) -> impl Iterator<Item = &'t [Token<'a>]
     runs.filter(|run| !run[1..].iter().any(Token::pauses))
 }
 
+/// Returns whether a negator or an answer is among the words: no value is read in its place.
+fn denies(lexicon: &Lexicon, run: &[Token<'_>]) -> bool {
+    run.iter().any(|token| {
+        let sense = lexicon.word(token.word);
+        matches!(sense, Some(Sense::Class(Class::Not | Class::Except | Class::No | Class::Yes)))
+    })
+}
+
 fn joined(run: &[Token<'_>]) -> String {
     run.iter().map(|token| token.word).collect()
 }
 
 /// "dish washer", "screw driver": neighbours that together are one value.
 fn written_apart<'a>(lexicon: &'a Lexicon, tokens: &[Token<'_>]) -> Option<Found<'a>> {
-    runs(tokens).find_map(|run| {
+    runs(tokens).filter(|run| !denies(lexicon, run)).find_map(|run| {
         let letters: usize = run.iter().map(|token| token.word.len()).sum();
         if !(JOINED_LETTERS_MIN..=RUN_ON_LETTERS_MAX).contains(&letters) {
             return None;
@@ -214,10 +246,13 @@ fn written_apart<'a>(lexicon: &'a Lexicon, tokens: &[Token<'_>]) -> Option<Found
             return Some(Found { words, ..Found::word(sense) });
         }
         let whole = matches!(lexicon.word(run[0].word), Some(Sense::Value(_)));
-        // "me a cup" is no slip of "tea cup".
-        let listed = matches!(lexicon.word(run[0].word), Some(Sense::Class(_)));
+        // "me a cup" is no slip of "tea cup", and "a felt tip" none of "felt tip".
         let ends = matches!(lexicon.word(run[words - 1].word), Some(Sense::Value(_)));
-        let fits = !(whole || listed && ends);
+        let listed = match lexicon.word(run[0].word) {
+            Some(Sense::Class(class)) => ends || is_closed_class(class),
+            _ => false,
+        };
+        let fits = !(whole || listed);
         let value = lexicon.lookalikes().misspelt_compound(&joined).filter(|_| fits)?;
         let sense = Sense::Value(lexicon.value(value));
         Some(Found { words, doubt: doubts::SLIP, ..Found::word(sense) })
@@ -232,7 +267,7 @@ fn heard_apart<'a>(
     described: bool,
 ) -> Option<Found<'a>> {
     let lookalikes = lexicon.lookalikes();
-    runs(tokens).find_map(|run| {
+    runs(tokens).filter(|run| !denies(lexicon, run)).find_map(|run| {
         let value = lookalikes.sounds_like_long(&joined(run)).or_else(|| {
             let words = run.iter().map(|token| token.word);
             lookalikes.sounds_like_run(words).filter(|_| described)
@@ -252,6 +287,9 @@ fn guessed<'a>(lexicon: &'a Lexicon, word: &str) -> Option<Found<'a>> {
     if let Some(value) = lookalikes.misspelt(word) {
         let sense = Sense::Value(lexicon.value(value));
         return Some(Found { doubt: doubts::SLIP, ..Found::word(sense) });
+    }
+    if let Some(class) = misspelt(word).filter(|_| !lookalikes.is_common(word)) {
+        return Some(Found { doubt: doubts::SLIP, ..Found::word(Sense::Class(class)) });
     }
     if let Some(stem) = word.strip_suffix('s')
         && let Some(sense @ Sense::Class(Class::Unlisted | Class::Story)) = lexicon.word(stem)

@@ -213,7 +213,7 @@ macro_rules! wire_enum {
 }
 pub(crate) use wire_enum;
 
-wire_codes! { Role { Quality = 0, Kind = 1, Place = 2, } }
+wire_codes! { Role { Quality = 0, Kind = 1, Place = 2, Part = 3, } }
 wire_codes! { Response { None = 0, Yes = 1, No = 2, CannotTell = 3, DoesNotMatter = 4, } }
 wire_codes! {
     Intent {

@@ -211,14 +211,26 @@ fn check_roles(attribute: &DraftAttribute, report: &mut Checks<'_>) {
     }
 }
 
+/// The last word of the `spoken` forms of an attribute's values, if they have one in common; else the attribute's name.
+fn shared_word(attribute: &DraftAttribute) -> String {
+    let mut last = attribute.values.iter().map(|value| {
+        let spoken = value.spoken.as_ref().unwrap_or(&value.name);
+        spoken.rsplit(' ').next().unwrap_or_default()
+    });
+    let first = last.next().filter(|_| attribute.values.len() > 1);
+    let shared = first.filter(|first| last.all(|word| word == *first));
+    shared.unwrap_or(&attribute.name).to_owned()
+}
+
 fn build_attribute(attribute: DraftAttribute, ids: &HashMap<String, WordId>) -> Attribute {
+    let shared = shared_word(&attribute);
     let values = (attribute.values.into_iter())
         .map(|value| {
             let spoken = value.spoken.unwrap_or_else(|| value.name.clone());
             let named = role(value.role.as_ref()).or(role(attribute.role.as_ref()));
             Value {
                 word: ids[&value.name],
-                role: named.unwrap_or_else(|| Role::guess(&spoken)),
+                role: named.unwrap_or_else(|| Role::guess(&value.name, &spoken, &shared)),
                 spoken,
                 synonyms: value.synonyms.iter().map(|synonym| synonym.to_lowercase()).collect(),
                 name: value.name,

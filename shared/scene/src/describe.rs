@@ -102,7 +102,9 @@ impl Scene {
         if rivals.is_empty() {
             return Vec::new();
         }
-        let is_place = |&(k, v): &(AttributeId, ValueId)| self.value(k, v).role() == Role::Place;
+        let is_place = |&(k, v): &(AttributeId, ValueId)| {
+            matches!(self.value(k, v).role(), Role::Place | Role::Part)
+        };
         let mut values: Values = self
             .values_of(object)
             .filter(|&(k, v)| self.value(k, v).role() != Role::Kind)
@@ -142,14 +144,16 @@ impl Scene {
         }
     }
 
-    /// Qualities, then the kind (or the scene's noun), then places.
-    fn compose(&self, values: &[(AttributeId, ValueId)]) -> String {
+    /// Qualities, then the kind (or the scene's noun), then parts and places.
+    pub(crate) fn compose(&self, values: &[(AttributeId, ValueId)]) -> String {
         let values: Vec<&Value> = values.iter().map(|&(k, v)| self.value(k, v)).collect();
         let of = |role: Role| values.iter().filter(move |value| value.role() == role);
         let qualities = of(Role::Quality).rev().map(|value| value.bare());
         let kind = of(Role::Kind).next().map_or(self.noun(), |value| value.bare());
-        let places = of(Role::Place).map(|value| value.spoken.as_str());
-        qualities.chain([kind]).chain(places).collect::<Vec<_>>().join(" ")
+        let after = of(Role::Part).chain(of(Role::Place)).map(|value| value.after_noun());
+        let after: Vec<String> = after.collect();
+        let after = after.iter().map(String::as_str);
+        qualities.chain([kind]).chain(after).collect::<Vec<_>>().join(" ")
     }
 }
 

@@ -117,58 +117,88 @@ pub enum Role {
     Kind,
     /// "in the dishwasher": stands after the noun.
     Place,
+    /// "with nuts", "a green handle": what is in a thing or belongs to it; stands after the noun, and can be asked for
+    /// as if it were the thing.
+    Part,
 }
 
 impl Role {
     /// The names of the roles in a scene file.
-    pub(crate) const NAMES: [(&str, Self); 3] =
-        [("quality", Self::Quality), ("kind", Self::Kind), ("place", Self::Place)];
+    pub(crate) const NAMES: [(&str, Self); 4] = [
+        ("quality", Self::Quality),
+        ("kind", Self::Kind),
+        ("place", Self::Place),
+        ("part", Self::Part),
+    ];
 
-    /// Guesses the role from the first words of a `spoken` form.
-    pub(crate) fn guess(spoken: &str) -> Self {
-        const ARTICLES: &[&str] = &["a", "an"];
-        const RELATIONS: &[&str] = &[
-            "in",
-            "on",
-            "at",
-            "under",
-            "underneath",
-            "inside",
-            "outside",
-            "behind",
-            "near",
-            "by",
-            "beside",
-            "above",
-            "over",
-            "below",
-            "beneath",
-            "between",
-            "alongside",
-            "against",
-            "opposite",
-            "with",
-            "without",
-            "from",
-            "of",
-            "next to",
-            "close to",
-            "left of",
-            "right of",
-            "to the",
-            "made of",
-            "made from",
-        ];
-        let starts =
-            |words: &&str| spoken.strip_prefix(*words).is_some_and(|rest| rest.starts_with(' '));
-        if ARTICLES.iter().any(starts) {
-            Self::Kind
-        } else if RELATIONS.iter().any(starts) {
-            Self::Place
-        } else {
-            Self::Quality
+    /// Guesses the role of a value from its name and its `spoken` form; `shared` is the last word of the `spoken` forms
+    /// of its attribute, if they have one in common, or else the attribute's name.
+    pub(crate) fn guess(name: &str, spoken: &str, shared: &str) -> Self {
+        let starts = |relation: &&str| {
+            spoken.strip_prefix(*relation).is_some_and(|rest| rest.starts_with(' '))
+        };
+        if RELATIONS.iter().any(starts) {
+            return Self::Place;
+        }
+        if HAVING.iter().any(starts) {
+            return Self::Part;
+        }
+        match without_article(spoken) {
+            Some(noun) => {
+                // "a green handle", where another one is "a black handle".
+                let rest = noun.strip_prefix(name).unwrap_or_default();
+                if rest.trim_start() == shared && rest != shared { Self::Part } else { Self::Kind }
+            }
+            None => Self::Quality,
         }
     }
+}
+
+/// Relations of a thing to where it is.
+const RELATIONS: &[&str] = &[
+    "in",
+    "on",
+    "at",
+    "under",
+    "underneath",
+    "inside",
+    "outside",
+    "behind",
+    "near",
+    "by",
+    "beside",
+    "above",
+    "over",
+    "below",
+    "beneath",
+    "between",
+    "alongside",
+    "against",
+    "opposite",
+    "from",
+    "next to",
+    "close to",
+    "left of",
+    "right of",
+    "to the",
+];
+/// Relations of a thing to what it holds, is made of, is for or about.
+const HAVING: &[&str] = &[
+    "with",
+    "without",
+    "of",
+    "for",
+    "about",
+    "made of",
+    "made from",
+    "full of",
+    "filled with",
+    "containing",
+];
+
+/// The text without "a" or "an" before it, if it has one.
+fn without_article(text: &str) -> Option<&str> {
+    ["a ", "an "].iter().find_map(|article| text.strip_prefix(article))
 }
 
 impl Value {
@@ -180,8 +210,15 @@ impl Value {
     /// The value without an article, as it stands beside a noun or for one: "felt tip" of "a felt
     /// tip".
     pub(crate) fn bare(&self) -> &str {
-        let bare = ["a ", "an "].iter().find_map(|article| self.spoken.strip_prefix(article));
-        bare.filter(|_| self.role == Role::Kind).unwrap_or(&self.spoken)
+        without_article(&self.spoken).filter(|_| self.role == Role::Kind).unwrap_or(&self.spoken)
+    }
+
+    /// The value as it stands after a noun: "in the dishwasher", "with a green handle".
+    pub fn after_noun(&self) -> String {
+        match without_article(&self.spoken).filter(|_| self.role == Role::Part) {
+            Some(_) => format!("with {}", self.spoken),
+            None => self.spoken.clone(),
+        }
     }
 }
 

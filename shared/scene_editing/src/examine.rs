@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use config::Settings;
-use diagnostics::{Diagnostic, Diagnostics, TextFile};
+use diagnostics::{Diagnostic, Diagnostics, Report, Source, Table, TextFile};
 use manipulation::{ObjectPose, PlanError, fetching_limb};
 use preflight::ArmSetup;
-use scene::Scene;
+use scene::{Scene, WordFindings, WordProblem};
 use serde::Serialize;
 
 use crate::ObjectEntry;
@@ -64,32 +64,39 @@ impl From<&Diagnostic> for Problem {
     }
 }
 
-/// Warnings of the reader of utterances about a scene's words (`language::own_words`); as an argument, so that who edits
+/// What the reader of utterances finds in a scene's words (`language::word_findings`); as an argument, so that who edits
 /// scenes does not depend on how English is understood.
-pub type OwnWords = fn(&Scene) -> Vec<String>;
+pub type ReadBack = fn(&Scene) -> WordFindings;
 
 /// Checks the text of a scene as `whichone scene check` does, with reach and clearance.
-pub fn check(configuration: &Configuration, file: TextFile, own_words: OwnWords) -> Findings {
+pub fn check(configuration: &Configuration, file: TextFile, read_back: ReadBack) -> Findings {
     let Configuration { folder, profile, set } = configuration;
     let words = Scene::from_toml(&file.label, &file.text).map(|scene| {
         let objects = scene.objects().len();
         let words = (0..objects).map(|n| scene.describe(n.into())).collect();
-        (words, warnings(&scene, own_words))
+        (words, misunderstood(&scene, &file, read_back))
     });
-    let (words, warnings) = words.unwrap_or_default();
+    let (words, (misread, warnings)) = words.unwrap_or_default();
     let loaded = preflight::load_with_scene(folder, profile.as_deref(), set, Some(file));
-    let problems = match &loaded {
-        Ok(_) => Vec::new(),
-        Err(found) => found.iter().map(Problem::from).collect(),
-    };
+    let faults = loaded.as_ref().err().into_iter().flat_map(Diagnostics::iter);
+    let problems = faults.chain(&misread).map(Problem::from).collect();
     Findings { problems, warnings, words }
 }
 
-/// Returns what a person cannot say clearly in a scene, a sentence each.
-pub fn warnings(scene: &Scene, own_words: OwnWords) -> Vec<String> {
-    let mut warnings = scene.ambiguities();
-    warnings.extend(own_words(scene));
-    warnings
+/// Returns what a person cannot say in a scene: problems of its file, and warnings, a sentence each.
+pub fn misunderstood(
+    scene: &Scene,
+    file: &TextFile,
+    read_back: ReadBack,
+) -> (Vec<Diagnostic>, Vec<String>) {
+    let WordFindings { problems, warnings } = read_back(scene);
+    let source = Source::new(file.label.as_str(), 0);
+    let table = Table::parse(&file.text, &source, &mut Report::default());
+    let table = table.unwrap_or_else(|| Table::empty(source));
+    let diagnostic = |WordProblem { key, what, help }| table.diagnostic(key, what, help);
+    let mut all = scene.ambiguities();
+    all.extend(warnings);
+    (problems.into_iter().map(diagnostic).collect(), all)
 }
 
 /// A robot, as an editor draws it.
@@ -242,13 +249,17 @@ mod tests {
     #[test]
     fn problems_are_those_of_the_check_with_their_keys() {
         let mut edit = bowls();
-        let found = check(&shipped(), TextFile::new("bowls.toml", edit.text()), |_| Vec::new());
+        let found = check(&shipped(), TextFile::new("bowls.toml", edit.text()), |_| {
+            WordFindings::default()
+        });
         assert_eq!((found.problems.len(), found.words.len()), (0, 6), "{found:?}");
         let mut document = edit.document().unwrap();
         document.objects[2].xyz = Some([1.9, 0.57, 0.135]);
         document.objects[4].attributes.insert("color".into(), "gren".into());
         edit.apply(&document).unwrap();
-        let found = check(&shipped(), TextFile::new("bowls.toml", edit.text()), |_| Vec::new());
+        let found = check(&shipped(), TextFile::new("bowls.toml", edit.text()), |_| {
+            WordFindings::default()
+        });
         let keys: Vec<&str> = found.problems.iter().map(|it| it.key.as_str()).collect();
         assert_eq!(keys, ["objects[4].attributes.color", "objects[2].xyz"], "{found:?}");
         assert!(found.problems[1].cure.contains("move it"), "{found:?}");

@@ -25,7 +25,8 @@ mod template;
 pub use document::{AttributeEntry, Document, ObjectEntry, ValueEntry};
 pub use edit::SceneEdit;
 pub use examine::{
-    Configuration, Findings, LimbSummary, OwnWords, Problem, Reach, RobotSummary, check, warnings,
+    Configuration, Findings, LimbSummary, Problem, Reach, ReadBack, RobotSummary, check,
+    misunderstood,
 };
 pub use folder::{FileError, ScenesFolder, fingerprint};
 pub use template::{new_scene, schema_line};

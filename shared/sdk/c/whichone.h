@@ -345,6 +345,9 @@ enum whichone_role {
     WHICHONE_ROLE_KIND = 1,
     /** "in the dishwasher": stands after the noun. */
     WHICHONE_ROLE_PLACE = 2,
+    /** "with nuts", "a green handle": what is in a thing or belongs to it; stands after the noun, and can
+    be asked for as if it were the thing. */
+    WHICHONE_ROLE_PART = 3,
 };
 
 /** The second recogniser's part in an utterance. */
@@ -702,7 +705,7 @@ WHICHONE_ASSERT(offsetof(whichone_observation_t, reserved) == 276, "offset of Ob
 WHICHONE_ASSERT(offsetof(whichone_observation_t, readings) == 280, "offset of Observation.readings");
 WHICHONE_ASSERT(offsetof(whichone_observation_t, unknown) == 13080, "offset of Observation.unknown");
 #define WHICHONE_OBSERVATION_TYPE "Observation"
-#define WHICHONE_OBSERVATION_SCHEMA "b0d5c403b2296e0a"
+#define WHICHONE_OBSERVATION_SCHEMA "0f13a3d2de61ee5b"
 
 /** The highest utterance that the belief holds. Policy to speech. */
 typedef struct whichone_applied_mark {

@@ -10,4 +10,4 @@ mod tokens;
 pub use confusion::confusion;
 pub use normalise::{TEXT_CHARS_MAX, normalise};
 pub use phonetics::skeleton;
-pub use tokens::{Gap, Token, Tokens};
+pub use tokens::{Gap, Token, Tokens, contractions};

@@ -114,13 +114,15 @@ impl<'a> Tokens<'a> {
 
 /// Returns the words of a contraction that its ending does not spell out.
 fn expansion(word: &str) -> Option<&'static str> {
-    static EXPANSIONS: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| {
-        let lines = include_str!("contractions.txt").lines();
-        let rows = lines.filter_map(|line| line.split_once(" = "));
-        rows.flat_map(|(words, expansion)| words.split(", ").map(move |word| (word, expansion)))
-            .collect()
-    });
+    static EXPANSIONS: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| contractions().collect());
     EXPANSIONS.get(word).copied()
+}
+
+/// Returns the contractions that their ending does not spell out, each with its words.
+pub fn contractions() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let lines = include_str!("contractions.txt").lines();
+    let rows = lines.filter_map(|line| line.split_once(" = "));
+    rows.flat_map(|(words, expansion)| words.split(", ").map(move |word| (word, expansion)))
 }
 
 /// Returns whether "…'s" is "… is" and not a possessive.
@@ -130,16 +132,23 @@ fn takes_is(stem: &str) -> bool {
     STEMS.split(' ').any(|listed| listed == stem)
 }
 
-/// End of the word that starts `text`: letters and digits, and apostrophes between letters.
+/// End of the word that starts `text`: letters and digits, apostrophes between letters, and marks between
+/// digits: "2.5", "9:15", "7/8".
 fn word_end(text: &str) -> usize {
     let mut end = 0;
+    let mut before = ' ';
     let mut chars = text.char_indices().peekable();
     while let Some((at, c)) = chars.next() {
-        let inside = c == '\'' && at > 0 && chars.peek().is_some_and(|(_, c)| c.is_alphabetic());
-        if !c.is_alphanumeric() && !inside {
+        let next = chars.peek().map_or(' ', |(_, next)| *next);
+        let joins = match c {
+            '\'' => at > 0 && next.is_alphabetic(),
+            '.' | ',' | ':' | '/' => before.is_numeric() && next.is_numeric(),
+            c => c.is_alphanumeric(),
+        };
+        if !joins {
             break;
         }
-        end = at + c.len_utf8();
+        (before, end) = (c, at + c.len_utf8());
     }
     end
 }
@@ -198,6 +207,9 @@ mod tests {
             ("dont", "do not"),
             ("rock'n'roll", "rock n roll"),
             ("'white'", "white"),
+            ("the 2.5 l one. 3 of them", "the 2.5 l one 3 of them"),
+            ("v1.2, 9:15, 7/8.", "v1.2 9:15 7/8"),
+            ("red/blue:dr.lee", "red blue dr lee"),
         ] {
             assert_eq!(words(text).join(" "), opened);
         }

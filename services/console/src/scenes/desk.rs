@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use axum::http::StatusCode;
 use diagnostics::{Diagnostics, TextFile};
-use language::own_words;
+use language::word_findings;
 use scene_editing::{
     Configuration, Document, FileError, Findings, ObjectEntry, Problem, Reach, RobotSummary,
     SceneEdit, ScenesFolder, check, fingerprint, new_scene, schema_line,
@@ -200,7 +200,7 @@ impl Desk {
         let (configuration, _) = self.configuration()?;
         let Draft { text, document } = draft;
         let text = applied("scene.toml", text, document)?;
-        Ok(check(&configuration, TextFile::new("scene.toml", text), own_words))
+        Ok(check(&configuration, TextFile::new("scene.toml", text), word_findings))
     }
 
     pub(super) fn save(&mut self, name: &str, saving: &Saving) -> Result<Saved, Refusal> {
@@ -209,7 +209,8 @@ impl Desk {
         let folder = ScenesFolder::of(&configuration.folder);
         let label = folder.file(name)?.display().to_string();
         let text = applied(&label, &saving.text, &saving.document)?;
-        let findings = check(&configuration, TextFile::new(label.clone(), text.clone()), own_words);
+        let findings =
+            check(&configuration, TextFile::new(label.clone(), text.clone()), word_findings);
         let must_be_right = !saving.draft || name == in_force;
         if must_be_right && !findings.problems.is_empty() {
             return Err(Refusal::wrong(findings.problems));

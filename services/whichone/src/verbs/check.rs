@@ -6,10 +6,10 @@ use command_line::Outcome;
 use command_line::configuration;
 use command_line::output::{Ink, Output, note, table};
 use config::Settings;
-use diagnostics::{Diagnostic, Diagnostics};
-use language::own_words;
+use diagnostics::{Diagnostic, Diagnostics, Report};
+use language::word_findings;
 use scene::Scene;
-use scene_editing::warnings;
+use scene_editing::misunderstood;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
@@ -29,19 +29,26 @@ pub(super) fn verdict(
     with_values: bool,
     out: &mut Output<'_>,
 ) -> Outcome {
-    match loaded {
+    let checked = loaded.and_then(|settings| {
+        let (problems, warnings) =
+            misunderstood(&settings.scene, settings.scene_file(), word_findings);
+        let mut report = Report::default();
+        problems.into_iter().for_each(|problem| report.add(problem));
+        Ok((report.verdict(Some(settings))?, warnings))
+    });
+    match checked {
         Err(problems) => refused(&problems, out),
-        Ok(settings) if out.is_json() => {
-            out.json(&as_json(&settings, with_values))?;
+        Ok((settings, warnings)) if out.is_json() => {
+            out.json(&as_json(&settings, &warnings, with_values))?;
             Ok(Exit::Ok)
         }
-        Ok(settings) => {
+        Ok((settings, warnings)) => {
             let good = out.style().paint(Ink::Green, "is right");
             out.line(format_args!("{} {good}", from.display()))?;
             for line in summary(&settings) {
                 out.line(line)?;
             }
-            for warning in warnings(&settings.scene, own_words) {
+            for warning in warnings {
                 note(format_args!("warning: scene {}: {warning}", settings.scene.name()));
             }
             if with_values {
@@ -138,7 +145,7 @@ fn values(settings: &Settings, out: &mut Output<'_>) -> Result<(), Failure> {
     table(&["KEY", "VALUE", "FROM"], &rows).into_iter().try_for_each(|line| out.line(line))
 }
 
-fn as_json(settings: &Settings, values: bool) -> Json {
+fn as_json(settings: &Settings, warnings: &[String], values: bool) -> Json {
     let services: Vec<Json> = (settings.group.services.iter())
         .map(|service| {
             json!({ "name": service.name, "command": service.command, "after": service.after,
@@ -149,7 +156,7 @@ fn as_json(settings: &Settings, values: bool) -> Json {
         "ok": true,
         "scene": { "name": settings.scene.name(), "objects": settings.scene.objects().len(),
                    "placed": settings.scene.placed().count() },
-        "warnings": warnings(&settings.scene, own_words),
+        "warnings": warnings,
         "planner": settings.dialogue.planner,
         "params": settings.dialogue.params,
         "costs": settings.dialogue.costs,

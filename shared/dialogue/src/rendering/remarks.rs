@@ -147,8 +147,8 @@ pub(super) fn group(scene: &Scene, words: &[String], plural_of: Option<&[ObjectI
         Some([]) => scene::plural(kind),
         Some(objects) => scene.plural_nouns(objects),
     };
-    let places = of(Role::Place).map(|value| value.spoken.clone());
-    let parts: Vec<String> = qualities.chain([noun]).chain(places).collect();
+    let after = of(Role::Part).chain(of(Role::Place)).map(|value| value.after_noun());
+    let parts: Vec<String> = qualities.chain([noun]).chain(after).collect();
     parts.join(" ")
 }
 

@@ -5,6 +5,7 @@ mod formatting;
 mod halting;
 mod own_words;
 mod readings;
+mod shapes;
 mod table;
 
 use std::sync::LazyLock;

@@ -3,11 +3,13 @@
 use ::vocabulary::Language;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
-use scene::{AttributeId, Question, Response, Role, Scene, ValueId};
+use scene::{AttributeId, Question, Response, Role, Scene, ValueId, WordFindings};
 
 use super::scene;
 
-use crate::{Reader, own_words};
+use crate::Reader;
+use crate::own_words::own_words;
+use crate::word_findings;
 
 const ADJECTIVES: &[&str] = &[
     "red",
@@ -157,10 +159,11 @@ fn echoes(scene: &Scene, k: usize, v: usize) -> Vec<String> {
     ];
     match value.role() {
         Role::Quality => texts.push(format!("the {spoken} one")),
-        Role::Place => {
-            texts.push(format!("the one {spoken}"));
+        Role::Place | Role::Part => {
+            let after = value.after_noun();
+            texts.push(format!("the one {after}"));
             if scene.word_named(scene.noun()).is_none() {
-                texts.push(format!("get me the {} {spoken}", scene.noun()));
+                texts.push(format!("get me the {} {after}", scene.noun()));
             }
         }
         Role::Kind => texts.push(format!("get me {spoken}, please")),
@@ -276,7 +279,40 @@ fn scenes_are_told_of_words_that_are_the_robots_own() {
     let is_told = |part: &str| found.iter().any(|line| line.contains(part));
     assert!(is_told("\"stop\", a value of `title`, halts the arm"), "{found:#?}");
     assert!(is_told("\"hold on\", a value of `title`, halts the arm"), "{found:#?}");
-    assert!(is_told("\"yes\", a value of `title`, no longer means yes"), "{found:#?}");
+    assert!(
+        is_told("\"yes\", a value of `title`, is understood as \"title yes\" only"),
+        "{found:#?}"
+    );
     assert!(is_told("\"one\", a value of `title`"), "{found:#?}");
     assert_eq!(found.len(), 4, "{found:#?}");
+}
+
+#[test]
+fn shipped_scenes_read_back_without_a_fault() {
+    for name in SHIPPED {
+        assert_eq!(word_findings(&scene(name)), WordFindings::default(), "{name}");
+    }
+}
+
+#[test]
+fn words_that_are_read_as_others_are_problems() {
+    let found = |values: &str| {
+        let text = format!(
+            "name = 's'\nnoun = 'box'\n[[attributes]]\nname = 'label'\nvalues = [{values}]\n\
+             [[objects]]\nname = 'a'\nattributes = {{ label = 'red' }}\n"
+        );
+        word_findings(&Scene::from_toml("s", &text).expect("a scene"))
+    };
+    assert_eq!(
+        found("'red', 'A/B', 'v1.2', 'Dr. Lee', '2.5 kg', 'right'"),
+        WordFindings::default()
+    );
+    for (values, key, part) in [
+        ("'red', '???'", "attributes[0].values[1]", "expected a plain phrase for `???`"),
+        ("'red', 'the red one'", "attributes[0].values[0]", "found `the red one`"),
+    ] {
+        let found = found(values);
+        let problem = found.problems.first().unwrap_or_else(|| panic!("{values}: {found:?}"));
+        assert!(problem.key == key && problem.what.contains(part), "{problem:?}");
+    }
 }

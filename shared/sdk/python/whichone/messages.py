@@ -363,6 +363,9 @@ class Role(IntEnum):
     """'a marker': is a noun."""
     PLACE = 2
     """'in the dishwasher': stands after the noun."""
+    PART = 3
+    """'with nuts', 'a green handle': what is in a thing or belongs to it; stands after the noun, and can be
+    asked for as if it were the thing."""
 
 
 class SecondState(IntEnum):
@@ -666,7 +669,7 @@ class Observation(Message):
 
     wire_name = "Observation"
     wire_size = 13144
-    schema_key = "b0d5c403b2296e0a"
+    schema_key = "0f13a3d2de61ee5b"
     seq: int
     """The utterance's `UtteranceSeq`."""
     asked: Array[AskedQuestion]

@@ -3,10 +3,10 @@
 use command_line::Outcome;
 use command_line::output::{Output, note, table};
 use config::Settings;
-use language::own_words;
+use language::word_findings;
 use preflight::{ArmSetup, Arrangement};
 use scene::{ObjectId, Scene, Value};
-use scene_editing::warnings;
+use scene_editing::misunderstood;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
@@ -47,7 +47,9 @@ pub(super) fn show(args: &SceneShowArgs, out: &mut Output<'_>) -> Outcome {
             ));
         }
     }
-    warnings(scene, own_words).iter().for_each(|text| note(format_args!("warning: {text}")));
+    let (problems, warnings) = misunderstood(scene, settings.scene_file(), word_findings);
+    problems.iter().for_each(|problem| note(format_args!("{problem}")));
+    warnings.iter().for_each(|text| note(format_args!("warning: {text}")));
     Ok(Exit::Ok)
 }
 
@@ -113,6 +115,6 @@ fn to_json(settings: &Settings, reach: &[Reach]) -> Json {
     json!({
         "name": scene.name(), "noun": scene.noun(), "file": settings.scene_file().label,
         "objects": json["objects"], "attributes": attributes.collect::<Vec<_>>(),
-        "warnings": warnings(scene, own_words),
+        "warnings": misunderstood(scene, settings.scene_file(), word_findings).1,
     })
 }

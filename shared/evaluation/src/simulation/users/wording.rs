@@ -33,6 +33,13 @@ impl<'a> Wording<'a> {
         value.spoken.replace(&value.name, &word)
     }
 
+    /// The value as it stands after a noun.
+    fn after_noun(&self, (k, v): (AttributeId, ValueId), rng: &mut Rng) -> String {
+        let value = self.of((k, v));
+        let word = self.value((k, v), rng);
+        value.after_noun().replace(&value.name, &word)
+    }
+
     /// An object with these values, e.g. `small white bowl in the cabinet`; the noun alone without
     /// any.
     pub(super) fn object(&self, values: &[(AttributeId, ValueId)], rng: &mut Rng) -> String {
@@ -41,7 +48,7 @@ impl<'a> Wording<'a> {
             match self.of(value).role() {
                 Role::Quality => before.push(self.value(value, rng)),
                 Role::Kind => noun = Some(self.value(value, rng)),
-                Role::Place => after.push(self.predicate(value, rng)),
+                Role::Place | Role::Part => after.push(self.after_noun(value, rng)),
             }
         }
         before.push(noun.unwrap_or_else(|| self.scene.noun().to_owned()));

@@ -1,0 +1,108 @@
+//! Words of the closed classes: negators, answers, articles, pronouns, and what a dialogue is steered by. No value takes
+//! them away: one of that name needs the name of its attribute or the noun beside it. A slip in one of them is mended.
+
+use std::collections::{HashMap, HashSet};
+use std::sync::LazyLock;
+
+use words::contractions;
+
+use crate::lexicon::{Lexicon, Sense};
+use crate::token_class::{Class, classes};
+use crate::vocabulary;
+
+/// The classes whose words no value takes away.
+const CLOSED: &[Class] = classes![
+    Not Except No Yes One Determiner Pointer Possessive First Second It
+    Cancel StartOver Repeat PutBack Unsure Indifferent AskHelp AskStatus
+];
+/// Shortest word that is mended if a letter is missing, added or wrong; in a shorter one two neighbours have changed
+/// places, or it is another word.
+const LETTERS_MIN: usize = 6;
+
+/// Returns whether the words are one phrase of a closed class.
+pub(crate) fn is_closed(words: &[String]) -> bool {
+    static PHRASES: LazyLock<HashSet<&str>> = LazyLock::new(|| {
+        let closed = vocabulary::phrases().filter(|(class, _)| CLOSED.contains(class));
+        closed.map(|(_, phrase)| phrase.trim_end_matches(" .")).collect()
+    });
+    PHRASES.contains(&*words.join(" "))
+}
+
+/// Returns whether words of the class begin no misspelt value.
+pub(crate) fn is_closed_class(class: Class) -> bool {
+    CLOSED.contains(&class)
+}
+
+/// Returns the class of the closed-class word that is one slip away, if it is the only class.
+pub(crate) fn misspelt(word: &str) -> Option<Class> {
+    let letters = word.chars().count();
+    let is_near = |known: &str| {
+        let long = known.len() >= LETTERS_MIN && letters.abs_diff(known.len()) <= 1;
+        (long || letters == known.len() && is_transposed(word, known))
+            && strsim::osa_distance(word, known) == 1
+    };
+    let mut near = words().iter().filter(|(known, _)| is_near(known)).map(|(_, class)| *class);
+    let class = near.next()?;
+    near.all(|other| other == class).then_some(class)
+}
+
+/// Returns whether two words differ in the order of their letters alone.
+fn is_transposed(one: &str, other: &str) -> bool {
+    let sorted = |word: &str| {
+        let mut letters: Vec<char> = word.chars().collect();
+        letters.sort_unstable();
+        letters
+    };
+    sorted(one) == sorted(other)
+}
+
+/// The words of the closed classes; a contraction that denies is a negator.
+fn words() -> &'static HashMap<&'static str, Class> {
+    static WORDS: LazyLock<HashMap<&str, Class>> = LazyLock::new(|| {
+        let is_word = |(class, phrase): &(Class, &str)| {
+            CLOSED.contains(class) && !phrase.contains(' ') && phrase.len() > 2
+        };
+        let listed = vocabulary::phrases().filter(is_word).map(|(class, word)| (word, class));
+        let denies = |(word, expansion): (&'static str, &'static str)| {
+            expansion.ends_with(" not").then_some((word, Class::Not))
+        };
+        listed.chain(contractions().filter_map(denies)).collect()
+    });
+    &WORDS
+}
+
+/// Returns whether words that stand alone are an answer, whatever else they name in a scene.
+pub(crate) fn is_answer(class: Class) -> bool {
+    matches!(class, Class::Yes | Class::No | Class::WeakYes | Class::WeakNo)
+}
+
+/// Returns whether a name of a scene is an answer as well: "right".
+pub(crate) fn names_answer(words: &[String]) -> bool {
+    let [word] = words else { return false };
+    matches!(Lexicon::own().word(word), Some(Sense::Class(class)) if is_answer(class))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_in_closed_class_words_are_mended() {
+        for (word, class) in [
+            ("nto", Some(Class::Not)),
+            ("wihtout", Some(Class::Not)),
+            ("excpet", Some(Class::Except)),
+            ("exept", Some(Class::Except)),
+            ("dotn", Some(Class::Not)),
+            ("teh", Some(Class::Determiner)),
+            ("yse", Some(Class::Yes)),
+            ("lever", None),
+            ("newer", None),
+            ("nut", None),
+            ("ton", None),
+            ("bye", None),
+        ] {
+            assert_eq!(misspelt(word), class, "{word}");
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! The phrases in which people name the values of a scene.
+
+use crate::{AttributeId, Role, Scene, Value, ValueId};
+
+/// What reading a scene's own words back has found. Who reads is not known here.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WordFindings {
+    /// Words that make the scene unusable.
+    pub problems: Vec<WordProblem>,
+    /// What a person cannot say clearly, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// A name of a scene that is not understood.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WordProblem {
+    /// Dotted key of the scene file, e.g. `attributes[0].values[2]`.
+    pub key: String,
+    /// The problem: expected and found.
+    pub what: String,
+    /// The fix.
+    pub help: String,
+}
+
+impl Scene {
+    /// Returns the plain phrases that ask for things with a value, `name` being one of its names; the name alone is the
+    /// first.
+    pub fn requests(&self, value: &Value, name: &str) -> Vec<String> {
+        let noun = self.noun();
+        let spoken = |form: &str| form.replace(&value.name, name);
+        let after = spoken(&value.after_noun());
+        let forms: &[String] = &match value.role() {
+            Role::Quality => {
+                vec![format!("the {name} one"), format!("get me the {name} {noun}")]
+            }
+            Role::Kind => vec![
+                format!("the {name}"),
+                format!("could you bring the {name} over here"),
+                format!("I need a {name} please"),
+            ],
+            Role::Part => vec![
+                format!("get me the {name}"),
+                format!("the one {after}"),
+                format!("get me the {noun} {after}"),
+            ],
+            Role::Place => vec![format!("the one {after}"), format!("get me the {noun} {after}")],
+        };
+        let plain = [name.to_owned(), format!("it's {}", spoken(&value.spoken))];
+        plain.into_iter().chain(forms.iter().cloned()).collect()
+    }
+
+    /// Returns the plain phrases that deny a value.
+    pub fn denials(&self, value: &Value, name: &str) -> Vec<String> {
+        let after = value.after_noun().replace(&value.name, name);
+        match value.role() {
+            Role::Quality => vec![format!("not the {name} one"), format!("anything but {name}")],
+            Role::Kind => vec![format!("not the {name}"), format!("anything but the {name}")],
+            Role::Part | Role::Place => vec![format!("not the one {after}")],
+        }
+    }
+
+    /// Returns the phrase that asks for a thing with these values.
+    pub fn request_for(&self, values: &[(AttributeId, ValueId)]) -> String {
+        format!("get me the {}", self.compose(values))
+    }
+}
