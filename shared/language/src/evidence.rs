@@ -16,7 +16,7 @@ use crate::token_class::classes;
 const POLARITIES: [Polarity; 3] = [Polarity::Wanted, Polarity::Denied, Polarity::Neither];
 /// Probability from which on what the rules propose stands as they read it, judged: a lower one costs wrong fetches, a
 /// higher one questions that ordinary requests do not need (`tests/talk`).
-const SURE: f64 = 0.7;
+const SURE: f64 = 0.9;
 /// Most phrases whose fate is open; that of the others, the surest, is their most probable one.
 const OPEN_MAX: usize = 3;
 

@@ -1,8 +1,7 @@
 //! The judge: how probable it is that a value word is wanted, denied, or neither, by the words around it.
 //!
 //! A linear model over hashed features ([`crate::features`]), trained by `reader_training` on labelled lines. It corrects
-//! what the rules propose and says how sure that is: what they do not cover is in doubt, and no word is worth more than
-//! about 100 to 1.
+//! what the rules propose and says how sure that is: what they do not cover is in doubt.
 
 use std::sync::LazyLock;
 
@@ -13,8 +12,8 @@ use crate::features::ROWS;
 const FILE: &[u8] = include_bytes!("vocabulary/judge.bin");
 /// Length of the hash and the scale, bytes.
 const HEAD: usize = 12;
-/// Probability, under everything that the judge states, that nothing was said.
-const FLOOR: f64 = 0.01;
+/// Probability that a value word says nothing, whatever the judge states: it has not seen all that people say.
+pub(crate) const FLOOR: f64 = 0.01;
 
 static JUDGE: LazyLock<Judge> = LazyLock::new(Judge::load);
 
@@ -50,6 +49,5 @@ pub(crate) fn judge(rows: &[u32]) -> [f64; 3] {
     let most = sums.into_iter().max().unwrap_or(0);
     let powers = sums.map(|sum| ((sum - most) as f64 * JUDGE.scale).exp());
     let all: f64 = powers.iter().sum();
-    let [wanted, denied, neither] = powers.map(|power| power / all * (1.0 - FLOOR));
-    [wanted, denied, neither + FLOOR]
+    powers.map(|power| power / all)
 }

@@ -5,7 +5,7 @@ use scene::{Question, Reading, WordId};
 use words::{Tokens, normalise};
 
 use crate::features::{Example, examples};
-use crate::judge::judge;
+use crate::judge::{FLOOR, judge};
 use crate::parsed::ParsedUtterance;
 
 use crate::reader::Reader;
@@ -50,9 +50,9 @@ impl Reader {
             let (tag, next) = (&parsed.tags[example.at], parsed.tags.get(example.at + 1));
             let end = next.map_or(tokens.words.len(), |next| next.at);
             let words = tokens.words[tag.at..end].iter().map(|token| token.word);
-            let [wanted, denied, neither] = judge(&example.rows);
+            let [wanted, denied, neither] = judge(&example.rows).map(|it| it * (1.0 - FLOOR));
             let surface = words.collect::<Vec<_>>().join(" ");
-            Mention { word: example.word, surface, wanted, denied, neither }
+            Mention { word: example.word, surface, wanted, denied, neither: neither + FLOOR }
         };
         examples(&parsed, &parsed.reading()).into_iter().map(mention).collect()
     }

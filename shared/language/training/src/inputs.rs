@@ -7,7 +7,7 @@ use scene::StableHash;
 
 use crate::scenes::files;
 
-/// Returns the hash of the lines, the tables, the scenes and the features: weights of another one are out of date.
+/// Returns the hash of the lines, the templates, the tables, the scenes and the features: weights of another one are out of date.
 ///
 /// # Errors
 /// A file that cannot be read.
@@ -19,6 +19,7 @@ pub fn trained_on() -> Result<u64, String> {
         .collect();
     let sources = ["features.rs", "token_class.rs", "tests/cases.txt", "tests/conversation.txt"];
     paths.extend(sources.map(|source| here.join("../src").join(source)));
+    paths.push(here.join("templates.txt"));
     let mut hash = StableHash::default();
     for path in paths {
         let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;

@@ -8,6 +8,7 @@
 //! | `lines/` | by authors who had seen neither the code nor each other's lines; the judge is trained on them |
 //! | `held_out/` | by two more authors: scored three times at most, and read by nobody (`scores.txt`) |
 //! | `scenes/` | scenes that were made for the lines |
+//! | `templates.txt` | ordinary requests, made into lines in several scenes |
 
 mod inputs;
 mod line;
@@ -15,6 +16,7 @@ mod linear;
 mod scenes;
 mod score;
 mod table;
+mod templates;
 
 pub use inputs::trained_on;
 pub use line::{Line, Marked, lines};
@@ -22,6 +24,7 @@ pub use linear::{Lesson, Linear};
 pub use scenes::{Scenes, files, question};
 pub use score::{Score, Scored, pairs};
 pub use table::{Row, table};
+pub use templates::templates;
 
 /// Prints why a program of this crate failed, and returns its exit code.
 #[allow(clippy::print_stderr, reason = "for programs of the terminal")]

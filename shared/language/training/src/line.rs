@@ -63,13 +63,18 @@ impl Line {
 
 impl Marked {
     fn read(mark: &str) -> Option<Self> {
-        let polarity = match mark.chars().last()? {
-            '+' => Polarity::Wanted,
-            '-' => Polarity::Denied,
-            '0' => Polarity::Neither,
-            _ => return None,
-        };
+        let polarity = polarity(mark.chars().last()?)?;
         Some(Self { surface: mark[..mark.len() - 1].to_owned(), polarity })
+    }
+}
+
+/// Returns what a sign stands for.
+pub(crate) fn polarity(sign: char) -> Option<Polarity> {
+    match sign {
+        '+' => Some(Polarity::Wanted),
+        '-' => Some(Polarity::Denied),
+        '0' => Some(Polarity::Neither),
+        _ => None,
     }
 }
 

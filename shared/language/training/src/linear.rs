@@ -23,14 +23,12 @@ pub struct Lesson {
 #[derive(Clone, Debug)]
 pub struct Linear {
     weights: Vec<[f64; 3]>,
-    /// By what the sums are divided: fitted to lines that the weights have not seen.
-    pub temperature: f64,
 }
 
 impl Linear {
     /// Trains on the lessons.
     pub fn train(lessons: &[Lesson], epochs: usize, rate: f64, seed: u64) -> Self {
-        let mut linear = Self { weights: vec![[0.0; 3]; ROWS], temperature: 1.0 };
+        let mut linear = Self { weights: vec![[0.0; 3]; ROWS] };
         let mut seen = vec![[1e-2; 3]; ROWS];
         let mut order: Vec<usize> = (0..lessons.len()).collect();
         let mut random = Rng::new(seed);

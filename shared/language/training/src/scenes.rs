@@ -41,6 +41,11 @@ impl Scenes {
         Ok(Self(scenes))
     }
 
+    /// The names of the scenes.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+
     /// Returns a scene and its reader.
     ///
     /// # Errors

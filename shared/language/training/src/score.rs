@@ -54,6 +54,13 @@ impl Score {
         }
     }
 
+    /// Adds another score.
+    pub fn extend(&mut self, other: Self) {
+        self.scored.extend(other.scored);
+        self.missed += other.missed;
+        self.extra += other.extra;
+    }
+
     fn share(&self, holds: impl Fn(&Scored) -> bool) -> f64 {
         self.scored.iter().filter(|it| holds(it)).count() as f64 / self.scored.len().max(1) as f64
     }

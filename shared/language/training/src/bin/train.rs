@@ -1,5 +1,5 @@
-//! `cargo run --release -p reader_training --bin train [--write]`: trains the judge. It prints how the judge does on each author's
-//! lines when it has seen the others' alone, and with `--write` replaces `vocabulary/judge.bin`.
+//! `cargo run --release -p reader_training --bin train`: prints how the judge does on each author's lines when it has seen
+//! the others' alone. With `--write` it trains on all of them, and replaces `vocabulary/judge.bin`.
 
 #![allow(clippy::print_stdout, reason = "a program for the terminal")]
 
@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::ExitCode;
 
-use language::{Mention, Polarity, ROWS};
+use language::{Polarity, ROWS};
 use reader_training::{
-    Lesson, Line, Linear, Row, Scenes, Score, exit_code, files, lines, pairs, question, table,
-    trained_on,
+    Lesson, Line, Linear, Row, Scenes, Score, Scored, exit_code, files, lines, pairs, question,
+    table, templates, trained_on,
 };
 
 /// Passes over the lessons.
@@ -22,8 +22,12 @@ const FLOOR: f64 = 0.01;
 /// How much a lesson of the reader's own tables counts: the rules were made for these lines, and are less often right
 /// elsewhere.
 const OWN: f64 = 0.5;
-/// Temperature at which lines that were not seen are scored, as it was fitted to them.
+/// How much a lesson of a template counts.
+const TEMPLATE: f64 = 1.0;
+/// Temperature of the judge, as it was fitted to lines that were not seen.
 const TEMPERATURE: f64 = 1.15;
+/// Parts into which the tables and templates are cut, to score each with what the others teach.
+const FOLDS: usize = 5;
 /// The reader's own tables, whose labels are what the rules propose.
 const TABLES: [&str; 4] = [
     "shared/language/src/tests/conversation.txt",
@@ -31,103 +35,149 @@ const TABLES: [&str; 4] = [
     "tests/fixtures/utterances/fresh_1.txt",
     "tests/fixtures/utterances/fresh_2.txt",
 ];
+/// Name of what the tables teach, among the sources.
+const OWN_TABLES: &str = "own tables";
+/// Name of what the templates teach.
+const TEMPLATES: &str = "templates";
 
 fn main() -> ExitCode {
     exit_code(run())
 }
 
-/// A labelled line with what the judge looks at.
+/// What one line teaches.
+#[derive(Default)]
 struct Taught {
-    line: Line,
-    mentions: Vec<Mention>,
-    rows: Vec<Vec<u32>>,
+    lessons: Vec<Lesson>,
+    missed: usize,
+    extra: usize,
 }
 
-impl Taught {
-    fn lessons(&self) -> Vec<Lesson> {
-        let labels = pairs(&self.line, &self.mentions);
-        let lesson = |(rows, label): (&Vec<u32>, Option<Polarity>)| {
-            Some(Lesson { rows: rows.clone(), label: label? as usize, weight: 1.0 })
-        };
-        self.rows.iter().zip(labels).filter_map(lesson).collect()
-    }
-
-    fn judged(&self, model: &Linear) -> Vec<Mention> {
-        let judged = self.mentions.iter().zip(&self.rows).map(|(mention, rows)| {
-            let [wanted, denied, neither] =
-                model.stated(rows, model.temperature).map(|stated| stated * (1.0 - FLOOR));
-            Mention { wanted, denied, neither: neither + FLOOR, ..mention.clone() }
-        });
-        judged.collect()
-    }
-}
+/// What each author, the tables and the templates teach.
+type Sources = BTreeMap<String, Vec<Taught>>;
 
 fn run() -> Result<(), String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let root = here.join("../../..");
     let scenes = Scenes::load()?;
-    let authors = authors(&scenes, &here.join("lines"))?;
-    let mut own = Vec::new();
+    let mut sources = authors(&scenes, &here.join("lines"))?;
+    let authors: Vec<String> = sources.keys().cloned().collect();
     for file in TABLES {
-        own.extend(of_table(&scenes, &root.join(file))?);
+        sources.entry(OWN_TABLES.into()).or_default().extend(of_table(&scenes, &root.join(file))?);
     }
-    let (mut all, mut unseen) = (Score::default(), Vec::new());
-    for (left_out, taught) in &authors {
-        let others = authors.iter().filter(|(name, _)| *name != left_out);
-        let others = others.flat_map(|(_, taught)| taught).flat_map(Taught::lessons);
-        let lessons: Vec<Lesson> = others.chain(own.iter().cloned()).collect();
-        let mut model = Linear::train(&lessons, EPOCHS, RATE, 1);
-        let lessons: Vec<Lesson> = taught.iter().flat_map(Taught::lessons).collect();
-        unseen.extend(lessons.iter().map(|it| (model.sums(&it.rows), it.label)));
-        model.temperature = TEMPERATURE;
-        let mut score = Score::default();
-        for one in taught {
-            score.add(&one.line, &one.judged(&model));
-            all.add(&one.line, &one.judged(&model));
-        }
-        println!("{score}  {left_out}, not seen");
-    }
-    println!("{all}  all, not seen");
+    sources.insert(TEMPLATES.into(), of_templates(&scenes, &here.join("templates.txt"))?);
     if !std::env::args().any(|argument| argument == "--write") {
+        validate(&sources, &authors);
         return Ok(());
     }
-    let lessons: Vec<Lesson> =
-        authors.values().flatten().flat_map(Taught::lessons).chain(own).collect();
-    let mut model = Linear::train(&lessons, EPOCHS, RATE, 1);
-    model.temperature = Linear::temperature_for(&unseen);
-    println!("{} lessons, temperature {:.2}", lessons.len(), model.temperature);
+    let lessons = lessons(&sources, |_, _| true);
+    println!("{} lessons", lessons.len());
+    let bytes = bytes(&Linear::train(&lessons, EPOCHS, RATE, 1), trained_on()?);
     let path = root.join("shared/language/src/vocabulary/judge.bin");
-    safe_files::write_output(&path, &bytes(&model, trained_on()?))
-        .map_err(|e| format!("{}: {e}", path.display()))
+    safe_files::write_output(&path, &bytes).map_err(|e| format!("{}: {e}", path.display()))
 }
 
-fn authors(scenes: &Scenes, folder: &Path) -> Result<BTreeMap<String, Vec<Taught>>, String> {
-    let mut authors: BTreeMap<String, Vec<Taught>> = BTreeMap::new();
+/// Prints how each source does when it is not seen, and which temperature fits the authors.
+fn validate(sources: &Sources, authors: &[String]) {
+    let (mut all, mut unseen) = (Score::default(), Vec::new());
+    for left_out in authors {
+        let (model, score) = without(sources, |name, _| name == left_out);
+        let lessons = sources[left_out].iter().flat_map(|taught| &taught.lessons);
+        unseen.extend(lessons.map(|it| (model.sums(&it.rows), it.label)));
+        println!("{score}  {left_out}, not seen");
+        all.extend(score);
+    }
+    let fitted = Linear::temperature_for(&unseen);
+    println!("{all}  all, not seen; temperature {fitted:.2} fits");
+    for part in [OWN_TABLES, TEMPLATES] {
+        let mut all = Score::default();
+        for fold in 0..FOLDS {
+            all.extend(without(sources, |name, n| name == part && n % FOLDS == fold).1);
+        }
+        println!("{all}  {part}, each fifth not seen");
+    }
+}
+
+/// The lessons of the lines that are chosen by the name of their source and their number.
+fn lessons(sources: &Sources, is_chosen: impl Fn(&str, usize) -> bool) -> Vec<Lesson> {
+    let mut lessons = Vec::new();
+    for (name, all) in sources {
+        let chosen = all.iter().enumerate().filter(|(n, _)| is_chosen(name, *n));
+        lessons.extend(chosen.flat_map(|(_, taught)| taught.lessons.iter().cloned()));
+    }
+    lessons
+}
+
+/// Trains without some lines, and scores these.
+fn without(sources: &Sources, is_left_out: impl Fn(&str, usize) -> bool) -> (Linear, Score) {
+    let model = Linear::train(&lessons(sources, |name, n| !is_left_out(name, n)), EPOCHS, RATE, 1);
+    let mut score = Score::default();
+    for (name, all) in sources {
+        for (_, taught) in all.iter().enumerate().filter(|(n, _)| is_left_out(name, *n)) {
+            score.missed += taught.missed;
+            score.extra += taught.extra;
+            score.scored.extend(taught.lessons.iter().map(|lesson| judged(&model, lesson)));
+        }
+    }
+    (model, score)
+}
+
+fn judged(model: &Linear, lesson: &Lesson) -> Scored {
+    let [wanted, denied, neither] =
+        model.stated(&lesson.rows, TEMPERATURE).map(|stated| stated * (1.0 - FLOOR));
+    let truth = [Polarity::Wanted, Polarity::Denied, Polarity::Neither][lesson.label];
+    Scored { truth, stated: [wanted, denied, neither + FLOOR] }
+}
+
+fn authors(scenes: &Scenes, folder: &Path) -> Result<Sources, String> {
+    let mut authors = Sources::new();
     for path in files(folder) {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let text =
             std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
         for line in lines(&name, &text)? {
-            let (scene, reader) = scenes.get(&line.scene)?;
-            let asked = question(scene, &line.question);
-            let mentions = reader.mentions(&line.text, asked);
-            let rows = reader.examples(&line.text, asked).into_iter().map(|it| it.rows).collect();
-            authors.entry(name.clone()).or_default().push(Taught { line, mentions, rows });
+            authors.entry(name.clone()).or_default().push(of_line(scenes, &line, 1.0)?);
         }
     }
     Ok(authors)
 }
 
-fn of_table(scenes: &Scenes, path: &Path) -> Result<Vec<Lesson>, String> {
-    let mut lessons = Vec::new();
-    for Row { scene, question, text } in table(scenes, path)? {
-        let (_, reader) = scenes.get(&scene)?;
-        for example in reader.examples(&text, question) {
-            let label = example.proposal as usize;
-            lessons.push(Lesson { rows: example.rows, label, weight: OWN });
+fn of_line(scenes: &Scenes, line: &Line, weight: f64) -> Result<Taught, String> {
+    let (scene, reader) = scenes.get(&line.scene)?;
+    let asked = question(scene, &line.question);
+    let mentions = reader.mentions(&line.text, asked);
+    let labels = pairs(line, &mentions);
+    let examples = reader.examples(&line.text, asked);
+    let lesson = |(example, label): (language::Example, &Option<Polarity>)| {
+        Some(Lesson { rows: example.rows, label: (*label)? as usize, weight })
+    };
+    let lessons: Vec<Lesson> = examples.into_iter().zip(&labels).filter_map(lesson).collect();
+    let (found, marked) = (lessons.len(), line.marked.len());
+    Ok(Taught { lessons, missed: marked - found, extra: labels.len() - found })
+}
+
+fn of_templates(scenes: &Scenes, path: &Path) -> Result<Vec<Taught>, String> {
+    let text = std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+    let mut taught = Vec::new();
+    for name in scenes.names().filter(|name| !name.starts_with("table ")) {
+        for line in templates(&text, name, &scenes.get(name)?.0)? {
+            taught.push(of_line(scenes, &line, TEMPLATE)?);
         }
     }
-    Ok(lessons)
+    Ok(taught)
+}
+
+fn of_table(scenes: &Scenes, path: &Path) -> Result<Vec<Taught>, String> {
+    let mut taught = Vec::new();
+    for Row { scene, question, text } in table(scenes, path)? {
+        let (_, reader) = scenes.get(&scene)?;
+        let lesson = |example: language::Example| {
+            let label = example.proposal as usize;
+            Lesson { rows: example.rows, label, weight: OWN }
+        };
+        let lessons = reader.examples(&text, question).into_iter().map(lesson).collect();
+        taught.push(Taught { lessons, ..Taught::default() });
+    }
+    Ok(taught)
 }
 
 /// The file of the weights: hash, scale, weights of 16 bits.
@@ -136,7 +186,7 @@ fn bytes(model: &Linear, hash: u64) -> Vec<u8> {
         (0..ROWS).flat_map(|row| model.row(row)).fold(1e-9, |most: f64, it| most.max(it.abs()));
     let step = most / f64::from(i16::MAX);
     let mut bytes = hash.to_le_bytes().to_vec();
-    bytes.extend(((step / model.temperature) as f32).to_le_bytes());
+    bytes.extend(((step / TEMPERATURE) as f32).to_le_bytes());
     for weight in (0..ROWS).flat_map(|row| model.row(row)) {
         bytes.extend(((weight / step).round() as i16).to_le_bytes());
     }
