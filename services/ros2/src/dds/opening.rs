@@ -2,7 +2,7 @@
 
 use super::{Error, Inlet, Outlet, Trigger};
 use crate::own_name;
-use config::Ros2;
+use crate::settings::{self, Ros2};
 use ros2_client::qos::{Durability, History, WhenFull};
 use ros2_client::{MessageTypeName, Name, Node, QosProfile, ServiceMapping, ServiceTypeName};
 use rustdds::mio1::{Interest, Poll, Token, event::Source};
@@ -97,8 +97,8 @@ impl Opening<'_> {
         let failed = |error: &dyn Debug| format!("service {name}: {error:?}");
         let full = Name::new(&namespace, &name).map_err(|e| failed(&e))?;
         let mapping = match self.settings.services {
-            config::ServiceMapping::Enhanced => ServiceMapping::Enhanced,
-            config::ServiceMapping::Cyclone => ServiceMapping::Cyclone,
+            settings::ServiceMapping::Enhanced => ServiceMapping::Enhanced,
+            settings::ServiceMapping::Cyclone => ServiceMapping::Cyclone,
         };
         let kind = ServiceTypeName::new("std_srvs", "Trigger");
         let server = self.node.create_server(mapping, &full, &kind, reliable(16), reliable(16));
