@@ -17,7 +17,7 @@ const BOUNDS: [Bound; 3] = [
     Bound {
         name: "lines of the core, with its tests",
         first: 135_525.0,
-        at_most: 136_000.0,
+        at_most: 135_200.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {
@@ -29,7 +29,7 @@ const BOUNDS: [Bound; 3] = [
     Bound {
         name: "files in import circles, percent",
         first: 12.1,
-        at_most: 12.2,
+        at_most: 12.1,
         measured: circled_percent,
     },
 ];

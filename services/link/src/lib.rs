@@ -40,7 +40,7 @@ use config::{EVERYTHING, Part, PartService, Registered};
 
 /// The service and its section. Each mirror begins with the settings in force.
 pub static PART: Part = Part {
-    name: "link",
+    name: settings::NAME,
     service: Some(PartService { reads: EVERYTHING, is_client: true }),
     sections: &[Registered::of::<settings::Settings>()],
 };

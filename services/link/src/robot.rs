@@ -45,7 +45,7 @@ const STATUS_EVERY: Duration = Duration::from_millis(2_000);
 /// Runs the service until it is shut down.
 pub fn run() -> ExitCode {
     let about = "links the group to operators elsewhere (docs/remote.md)";
-    service_loop::program(crate::PART.name, about, serve)
+    service_loop::program(crate::settings::NAME, about, serve)
 }
 
 fn serve(arguments: Vec<String>) -> Result<(), Failure> {
@@ -107,9 +107,9 @@ impl Robot {
         let identity = Identity::load(&folder)?;
         identity.require(true, &folder)?;
         let paths = environment.paths.clone();
-        let client = Client::of_service(environment, crate::PART.name)?;
+        let client = Client::of_service(environment, crate::settings::NAME)?;
         let bus = client.bus();
-        let wake_listener = bus.wake_listener(Service::Other(crate::PART.name))?;
+        let wake_listener = bus.wake_listener(Service::Other(crate::settings::NAME))?;
         let start = random_number();
         let sources = TopicSources::open(bus, &settings, start)?;
         let (sender, inbox) = worker_channel::channel().map_err(failed("inbox"))?;

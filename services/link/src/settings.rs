@@ -5,6 +5,9 @@ use std::path::PathBuf;
 use config::{Check, Section};
 use diagnostics::Fields;
 
+/// Name of the service.
+pub(crate) const NAME: &str = "link";
+
 /// The link to operators elsewhere.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
@@ -22,7 +25,7 @@ impl Section for Settings {
 
     fn check(&self, others: &mut Check<'_>) {
         let mut services = others.group.services.iter();
-        if self.keys.is_none() && services.any(|service| service.name == crate::PART.name) {
+        if self.keys.is_none() && services.any(|service| service.name == NAME) {
             let help = "set it to the folder robots/NAME that `whichone link init` made";
             others.problem(&["link", "keys"], "missing: a group with a link has keys", help);
         }

@@ -23,13 +23,11 @@ mod threads;
 
 use config::{Part, PartService, Registered};
 
-use crate::settings::Ros2;
-
 /// The service and its section.
 pub static PART: Part = Part {
-    name: "ros2",
+    name: settings::NAME,
     service: Some(PartService { reads: &["ros2", "arm"], is_client: true }),
-    sections: &[Registered::of::<Ros2>()],
+    sections: &[Registered::of::<settings::Ros2>()],
 };
 
 /// The program, or the feature that a build needs for it.
@@ -38,9 +36,3 @@ pub const PROGRAM: Result<fn() -> std::process::ExitCode, &str> = Ok(node::run);
 /// The program, or the feature that a build needs for it.
 #[cfg(not(feature = "dds"))]
 pub const PROGRAM: Result<fn() -> std::process::ExitCode, &str> = Err("dds");
-
-/// Name of a topic or service: own names are below the node's, `joint_states` is in its namespace.
-pub fn own_name(settings: &Ros2, name: &str) -> (String, String) {
-    let namespace = settings.namespace.trim_end_matches('/');
-    (format!("{namespace}/{}", settings.node), name.to_owned())
-}

@@ -4,7 +4,7 @@ use crate::dds::Dds;
 use crate::detectors::Detectors;
 use crate::diagnostics::Counters;
 use crate::joints::JointNames;
-use crate::settings::Ros2;
+use crate::settings::{NAME, Ros2};
 use crate::types::{Text, Triggered};
 use crate::{hear, orders, threads};
 use config::Settings;
@@ -37,7 +37,7 @@ const LOOK_EVERY: Span = Span::from_ms(20);
 /// Runs the service until it is shut down.
 pub fn run() -> ExitCode {
     let about = "presents the group as a ROS 2 node (docs/ros2.md)";
-    service_loop::program(crate::PART.name, about, serve)
+    service_loop::program(NAME, about, serve)
 }
 
 fn serve(arguments: Vec<String>) -> Result<(), Failure> {
@@ -97,9 +97,9 @@ impl Node {
         let failed = |what: &'static str| {
             move |e: std::io::Error| Failure::new(Exit::NotReached, format!("{what}: {e}"))
         };
-        let client = Client::of_service(environment, crate::PART.name)?;
+        let client = Client::of_service(environment, NAME)?;
         let bus = client.bus();
-        let wake_listener = bus.wake_listener(Service::Other(crate::PART.name))?;
+        let wake_listener = bus.wake_listener(Service::Other(NAME))?;
         let mut latest = LatestTopics::open(bus)?;
         if settings.group.perception.enabled {
             latest = latest.with_table(bus, &settings.scene)?;

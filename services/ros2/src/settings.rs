@@ -8,6 +8,9 @@ use ros::detectors::{self, Labels, topic};
 use ros::is_name;
 use serde_json::json;
 
+/// Name of the service.
+pub(crate) const NAME: &str = "ros2";
+
 /// The ROS 2 node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ros2 {
@@ -56,6 +59,14 @@ pub enum Network {
     All,
     /// The network of the interface with this address.
     Interface(Ipv4Addr),
+}
+
+impl Ros2 {
+    /// Name of a topic or service: own names are below the node's, `joint_states` is in its namespace.
+    pub fn own_name(&self, name: &str) -> (String, String) {
+        let namespace = self.namespace.trim_end_matches('/');
+        (format!("{namespace}/{}", self.node), name.to_owned())
+    }
 }
 
 impl Section for Ros2 {

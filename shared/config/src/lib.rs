@@ -40,9 +40,11 @@ pub use crate::dialogue::{CostsFrom, Dialogue, Gesture};
 pub use crate::files::{RobotFiles, one_of, read_file};
 pub use crate::group::{Flight, Group, Log, Perception, RestartLimits};
 pub use crate::load::Examined;
-pub use crate::part::{Check, Part, PartService, Registered, Section, part_service, register};
-pub use crate::reads::{EVERYTHING, Reads};
-pub use crate::resolved::{Origin, sections};
+pub use crate::part::{
+    Check, EVERYTHING, Part, PartService, Reads, Registered, Section, part_service, register,
+    sections,
+};
+pub use crate::resolved::Origin;
 pub use crate::schema::{SectionSchema, schemas};
 pub use crate::services::{Restart, ServiceConfig};
 pub use crate::snapshot::{SNAPSHOT_FILE, WORDS_FILE};

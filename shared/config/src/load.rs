@@ -7,8 +7,8 @@ use scene::Scene;
 use toml::Value;
 
 use crate::files::{FILE_BYTES_MAX, Files, names, one_of, read_text};
-use crate::part::{self, Check};
-use crate::resolved::{self, Resolved, sections};
+use crate::part::{self, Check, sections};
+use crate::resolved::Resolved;
 use crate::{Settings, arm, console, dialogue, group, services, snapshot, speech, study};
 
 /// What a configuration was found to be, before a verdict: further checks may add to the report.
@@ -42,7 +42,7 @@ pub(crate) fn examine(
     for (key, value) in overrides {
         layers.extend(override_layer("--set", (key, value), &mut report));
     }
-    let mut tree = resolved::defaults();
+    let mut tree = part::defaults();
     for layer in layers {
         tree.merge(layer, &mut Vec::new(), &mut report);
     }

@@ -9,8 +9,7 @@ use diagnostics::{Diagnostics, Fields, Node, Report, Source, Table};
 use scene::Scene;
 
 use crate::Group;
-use crate::reads::Reads;
-use crate::resolved::{self, CORE_DEFAULTS};
+use crate::resolved::{self, CORE, CORE_DEFAULTS};
 
 /// A section of the configuration that belongs to an optional part: its place, its reader and its checks.
 pub trait Section: Sized + 'static {
@@ -79,6 +78,16 @@ pub struct PartService {
     pub is_client: bool,
 }
 
+/// Names of sections, dotted keys of values, `durations`; or [`EVERYTHING`]. The scene, and where its objects come
+/// from, which every service reads, go without saying.
+pub type Reads = &'static [&'static str];
+
+/// Every section, and the durations.
+pub const EVERYTHING: Reads = &["*", DURATIONS];
+
+/// The durations of questions and picks, by which decisions are made.
+pub(crate) const DURATIONS: &str = "durations";
+
 /// A [`Section`] in the list of a part.
 #[derive(Debug)]
 pub struct Registered {
@@ -112,8 +121,20 @@ fn parts() -> impl Iterator<Item = &'static Part> {
     PARTS.get().copied().unwrap_or_default().iter().copied()
 }
 
-pub(crate) fn sections() -> impl Iterator<Item = &'static Registered> {
+fn registered() -> impl Iterator<Item = &'static Registered> {
     parts().flat_map(|part| part.sections)
+}
+
+/// Name and shipped file of every section: the core's, then those of the registered parts. The name is the first
+/// part of its keys, and that of its file `NAME.toml`.
+pub fn sections() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let of_parts = registered().filter_map(|it| Some((*it.key.first()?, it.file?)));
+    CORE.into_iter().chain(of_parts)
+}
+
+/// The defaults of every section: the bottom layer.
+pub(crate) fn defaults() -> Table {
+    resolved::parsed(sections(), &Source::built_in())
 }
 
 /// The service of a registered part with this name.
@@ -134,7 +155,7 @@ pub(crate) fn with_tables<T>(
     read: impl FnOnce(&mut Fields<'_>) -> T,
 ) -> T {
     let value = read(f);
-    let own = sections().filter(|it| it.key.len() > 1 && it.key[0] == section);
+    let own = registered().filter(|it| it.key.len() > 1 && it.key[0] == section);
     own.for_each(|it| f.table(it.name(), it.read));
     if PARTS.get().is_some() {
         return value;
@@ -162,12 +183,12 @@ pub(crate) fn read_contents(name: &str, f: &mut Fields<'_>) {
 }
 
 fn own_files() -> impl Iterator<Item = &'static Registered> {
-    sections().filter(|it| it.key.len() == 1)
+    registered().filter(|it| it.key.len() == 1)
 }
 
 /// Checks the sections of parts against the others.
 pub(crate) fn check(others: &mut Check<'_>) {
-    sections().for_each(|it| (it.check)(others));
+    registered().for_each(|it| (it.check)(others));
 }
 
 /// Reads a section from the merged layers, or its defaults if they do not have it.

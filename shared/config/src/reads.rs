@@ -2,17 +2,8 @@
 
 use messages::Service;
 
-use crate::{Settings, part};
-
-/// Names of sections, dotted keys of values, `durations`; or [`EVERYTHING`]. The scene, and where its objects come
-/// from, which every service reads, go without saying.
-pub type Reads = &'static [&'static str];
-
-/// Every section, and the durations.
-pub const EVERYTHING: Reads = &["*", DURATIONS];
-
-/// The durations of questions and picks, by which decisions are made.
-const DURATIONS: &str = "durations";
+use crate::Settings;
+use crate::part::{self, DURATIONS, Reads};
 
 /// Services of the core. Speech rejects utterances that the dialogue would not understand. The console has the sections
 /// that its pages show, and its live view has sound where recordings have.

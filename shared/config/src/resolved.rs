@@ -5,10 +5,9 @@ use std::sync::LazyLock;
 use diagnostics::{Node, Report, Source, Table, TextFile};
 
 use crate::files::RobotFiles;
-use crate::part;
 
 /// The core's sections, each with its shipped file, which holds the defaults.
-const CORE: [(&str, &str); 6] = [
+pub(crate) const CORE: [(&str, &str); 6] = [
     ("group", include_str!("../../../config/group.toml")),
     ("dialogue", include_str!("../../../config/dialogue.toml")),
     ("speech", include_str!("../../../config/speech.toml")),
@@ -16,13 +15,6 @@ const CORE: [(&str, &str); 6] = [
     ("console", include_str!("../../../config/console.toml")),
     ("study", include_str!("../../../config/study.toml")),
 ];
-
-/// Name and shipped file of every section: the core's, then those of the registered parts. The name is the first
-/// part of its keys, and that of its file `NAME.toml`.
-pub fn sections() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let of_parts = part::sections().filter_map(|it| Some((*it.key.first()?, it.file?)));
-    CORE.into_iter().chain(of_parts)
-}
 
 /// The core's defaults.
 pub(crate) static CORE_DEFAULTS: LazyLock<Table> =
@@ -94,11 +86,6 @@ impl Resolved {
         collect(&self.tree, &mut Vec::new(), &mut origins);
         origins
     }
-}
-
-/// The defaults of every section: the bottom layer.
-pub(crate) fn defaults() -> Table {
-    parsed(sections(), &Source::built_in())
 }
 
 /// One table per section, from the text of its file.

@@ -3,7 +3,7 @@
 use diagnostics::{Fields, Report, schema_of};
 use serde_json::Value as Json;
 
-use crate::resolved::{defaults, sections};
+use crate::part::{defaults, sections};
 use crate::{arm, console, dialogue, group, part, services, speech, study};
 
 /// A section with its schema.
