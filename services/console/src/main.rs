@@ -1,5 +1,6 @@
 //! The console's program.
 
 fn main() -> std::process::ExitCode {
+    parts::register();
     console::run()
 }

@@ -100,7 +100,7 @@ impl Console {
             history,
             scenes,
             hub: Hub::new(channels, limits.viewers, handover, Metrics::new(paths.recordings())),
-            live: Live::new(settings, paths.name().as_str(), &session, is_live_possible),
+            live: Live::new(settings, paths.name().as_str(), &session, is_live_possible)?,
             access: access(settings, paths)?,
             group: paths.name().to_string(),
             settings: page_settings(settings, study.is_some()),

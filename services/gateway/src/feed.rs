@@ -8,7 +8,6 @@ use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use messages::Service;
 use roster::{Change, Name, Presence};
 use service::exit::{Exit, Failure};
 use service::launch::program_of;
@@ -72,7 +71,7 @@ impl Drop for Feed {
 }
 
 fn launch(keys: &Path) -> Result<Child, Failure> {
-    let program = program_of(Service::Link.name());
+    let program = program_of("link");
     let mut command = Command::new(&program);
     command.args(["fleet", "--watch", "--keys"]).arg(keys);
     command

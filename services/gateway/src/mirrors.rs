@@ -7,7 +7,6 @@ use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use messages::Service;
 use roster::Name;
 use rustix::process::{Pid, Signal, kill_process};
 use service::control::{Request, call};
@@ -125,7 +124,7 @@ impl Mirrors {
     }
 
     fn launch(&self, robot: &Name) -> Result<Child, Failure> {
-        let program = program_of(Service::Link.name());
+        let program = program_of("link");
         let path = self.home.join(format!("{robot}.log"));
         let log =
             safe_files::create_private(&path).map_err(|error| Failure::file(&path, &error))?;

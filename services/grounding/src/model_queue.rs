@@ -3,8 +3,8 @@
 
 use std::collections::VecDeque;
 
-use config::Calibration;
 use messages::{Hypothesis, Interpretation, Observation};
+use model_reader::Calibration;
 use model_reader::{ModelReading, calibrated, parse, utterance};
 use scene::{Intent, Question, Reading, Reference, Response, Scene};
 use serde::{Deserialize, Serialize};

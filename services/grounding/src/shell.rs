@@ -3,11 +3,11 @@
 use crate::io::{In, Out};
 use crate::model_worker::ModelWorker;
 use crate::{Config, GroundingNode, ModelUse};
-use config::{LanguageModel, Settings};
+use config::Settings;
 use language::Reader as TextReader;
 use messages::Service;
 use messages::{Observation, Utterance, topics};
-use model_reader::Client;
+use model_reader::{Client, Configured, LanguageModel};
 use service::Span;
 use service::bus::{PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
@@ -32,8 +32,8 @@ impl Program for GroundingProgram {
     fn config(environment: &Environment, settings: &Settings) -> Result<Config, Failure> {
         let language = language(&environment.arguments, settings.dialogue.language)?;
         let reader = TextReader::new(&settings.scene, language);
-        let model = model(language, settings).map(|model| ModelUse {
-            name: model.name.clone(),
+        let model = model(language, settings)?.map(|model| ModelUse {
+            name: model.name,
             timeout: Span::from_s(model.timeout.as_secs_f64()),
             calibration: model.calibration,
         });
@@ -42,8 +42,9 @@ impl Program for GroundingProgram {
 }
 
 /// The model that is used: none for the paper's reading, which is that of its word lists.
-fn model(language: Language, settings: &Settings) -> Option<&LanguageModel> {
-    settings.dialogue.model.as_ref().filter(|_| language == Language::Careful)
+fn model(language: Language, settings: &Settings) -> Result<Option<LanguageModel>, Failure> {
+    let Configured(model) = settings.part()?;
+    Ok(model.filter(|_| language == Language::Careful))
 }
 
 fn language(arguments: &[String], configured: Language) -> Result<Language, Failure> {
@@ -73,8 +74,8 @@ impl Shell<GroundingNode> for GroundingShell {
     fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
         let (settings, inbox) = (context.settings, context.devices.clone());
         let language = language(&context.environment.arguments, settings.dialogue.language)?;
-        let model = model(language, settings).map(|model| {
-            let client = Client::new(model, &settings.scene)
+        let model = model(language, settings)?.map(|model| {
+            let client = Client::new(&model, &settings.scene)
                 .map_err(|error| Failure::new(Exit::Config, error.to_string()))?;
             ModelWorker::start(client, inbox.clone())
                 .map_err(|error| Failure::new(Exit::NotReached, format!("thread: {error}")))

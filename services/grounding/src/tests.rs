@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use config::{Calibration, LanguageModel};
 use language::Reader;
 use messages::{AskedQuestion, Hypothesis, Interpretation, Observation, Utterance};
 use model_reader::Client;
+use model_reader::{Calibration, LanguageModel};
 use scene::{Response, Scene};
 use serde_json::{Value as Json, json};
 use service::{Effects, Event, Never, Node, Span, Time, clock, worker_channel};

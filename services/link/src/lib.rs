@@ -14,6 +14,7 @@ pub mod names;
 pub mod offset;
 pub mod presence;
 pub mod say;
+pub mod settings;
 pub mod trouble;
 
 #[cfg(feature = "zenoh")]
@@ -34,3 +35,19 @@ pub mod session;
 pub mod simulated;
 #[cfg(feature = "zenoh")]
 pub mod watch;
+
+use config::{EVERYTHING, Part, PartService, Registered};
+
+/// The service and its section. Each mirror begins with the settings in force.
+pub static PART: Part = Part {
+    name: settings::NAME,
+    service: Some(PartService { reads: EVERYTHING, is_client: true }),
+    sections: &[Registered::of::<settings::Settings>()],
+};
+
+/// The program, or the feature that a build needs for it.
+#[cfg(feature = "zenoh")]
+pub const PROGRAM: Result<fn() -> std::process::ExitCode, &str> = Ok(cli::run);
+/// The program, or the feature that a build needs for it.
+#[cfg(not(feature = "zenoh"))]
+pub const PROGRAM: Result<fn() -> std::process::ExitCode, &str> = Err("zenoh");

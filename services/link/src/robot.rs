@@ -45,7 +45,7 @@ const STATUS_EVERY: Duration = Duration::from_millis(2_000);
 /// Runs the service until it is shut down.
 pub fn run() -> ExitCode {
     let about = "links the group to operators elsewhere (docs/remote.md)";
-    service_loop::program(Service::Link.name(), about, serve)
+    service_loop::program(crate::settings::NAME, about, serve)
 }
 
 fn serve(arguments: Vec<String>) -> Result<(), Failure> {
@@ -99,16 +99,17 @@ impl Robot {
         let failed = |what: &'static str| {
             move |e: std::io::Error| Failure::new(Exit::NotReached, format!("{what}: {e}"))
         };
-        let folder = settings.link.keys.clone().ok_or_else(|| {
+        let own: crate::settings::Settings = settings.part()?;
+        let folder = own.keys.ok_or_else(|| {
             let what = "link.keys is not set; help: set it to the folder robots/NAME of `whichone link init`";
             Failure::new(Exit::Config, what)
         })?;
         let identity = Identity::load(&folder)?;
         identity.require(true, &folder)?;
         let paths = environment.paths.clone();
-        let client = Client::of_service(environment, Service::Link.name())?;
+        let client = Client::of_service(environment, crate::settings::NAME)?;
         let bus = client.bus();
-        let wake_listener = bus.wake_listener(Service::Link)?;
+        let wake_listener = bus.wake_listener(Service::Other(crate::settings::NAME))?;
         let start = random_number();
         let sources = TopicSources::open(bus, &settings, start)?;
         let (sender, inbox) = worker_channel::channel().map_err(failed("inbox"))?;

@@ -6,4 +6,16 @@
 
 mod service;
 
+use config::{EVERYTHING, Part, PartService, Registered};
+
 pub use self::service::run;
+
+/// The service and its section. Each recording holds the settings in force.
+pub static PART: Part = Part {
+    name: "recorder",
+    service: Some(PartService { reads: EVERYTHING, is_client: false }),
+    sections: &[Registered::of::<recording::settings::Recorder>()],
+};
+
+/// The program.
+pub const PROGRAM: Result<fn() -> std::process::ExitCode, &str> = Ok(run);

@@ -63,10 +63,11 @@ impl Recorder {
         let reader = GroupReader::open(client.bus(), settings, paths.log(), since);
         let reader = reader.map_err(|error| match error {
             OpenError::Bus(error) => error.into(),
+            OpenError::Settings(found) => found.into(),
             OpenError::Robot(found) => Failure::new(Exit::Config, found),
         })?;
         let attached = attached(environment, settings);
-        let limits = settings.group.recorder.clone();
+        let limits: recording::settings::Recorder = settings.part()?;
         let ring = Ring::new(folder.clone(), limits, attached, Box::new(free_space));
         let mut recorder = Self {
             _client: client,

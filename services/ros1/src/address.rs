@@ -1,5 +1,6 @@
 //! Where the master is, and under which name the robot reaches us.
 
+use crate::settings::Ros1;
 use crate::xmlrpc::authority;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener, ToSocketAddrs, UdpSocket};
@@ -22,7 +23,7 @@ impl Address {
     /// # Errors
     /// No master is named.
     pub fn new(
-        configured: &config::Ros1,
+        configured: &Ros1,
         variable: impl Fn(&str) -> Option<String>,
     ) -> Result<Self, String> {
         let variable = |name: &str| variable(name).filter(|value| !value.trim().is_empty());
@@ -106,10 +107,11 @@ pub(crate) fn with_port(host: &str, port: impl std::fmt::Display) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::Ros1Objects;
 
-    fn ros1(master: Option<&str>, host: Option<&str>) -> config::Ros1 {
+    fn ros1(master: Option<&str>, host: Option<&str>) -> Ros1 {
         let [master, host] = [master, host].map(|text| text.map(str::to_owned));
-        config::Ros1 { master, host, objects: config::Ros1Objects::default() }
+        Ros1 { master, host, objects: Ros1Objects::default() }
     }
 
     #[test]

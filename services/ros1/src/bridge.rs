@@ -4,6 +4,7 @@ use crate::address::Address;
 use crate::clock::StampClock;
 use crate::node::{Node, Topics};
 use crate::publication::Publication;
+use crate::settings::Ros1;
 use crate::subscription::{Sink, Subscription};
 use crate::wire::{Message, RosTime, Unreadable};
 use crate::{convert, detectors, guarded, types as ros};
@@ -264,7 +265,8 @@ fn subscriptions(waiting: &Arc<Waiting>) -> Vec<Arc<Subscription>> {
 
 impl Shell<Bridge> for BridgeShell {
     fn open(context: &Context<'_, In>) -> Result<Self, Failure> {
-        let address = Address::new(&context.settings.arm.ros1, |name| std::env::var(name).ok());
+        let settings: Ros1 = context.settings.part()?;
+        let address = Address::new(&settings, |name| std::env::var(name).ok());
         let address = address.map_err(|error| Failure::new(Exit::Config, error))?;
         let wake = context.devices.clone();
         let (reports, sightings) = (Mutex::default(), Mutex::default());
@@ -272,7 +274,7 @@ impl Shell<Bridge> for BridgeShell {
         let seen = Arc::clone(&waiting);
         let take: detectors::Take = Arc::new(move |sighting| seen.put_sighting(sighting));
         let mut subscribed = subscriptions(&waiting);
-        subscribed.extend(detectors::subscriptions(context.settings, &take));
+        subscribed.extend(detectors::subscriptions(&settings.objects, context.settings, &take));
         let to_robot = ToRobot::new();
         let topics = Topics { published: to_robot.all(), subscribed };
         Ok(Self {

@@ -2,12 +2,14 @@
 
 use crate::clock::StampClock;
 use crate::guarded;
+use crate::settings::Ros1Objects;
 use crate::subscription::{Sink, Subscription};
 use crate::types as ros;
 use crate::wire::{Message, RosTime};
-use config::{Labels, Settings};
+use ::ros::detectors::Labels;
+use config::Settings;
 use messages::Sighting;
-use perception::{Detector, Hypothesis, Pose, Reported};
+use perception::{Detector, Frame, Hypothesis, Pose, Reported};
 use service::Time;
 use service::client::random_number;
 use std::sync::{Arc, Mutex};
@@ -111,28 +113,35 @@ fn hypothesis(result: &ros::ObjectHypothesisWithPose) -> Hypothesis {
 pub type Take = Arc<dyn Fn(Sighting) + Send + Sync>;
 
 /// Returns the subscriptions of the detectors that are configured.
-pub fn subscriptions(settings: &Settings, take: &Take) -> Vec<Arc<Subscription>> {
-    let config::Ros1Objects { detections, apriltags, ar_markers, .. } = &settings.arm.ros1.objects;
+pub fn subscriptions(
+    objects: &Ros1Objects,
+    settings: &Settings,
+    take: &Take,
+) -> Vec<Arc<Subscription>> {
+    let Ros1Objects { detections, apriltags, ar_markers, labels } = objects;
+    let frames = &settings.group.perception.tracker.frames;
     let all = [
         detections
             .as_ref()
-            .map(|topic| subscription::<ros::Detection3DArray>(topic, settings, take)),
+            .map(|topic| subscription::<ros::Detection3DArray>(topic, labels, frames, take)),
         apriltags
             .as_ref()
-            .map(|topic| subscription::<ros::AprilTagDetectionArray>(topic, settings, take)),
-        ar_markers.as_ref().map(|topic| subscription::<ros::AlvarMarkers>(topic, settings, take)),
+            .map(|topic| subscription::<ros::AprilTagDetectionArray>(topic, labels, frames, take)),
+        ar_markers
+            .as_ref()
+            .map(|topic| subscription::<ros::AlvarMarkers>(topic, labels, frames, take)),
     ];
     all.into_iter().flatten().map(Arc::new).collect()
 }
 
 fn subscription<M: Detections + 'static>(
     topic: &str,
-    settings: &Settings,
+    labels: &Labels,
+    frames: &[Frame],
     take: &Take,
 ) -> Subscription {
-    let Labels { classes, markers } = &settings.arm.ros1.objects.labels;
+    let Labels { classes, markers } = labels;
     let labels = if M::OF_CLASSES { classes } else { markers };
-    let frames = &settings.group.perception.tracker.frames;
     let detector = Arc::new(Mutex::new(Detector::new(topic, labels, Vec::new(), frames)));
     let take = Arc::clone(take);
     let name = topic.to_owned();
@@ -168,7 +177,7 @@ fn report_unused(topic: &str, detector: &mut Detector) {
 mod tests {
     use super::*;
     use crate::wire::Field;
-    use perception::{Change, Detection, Frame, Label, Look};
+    use perception::{Change, Detection, Label, Look};
 
     /// Bytes that genpy has written.
     fn bytes(hex: &str) -> Vec<u8> {

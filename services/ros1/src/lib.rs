@@ -12,6 +12,7 @@ pub mod convert;
 pub mod detectors;
 pub mod node;
 pub mod publication;
+pub mod settings;
 pub mod subscription;
 #[cfg(test)]
 mod tests;
@@ -23,7 +24,15 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use config::{Part, Registered};
 use service::exit::Exit;
+
+/// The section of the bridge; its service is `baxter`, whose program it replaces.
+pub static PART: Part =
+    Part { name: "ros1", service: None, sections: &[Registered::of::<settings::Ros1>()] };
+
+/// The program.
+pub const PROGRAM: Result<fn() -> ExitCode, &str> = Ok(run);
 
 static REPLACED: AtomicBool = AtomicBool::new(false);
 

@@ -1,10 +1,10 @@
 //! The node's publishers, subscriptions and services.
 
+use crate::settings::{Network, Ros2, Ros2Objects};
 use crate::types::{
     AlvarMarkers, Detection3DArray, DiagnosticArray, Empty, JointState, MarkerArray, Text,
     TfMessage,
 };
-use config::{Network, Ros2, Ros2Objects};
 use opening::{Opening, latched, reliable};
 use ros2_client::{Context, Node, NodeName, NodeOptions};
 use rustdds::DomainParticipantBuilder;

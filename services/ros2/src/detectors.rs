@@ -1,6 +1,7 @@
 //! Messages of detectors as sightings for the group.
 
 use crate::clock::SystemClock;
+use crate::settings::Ros2Objects;
 use crate::types::{
     AlvarMarker, AlvarMarkers, Detection3D, Detection3DArray, Header, Pose, TfMessage, Time,
 };
@@ -126,8 +127,8 @@ pub struct Detectors {
 
 impl Detectors {
     /// Returns the detectors, also of topics that are not configured.
-    pub fn new(settings: &Settings) -> Self {
-        let config::Ros2Objects { detections, ar_markers, tf, labels } = &settings.ros2.objects;
+    pub fn new(objects: &Ros2Objects, settings: &Settings) -> Self {
+        let Ros2Objects { detections, ar_markers, tf, labels } = objects;
         let frames = &settings.group.perception.tracker.frames;
         let of = |topic: &Option<String>, labels, names| {
             let topic = topic.clone().unwrap_or_default();

@@ -11,6 +11,7 @@ pub mod hear;
 pub mod joints;
 pub mod objects;
 pub mod orders;
+pub mod settings;
 pub mod types;
 
 #[cfg(feature = "dds")]
@@ -20,8 +21,18 @@ pub mod node;
 #[cfg(feature = "dds")]
 mod threads;
 
-/// Name of a topic or service: own names are below the node's, `joint_states` is in its namespace.
-pub fn own_name(settings: &config::Ros2, name: &str) -> (String, String) {
-    let namespace = settings.namespace.trim_end_matches('/');
-    (format!("{namespace}/{}", settings.node), name.to_owned())
-}
+use config::{Part, PartService, Registered};
+
+/// The service and its section.
+pub static PART: Part = Part {
+    name: settings::NAME,
+    service: Some(PartService { reads: &["ros2", "arm"], is_client: true }),
+    sections: &[Registered::of::<settings::Ros2>()],
+};
+
+/// The program, or the feature that a build needs for it.
+#[cfg(feature = "dds")]
+pub const PROGRAM: Result<fn() -> std::process::ExitCode, &str> = Ok(node::run);
+/// The program, or the feature that a build needs for it.
+#[cfg(not(feature = "dds"))]
+pub const PROGRAM: Result<fn() -> std::process::ExitCode, &str> = Err("dds");

@@ -4,6 +4,7 @@ use crate::dds::Dds;
 use crate::detectors::Detectors;
 use crate::diagnostics::Counters;
 use crate::joints::JointNames;
+use crate::settings::{NAME, Ros2};
 use crate::types::{Text, Triggered};
 use crate::{hear, orders, threads};
 use config::Settings;
@@ -36,7 +37,7 @@ const LOOK_EVERY: Span = Span::from_ms(20);
 /// Runs the service until it is shut down.
 pub fn run() -> ExitCode {
     let about = "presents the group as a ROS 2 node (docs/ros2.md)";
-    service_loop::program(Service::Ros2.name(), about, serve)
+    service_loop::program(NAME, about, serve)
 }
 
 fn serve(arguments: Vec<String>) -> Result<(), Failure> {
@@ -92,12 +93,13 @@ struct Node {
 impl Node {
     fn open(environment: &Environment, settings: &Settings) -> Result<Self, Failure> {
         let paths = &environment.paths;
+        let own: Ros2 = settings.part()?;
         let failed = |what: &'static str| {
             move |e: std::io::Error| Failure::new(Exit::NotReached, format!("{what}: {e}"))
         };
-        let client = Client::of_service(environment, Service::Ros2.name())?;
+        let client = Client::of_service(environment, NAME)?;
         let bus = client.bus();
-        let wake_listener = bus.wake_listener(Service::Ros2)?;
+        let wake_listener = bus.wake_listener(Service::Other(NAME))?;
         let mut latest = LatestTopics::open(bus)?;
         if settings.group.perception.enabled {
             latest = latest.with_table(bus, &settings.scene)?;
@@ -114,14 +116,14 @@ impl Node {
         let files = settings.robot_files();
         let robot = robot_model::Robot::read(&files.urdf, files.srdf.as_ref());
         let robot = robot.map_err(|found| Failure::new(Exit::Config, found.to_string()))?;
-        let dds = Dds::open(&settings.ros2).map_err(|e| Failure::new(Exit::NotReached, e))?;
+        let dds = Dds::open(&own).map_err(|e| Failure::new(Exit::NotReached, e))?;
         let mut counters = Counters::default();
         dds.robot_description
             .publish(Text { data: files.urdf.text.clone() }, &mut counters.dropped);
         let (sender, statuses) = worker_channel::channel().map_err(failed("inbox"))?;
         health::watch(paths, sender).map_err(failed("supervisor's thread"))?;
         let threads = threads::running();
-        let config::Ros2 { domain_id, namespace, node, network, .. } = &settings.ros2;
+        let Ros2 { domain_id, namespace, node, network, .. } = &own;
         tracing::info!(domain_id, namespace, node, ?network, threads, "joined the DDS domain");
         let began = clock::now();
         Ok(Self {
@@ -136,7 +138,7 @@ impl Node {
             status: Err("no status yet".to_owned()),
             scene,
             names: JointNames::new(&robot),
-            detectors: Detectors::new(settings),
+            detectors: Detectors::new(&own.objects, settings),
             latest: Latest::default(),
             lines: Lines::new(began),
             world: None,

@@ -5,8 +5,7 @@ use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use config::{Section, ServiceConfig, Settings};
-use messages::Service;
+use config::{ServiceConfig, Settings};
 use service::group::GroupPaths;
 use service::kept_settings;
 use service::launch::Options;
@@ -142,7 +141,7 @@ fn service(service: &ServiceConfig, settings: &Settings) -> ServiceSpec {
         stop_deadline: service.stop_deadline,
         nice: service.nice,
         restart: service.restart,
-        fingerprint: fingerprint(&service.name, settings),
+        fingerprint: settings.read_by(&service.name),
     }
 }
 
@@ -152,34 +151,6 @@ fn beside(name: &str) -> String {
     let own = env::current_exe().ok();
     let path = own.and_then(|own| Some(own.parent()?.join(&program).display().to_string()));
     path.unwrap_or(program)
-}
-
-/// Returns the text of everything that a service reads: its own section, and the scene and where its objects
-/// come from, which all read.
-/// Speech rejects utterances that the dialogue would not understand, so it reads that section too. A
-/// service that is not built in may read all of them. Decisions depend on the robot's durations.
-fn fingerprint(name: &str, settings: &Settings) -> String {
-    let (sections, decides): (&[Section], bool) = match Service::from_name(name) {
-        Some(Service::Speech) => (&[Section::Speech, Section::Dialogue], false),
-        Some(Service::Grounding) => (&[Section::Dialogue], false),
-        Some(Service::Policy) => (&[Section::Dialogue], true),
-        Some(Service::Arm) => (&[Section::Arm], false),
-        Some(Service::Console) => (&Section::ALL[1..], false),
-        // Each recording holds the settings in force, and each mirror begins with them.
-        Some(Service::Recorder | Service::Link) => (&Section::ALL, true),
-        Some(Service::Ros2) => (&[Section::Ros2, Section::Arm], false),
-        Some(Service::Robot | Service::Other(_)) | None => {
-            (&[Section::Speech, Section::Dialogue, Section::Arm], true)
-        }
-    };
-    let texts = sections.iter().map(|&section| settings.section_text(section));
-    let durations = decides.then(|| settings.durations_text());
-    let texts = texts.chain([settings.scene_file().text.clone()]);
-    // The live view has sound where recordings have.
-    let sound =
-        (name == Service::Console.name()).then(|| settings.group.recorder.sound.to_string());
-    let texts = texts.chain(sound);
-    texts.chain(durations).chain([settings.perception_text()]).collect()
 }
 
 #[cfg(test)]

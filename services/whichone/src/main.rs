@@ -7,5 +7,6 @@ mod hosted;
 mod shipped_files;
 
 fn main() -> ExitCode {
+    parts::register();
     hosted::run().unwrap_or_else(|| whichone::run(std::env::args_os(), shipped_files::FILES).code())
 }

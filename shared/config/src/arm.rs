@@ -4,8 +4,6 @@ use diagnostics::{Fields, Report, Table};
 use perception::CameraSettings;
 use vocabulary::time::Span;
 
-use crate::detectors::{self, Ros1Objects};
-
 /// The arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
@@ -28,8 +26,6 @@ pub struct Arm {
     pub baxter: Baxter,
     /// The simulated Baxter.
     pub simulated: Simulated,
-    /// The bridge to a Baxter's ROS 1 topics.
-    pub ros1: Ros1,
 }
 
 /// Settings of motions. Positions in frame `base`.
@@ -60,17 +56,6 @@ pub struct Grasps {
     pub attempts: u32,
     /// Standard deviation of the objects' positions across the fingers, metres; simulated worlds only.
     pub error_m: f64,
-}
-
-/// The bridge to a Baxter's ROS 1 topics. Addresses that are absent come from the environment.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Ros1 {
-    /// The robot's ROS master: `HOST`, `HOST:PORT` or a URI.
-    pub master: Option<String>,
-    /// Name or address under which the robot reaches this machine.
-    pub host: Option<String>,
-    /// Objects from detectors.
-    pub objects: Ros1Objects,
 }
 
 /// Tolerances of a Baxter. The defaults are those of the robot's own trajectory server, except for the
@@ -135,7 +120,6 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Arm {
         },
         baxter: f.table("baxter", baxter),
         simulated: f.table("simulated", simulated),
-        ros1: f.table("ros1", ros1),
     };
     if arm.driver == Driver::Baxter && arm.time_scale != 1.0 && !f.is_wrong("time_scale") {
         let what = format!("is {}, but a robot moves in real time", arm.time_scale);
@@ -203,14 +187,6 @@ pub(crate) fn check_camera(arm: &Arm, perceives: bool, tree: &Table, report: &mu
     };
     let path = ["arm", "simulated", "camera", "enabled"];
     report.add(tree.source_of(&path).diagnostic(&path.map(str::to_owned), what, help));
-}
-
-fn ros1(f: &mut Fields<'_>) -> Ros1 {
-    Ros1 {
-        master: f.optional_text("master"),
-        host: f.optional_text("host"),
-        objects: f.table("objects", detectors::ros1),
-    }
 }
 
 fn motion(f: &mut Fields<'_>) -> Motion {

@@ -10,15 +10,11 @@ use vocabulary::{
     PriorObjects, TurnTaking,
 };
 
-use crate::model::{self, LanguageModel};
-
 /// The dialogue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dialogue {
     /// Reading of utterances.
     pub language: Language,
-    /// The language model that reads utterances in place of the built-in reader, if there is one.
-    pub model: Option<LanguageModel>,
     /// Parameters of the observation model (section 3.6 of the paper).
     pub params: Params,
     /// Smoothing of words that are certain; [`Language::Paper`] has `params.alpha` for all words.
@@ -72,7 +68,6 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
     Dialogue {
         language: f
             .choice("language", &[("careful", Language::Careful), ("paper", Language::Paper)]),
-        model: f.table("model", model::read),
         params: params(f),
         alpha_typed: f.number("alpha_typed", 1e-6..=100.0),
         planner,

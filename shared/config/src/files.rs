@@ -119,7 +119,7 @@ impl Found {
 }
 
 /// Help that lists what there is to choose from.
-pub(crate) fn one_of<'a>(known: impl Iterator<Item = &'a str>) -> String {
+pub fn one_of<'a>(known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
     if known.is_empty() {
         "there is none".to_owned()

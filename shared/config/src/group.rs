@@ -24,8 +24,6 @@ pub struct Group {
     pub shared_memory_free_min_mib: u32,
     /// Objects from perception.
     pub perception: Perception,
-    /// The recorder.
-    pub recorder: Recorder,
     /// The flight recorder of each service.
     pub flight: Flight,
 }
@@ -39,21 +37,6 @@ pub struct Flight {
     pub bytes_max: u64,
     /// Space of the disk that stays free, bytes: nothing is recorded below.
     pub free_min: u64,
-}
-
-/// The recorder's ring of files.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Recorder {
-    /// Bytes of all files together; the oldest are deleted.
-    pub bytes_max: u64,
-    /// Age at which a file is deleted.
-    pub age_max: Duration,
-    /// Time after which the next file begins.
-    pub file_max: Duration,
-    /// Space of the disk that recording leaves free, bytes; it pauses below.
-    pub free_min: u64,
-    /// Whether sound that clients stream is recorded.
-    pub sound: bool,
 }
 
 /// Objects from perception.
@@ -102,7 +85,6 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Group {
         shared_memory_free_min_mib: f
             .table("shared_memory", |f| f.whole("free_min_mib", 0..=1 << 20)),
         perception: f.table("perception", perceived),
-        recorder: f.table("recorder", recorder),
         flight: f.table("flight", flight),
     }
 }
@@ -112,16 +94,6 @@ fn flight(f: &mut Fields<'_>) -> Flight {
         enabled: f.flag("enabled"),
         bytes_max: f.whole::<u64>("mib_max", 2..=1 << 24) << 20,
         free_min: f.whole::<u64>("free_min_mib", 0..=1 << 24) << 20,
-    }
-}
-
-fn recorder(f: &mut Fields<'_>) -> Recorder {
-    Recorder {
-        bytes_max: f.whole::<u64>("mib_max", 8..=1 << 24) << 20,
-        age_max: f.seconds("age_max_h", 0.01..=87_600.0) * 3600,
-        file_max: f.seconds("file_minutes", 0.05..=1440.0) * 60,
-        free_min: f.whole::<u64>("free_min_mib", 0..=1 << 24) << 20,
-        sound: f.flag("sound"),
     }
 }
 

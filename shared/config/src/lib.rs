@@ -11,15 +11,14 @@
 
 mod arm;
 mod console;
-mod detectors;
 mod dialogue;
 mod files;
 mod group;
-mod link;
 mod load;
-mod model;
+mod part;
+mod reads;
 mod resolved;
-mod ros2;
+mod schema;
 mod services;
 mod snapshot;
 mod speech;
@@ -35,17 +34,18 @@ use messages::Service;
 use scene::{Scene, StableHash};
 use vocabulary::Durations;
 
-pub use crate::arm::{Arm, Baxter, Driver, Grasps, Motion, Ros1, Simulated};
+pub use crate::arm::{Arm, Baxter, Driver, Grasps, Motion, Simulated};
 pub use crate::console::{Access, Camera, Console};
-pub use crate::detectors::{Labels, Ros1Objects, Ros2Objects};
 pub use crate::dialogue::{CostsFrom, Dialogue, Gesture};
-pub use crate::files::{RobotFiles, read_file};
-pub use crate::group::{Flight, Group, Log, Perception, Recorder, RestartLimits};
-pub use crate::link::Link;
+pub use crate::files::{RobotFiles, one_of, read_file};
+pub use crate::group::{Flight, Group, Log, Perception, RestartLimits};
 pub use crate::load::Examined;
-pub use crate::model::{Calibration, LanguageModel};
-pub use crate::resolved::{Origin, Section};
-pub use crate::ros2::{Network, Ros2, ServiceMapping};
+pub use crate::part::{
+    Check, EVERYTHING, Part, PartService, Reads, Registered, Section, part_service, register,
+    sections,
+};
+pub use crate::resolved::Origin;
+pub use crate::schema::{SectionSchema, schemas};
 pub use crate::services::{Restart, ServiceConfig};
 pub use crate::snapshot::{SNAPSHOT_FILE, WORDS_FILE};
 pub use crate::speech::{Microphone, MicrophoneMode, Recogniser, Speech, Voice};
@@ -68,10 +68,6 @@ pub struct Settings {
     pub study: Study,
     /// The web page.
     pub console: Console,
-    /// The ROS 2 node.
-    pub ros2: Ros2,
-    /// The link to operators elsewhere.
-    pub link: Link,
     /// The scene; after `preflight`, every object has a place that the arm can reach.
     pub scene: Scene,
     /// Measured seconds of every question and pick, under [`CostsFrom::Robot`]; set by
@@ -106,15 +102,18 @@ impl Settings {
         load::examine(dir, profile, overrides, scene)
     }
 
-    /// The merged values of one section as TOML, the dependency of a service that reads only that
-    /// section.
-    pub fn section_text(&self, section: Section) -> String {
+    /// The merged values of one section as TOML, with the files that it names.
+    pub fn section_text(&self, section: &str) -> String {
         self.resolved.section_text(section)
     }
 
-    /// The settings of perception as TOML.
-    pub fn perception_text(&self) -> String {
-        self.resolved.perception_text()
+    /// The section of an optional part. It was checked when the configuration was loaded if the program knows the
+    /// part; a snapshot was checked by the program that wrote it.
+    ///
+    /// # Errors
+    /// Every problem at once; there are none in what was checked.
+    pub fn part<S: Section>(&self) -> Result<S, Diagnostics> {
+        part::read(&self.resolved.tree)
     }
 
     /// Returns the identity of everything that the dialogue manager decides by, with that planner.

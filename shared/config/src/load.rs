@@ -7,11 +7,9 @@ use scene::Scene;
 use toml::Value;
 
 use crate::files::{FILE_BYTES_MAX, Files, names, one_of, read_text};
-use crate::resolved::{self, Resolved, Section};
-use crate::{
-    Settings, arm, console, detectors, dialogue, group, link, ros2, services, snapshot, speech,
-    study,
-};
+use crate::part::{self, Check, sections};
+use crate::resolved::Resolved;
+use crate::{Settings, arm, console, dialogue, group, services, snapshot, speech, study};
 
 /// What a configuration was found to be, before a verdict: further checks may add to the report.
 #[derive(Debug)]
@@ -37,14 +35,14 @@ pub(crate) fn examine(
         return Examined { settings: None, report, arm_is_right: false };
     }
     let mut layers = Vec::new();
-    for section in Section::ALL {
+    for (section, _) in sections() {
         layers.extend(section_file(dir, section, &mut report));
     }
     layers.extend(profile.and_then(|name| profile_file(dir, name, &mut report)));
     for (key, value) in overrides {
         layers.extend(override_layer("--set", (key, value), &mut report));
     }
-    let mut tree = resolved::defaults();
+    let mut tree = part::defaults();
     for layer in layers {
         tree.merge(layer, &mut Vec::new(), &mut report);
     }
@@ -67,60 +65,44 @@ pub(crate) fn check(
     services::complete(tree.table_at("group"), &mut report);
     let mut arm_is_right = before == 0;
     let mut fields = Fields::new(&tree, Vec::new(), &mut report);
-    let group = fields.table("group", group::read);
-    let dialogue = fields.table("dialogue", dialogue::read);
-    let speech = fields.table("speech", speech::read);
+    let group = fields.table("group", |f| part::with_tables("group", f, group::read));
+    let dialogue = fields.table("dialogue", |f| part::with_tables("dialogue", f, dialogue::read));
+    let speech = fields.table("speech", |f| part::with_tables("speech", f, speech::read));
     let arm = fields.table("arm", |f| {
-        let arm = arm::read(f);
+        let arm = part::with_tables("arm", f, arm::read);
         arm_is_right &= f.is_right();
         arm
     });
     let study = fields.table("study", |f| study::read(f, &dialogue.planner));
-    let console = fields.table("console", console::read);
-    let ros2 = fields.table("ros2", ros2::read);
-    let link = fields.table("link", link::read);
+    let console = fields.table("console", |f| part::with_tables("console", f, console::read));
+    part::read_sections(&mut fields, measured.is_some());
     fields.finish();
-    link::check(&link, &group, &tree, &mut report);
     arm::check_camera(&arm, group.perception.enabled, &tree, &mut report);
     let Files { scene: file, robot } = files;
     let scene =
         file.as_ref().and_then(|TextFile { label, text }| Scene::examine(label, text, &mut report));
     if let Some(scene) = &scene {
         dialogue::check_person(scene, &dialogue.gesture, &tree, &mut report);
-        let perceives = group.perception.enabled;
-        let mut check = detectors::Check { scene, perceives, tree: &tree, report: &mut report };
-        check.ros1(&arm.ros1.objects);
-        check.ros2(&ros2.objects);
     }
+    let scene_found = scene.as_ref();
+    part::check(&mut Check { group: &group, scene: scene_found, tree: &tree, report: &mut report });
     let settings = file.zip(scene).zip(robot).map(|((file, scene), robot)| {
         // Other problems would be reported again as missing durations.
         let durations = measured.filter(|_| report.count() == 0).and_then(|(node, source)| {
             snapshot::read_durations(node, &dialogue, &scene, &source, &mut report)
         });
         let resolved = Resolved { tree, scene: file, robot, snapshot: None };
-        Settings {
-            group,
-            dialogue,
-            speech,
-            arm,
-            study,
-            console,
-            ros2,
-            link,
-            scene,
-            durations,
-            resolved,
-        }
+        Settings { group, dialogue, speech, arm, study, console, scene, durations, resolved }
     });
     Examined { settings, report, arm_is_right }
 }
 
-fn section_file(dir: &Path, section: Section, report: &mut Report) -> Option<Table> {
-    let path = dir.join(section.file());
+fn section_file(dir: &Path, section: &str, report: &mut Report) -> Option<Table> {
+    let path = dir.join(format!("{section}.toml"));
     let text = read_text(&path, FILE_BYTES_MAX, report)?;
     let source = Source::new(path.display().to_string(), 1);
     let table = Table::parse(&text, &source, report)?;
-    Some(wrapped(section.name(), Node::Table(table)))
+    Some(wrapped(section, Node::Table(table)))
 }
 
 fn profile_file(dir: &Path, name: &str, report: &mut Report) -> Option<Table> {

@@ -1,76 +1,24 @@
 //! The merged layers behind the settings.
 
+use std::sync::LazyLock;
+
 use diagnostics::{Node, Report, Source, Table, TextFile};
 
 use crate::files::RobotFiles;
 
-/// A part of the settings with a file of its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Section {
-    /// `group.toml`
-    Group,
-    /// `dialogue.toml`
-    Dialogue,
-    /// `speech.toml`
-    Speech,
-    /// `arm.toml`
-    Arm,
-    /// `study.toml`
-    Study,
-    /// `console.toml`
-    Console,
-    /// `ros2.toml`
-    Ros2,
-    /// `link.toml`
-    Link,
-}
+/// The core's sections, each with its shipped file, which holds the defaults.
+pub(crate) const CORE: [(&str, &str); 6] = [
+    ("group", include_str!("../../../config/group.toml")),
+    ("dialogue", include_str!("../../../config/dialogue.toml")),
+    ("speech", include_str!("../../../config/speech.toml")),
+    ("arm", include_str!("../../../config/arm.toml")),
+    ("console", include_str!("../../../config/console.toml")),
+    ("study", include_str!("../../../config/study.toml")),
+];
 
-impl Section {
-    /// Every section.
-    pub const ALL: [Self; 8] = [
-        Self::Group,
-        Self::Dialogue,
-        Self::Speech,
-        Self::Arm,
-        Self::Console,
-        Self::Study,
-        Self::Ros2,
-        Self::Link,
-    ];
-
-    /// Its name: the first part of its keys.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Group => "group",
-            Self::Dialogue => "dialogue",
-            Self::Speech => "speech",
-            Self::Arm => "arm",
-            Self::Study => "study",
-            Self::Console => "console",
-            Self::Ros2 => "ros2",
-            Self::Link => "link",
-        }
-    }
-
-    /// Its file in the configuration folder.
-    pub fn file(self) -> String {
-        format!("{}.toml", self.name())
-    }
-
-    /// The shipped file, which holds the defaults.
-    fn shipped(self) -> &'static str {
-        match self {
-            Self::Group => include_str!("../../../config/group.toml"),
-            Self::Dialogue => include_str!("../../../config/dialogue.toml"),
-            Self::Speech => include_str!("../../../config/speech.toml"),
-            Self::Arm => include_str!("../../../config/arm.toml"),
-            Self::Study => include_str!("../../../config/study.toml"),
-            Self::Console => include_str!("../../../config/console.toml"),
-            Self::Ros2 => include_str!("../../../config/ros2.toml"),
-            Self::Link => include_str!("../../../config/link.toml"),
-        }
-    }
-}
+/// The core's defaults.
+pub(crate) static CORE_DEFAULTS: LazyLock<Table> =
+    LazyLock::new(|| parsed(CORE.into_iter(), &Source::built_in()));
 
 /// One value and where it came from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -95,12 +43,12 @@ pub(crate) struct Resolved {
 }
 
 impl Resolved {
-    pub(crate) fn section_text(&self, section: Section) -> String {
-        let mut text = match self.tree.get(section.name()) {
+    pub(crate) fn section_text(&self, section: &str) -> String {
+        let mut text = match self.tree.get(section) {
             Some(Node::Table(table)) => to_toml(table),
             _ => String::new(),
         };
-        if section == Section::Arm {
+        if section == "arm" {
             text.push_str(&self.robot.urdf.text);
             text.push_str(self.robot.srdf.as_ref().map_or("", |file| &file.text));
         }
@@ -110,7 +58,7 @@ impl Resolved {
     /// The section of the dialogue without the language model: it reads utterances and decides nothing, so that
     /// journals stay those of one manager whichever model is used.
     pub(crate) fn decision_text(&self) -> String {
-        let dialogue = self.tree.get(Section::Dialogue.name()).and_then(Node::as_table).cloned();
+        let dialogue = self.tree.get("dialogue").and_then(Node::as_table).cloned();
         let text = dialogue.map(|mut dialogue| {
             drop(dialogue.take("model"));
             to_toml(&dialogue)
@@ -118,10 +66,19 @@ impl Resolved {
         text.unwrap_or_default()
     }
 
-    pub(crate) fn perception_text(&self) -> String {
-        let group = self.tree.get(Section::Group.name()).and_then(Node::as_table);
-        let perception = group.and_then(|group| group.get("perception")).and_then(Node::as_table);
-        perception.map(to_toml).unwrap_or_default()
+    /// The value at a dotted key as TOML.
+    pub(crate) fn value_text(&self, key: &str) -> String {
+        let mut node = None;
+        let mut table = Some(&self.tree);
+        for part in key.split('.') {
+            node = table.and_then(|table| table.get(part));
+            table = node.and_then(Node::as_table);
+        }
+        match node {
+            Some(Node::Table(table)) => to_toml(table),
+            Some(value) => value.to_string(),
+            None => String::new(),
+        }
     }
 
     pub(crate) fn origins(&self) -> Vec<Origin> {
@@ -131,15 +88,20 @@ impl Resolved {
     }
 }
 
-/// The defaults of every section: the bottom layer.
-pub(crate) fn defaults() -> Table {
-    let source = Source::built_in();
+/// One table per section, from the text of its file.
+///
+/// # Panics
+/// Never: the shipped files are TOML.
+pub(crate) fn parsed<'a>(
+    files: impl Iterator<Item = (&'a str, &'a str)>,
+    source: &Source,
+) -> Table {
     let mut tree = Table::empty(source.clone());
-    for section in Section::ALL {
+    for (name, text) in files {
         let mut report = Report::default();
-        let table = Table::parse(section.shipped(), &source, &mut report);
+        let table = Table::parse(text, source, &mut report);
         let table = report.verdict(table).expect("the shipped files are TOML");
-        tree.entries.push((section.name().to_owned(), Node::Table(table)));
+        tree.entries.push((name.to_owned(), Node::Table(table)));
     }
     tree
 }

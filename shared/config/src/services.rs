@@ -7,6 +7,7 @@ use messages::{SUPERVISOR, Service, Topic, topics};
 use serde_json::json;
 
 use crate::files::one_of;
+use crate::part;
 
 /// Defaults of a service.
 const EACH: &str = r#"
@@ -30,7 +31,7 @@ const NAME_LEN_MAX: usize = 19;
 pub struct ServiceConfig {
     /// Unique name: 1 to 19 of `a–z 0–9 -`.
     pub name: String,
-    /// Program and arguments. `None`, for built-in and optional services only: the program
+    /// Program and arguments. `None`, for services that ship only: the program
     /// `whichone-NAME` beside this one.
     pub command: Option<Vec<String>>,
     /// Services that must be ready before this one is started for the first time. When the group
@@ -97,7 +98,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Vec<ServiceConfig> {
 
 fn one(name: &str, f: &mut Fields<'_>) -> ServiceConfig {
     let command = f.optional_command("command");
-    let knows_its_program = Service::from_name(name).is_some();
+    let knows_its_program = Service::from_name(name).is_some() || part::has_program(name);
     if command.is_none() && !f.is_wrong("command") && !knows_its_program {
         let help = "write `command = [\"program\", \"argument\"]`";
         f.problem("command", "missing: only built-in services have a default program", help);

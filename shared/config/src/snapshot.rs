@@ -11,8 +11,8 @@ use vocabulary::Durations;
 
 use crate::dialogue::CostsFrom;
 use crate::files::{FILE_BYTES_MAX, Files, RobotFiles, read_text};
-use crate::resolved::{self, Resolved, to_toml};
-use crate::{Dialogue, Settings, load};
+use crate::resolved::{Resolved, to_toml};
+use crate::{Dialogue, Settings, load, part};
 
 /// Name of the snapshot in a group's run folder.
 pub const SNAPSHOT_FILE: &str = "settings.toml";
@@ -121,7 +121,7 @@ impl Settings {
             }
         }
         let files = Files { scene, robot: urdf.map(|urdf| RobotFiles { urdf, srdf }) };
-        let mut tree = resolved::defaults();
+        let mut tree = part::defaults();
         tree.merge(layer, &mut Vec::new(), &mut report);
         for (key, value) in changes {
             if let Some(layer) = load::override_layer(option, (key, value), &mut report) {

@@ -282,10 +282,9 @@ impl<'a> Test<'a> {
 
     /// Whether the service has a part in writing this topic.
     fn may_write(&self, topic: &Topic) -> bool {
-        let is_client = match self.bench.service {
-            Service::Console | Service::Ros2 | Service::Link => topic.writer.is_none(),
-            _ => false,
-        };
+        let of_part = config::part_service(self.bench.service.name());
+        let is_client = topic.writer.is_none()
+            && (self.bench.service == Service::Console || of_part.is_some_and(|it| it.is_client));
         let is_configured =
             self.configured().is_some_and(|it| it.writes.iter().any(|it| it == topic.name));
         is_client || is_configured || self.is_of_service(topic)

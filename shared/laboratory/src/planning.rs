@@ -8,6 +8,7 @@ use std::path::Path;
 
 use config::CostsFrom;
 use dialogue::{Model, registry};
+use model_reader::Configured;
 use preflight::ArmSetup;
 use scene::Scene;
 use service::exit::{Exit, Failure};
@@ -46,7 +47,8 @@ pub(crate) fn grounder(args: &GroundArgs) -> Result<Grounder, Failure> {
 
 /// The calibrator of the configured language model for a scene.
 pub(crate) fn calibrator(scene: &Path, config: &ConfigArgs) -> Result<Calibrator, Failure> {
-    let model = configuration::settings(config)?.dialogue.model.ok_or_else(|| {
+    let Configured(model) = configuration::settings(config)?.part()?;
+    let model = model.ok_or_else(|| {
         let help = "help: set dialogue.model.url and dialogue.model.model";
         let what = "--calibrate: the configuration has no language model";
         Failure::new(Exit::Config, format!("{what}; {help}"))

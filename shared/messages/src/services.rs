@@ -5,8 +5,8 @@ use std::sync::{Mutex, PoisonError};
 /// Name of the process that starts the services, reserved for it.
 pub const SUPERVISOR: &str = "supervisor";
 
-/// A service of a group. Those with a variant of their own have a program `whichone-NAME` that ships with the
-/// others; any other service has a command in the configuration.
+/// A service of a group. Those with a variant of their own are the core's and have a program `whichone-NAME`; so has an
+/// optional part. A service from outside has a command in the configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Service {
     /// Recognises and synthesises speech.
@@ -23,11 +23,7 @@ pub enum Service {
     Recorder,
     /// Simulates a Baxter behind the robot's topics; optional.
     Robot,
-    /// Presents the group as a ROS 2 node; optional.
-    Ros2,
-    /// Links the group to operators elsewhere; optional.
-    Link,
-    /// A service that does not ship with the others, by its name.
+    /// Any other service, by its name: an optional part, or one that does not ship with the others.
     Other(&'static str),
 }
 
@@ -52,13 +48,11 @@ impl Service {
             Self::Console => "console",
             Self::Recorder => "recorder",
             Self::Robot => "baxter",
-            Self::Ros2 => "ros2",
-            Self::Link => "link",
             Self::Other(name) => name,
         }
     }
 
-    /// Returns the service with this name, whether it ships with the others or not. The names of the others are
+    /// Returns the service with this name. The names of those outside the core are
     /// kept for the life of the process, each once.
     pub fn named(name: &str) -> Self {
         static OTHERS: Mutex<Vec<&'static str>> = Mutex::new(Vec::new());
@@ -74,12 +68,10 @@ impl Service {
         Self::Other(kept)
     }
 
-    /// Returns the shipped service with this name.
+    /// Returns the core's service with this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::BUILT_IN
-            .into_iter()
-            .chain([Self::Robot, Self::Ros2, Self::Link])
-            .find(|service| service.name() == name)
+        let mut all = Self::BUILT_IN.into_iter().chain([Self::Robot]);
+        all.find(|service| service.name() == name)
     }
 }
 

@@ -175,7 +175,7 @@ pub const STATUS: Topic = Topic {
 };
 /// Arm to clients, 100 Hz while it is busy, and to the ROS 2 node, which passes them on.
 pub const JOINTS: Topic = Topic {
-    readers: &[Service::Ros2],
+    readers: &[Service::Other("ros2")],
     buffer: WINDOW,
     // A motion may begin just after a look at a group at rest.
     recorded: 2 * RECORDED_FAST,

@@ -1,7 +1,7 @@
 //! From weights of a model to probabilities: an exponent, and a share of the built-in reader, fitted to labelled
 //! utterances by maximum likelihood.
 
-use config::Calibration;
+use crate::Calibration;
 use scene::{Doubt, Reading};
 
 /// Probability with which a meaning counts that no reading has: a log loss is finite.

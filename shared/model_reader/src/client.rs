@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use config::LanguageModel;
+use crate::LanguageModel;
 use scene::Scene;
 use serde_json::Value as Json;
 

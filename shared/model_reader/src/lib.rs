@@ -7,6 +7,7 @@ mod answer;
 mod calibration;
 mod client;
 mod prompt;
+mod settings;
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
@@ -16,3 +17,11 @@ pub use answer::{AnswerError, ModelReading, parse};
 pub use calibration::{Case, LOSS_FLOOR, calibrated, fit, held_out_loss, log_loss};
 pub use client::{Client, ClientError};
 pub use prompt::{Prompt, utterance};
+pub use settings::{Calibration, Configured, LanguageModel};
+
+/// The section of the language model.
+pub static PART: config::Part = config::Part {
+    name: "model_reader",
+    service: None,
+    sections: &[config::Registered::of::<Configured>()],
+};

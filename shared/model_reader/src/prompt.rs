@@ -1,6 +1,6 @@
 //! What the model is asked: once the rules, the scene and the form of the answer, then each utterance.
 
-use config::LanguageModel;
+use crate::LanguageModel;
 use scene::{Intent, Question, Reference, Response, Scene, question_to_json};
 use serde_json::{Value as Json, json};
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use config::{Calibration, LanguageModel};
+use crate::{Calibration, LanguageModel};
 use scene::{Question, Reading, Response, Scene};
 use serde_json::{Value as Json, json};
 

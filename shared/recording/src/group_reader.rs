@@ -14,6 +14,7 @@ use crate::channels::{CDR_HEADER, ChannelId, group_topics};
 use crate::clock::WallClock;
 use crate::payload;
 use crate::picture::{Painter, Shown};
+use crate::settings::Recorder;
 
 /// A message of a channel.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +38,9 @@ pub enum OpenError {
     /// The robot's description is invalid.
     #[error("{0}")]
     Robot(String),
+    /// The settings of recordings are invalid.
+    #[error(transparent)]
+    Settings(diagnostics::Diagnostics),
 }
 
 /// A topic and its reader.
@@ -97,7 +101,8 @@ impl GroupReader {
         let robot = robot.map_err(|found| OpenError::Robot(found.to_string()))?;
         let topics = group_topics().enumerate();
         let topics = topics.map(|(place, topic)| (ChannelId::of_topic(place), topic));
-        let is_shown = |channel: ChannelId| settings.group.recorder.sound || !channel.is_sound();
+        let Recorder { sound, .. } = settings.part().map_err(OpenError::Settings)?;
+        let is_shown = |channel: ChannelId| sound || !channel.is_sound();
         let mut unopened: Vec<_> = topics.filter(|(channel, _)| is_shown(*channel)).collect();
         unopened.reverse();
         let painter = Painter::new(settings, &robot, log_folder);

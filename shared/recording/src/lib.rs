@@ -26,6 +26,7 @@ pub mod payload;
 pub mod picture;
 pub mod recover;
 pub mod ring;
+pub mod settings;
 
 /// End of the name of a complete recording.
 pub const EXTENSION: &str = "mcap";

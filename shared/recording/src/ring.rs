@@ -12,6 +12,7 @@ use crate::clock::WallClock;
 use crate::file::{Attached, Recording};
 use crate::group_reader::Sample;
 use crate::list::{Entry, entries};
+use crate::settings::Recorder;
 
 /// Interval of [`Ring::tend`]; a writer that is killed loses as much at most.
 pub const TEND_EVERY: Span = Span::from_ms(1_000);
@@ -39,7 +40,7 @@ pub fn free_space(folder: &Path) -> io::Result<u64> {
 /// Files of one recorder, the newest of which is written.
 pub struct Ring {
     folder: PathBuf,
-    limits: config::Recorder,
+    limits: Recorder,
     attached: Attached,
     channels: Vec<Channel>,
     free_space: FreeSpace,
@@ -53,7 +54,7 @@ impl Ring {
     /// A ring in `folder`, which exists. Nothing is written before the first [`Ring::tend`].
     pub fn new(
         folder: PathBuf,
-        limits: config::Recorder,
+        limits: Recorder,
         attached: Attached,
         free_space: FreeSpace,
     ) -> Self {

@@ -13,8 +13,10 @@ mod viewers;
 use std::collections::BTreeMap;
 
 use config::Settings;
+use diagnostics::Diagnostics;
 use recording::channels::{Channel, ChannelId, group_topics, shown};
 use recording::live as protocol;
+use recording::settings::Recorder;
 
 pub use socket::serve;
 use viewers::Viewers;
@@ -41,13 +43,22 @@ pub struct Live {
 
 impl Live {
     /// Makes the live view of a group. The session identifies this start of the console.
-    pub fn new(settings: &Settings, group: &str, session: &str, is_possible: bool) -> Self {
+    ///
+    /// # Errors
+    /// The snapshot does not fit this version.
+    pub fn new(
+        settings: &Settings,
+        group: &str,
+        session: &str,
+        is_possible: bool,
+    ) -> Result<Self, Diagnostics> {
+        let Recorder { sound, .. } = settings.part()?;
         let version = env!("CARGO_PKG_VERSION").to_owned();
-        let channels: Vec<(ChannelId, Channel)> = shown(settings.group.recorder.sound).collect();
+        let channels: Vec<(ChannelId, Channel)> = shown(sound).collect();
         let metadata = BTreeMap::from([("group", group.to_owned()), ("version", version.clone())]);
         let name = format!("whichone {group}");
         let states = channels.iter().map(|(id, channel)| (*id, channel.is_state));
-        Self {
+        Ok(Self {
             viewers: Viewers::new(states),
             is_possible,
             origins: settings.console.foxglove_origins.clone(),
@@ -62,7 +73,7 @@ impl Live {
                 ("/scene", settings.scene.name().to_owned()),
                 ("/version", version),
             ],
-        }
+        })
     }
 
     /// Returns whether pages of another origin may connect.

@@ -1,8 +1,7 @@
 //! Opening of publishers, subscriptions and services.
 
 use super::{Error, Inlet, Outlet, Trigger};
-use crate::own_name;
-use config::Ros2;
+use crate::settings::{self, Ros2};
 use ros2_client::qos::{Durability, History, WhenFull};
 use ros2_client::{MessageTypeName, Name, Node, QosProfile, ServiceMapping, ServiceTypeName};
 use rustdds::mio1::{Interest, Poll, Token, event::Source};
@@ -53,7 +52,7 @@ impl Opening<'_> {
         kind: (&str, &str),
         qos: &QosProfile,
     ) -> Result<Outlet<M>, Error> {
-        let (namespace, name) = own_name(self.settings, name);
+        let (namespace, name) = self.settings.own_name(name);
         self.outlet((&namespace, &name), kind, qos)
     }
 
@@ -62,7 +61,7 @@ impl Opening<'_> {
         name: &str,
         kind: (&str, &str),
     ) -> Result<Inlet<M>, Error> {
-        let (namespace, name) = own_name(self.settings, name);
+        let (namespace, name) = self.settings.own_name(name);
         self.inlet(&format!("{namespace}/{name}"), kind, reliable(16))
     }
 
@@ -93,12 +92,12 @@ impl Opening<'_> {
     }
 
     pub(super) fn trigger(&mut self, name: &str) -> Result<Trigger, Error> {
-        let (namespace, name) = own_name(self.settings, name);
+        let (namespace, name) = self.settings.own_name(name);
         let failed = |error: &dyn Debug| format!("service {name}: {error:?}");
         let full = Name::new(&namespace, &name).map_err(|e| failed(&e))?;
         let mapping = match self.settings.services {
-            config::ServiceMapping::Enhanced => ServiceMapping::Enhanced,
-            config::ServiceMapping::Cyclone => ServiceMapping::Cyclone,
+            settings::ServiceMapping::Enhanced => ServiceMapping::Enhanced,
+            settings::ServiceMapping::Cyclone => ServiceMapping::Cyclone,
         };
         let kind = ServiceTypeName::new("std_srvs", "Trigger");
         let server = self.node.create_server(mapping, &full, &kind, reliable(16), reliable(16));

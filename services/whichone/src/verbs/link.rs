@@ -4,7 +4,6 @@ use std::ffi::OsString;
 use std::io::ErrorKind;
 use std::os::unix::process::CommandExt;
 
-use messages::Service;
 use service::exit::{Exit, Failure};
 use service::group::{ENV_GROUP, GroupName};
 use service::launch;
@@ -21,14 +20,14 @@ pub(super) fn link(group: &GroupName, args: LinkArgs) -> Failure {
         none if none.is_empty() => vec!["--help".into()],
         some => some,
     };
-    hand_over(Service::Link.name(), LINK_HELP, arguments, Some(group))
+    hand_over("link", LINK_HELP, arguments, Some(group))
 }
 
 /// `whichone fleet …`; returns only if that fails.
 pub(super) fn fleet(args: LinkArgs, json: bool) -> Failure {
     let json = json.then(|| OsString::from("--json"));
     let arguments = std::iter::once("fleet".into()).chain(args.arguments).chain(json);
-    hand_over(Service::Link.name(), LINK_HELP, arguments.collect(), None)
+    hand_over("link", LINK_HELP, arguments.collect(), None)
 }
 
 /// `whichone gateway …`; returns only if that fails.

@@ -1,22 +1,9 @@
 //! Invalid configurations: every kind of error is reported with file, line, key and help, and all of
-//! them at once. `invalid.txt` holds each file and what it leads to; `UPDATE_EXPECT=1 cargo test -p
-//! config` rewrites the latter.
+//! them at once. Single files are in the tests of `parts`, which knows every section.
 
-use expect_test::{expect, expect_file};
+use expect_test::expect;
 
 use super::{Folder, ONE_BOWL};
-
-#[test]
-fn invalid_files_get_every_diagnostic_with_line_and_help() {
-    let mut found = String::new();
-    for case in include_str!("invalid.txt").split("--- ").skip(1) {
-        let (file, rest) = case.split_once('\n').unwrap();
-        let text = rest.split_once("\n+++\n").unwrap().0;
-        let complaints = Folder::new(&[(file, text)]).complaints(None, &[]).join("\n");
-        found += &format!("--- {file}\n{text}\n+++\n{complaints}\n");
-    }
-    expect_file!["invalid.txt"].assert_eq(&found);
-}
 
 #[test]
 fn a_person_may_stand_anywhere_if_gestures_are_off() {

@@ -6,41 +6,15 @@ use std::time::Duration;
 use vocabulary::Language;
 
 use super::{Folder, ONE_BOWL, shipped};
-use crate::{Recogniser, Restart, Section, Settings, Voice};
+use crate::{Recogniser, Restart, Settings, Voice};
 use messages::Service;
-
-#[test]
-fn the_shipped_folder_loads_with_every_profile_and_scene() {
-    let names = |folder: &str| -> Vec<String> {
-        let files = std::fs::read_dir(shipped().join(folder)).unwrap();
-        let stem = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
-        files.map(|file| stem(&file.unwrap().path())).collect()
-    };
-    let (profiles, scenes) = (names("profiles"), names("scenes"));
-    for known in ["lab", "ci", "paper"] {
-        assert!(profiles.iter().any(|name| name == known), "{profiles:?}");
-    }
-    for known in ["bowls", "markers", "tools"] {
-        assert!(scenes.iter().any(|name| name == known), "{scenes:?}");
-    }
-    let load = |profile, scene: &str| {
-        // The profile `link` leaves the keys to whoever has made them.
-        let overrides = [("group.scene", scene), ("link.keys", "/keys")];
-        let overrides = overrides.map(|(key, value)| (key.to_owned(), value.to_owned()));
-        let settings = Settings::load(&shipped(), profile, &overrides)
-            .unwrap_or_else(|e| panic!("{scene} with {profile:?}: {e}"));
-        assert_eq!(settings.scene.name(), scene);
-    };
-    scenes.iter().for_each(|scene| load(None, scene));
-    profiles.iter().for_each(|profile| load(Some(profile), "markers"));
-}
 
 #[test]
 fn config_of_a_nearly_empty_folder_equals_the_shipped_values() {
     let folder = Folder::new(&[]);
     let bare = folder.load(None, &[]).unwrap();
     let full = Settings::load(&shipped(), None, &[]).unwrap();
-    for section in Section::ALL {
+    for (section, _) in crate::sections() {
         assert_eq!(bare.section_text(section), full.section_text(section));
     }
     let origins = bare.origins();

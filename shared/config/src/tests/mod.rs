@@ -2,8 +2,6 @@
 
 mod invalid;
 mod layering;
-mod reference;
-mod schemas;
 mod sections;
 mod snapshot;
 

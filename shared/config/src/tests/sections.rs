@@ -1,11 +1,11 @@
-//! `console.toml` and `study.toml`, `[model]` of `dialogue.toml`, and the robot's files that `arm.toml` names.
+//! `console.toml` and `study.toml`, and the robot's files that `arm.toml` names.
 
 use std::path::Path;
 use std::time::Duration;
 
 use super::Folder;
 use crate::study::{Design, Kind, Objects};
-use crate::{Access, Calibration, Section, Settings};
+use crate::{Access, Settings};
 
 #[test]
 fn console_default_serves_this_machine_only() {
@@ -62,8 +62,8 @@ fn the_files_of_a_named_robot_are_part_of_the_snapshot() {
     let read = Settings::load_snapshot(folder.path()).unwrap();
     assert_eq!((read.robot_files(), &read), (settings.robot_files(), &settings));
     let usual = Folder::new(&[]).load(None, &[]).unwrap();
-    assert_ne!(usual.section_text(Section::Arm), settings.section_text(Section::Arm));
-    assert_eq!(usual.section_text(Section::Speech), settings.section_text(Section::Speech));
+    assert_ne!(usual.section_text("arm"), settings.section_text("arm"));
+    assert_eq!(usual.section_text("speech"), settings.section_text("speech"));
 }
 
 #[test]
@@ -100,18 +100,4 @@ questionnaire = [
     assert!(protocol.questionnaire[0].required && !protocol.questionnaire[1].required);
     settings.write_snapshot(folder.path()).unwrap();
     assert_eq!(Settings::load_snapshot(folder.path()).unwrap().study, settings.study);
-}
-
-#[test]
-fn language_model_is_off_by_default_and_no_part_of_the_decisions() {
-    let usual = Folder::new(&[]).load(None, &[]).unwrap();
-    assert_eq!(usual.dialogue.model, None);
-    let text = "[model]\nurl = 'http://[::1]:80/v1'\nmodel = 'small'\ntimeout_ms = 800";
-    let settings = Folder::new(&[("dialogue.toml", text)]).load(None, &[]).unwrap();
-    let model = settings.dialogue.model.as_ref().unwrap();
-    assert_eq!((&*model.url, &*model.name), ("http://[::1]:80/v1", "small"));
-    assert_eq!((model.timeout.as_millis(), model.calibration), (800, Calibration::NONE));
-    assert_eq!(settings.manager_key("entropy"), usual.manager_key("entropy"));
-    let other = Folder::new(&[("dialogue.toml", "p_l = 0.9")]).load(None, &[]).unwrap();
-    assert_ne!(other.manager_key("entropy"), usual.manager_key("entropy"));
 }

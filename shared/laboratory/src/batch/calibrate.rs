@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use command_line::Outcome;
 use command_line::output::Output;
-use config::{Calibration, LanguageModel};
 use language::Reader;
+use model_reader::{Calibration, LanguageModel};
 use model_reader::{Case, Client, fit, held_out_loss, log_loss, parse, utterance};
 use scene::{Question, Reading, Scene, question_from_json, reading_to_json};
 use serde::Deserialize;

@@ -119,7 +119,7 @@ impl<'a> Filling<'a> {
         self.said.push((k, v));
         let value = self.value(k, v);
         let surface = match value.role() {
-            Role::Place => &value.spoken,
+            Role::Place | Role::Part => &value.spoken,
             Role::Quality | Role::Kind => &value.name,
         };
         self.marked.push(Marked { surface: surface.clone(), polarity });

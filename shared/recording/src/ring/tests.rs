@@ -12,8 +12,8 @@ use crate::recover::{each_record, recover_all};
 const MIB: u64 = 1 << 20;
 const HOUR: u64 = 3600;
 
-fn limits() -> config::Recorder {
-    config::Recorder {
+fn limits() -> Recorder {
+    Recorder {
         bytes_max: 8 * MIB,
         age_max: Duration::from_secs(24 * HOUR),
         file_max: Duration::from_secs(600),
@@ -32,7 +32,7 @@ fn clock() -> WallClock {
 }
 
 /// A ring whose free space is what the cell holds.
-fn ring(folder: &Path, limits: config::Recorder) -> (Ring, Rc<Cell<u64>>) {
+fn ring(folder: &Path, limits: Recorder) -> (Ring, Rc<Cell<u64>>) {
     let free = Rc::new(Cell::new(1000 * MIB));
     let asked = Rc::clone(&free);
     let attached = Attached {
@@ -119,8 +119,7 @@ fn files_of_others_are_neither_deleted_nor_completed() {
 #[test]
 fn size_bounds_the_ring_where_age_does_not() {
     let folder = tempfile::tempdir().unwrap();
-    let (mut ring, _) =
-        ring(folder.path(), config::Recorder { age_max: Duration::MAX, ..limits() });
+    let (mut ring, _) = ring(folder.path(), Recorder { age_max: Duration::MAX, ..limits() });
     for s in 0..60_000 {
         ring.tend(at(s), clock());
         write(&mut ring, s);

@@ -2,10 +2,14 @@
 
 use std::net::Ipv4Addr;
 
+use config::{Check, Section};
 use diagnostics::Fields;
+use ros::detectors::{self, Labels, topic};
+use ros::is_name;
 use serde_json::json;
 
-use crate::detectors::{self, Ros2Objects, is_name};
+/// Name of the service.
+pub(crate) const NAME: &str = "ros2";
 
 /// The ROS 2 node.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +26,19 @@ pub struct Ros2 {
     pub network: Network,
     /// Objects from detectors.
     pub objects: Ros2Objects,
+}
+
+/// Detectors of ROS 2. A topic that is absent is not subscribed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ros2Objects {
+    /// Topic of `vision_msgs/Detection3DArray`.
+    pub detections: Option<String>,
+    /// Topic of `ar_track_alvar_msgs/AlvarMarkers`.
+    pub ar_markers: Option<String>,
+    /// Topic of `tf2_msgs/TFMessage` with a frame for each marker, as apriltag_ros publishes them.
+    pub tf: Option<String>,
+    /// Identifiers.
+    pub labels: Labels,
 }
 
 /// Mapping of services to DDS topics. It differs between middlewares.
@@ -44,19 +61,46 @@ pub enum Network {
     Interface(Ipv4Addr),
 }
 
-/// Reads the section.
-pub(crate) fn read(f: &mut Fields<'_>) -> Ros2 {
-    Ros2 {
-        // More would need ports above 65535.
-        domain_id: f.whole("domain_id", 0..=232),
-        namespace: namespace(f),
-        node: node(f),
-        services: f.choice(
-            "services",
-            &[("enhanced", ServiceMapping::Enhanced), ("cyclone", ServiceMapping::Cyclone)],
-        ),
-        network: network(f),
-        objects: f.table("objects", detectors::ros2),
+impl Ros2 {
+    /// Name of a topic or service: own names are below the node's, `joint_states` is in its namespace.
+    pub fn own_name(&self, name: &str) -> (String, String) {
+        let namespace = self.namespace.trim_end_matches('/');
+        (format!("{namespace}/{}", self.node), name.to_owned())
+    }
+}
+
+impl Section for Ros2 {
+    const KEY: &'static [&'static str] = &["ros2"];
+    const FILE: Option<&'static str> = Some(include_str!("../../../config/ros2.toml"));
+
+    fn read(f: &mut Fields<'_>) -> Self {
+        Self {
+            // More would need ports above 65535.
+            domain_id: f.whole("domain_id", 0..=232),
+            namespace: namespace(f),
+            node: node(f),
+            services: f.choice(
+                "services",
+                &[("enhanced", ServiceMapping::Enhanced), ("cyclone", ServiceMapping::Cyclone)],
+            ),
+            network: network(f),
+            objects: f.table("objects", objects),
+        }
+    }
+
+    fn check(&self, others: &mut Check<'_>) {
+        let Ros2Objects { detections, ar_markers, tf, labels } = &self.objects;
+        let topics = [("detections", detections), ("ar_markers", ar_markers), ("tf", tf)];
+        detectors::check(&["ros2", "objects"], topics, labels, others);
+    }
+}
+
+fn objects(f: &mut Fields<'_>) -> Ros2Objects {
+    Ros2Objects {
+        detections: topic(f, "detections"),
+        ar_markers: topic(f, "ar_markers"),
+        tf: topic(f, "tf"),
+        labels: Labels::read(f),
     }
 }
 

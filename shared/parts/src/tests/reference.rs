@@ -1,5 +1,5 @@
 //! The reference of the configuration (`docs/configuration.md`), made of the schemas, so of the readers and
-//! of the comments in the shipped files. `UPDATE_EXPECT=1 cargo test -p config schemas` writes it.
+//! of the comments in the shipped files. `UPDATE_EXPECT=1 cargo test -p parts schemas` writes it.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -8,12 +8,12 @@ use expect_test::expect_file;
 use serde_json::Value as Json;
 
 use super::schemas::schemas;
-use crate::resolved::Section;
+use super::sections;
 
 const HEAD: &str = "\
 # Configuration
 
-<!-- Written by `UPDATE_EXPECT=1 cargo test -p config schemas`; change the comments in `config` instead. -->
+<!-- Written by `UPDATE_EXPECT=1 cargo test -p parts schemas`; change the comments in `config` instead. -->
 
 Every key with its values, its default and its meaning. Keys that a file leaves out have the default.
 
@@ -35,10 +35,9 @@ const ANY: &str = "NAME";
 fn page() -> String {
     let mut text = HEAD.to_owned();
     let schemas = schemas();
-    for section in Section::ALL {
-        let name = section.name();
-        let file = section.file();
-        let _ = write!(text, "\n## {name}\n\n`config/{file}`. ");
+    for section in sections() {
+        let name = section.name;
+        let _ = write!(text, "\n## {name}\n\n`config/{name}.toml`. ");
         table(name, &schemas[name], 3, &mut text);
     }
     text

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use config::Section;
 use diagnostics::Fields;
 use serde_json::json;
 
@@ -43,7 +44,19 @@ impl Calibration {
 /// Schemes of a URL.
 const SCHEMES: [&str; 2] = ["http://", "https://"];
 
-pub(crate) fn read(f: &mut Fields<'_>) -> Option<LanguageModel> {
+/// The language model that reads utterances in place of the built-in reader, if there is one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Configured(pub Option<LanguageModel>);
+
+impl Section for Configured {
+    const KEY: &'static [&'static str] = &["dialogue", "model"];
+
+    fn read(f: &mut Fields<'_>) -> Self {
+        Self(read(f))
+    }
+}
+
+fn read(f: &mut Fields<'_>) -> Option<LanguageModel> {
     let url = f.optional_text("url");
     f.note("url", || json!({ "pattern": "^(https?://[^/\\s]\\S*)?$" }));
     let name = f.optional_text("model");

@@ -1,17 +1,16 @@
 //! JSON Schemas of the configuration files (`config/schemas`), made by the readers of these files.
-//! `UPDATE_EXPECT=1 cargo test -p config schemas` rewrites them.
+//! `UPDATE_EXPECT=1 cargo test -p parts schemas` rewrites them.
 
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-use diagnostics::{Fields, Node, Report, Source, Table, schema_of};
+use config::SectionSchema;
+use diagnostics::{Node, Report, Source, Table};
 use expect_test::expect_file;
 use serde_json::{Map, Value as Json, json};
 
-use super::{Folder, shipped};
-use crate::resolved::{Section, defaults};
-use crate::{arm, console, dialogue, group, link, ros2, services, speech, study};
+use super::{Folder, sections, shipped};
 
 mod descriptions;
 
@@ -20,11 +19,8 @@ const SCENES_MD: &str = include_str!("../../../../docs/scenes.md");
 /// Every schema by the name of its file.
 pub(super) fn schemas() -> BTreeMap<String, Json> {
     let mut all = BTreeMap::new();
-    for section in Section::ALL {
-        let name = section.name();
-        let mut schema = of_section(section);
-        let text = std::fs::read_to_string(shipped().join(section.file())).unwrap();
-        descriptions::of_file(&text).put(&mut schema);
+    for SectionSchema { name, shipped, mut schema } in sections() {
+        descriptions::of_file(shipped).put(&mut schema);
         all.insert(name.to_owned(), schema);
     }
     let sections = all.iter().map(|(name, schema)| (name.clone(), schema.clone()));
@@ -47,28 +43,6 @@ pub(super) fn schemas() -> BTreeMap<String, Json> {
         .collect()
 }
 
-fn of_section(section: Section) -> Json {
-    let mut tree = defaults();
-    if section == Section::Group {
-        // Any service, with the defaults of each.
-        let group = tree.table_at("group");
-        group.table_at("services").table_at("*");
-        services::complete(group, &mut Report::default());
-    }
-    let table = tree.table_at(section.name());
-    let read = |f: &mut Fields<'_>| match section {
-        Section::Group => drop(group::read(f)),
-        Section::Dialogue => drop(dialogue::read(f)),
-        Section::Speech => drop(speech::read(f)),
-        Section::Arm => drop(arm::read(f)),
-        Section::Study => drop(study::read(f, "lookahead")),
-        Section::Console => drop(console::read(f)),
-        Section::Ros2 => drop(ros2::read(f)),
-        Section::Link => drop(link::read(f)),
-    };
-    schema_of(table, read)
-}
-
 #[test]
 fn schemas_are_those_of_the_readers() {
     for (name, schema) in schemas() {
@@ -80,9 +54,9 @@ fn schemas_are_those_of_the_readers() {
 /// The editors' convention: a first line `#:schema PATH`, from the file's own folder.
 #[test]
 fn shipped_files_name_their_schema_in_the_first_line() {
-    let mut files: Vec<(std::path::PathBuf, String)> = (Section::ALL.iter())
-        .map(|section| {
-            (shipped().join(section.file()), format!("./schemas/{}.json", section.name()))
+    let mut files: Vec<(std::path::PathBuf, String)> = (sections().iter())
+        .map(|SectionSchema { name, .. }| {
+            (shipped().join(format!("{name}.toml")), format!("./schemas/{name}.json"))
         })
         .collect();
     for (folder, schema) in [("profiles", "profile"), ("scenes", "scene")] {
@@ -123,12 +97,13 @@ fn every_key_outside_of_lists_has_a_description() {
 #[test]
 fn schemas_have_the_bounds_that_are_enforced() {
     let mut checked = 0;
-    for section in Section::ALL {
-        leaves(&of_section(section), &mut Vec::new(), &mut |path, schema| {
+    for SectionSchema { name, schema, .. } in sections() {
+        let file = format!("{name}.toml");
+        leaves(&schema, &mut Vec::new(), &mut |path, schema| {
             let key = path.join(".");
             for (value, is_right) in samples(schema) {
                 let text = format!("{key} = {value}");
-                let folder = Folder::new(&[(&section.file(), &text)]);
+                let folder = Folder::new(&[(&file, &text)]);
                 let found = folder.load(None, &[]).err();
                 let found = found.iter().flat_map(|found| found.iter()).find(|found| {
                     // Contradictions with other keys are no bounds.
@@ -136,7 +111,7 @@ fn schemas_have_the_bounds_that_are_enforced() {
                         found.what.starts_with("expected") || found.what.contains(" is not a");
                     found.key == key && is_bound
                 });
-                assert_eq!(found.is_none(), is_right, "{}: {text}: {found:?}", section.file());
+                assert_eq!(found.is_none(), is_right, "{file}: {text}: {found:?}");
                 checked += 1;
             }
         });
@@ -188,9 +163,8 @@ fn samples(schema: &Json) -> Vec<(String, bool)> {
 #[ignore = "needs jsonschema for python3, named in WHICHONE_RECORDING_PYTHON"]
 fn schemas_accept_shipped_files_and_refuse_wrong_ones() {
     let mut cases: Vec<(String, String, Json)> = Vec::new();
-    for section in Section::ALL {
-        let path = shipped().join(section.file());
-        cases.push((section.name().to_owned(), String::new(), instance(&read(&path)).unwrap()));
+    for SectionSchema { name, shipped, .. } in sections() {
+        cases.push((name.to_owned(), String::new(), instance(shipped).unwrap()));
     }
     for (folder, schema) in [("profiles", "profile"), ("scenes", "scene")] {
         for entry in std::fs::read_dir(shipped().join(folder)).unwrap() {

@@ -1,0 +1,38 @@
+//! The list of optional parts: a line for each.
+//!
+//! Programs that load configurations call [`register`] before. Everything else about a part is in its crate.
+
+#[cfg(test)]
+mod tests;
+
+use std::process::ExitCode;
+
+/// The program of a part, or the feature that a build needs for it.
+pub type Program = Result<fn() -> ExitCode, &'static str>;
+
+macro_rules! parts {
+    (programs: $($program:ident)*; others: $($other:ident)*) => {
+        static PARTS: &[&config::Part] = &[$(&$program::PART,)* $(&$other::PART,)*];
+        static PROGRAMS: &[(&str, Program)] = &[$((stringify!($program), $program::PROGRAM),)*];
+    };
+}
+
+parts! {
+    programs:
+        ros2
+        link
+        recorder
+        ros1;
+    others:
+        model_reader
+}
+
+/// Makes the parts known to every configuration that this program loads.
+pub fn register() {
+    config::register(PARTS);
+}
+
+/// The program of the part with this name.
+pub fn program(name: &str) -> Option<Program> {
+    PROGRAMS.iter().find(|(part, _)| *part == name).map(|(_, program)| *program)
+}
