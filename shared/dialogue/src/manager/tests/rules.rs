@@ -1,8 +1,10 @@
 //! Each rule by intent handles its utterance.
 
-use super::fixture::{at, belief, delivered, first, manager, remark, text, words};
+use super::fixture::{
+    answer, at, belief, delivered, first, manager, remark, settings, text, words,
+};
 use crate::manager::{Cause, State};
-use scene::{Intent, Reading, Reference};
+use scene::{Intent, Reading, Reference, Response};
 
 fn plain(intent: Intent) -> Reading {
     Reading { intent, ..Reading::default() }
@@ -74,4 +76,15 @@ fn again_after_a_hand_over_opens_an_interaction() {
     let end = manager.next(&fetching, &delivered(fetching.act.pick.unwrap().0), at(2));
     let again = Reading { refers: Reference::Same, ..plain(Intent::Repeat) };
     assert!(remark(&mut manager, &end, again).open.is_some());
+}
+
+#[test]
+fn a_listed_object_is_fetched_upon_a_request_and_not_upon_a_mere_answer() {
+    let mut manager = manager();
+    let where_is = Reading { intent: Intent::AskWhere, ..words(&["white", "dishwasher"]) };
+    let listed = first(&mut manager, where_is);
+    assert_eq!(remark(&mut manager, &listed, answer(Response::Yes)).open, None);
+    let fetching = remark(&mut manager, &listed, Reading::default());
+    let named = settings().scene.object_named("white");
+    assert_eq!(fetching.act.pick.map(|(_, object)| object), named);
 }
