@@ -76,7 +76,11 @@ mod tests {
             assert_eq!(planner(name).unwrap().name(), name);
         }
         assert_eq!(names()[0], "lookahead", "the default comes first");
-        assert_eq!(names(), vocabulary::PLANNERS, "the list of shared/vocabulary/src/planners.rs");
+        assert_eq!(
+            names(),
+            vocabulary::PLANNERS,
+            "names of entries, and those of the list in vocabulary"
+        );
     }
 
     #[test]

@@ -1,14 +1,28 @@
 //! Names of the planners.
 
-/// Names of the planners of `dialogue`, the default first: what a configuration may name. The registry of `dialogue`
-/// holds the same names in the same order, or it does not compile, or a test of it fails.
-pub const PLANNERS: [&str; 8] = [
-    "lookahead",
-    "optimal",
-    "information-seeking",
-    "entropy",
-    "sparse-sampling",
-    "no-attribute",
-    "always-ask",
-    "never-ask",
-];
+/// Calls a macro with the module and the name of each planner of `dialogue`, the default first. It is the one list of
+/// them, and stands here because a configuration is checked against the names without the planners.
+#[macro_export]
+macro_rules! planners {
+    ($declare:ident) => {
+        $declare! {
+            lookahead "lookahead",
+            optimal "optimal",
+            information_seeking "information-seeking",
+            entropy "entropy",
+            sparse_sampling "sparse-sampling",
+            no_attribute "no-attribute",
+            always_ask "always-ask",
+            never_ask "never-ask",
+        }
+    };
+}
+
+macro_rules! names {
+    ($($module:ident $name:literal),+ $(,)?) => {
+        /// Names of the planners, the default first.
+        pub const PLANNERS: [&str; [$($name),+].len()] = [$($name),+];
+    };
+}
+
+planners!(names);

@@ -3,26 +3,16 @@
 mod searched;
 
 /// Declares the planners' modules and lists their entries.
-macro_rules! planners {
-    ($($module:ident),+ $(,)?) => {
+macro_rules! declare {
+    ($($module:ident $name:literal),+ $(,)?) => {
         $(mod $module;)+
 
-        /// Every planner, the default first, as in [`PLANNERS`].
+        /// Every planner, as in [`PLANNERS`].
         pub(crate) const ALL: [Entry; PLANNERS.len()] = [$($module::ENTRY),+];
     };
 }
 
-// The default comes first. A new planner is one file here and its name in two lists: this one, and that of `vocabulary`.
-planners! {
-    lookahead,
-    optimal,
-    information_seeking,
-    entropy,
-    sparse_sampling,
-    no_attribute,
-    always_ask,
-    never_ask,
-}
+vocabulary::planners!(declare);
 
 pub use lookahead::Lookahead;
 pub use optimal::Optimal;

@@ -15,6 +15,7 @@ mod put_back;
 mod queue;
 mod reconfigure;
 mod replies;
+mod rules;
 mod seconds;
 mod turns;
 mod words;
