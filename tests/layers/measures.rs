@@ -17,7 +17,8 @@ const BOUNDS: [Bound; 3] = [
     Bound {
         name: "lines of the core, with its tests",
         first: 135_525.0,
-        at_most: 136_000.0,
+        // Words first: shapes of values, closed classes and the read-back of scenes are new.
+        at_most: 137_000.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {
