@@ -6,7 +6,6 @@ use std::sync::LazyLock;
 
 use words::contractions;
 
-use crate::lexicon::{Lexicon, Sense};
 use crate::token_class::{Class, classes};
 use crate::vocabulary;
 
@@ -74,12 +73,6 @@ fn words() -> &'static HashMap<&'static str, Class> {
 /// Returns whether words that stand alone are an answer, whatever else they name in a scene.
 pub(crate) fn is_answer(class: Class) -> bool {
     matches!(class, Class::Yes | Class::No | Class::WeakYes | Class::WeakNo)
-}
-
-/// Returns whether a name of a scene is an answer as well: "right".
-pub(crate) fn names_answer(words: &[String]) -> bool {
-    let [word] = words else { return false };
-    matches!(Lexicon::own().word(word), Some(Sense::Class(class)) if is_answer(class))
 }
 
 #[cfg(test)]

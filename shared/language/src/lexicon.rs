@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 use scene::{AttributeId, Reference, Role, Scene, Value, WordId};
 use words::{Gap, Token, Tokens, normalise};
 
-use crate::closed_class::{is_closed, names_answer};
+use crate::closed_class::{is_answer, is_closed};
 use crate::hedges::sureness;
 use crate::lookalikes::Lookalikes;
 use crate::morphology::{inflected, singular};
@@ -402,6 +402,12 @@ fn matched(rest: &[Box<str>], after: &[Token<'_>]) -> Option<usize> {
         words += 1;
     }
     Some(words)
+}
+
+/// Returns whether a name of a scene is an answer as well: "right".
+fn names_answer(words: &[String]) -> bool {
+    let [word] = words else { return false };
+    matches!(Lexicon::own().word(word), Some(Sense::Class(class)) if is_answer(class))
 }
 
 /// What is said for one of the scene's values without a list in the scene: "crimson" for red. Values
