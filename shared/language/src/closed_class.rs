@@ -1,4 +1,4 @@
-//! Words of the closed classes: negators, answers, articles, pronouns, and what a dialogue is steered by. No value takes
+//! Words of the closed classes: negators, answers, articles, pronouns, and words that control the dialogue. No value takes
 //! them away: one of that name needs the name of its attribute or the noun beside it. A slip in one of them is mended.
 
 use std::collections::{HashMap, HashSet};
@@ -14,8 +14,8 @@ const CLOSED: &[Class] = classes![
     Not Except No Yes One Determiner Pointer Possessive First Second It
     Cancel StartOver Repeat PutBack Unsure Indifferent AskHelp AskStatus
 ];
-/// Shortest word that is mended if a letter is missing, added or wrong; in a shorter one two neighbours have changed
-/// places, or it is another word.
+/// Shortest negator that is mended if a letter is missing or added. Every other slip is two neighbours that have changed
+/// places: a wrong letter makes another English word of too many ("cancer", "messed", "loader").
 const LETTERS_MIN: usize = 6;
 
 /// Returns whether the words are one phrase of a closed class.
@@ -27,7 +27,7 @@ pub(crate) fn is_closed(words: &[String]) -> bool {
     PHRASES.contains(&*words.join(" "))
 }
 
-/// Returns whether words of the class begin no misspelt value.
+/// Returns whether a misspelt value cannot begin with a word of this class.
 pub(crate) fn is_closed_class(class: Class) -> bool {
     CLOSED.contains(&class)
 }
@@ -35,12 +35,15 @@ pub(crate) fn is_closed_class(class: Class) -> bool {
 /// Returns the class of the closed-class word that is one slip away, if it is the only class.
 pub(crate) fn misspelt(word: &str) -> Option<Class> {
     let letters = word.chars().count();
-    let is_near = |known: &str| {
-        let long = known.len() >= LETTERS_MIN && letters.abs_diff(known.len()) <= 1;
-        (long || letters == known.len() && is_transposed(word, known))
+    let is_near = |known: &str, class: Class| {
+        let negates = matches!(class, Class::Not | Class::Except) && known.len() >= LETTERS_MIN;
+        let one_letter =
+            letters.abs_diff(known.len()) == 1 && word.chars().next() == known.chars().next();
+        (negates && one_letter || letters == known.len() && is_transposed(word, known))
             && strsim::osa_distance(word, known) == 1
     };
-    let mut near = words().iter().filter(|(known, _)| is_near(known)).map(|(_, class)| *class);
+    let mut near =
+        words().iter().filter(|(known, class)| is_near(known, **class)).map(|(_, class)| *class);
     let class = near.next()?;
     near.all(|other| other == class).then_some(class)
 }
@@ -94,6 +97,13 @@ mod tests {
             ("nut", None),
             ("ton", None),
             ("bye", None),
+            ("messed", None),
+            ("hardy", None),
+            ("cancer", None),
+            ("loader", None),
+            ("relay", None),
+            ("estate", None),
+            ("kissed", None),
         ] {
             assert_eq!(misspelt(word), class, "{word}");
         }

@@ -14,7 +14,7 @@ use words::{Gap, Token, Tokens, normalise};
 use crate::closed_class::{is_answer, is_closed};
 use crate::hedges::sureness;
 use crate::lookalikes::Lookalikes;
-use crate::morphology::{inflected, singular};
+use crate::morphology::{inflected, singulars};
 use crate::references::by_size;
 use crate::relations::{Form, forms, words};
 use crate::token_class::Class;
@@ -286,8 +286,10 @@ impl Lexicon {
         }
         let quality = words.len() == 1 && self.values[place].role == Role::Quality;
         let Some((last, lead)) = words.split_last() else { return };
-        let singular = singular(last).filter(|form| !self.lookalikes.is_common(form));
-        for form in inflected(last, quality).into_iter().chain(singular) {
+        let singulars = singulars(last).into_iter();
+        let singulars: Vec<String> =
+            singulars.filter(|form| !self.lookalikes.is_common(form)).collect();
+        for form in inflected(last, quality).into_iter().chain(singulars) {
             // Of three sizes "smaller" need not be small.
             if self.values[place].one_of_two || by_size(&form) == Reference::None {
                 self.add(&[lead, &[form]].concat(), Meaning::Value(place));

@@ -17,16 +17,21 @@ pub(crate) fn inflected(word: &str, quality: bool) -> Vec<String> {
     forms
 }
 
-/// The singular of a word that may be a plural: "nut" of "nuts", "berry" of "berries", "box" of "boxes".
-pub(crate) fn singular(word: &str) -> Option<String> {
+/// The singulars that a word may be the plural of, the likelier first: "nut" of "nuts", "berry" of "berries", "box" of
+/// "boxes", "rose" of "roses".
+pub(crate) fn singulars(word: &str) -> Vec<String> {
     const LETTERS_MIN: usize = 4;
+    let Some(stem) = word.strip_suffix('s') else { return Vec::new() };
+    let mut forms = Vec::new();
     if let Some(stem) = word.strip_suffix("ies").filter(|stem| stem.len() > 1) {
-        return Some(format!("{stem}y"));
+        forms.push(format!("{stem}y"));
     }
     let hisses = |stem: &&str| ["ch", "sh", "s", "x", "z"].iter().any(|end| stem.ends_with(end));
-    let stem = word.strip_suffix("es").filter(hisses).or_else(|| word.strip_suffix('s'))?;
-    let is_plural = word.len() >= LETTERS_MIN && !stem.ends_with(['s', 'u', 'i']);
-    (is_plural || hisses(&stem) && word.ends_with("es")).then(|| stem.to_owned())
+    forms.extend(word.strip_suffix("es").filter(hisses).map(str::to_owned));
+    if word.len() >= LETTERS_MIN && !stem.ends_with(['s', 'u', 'i']) {
+        forms.push(stem.to_owned());
+    }
+    forms
 }
 
 fn plurals(word: &str, last: char) -> Vec<String> {
@@ -71,7 +76,7 @@ fn is_vowel(c: char) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{inflected, singular};
+    use super::{inflected, singulars};
 
     #[test]
     fn morphology_forms_are_english() {
@@ -101,18 +106,21 @@ mod tests {
 
     #[test]
     fn singulars_are_those_of_plurals() {
-        for (word, form) in [
-            ("nuts", Some("nut")),
-            ("berries", Some("berry")),
-            ("boxes", Some("box")),
-            ("glasses", Some("glass")),
-            ("spices", Some("spice")),
-            ("glass", None),
-            ("gas", None),
-            ("cactus", None),
-            ("red", None),
+        for (word, forms) in [
+            ("nuts", "nut"),
+            ("berries", "berry berrie"),
+            ("cookies", "cooky cookie"),
+            ("boxes", "box boxe"),
+            ("roses", "ros rose"),
+            ("sizes", "siz size"),
+            ("glasses", "glass glasse"),
+            ("spices", "spice"),
+            ("glass", ""),
+            ("gas", ""),
+            ("cactus", ""),
+            ("red", ""),
         ] {
-            assert_eq!(singular(word).as_deref(), form, "{word}");
+            assert_eq!(singulars(word).join(" "), forms, "{word}");
         }
     }
 }

@@ -22,7 +22,7 @@ enum Found {
     Other(String),
 }
 
-/// Returns what is wrong with the words of a scene: values that are read as others or cannot be said at all are
+/// Returns problems and warnings about the words of a scene: values that are read as others or cannot be said at all are
 /// problems, phrases that are not understood are warnings.
 pub fn word_findings(scene: &Scene) -> WordFindings {
     let (own, mut pairs) = (own_words(scene), WordFindings::default());
@@ -30,7 +30,9 @@ pub fn word_findings(scene: &Scene) -> WordFindings {
     let values: Vec<(usize, usize)> = (scene.attributes().iter().enumerate())
         .flat_map(|(k, attribute)| (0..attribute.values.len()).map(move |v| (k, v)))
         .collect();
-    let stride = (values.len() * OF_NAME).div_ceil(PHRASES_MAX).max(1);
+    let names = |&(k, v): &(usize, usize)| 1 + scene.attributes()[k].values[v].synonyms.len();
+    let phrases = values.iter().map(names).sum::<usize>() * OF_NAME;
+    let stride = phrases.div_ceil(PHRASES_MAX).max(1);
     let mut found = WordFindings { warnings: own, ..WordFindings::default() };
     for &(k, v) in values.iter().step_by(stride) {
         reading.value(k, v, &mut found);

@@ -56,7 +56,7 @@ pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>)
     if value.role() != Role::Place {
         let bare = without_article(&spoken).to_vec();
         let parts = value.synonyms.iter().filter(|_| value.role() == Role::Part);
-        let parts = parts.map(|synonym| words(&value.spoken.replace(&value.name, synonym)));
+        let parts = parts.map(|synonym| words(&value.with_name(&value.spoken, synonym)));
         let new = |words: &Vec<String>| !words.is_empty() && !names.contains(words);
         let forms = std::iter::once(bare).chain(parts).filter(new);
         return forms.map(|words| Form { words, own: true }).collect();

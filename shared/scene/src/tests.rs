@@ -393,3 +393,18 @@ fn ambiguous_scenes_are_told() {
     assert!(told("no attribute tells `b` from `a`"), "{found:#?}");
     assert_eq!(found.len(), 4, "{found:#?}");
 }
+
+#[test]
+fn names_of_a_value_are_replaced_as_whole_words() {
+    let scene = shipped(BOWLS);
+    let attributes = scene.attributes().iter().flat_map(|attribute| &attribute.values);
+    let value = attributes.into_iter().find(|value| value.name == "white").unwrap();
+    for (phrase, expected) in [
+        ("white", "ivory"),
+        ("the white, off-white one", "the ivory, off-ivory one"),
+        ("whitewashed white", "whitewashed ivory"),
+        ("snowwhite", "snowwhite"),
+    ] {
+        assert_eq!(value.with_name(phrase, "ivory"), expected);
+    }
+}
