@@ -8,7 +8,7 @@ use std::fmt::Debug;
 use axum::response::Response;
 use messages::{ArmStatus, PolicyView, Receipt};
 use scene::Scene;
-use serde_json::Value as Json;
+use serde_json::{Map, Value as Json};
 use service::Time;
 
 /// A moment on both clocks.
@@ -57,7 +57,12 @@ pub trait Part: Debug {
     ///
     /// # Errors
     /// The words that the page shows.
-    fn command(&mut self, verb: &str, arguments: &Json, robot: &Robot<'_>) -> Result<Json, String>;
+    fn command(
+        &mut self,
+        verb: &str,
+        arguments: &Json,
+        robot: &Robot<'_>,
+    ) -> Result<Map<String, Json>, String>;
 
     /// Takes in what was said.
     fn on_event(&mut self, event: &DialogueEvent, robot: &Robot<'_>);

@@ -34,7 +34,7 @@ pub fn load_known(
     overrides: &[(String, String)],
     is_known: impl FnOnce(&Settings) -> bool,
 ) -> Result<Settings, Diagnostics> {
-    checked(Settings::examine(dir, profile, overrides, None), is_known)
+    checked(Settings::examine(dir, profile, overrides, None), is_known).verdict()
 }
 
 /// Does the same as [`load`], with `scene` in place of the scene that the configuration names.
@@ -47,14 +47,21 @@ pub fn load_with_scene(
     overrides: &[(String, String)],
     scene: Option<TextFile>,
 ) -> Result<Settings, Diagnostics> {
+    examine(dir, profile, overrides, scene).verdict()
+}
+
+/// Does the same as [`load_with_scene`] before a verdict: further checks may add to the report.
+pub fn examine(
+    dir: &Path,
+    profile: Option<&str>,
+    overrides: &[(String, String)],
+    scene: Option<TextFile>,
+) -> Examined {
     checked(Settings::examine(dir, profile, overrides, scene), |_| false)
 }
 
-fn checked(
-    examined: Examined,
-    is_known: impl FnOnce(&Settings) -> bool,
-) -> Result<Settings, Diagnostics> {
-    let Examined { settings, mut report, arm_is_right } = examined;
+fn checked(examined: Examined, is_known: impl FnOnce(&Settings) -> bool) -> Examined {
+    let Examined { mut settings, mut report, arm_is_right } = examined;
     let mut measured = None;
     // Durations are measured by the plans that show the reach.
     let is_left = |settings: &&Settings| {
@@ -70,12 +77,17 @@ fn checked(
             Err(faults) => report.extend(faults),
         }
     }
-    let mut settings = report.verdict(settings)?;
-    settings.durations = measured.transpose().map_err(|error| {
-        let help = "move it, or set costs.from of the dialogue to \"config\"";
-        Diagnostics::from(settings.scene_diagnostic("objects", error.to_string(), help))
-    })?;
-    Ok(settings)
+    // Other problems would be reported again as objects that cannot be measured.
+    if let Some(settings) = settings.as_mut().filter(|_| report.count() == 0) {
+        match measured.transpose() {
+            Ok(durations) => settings.durations = durations,
+            Err(error) => {
+                let help = "move it, or set costs.from of the dialogue to \"config\"";
+                report.add(settings.scene_diagnostic("objects", error.to_string(), help));
+            }
+        }
+    }
+    Examined { settings, report, arm_is_right }
 }
 
 /// The durations, if they are the costs of questions.

@@ -22,6 +22,7 @@ pub fn templates(text: &str, name: &str, scene: &Scene) -> Result<Vec<Line>, Str
     for line in text.lines().filter(is_template) {
         let (question, template) =
             line.split_once(" | ").ok_or_else(|| format!("expected 2 fields, found {line}"))?;
+        check(question, template).map_err(|why| format!("{why} in {line}"))?;
         for _ in 0..TIMES {
             let made = (0..ATTEMPTS).find_map(|_| {
                 let chosen = choose(template, &mut random);
@@ -31,6 +32,57 @@ pub fn templates(text: &str, name: &str, scene: &Scene) -> Result<Vec<Line>, Str
         }
     }
     Ok(lines)
+}
+
+/// Checks the question and the slots of a template.
+fn check(question: &str, template: &str) -> Result<(), String> {
+    if !["-", "is", "which"].contains(&question) {
+        return Err(format!("expected `-`, `is` or `which`, found `{question}`"));
+    }
+    for slot in template.split('<').skip(1) {
+        let (slot, _) = slot.split_once('>').ok_or("expected \">\", found none")?;
+        let (slot, _) = Slot::read(slot).ok_or_else(|| format!("unknown slot <{slot}>"))?;
+        let is_askable = match slot {
+            Slot::Asked => question == "is",
+            Slot::Rival => question != "-",
+            Slot::Description | Slot::One(_) => true,
+        };
+        if !is_askable {
+            return Err(format!("a slot for which the question `{question}` has no value"));
+        }
+    }
+    Ok(())
+}
+
+/// A place in a template for value words.
+#[derive(Clone, Copy)]
+enum Slot {
+    /// A description of an object.
+    Description,
+    /// One value of a role.
+    One(Role),
+    /// The value that the question names.
+    Asked,
+    /// Another value of the question's attribute.
+    Rival,
+}
+
+impl Slot {
+    /// Reads what stands between `<` and `>`: the slot and the sign of its polarity.
+    fn read(text: &str) -> Option<(Self, Polarity)> {
+        let mut kind = text.chars();
+        let polarity = crate::line::polarity(kind.next_back()?)?;
+        let slot = match kind.as_str() {
+            "" => Self::Description,
+            "q" => Self::One(Role::Quality),
+            "k" => Self::One(Role::Kind),
+            "p" => Self::One(Role::Place),
+            "asked" => Self::Asked,
+            "rival" => Self::Rival,
+            _ => return None,
+        };
+        Some((slot, polarity))
+    }
 }
 
 /// Replaces each `(a|b)` by one of its parts.
@@ -87,23 +139,19 @@ impl<'a> Filling<'a> {
     }
 
     fn slot(&mut self, slot: &str) -> Option<String> {
-        let (kind, polarity) = slot.split_at(slot.len().checked_sub(1)?);
-        let polarity = crate::line::polarity(polarity.chars().next()?)?;
-        match kind {
-            "" => self.description(polarity),
-            "q" => self.one(Role::Quality, polarity),
-            "k" => self.one(Role::Kind, polarity),
-            "p" => self.one(Role::Place, polarity),
-            "asked" => {
+        let (slot, polarity) = Slot::read(slot)?;
+        match slot {
+            Slot::Description => self.description(polarity),
+            Slot::One(role) => self.one(role, polarity),
+            Slot::Asked => {
                 let (k, v) = self.asked?;
                 self.say(k, v?, polarity)
             }
-            "rival" => {
+            Slot::Rival => {
                 let (k, asked) = self.asked?;
                 let v = self.random.below(self.scene.attributes()[k].values.len());
                 (asked != Some(v)).then(|| self.say(k, v, polarity))?
             }
-            _ => None,
         }
     }
 
@@ -171,5 +219,32 @@ impl<'a> Filling<'a> {
             words.push(self.say(*k, *v, polarity)?);
         }
         Some(words.join(" "))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrong_template_is_an_error() {
+        let text = include_str!("../../../../config/scenes/bowls.toml");
+        let scene = Scene::from_toml("bowls.toml", text).unwrap();
+        let made = |text: &str| templates(text, "bowls", &scene);
+        assert!(!made(include_str!("../templates.txt")).unwrap().is_empty());
+        for (wrong, why) in [
+            ("the <+>", "expected 2 fields"),
+            ("why | the <+>", "found `why`"),
+            ("- | the <+> or (|the <x+>)", "unknown slot <x+>"),
+            ("- | the <q*>", "unknown slot <q*>"),
+            ("- | the <>", "unknown slot <>"),
+            ("- | the <q+", "expected \">\""),
+            ("which | the <asked+>", "question `which`"),
+            ("- | the <rival->", "question `-`"),
+        ] {
+            let error = made(wrong).unwrap_err();
+            assert!(error.contains(why), "{wrong}: {error}");
+        }
     }
 }
