@@ -51,6 +51,9 @@ pub enum DialogueEvent {
     Heard(Box<Receipt>),
 }
 
+/// Fields of an answer, which stand beside those of the console.
+pub type Fields = Map<String, Json>;
+
 /// An optional part of the page.
 pub trait Part: Debug {
     /// Carries out a command of a page, without the part's prefix; returns the fields of its answer.
@@ -62,7 +65,7 @@ pub trait Part: Debug {
         verb: &str,
         arguments: &Json,
         robot: &Robot<'_>,
-    ) -> Result<Map<String, Json>, String>;
+    ) -> Result<Fields, String>;
 
     /// Takes in what was said.
     fn on_event(&mut self, event: &DialogueEvent, robot: &Robot<'_>);

@@ -26,8 +26,8 @@ pub use command::read as read_command;
 use std::path::PathBuf;
 
 use config::Settings;
-use page_part::{DialogueEvent, Now, Part, Robot};
-use serde_json::{Map, Value as Json, json};
+use page_part::{DialogueEvent, Fields, Now, Part, Robot};
+use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::view::ms;
@@ -100,13 +100,16 @@ impl Part for Study {
         verb: &str,
         arguments: &Json,
         robot: &Robot<'_>,
-    ) -> Result<Map<String, Json>, String> {
+    ) -> Result<Fields, String> {
         let page = command::page(arguments)?;
         if verb == "find" {
             let found = self.controller.of_page(&page);
             let id = found.map(|person| person.id());
             let stage = found.map(|person| person.stage.name());
-            return Ok(fields([("participant", json!(id)), ("stage", json!(stage))]));
+            return Ok(Fields::from_iter([
+                ("participant".into(), json!(id)),
+                ("stage".into(), json!(stage)),
+            ]));
         }
         let command = command::read(verb, arguments)?;
         let (state, at) = (self.state(robot), robot.now.unix_ms);
@@ -115,7 +118,7 @@ impl Part for Study {
             tracing::error!(participant = id, %error, "the study's data is not written");
             format!("The data cannot be written: {error}. Please tell the experimenter.")
         })?;
-        Ok(fields([("participant", json!(id))]))
+        Ok(Fields::from_iter([("participant".into(), json!(id))]))
     }
 
     fn on_event(&mut self, event: &DialogueEvent, robot: &Robot<'_>) {
@@ -138,10 +141,6 @@ impl Part for Study {
         let section = StudySection::new(&self.controller, &state, self.trouble.as_deref());
         serde_json::to_string(&section).ok()
     }
-}
-
-fn fields<const N: usize>(fields: [(&str, Json); N]) -> Map<String, Json> {
-    fields.map(|(name, value)| (name.to_owned(), value)).into_iter().collect()
 }
 
 impl Study {

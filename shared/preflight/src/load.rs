@@ -20,7 +20,7 @@ pub fn load(
     profile: Option<&str>,
     overrides: &[(String, String)],
 ) -> Result<Settings, Diagnostics> {
-    load_with_scene(dir, profile, overrides, None)
+    examine(dir, profile, overrides, None).verdict()
 }
 
 /// Does the same as [`load`], but skips the check of the arm's reach, which takes most of the time, if `is_known` says
@@ -37,20 +37,8 @@ pub fn load_known(
     checked(Settings::examine(dir, profile, overrides, None), is_known).verdict()
 }
 
-/// Does the same as [`load`], with `scene` in place of the scene that the configuration names.
-///
-/// # Errors
-/// As [`load`].
-pub fn load_with_scene(
-    dir: &Path,
-    profile: Option<&str>,
-    overrides: &[(String, String)],
-    scene: Option<TextFile>,
-) -> Result<Settings, Diagnostics> {
-    examine(dir, profile, overrides, scene).verdict()
-}
-
-/// Does the same as [`load_with_scene`] before a verdict: further checks may add to the report.
+/// Does the same as [`load`] before a verdict, so that further checks may add to the report. `scene` is read in place of
+/// the scene that the configuration names.
 pub fn examine(
     dir: &Path,
     profile: Option<&str>,

@@ -2,7 +2,7 @@
 
 use messages::{JointStates, Partial, Receipt, ReceiptStatus};
 use serde::Serialize;
-use serde_json::{Map, Value as Json};
+use serde_json::Value as Json;
 use service::Time;
 
 use super::ms;
@@ -104,7 +104,7 @@ pub enum Answer {
         message: String,
     },
     /// The fields that a part of the page answers with.
-    Part(Map<String, Json>),
+    Part(page_part::Fields),
 }
 
 /// States of the joints, with as many digits as can be seen.

@@ -10,6 +10,9 @@ use crate::line::{Line, Marked};
 const TIMES: usize = 3;
 /// Attempts to fill the slots of a template with values that do not contradict each other.
 const ATTEMPTS: usize = 8;
+/// Slots, without the sign of their polarity: those of any question, then of one about an attribute, then of one about a
+/// value.
+const SLOTS: [&str; 6] = ["", "q", "k", "p", "rival", "asked"];
 
 /// Returns lines made of the templates in a file's text, about one scene; the same ones every time.
 ///
@@ -36,53 +39,20 @@ pub fn templates(text: &str, name: &str, scene: &Scene) -> Result<Vec<Line>, Str
 
 /// Checks the question and the slots of a template.
 fn check(question: &str, template: &str) -> Result<(), String> {
-    if !["-", "is", "which"].contains(&question) {
-        return Err(format!("expected `-`, `is` or `which`, found `{question}`"));
-    }
+    let slots = match question {
+        "-" => &SLOTS[..4],
+        "which" => &SLOTS[..5],
+        "is" => &SLOTS,
+        _ => return Err(format!("expected `-`, `is` or `which`, found `{question}`")),
+    };
     for slot in template.split('<').skip(1) {
         let (slot, _) = slot.split_once('>').ok_or("expected \">\", found none")?;
-        let (slot, _) = Slot::read(slot).ok_or_else(|| format!("unknown slot <{slot}>"))?;
-        let is_askable = match slot {
-            Slot::Asked => question == "is",
-            Slot::Rival => question != "-",
-            Slot::Description | Slot::One(_) => true,
-        };
-        if !is_askable {
-            return Err(format!("a slot for which the question `{question}` has no value"));
+        let kind = slot.strip_suffix(['+', '-', '0']);
+        if !kind.is_some_and(|kind| slots.contains(&kind)) {
+            return Err(format!("expected a slot of {slots:?} with a sign, found <{slot}>"));
         }
     }
     Ok(())
-}
-
-/// A place in a template for value words.
-#[derive(Clone, Copy)]
-enum Slot {
-    /// A description of an object.
-    Description,
-    /// One value of a role.
-    One(Role),
-    /// The value that the question names.
-    Asked,
-    /// Another value of the question's attribute.
-    Rival,
-}
-
-impl Slot {
-    /// Reads what stands between `<` and `>`: the slot and the sign of its polarity.
-    fn read(text: &str) -> Option<(Self, Polarity)> {
-        let mut kind = text.chars();
-        let polarity = crate::line::polarity(kind.next_back()?)?;
-        let slot = match kind.as_str() {
-            "" => Self::Description,
-            "q" => Self::One(Role::Quality),
-            "k" => Self::One(Role::Kind),
-            "p" => Self::One(Role::Place),
-            "asked" => Self::Asked,
-            "rival" => Self::Rival,
-            _ => return None,
-        };
-        Some((slot, polarity))
-    }
 }
 
 /// Replaces each `(a|b)` by one of its parts.
@@ -139,19 +109,23 @@ impl<'a> Filling<'a> {
     }
 
     fn slot(&mut self, slot: &str) -> Option<String> {
-        let (slot, polarity) = Slot::read(slot)?;
-        match slot {
-            Slot::Description => self.description(polarity),
-            Slot::One(role) => self.one(role, polarity),
-            Slot::Asked => {
+        let (kind, polarity) = slot.split_at(slot.len().checked_sub(1)?);
+        let polarity = crate::line::polarity(polarity.chars().next()?)?;
+        match kind {
+            "" => self.description(polarity),
+            "q" => self.one(Role::Quality, polarity),
+            "k" => self.one(Role::Kind, polarity),
+            "p" => self.one(Role::Place, polarity),
+            "asked" => {
                 let (k, v) = self.asked?;
                 self.say(k, v?, polarity)
             }
-            Slot::Rival => {
+            "rival" => {
                 let (k, asked) = self.asked?;
                 let v = self.random.below(self.scene.attributes()[k].values.len());
                 (asked != Some(v)).then(|| self.say(k, v, polarity))?
             }
+            _ => None,
         }
     }
 
@@ -236,12 +210,12 @@ mod tests {
         for (wrong, why) in [
             ("the <+>", "expected 2 fields"),
             ("why | the <+>", "found `why`"),
-            ("- | the <+> or (|the <x+>)", "unknown slot <x+>"),
-            ("- | the <q*>", "unknown slot <q*>"),
-            ("- | the <>", "unknown slot <>"),
+            ("- | the <+> or (|the <x+>)", "found <x+>"),
+            ("- | the <q*>", "found <q*>"),
+            ("- | the <>", "found <>"),
             ("- | the <q+", "expected \">\""),
-            ("which | the <asked+>", "question `which`"),
-            ("- | the <rival->", "question `-`"),
+            ("which | the <asked+>", "found <asked+>"),
+            ("- | the <rival->", "found <rival->"),
         ] {
             let error = made(wrong).unwrap_err();
             assert!(error.contains(why), "{wrong}: {error}");

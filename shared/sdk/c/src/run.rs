@@ -56,11 +56,8 @@ impl Cycle for Loop<'_> {
 /// Returns the service of this name, if some topic wakes it.
 fn woken(bus: &Bus, name: &str) -> Result<Service, String> {
     let service = bus.woken().into_iter().find(|service| service.name() == name);
-    service.ok_or_else(|| {
-        format!(
-            "no topic wakes a service {name}; help: name its topics in `reads` of [services.{name}]"
-        )
-    })
+    let help = "list its topics under `reads` of the service";
+    service.ok_or_else(|| format!("no topic wakes a service {name}; help: {help}"))
 }
 
 fn run(group: &mut Group, step: Step, context: *mut c_void) -> Result<(), Failure> {
