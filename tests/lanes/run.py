@@ -319,7 +319,7 @@ class Leftovers:
     def left(self):
         processes = {pid: x for pid, x in self.running().items() if pid not in self.processes}
         left = [f"process {pid}, {program}" for pid, program in sorted(processes.items())]
-        # Groups beside this run, of another checkout for example, are not of it.
+        # Groups beside this run, of another checkout for example, do not belong to it.
         new = self.segments() - self.memory
         in_use = self.in_use()
         left += [f"shared memory /dev/shm/{name}" for name in sorted(new) if name[:PREFIX] not in in_use]

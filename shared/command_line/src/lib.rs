@@ -1,4 +1,4 @@
-//! What the verbs of the command line share: [`output`], the [`configuration`] and the scene files that they name,
+//! Shared code of the verbs of the command line: [`output`], the [`configuration`] and the scene files that they name,
 //! [`interrupt`]ions, and the arguments for them.
 
 use service::exit::{Exit, Failure};

@@ -1,4 +1,4 @@
-//! Programs of services that a verb runs for what only they know.
+//! Runs of a service's program by a verb, for information that only the service has.
 
 use std::io;
 use std::path::Path;

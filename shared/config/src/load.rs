@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use diagnostics::{Diagnostic, Fields, Node, Report, Source, Table, TextFile, suggestion};
+use diagnostics::{
+    Diagnostic, Diagnostics, Fields, Node, Report, Source, Table, TextFile, suggestion,
+};
 use scene::Scene;
 use toml::Value;
 
@@ -20,6 +22,16 @@ pub struct Examined {
     pub report: Report,
     /// The arm's settings are right, so that its reach can be checked in the same round.
     pub arm_is_right: bool,
+}
+
+impl Examined {
+    /// Returns the settings.
+    ///
+    /// # Errors
+    /// Every problem of the report.
+    pub fn verdict(self) -> Result<Settings, Diagnostics> {
+        self.report.verdict(self.settings)
+    }
 }
 
 pub(crate) fn examine(
@@ -73,7 +85,8 @@ pub(crate) fn check(
         arm_is_right &= f.is_right();
         arm
     });
-    let study = fields.table("study", |f| study::read(f, &dialogue.planner));
+    let study = fields
+        .table("study", |f| part::with_tables("study", f, |f| study::read(f, &dialogue.planner)));
     let console = fields.table("console", |f| part::with_tables("console", f, console::read));
     part::read_sections(&mut fields, measured.is_some());
     fields.finish();

@@ -79,7 +79,7 @@ pub struct PartService {
 }
 
 /// Names of sections, dotted keys of values, `durations`; or [`EVERYTHING`]. The scene, and where its objects come
-/// from, which every service reads, go without saying.
+/// from, which every service reads, are implied.
 pub type Reads = &'static [&'static str];
 
 /// Every section, and the durations.

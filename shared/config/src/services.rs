@@ -101,7 +101,7 @@ fn one(name: &str, f: &mut Fields<'_>) -> ServiceConfig {
     let knows_its_program = Service::from_name(name).is_some() || part::has_program(name);
     if command.is_none() && !f.is_wrong("command") && !knows_its_program {
         let help = "write `command = [\"program\", \"argument\"]`";
-        f.problem("command", "missing: only built-in services have a default program", help);
+        f.problem("command", "missing: only services that ship have a default program", help);
     }
     let watchdog = f.seconds("watchdog_s", 0.0..=3600.0);
     ServiceConfig {

@@ -1,7 +1,6 @@
-//! Verbs for people who evaluate the robot, or who develop services for it: no running robot needs them.
+//! Verbs for evaluation of the robot and for development of its services: no running robot needs them.
 //!
-//! [`Verb`] and [`run`] are what the table of verbs has of them, beside [`conform`] and [`replay`], which have their
-//! places in the middle of its list.
+//! The table of verbs lists [`Verb`] as a whole, and [`conform`] and [`replay`] one by one; [`run`] runs a [`Verb`].
 
 use clap::Subcommand;
 use command_line::Outcome;

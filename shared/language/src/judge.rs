@@ -13,7 +13,7 @@ const FILE: &[u8] = include_bytes!("vocabulary/judge.bin");
 /// Length of the hash and the scale, bytes.
 const HEAD: usize = 12;
 /// Probability that a value word says nothing, whatever the judge states: it has not seen all that people say.
-pub(crate) const FLOOR: f64 = 0.01;
+pub const FLOOR: f64 = 0.01;
 
 static JUDGE: LazyLock<Judge> = LazyLock::new(Judge::load);
 

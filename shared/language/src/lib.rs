@@ -101,7 +101,7 @@ mod tests;
 pub use completeness::{Completeness, CompletenessJudge};
 pub use features::{Example, ROWS};
 pub use halting::is_stop;
-pub use judge::trained_on;
+pub use judge::{FLOOR, trained_on};
 pub use mentions::{Mention, Polarity};
 pub use parsed::READINGS_MAX;
 pub use read_back::word_findings;

@@ -5,8 +5,8 @@ use std::sync::{Mutex, PoisonError};
 /// Name of the process that starts the services, reserved for it.
 pub const SUPERVISOR: &str = "supervisor";
 
-/// A service of a group. Those with a variant of their own are the core's and have a program `whichone-NAME`; so has an
-/// optional part. A service from outside has a command in the configuration.
+/// A service of a group. Those of [`Service::BUILT_IN`] are in every group. They, the robot and the optional parts have
+/// a program `whichone-NAME`; a service from outside has a command in the configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Service {
     /// Recognises and synthesises speech.
@@ -68,7 +68,7 @@ impl Service {
         Self::Other(kept)
     }
 
-    /// Returns the core's service with this name.
+    /// Returns the service with this name that has a variant of its own.
     pub fn from_name(name: &str) -> Option<Self> {
         let mut all = Self::BUILT_IN.into_iter().chain([Self::Robot]);
         all.find(|service| service.name() == name)

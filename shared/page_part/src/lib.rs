@@ -8,7 +8,7 @@ use std::fmt::Debug;
 use axum::response::Response;
 use messages::{ArmStatus, PolicyView, Receipt};
 use scene::Scene;
-use serde_json::Value as Json;
+use serde_json::{Map, Value as Json};
 use service::Time;
 
 /// A moment on both clocks.
@@ -51,13 +51,21 @@ pub enum DialogueEvent {
     Heard(Box<Receipt>),
 }
 
+/// Fields of an answer, which stand beside those of the console.
+pub type Fields = Map<String, Json>;
+
 /// An optional part of the page.
 pub trait Part: Debug {
     /// Carries out a command of a page, without the part's prefix; returns the fields of its answer.
     ///
     /// # Errors
     /// The words that the page shows.
-    fn command(&mut self, verb: &str, arguments: &Json, robot: &Robot<'_>) -> Result<Json, String>;
+    fn command(
+        &mut self,
+        verb: &str,
+        arguments: &Json,
+        robot: &Robot<'_>,
+    ) -> Result<Fields, String>;
 
     /// Takes in what was said.
     fn on_event(&mut self, event: &DialogueEvent, robot: &Robot<'_>);

@@ -26,7 +26,7 @@ pub use command::read as read_command;
 use std::path::PathBuf;
 
 use config::Settings;
-use page_part::{DialogueEvent, Now, Part, Robot};
+use page_part::{DialogueEvent, Fields, Now, Part, Robot};
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -95,13 +95,21 @@ fn folder(settings: &Settings, paths: &GroupPaths) -> PathBuf {
 }
 
 impl Part for Study {
-    fn command(&mut self, verb: &str, arguments: &Json, robot: &Robot<'_>) -> Result<Json, String> {
+    fn command(
+        &mut self,
+        verb: &str,
+        arguments: &Json,
+        robot: &Robot<'_>,
+    ) -> Result<Fields, String> {
         let page = command::page(arguments)?;
         if verb == "find" {
             let found = self.controller.of_page(&page);
             let id = found.map(|person| person.id());
             let stage = found.map(|person| person.stage.name());
-            return Ok(json!({ "participant": id, "stage": stage }));
+            return Ok(Fields::from_iter([
+                ("participant".into(), json!(id)),
+                ("stage".into(), json!(stage)),
+            ]));
         }
         let command = command::read(verb, arguments)?;
         let (state, at) = (self.state(robot), robot.now.unix_ms);
@@ -110,7 +118,7 @@ impl Part for Study {
             tracing::error!(participant = id, %error, "the study's data is not written");
             format!("The data cannot be written: {error}. Please tell the experimenter.")
         })?;
-        Ok(json!({ "participant": id }))
+        Ok(Fields::from_iter([("participant".into(), json!(id))]))
     }
 
     fn on_event(&mut self, event: &DialogueEvent, robot: &Robot<'_>) {

@@ -82,7 +82,7 @@ fn a_new_part_is_known_once_it_is_registered() {
     let alone = load(folder.path(), &[("lamp.warns", "true")]).unwrap_err();
     assert!(alone.contains("lamp.warns: is true, but the group has no lamp; help: add"), "{alone}");
     let stranger = load(folder.path(), &[("group.services.lmap.nice", "0")]).unwrap_err();
-    assert!(stranger.contains("only built-in services have a default program"), "{stranger}");
+    assert!(stranger.contains("only services that ship have a default program"), "{stranger}");
 
     // It has a program, so it needs no command.
     fs::write(folder.path().join("lamp.toml"), "brightness = 0.75\n").unwrap();

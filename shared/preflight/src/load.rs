@@ -20,7 +20,7 @@ pub fn load(
     profile: Option<&str>,
     overrides: &[(String, String)],
 ) -> Result<Settings, Diagnostics> {
-    load_with_scene(dir, profile, overrides, None)
+    examine(dir, profile, overrides, None).verdict()
 }
 
 /// Does the same as [`load`], but skips the check of the arm's reach, which takes most of the time, if `is_known` says
@@ -34,27 +34,22 @@ pub fn load_known(
     overrides: &[(String, String)],
     is_known: impl FnOnce(&Settings) -> bool,
 ) -> Result<Settings, Diagnostics> {
-    checked(Settings::examine(dir, profile, overrides, None), is_known)
+    checked(Settings::examine(dir, profile, overrides, None), is_known).verdict()
 }
 
-/// Does the same as [`load`], with `scene` in place of the scene that the configuration names.
-///
-/// # Errors
-/// As [`load`].
-pub fn load_with_scene(
+/// Does the same as [`load`] before a verdict, so that further checks may add to the report. `scene` is read in place of
+/// the scene that the configuration names.
+pub fn examine(
     dir: &Path,
     profile: Option<&str>,
     overrides: &[(String, String)],
     scene: Option<TextFile>,
-) -> Result<Settings, Diagnostics> {
+) -> Examined {
     checked(Settings::examine(dir, profile, overrides, scene), |_| false)
 }
 
-fn checked(
-    examined: Examined,
-    is_known: impl FnOnce(&Settings) -> bool,
-) -> Result<Settings, Diagnostics> {
-    let Examined { settings, mut report, arm_is_right } = examined;
+fn checked(examined: Examined, is_known: impl FnOnce(&Settings) -> bool) -> Examined {
+    let Examined { mut settings, mut report, arm_is_right } = examined;
     let mut measured = None;
     // Durations are measured by the plans that show the reach.
     let is_left = |settings: &&Settings| {
@@ -70,12 +65,17 @@ fn checked(
             Err(faults) => report.extend(faults),
         }
     }
-    let mut settings = report.verdict(settings)?;
-    settings.durations = measured.transpose().map_err(|error| {
-        let help = "move it, or set costs.from of the dialogue to \"config\"";
-        Diagnostics::from(settings.scene_diagnostic("objects", error.to_string(), help))
-    })?;
-    Ok(settings)
+    // Other problems would be reported again as objects that cannot be measured.
+    if let Some(settings) = settings.as_mut().filter(|_| report.count() == 0) {
+        match measured.transpose() {
+            Ok(durations) => settings.durations = durations,
+            Err(error) => {
+                let help = "move it, or set costs.from of the dialogue to \"config\"";
+                report.add(settings.scene_diagnostic("objects", error.to_string(), help));
+            }
+        }
+    }
+    Examined { settings, report, arm_is_right }
 }
 
 /// The durations, if they are the costs of questions.

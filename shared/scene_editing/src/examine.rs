@@ -64,8 +64,8 @@ impl From<&Diagnostic> for Problem {
     }
 }
 
-/// What the reader of utterances finds in a scene's words (`language::word_findings`); as an argument, so that who edits
-/// scenes does not depend on how English is understood.
+/// The reader's findings in a scene's words (`language::word_findings`); an argument, so that editors of scenes do not
+/// depend on the reading of English.
 pub type ReadBack = fn(&Scene) -> WordFindings;
 
 /// Checks the text of a scene as `whichone scene check` does, with reach and clearance.
@@ -77,7 +77,7 @@ pub fn check(configuration: &Configuration, file: TextFile, read_back: ReadBack)
         (words, misunderstood(&scene, &file, read_back))
     });
     let (words, (misread, warnings)) = words.unwrap_or_default();
-    let loaded = preflight::load_with_scene(folder, profile.as_deref(), set, Some(file));
+    let loaded = preflight::examine(folder, profile.as_deref(), set, Some(file)).verdict();
     let faults = loaded.as_ref().err().into_iter().flat_map(Diagnostics::iter);
     let problems = faults.chain(&misread).map(Problem::from).collect();
     Findings { problems, warnings, words }
@@ -147,8 +147,7 @@ impl Reach {
         // The scene has no part in it: any one will do.
         let scene = TextFile::new("scene", ANY_SCENE);
         let Configuration { folder, profile, set } = configuration;
-        let examined = Settings::examine(folder, profile.as_deref(), set, Some(scene));
-        let settings = examined.report.verdict(examined.settings)?;
+        let settings = Settings::examine(folder, profile.as_deref(), set, Some(scene)).verdict()?;
         Ok(Self { configuration: configuration.clone(), setup: ArmSetup::new(&settings)? })
     }
 

@@ -104,7 +104,7 @@ pub enum Answer {
         message: String,
     },
     /// The fields that a part of the page answers with.
-    Part(Json),
+    Part(page_part::Fields),
 }
 
 /// States of the joints, with as many digits as can be seen.

@@ -1,9 +1,10 @@
 //! Live view for Foxglove and Lichtblick: the channels of recordings over the protocol `foxglove.sdk.v1`, at
 //! `/foxglove`.
 //!
-//! Its messages are those of `recording::live`. The [`feed`] belongs to the main loop: it reads every topic while there are viewers, and opens none while
-//! there is nobody. The [`socket`] of each viewer takes what waits for it in [`viewers`]. A viewer is a
-//! viewer of the hub like a page, so that the same limits and the same lease of control hold for it.
+//! Its messages are those of `recording::live`. The [`feed`] belongs to the main loop: it reads every topic while
+//! there are viewers, and opens none while there is nobody. The [`socket`] of each viewer takes its messages from
+//! [`viewers`].
+//! A viewer is a viewer of the hub like a page, so that the same limits and the same lease of control hold for it.
 
 pub mod feed;
 pub mod say;

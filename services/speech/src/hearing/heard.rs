@@ -1,4 +1,4 @@
-//! What the recognisers think of an utterance.
+//! Views of the recognisers on an utterance.
 
 use messages::Hypothesis;
 use serde::{Deserialize, Serialize};

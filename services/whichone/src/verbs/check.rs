@@ -5,8 +5,8 @@ use std::path::Path;
 use command_line::Outcome;
 use command_line::configuration;
 use command_line::output::{Ink, Output, note, table};
-use config::Settings;
-use diagnostics::{Diagnostic, Diagnostics, Report};
+use config::{Examined, Settings};
+use diagnostics::{Diagnostic, Diagnostics};
 use language::word_findings;
 use scene::Scene;
 use scene_editing::misunderstood;
@@ -18,31 +18,33 @@ use crate::cli::CheckArgs;
 /// Reports every problem at once, or the services that would run.
 pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
     let folder = configuration::folder(&args.config)?;
-    let loaded = preflight::load(&folder, args.config.profile.as_deref(), &args.config.set);
-    verdict(loaded, &folder, args.values, out)
+    let profile = args.config.profile.as_deref();
+    let examined = preflight::examine(&folder, profile, &args.config.set, None);
+    verdict(examined, &folder, args.values, out)
 }
 
-/// Reports what was loaded from `from`: every problem, or the services that would run.
+/// Reads the scene's words back, and reports on the configuration of `from`: every problem, or the services that would run.
 pub(super) fn verdict(
-    loaded: Result<Settings, Diagnostics>,
+    examined: Examined,
     from: &Path,
     with_values: bool,
     out: &mut Output<'_>,
 ) -> Outcome {
-    let checked = loaded.and_then(|settings| {
-        let (problems, warnings) =
-            misunderstood(&settings.scene, settings.scene_file(), word_findings);
-        let mut report = Report::default();
-        problems.into_iter().for_each(|problem| report.add(problem));
-        Ok((report.verdict(Some(settings))?, warnings))
+    let Examined { settings, mut report, .. } = examined;
+    // The scene of the settings lacks its wrong parts.
+    let words = settings.as_ref().map(Settings::scene_file).and_then(|file| {
+        let scene = Scene::from_toml(&file.label, &file.text).ok()?;
+        Some(misunderstood(&scene, file, word_findings))
     });
-    match checked {
+    let (problems, warnings) = words.unwrap_or_default();
+    problems.into_iter().for_each(|problem| report.add(problem));
+    match report.verdict(settings) {
         Err(problems) => refused(&problems, out),
-        Ok((settings, warnings)) if out.is_json() => {
+        Ok(settings) if out.is_json() => {
             out.json(&as_json(&settings, &warnings, with_values))?;
             Ok(Exit::Ok)
         }
-        Ok((settings, warnings)) => {
+        Ok(settings) => {
             let good = out.style().paint(Ink::Green, "is right");
             out.line(format_args!("{} {good}", from.display()))?;
             for line in summary(&settings) {

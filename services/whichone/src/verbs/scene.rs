@@ -7,8 +7,8 @@ use command_line::Outcome;
 use command_line::configuration;
 use command_line::output::Output;
 use command_line::scene_file;
-use config::Settings;
-use diagnostics::{Diagnostics, TextFile};
+use config::{Examined, Settings};
+use diagnostics::TextFile;
 use scene_editing::SceneEdit;
 use serde_json::json;
 use service::exit::{Exit, Failure};
@@ -52,7 +52,7 @@ fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
     let label = path.display().to_string();
     let mut edit = SceneEdit::parse(&label, &text)?;
     let placed = place::places(&mut edit, &label, &args.config)?;
-    load(&args.config, TextFile::new(&*label, edit.text()))??;
+    load(&args.config, TextFile::new(&*label, edit.text()))?.verdict()?;
     safe_files::write_new_output(&path, edit.text().as_bytes()).map_err(|error| {
         match error.kind() {
             ErrorKind::AlreadyExists => {
@@ -84,18 +84,15 @@ fn read(named: &Path, config: &ConfigArgs) -> Result<(PathBuf, TextFile), Failur
 }
 
 /// Loads the configuration with another scene, with all checks.
-fn load(args: &ConfigArgs, scene: TextFile) -> Result<Result<Settings, Diagnostics>, Failure> {
+fn load(args: &ConfigArgs, scene: TextFile) -> Result<Examined, Failure> {
     let folder = configuration::folder(args)?;
-    let profile = args.profile.as_deref();
-    Ok(preflight::load_with_scene(&folder, profile, &args.set, Some(scene)))
+    Ok(preflight::examine(&folder, args.profile.as_deref(), &args.set, Some(scene)))
 }
 
 /// Reads the configuration with another scene, without checks of the arm's reach.
 fn examine(args: &ConfigArgs, scene: Option<TextFile>) -> Result<Settings, Failure> {
     let folder = configuration::folder(args)?;
-    let profile = args.profile.as_deref();
-    let examined = Settings::examine(&folder, profile, &args.set, scene);
-    Ok(examined.report.verdict(examined.settings)?)
+    Ok(Settings::examine(&folder, args.profile.as_deref(), &args.set, scene).verdict()?)
 }
 
 #[cfg(test)]
@@ -185,6 +182,21 @@ mod tests {
             shown["objects"].as_array().unwrap().iter().all(|it| it["arm"].is_string()),
             "{shown}"
         );
+    }
+
+    #[test]
+    fn words_that_are_misread_are_problems_beside_those_of_the_configuration() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("misread.toml");
+        let text = "name = 's'\nnoun = 'box'\n[[attributes]]\nname = 'label'\n\
+                    values = ['red', 'the red one']\n[[objects]]\nname = 'a'\n";
+        fs::write(&file, text).unwrap();
+        let config = with(&[("arm.speed_ratio", "7")], None);
+        let (found, _) = json(SceneVerb::Check(SceneCheckArgs { file, config }));
+        for key in ["arm.speed_ratio", "attributes[0].values[0]"] {
+            let mut problems = found["problems"].as_array().unwrap().iter();
+            assert!(problems.any(|it| it["key"] == key), "{key}: {found}");
+        }
     }
 
     #[test]

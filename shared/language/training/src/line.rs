@@ -22,7 +22,7 @@ pub struct Line {
 pub struct Marked {
     /// The words as they stand in the text.
     pub surface: String,
-    /// What is said of it.
+    /// Its polarity: wanted, denied or neither.
     pub polarity: Polarity,
 }
 
@@ -68,7 +68,7 @@ impl Marked {
     }
 }
 
-/// Returns what a sign stands for.
+/// Returns the polarity that a sign stands for.
 pub(crate) fn polarity(sign: char) -> Option<Polarity> {
     match sign {
         '+' => Some(Polarity::Wanted),

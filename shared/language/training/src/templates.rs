@@ -10,6 +10,9 @@ use crate::line::{Line, Marked};
 const TIMES: usize = 3;
 /// Attempts to fill the slots of a template with values that do not contradict each other.
 const ATTEMPTS: usize = 8;
+/// Slots, without the sign of their polarity: those of any question, then of one about an attribute, then of one about a
+/// value.
+const SLOTS: [&str; 6] = ["", "q", "k", "p", "rival", "asked"];
 
 /// Returns lines made of the templates in a file's text, about one scene; the same ones every time.
 ///
@@ -22,6 +25,7 @@ pub fn templates(text: &str, name: &str, scene: &Scene) -> Result<Vec<Line>, Str
     for line in text.lines().filter(is_template) {
         let (question, template) =
             line.split_once(" | ").ok_or_else(|| format!("expected 2 fields, found {line}"))?;
+        check(question, template).map_err(|why| format!("{why} in {line}"))?;
         for _ in 0..TIMES {
             let made = (0..ATTEMPTS).find_map(|_| {
                 let chosen = choose(template, &mut random);
@@ -31,6 +35,24 @@ pub fn templates(text: &str, name: &str, scene: &Scene) -> Result<Vec<Line>, Str
         }
     }
     Ok(lines)
+}
+
+/// Checks the question and the slots of a template.
+fn check(question: &str, template: &str) -> Result<(), String> {
+    let slots = match question {
+        "-" => &SLOTS[..4],
+        "which" => &SLOTS[..5],
+        "is" => &SLOTS,
+        _ => return Err(format!("expected `-`, `is` or `which`, found `{question}`")),
+    };
+    for slot in template.split('<').skip(1) {
+        let (slot, _) = slot.split_once('>').ok_or("expected \">\", found none")?;
+        let kind = slot.strip_suffix(['+', '-', '0']);
+        if !kind.is_some_and(|kind| slots.contains(&kind)) {
+            return Err(format!("expected a slot of {slots:?} with a sign, found <{slot}>"));
+        }
+    }
+    Ok(())
 }
 
 /// Replaces each `(a|b)` by one of its parts.
@@ -171,5 +193,32 @@ impl<'a> Filling<'a> {
             words.push(self.say(*k, *v, polarity)?);
         }
         Some(words.join(" "))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrong_template_is_an_error() {
+        let text = include_str!("../../../../config/scenes/bowls.toml");
+        let scene = Scene::from_toml("bowls.toml", text).unwrap();
+        let made = |text: &str| templates(text, "bowls", &scene);
+        assert!(!made(include_str!("../templates.txt")).unwrap().is_empty());
+        for (wrong, why) in [
+            ("the <+>", "expected 2 fields"),
+            ("why | the <+>", "found `why`"),
+            ("- | the <+> or (|the <x+>)", "found <x+>"),
+            ("- | the <q*>", "found <q*>"),
+            ("- | the <>", "found <>"),
+            ("- | the <q+", "expected \">\""),
+            ("which | the <asked+>", "found <asked+>"),
+            ("- | the <rival->", "found <rival->"),
+        ] {
+            let error = made(wrong).unwrap_err();
+            assert!(error.contains(why), "{wrong}: {error}");
+        }
     }
 }

@@ -85,10 +85,17 @@ impl Topics {
     pub fn create(bus: &Bus) -> Result<Self, BusError> {
         let topics = topics::ALL.iter().chain(&topics::robot::ALL);
         let topics = topics.map(|topic| open_topic(bus, topic)).collect::<Result<_, _>>()?;
-        let mut woken = topics::woken();
-        woken.extend(bus.wakes.services().into_iter().filter(|it| !topics::woken().contains(it)));
-        let notifiers = woken.into_iter().map(|service| wake::open(bus.node(), service));
+        let notifiers = bus.woken().into_iter().map(|service| wake::open(bus.node(), service));
         Ok(Self { _topics: topics, _notifiers: notifiers.collect::<Result<_, _>>()? })
+    }
+}
+
+impl Bus {
+    /// Returns the services that are woken by some topic, each once.
+    pub fn woken(&self) -> Vec<messages::Service> {
+        let mut woken = topics::woken();
+        woken.extend(self.wakes.services().into_iter().filter(|it| !topics::woken().contains(it)));
+        woken
     }
 }
 

@@ -53,12 +53,18 @@ impl Cycle for Loop<'_> {
     }
 }
 
+/// Returns the service of this name, if some topic wakes it.
+fn woken(bus: &Bus, name: &str) -> Result<Service, String> {
+    let service = bus.woken().into_iter().find(|service| service.name() == name);
+    let help = "list its topics under `reads` of the service";
+    service.ok_or_else(|| format!("no topic wakes a service {name}; help: {help}"))
+}
+
 fn run(group: &mut Group, step: Step, context: *mut c_void) -> Result<(), Failure> {
     let usage = |what: String| Failure::new(Exit::Usage, what);
     let (name, lifecycle) = group.take_lifecycle().map_err(usage)?;
-    let service = Service::from_name(&name)
-        .ok_or_else(|| usage(format!("no topic wakes a service {name}")))?;
     let bus = group.bus();
+    let service = woken(bus, &name).map_err(usage)?;
     let listener = bus.wake_listener(service)?;
     let mut cycle = Loop { bus, listener, step, context, is_ending: false };
     drive(lifecycle, &mut cycle)
@@ -82,5 +88,35 @@ pub unsafe extern "C" fn whichone_run(
             complain(&failure);
             c_int::from(failure.exit as u8)
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+mod tests {
+    use messages::topics::VIEW;
+    use messages::{Epoch, Incarnation};
+    use service::bus::Identity;
+    use service::group::{GroupName, GroupPaths};
+    use service::shm_cleanup;
+    use service::wakes::Wakes;
+
+    use super::*;
+
+    #[test]
+    fn services_that_a_topic_wakes_can_be_replaced() {
+        let home = tempfile::Builder::new().prefix("wo").tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &GroupName::new("c").unwrap()).unwrap();
+        shm_cleanup::create_place(&paths).unwrap();
+        Wakes::new([("label", VIEW.name)]).save(&paths).unwrap();
+        let identity = Identity { epoch: Epoch(1), incarnation: Incarnation(1) };
+        let bus = Bus::open(&paths, "c", identity).unwrap();
+        for name in ["grounding", "ros2", "label"] {
+            assert_eq!(woken(&bus, name).map(Service::name), Ok(name));
+        }
+        let error = woken(&bus, "stranger").unwrap_err();
+        assert!(error.starts_with("no topic wakes a service stranger; help: "), "{error}");
+        drop(bus);
+        shm_cleanup::remove_leftovers(&paths);
     }
 }

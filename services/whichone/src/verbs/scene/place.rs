@@ -26,7 +26,7 @@ pub(super) fn place(args: &ScenePlaceArgs, out: &mut Output<'_>) -> Outcome {
     let mut edit = SceneEdit::parse(&file.label, &file.text)?;
     let placed = places(&mut edit, &file.label, &args.config)?;
     let text = edit.text();
-    let checked = load(&args.config, TextFile::new(&*file.label, &*text))?;
+    let checked = load(&args.config, TextFile::new(&*file.label, &*text))?.verdict();
     if args.write && !placed.is_empty() {
         safe_files::write_output(&path, text.as_bytes())
             .map_err(|error| Failure::file(&path, &error))?;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::ExitCode;
 
-use language::{Polarity, ROWS};
+use language::{FLOOR, Polarity, ROWS};
 use reader_training::{
     Lesson, Line, Linear, Row, Scenes, Score, Scored, exit_code, files, lines, pairs, question,
     table, templates, trained_on,
@@ -17,8 +17,6 @@ use reader_training::{
 const EPOCHS: usize = 4;
 /// Rate of the first step of a weight.
 const RATE: f64 = 0.0125;
-/// Probability, under everything, that nothing was said, as in `language::judge`.
-const FLOOR: f64 = 0.01;
 /// How much a lesson of the reader's own tables counts: the rules were made for these lines, and are less often right
 /// elsewhere.
 const OWN: f64 = 0.5;
