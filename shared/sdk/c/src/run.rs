@@ -64,8 +64,7 @@ fn run(group: &mut Group, step: Step, context: *mut c_void) -> Result<(), Failur
     let usage = |what: String| Failure::new(Exit::Usage, what);
     let (name, lifecycle) = group.take_lifecycle().map_err(usage)?;
     let bus = group.bus();
-    let service = woken(bus, &name).map_err(usage)?;
-    let listener = bus.wake_listener(service)?;
+    let listener = bus.wake_listener(woken(bus, &name).map_err(usage)?)?;
     let mut cycle = Loop { bus, listener, step, context, is_ending: false };
     drive(lifecycle, &mut cycle)
 }
@@ -114,8 +113,7 @@ mod tests {
         for name in ["grounding", "ros2", "label"] {
             assert_eq!(woken(&bus, name).map(Service::name), Ok(name));
         }
-        let error = woken(&bus, "stranger").unwrap_err();
-        assert!(error.starts_with("no topic wakes a service stranger; help: "), "{error}");
+        assert!(woken(&bus, "stranger").is_err_and(|error| error.contains("stranger; help: ")));
         drop(bus);
         shm_cleanup::remove_leftovers(&paths);
     }
