@@ -40,6 +40,8 @@ TRIED_AGAIN = 5
 PASSES_IN_A_ROW = 3
 RUNS_REMEMBERED = 20
 SECOND_TRIES_ALLOWED = 2
+# Letters with which all names of a group in shared memory begin (`ShmName` in shared/runtime/src/group.rs).
+PREFIX = 24
 TOO_SLOW = "the physics did not keep up with real time"
 
 
@@ -293,28 +295,31 @@ class Leftovers:
         return found
 
     @staticmethod
-    def mapped():
-        """Shared memory that a process has mapped."""
+    def in_use():
+        """Groups with a process that has some of their shared memory mapped: prefixes of their names in it."""
         found = set()
         for pid in filter(str.isdigit, os.listdir("/proc")):
             try:
                 text = Path(f"/proc/{pid}/maps").read_text()
             except OSError:
                 continue
-            found.update(re.findall(r"/dev/shm/(\S+)", text))
+            found.update(name[:PREFIX] for name in re.findall(r"/dev/shm/(\S+)", text))
         return found
 
-    def find(self):
-        until = time.monotonic() + 10
-        while True:
-            processes = {p: x for p, x in self.running().items() if p not in self.processes}
-            if not processes or time.monotonic() > until:
-                break
-            time.sleep(0.2)
+    def left(self):
+        processes = {pid: x for pid, x in self.running().items() if pid not in self.processes}
         left = [f"process {pid}, {program}" for pid, program in sorted(processes.items())]
-        new = self.segments() - self.memory - self.mapped()
-        left += [f"shared memory /dev/shm/{name}" for name in sorted(new)]
-        left += [f"temporary {path}" for path in sorted(self.temporary.iterdir())]
+        # Groups beside this run, of another checkout for example, are not of it.
+        new = self.segments() - self.memory
+        in_use = self.in_use()
+        left += [f"shared memory /dev/shm/{name}" for name in sorted(new) if name[:PREFIX] not in in_use]
+        return left + [f"temporary {path}" for path in sorted(self.temporary.iterdir())]
+
+    def find(self):
+        """What is still there after some seconds: what ends takes a moment, in this run and beside it."""
+        until = time.monotonic() + 10
+        while (left := self.left()) and time.monotonic() < until:
+            time.sleep(0.5)
         return left
 
 
