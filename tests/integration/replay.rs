@@ -15,7 +15,7 @@ use service::lifecycle::Environment;
 use service::service_loop::Program;
 use service::{Effects, Event, Never, Node, Time};
 use tempfile::TempDir;
-use whichone_tests::{Ended, Group, program, run, settings};
+use whichone_tests::{Ended, Group, program, run, settings, wait_for};
 
 const SERVICES: [&str; 4] = ["speech", "grounding", "policy", "arm"];
 
@@ -40,11 +40,15 @@ fn flights_with_kills() -> TempDir {
         });
         assert_eq!(outcome["outcome"], "delivered", "{outcome}\n{}", group.logs());
     }
-    // Copied while the services record: the ends are as a kill leaves them.
-    let copy = tempfile::tempdir().unwrap();
-    for file in list(&group.paths().flights()).unwrap() {
-        fs::copy(&file, copy.path().join(file.file_name().unwrap())).unwrap();
-    }
+    // Copied while the services record: the ends are as a kill leaves them. What a service has just done takes a moment.
+    let copy = wait_for("flights of each service, before and after its kill", 30.0, || {
+        let copy = tempfile::tempdir().unwrap();
+        for file in list(&group.paths().flights()).unwrap() {
+            fs::copy(&file, copy.path().join(file.file_name().unwrap())).unwrap();
+        }
+        let reports = reports(&replay(copy.path(), &["--json"]));
+        reports.iter().all(|report| report.passes > 5).then_some(copy)
+    });
     group.down();
     copy
 }
