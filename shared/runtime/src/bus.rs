@@ -196,7 +196,10 @@ impl Bus {
             await_cleanup(paths);
         }
         let folder = || place.folder().metadata().map(|folder| folder.ino()).ok();
-        let ended = || BusError::ipc("shared memory", "the group has ended".to_owned());
+        let ended = || {
+            let help = "help: run the command again, or start the group with `whichone up`";
+            BusError::ipc("opening", format!("the group has ended, or renews its memory; {help}"))
+        };
         let found = folder().ok_or_else(ended)?;
         let node = open_node(&place, name);
         // iceoryx2 makes its files again if the group ends meanwhile.
