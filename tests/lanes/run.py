@@ -40,7 +40,7 @@ TRIED_AGAIN = 5
 PASSES_IN_A_ROW = 3
 RUNS_REMEMBERED = 20
 SECOND_TRIES_ALLOWED = 2
-# Letters with which all names of a group in shared memory begin (`ShmName` in shared/runtime/src/group.rs).
+# Letters that all names of a group in shared memory share at their start (`ShmName` in shared/runtime/src/group.rs).
 PREFIX = 24
 TOO_SLOW = "the physics did not keep up with real time"
 
@@ -316,7 +316,8 @@ class Leftovers:
             found.update(name[:PREFIX] for name in re.findall(r"/dev/shm/(\S+)", text))
         return found
 
-    def left(self):
+    def new(self):
+        """Processes, shared memory and temporary files that were not there at the start."""
         processes = {pid: x for pid, x in self.running().items() if pid not in self.processes}
         left = [f"process {pid}, {program}" for pid, program in sorted(processes.items())]
         # Groups beside this run, of another checkout for example, do not belong to it.
@@ -325,12 +326,14 @@ class Leftovers:
         left += [f"shared memory /dev/shm/{name}" for name in sorted(new) if name[:PREFIX] not in in_use]
         return left + [f"temporary {path}" for path in sorted(self.temporary.iterdir())]
 
-    def find(self):
-        """What is still there after some seconds: what ends takes a moment, in this run and beside it."""
+    def find(self, known):
+        """New ones that are still there after 10 s, as some end a moment later, without those of known cause."""
         until = time.monotonic() + 10
-        while (left := self.left()) and time.monotonic() < until:
+        while True:
+            left = [it for it in self.new() if not any(fnmatch(it, pattern) for pattern in known)]
+            if not left or time.monotonic() > until:
+                return left
             time.sleep(0.5)
-        return left
 
 
 def main():
@@ -389,8 +392,7 @@ def judge(lane, runner, leftovers, began):
         judge_second_tries([])
     for name in broken if bad else []:
         say(f"failed: {name}")
-    known = runner.lanes["known_leftovers"]
-    left = [what for what in leftovers.find() if not any(fnmatch(what, it) for it in known)]
+    left = leftovers.find(runner.lanes["known_leftovers"])
     for what in left:
         say(f"left behind: {what}")
     if not left:

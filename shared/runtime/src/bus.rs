@@ -185,7 +185,7 @@ impl Bus {
     /// Opens the group's shared memory as process `name`.
     ///
     /// # Errors
-    /// The group is not running, or iceoryx2 fails: no memory, no permission.
+    /// The group is not running or ends meanwhile, or iceoryx2 fails: no memory, no permission.
     pub fn open(paths: &GroupPaths, name: &str, identity: Identity) -> Result<Self, BusError> {
         let place = paths.shm_name();
         let place = place.map_err(|error| {
