@@ -147,6 +147,7 @@ began=$(date +%s%N)
 step "cargo install --path services/whichone" ann nice cargo install --offline --locked --quiet --path whichone/services/whichone --target-dir /tmp/build
 rm -rf /tmp/build
 [[ $(ls /home/ann/.cargo/bin) == whichone ]] || fail "more than one program"
+[[ $(ann whichone fleet 2>&1) == *"--features zenoh"* ]] || fail "fleet: a program that is not built in without help"
 step "start" ann whichone up --detach --wait ready
 step "first fetch" fetch
 took "from the sources to the first fetch" "$began"

@@ -86,14 +86,6 @@ fn one_file_in_an_empty_folder_is_a_working_group() {
 }
 
 #[test]
-fn optional_program_that_was_not_built_in_says_how_to_get_it() {
-    let installed = Installed::new();
-    let fleet = installed.call(&["fleet"]);
-    assert_eq!(fleet.code, Some(78), "{fleet:?}");
-    assert!(fleet.stderr.contains("--features link/zenoh"), "{fleet:?}");
-}
-
-#[test]
 fn configuration_is_written_out_once_and_counts_from_then_on() {
     let installed = Installed::new();
     installed.must(&["init", "config"]);

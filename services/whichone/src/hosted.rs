@@ -21,7 +21,7 @@ pub(crate) fn run() -> Option<ExitCode> {
     let program = match program(name)? {
         Ok(program) => program,
         Err(feature) => {
-            print_error(&absent(name, feature));
+            print_error(&Failure::new(Exit::Config, parts::how_to_get(name, feature)));
             return Some(Exit::Config.code());
         }
     };
@@ -51,14 +51,4 @@ fn core_program(name: &str) -> Option<Program> {
         // An optional part.
         Service::Recorder | Service::Other(_) => None,
     }
-}
-
-/// An optional program is absent.
-fn absent(name: &str, feature: &str) -> Failure {
-    let what = format!("{PREFIX}{name}: no such program, and this `whichone` was built without it");
-    let help = format!(
-        "`cargo build --release -p {name} --features {name}/{feature}` in a checkout, or \
-         `cargo install --path services/whichone --features {feature}`"
-    );
-    Failure::new(Exit::Config, format!("{what}; help: {help}"))
 }

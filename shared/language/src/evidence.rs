@@ -51,7 +51,11 @@ pub(crate) fn weighed(parsed: &ParsedUtterance<'_>, best: Reading) -> Vec<(f64, 
     let mut readings: Vec<(f64, Reading)> = Vec::new();
     for (weight, fate) in fates(&phrases).into_iter().filter(|(weight, _)| *weight > 0.0) {
         let reading = reading(parsed, &best, &phrases, &fate);
-        match readings.iter_mut().find(|(_, known)| *known == reading) {
+        // Doubts say how well words were heard: they tell no readings apart.
+        match readings
+            .iter_mut()
+            .find(|(_, known)| known.without_doubt() == reading.without_doubt())
+        {
             Some((known, _)) => *known += weight,
             None => readings.push((weight, reading)),
         }

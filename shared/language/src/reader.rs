@@ -81,7 +81,7 @@ impl Reader {
     /// Returns the alternative readings of an utterance that followed `last_question`, each with its
     /// weight, best first; the weights sum to 1 and there are at most
     /// [`READINGS_MAX`](crate::READINGS_MAX). The first equals that of [`Self::read`] except for its
-    /// doubts, unless these change which one is the most probable.
+    /// doubts.
     ///
     /// `confidence` holds the probability of each blank-separated word of the text, 0 to 1; words
     /// beyond its end are certain. It becomes the doubt of the scene words, groups and answers that

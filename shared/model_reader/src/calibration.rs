@@ -2,7 +2,7 @@
 //! utterances by maximum likelihood.
 
 use crate::Calibration;
-use scene::{Doubt, Reading};
+use scene::Reading;
 
 /// Probability with which a meaning counts that no reading has: a log loss is finite.
 pub const LOSS_FLOOR: f64 = 0.001;
@@ -47,8 +47,7 @@ pub fn calibrated(
 
 /// Adds a reading; one that is equal but for its doubts takes the weight.
 fn add(all: &mut Vec<(f64, Reading)>, weight: f64, reading: &Reading) {
-    let certain = |reading: &Reading| Reading { doubt: Doubt::default(), ..reading.clone() };
-    match all.iter_mut().find(|(_, known)| certain(known) == certain(reading)) {
+    match all.iter_mut().find(|(_, known)| known.without_doubt() == reading.without_doubt()) {
         Some((known, _)) => *known += weight,
         None => all.push((weight, reading.clone())),
     }

@@ -32,6 +32,15 @@ pub fn register() {
     config::register(PARTS);
 }
 
+/// The error for a program that this build is without.
+pub fn how_to_get(part: &str, feature: &str) -> String {
+    format!(
+        "whichone-{part}: no such program, and this `whichone` was built without it; \
+         help: `cargo build --release -p {part} --features {part}/{feature}` in a checkout, or \
+         `cargo install --path services/whichone --features {feature}`"
+    )
+}
+
 /// The program of the part with this name.
 pub fn program(name: &str) -> Option<Program> {
     PROGRAMS.iter().find(|(part, _)| *part == name).map(|(_, program)| *program)

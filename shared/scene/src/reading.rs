@@ -120,6 +120,14 @@ pub struct Reading {
     pub doubt: Doubt,
 }
 
+impl Reading {
+    /// The same reading of words that were certainly said.
+    #[must_use]
+    pub fn without_doubt(&self) -> Self {
+        Self { doubt: Doubt::default(), ..self.clone() }
+    }
+}
+
 /// A word that was said and that the scene does not have.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct UnknownWord {

@@ -40,8 +40,7 @@ pub(super) fn run(input: &[u8]) {
     assert!((1..=READINGS_MAX).contains(&readings.len()));
     let total: f64 = readings.iter().map(|(weight, _)| weight).sum();
     assert!((total - 1.0).abs() < 1e-9, "the weights sum to {total}");
-    let plain = |reading: &Reading| Reading { doubt: scene::Doubt::default(), ..reading.clone() };
-    assert_eq!(plain(&readings[0].1), plain(&careful.read(&text, question)));
+    assert_eq!(readings[0].1.without_doubt(), careful.read(&text, question).without_doubt());
     readings.into_iter().chain(spotted).for_each(|reading| travels(reading, scene));
     let unknown = careful.unknown_words(&text);
     assert!(unknown.iter().all(|word| !word.text.is_empty()), "{unknown:?}");

@@ -127,7 +127,10 @@ fn together(
     for (heard, readings) in read {
         for (share, reading) in readings {
             let share = share * heard;
-            match together.iter_mut().find(|(_, known)| says_the_same(known, &reading)) {
+            match together
+                .iter_mut()
+                .find(|(_, known)| known.without_doubt() == reading.without_doubt())
+            {
                 Some((weight, known)) => {
                     let part = share / (*weight + share);
                     known.doubt = blend(&known.doubt, &reading.doubt, part);
@@ -142,12 +145,6 @@ fn together(
     let total: f64 = together.iter().map(|(weight, _)| weight).sum();
     together.iter_mut().for_each(|(weight, _)| *weight /= total);
     together
-}
-
-/// Equal but for how doubtful they are.
-fn says_the_same(a: &Reading, b: &Reading) -> bool {
-    let certain = |reading: &Reading| Reading { doubt: Doubt::default(), ..reading.clone() };
-    certain(a) == certain(b)
 }
 
 /// The mean of two doubts; `part` is the share of the second.
