@@ -43,6 +43,8 @@ impl Ballast {
 
 impl Drop for Ballast {
     fn drop(&mut self) {
+        // A process that a test beside this one starts may hold the file open for a moment.
+        self.1.set_len(0).unwrap();
         std::fs::remove_file(&self.0).unwrap();
     }
 }

@@ -117,8 +117,15 @@ fn clear_shared_memory(group: &Group, topics_only: bool) {
         match file.is_dir() {
             _ if topics_only && !is_topic => {}
             true => remove_folder(&file),
-            false => std::fs::remove_file(file).unwrap(),
+            false => remove_file(&file),
         }
+    }
+}
+
+/// Removes a file that its group may remove meanwhile.
+fn remove_file(file: &Path) {
+    if let Err(error) = std::fs::remove_file(file) {
+        assert_eq!(error.kind(), ErrorKind::NotFound, "{}", file.display());
     }
 }
 

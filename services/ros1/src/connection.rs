@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use rustix::net::sockopt;
 
-use crate::wire::Message;
+use ros::wire::Message;
 
 /// Largest header, bytes; that of a publisher contains the whole definition.
 const HEADER_BYTES_MAX: u32 = 64 << 10;

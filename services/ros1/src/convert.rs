@@ -4,19 +4,13 @@
 //! that for all that it is told.
 
 use crate::types as ros;
-use crate::wire::{RosDuration, Unreadable};
+use ::ros::wire::{RosDuration, Unreadable};
 use messages::robot::{
     AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, EndpointState,
     JointCommand, JointMode, JointState, JointTrajectoryPoint, Measurement, SpeedRatio,
 };
-use messages::{Code, FixedText, WireError};
+use messages::{Code, FixedText};
 use service::Time;
-
-impl From<WireError> for Unreadable {
-    fn from(error: WireError) -> Self {
-        Self(error.to_string())
-    }
-}
 
 /// Converts measured joints. A publisher may leave out velocities or efforts; they count as zero.
 ///

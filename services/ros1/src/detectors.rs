@@ -5,11 +5,11 @@ use crate::guarded;
 use crate::settings::Ros1Objects;
 use crate::subscription::{Sink, Subscription};
 use crate::types as ros;
-use crate::wire::{Message, RosTime};
 use ::ros::detectors::Labels;
+use ::ros::wire::{Message, RosTime};
 use config::Settings;
 use messages::Sighting;
-use perception::{Detector, Frame, Hypothesis, Pose, Reported};
+use perception::{Detector, Frame, Hypothesis, Reported};
 use service::Time;
 use service::client::random_number;
 use std::sync::{Arc, Mutex};
@@ -38,7 +38,7 @@ impl Detections for ros::Detection3DArray {
             frame: first_frame([&self.header, &detection.header]),
             track: String::new(),
             hypotheses: detection.results.iter().map(hypothesis).collect(),
-            center: Some(pose(&detection.bbox.center)),
+            center: Some((&detection.bbox.center).into()),
         };
         self.detections.iter().map(one).collect()
     }
@@ -60,7 +60,7 @@ impl Detections for ros::AprilTagDetectionArray {
             let ids: Vec<String> = detection.id.iter().map(i32::to_string).collect();
             let id = ids.iter().find(|id| detector.knows(id)).or(ids.first())?;
             let frame = first_frame([&detection.pose.header, &self.header]);
-            Some(Reported::marker(&frame, id, pose(own), covariance.0))
+            Some(Reported::marker(&frame, id, own.into(), covariance.0))
         };
         self.detections.iter().filter_map(one).collect()
     }
@@ -78,7 +78,7 @@ impl Detections for ros::AlvarMarkers {
             // The outer headers are often empty.
             let frame = first_frame([&marker.header, &marker.pose.header, &self.header]);
             let unknown = [0.0; 36];
-            Reported::marker(&frame, &marker.id.to_string(), pose(&marker.pose.pose), unknown)
+            Reported::marker(&frame, &marker.id.to_string(), (&marker.pose.pose).into(), unknown)
         };
         self.markers.iter().map(one).collect()
     }
@@ -95,16 +95,11 @@ fn first_frame<const N: usize>(headers: [&ros::Header; N]) -> String {
     frames.find(|frame| !frame.is_empty()).cloned().unwrap_or_default()
 }
 
-fn pose(pose: &ros::Pose) -> Pose {
-    let ros::Pose { position: p, orientation: q } = pose;
-    Pose { position: [p.x, p.y, p.z], orientation: [q.x, q.y, q.z, q.w] }
-}
-
 fn hypothesis(result: &ros::ObjectHypothesisWithPose) -> Hypothesis {
     Hypothesis {
         id: result.id.to_string(),
         score: result.score,
-        pose: pose(&result.pose.pose),
+        pose: (&result.pose.pose).into(),
         covariance: result.pose.covariance.0,
     }
 }
@@ -176,7 +171,7 @@ fn report_unused(topic: &str, detector: &mut Detector) {
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
-    use crate::wire::Field;
+    use ::ros::wire::Field;
     use perception::{Change, Detection, Label, Look};
 
     /// Bytes that genpy has written.
@@ -258,7 +253,7 @@ mod tests {
         }
         let mut lies = u32::MAX.to_le_bytes().to_vec();
         lies.extend([0; 8]);
-        assert!(crate::wire::Skipped::read(&mut lies.as_slice()).is_err());
+        assert!(::ros::wire::Skipped::read(&mut lies.as_slice()).is_err());
     }
 
     #[test]

@@ -17,7 +17,6 @@ pub mod subscription;
 #[cfg(test)]
 mod tests;
 pub mod types;
-pub mod wire;
 pub mod xmlrpc;
 
 use std::process::ExitCode;

@@ -2,7 +2,7 @@
 
 use crate::connection::{self, Topic};
 use crate::guarded;
-use crate::wire::Message;
+use ros::wire::Message;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::net::sockopt;
 use service::{Span, Time, clock};

@@ -3,8 +3,8 @@
 use crate::address::with_port;
 use crate::connection::{self, Topic};
 use crate::guarded;
-use crate::wire::{Message, Unreadable};
 use crate::xmlrpc::{Value, call, connect};
+use ros::wire::{Message, Unreadable};
 use service::{Time, clock};
 use std::collections::BTreeMap;
 use std::io;

@@ -4,11 +4,13 @@
 //! trajectory_msgs and of baxter_common 1.2.0 (BSD-3-Clause, Copyright (c) 2013-2015 Rethink Robotics).
 //! The messages of detectors are in a file of their own.
 
-use crate::wire::{Message, RosDuration, RosTime, message};
+use ros::message;
+use ros::wire::{Message, RosDuration, RosTime};
 
 mod detectors;
 
 pub use detectors::*;
+pub use ros::geometry::{BoundingBox3D, Point, Pose, PoseWithCovariance, Quaternion, Vector3};
 
 message! {
     /// Stamp and frame of a message.
@@ -21,30 +23,6 @@ message! {
 message! {
     /// A number.
     Float64 = "std_msgs/Float64" "fdb28210bfa9d7c91146260178d9a584" { data: f64 }
-}
-message! {
-    /// A position, metres.
-    Point = "geometry_msgs/Point" "4a842b65f413084dc2b10fb484ea7f17" { x: f64, y: f64, z: f64 }
-}
-message! {
-    /// An orientation.
-    Quaternion = "geometry_msgs/Quaternion" "a779879fadf0160734f906b8c19c7004" {
-        x: f64,
-        y: f64,
-        z: f64,
-        w: f64,
-    }
-}
-message! {
-    /// Position and orientation.
-    Pose = "geometry_msgs/Pose" "e45d45a5a1ce597b249e23fb30fc871f" {
-        position: Point,
-        orientation: Quaternion,
-    }
-}
-message! {
-    /// A direction with a length.
-    Vector3 = "geometry_msgs/Vector3" "4a842b65f413084dc2b10fb484ea7f17" { x: f64, y: f64, z: f64 }
 }
 message! {
     /// Velocity, m/s and rad/s.

@@ -3,7 +3,7 @@
 use crate::clock::SystemClock;
 use crate::settings::Ros2Objects;
 use crate::types::{
-    AlvarMarker, AlvarMarkers, Detection3D, Detection3DArray, Header, Pose, TfMessage, Time,
+    AlvarMarker, AlvarMarkers, Detection3D, Detection3DArray, Header, TfMessage, Time,
 };
 use config::Settings;
 use messages::Sighting;
@@ -32,11 +32,11 @@ impl Detections for Detection3DArray {
                 .map(|result| Hypothesis {
                     id: result.hypothesis.class_id.clone(),
                     score: result.hypothesis.score,
-                    pose: pose(&result.pose.pose),
+                    pose: (&result.pose.pose).into(),
                     covariance: result.pose.covariance.0,
                 })
                 .collect(),
-            center: Some(pose(&detection.bbox.center)),
+            center: Some((&detection.bbox.center).into()),
         };
         self.detections.iter().map(one).collect()
     }
@@ -51,7 +51,7 @@ impl Detections for AlvarMarkers {
         let one = |marker: &AlvarMarker| {
             let frame = first_frame([&marker.header, &marker.pose.header, &self.header]);
             let unknown = [0.0; 36];
-            Reported::marker(&frame, &marker.id.to_string(), pose(&marker.pose.pose), unknown)
+            Reported::marker(&frame, &marker.id.to_string(), (&marker.pose.pose).into(), unknown)
         };
         self.markers.iter().map(one).collect()
     }
@@ -67,10 +67,6 @@ fn first_stamp<'a>(outer: &'a Header, inner: impl Iterator<Item = &'a Header>) -
 fn first_frame<const N: usize>(headers: [&Header; N]) -> String {
     let mut frames = headers.iter().map(|header| &header.frame_id);
     frames.find(|frame| !frame.is_empty()).cloned().unwrap_or_default()
-}
-
-fn pose(Pose { position: p, orientation: q }: &Pose) -> perception::Pose {
-    perception::Pose { position: [p.x, p.y, p.z], orientation: [q.x, q.y, q.z, q.w] }
 }
 
 /// Time of a stamp for a sighting; 0 where it is not set.
@@ -100,7 +96,7 @@ impl TopicDetector {
         for transform in &message.transforms {
             let Header { stamp, frame_id } = &transform.header;
             let id = transform.child_frame_id.trim_start_matches('/');
-            let marker = Reported::marker(frame_id, id, pose(&transform.transform), [0.0; 36]);
+            let marker = Reported::marker(frame_id, id, (&transform.transform).into(), [0.0; 36]);
             sightings.extend(self.detector.marker(random_number(), at_ns(*stamp, clock), &marker));
         }
         self.report_unused();

@@ -39,7 +39,12 @@ pub fn located(latest: &LatestTopics, world: &WorldView) -> WorldView {
 pub fn markers(scene: &Scene, world: &WorldView, belief: &[f64]) -> MarkerArray {
     // Without a stamp the newest transform counts, so that one that joins late can show them.
     let header = || Header { frame_id: BASE.to_owned(), ..Header::default() };
-    let clear = Marker { header: header(), action: Marker::DELETE_ALL, ..Marker::default() };
+    let clear = Marker {
+        header: header(),
+        action: Marker::DELETE_ALL,
+        pose: Pose::IDENTITY,
+        ..Marker::default()
+    };
     let mut markers = vec![clear];
     for (at, pose) in placed(scene, world) {
         let object = &scene.objects()[at];
@@ -81,6 +86,7 @@ pub fn frames(scene: &Scene, world: &WorldView, stamp: Time) -> TfMessage {
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
+    use crate::types::Point;
 
     fn scene() -> Scene {
         Scene::from_toml("b", include_str!("../../../config/scenes/bowls.toml")).unwrap()
@@ -128,7 +134,7 @@ mod tests {
         let MarkerArray { markers } = markers(&table, &world, &[0.0, 1.0]);
         assert_eq!(markers.len(), 3, "number 6 is not there any more");
         assert_eq!([markers[1].id, markers[2].id], [9, 9]);
-        assert_eq!(markers[1].pose.position, Vector3 { x: 0.65, y: 0.25, z: -0.12 });
+        assert_eq!(markers[1].pose.position, Point { x: 0.65, y: 0.25, z: -0.12 });
         assert_eq!(
             markers[1].scale,
             Vector3 { x: 0.18, y: 0.18, z: 0.07 },
@@ -144,7 +150,7 @@ mod tests {
         let TfMessage { transforms } = frames(&scene(), &world(), Time { sec: 1, nanosec: 2 });
         assert_eq!(transforms.len(), 5);
         assert_eq!(transforms[1].child_frame_id, "object/white2");
-        assert_eq!(transforms[1].transform.position, Vector3 { x: 1.0, y: 0.0, z: 0.5 });
+        assert_eq!(transforms[1].transform.position, Point { x: 1.0, y: 0.0, z: 0.5 });
         let other = WorldView { objects: vec![None; 5], ..WorldView::default() };
         assert!(frames(&scene(), &other, Time::default()).transforms.is_empty());
     }

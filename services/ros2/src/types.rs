@@ -6,6 +6,9 @@ use std::time::Duration as Elapsed;
 mod detectors;
 
 pub use detectors::*;
+pub use ros::geometry::{
+    BoundingBox3D, Covariance, Point, Pose, PoseWithCovariance, Quaternion, Vector3,
+};
 
 /// `builtin_interfaces/Time`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -69,57 +72,6 @@ pub struct JointState {
     pub velocity: Vec<f64>,
     /// Efforts, newton metres or newtons.
     pub effort: Vec<f64>,
-}
-
-/// `geometry_msgs/Point` and `Vector3`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Vector3 {
-    /// Forward, metres.
-    pub x: f64,
-    /// Left, metres.
-    pub y: f64,
-    /// Up, metres.
-    pub z: f64,
-}
-
-impl From<[f64; 3]> for Vector3 {
-    fn from([x, y, z]: [f64; 3]) -> Self {
-        Self { x, y, z }
-    }
-}
-
-/// `geometry_msgs/Quaternion`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Quaternion {
-    /// Imaginary part, i.
-    pub x: f64,
-    /// Imaginary part, j.
-    pub y: f64,
-    /// Imaginary part, k.
-    pub z: f64,
-    /// Real part.
-    pub w: f64,
-}
-
-impl Default for Quaternion {
-    fn default() -> Self {
-        Self { x: 0.0, y: 0.0, z: 0.0, w: 1.0 }
-    }
-}
-
-/// `geometry_msgs/Pose` and `Transform`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Pose {
-    /// The place, metres.
-    pub position: Vector3,
-    /// The orientation.
-    pub orientation: Quaternion,
-}
-
-impl From<[f64; 7]> for Pose {
-    fn from([px, py, pz, x, y, z, w]: [f64; 7]) -> Self {
-        Self { position: [px, py, pz].into(), orientation: Quaternion { x, y, z, w } }
-    }
 }
 
 /// `geometry_msgs/TransformStamped`.

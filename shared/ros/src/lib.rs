@@ -1,6 +1,8 @@
-//! Settings that the parts for ROS 1 and ROS 2 share: names, and the objects of detectors.
+//! What the parts for ROS 1 and ROS 2 share: names, settings of detectors, and the messages that both have.
 
 pub mod detectors;
+pub mod geometry;
+pub mod wire;
 
 /// Returns whether a text is a name of ROS without slashes. Two underscores side by side are reserved.
 pub fn is_name(text: &str) -> bool {

@@ -1,10 +1,11 @@
 //! Messages, headers and calls of ROS 1, which any program on the robot's network may send.
 
+use ros::wire::Field;
+use ros::wire::{Message, RosTime};
 use ros1::connection::read_header;
+use ros1::convert;
 use ros1::types::{EndEffectorState, Header, JointState};
-use ros1::wire::{Message, RosTime};
 use ros1::xmlrpc::{answer, method_call};
-use ros1::{convert, wire::Field};
 use service::Time;
 
 pub(super) fn run(input: &[u8]) {

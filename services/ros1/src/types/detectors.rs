@@ -3,16 +3,11 @@
 //! Names, fields, constants and checksums are facts of geometry_msgs, sensor_msgs, of vision_msgs as it is in
 //! ROS 1 (kinetic to noetic), of apriltag_ros and of ar_track_alvar_msgs.
 
-use super::{Header, Pose, Vector3};
-use crate::wire::{Covariance, Skipped, message};
+use ros::message;
+use ros::wire::Skipped;
 
-message! {
-    /// A pose and how uncertain it is.
-    PoseWithCovariance = "geometry_msgs/PoseWithCovariance" "c23e848cf1b7533a8d7c259073a97e6f" {
-        pose: Pose,
-        covariance: Covariance,
-    }
-}
+use super::{BoundingBox3D, Header, Pose, PoseWithCovariance};
+
 message! {
     /// A pose with covariance at a time in a frame.
     PoseWithCovarianceStamped = "geometry_msgs/PoseWithCovarianceStamped" "953b798c0f514ff060a53a3498ce6246" {
@@ -56,13 +51,6 @@ message! {
         row_step: u32,
         data: Skipped,
         is_dense: bool,
-    }
-}
-message! {
-    /// A box around an object.
-    BoundingBox3D = "vision_msgs/BoundingBox3D" "727c83f2b037373b8e968433d9c84ecb" {
-        center: Pose,
-        size: Vector3,
     }
 }
 message! {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::types::{
-    Detection3D, ObjectHypothesis, ObjectHypothesisWithPose, PoseStamped, PoseWithCovariance,
-    Quaternion, TransformStamped, Vector3,
+    Detection3D, ObjectHypothesis, ObjectHypothesisWithPose, Point, Pose, PoseStamped,
+    PoseWithCovariance, Quaternion, TransformStamped,
 };
 use messages::{Change, Look};
 use perception::{Frame, Label};
@@ -24,7 +24,7 @@ fn header() -> Header {
 
 fn turned(x: f64) -> Pose {
     let orientation = Quaternion { x: 0.0, y: 0.0, z: 0.6, w: 0.8 };
-    Pose { position: Vector3 { x, y: 0.1, z: 0.2 }, orientation }
+    Pose { position: Point { x, y: 0.1, z: 0.2 }, orientation }
 }
 
 /// Two objects; the second one has its pose in the box alone.
@@ -45,7 +45,7 @@ fn detections() -> Detection3DArray {
         detection
     };
     let both = vec![result("cup", 0.7, turned(0.5)), result("dog", 0.2, turned(0.6))];
-    let boxed = vec![result("white", 0.9, Pose::default())];
+    let boxed = vec![result("white", 0.9, Pose::IDENTITY)];
     Detection3DArray {
         header: header(),
         detections: vec![detection("17", both), detection("", boxed)],

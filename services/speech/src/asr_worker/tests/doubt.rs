@@ -138,6 +138,7 @@ fn asr_worker_forgets_a_doubt_about_an_utterance_that_goes_on() {
     let (worker, events, hears, go) = unsure();
     worker.decode_early(1, paused(16_000, 512));
     assert!(early(&events).awaits_second);
+    assert_eq!(hears.recv(), Ok(16_512));
     let end = paused(32_000, 3_200);
     worker.decode_early(1, end.clone());
     assert!(early(&events).awaits_second);
@@ -150,5 +151,5 @@ fn asr_worker_forgets_a_doubt_about_an_utterance_that_goes_on() {
         }
     };
     assert_eq!(text(&whole), "white");
-    assert_eq!(hears.try_iter().collect::<Vec<_>>(), [16_512, 35_200]);
+    assert_eq!(hears.try_iter().collect::<Vec<_>>(), [35_200]);
 }

@@ -5,6 +5,12 @@
 #[error("{0}")]
 pub struct Unreadable(pub String);
 
+impl From<messages::WireError> for Unreadable {
+    fn from(error: messages::WireError) -> Self {
+        Self(error.to_string())
+    }
+}
+
 /// A type that ROS messages are made of.
 pub trait Field: Sized {
     /// Name of the type in a message definition.
@@ -172,34 +178,6 @@ impl Field for Skipped {
     }
 }
 
-/// A covariance of position and rotation, row by row.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Covariance(pub [f64; 36]);
-
-impl Default for Covariance {
-    fn default() -> Self {
-        Self([0.0; 36])
-    }
-}
-
-impl Field for Covariance {
-    fn ros_type() -> String {
-        "float64[36]".to_owned()
-    }
-
-    fn read(bytes: &mut &[u8]) -> Result<Self, Unreadable> {
-        let mut covariance = Self::default();
-        for value in &mut covariance.0 {
-            *value = f64::read(bytes)?;
-        }
-        Ok(covariance)
-    }
-
-    fn write(&self, bytes: &mut Vec<u8>) {
-        self.0.iter().for_each(|value| value.write(bytes));
-    }
-}
-
 /// A time of the robot's clock; all zero where it is not set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RosTime {
@@ -256,6 +234,7 @@ times!(RosTime = "time", RosDuration = "duration");
 
 /// Declares a message: its struct, reader, writer, checksum and definition. The constants, one
 /// `type NAME=value` a line, are part of the definition and of its checksum.
+#[macro_export]
 macro_rules! message {
     (
         $(#[$about:meta])*
@@ -307,4 +286,3 @@ macro_rules! message {
         }
     };
 }
-pub(crate) use message;
