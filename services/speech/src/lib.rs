@@ -15,6 +15,7 @@ mod journal_record;
 pub mod options;
 mod pending_sounds;
 mod prompt_player;
+mod recent_lines;
 pub mod record;
 pub mod shell;
 mod utterance_content;
@@ -123,13 +124,18 @@ impl Node for SpeechNode {
 
     fn checkpoint(&self) -> Option<Vec<u8>> {
         let Self { intake, player, next_send } = self;
-        postcard::to_stdvec(&(intake.checkpoint()?, player, next_send)).ok()
+        postcard::to_stdvec(&(intake.checkpoint()?, player, next_send, player.lines())).ok()
     }
 
     fn resume(config: Config, checkpoint: &[u8]) -> Result<Self, NodeError> {
         let foreign = NodeError::foreign_checkpoint;
-        let parts: Result<(Vec<u8>, _, _), _> = postcard::from_bytes(checkpoint);
-        let (intake, player, next_send) = parts.map_err(|_| foreign())?;
+        let parts: Result<((Vec<u8>, PromptPlayer, _), _), _> =
+            postcard::take_from_bytes(checkpoint);
+        let ((intake, mut player, next_send), rest) = parts.map_err(|_| foreign())?;
+        // Checkpoints of earlier builds end here: they knew no lines.
+        if !rest.is_empty() {
+            player.restore_lines(postcard::from_bytes(rest).map_err(|_| foreign())?);
+        }
         let intake = UtteranceIntake::resume(config, &intake).ok_or_else(foreign)?;
         Ok(Self { intake, player, next_send })
     }

@@ -1,6 +1,7 @@
 //! Speaking: each prompt is spoken once per presentation, delayed while a user speaks, interrupted on
 //! barge-in, and counts as heard only when it was spoken to its end.
 
+use crate::recent_lines::RecentLines;
 use crate::record::Record;
 use crate::{Fx, Out, PlaybackEvent, PlaybackRequest, PlaybackState};
 use messages::{
@@ -31,6 +32,9 @@ pub(crate) struct PromptPlayer {
     waiting: Option<Waiting>,
     /// Number of the last playback.
     last_playback: u64,
+    /// Behind the rest of a checkpoint, where earlier builds have nothing.
+    #[serde(skip)]
+    lines: RecentLines,
 }
 
 /// The prompt that is being spoken.
@@ -64,6 +68,14 @@ impl PromptPlayer {
             }
             self.presentations.push_back(presentation);
         }
+    }
+
+    pub(crate) fn lines(&self) -> &RecentLines {
+        &self.lines
+    }
+
+    pub(crate) fn restore_lines(&mut self, lines: RecentLines) {
+        self.lines = lines;
     }
 
     /// Returns the questions that a user may have heard at least in part, newest first.
@@ -172,6 +184,7 @@ impl PromptPlayer {
 
     fn play(&mut self, presentation: Presentation, text: String, now: Time, fx: &mut Fx) {
         self.break_off(now, fx);
+        self.lines.begin(&text);
         self.last_playback += 1;
         let playback = self.last_playback;
         let Presentation { prompt, number, .. } = presentation;
@@ -182,6 +195,7 @@ impl PromptPlayer {
 
     /// Ends the current presentation early; it may be answered all the same.
     fn break_off(&mut self, now: Time, fx: &mut Fx) {
+        self.lines.end(now);
         let begun = self.playing.take().and_then(|playing| playing.begun());
         let Some(mut presentation) = begun else { return };
         // A question that ended as it began was not heard.
@@ -218,6 +232,7 @@ impl PromptPlayer {
     }
 
     fn end(&mut self, now: Time, fx: &mut Fx) {
+        self.lines.end(now);
         let Some(mut playing) = self.playing.take() else { return };
         self.interrupted = None;
         if !playing.has_begun {

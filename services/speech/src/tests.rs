@@ -14,7 +14,8 @@ use crate::{
 };
 use messages::{
     ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, MessageRef,
-    PresentationState, Receipt, RequestKey, RobotAct, Sound, Source, Utterance, WireCode,
+    PresentationState, Receipt, ReceiptStatus, RequestKey, RobotAct, Sound, Source, Utterance,
+    WireCode,
 };
 use scene::{AttributeId, Question, ValueId};
 use service::{Effects, Event, Node, Span, Time};
@@ -294,6 +295,35 @@ fn words_whose_beginning_the_robot_covers_are_not_acted_on_and_its_question_is_r
         assert_eq!(again.is_some(), is_repeated, "{text}");
         speech.playback(0.1, 2, PlaybackState::Started);
         speech.playback(1.0, 2, PlaybackState::Ended);
+    }
+}
+
+/// Returns the receipt of what is heard some seconds after the robot has asked "Is it white?".
+fn heard_after_a_question(after_s: f64, text: &str) -> (Receipt, Outputs) {
+    let mut speech = Speech::new();
+    speech.take(0.0, ask(7));
+    speech.playback(0.1, 1, PlaybackState::Started);
+    speech.playback(1.0, 1, PlaybackState::Ended);
+    let onset = speech.now + Span::from_s(after_s);
+    speech.take(after_s, began(onset, false));
+    speech.take(0.4, ended(onset));
+    let outputs = speech.take(0.1, recognised(SOUND, Some(vec![Hypothesis::certain(text)])));
+    (outputs.receipt().unwrap(), outputs)
+}
+
+#[test]
+fn own_line_heard_back_is_no_evidence() {
+    let (receipt, echo) = heard_after_a_question(0.1, "is it white");
+    assert_eq!(receipt.status.get(), ReceiptStatus::NotForMe);
+    assert_eq!(receipt.verdict.get(), GateVerdict::Echo);
+    assert_eq!(receipt.note.as_str().unwrap(), "is it white");
+    assert!(echo.utterance().is_none());
+    for (after_s, text) in
+        [(0.1, "it is white"), (0.1, "yes"), (0.1, "stop"), (16.0, "is it white")]
+    {
+        let (receipt, outputs) = heard_after_a_question(after_s, text);
+        assert_eq!(receipt.status.get(), ReceiptStatus::Accepted, "{text}");
+        assert_eq!(outputs.stops_motion(), text == "stop");
     }
 }
 

@@ -295,7 +295,8 @@ impl UtteranceIntake {
         for (number, segment) in (0..).zip(segments) {
             let origin = Origin::of(&sound, number, count).measured(&segment, now);
             self.status.set_measured(origin.span.0, segment.snr_db);
-            match self.meant(segment.hypotheses, sound.is_cut) {
+            let is_echo = |heard: &str| player.lines().is_echo(heard, origin.span.0);
+            match meant(segment.hypotheses, sound.is_cut, is_echo) {
                 Ok(hypotheses) => self.hear(origin, hypotheses, player, now, fx),
                 Err(rejected) => {
                     is_covered |= rejected.reason == GateVerdict::Covered;
@@ -311,29 +312,6 @@ impl UtteranceIntake {
         self.report_closed_streams(fx);
         self.publish(fx);
         is_covered
-    }
-
-    /// Returns what a user tells the robot, or the words that are not acted on: a stop is obeyed whatever
-    /// else is unclear; of anything else the part that is missing may be its "not".
-    fn meant(
-        &self,
-        hypotheses: Result<Vec<Hypothesis>, Rejected>,
-        is_cut: bool,
-    ) -> Result<Vec<Hypothesis>, Rejected> {
-        let best = match &hypotheses {
-            Ok(hypotheses) => hypotheses.first().map_or("", |best| best.text.as_str()),
-            Err(rejected) => &rejected.text,
-        };
-        match hypotheses {
-            _ if language::is_stop(best) => {
-                hypotheses.or_else(|rejected| Ok(vec![Hypothesis::certain(rejected.text)]))
-            }
-            Ok(_) if is_cut => {
-                let text = format!("… {best}");
-                Err(Rejected { text, reason: GateVerdict::Covered, score: 1.0 })
-            }
-            hypotheses => hypotheses,
-        }
     }
 
     /// Accepts what was heard, ahead of waiting requests: a user speaks no faster than the robot
@@ -418,5 +396,27 @@ impl UtteranceIntake {
     pub(crate) fn is_busy(&self, now: Time) -> bool {
         let since = self.pending.since().into_iter().chain(self.accepted.oldest()).min();
         since.is_some_and(|since| now < since + BUSY_MAX)
+    }
+}
+
+/// Returns what a user tells the robot, or the words that are not acted on: a stop is obeyed whatever else is unclear,
+/// even in the robot's own words; of anything else the part that is missing may be its "not".
+fn meant(
+    hypotheses: Result<Vec<Hypothesis>, Rejected>,
+    is_cut: bool,
+    is_echo: impl FnOnce(&str) -> bool,
+) -> Result<Vec<Hypothesis>, Rejected> {
+    let best = match &hypotheses {
+        Ok(hypotheses) => hypotheses.first().map_or("", |best| best.text.as_str()),
+        Err(rejected) => &rejected.text,
+    };
+    let rejected = |text, reason| Err(Rejected { text, reason, score: 1.0 });
+    match hypotheses {
+        _ if language::is_stop(best) => {
+            hypotheses.or_else(|rejected| Ok(vec![Hypothesis::certain(rejected.text)]))
+        }
+        Ok(_) if is_echo(best) => rejected(best.to_owned(), GateVerdict::Echo),
+        Ok(_) if is_cut => rejected(format!("… {best}"), GateVerdict::Covered),
+        hypotheses => hypotheses,
     }
 }

@@ -61,6 +61,7 @@ mod completeness;
 mod content;
 mod disambiguate;
 mod distractors;
+mod echo;
 mod errands;
 mod evidence;
 mod extractor;
@@ -99,6 +100,7 @@ mod vocabulary;
 mod tests;
 
 pub use completeness::{Completeness, CompletenessJudge};
+pub use echo::is_echo;
 pub use features::{Example, ROWS};
 pub use halting::is_stop;
 pub use judge::{FLOOR, trained_on};

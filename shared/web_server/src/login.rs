@@ -25,7 +25,7 @@ pub fn secret_of(form: &[u8]) -> String {
 pub fn stepping_stone(page: &str) -> String {
     let page = page.replace('&', "&amp;").replace('"', "&quot;");
     format!(
-        "<!doctype html><meta http-equiv=\"refresh\" content=\"0;url={page}\"><title>whichone</title><p>whichone\n"
+        "<!doctype html><link rel=\"icon\" href=\"data:,\"><meta http-equiv=\"refresh\" content=\"0;url={page}\"><title>whichone</title><p>whichone\n"
     )
 }
 

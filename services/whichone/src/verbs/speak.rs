@@ -210,6 +210,9 @@ fn not_acted_on(receipt: &Receipt, note: &str) -> String {
         GateVerdict::Covered => {
             format!("heard, but not acted on: {note} (the robot's voice covers the beginning)")
         }
+        GateVerdict::Echo => {
+            format!("heard, but not acted on: {note} (the robot has just said so itself)")
+        }
         GateVerdict::OtherTalk | GateVerdict::Passed => {
             let score = receipt.gate_score;
             format!(
@@ -292,6 +295,7 @@ mod tests {
             (GateVerdict::OtherTalk, "the kite (about other things: 0.12 is below"),
             (GateVerdict::NoSpeech, "the kite (no voice in it)"),
             (GateVerdict::Covered, "the kite (the robot's voice covers the beginning)"),
+            (GateVerdict::Echo, "the kite (the robot has just said so itself)"),
         ] {
             let text = not_acted_on(&receipt(verdict, SecondState::NotAsked, ""), "the kite");
             assert!(text.contains(expected), "{text}");

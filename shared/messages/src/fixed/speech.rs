@@ -174,6 +174,8 @@ wire_enum! {
         NoSpeech = 3,
         /// The robot's own voice covers its beginning.
         Covered = 4,
+        /// It is a line that the robot has just said.
+        Echo = 5,
     }
 }
 

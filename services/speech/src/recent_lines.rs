@@ -1,0 +1,41 @@
+//! Lines that the robot said a moment ago, which its microphones may hear.
+
+use std::collections::VecDeque;
+
+use service::{Span, Time};
+
+/// How long a line can be heard back: the delays of loudspeaker, room, network and recogniser.
+const ECHO_WITHIN: Span = Span::from_ms(15_000);
+const LINES_MAX: usize = 8;
+
+/// The latest lines, oldest first.
+#[derive(Default, serde::Serialize, serde::Deserialize)]
+pub(crate) struct RecentLines(VecDeque<Line>);
+
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Line {
+    text: String,
+    /// `None` while it is spoken.
+    ended: Option<Time>,
+}
+
+impl RecentLines {
+    /// Adds a line that is spoken from now on.
+    pub(crate) fn begin(&mut self, text: &str) {
+        if self.0.len() >= LINES_MAX {
+            self.0.pop_front();
+        }
+        self.0.push_back(Line { text: text.to_owned(), ended: None });
+    }
+
+    /// Ends the lines that are spoken.
+    pub(crate) fn end(&mut self, now: Time) {
+        self.0.iter_mut().for_each(|line| line.ended = line.ended.or(Some(now)));
+    }
+
+    /// Returns whether a sound that began at `onset` is one of the lines in its own words.
+    pub(crate) fn is_echo(&self, heard: &str, onset: Time) -> bool {
+        let is_recent = |line: &&Line| line.ended.is_none_or(|ended| onset <= ended + ECHO_WITHIN);
+        self.0.iter().filter(is_recent).any(|line| language::is_echo(heard, &line.text))
+    }
+}

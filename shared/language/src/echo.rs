@@ -1,0 +1,106 @@
+//! The robot's own lines, heard back by a microphone.
+
+use std::collections::HashSet;
+use std::sync::LazyLock;
+
+use words::{Tokens, contractions, normalise};
+
+use crate::token_class::Class;
+use crate::vocabulary;
+
+/// Fewest words of a sentence that counts.
+const WORDS_MIN: usize = 3;
+
+/// Returns whether what was heard is a line of the robot, or some of its sentences in a row, with at most one word
+/// more or less. A phrase without a verb ("The red one?") may well be repeated as an answer, and one word that denies
+/// or answers changes the meaning of all others: neither is an echo.
+pub fn is_echo(heard: &str, line: &str) -> bool {
+    let heard = spoken(heard);
+    let sentences: Vec<_> =
+        line.split(['.', '?', '!']).map(spoken).filter(|words| !words.is_empty()).collect();
+    let runs = (0..sentences.len())
+        .flat_map(|from| (from + 1..=sentences.len()).map(move |to| from..to))
+        .map(|run| sentences[run].concat());
+    runs.into_iter().any(|said| is_repeated(&said, &heard))
+}
+
+fn is_repeated(said: &[String], heard: &[String]) -> bool {
+    let (has_verb, turns) =
+        (|word: &String| VERBS.contains(&**word), |word: &String| TURNING.contains(&**word));
+    if said.len() < WORDS_MIN || heard.len() < WORDS_MIN || !said.iter().any(has_verb) {
+        return false;
+    }
+    let same = said.iter().zip(heard).take_while(|(a, b)| a == b).count();
+    match heard.len().checked_sub(said.len()) {
+        Some(0) => same == said.len(),
+        Some(1) => !turns(&heard[same]) && said[same..] == heard[same + 1..],
+        None => {
+            said.len() == heard.len() + 1
+                && !turns(&said[same])
+                && said[same + 1..] == heard[same..]
+        }
+        Some(_) => false,
+    }
+}
+
+/// Words as a recogniser writes them.
+fn spoken(text: &str) -> Vec<String> {
+    let text = normalise(text);
+    Tokens::of(&text).words.iter().map(|token| token.word.to_owned()).collect()
+}
+
+/// Verbs of questions and statements, and question words.
+static VERBS: LazyLock<HashSet<&str>> =
+    LazyLock::new(|| of(&[Class::Be, Class::Auxiliary, Class::Question]).collect());
+
+/// Words that deny or answer.
+static TURNING: LazyLock<HashSet<&str>> = LazyLock::new(|| {
+    let denies = contractions().filter(|(_, expansion)| expansion.ends_with(" not"));
+    of(&[Class::Not, Class::Except, Class::No, Class::Yes])
+        .chain(denies.map(|(word, _)| word))
+        .collect()
+});
+
+fn of(classes: &'static [Class]) -> impl Iterator<Item = &'static str> {
+    vocabulary::phrases().filter(|(class, _)| classes.contains(class)).map(|(_, phrase)| phrase)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_are_heard_back_are_echoes() {
+        for (heard, line) in [
+            ("is it white", "Is it white?"),
+            ("is it the white one", "All right. Is it the white one?"),
+            ("all right is it the white one", "All right. Is it the white one?"),
+            ("it the white one", "Is it the white one?"),
+            ("is it the the white one", "Is it the white one?"),
+            ("I will get the clear bowl", "I will get the clear bowl."),
+            ("i'll get the clear bowl", "I'll get the clear bowl."),
+            ("what colour is it", "What colour is it?"),
+        ] {
+            assert!(is_echo(heard, line), "{heard}");
+        }
+    }
+
+    #[test]
+    fn answers_are_no_echoes() {
+        for (heard, line) in [
+            ("it is white", "Is it white?"),
+            ("the white one", "Is it the white one?"),
+            ("the white one", "The white one?"),
+            ("it is the white one", "Is it the white one?"),
+            ("is it the red one", "Is it the white one?"),
+            ("no is it the white one", "Is it the white one?"),
+            ("it is not the white one", "It is the white one."),
+            ("it isn't the white one", "It is the white one."),
+            ("yes", "Yes?"),
+            ("white", "Is it white?"),
+            ("", ""),
+        ] {
+            assert!(!is_echo(heard, line), "{heard}");
+        }
+    }
+}
