@@ -110,6 +110,8 @@ enum whichone_gate_verdict {
     WHICHONE_GATE_VERDICT_NO_SPEECH = 3,
     /** The robot's own voice covers its beginning. */
     WHICHONE_GATE_VERDICT_COVERED = 4,
+    /** It is a line that the robot has just said. */
+    WHICHONE_GATE_VERDICT_ECHO = 5,
 };
 
 enum whichone_intent {
@@ -962,7 +964,7 @@ WHICHONE_ASSERT(offsetof(whichone_receipt_t, note) == 64, "offset of Receipt.not
 WHICHONE_ASSERT(offsetof(whichone_receipt_t, first_text) == 568, "offset of Receipt.first_text");
 WHICHONE_ASSERT(offsetof(whichone_receipt_t, second_text) == 772, "offset of Receipt.second_text");
 #define WHICHONE_RECEIPT_TYPE "Receipt"
-#define WHICHONE_RECEIPT_SCHEMA "b5d2fe18b72e853f"
+#define WHICHONE_RECEIPT_SCHEMA "182b8dea5739e0ca"
 
 /** State of the arm executor. Arm to policy and speech. */
 typedef struct whichone_arm_status {

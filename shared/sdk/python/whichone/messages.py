@@ -113,6 +113,8 @@ class GateVerdict(IntEnum):
     """There is no speech."""
     COVERED = 4
     """The robot's own voice covers its beginning."""
+    ECHO = 5
+    """It is a line that the robot has just said."""
 
 
 class Intent(IntEnum):
@@ -955,7 +957,7 @@ class Receipt(Message):
 
     wire_name = "Receipt"
     wire_size = 976
-    schema_key = "b5d2fe18b72e853f"
+    schema_key = "182b8dea5739e0ca"
     key: Array[int]
     """`RequestKey` of the injection; one of its own for what a microphone heard."""
     seq: int
