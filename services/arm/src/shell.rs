@@ -73,7 +73,7 @@ impl<D: Drivers> Program for ArmProgram<D> {
 
 /// The configured driver.
 fn driver<D: Drivers>(settings: &Settings) -> Result<&'static Driver, Diagnostics> {
-    let others = D::list().iter().copied();
+    let others = D::LIST.iter().copied();
     arm_driver::named(std::iter::once(&kinematic::DRIVER).chain(others), settings)
 }
 

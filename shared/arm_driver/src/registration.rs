@@ -22,17 +22,20 @@ pub struct Driver {
     /// # Errors
     /// Every problem at once; there are none in a configuration that was checked by a program that knows the driver.
     pub configure: fn(&Settings) -> Result<Configured, Diagnostics>,
-    /// Opens the way to the robot; `None` for a model, which has no robot.
-    ///
-    /// # Errors
-    /// Topics or devices that cannot be opened.
-    pub connect: Option<fn(&Bus, &Settings) -> Result<Box<dyn Port>, Failure>>,
+    /// The way to the robot; `None` for a model, which has no robot.
+    pub connect: Option<Connect>,
 }
+
+/// Opens the way to the robot: topics of the group, or what the driver's settings name.
+///
+/// # Errors
+/// Topics or devices that cannot be opened.
+pub type Connect = fn(&Bus, &Settings) -> Result<Box<dyn Port>, Failure>;
 
 /// The drivers of a program that moves an arm.
 pub trait Drivers: 'static {
-    /// Returns them in the order in which an error names them.
-    fn list() -> &'static [&'static Driver];
+    /// The list, in the order in which an error names them.
+    const LIST: &'static [&'static Driver];
 }
 
 /// The way of messages between a driver and its robot: topics of the group, or a device. It decides nothing, since

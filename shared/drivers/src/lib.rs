@@ -2,19 +2,15 @@
 
 use arm_driver::{Driver, Drivers};
 
-static ALL: &[&Driver] = &[&baxter_driver::DRIVER];
-
 /// The drivers that ship, for a program that moves an arm.
 #[derive(Debug)]
 pub struct Shipped;
 
 impl Drivers for Shipped {
-    fn list() -> &'static [&'static Driver] {
-        ALL
-    }
+    const LIST: &'static [&'static Driver] = &[&baxter_driver::DRIVER];
 }
 
 /// The same for a program that loads configurations.
 pub fn known() -> impl Iterator<Item = &'static config::Driver> {
-    ALL.iter().map(|driver| driver.about)
+    Shipped::LIST.iter().map(|driver| driver.about)
 }

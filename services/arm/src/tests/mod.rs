@@ -46,9 +46,7 @@ const OBJECTS: u16 = 6;
 struct ModelAlone;
 
 impl Drivers for ModelAlone {
-    fn list() -> &'static [&'static Driver] {
-        &[]
-    }
+    const LIST: &'static [&'static Driver] = &[];
 }
 
 /// Time that a plan takes, unless a test says otherwise.
@@ -65,6 +63,16 @@ pub(crate) fn shipped(profile: Option<&str>, over: &[(String, String)]) -> Confi
 fn config() -> Config {
     static SETTINGS: OnceLock<Config> = OnceLock::new();
     SETTINGS.get_or_init(|| shipped(None, &[])).clone()
+}
+
+#[test]
+fn driver_of_another_program_is_an_error() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
+    let settings = Settings::load(folder, Some("baxter"), &[]).unwrap();
+    let failure = ArmProgram::<ModelAlone>::config(&Environment::nowhere(), &settings).unwrap_err();
+    let expected =
+        "arm.driver: expected one of kinematic, found `baxter`; help: these are the drivers";
+    assert!(failure.message.contains(expected), "{failure}");
 }
 
 /// Returns the scene of the markers.
