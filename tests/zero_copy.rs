@@ -176,7 +176,7 @@ fn outputs_of_the_reducers_are_published_without_an_allocation() {
     );
     assert_published_without_allocation(
         &shm.bus.reader::<JointStates>(&topics::JOINTS).unwrap(),
-        &mut shm.open::<_, arm::shell::ArmShell>(),
+        &mut shm.open::<_, arm::shell::ArmShell<drivers::Shipped>>(),
         || arm::Out::Joints(Box::new(JointStates { at_ns: 7, ..JointStates::default() })),
     );
 }
@@ -211,7 +211,7 @@ fn fixed_messages_reach_the_reducers_without_a_copy_or_an_allocation() {
         },
     );
     drop(policy);
-    let mut arm: arm::shell::ArmShell = shm.open();
+    let mut arm: arm::shell::ArmShell<drivers::Shipped> = shm.open();
     assert_zero_copy(
         &shm.bus.writer::<RobotAct>(&topics::ACT).unwrap(),
         &mut arm,

@@ -19,7 +19,7 @@ fn replayed(file: &Path, changes: &[(&str, &str)]) -> Report {
         "speech" => replay::<speech::shell::SpeechProgram>(file, &changes),
         "grounding" => replay::<grounding::shell::GroundingProgram>(file, &changes),
         "policy" => replay::<policy::shell::PolicyProgram>(file, &changes),
-        "arm" => replay::<arm::shell::ArmProgram>(file, &changes),
+        "arm" => replay::<arm::shell::ArmProgram<drivers::Shipped>>(file, &changes),
         "baxter" => replay::<baxter::shell::BaxterProgram>(file, &changes),
         other => panic!("{}: a flight of {other}", file.display()),
     };

@@ -1,8 +1,9 @@
-//! The arm with its Baxter driver and the simulated Baxter as processes of a group.
+//! The arm with its Baxter driver and the simulated Baxter as processes of a group; and an arm with a driver that the
+//! group's other programs do not know.
 
 use rustix::process::Signal;
 use serde_json::Value;
-use whichone_tests::{Group, wait_for};
+use whichone_tests::{Group, program, wait_for};
 
 /// A group with the simulated robot behind the robot's own topics.
 fn group() -> Group {
@@ -103,6 +104,17 @@ fn missed_grasp_is_announced() {
     let text = group.dialogue()["text"].as_str().unwrap_or_default().to_owned();
     assert!(text.contains("could not get hold"), "{text}");
     group.drill(&["miss", "0"]);
+    assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
+    group.down();
+}
+
+/// Its name and its table are accepted because the arm has a program of its own; they reach it with the snapshot.
+#[test]
+fn robot_driver_of_another_program_delivers() {
+    let command =
+        format!("group.services.arm.command=[{:?}]", program("late_arm").display().to_string());
+    let own = [command.as_str(), "arm.driver=late", "arm.time_scale=1.0", "arm.late.delay_s=0.08"];
+    let group = Group::up(&own);
     assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
     group.down();
 }

@@ -36,8 +36,8 @@ const BOUNDS: [Bound; 3] = [
 
 /// Folders of what a robot needs that asks and fetches. `shared/speech_engines` was counted until it became a crate, 8,000
 /// lines that moved and were not deleted: its adapters of recognisers, voices and recorders decide nothing, and each can
-/// be replaced without a change of the core.
-const CORE: [&str; 27] = [
+/// be replaced without a change of the core. So was Baxter's driver, of 1,100 lines, now one of a list of drivers.
+const CORE: [&str; 28] = [
     "shared/vocabulary",
     "shared/scene",
     "shared/words",
@@ -61,6 +61,7 @@ const CORE: [&str; 27] = [
     "services/speech",
     "services/grounding",
     "services/policy",
+    "shared/arm_driver",
     "services/arm",
     "services/supervisor",
     "services/console",

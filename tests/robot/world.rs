@@ -44,7 +44,7 @@ impl World {
         let over: Vec<_> = over.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
         let settings = Settings::load(config, Some("baxter"), &over).unwrap();
         let mut world = Self {
-            arm: Host::new::<arm::shell::ArmProgram>(&settings),
+            arm: Host::new::<arm::shell::ArmProgram<drivers::Shipped>>(&settings),
             robot: Host::new::<baxter::shell::BaxterProgram>(&settings),
             settings,
             now: Time(1_000_000_000),

@@ -106,7 +106,7 @@ impl Group {
             speech: Host::new::<speech::shell::SpeechProgram>(settings),
             grounding: Host::new::<grounding::shell::GroundingProgram>(settings),
             policy: Host::new::<policy::shell::PolicyProgram>(settings),
-            arm: Host::new::<arm::shell::ArmProgram>(settings),
+            arm: Host::new::<arm::shell::ArmProgram<drivers::Shipped>>(settings),
             faults: Faults::none(),
             inboxes: Inboxes::default(),
             stop: RepeatedStop::default(),

@@ -10,7 +10,7 @@ use crate::orders::StandingAct;
 use crate::publish::Published;
 use crate::state::ArmState;
 use crate::trajectory_view::MotionView;
-use crate::{ArmNode, Config, driver};
+use crate::{ArmNode, Config};
 
 /// What a record holds, and what it does not.
 #[derive(Serialize, Deserialize)]
@@ -64,7 +64,7 @@ impl ArmNode {
     pub(crate) fn with_whole_state(config: Config, bytes: &[u8]) -> Result<Self, NodeError> {
         let foreign = NodeError::foreign_checkpoint;
         let it: Checkpoint = postcard::from_bytes(bytes).map_err(|_| foreign())?;
-        let mut driver = driver::configured(&config, &it.state);
+        let mut driver = config.open(&it.state);
         driver.resume(&it.driver).ok_or_else(foreign)?;
         let mut node = Self::with_driver(config, it.state, driver);
         node.publisher.published = it.published;

@@ -1,6 +1,6 @@
 //! Executes one program at a time: the current step and the time within it.
 
-use crate::driver::{ArmDriver, Command, Fault, Fingers};
+use arm_driver::{ArmDriver, Command, Fault, Fingers};
 use manipulation::{Limb, State, Trajectory};
 use messages::{MotionInhibit, MotionPhase, PickId, PickPhase};
 use scene::ObjectId;

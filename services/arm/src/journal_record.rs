@@ -87,7 +87,8 @@ mod tests {
 
     use super::*;
     use crate::inspection;
-    use crate::state::{ArmState, Offered, Posture};
+    use crate::state::{ArmState, Offered};
+    use arm_driver::Posture;
 
     fn bowls() -> Scene {
         let text = include_str!("../../../config/scenes/bowls.toml");

@@ -9,11 +9,11 @@
 //! plan but the motion itself.
 
 mod checkpoint;
-mod driver;
 mod executor;
 mod goal;
 mod inspection;
 mod journal_record;
+mod kinematic;
 mod motion;
 mod motion_inhibit;
 mod orders;
@@ -30,11 +30,10 @@ mod world;
 #[cfg(test)]
 mod tests;
 
-pub use driver::{
-    ArmDriver, BaxterDriver, Command, Fault, Fingers, Grip, KinematicArm, Measured, Source,
-};
+pub use kinematic::KinematicArm;
 pub use plan::{PlanRequest, Planned};
 
+use arm_driver::{ArmDriver, Configured, Drivers, Start};
 use executor::Executor;
 use goal::PlanFailures;
 use messages::pick::Pick;
@@ -57,9 +56,9 @@ use std::sync::Arc;
 use trajectory_view::MotionView;
 use world::World;
 
-/// Runs the program: a service of a group, or an inspection of its records.
-pub fn run() -> ExitCode {
-    service::service_loop::run::<shell::ArmProgram>()
+/// Runs the program with these drivers: a service of a group, or an inspection of its records.
+pub fn run<D: Drivers>() -> ExitCode {
+    service::service_loop::run::<shell::ArmProgram<D>>()
 }
 
 /// Inputs of the arm.
@@ -101,14 +100,30 @@ type Fx = Effects<Out, Record>;
 /// Configuration of the arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// Driver, time scale, grasps, and the simulated world.
+    /// Time scale, grasps, and the simulated world.
     pub arm: config::Arm,
+    /// The driver.
+    pub driver: Configured,
     /// Robot, limb and settings of motions.
     pub setup: ArmSetup,
     /// Objects and their places.
     pub scene: Scene,
     /// Whether objects and places come from perception; the scene's are then what they may be.
     pub perceives: bool,
+}
+
+impl Config {
+    /// Starts the driver of an arm in this state.
+    fn open(&self, state: &ArmState) -> Box<dyn ArmDriver> {
+        self.driver.open(&self.start(state))
+    }
+
+    /// What a driver knows of an arm in this state.
+    fn start(&self, state: &ArmState) -> Start<'_> {
+        let ArmSetup { robot, limb, .. } = &self.setup;
+        let holding = state.held.map(|held| held.limb);
+        Start { robot, limb: *limb, posture: state.posture, holding }
+    }
 }
 
 /// The arm as a reducer.
@@ -157,7 +172,7 @@ impl Node for ArmNode {
 
     fn recover(config: Config, records: Vec<Record>) -> Result<Self, NodeError> {
         let state = recover::state(&config, records)?;
-        let driver = driver::configured(&config, &state);
+        let driver = config.open(&state);
         Ok(Self::with_driver(config, state, driver))
     }
 

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    arm::run()
+    arm::run::<drivers::Shipped>()
 }

@@ -1,10 +1,10 @@
 //! Progress of the program in time, and of the pick from phase to phase.
 
-use crate::driver::Fault;
 use crate::executor::{Progress, Purpose};
 use crate::publish::Activity;
 use crate::state::{Cause, Offered};
 use crate::{ArmNode, Fx};
+use arm_driver::Fault;
 use manipulation::Limb;
 use messages::pick::Pick;
 use messages::{MotionPhase, PickOutcome, PickPhase, Task};

@@ -4,12 +4,12 @@
 //! A flight holds neither the world of a request nor the plan: both follow from what the node was given
 //! before, and a node that is given a result without its plan makes the plan itself.
 
-use crate::driver::Measured;
 use crate::executor::Program;
 use crate::program::{Planner, Refusal};
 use crate::state::{ArmState, Held};
 use crate::world::World;
 use crate::{ArmNode, Config, Fx, Out};
+use arm_driver::Measured;
 use manipulation::Limb;
 use messages::pick::Pick;
 use scene::ObjectId;
@@ -100,22 +100,19 @@ impl Basis {
     fn fits(&self, present: &Self) -> bool {
         self.motion == present.motion
             && self.state.has_same_objects(&present.state)
-            && self.measured.stands_as(&present.measured)
+            && stands_as(&self.measured, &present.measured)
             && self.world.fits(&present.world)
     }
 }
 
-impl Measured {
-    fn stands_as(&self, other: &Self) -> bool {
-        let near = |a: &[f64], b: &[f64], within: f64| {
-            a.iter().zip(b).all(|(a, b)| (a - b).abs() <= within)
-        };
-        let (own, others) = (&self.posture, &other.posture);
-        Limb::BOTH
-            .into_iter()
-            .all(|limb| near(&own.joints[limb], &others.joints[limb], self.accuracy_rad))
-            && near(&own.width_m, &others.width_m, WIDTH_M)
-    }
+fn stands_as(planned: &Measured, present: &Measured) -> bool {
+    let near =
+        |a: &[f64], b: &[f64], within: f64| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= within);
+    let (own, others) = (&planned.posture, &present.posture);
+    Limb::BOTH
+        .into_iter()
+        .all(|limb| near(&own.joints[limb], &others.joints[limb], planned.accuracy_rad))
+        && near(&own.width_m, &others.width_m, WIDTH_M)
 }
 
 impl PlanRequest {

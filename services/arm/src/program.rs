@@ -1,10 +1,10 @@
 //! Plans programs for the arm's goals, from any posture.
 
 use crate::Config;
-use crate::driver::{Fingers, Grip, Measured};
 use crate::executor::{Program, Purpose, Step};
 use crate::state::{ArmState, Held};
 use crate::world::World;
+use arm_driver::{Fingers, Grip, Measured};
 use config::Grasps;
 use manipulation::pose_array::from_array;
 use manipulation::{

@@ -1,10 +1,10 @@
 //! Publication of joints, world and status, and its rates.
 
-use crate::driver::{Measured, Source};
 use crate::executor::{Executor, Purpose};
 use crate::state::ArmState;
 use crate::world::World;
 use crate::{Fx, Out};
+use arm_driver::{Measured, Source};
 use manipulation::gripper::Gripper;
 use manipulation::{JOINTS, Limb, Robot};
 use messages::WireCode;

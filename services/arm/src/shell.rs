@@ -1,13 +1,14 @@
 //! The arm's topics and configuration.
 
 use crate::state::Record;
-use crate::{ArmNode, Config, In, Out, inspection, journal_record};
-use config::{Driver, Settings};
+use crate::{ArmNode, Config, In, Out, inspection, journal_record, kinematic};
+use arm_driver::{Driver, Drivers, Port};
+use config::Settings;
+use diagnostics::Diagnostics;
 use messages::{ArmStatus, JointStates, RobotAct, TableView, TrajectoryView, WorldView, topics};
 use messages::{MotionOrder, Service};
 use planner::PlannerThread;
 use preflight::ArmSetup;
-use robot::RobotTopics;
 use service::bus::{EncodedReader, EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -17,31 +18,31 @@ use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 use service::stop_socket::{Caller, KeptStop, StopListener};
 use service::{Span, Time, clock};
+use std::marker::PhantomData;
 use std::os::fd::BorrowedFd;
 
 mod planner;
-mod robot;
 
 /// A longer time between two passes: orders may have been lost meanwhile, because the socket's queue is short.
 const STOOD_STILL: Span = Span::from_ms(100);
 
-/// The arm as a program.
+/// The arm as a program with these drivers, beside the built-in one.
 #[derive(Debug)]
-pub struct ArmProgram;
+pub struct ArmProgram<D>(PhantomData<D>);
 
-impl Program for ArmProgram {
+impl<D: Drivers> Program for ArmProgram<D> {
     const SERVICE: Service = Service::Arm;
     const RECORD: Option<&'static str> = Some("arm/4");
     const ABOUT: &'static str =
         "fetches objects, puts them back, points at them, and stops on request";
     type Node = ArmNode;
-    type Shell = ArmShell;
+    type Shell = ArmShell<D>;
 
     fn config(_: &Environment, settings: &Settings) -> Result<Config, Failure> {
-        let setup = ArmSetup::new(settings)
-            .map_err(|problems| Failure::new(Exit::Config, problems.to_string()))?;
+        let setup = ArmSetup::new(settings)?;
         Ok(Config {
             arm: settings.arm.clone(),
+            driver: (driver::<D>(settings)?.configure)(settings)?,
             setup,
             scene: settings.scene.clone(),
             perceives: settings.group.perception.enabled,
@@ -70,9 +71,15 @@ impl Program for ArmProgram {
     }
 }
 
+/// The configured driver.
+fn driver<D: Drivers>(settings: &Settings) -> Result<&'static Driver, Diagnostics> {
+    let others = D::LIST.iter().copied();
+    arm_driver::named(std::iter::once(&kinematic::DRIVER).chain(others), settings)
+}
+
 /// The arm's topics and its planner.
 #[derive(Debug)]
-pub struct ArmShell {
+pub struct ArmShell<D> {
     acts: Reader<RobotAct>,
     status: Writer<ArmStatus>,
     joints: Writer<JointStates>,
@@ -85,13 +92,14 @@ pub struct ArmShell {
     /// Time of the latest pass.
     passed: Time,
     planner: PlannerThread,
-    /// Topics of a real robot.
-    robot: Option<RobotTopics>,
+    /// The way to a real robot.
+    robot: Option<Box<dyn Port>>,
+    drivers: PhantomData<D>,
     /// Where the objects come from perception.
     table: Option<EncodedReader<TableView>>,
 }
 
-impl ArmShell {
+impl<D> ArmShell<D> {
     /// Takes a stop that was kept while this service did not listen, before anything else moves the arm.
     fn look_for_kept_stop(&mut self, take: &mut dyn FnMut(In<'_>)) {
         match KeptStop::find(&self.paths) {
@@ -105,12 +113,13 @@ impl ArmShell {
     }
 }
 
-impl Shell<ArmNode> for ArmShell {
+impl<D: Drivers> Shell<ArmNode> for ArmShell<D> {
     fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
         let (bus, paths) = (context.bus, &context.environment.paths);
         let perceives = context.settings.group.perception.enabled;
         let table = perceives.then(|| bus.encoded_reader(&topics::OBJECTS));
-        let robot = (context.settings.arm.driver == Driver::Baxter).then(|| RobotTopics::open(bus));
+        let connect = driver::<D>(context.settings)?.connect;
+        let robot = connect.map(|connect| connect(bus, context.settings));
         let stop_failure = |error| Failure::file(&paths.stop_socket(), &error);
         Ok(Self {
             acts: bus.reader(&topics::ACT)?,
@@ -125,6 +134,7 @@ impl Shell<ArmNode> for ArmShell {
             planner: PlannerThread::start(context.devices.clone())
                 .map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?,
             robot: robot.transpose()?,
+            drivers: PhantomData,
             table: table.transpose()?,
         })
     }
@@ -162,7 +172,8 @@ impl Shell<ArmNode> for ArmShell {
             take(In::Table(Box::new(view)));
         }
         self.acts.drain(|message| take(In::Act(message.into())))?;
-        self.robot.iter().try_for_each(|robot| robot.drain(|report| take(In::Robot(report))))
+        let mut robot = self.robot.iter_mut();
+        robot.try_for_each(|robot| robot.drain(&mut |report| take(In::Robot(report))))
     }
 
     fn publish(&mut self, output: Out) -> Result<(), PortError> {
@@ -179,7 +190,7 @@ impl Shell<ArmNode> for ArmShell {
                 self.planner.submit(request);
                 Ok(())
             }
-            Out::Robot(order) => self.robot.iter().try_for_each(|robot| robot.send(&order)),
+            Out::Robot(order) => self.robot.iter_mut().try_for_each(|robot| robot.send(&order)),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Durable state of the arm. It is small, so each journal record holds all of it, and
 //! recovery reads one record.
 
-use manipulation::{Joints, Limb, Robot};
+use arm_driver::Posture;
+use manipulation::{Limb, Robot};
 use messages::pick::Pick;
 use messages::{MotionOrder, PickOutcome, PickPhase, Task};
 use scene::ObjectId;
@@ -42,15 +43,6 @@ pub struct ArmState {
     /// True if the arm waits after an interrupted pick until a person has checked it: until the next
     /// order, or the release of a motion stop.
     pub waits_for_person: bool,
-}
-
-/// Joint positions of both limbs, left first.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Posture {
-    /// Joint positions, radians.
-    pub joints: [Joints; 2],
-    /// Width between the fingers, metres.
-    pub width_m: [f64; 2],
 }
 
 /// An object in a gripper.

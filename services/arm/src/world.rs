@@ -1,7 +1,7 @@
 //! Places of the objects: where they stood, in a gripper, or taken.
 
-use crate::driver::Measured;
 use crate::state::{ArmState, Held, Offered};
+use arm_driver::Measured;
 use manipulation::pose_array::{from_array, to_array};
 use manipulation::{Cuboid, Limb, ObjectPose, Robot};
 use messages::{TableView, WorldView};

@@ -12,16 +12,26 @@ pub mod object_world;
 mod publish;
 pub mod robot;
 pub mod servo;
+pub mod settings;
 pub mod shell;
 
 use std::process::ExitCode;
 
+use config::{Part, Registered};
 use messages::robot::{Drill, Order, Report};
 use perception::{CameraSettings, Sighting};
 use robot::{Body, Robot};
 use scene::Scene;
 use serde::{Deserialize, Serialize};
 use service::{Effects, Event, Node, NodeError, Span, Time};
+use settings::Simulated;
+
+/// The section of the simulation. Its service, `baxter`, is one of the core's, which may have another program.
+pub static PART: Part =
+    Part { name: "baxter", service: None, sections: &[Registered::of::<Simulated>()] };
+
+/// The program.
+pub const PROGRAM: Result<fn() -> ExitCode, &str> = Ok(run);
 
 /// Runs the program: a service of a group, or, with the name of a drill, fault injection into one that runs.
 pub fn run() -> ExitCode {
@@ -58,7 +68,7 @@ pub struct Config {
     /// Its limbs.
     pub robot: manipulation::Robot,
     /// Dynamics and measurement noise of the joints.
-    pub simulated: config::Simulated,
+    pub simulated: Simulated,
     /// Standard deviation of the objects' offsets across the fingers, metres.
     pub grasp_error_m: f64,
     /// True if users put back the objects that they were handed once the robot rests.

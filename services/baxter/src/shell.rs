@@ -1,5 +1,6 @@
 //! The simulated robot's topics and configuration.
 
+use crate::settings::Simulated;
 use crate::{BaxterNode, Config, In, Out};
 use config::Settings;
 use messages::robot::Drill;
@@ -7,7 +8,7 @@ use messages::topics::{self, robot};
 use messages::{Service, Sighting};
 use preflight::ArmSetup;
 use service::bus::{EncodedWriter, PortError, Reader};
-use service::exit::{Exit, Failure};
+use service::exit::Failure;
 use service::lifecycle::Environment;
 use service::robot_topics::RobotSide;
 use service::service_loop::{Context, Program, Shell};
@@ -29,15 +30,14 @@ impl Program for BaxterProgram {
     type Shell = BaxterShell;
 
     fn config(_: &Environment, settings: &Settings) -> Result<Config, Failure> {
-        let setup = ArmSetup::new(settings)
-            .map_err(|problems| Failure::new(Exit::Config, problems.to_string()))?;
-        let arm = &settings.arm;
+        let setup = ArmSetup::new(settings)?;
+        let (arm, simulated) = (&settings.arm, settings.part::<Simulated>()?);
         Ok(Config {
             robot: setup.robot,
-            simulated: arm.simulated,
+            simulated,
             grasp_error_m: arm.grasp.error_m,
             restock: arm.restock,
-            camera: arm.simulated.camera,
+            camera: simulated.camera,
             scene: settings.scene.clone(),
         })
     }
@@ -55,7 +55,7 @@ pub struct BaxterShell {
 impl Shell<BaxterNode> for BaxterShell {
     fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
         let bus = context.bus;
-        let camera = context.settings.arm.simulated.camera;
+        let camera = context.settings.part::<Simulated>()?.camera;
         let sightings = camera.map(|_| bus.encoded_writer(&topics::SIGHTING)).transpose()?;
         Ok(Self { topics: RobotSide::open(bus)?, drills: bus.reader(&robot::DRILL)?, sightings })
     }

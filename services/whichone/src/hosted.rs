@@ -45,10 +45,9 @@ fn core_program(name: &str) -> Option<Program> {
         Service::Speech => Some(speech::run),
         Service::Grounding => Some(grounding::run),
         Service::Policy => Some(policy::run),
-        Service::Arm => Some(arm::run),
+        Service::Arm => Some(arm::run::<drivers::Shipped>),
         Service::Console => Some(console::run),
-        Service::Robot => Some(baxter::run),
-        // An optional part.
-        Service::Recorder | Service::Other(_) => None,
+        // Optional parts.
+        Service::Robot | Service::Recorder | Service::Other(_) => None,
     }
 }

@@ -76,6 +76,13 @@ pub struct Log {
     pub files_kept: u32,
 }
 
+impl Group {
+    /// Returns whether the service of this name has a program of its own.
+    pub(crate) fn has_command(&self, service: &str) -> bool {
+        self.services.iter().any(|own| own.name == service && own.command.is_some())
+    }
+}
+
 pub(crate) fn read(f: &mut Fields<'_>) -> Group {
     Group {
         scene: f.text("scene"),

@@ -12,6 +12,7 @@
 mod arm;
 mod console;
 mod dialogue;
+mod driver;
 mod files;
 mod group;
 mod load;
@@ -34,9 +35,10 @@ use messages::Service;
 use scene::{Scene, StableHash};
 use vocabulary::Durations;
 
-pub use crate::arm::{Arm, Baxter, Driver, Grasps, Motion, Simulated};
+pub use crate::arm::{Arm, Grasps, Motion};
 pub use crate::console::{Access, Camera, Console};
 pub use crate::dialogue::{CostsFrom, Dialogue, Gesture};
+pub use crate::driver::{Driver, KINEMATIC};
 pub use crate::files::{RobotFiles, one_of, read_file};
 pub use crate::group::{Flight, Group, Log, Perception, RestartLimits};
 pub use crate::load::Examined;

@@ -5,6 +5,7 @@ use std::path::Path;
 use diagnostics::{
     Diagnostic, Diagnostics, Fields, Node, Report, Source, Table, TextFile, suggestion,
 };
+use messages::Service;
 use scene::Scene;
 use toml::Value;
 
@@ -80,8 +81,9 @@ pub(crate) fn check(
     let group = fields.table("group", |f| part::with_tables("group", f, group::read));
     let dialogue = fields.table("dialogue", |f| part::with_tables("dialogue", f, dialogue::read));
     let speech = fields.table("speech", |f| part::with_tables("speech", f, speech::read));
+    let own_arm = group.has_command(Service::Arm.name());
     let arm = fields.table("arm", |f| {
-        let arm = part::with_tables("arm", f, arm::read);
+        let arm = part::with_tables("arm", f, |f| arm::read(f, own_arm));
         arm_is_right &= f.is_right();
         arm
     });
@@ -90,7 +92,6 @@ pub(crate) fn check(
     let console = fields.table("console", |f| part::with_tables("console", f, console::read));
     part::read_sections(&mut fields, measured.is_some());
     fields.finish();
-    arm::check_camera(&arm, group.perception.enabled, &tree, &mut report);
     let Files { scene: file, robot } = files;
     let scene =
         file.as_ref().and_then(|TextFile { label, text }| Scene::examine(label, text, &mut report));
@@ -98,7 +99,13 @@ pub(crate) fn check(
         dialogue::check_person(scene, &dialogue.gesture, &tree, &mut report);
     }
     let scene_found = scene.as_ref();
-    part::check(&mut Check { group: &group, scene: scene_found, tree: &tree, report: &mut report });
+    part::check(&mut Check {
+        group: &group,
+        arm: &arm,
+        scene: scene_found,
+        tree: &tree,
+        report: &mut report,
+    });
     let settings = file.zip(scene).zip(robot).map(|((file, scene), robot)| {
         // Other problems would be reported again as missing durations.
         let durations = measured.filter(|_| report.count() == 0).and_then(|(node, source)| {

@@ -1,4 +1,5 @@
-//! Optional parts of the group, each of which registers its sections of the configuration and its service.
+//! Optional parts of the group, each of which registers its sections of the configuration and its service. Drivers of
+//! the arm register theirs beside them ([`Driver`]).
 //!
 //! The program that loads configurations names the parts that it knows ([`register`]). Any other program reads
 //! snapshots alone, and of these the sections that it asks for ([`Settings::part`](crate::Settings::part)).
@@ -8,8 +9,9 @@ use std::sync::OnceLock;
 use diagnostics::{Diagnostics, Fields, Node, Report, Source, Table};
 use scene::Scene;
 
-use crate::Group;
+use crate::driver::{self, Driver};
 use crate::resolved::{self, CORE, CORE_DEFAULTS};
+use crate::{Arm, Group};
 
 /// A section of the configuration that belongs to an optional part: its place, its reader and its checks.
 pub trait Section: Sized + 'static {
@@ -30,6 +32,8 @@ pub trait Section: Sized + 'static {
 pub struct Check<'a> {
     /// The services, and where the objects come from.
     pub group: &'a Group,
+    /// The arm.
+    pub arm: &'a Arm,
     /// The scene; `None` if it is wrong.
     pub scene: Option<&'a Scene>,
     pub(crate) tree: &'a Table,
@@ -88,7 +92,7 @@ pub const EVERYTHING: Reads = &["*", DURATIONS];
 /// The durations of questions and picks, by which decisions are made.
 pub(crate) const DURATIONS: &str = "durations";
 
-/// A [`Section`] in the list of a part.
+/// A [`Section`] in the list of a part or driver.
 #[derive(Debug)]
 pub struct Registered {
     pub(crate) key: &'static [&'static str],
@@ -111,9 +115,13 @@ impl Registered {
 
 static PARTS: OnceLock<&'static [&'static Part]> = OnceLock::new();
 
-/// Names the optional parts whose sections and services configurations may have, once and before the first is
-/// loaded. Later calls change nothing.
-pub fn register(parts: &'static [&'static Part]) {
+/// Names the optional parts whose sections and services configurations may have, and the drivers of the arm that
+/// they may choose beside the built-in one, once and before the first is loaded. Later calls change nothing.
+pub fn register(
+    parts: &'static [&'static Part],
+    drivers: impl IntoIterator<Item = &'static Driver>,
+) {
+    driver::register(drivers);
     PARTS.get_or_init(|| parts);
 }
 
@@ -122,7 +130,7 @@ fn parts() -> impl Iterator<Item = &'static Part> {
 }
 
 fn registered() -> impl Iterator<Item = &'static Registered> {
-    parts().flat_map(|part| part.sections)
+    driver::sections().chain(parts().flat_map(|part| part.sections))
 }
 
 /// Name and shipped file of every section: the core's, then those of the registered parts. The name is the first

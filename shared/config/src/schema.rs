@@ -39,7 +39,7 @@ fn read(name: &str, f: &mut Fields<'_>) {
         "group" => drop(group::read(f)),
         "dialogue" => drop(dialogue::read(f)),
         "speech" => drop(speech::read(f)),
-        "arm" => drop(arm::read(f)),
+        "arm" => drop(arm::read(f, false)),
         "study" => drop(study::read(f, "lookahead")),
         "console" => drop(console::read(f)),
         _ => part::read_contents(name, f),

@@ -22,14 +22,15 @@ parts! {
         ros2
         link
         recorder
+        baxter
         ros1;
     others:
         model_reader
 }
 
-/// Makes the parts known to every configuration that this program loads.
+/// Makes the parts, and the drivers of arms, known to every configuration that this program loads.
 pub fn register() {
-    config::register(PARTS);
+    config::register(PARTS, drivers::known());
 }
 
 /// The error for a program that this build is without.

@@ -99,7 +99,7 @@ pub(super) struct Group {
     pub(super) speech: Process<SpeechProgram>,
     pub(super) grounding: Process<GroundingProgram>,
     pub(super) policy: Process<PolicyProgram>,
-    pub(super) arm: Process<ArmProgram>,
+    pub(super) arm: Process<ArmProgram<drivers::Shipped>>,
     pub(super) latest: Latest,
     pub(super) to_speech: Vec<speech::In<'static>>,
     pub(super) to_grounding: Vec<grounding::In<'static>>,
@@ -118,7 +118,7 @@ impl Group {
             grounding: Process::new(configured::<GroundingProgram>),
             // Without the precomputed decisions, which take longer than a dialogue.
             policy: Process::new(|| SETTINGS.manager().expect("valid settings").into()),
-            arm: Process::new(configured::<ArmProgram>),
+            arm: Process::new(configured::<ArmProgram<drivers::Shipped>>),
             latest: Latest::default(),
             to_speech: Vec::new(),
             to_grounding: Vec::new(),

@@ -104,7 +104,7 @@ pub(super) fn run_records(input: &[u8]) {
     match input.byte() % 3 {
         0 => inspected::<SpeechProgram>(&mut input),
         1 => inspected::<PolicyProgram>(&mut input),
-        _ => inspected::<ArmProgram>(&mut input),
+        _ => inspected::<ArmProgram<drivers::Shipped>>(&mut input),
     }
 }
 

@@ -133,7 +133,7 @@ impl SimulatedGroup {
             speech: Host::new::<speech::shell::SpeechProgram>(&settings),
             grounding: Host::new::<grounding::shell::GroundingProgram>(&settings),
             policy: Host::new::<policy::shell::PolicyProgram>(&settings),
-            arm: Some(Host::new::<arm::shell::ArmProgram>(&settings)),
+            arm: Some(Host::new::<arm::shell::ArmProgram<drivers::Shipped>>(&settings)),
             settings,
             before: None,
             change: None,
@@ -272,7 +272,7 @@ impl SimulatedGroup {
         self.grounding.replace::<grounding::shell::GroundingProgram>(&to);
         self.policy.replace::<policy::shell::PolicyProgram>(&to);
         if let Some(arm) = &mut self.arm {
-            arm.replace::<arm::shell::ArmProgram>(&to);
+            arm.replace::<arm::shell::ArmProgram<drivers::Shipped>>(&to);
         }
         self.restarts = std::array::from_fn(|_| Some(self.now + self.faults.downtime()));
         let wanted = self.user.wanted().map(|object| &self.scene().object(object).name);

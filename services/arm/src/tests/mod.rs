@@ -19,10 +19,11 @@ mod standing;
 mod stop;
 mod trajectory_view;
 
-use crate::driver::ArmDriver;
 use crate::recover;
+use crate::shell::ArmProgram;
 use crate::state::Record;
 use crate::{ArmNode, Config, In, Out, PlanRequest};
+use arm_driver::{ArmDriver, Driver, Drivers};
 use config::Settings;
 use manipulation::{Joints, Limb};
 use messages::WireCode;
@@ -30,15 +31,23 @@ use messages::{
     ActKind, ArmStatus, InteractionId, JointStates, MessageRef, MotionOrder, PickId, PickOutcome,
     PickPhase, RobotAct, TrajectoryView, WorldView,
 };
-use preflight::ArmSetup;
 use robot::Robot;
 use scene::{ObjectId, Question};
+use service::lifecycle::Environment;
+use service::service_loop::Program;
 use service::stop_socket::{Caller, RESUME_AFTER, StopOrder, StopState};
 use service::{Effects, Event, Node, Span, Time};
 use std::path::Path;
 use std::sync::OnceLock;
 
 const OBJECTS: u16 = 6;
+
+/// No driver but the built-in one.
+struct ModelAlone;
+
+impl Drivers for ModelAlone {
+    const LIST: &'static [&'static Driver] = &[];
+}
 
 /// Time that a plan takes, unless a test says otherwise.
 const PLANNING: Span = Span::from_ms(5);
@@ -47,15 +56,23 @@ const PLANNING: Span = Span::from_ms(5);
 pub(crate) fn shipped(profile: Option<&str>, over: &[(String, String)]) -> Config {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
     let settings = Settings::load(folder, profile, over).unwrap();
-    let setup = ArmSetup::new(&settings).unwrap();
-    let perceives = settings.group.perception.enabled;
-    Config { arm: settings.arm, setup, scene: settings.scene, perceives }
+    ArmProgram::<ModelAlone>::config(&Environment::nowhere(), &settings).unwrap()
 }
 
 /// Returns the shipped configuration with its six bowls, in real time.
 fn config() -> Config {
     static SETTINGS: OnceLock<Config> = OnceLock::new();
     SETTINGS.get_or_init(|| shipped(None, &[])).clone()
+}
+
+#[test]
+fn driver_of_another_program_is_an_error() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
+    let settings = Settings::load(folder, Some("baxter"), &[]).unwrap();
+    let failure = ArmProgram::<ModelAlone>::config(&Environment::nowhere(), &settings).unwrap_err();
+    let expected =
+        "arm.driver: expected one of kinematic, found `baxter`; help: these are the drivers";
+    assert!(failure.message.contains(expected), "{failure}");
 }
 
 /// Returns the scene of the markers.

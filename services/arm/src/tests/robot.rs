@@ -1,8 +1,8 @@
 //! A robot that outlives the process that moves it, and detects forbidden commands.
 
-use crate::Config;
-use crate::driver::{ArmDriver, Command, Fingers, KinematicArm, Measured};
-use crate::state::{ArmState, Posture};
+use crate::state::ArmState;
+use crate::{Config, KinematicArm};
+use arm_driver::{ArmDriver, Command, Fingers, Measured, Posture};
 use manipulation::{Arm, ArmShape, Cuboid, Joints, Limb};
 use messages::PickPhase;
 use messages::pick::Pick;
@@ -41,7 +41,7 @@ impl Robot {
         let places = config.scene.objects().iter().filter_map(|object| object.placement);
         let cuboid = |p: Placement| Cuboid { centre: p.xyz, size: p.size, yaw: p.yaw };
         Self(Rc::new(RefCell::new(Body {
-            arm: KinematicArm::at(state, &config.setup.robot),
+            arm: KinematicArm::at(&config.start(state)),
             limbs: Limb::BOTH.map(|limb| config.setup.robot.arm(limb).clone()),
             velocity_is_zero: true,
             objects: places.map(cuboid).collect(),

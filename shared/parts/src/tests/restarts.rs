@@ -28,6 +28,8 @@ fn values_restart_the_services_that_read_them() {
             &["speech", "console", "recorder", "link", "baxter"][..],
         ),
         ("arm.speed_ratio", "0.5", &["arm", "console", "recorder", "ros2", "link", "baxter"]),
+        ("arm.baxter.stale_s", "0.2", &["arm", "console", "recorder", "ros2", "link", "baxter"]),
+        ("arm.simulated.loss", "0.1", &["arm", "console", "recorder", "ros2", "link", "baxter"]),
         ("arm.ros1.master", "lab", &["arm", "console", "recorder", "ros2", "link", "baxter"]),
         ("console.viewers_max", "9", &["console", "recorder", "link"]),
         ("ros2.domain_id", "7", &["recorder", "ros2", "link"]),

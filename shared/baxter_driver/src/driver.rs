@@ -1,5 +1,3 @@
-//! A Baxter behind its own topics.
-//!
 //! The driver keeps the newest reports of the robot and returns the orders to it. It is as
 //! pure as the arm itself: time comes with each call, messages go out with the pass.
 //!
@@ -7,22 +5,18 @@
 //! position mode is never used. Each limb gets a command in every pass, also while it stands: a
 //! limb that hears none for 0.2 s takes over the position that it happens to have.
 
-mod gripper;
-#[cfg(test)]
-mod tests;
-
-use super::{ArmDriver, Command, Fault, Fingers, Measured, Order, Report, Source};
-use crate::Config;
-use crate::state::ArmState;
-use config::Baxter;
-use gripper::{Condition, Gripper};
+use arm_driver::{ArmDriver, Command, Fault, Fingers, Measured, Source, Start};
 use manipulation::{JOINTS, Joints, Limb, PositionLimits, Robot};
 use messages::MotionInhibit;
 use messages::robot::{
-    AssemblyState, JointCommand, JointMode, JointState, JointTrajectoryPoint, SpeedRatio,
+    AssemblyState, JointCommand, JointMode, JointState, JointTrajectoryPoint, Order, Report,
+    SpeedRatio,
 };
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};
+
+use crate::Baxter;
+use crate::gripper::{Condition, Gripper};
 
 /// Longest time between two passes: a little more than between two joint states, which begin a pass
 /// themselves.
@@ -76,15 +70,15 @@ struct Set {
 impl BaxterDriver {
     /// Returns a driver before the first report: until then, the posture is the one that the
     /// journal remembers.
-    pub fn new(config: &Config, state: &ArmState) -> Self {
-        let settings = config.arm.baxter;
+    pub fn new(settings: Baxter, start: &Start<'_>) -> Self {
+        let Start { robot, limb, posture, .. } = *start;
         let still = [[0.0; 7]; 2];
         let mut used = [false; 2];
-        for own in config.setup.robot.limbs() {
-            used[*own] = config.setup.limb.is_none_or(|limb| limb == *own);
+        for own in robot.limbs() {
+            used[*own] = limb.is_none_or(|limb| limb == *own);
         }
         let measured = Measured {
-            posture: state.posture,
+            posture,
             velocity: still,
             effort: still,
             holding: [None; 2],
@@ -93,12 +87,12 @@ impl BaxterDriver {
         };
         Self {
             settings,
-            robot: config.setup.robot.clone(),
+            robot: robot.clone(),
             used,
             measured,
             joints_at: None,
             assembly: None,
-            grippers: Limb::BOTH.map(|limb| Gripper::new(&config.setup.robot.arm(limb).gripper)),
+            grippers: Limb::BOTH.map(|limb| Gripper::new(&robot.arm(limb).gripper)),
             limbs: [Set::default(); 2],
             now: Time(0),
             inhibit: MotionInhibit::Unheard,
@@ -318,7 +312,8 @@ impl ArmDriver for BaxterDriver {
             let (joint, error_rad) = furthest(&set.q?, &self.measured_of(limb));
             let tolerance_rad = self.settings.path_tolerance_rad;
             let left = set.moved && error_rad > tolerance_rad;
-            left.then_some(Fault::Path { limb, joint, error_rad, tolerance_rad })
+            let setting = "arm.baxter.path_tolerance_rad";
+            left.then_some(Fault::Path { limb, joint, error_rad, tolerance_rad, setting })
         })
     }
 
@@ -333,7 +328,8 @@ impl ArmDriver for BaxterDriver {
             error_rad <= tolerance_rad && still || self.limbs[limb].arrived == Some(command.q);
         self.limbs[limb].arrived = there.then_some(command.q);
         if !there && late_s > self.settings.goal_time_s {
-            return Err(Fault::Goal { limb, joint, error_rad, tolerance_rad, late_s });
+            let settings = "arm.baxter.goal_tolerance_rad, goal_time_s";
+            return Err(Fault::Goal { limb, joint, error_rad, tolerance_rad, late_s, settings });
         }
         let gripper = &self.grippers[limb];
         let done = command.fingers == Fingers::Stay || gripper.has_settled(self.now);

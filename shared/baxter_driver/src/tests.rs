@@ -1,10 +1,18 @@
 //! The driver alone: what it makes of what it hears, and what it then says.
 
-use super::*;
-use crate::driver::Grip;
+use std::path::Path;
+
+use arm_driver::{ArmDriver, Command, Fault, Fingers, Grip, Posture, Source, Start};
+use config::Settings;
+use manipulation::{Joints, Limb, Robot};
+use messages::MotionInhibit;
 use messages::robot::{
-    Command as Word, EndEffectorCommand, EndEffectorProperties, EndEffectorState, Tristate, UiType,
+    AssemblyState, Command as Word, EndEffectorCommand, EndEffectorProperties, EndEffectorState,
+    JointState, Order, Report, Tristate, UiType,
 };
+use service::{Span, Time};
+
+use crate::BaxterDriver;
 
 fn ready_gripper(now: Time) -> EndEffectorState {
     let yes = Tristate::True.code();
@@ -14,7 +22,6 @@ fn ready_gripper(now: Time) -> EndEffectorState {
 
 /// A driver with a scripted robot.
 struct Bench {
-    config: Config,
     driver: BaxterDriver,
     now: Time,
     joints: [Joints; 2],
@@ -24,20 +31,24 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let config = crate::tests::shipped(Some("baxter"), &[]);
-        let first = ArmState::first(&config.setup.robot, 0, 100.0);
-        let driver = BaxterDriver::new(&config, &first);
+        let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
+        let settings = Settings::load(folder, Some("baxter"), &[]).unwrap().part().unwrap();
+        let robot = Robot::baxter();
         let now = Time(5_000_000_000);
-        let joints = Limb::BOTH.map(|limb| config.setup.robot.arm(limb).neutral);
+        let joints = Limb::BOTH.map(|limb| robot.arm(limb).neutral);
+        let width_m = Limb::BOTH.map(|limb| robot.arm(limb).gripper.width_m(100.0));
+        let posture = Posture { joints, width_m };
+        let driver =
+            BaxterDriver::new(settings, &Start { robot, limb: None, posture, holding: None });
         let assembly = AssemblyState { enabled: 1, ready: 1, ..AssemblyState::default() };
-        Self { config, driver, now, joints, assembly, grippers: [ready_gripper(now); 2] }
+        Self { driver, now, joints, assembly, grippers: [ready_gripper(now); 2] }
     }
 
     /// Returns the robot's joints, last joint first, with the head's among them.
     fn joint_state(&self) -> JointState {
         let mut joints = vec![("head_pan", [0.3; 3])];
         for limb in Limb::BOTH {
-            let names = self.config.setup.robot.arm(limb).joint_names.iter();
+            let names = Robot::baxter().arm(limb).joint_names.iter();
             let q = self.joints[limb];
             joints.extend(names.zip(q).map(|(name, q)| (name.as_str(), [q, 0.0, 0.0])));
         }
@@ -171,7 +182,7 @@ fn baxter_driver_ignores_an_invalid_joint_state() {
 #[test]
 fn joints_a_hair_beyond_their_limits_stand_on_them() {
     let mut bench = Bench::new();
-    let limits = bench.config.setup.robot.arm(Limb::Left).limits.position;
+    let limits = Robot::baxter().arm(Limb::Left).limits.position;
     bench.joints[0] = limits.at(&[1.0; 7]);
     bench.joints[0][0] += 0.002;
     bench.pass(None);

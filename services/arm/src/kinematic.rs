@@ -1,9 +1,15 @@
 //! The kinematic model of a robot in a simulated world.
 
-use super::{ArmDriver, Command, Fingers, Measured, Source};
-use crate::state::ArmState;
+use arm_driver::{ArmDriver, Command, Configured, Driver, Fingers, Measured, Source, Start};
+use manipulation::Limb;
 use manipulation::gripper::{self, Gripper};
-use manipulation::{Limb, Robot};
+
+/// The driver that every arm has.
+pub(crate) static DRIVER: Driver = Driver {
+    about: &config::KINEMATIC,
+    configure: |_| Ok(Configured::new(|start| Box::new(KinematicArm::at(start)))),
+    connect: None,
+};
 
 /// Distance of a joint from the neutral posture that still counts as rest, radians.
 const ACCURACY_RAD: f64 = 1e-6;
@@ -20,11 +26,11 @@ pub struct KinematicArm {
 
 impl KinematicArm {
     /// Returns the arm as the journal left it.
-    pub fn at(state: &ArmState, robot: &Robot) -> Self {
-        let posture = state.posture;
+    pub fn at(start: &Start<'_>) -> Self {
+        let Start { robot, limb: _, posture, holding } = *start;
         let mut grip = [None; 2];
-        if let Some(held) = &state.held {
-            grip[held.limb] = Some(posture.width_m[held.limb]);
+        if let Some(limb) = holding {
+            grip[limb] = Some(posture.width_m[limb]);
         }
         let holding = grip.map(|grip| Some(grip.is_some()));
         let still = [[0.0; 7]; 2];

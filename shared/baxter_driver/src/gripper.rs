@@ -1,6 +1,6 @@
 //! One gripper of a Baxter: its command, the confirmation, and its sensors.
 
-use super::super::Fingers;
+use arm_driver::Fingers;
 use manipulation::gripper;
 use messages::Code;
 use messages::robot::{

@@ -1,0 +1,29 @@
+//! The driver of a Baxter behind its own topics: a real one's bridge, or the simulated one.
+
+mod driver;
+mod gripper;
+mod settings;
+#[cfg(test)]
+mod tests;
+mod topics;
+
+pub use driver::BaxterDriver;
+pub use settings::Baxter;
+
+use arm_driver::{Configured, Driver};
+use config::{Registered, Settings};
+
+/// The driver `baxter`.
+pub static DRIVER: Driver = Driver {
+    about: &config::Driver {
+        name: "baxter",
+        in_real_time: true,
+        needs: None,
+        sections: &[Registered::of::<Baxter>()],
+    },
+    configure: |settings: &Settings| {
+        let own: Baxter = settings.part()?;
+        Ok(Configured::new(move |start| Box::new(BaxterDriver::new(own, start))))
+    },
+    connect: Some(topics::connect),
+};

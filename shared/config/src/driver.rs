@@ -1,0 +1,73 @@
+//! Drivers of the arm by name, as far as a configuration is checked by them.
+
+use std::sync::OnceLock;
+
+use diagnostics::Fields;
+
+use crate::part::Registered;
+
+/// A driver of the arm. What it does is known to the programs that move an arm alone.
+#[derive(Debug)]
+pub struct Driver {
+    /// Its name in `arm.driver`.
+    pub name: &'static str,
+    /// It moves a robot, which knows no other time than the real one.
+    pub in_real_time: bool,
+    /// The feature of `whichone` that this build lacks for it, if it lacks one.
+    pub needs: Option<&'static str>,
+    /// Its sections.
+    pub sections: &'static [Registered],
+}
+
+/// The driver of the arm's own model, which every arm has.
+pub static KINEMATIC: Driver =
+    Driver { name: "kinematic", in_real_time: false, needs: None, sections: &[] };
+
+impl Driver {
+    /// The reason why the driver cannot be used at this time scale, with help; `None` if it can.
+    pub fn pace_problem(&self, time_scale: f64) -> Option<(String, &'static str)> {
+        let what = format!("is {time_scale}, but a robot moves in real time");
+        let help = "write `time_scale = 1.0`, or use driver = \"kinematic\"";
+        (self.in_real_time && time_scale != 1.0).then_some((what, help))
+    }
+}
+
+static DRIVERS: OnceLock<Vec<&'static Driver>> = OnceLock::new();
+
+/// Names the drivers that configurations may choose, beside the built-in one.
+pub(crate) fn register(drivers: impl IntoIterator<Item = &'static Driver>) {
+    DRIVERS.get_or_init(|| std::iter::once(&KINEMATIC).chain(drivers).collect());
+}
+
+/// The sections of the registered drivers.
+pub(crate) fn sections() -> impl Iterator<Item = &'static Registered> {
+    DRIVERS.get().into_iter().flatten().flat_map(|driver| driver.sections)
+}
+
+/// Reads `driver`, and returns it with its name if it is a registered one. Any name is right in a program that has
+/// registered none, which reads checked snapshots, and for an arm with a program of its own (`is_own`), which may have
+/// drivers of its own: their table, of the same name, is theirs to read.
+pub(crate) fn read(f: &mut Fields<'_>, is_own: bool) -> (String, Option<&'static Driver>) {
+    let known = DRIVERS.get().map_or(&[][..], Vec::as_slice);
+    let names: Vec<&str> = known.iter().map(|driver| driver.name).collect();
+    let name = f.text("driver");
+    f.note_choices("driver", names.iter().copied());
+    let found = known.iter().copied().find(|driver| driver.name == name);
+    match found {
+        _ if f.is_wrong("driver") => {}
+        Some(Driver { needs: Some(feature), .. }) if !is_own => {
+            let what = format!("this build has no driver `{name}`");
+            let help = format!(
+                "`cargo install --path services/whichone --features {feature}` in a checkout"
+            );
+            f.problem("driver", what, help);
+        }
+        None if is_own => {
+            let own: Vec<&str> = f.names().into_iter().filter(|key| *key == name).collect();
+            f.allow(&own);
+        }
+        None if !known.is_empty() => f.not_one_of("driver", &name, &names),
+        _ => {}
+    }
+    (name, found)
+}
