@@ -18,18 +18,22 @@ pub fn is_echo(heard: &str, line: &str) -> bool {
     let heard = spoken(heard);
     let sentences: Vec<_> =
         line.split(['.', '?', '!']).map(spoken).filter(|words| !words.is_empty()).collect();
-    let runs = (0..sentences.len())
-        .flat_map(|from| (from + 1..=sentences.len()).map(move |to| from..to))
-        .map(|run| sentences[run].concat());
-    runs.into_iter().any(|said| is_repeated(&said, &heard))
+    let of_its_length =
+        |run: &&[Vec<String>]| run.iter().map(Vec::len).sum::<usize>().abs_diff(heard.len()) <= 1;
+    let runs_from = |from: usize| (from + 1..=sentences.len()).map(move |to| from..to);
+    (0..sentences.len())
+        .flat_map(runs_from)
+        .map(|run| &sentences[run])
+        .filter(of_its_length)
+        .any(|run| is_repeated(&run.concat(), &heard))
 }
 
 fn is_repeated(said: &[String], heard: &[String]) -> bool {
-    let (has_verb, turns) =
-        (|word: &String| VERBS.contains(&**word), |word: &String| TURNING.contains(&**word));
-    if said.len() < WORDS_MIN || heard.len() < WORDS_MIN || !said.iter().any(has_verb) {
+    let has_verb = said.iter().any(|word| VERBS.contains(&**word));
+    if said.len().min(heard.len()) < WORDS_MIN || !has_verb {
         return false;
     }
+    let turns = |word: &str| TURNING.contains(word);
     let same = said.iter().zip(heard).take_while(|(a, b)| a == b).count();
     match heard.len().checked_sub(said.len()) {
         Some(0) => same == said.len(),
