@@ -15,6 +15,7 @@ mod line;
 mod linear;
 mod scenes;
 mod score;
+mod slips;
 mod table;
 mod templates;
 
@@ -23,6 +24,7 @@ pub use line::{Line, Marked, lines};
 pub use linear::{Lesson, Linear};
 pub use scenes::{Scenes, files, question};
 pub use score::{Score, Scored, pairs};
+pub use slips::with_typo;
 pub use table::{Row, table};
 pub use templates::templates;
 

@@ -1,5 +1,5 @@
 //! `cargo run --release -p reader_training --bin train`: prints how the judge does on each author's lines when it has seen
-//! the others' alone. With `--write` it trains on all of them, and replaces `vocabulary/judge.bin`.
+//! the others' alone, and on these with one typo. With `--write` it trains on all of them, and replaces `vocabulary/judge.bin`.
 
 #![allow(clippy::print_stdout, reason = "a program for the terminal")]
 
@@ -10,8 +10,9 @@ use std::process::ExitCode;
 use language::{FLOOR, Polarity, ROWS};
 use reader_training::{
     Lesson, Line, Linear, Row, Scenes, Score, Scored, exit_code, files, lines, pairs, question,
-    table, templates, trained_on,
+    table, templates, trained_on, with_typo,
 };
+use vocabulary::Rng;
 
 /// Passes over the lessons.
 const EPOCHS: usize = 4;
@@ -46,6 +47,8 @@ fn main() -> ExitCode {
 #[derive(Default)]
 struct Taught {
     lessons: Vec<Lesson>,
+    /// The same line with a slip of the finger in a word that is no value: scored, and not learnt from.
+    slips: Vec<Lesson>,
     missed: usize,
     extra: usize,
 }
@@ -76,16 +79,19 @@ fn run() -> Result<(), String> {
 
 /// Prints how each source does when it is not seen, and which temperature fits the authors.
 fn validate(sources: &Sources, authors: &[String]) {
-    let (mut all, mut unseen) = (Score::default(), Vec::new());
+    let (mut all, mut slips, mut unseen) = (Score::default(), Score::default(), Vec::new());
     for left_out in authors {
         let (model, score) = without(sources, |name, _| name == left_out);
         let lessons = sources[left_out].iter().flat_map(|taught| &taught.lessons);
         unseen.extend(lessons.map(|it| (model.sums(&it.rows), it.label)));
         println!("{score}  {left_out}, not seen");
         all.extend(score);
+        let lessons = sources[left_out].iter().flat_map(|taught| &taught.slips);
+        slips.scored.extend(lessons.map(|lesson| judged(&model, lesson)));
     }
     let fitted = Linear::temperature_for(&unseen);
     println!("{all}  all, not seen; temperature {fitted:.2} fits");
+    println!("{slips}  the same with one typo a line, not seen");
     for part in [OWN_TABLES, TEMPLATES] {
         let mut all = Score::default();
         for fold in 0..FOLDS {
@@ -132,8 +138,13 @@ fn authors(scenes: &Scenes, folder: &Path) -> Result<Sources, String> {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let text =
             std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let mut random = Rng::new(1);
         for line in lines(&name, &text)? {
-            authors.entry(name.clone()).or_default().push(of_line(scenes, &line, 1.0)?);
+            let mut taught = of_line(scenes, &line, 1.0)?;
+            if let Some(slip) = with_typo(&line, &mut random) {
+                taught.slips = of_line(scenes, &slip, 1.0)?.lessons;
+            }
+            authors.entry(name.clone()).or_default().push(taught);
         }
     }
     Ok(authors)
@@ -150,7 +161,7 @@ fn of_line(scenes: &Scenes, line: &Line, weight: f64) -> Result<Taught, String> 
     };
     let lessons: Vec<Lesson> = examples.into_iter().zip(&labels).filter_map(lesson).collect();
     let (found, marked) = (lessons.len(), line.marked.len());
-    Ok(Taught { lessons, missed: marked - found, extra: labels.len() - found })
+    Ok(Taught { lessons, missed: marked - found, extra: labels.len() - found, ..Taught::default() })
 }
 
 fn of_templates(scenes: &Scenes, path: &Path) -> Result<Vec<Taught>, String> {
