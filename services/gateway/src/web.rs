@@ -278,7 +278,7 @@ async fn enter(gateway: &Gateway, headers: &HeaderMap, secret: &str, page: &str)
     };
     gateway.audit.note(&Entry::new(&person, None, "login", Outcome::Done));
     let cookie = gateway.sessions.cookie(headers, Some(&value), gateway.address.is_https());
-    let mut response = html(StatusCode::OK, &stepping_stone(page));
+    let mut response = html(StatusCode::OK, &stepping_stone(page, "/_/icon.svg"));
     if let Ok(cookie) = HeaderValue::from_str(&cookie) {
         response.headers_mut().insert(header::SET_COOKIE, cookie);
     }

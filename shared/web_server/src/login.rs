@@ -21,11 +21,12 @@ pub fn secret_of(form: &[u8]) -> String {
 }
 
 /// Returns a page that leads to another one of this server. A redirect of another site's link would not carry a new cookie;
-/// the page's own step does.
-pub fn stepping_stone(page: &str) -> String {
+/// the page's own step does. `icon` is the address of the icon, for which a browser would guess one otherwise.
+pub fn stepping_stone(page: &str, icon: &str) -> String {
     let page = page.replace('&', "&amp;").replace('"', "&quot;");
     format!(
-        "<!doctype html><link rel=\"icon\" href=\"data:,\"><meta http-equiv=\"refresh\" content=\"0;url={page}\"><title>whichone</title><p>whichone\n"
+        "<!doctype html><link rel=\"icon\" href=\"{icon}\"><meta http-equiv=\"refresh\" content=\"0;url={page}\">\
+         <title>whichone</title><p>whichone\n"
     )
 }
 

@@ -279,7 +279,7 @@ pub(super) async fn enter(
                 return (unseen, cookie, Redirect::to(page)).into_response();
             }
             // A redirect of another site's link would not carry the cookie; the page's own one does.
-            let go_on = stepping_stone(page);
+            let go_on = stepping_stone(page, "icon.svg");
             let kind = [(header::CONTENT_TYPE, "text/html; charset=utf-8")];
             (unseen, cookie, kind, go_on).into_response()
         }
