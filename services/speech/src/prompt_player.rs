@@ -184,7 +184,7 @@ impl PromptPlayer {
 
     fn play(&mut self, presentation: Presentation, text: String, now: Time, fx: &mut Fx) {
         self.break_off(now, fx);
-        self.lines.begin(&text);
+        self.lines.add(&text);
         self.last_playback += 1;
         let playback = self.last_playback;
         let Presentation { prompt, number, .. } = presentation;
@@ -218,6 +218,7 @@ impl PromptPlayer {
         match event.state {
             PlaybackState::Started => {
                 playing.begin(now);
+                self.lines.begin(now);
                 self.interrupted = None;
             }
             PlaybackState::Interrupted => self.break_off(now, fx),

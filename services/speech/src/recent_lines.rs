@@ -6,6 +6,8 @@ use service::{Span, Time};
 
 /// How long a line can be heard back: the delays of loudspeaker, room, network and recogniser.
 const ECHO_WITHIN: Span = Span::from_ms(15_000);
+/// Greatest delay of the report that a line sounds.
+const REPORTED_WITHIN: Span = Span::from_ms(500);
 const LINES_MAX: usize = 8;
 
 /// The latest lines, oldest first.
@@ -15,27 +17,38 @@ pub(crate) struct RecentLines(VecDeque<Line>);
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Line {
     text: String,
-    /// `None` while it is spoken.
+    /// `None` before it sounds.
+    began: Option<Time>,
+    /// `None` while it sounds.
     ended: Option<Time>,
 }
 
 impl RecentLines {
-    /// Adds a line that is spoken from now on.
-    pub(crate) fn begin(&mut self, text: &str) {
+    /// Adds a line that is to be spoken.
+    pub(crate) fn add(&mut self, text: &str) {
         if self.0.len() >= LINES_MAX {
             self.0.pop_front();
         }
-        self.0.push_back(Line { text: text.to_owned(), ended: None });
+        self.0.push_back(Line { text: text.to_owned(), began: None, ended: None });
     }
 
-    /// Ends the lines that are spoken.
+    /// The latest line sounds from now on.
+    pub(crate) fn begin(&mut self, now: Time) {
+        self.0.iter_mut().last().into_iter().for_each(|line| line.began = line.began.or(Some(now)));
+    }
+
+    /// Ends the latest line. One that has not sounded echoes nowhere.
     pub(crate) fn end(&mut self, now: Time) {
+        self.0.retain(|line| line.began.is_some());
         self.0.iter_mut().for_each(|line| line.ended = line.ended.or(Some(now)));
     }
 
     /// Returns whether a sound that began at `onset` is one of the lines in its own words.
     pub(crate) fn is_echo(&self, heard: &str, onset: Time) -> bool {
-        let is_recent = |line: &&Line| line.ended.is_none_or(|ended| onset <= ended + ECHO_WITHIN);
+        let is_recent = |line: &&Line| {
+            line.began.is_some_and(|began| began <= onset + REPORTED_WITHIN)
+                && line.ended.is_none_or(|ended| onset <= ended + ECHO_WITHIN)
+        };
         self.0.iter().filter(is_recent).any(|line| language::is_echo(heard, &line.text))
     }
 }

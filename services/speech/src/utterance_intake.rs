@@ -415,8 +415,8 @@ fn meant(
         _ if language::is_stop(best) => {
             hypotheses.or_else(|rejected| Ok(vec![Hypothesis::certain(rejected.text)]))
         }
-        Ok(_) if is_echo(best) => rejected(best.to_owned(), GateVerdict::Echo),
         Ok(_) if is_cut => rejected(format!("… {best}"), GateVerdict::Covered),
+        Ok(_) if is_echo(best) => rejected(best.to_owned(), GateVerdict::Echo),
         hypotheses => hypotheses,
     }
 }

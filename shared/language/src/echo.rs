@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::sync::LazyLock;
 
-use words::{Tokens, contractions, normalise};
+use words::{Tokens, normalise};
 
 use crate::token_class::Class;
 use crate::vocabulary;
@@ -11,9 +11,9 @@ use crate::vocabulary;
 /// Fewest words of a sentence that counts.
 const WORDS_MIN: usize = 3;
 
-/// Returns whether what was heard is a line of the robot, or some of its sentences in a row, with at most one word
-/// more or less. A phrase without a verb ("The red one?") may well be repeated as an answer, and one word that denies
-/// or answers changes the meaning of all others: neither is an echo.
+/// Returns whether what was heard is a line of the robot, or some of its sentences in a row, with at most one article
+/// or filler more or less. Any other word may be the answer ("is it small or big big"), and a phrase without a verb
+/// ("The red one?") may well be repeated as one: neither is an echo.
 pub fn is_echo(heard: &str, line: &str) -> bool {
     let heard = spoken(heard);
     let sentences: Vec<_> =
@@ -33,18 +33,21 @@ fn is_repeated(said: &[String], heard: &[String]) -> bool {
     if said.len().min(heard.len()) < WORDS_MIN || !has_verb {
         return false;
     }
-    let turns = |word: &str| TURNING.contains(word);
     let same = said.iter().zip(heard).take_while(|(a, b)| a == b).count();
     match heard.len().checked_sub(said.len()) {
         Some(0) => same == said.len(),
-        Some(1) => !turns(&heard[same]) && said[same..] == heard[same + 1..],
+        Some(1) => is_small(&heard[same]) && said[same..] == heard[same + 1..],
         None => {
             said.len() == heard.len() + 1
-                && !turns(&said[same])
+                && is_small(&said[same])
                 && said[same + 1..] == heard[same..]
         }
         Some(_) => false,
     }
+}
+
+fn is_small(word: &str) -> bool {
+    SMALL.contains(word)
 }
 
 /// Words as a recogniser writes them.
@@ -57,13 +60,9 @@ fn spoken(text: &str) -> Vec<String> {
 static VERBS: LazyLock<HashSet<&str>> =
     LazyLock::new(|| of(&[Class::Be, Class::Auxiliary, Class::Question]).collect());
 
-/// Words that deny or answer.
-static TURNING: LazyLock<HashSet<&str>> = LazyLock::new(|| {
-    let denies = contractions().filter(|(_, expansion)| expansion.ends_with(" not"));
-    of(&[Class::Not, Class::Except, Class::No, Class::Yes])
-        .chain(denies.map(|(word, _)| word))
-        .collect()
-});
+/// Words that recognisers add and lose, and that change nothing.
+static SMALL: LazyLock<HashSet<&str>> =
+    LazyLock::new(|| of(&[Class::Determiner, Class::Filler]).collect());
 
 fn of(classes: &'static [Class]) -> impl Iterator<Item = &'static str> {
     vocabulary::phrases().filter(|(class, _)| classes.contains(class)).map(|(_, phrase)| phrase)
@@ -79,7 +78,7 @@ mod tests {
             ("is it white", "Is it white?"),
             ("is it the white one", "All right. Is it the white one?"),
             ("all right is it the white one", "All right. Is it the white one?"),
-            ("it the white one", "Is it the white one?"),
+            ("is it white one", "Is it the white one?"),
             ("is it the the white one", "Is it the white one?"),
             ("I will get the clear bowl", "I will get the clear bowl."),
             ("i'll get the clear bowl", "I'll get the clear bowl."),
@@ -100,6 +99,14 @@ mod tests {
             ("no is it the white one", "Is it the white one?"),
             ("it is not the white one", "It is the white one."),
             ("it isn't the white one", "It is the white one."),
+            ("it the white one", "Is it the white one?"),
+            ("is the white one", "Is it the white one?"),
+            ("is it small or big small", "Is it small or big?"),
+            ("what colour is it red", "What colour is it?"),
+            ("the bowl on the counter", "Is the bowl on the counter?"),
+            ("the color white", "Is the color white?"),
+            ("i will get the clear bowl cancel", "I will get the clear bowl."),
+            ("i will take the red mug", "I will take the mug."),
             ("yes", "Yes?"),
             ("white", "Is it white?"),
             ("", ""),
