@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use service::{Span, Time};
 
-/// How long a line can be heard back: the delays of loudspeaker, room, network and recogniser.
+/// How long after its end a line may sound again: another device repeats it, or a network delays the sound.
 const ECHO_WITHIN: Span = Span::from_ms(15_000);
 /// Greatest delay of the report that a line sounds.
 const REPORTED_WITHIN: Span = Span::from_ms(500);
@@ -34,7 +34,9 @@ impl RecentLines {
 
     /// The latest line sounds from now on.
     pub(crate) fn begin(&mut self, now: Time) {
-        self.0.iter_mut().last().into_iter().for_each(|line| line.began = line.began.or(Some(now)));
+        if let Some(line) = self.0.back_mut() {
+            line.began = line.began.or(Some(now));
+        }
     }
 
     /// Ends the latest line. One that has not sounded echoes nowhere.

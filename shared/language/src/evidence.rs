@@ -52,10 +52,7 @@ pub(crate) fn weighed(parsed: &ParsedUtterance<'_>, best: Reading) -> Vec<(f64, 
     for (weight, fate) in fates(&phrases).into_iter().filter(|(weight, _)| *weight > 0.0) {
         let reading = reading(parsed, &best, &phrases, &fate);
         // Doubts say how well words were heard: they tell no readings apart.
-        match readings
-            .iter_mut()
-            .find(|(_, known)| known.without_doubt() == reading.without_doubt())
-        {
+        match readings.iter_mut().find(|(_, known)| known.says_the_same(&reading)) {
             Some((known, _)) => *known += weight,
             None => readings.push((weight, reading)),
         }

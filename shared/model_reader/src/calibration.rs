@@ -47,7 +47,7 @@ pub fn calibrated(
 
 /// Adds a reading; one that is equal but for its doubts takes the weight.
 fn add(all: &mut Vec<(f64, Reading)>, weight: f64, reading: &Reading) {
-    match all.iter_mut().find(|(_, known)| known.without_doubt() == reading.without_doubt()) {
+    match all.iter_mut().find(|(_, known)| known.says_the_same(reading)) {
         Some((known, _)) => *known += weight,
         None => all.push((weight, reading.clone())),
     }

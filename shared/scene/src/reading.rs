@@ -121,10 +121,13 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// The same reading of words that were certainly said.
-    #[must_use]
-    pub fn without_doubt(&self) -> Self {
-        Self { doubt: Doubt::default(), ..self.clone() }
+    /// Returns whether both mean the same, however well each was heard.
+    pub fn says_the_same(&self, other: &Self) -> bool {
+        let Self { base, response, excluded, intent, refers, further, doubt: _ } = self;
+        let is_answer_the_same =
+            (response, intent, refers) == (&other.response, &other.intent, &other.refers);
+        is_answer_the_same
+            && (base, excluded, further) == (&other.base, &other.excluded, &other.further)
     }
 }
 

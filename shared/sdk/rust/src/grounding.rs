@@ -127,10 +127,7 @@ fn together(
     for (heard, readings) in read {
         for (share, reading) in readings {
             let share = share * heard;
-            match together
-                .iter_mut()
-                .find(|(_, known)| known.without_doubt() == reading.without_doubt())
-            {
+            match together.iter_mut().find(|(_, known)| known.says_the_same(&reading)) {
                 Some((weight, known)) => {
                     let part = share / (*weight + share);
                     known.doubt = blend(&known.doubt, &reading.doubt, part);
