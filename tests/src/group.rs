@@ -175,12 +175,15 @@ impl Group {
 
     /// As [`Group::fetch`], calling `then` once the arm has been ordered to pick.
     pub fn fetch_while(&self, request: &str, object: &str, then: impl FnOnce()) -> Value {
-        self.say(request);
         std::thread::scope(|scope| {
-            let user = scope.spawn(|| self.await_pick(Some(object)));
-            self.wait_for_decision("pick");
+            let mut user = None;
+            let begin = || {
+                self.say(request);
+                user = Some(scope.spawn(|| self.await_pick(Some(object))));
+            };
+            self.follow_from("the decision to pick", 20.0, begin, decision("pick"));
             then();
-            user.join().expect("the user gets an outcome")
+            user.expect("it has begun").join().expect("the user gets an outcome")
         })
     }
 
@@ -200,6 +203,18 @@ impl Group {
     /// # Panics
     /// As [`wait_for`].
     pub fn follow<T>(&self, what: &str, seconds: f64, fact: impl Fn(&mut Value) -> Option<T>) -> T {
+        self.follow_from(what, seconds, || {}, fact)
+    }
+
+    /// As [`Group::follow`], from before `begin` is called: it misses nothing that this causes, however soon it is
+    /// over.
+    fn follow_from<T>(
+        &self,
+        what: &str,
+        seconds: f64,
+        begin: impl FnOnce(),
+        fact: impl Fn(&mut Value) -> Option<T>,
+    ) -> T {
         let mut watch = self.command(&["watch", "--json"]);
         let watch = watch.stdin(Stdio::null()).stdout(Stdio::piped()).spawn();
         let mut watch = watch.unwrap_or_else(|e| panic!("whichone watch: {e}"));
@@ -209,8 +224,11 @@ impl Group {
             let states = lines.map_while(Result::ok).map(|line| serde_json::from_str(&line));
             states.map_while(Result::ok).try_for_each(|state| sender.send(state)).is_ok()
         });
-        let found =
-            wait_for_or_none(seconds, || states.try_iter().find_map(|mut it| fact(&mut it)));
+        let mut first = wait_for_or_none(seconds, || states.try_recv().ok());
+        begin();
+        let found = wait_for_or_none(seconds, || {
+            first.take().into_iter().chain(states.try_iter()).find_map(|mut it| fact(&mut it))
+        });
         watch.kill().expect("a child of ours");
         watch.wait().expect("a child of ours");
         drop(states);
@@ -220,9 +238,7 @@ impl Group {
 
     /// Waits until the standing decision is `kind` (`ask`, `pick`, …) and returns the dialogue.
     pub fn wait_for_decision(&self, kind: &str) -> Value {
-        self.follow(&format!("the decision to {kind}"), 20.0, |state| {
-            Some(state["dialogue"].take()).filter(|dialogue| dialogue["decision"] == kind)
-        })
+        self.follow(&format!("the decision to {kind}"), 20.0, decision(kind))
     }
 
     /// The operator's status.
@@ -339,6 +355,11 @@ impl Group {
         };
         let _ = end(Signal::TERM).or_else(|| end(Signal::KILL));
     }
+}
+
+/// The dialogue, where the standing decision is of that kind.
+fn decision(kind: &str) -> impl Fn(&mut Value) -> Option<Value> {
+    move |state| Some(state["dialogue"].take()).filter(|dialogue| dialogue["decision"] == kind)
 }
 
 /// What the names of a process's groups begin with.

@@ -200,7 +200,7 @@ fn service_without_a_place_for_its_log_is_started_nevertheless() {
     std::fs::create_dir(&log).unwrap();
     group.run();
     group.until_ready("arm", 1);
-    wait_for("the warning", || group.log().contains("it runs without a log").then_some(()));
+    group.wait_for_log("it runs without a log");
 }
 
 #[test]
@@ -213,7 +213,7 @@ fn suspension_of_the_machine_counts_against_no_service() {
     send(supervisor, Signal::STOP);
     std::thread::sleep(Duration::from_secs(3));
     send(supervisor, Signal::CONT);
-    wait_for("the pause to be noticed", || group.log().contains("time stood still").then_some(()));
+    group.wait_for_log("time stood still");
     send(arm, Signal::CONT);
     let status = group.status();
     assert_eq!(status.state, GroupState::Ready);
@@ -230,5 +230,5 @@ fn files_removed_by_hand_restart_the_group_once() {
     for name in ["arm", "policy"] {
         group.until_ready(name, 2);
     }
-    assert!(group.log().contains("files of the running group are gone"));
+    group.wait_for_log("files of the running group are gone");
 }

@@ -141,6 +141,11 @@ impl Group {
     }
 
     /// The supervisor's own log.
+    /// Waits until the supervisor has logged a text: it does so a moment after what others see.
+    pub(crate) fn wait_for_log(&self, text: &str) {
+        wait_for(text, || self.log().contains(text).then_some(()));
+    }
+
     pub(crate) fn log(&self) -> String {
         fs::read_to_string(self.home.path().join("supervisor.log")).unwrap_or_default()
     }

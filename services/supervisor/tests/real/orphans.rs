@@ -41,7 +41,7 @@ fn new_supervisor_waits_for_services_of_the_previous_run() {
     kill_supervisor(&mut group);
     group.run();
     assert!(!is_alive(arm));
-    assert!(group.log().contains("waiting for services of a previous run"));
+    group.wait_for_log("waiting for services of a previous run");
     group.done(&Request::WaitReady { wait_ms: WAIT_MS });
     assert_eq!(group.events(), ["arm 1 ready", "arm 1 orphaned", "arm 1 ready"]);
 }
@@ -58,6 +58,6 @@ fn orphaned_service_is_killed_by_the_next_supervisor() {
     group.describe(&json!({ "services": [with(service("arm", &[]), "stop_ms", json!(500))] }));
     group.run();
     assert!(!is_alive(arm));
-    assert!(group.log().contains("killing services of a previous run"));
+    group.wait_for_log("killing services of a previous run");
     group.done(&Request::WaitReady { wait_ms: WAIT_MS });
 }

@@ -85,11 +85,11 @@ fn invalid_configuration_ends_the_supervisor_before_any_start() {
     group.wait_end();
     group.describe(&json!({ "servces": [] }));
     assert_eq!(group.command().status().unwrap().code(), Some(78));
-    assert!(group.log().contains("servces"));
+    group.wait_for_log("servces");
     let lonely = with(service("arm", &[]), "after", json!(["leg"]));
     group.describe(&json!({ "services": [lonely] }));
     assert_eq!(group.command().status().unwrap().code(), Some(78));
-    assert!(group.log().contains("arm comes after leg"));
+    group.wait_for_log("arm comes after leg");
     group.check_nothing_left();
 }
 
@@ -101,7 +101,7 @@ fn without_room_in_shared_memory_nothing_starts_and_nothing_is_left() {
     let services = [service("arm", &[])];
     group.describe(&json!({ "services": services, "shared_memory_free_min_mib": 1u64 << 40 }));
     assert_eq!(group.command().status().unwrap().code(), Some(1));
-    assert!(group.log().contains("MiB are needed"));
+    group.wait_for_log("MiB are needed");
     group.check_nothing_left();
 }
 
