@@ -222,7 +222,7 @@ impl<'a> Person<'a> {
 
     fn reply(&mut self, asked: Option<&Line>, seen: &Seen) -> (String, Vec<Clause>) {
         let question = asked.map_or(Question::None, |line| line.question);
-        let about = attribute(question).map(|k| &self.scene.attributes()[usize::from(k.0)].name);
+        let about = question.attribute().map(|k| &self.scene.attributes()[usize::from(k.0)].name);
         if asked.is_some() {
             for (rule, used) in self.case.rules.iter().zip(&mut self.used) {
                 let fits = rule.about.is_none() || rule.about.as_ref() == about;
@@ -255,15 +255,11 @@ impl<'a> Person<'a> {
                 Some(v) => spoken(self.scene, k, v).to_owned(),
                 None => "I don't know".to_owned(),
             },
+            Question::Choice(k, options) => match self.scene.object(wanted).values[k.index()] {
+                Some(v) if options.contains(v) => spoken(self.scene, k, v).to_owned(),
+                _ => "none of them".to_owned(),
+            },
         }
-    }
-}
-
-/// The attribute that a question is about.
-pub(crate) fn attribute(question: Question) -> Option<AttributeId> {
-    match question {
-        Question::Attribute(k, _) | Question::Which(k) => Some(k),
-        Question::None | Question::Point(_) => None,
     }
 }
 

@@ -8,7 +8,7 @@ use service::{Span, Time};
 
 use crate::case::{Case, Check};
 use crate::group::{Line, Seen};
-use crate::person::{Person, Said, attribute};
+use crate::person::{Person, Said};
 
 /// Longest time from an utterance to the robot's first sound.
 const REPLY: Span = Span::from_ms(1_000);
@@ -163,7 +163,7 @@ impl Reply<'_> {
 
     /// Returns whether the robot asks about this attribute.
     fn is_about(&self, line: &Line, attribute_name: &str) -> bool {
-        let about = attribute(line.question);
+        let about = line.question.attribute();
         line.asks() && about.is_some() && about == self.scene.attribute_named(attribute_name)
     }
 

@@ -75,6 +75,9 @@ struct Candidate {
     value: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     object: Option<usize>,
+    /// Numbers of the values of a choice.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    values: Vec<usize>,
     /// Cost in the unit of the picks' values.
     cost: f64,
     /// For each answer, silence the last, its probability given each object.
@@ -119,6 +122,7 @@ impl Candidate {
         let (kind, attribute, value, object) = match question {
             Question::Attribute(k, v) => ("attribute", Some(k.index()), Some(v.index()), None),
             Question::Which(k) => ("which", Some(k.index()), None, None),
+            Question::Choice(k, _) => ("choice", Some(k.index()), None, None),
             Question::Point(i) => ("point", None, None, Some(i.index())),
             Question::None => ("none", None, None, None),
         };
@@ -128,7 +132,12 @@ impl Candidate {
         };
         let answers =
             Answer::possible(problem.model, question).into_iter().map(likelihood).collect();
-        Self { kind, attribute, value, object, cost: problem.cost(Action::Ask(question)), answers }
+        let values = match question {
+            Question::Choice(_, options) => options.values().iter().map(|v| v.index()).collect(),
+            _ => Vec::new(),
+        };
+        let cost = problem.cost(Action::Ask(question));
+        Self { kind, attribute, value, object, values, cost, answers }
     }
 }
 

@@ -7,7 +7,7 @@ use vocabulary::gesture::{Direction, Gestures};
 use vocabulary::reaction::Reaction;
 use vocabulary::{
     Actions, Announce, Attribution, Costs, Fault, Language, Mode, PLANNERS, Params, Prior,
-    PriorObjects, TurnTaking,
+    PriorObjects, Reliability, TurnTaking,
 };
 
 /// The dialogue.
@@ -68,13 +68,18 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
     Dialogue {
         language: f
             .choice("language", &[("careful", Language::Careful), ("paper", Language::Paper)]),
-        params: params(f),
+        params: Params {
+            open: Some(f.table("open", reliability)),
+            choice: Some(f.table("choice", reliability)),
+            ..params(f)
+        },
         alpha_typed: f.number("alpha_typed", 1e-6..=100.0),
         planner,
         actions: Actions {
             mode: f.choice("mode", &[("remote", Mode::Remote), ("present", Mode::Present)]),
             attribute: f.flag("attribute_questions"),
             which: f.flag("open_questions"),
+            choice: f.flag("choice_questions"),
         },
         costs,
         costs_from,
@@ -90,6 +95,8 @@ fn params(f: &mut Fields<'_>) -> Params {
         p_l: f.any_number("p_l"),
         epsilon: f.any_number("epsilon"),
         alpha: f.any_number("alpha"),
+        open: None,
+        choice: None,
     };
     report(params.check(), f);
     f.note("p_l", || json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 1 }));
@@ -98,18 +105,29 @@ fn params(f: &mut Fields<'_>) -> Params {
     params
 }
 
+fn reliability(f: &mut Fields<'_>) -> Reliability {
+    let reliability = Reliability { p_l: f.any_number("p_l"), epsilon: f.any_number("epsilon") };
+    report(reliability.check(), f);
+    f.note("p_l", || json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 1 }));
+    f.note("epsilon", || json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 0.5 }));
+    reliability
+}
+
 fn costs(f: &mut Fields<'_>) -> (Costs, CostsFrom) {
     let costs = Costs {
         wait_s: f.any_number("wait_s"),
         attribute_s: f.any_number("attribute_s"),
         which_s: f.any_number("which_s"),
+        choice_s: f.any_number("choice_s"),
+        option_s: f.any_number("option_s"),
         point_s: f.any_number("point_s"),
         correct: f.any_number("correct"),
         wrong: f.any_number("wrong"),
         discount: f.any_number("discount"),
     };
     report(costs.check(), f);
-    for amount in ["wait_s", "attribute_s", "which_s", "point_s", "correct", "wrong"] {
+    let asked = ["wait_s", "attribute_s", "which_s", "choice_s", "option_s", "point_s"];
+    for amount in asked.into_iter().chain(["correct", "wrong"]) {
         f.note(amount, || json!({ "exclusiveMinimum": 0 }));
     }
     f.note("discount", || json!({ "exclusiveMinimum": 0, "exclusiveMaximum": 1 }));

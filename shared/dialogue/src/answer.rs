@@ -7,7 +7,7 @@
 
 use scene::{AttributeId, ObjectId, Question, Reading, Response, Scene, ValueId};
 
-use crate::{Model, OpenQuestion};
+use crate::{Model, Naming};
 
 /// An answer to a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,9 +16,9 @@ pub enum Answer {
     Silence,
     /// Yes, to a yes/no question.
     Yes,
-    /// No, to a yes/no question.
+    /// No, to a yes/no question; none of the options, to a choice.
     No,
-    /// The value of the attribute, to an open question.
+    /// The value of the attribute, to an open question or a choice.
     Value(AttributeId, ValueId),
 }
 
@@ -33,6 +33,11 @@ impl Answer {
             Question::Which(k) => {
                 let values = (0..model.values(k)).map(|v| Self::Value(k, ValueId::from(v)));
                 values.chain([Self::Silence]).collect()
+            }
+            Question::Choice(k, options) => {
+                let values = options.values().iter().map(|v| Self::Value(k, *v));
+                let is_neither = Naming::of(model, question).is_some_and(|law| law.neither);
+                values.chain(is_neither.then_some(Self::No)).chain([Self::Silence]).collect()
             }
         }
     }
@@ -49,12 +54,16 @@ impl Answer {
             Question::Which(k) => {
                 model.value(wanted, k).map_or(Self::Silence, |v| Self::Value(k, v))
             }
+            Question::Choice(k, options) => {
+                let named = model.value(wanted, k).filter(|v| options.contains(*v));
+                named.map_or(Self::No, |v| Self::Value(k, v))
+            }
         }
     }
 
     /// `P(answer | D = wanted, question)`; 0 for an answer that the question cannot get.
     pub fn probability(self, model: &Model, question: Question, wanted: ObjectId) -> f64 {
-        let params = model.params();
+        let params = model.params().of(question);
         match (self, question) {
             (Self::Silence, Question::None) => 1.0,
             (Self::Silence, _) => 1.0 - params.p_l,
@@ -71,10 +80,12 @@ impl Answer {
                 let right = self == Self::truthful(model, question, wanted);
                 params.p_l * if right { 1.0 - params.epsilon } else { params.epsilon }
             }
-            (Self::Value(k, v), Question::Which(asked)) if k == asked => {
-                let entry = model.column(k)[wanted.index()];
-                params.p_l * OpenQuestion::new(model, k).answer(model, (k, v), entry)
+            (Self::Value(k, v), Question::Which(asked) | Question::Choice(asked, _))
+                if k == asked =>
+            {
+                params.p_l * named(model, question, Some(v), wanted)
             }
+            (Self::No, Question::Choice(..)) => params.p_l * named(model, question, None, wanted),
             _ => 0.0,
         }
     }
@@ -100,25 +111,40 @@ impl Answer {
     }
 }
 
+/// Probability of naming that value, or none of the options, given an answer.
+fn named(model: &Model, question: Question, named: Option<ValueId>, wanted: ObjectId) -> f64 {
+    let Some((k, law)) = question.attribute().zip(Naming::of(model, question)) else { return 0.0 };
+    let is_possible = match (question, named) {
+        (Question::Choice(_, options), Some(v)) => options.contains(v),
+        (_, Some(_)) => true,
+        (_, None) => law.neither,
+    };
+    let entry = model.column(k)[wanted.index()];
+    if is_possible { law.answer(model, named, entry) } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
-    use vocabulary::{Actions, Mode, Params, Rng};
+    use vocabulary::{Actions, Mode, Params, Reliability, Rng};
 
     use super::*;
     use crate::Belief;
-    use crate::testing::{bowls, everyone, random_scene};
+    use crate::testing::{bowls, everyone, perceived, random_scene};
 
     fn models() -> Vec<Model> {
         let mut rng = Rng::new(51);
         let scenes = [bowls(), random_scene(&mut rng, 12, &[4, 1, 2], 3)];
-        let model = |scene| Model::new(scene, Params::default());
-        scenes.iter().flat_map(|scene| [model(scene), model(scene).with_absent()]).collect()
+        let choice = Some(Reliability { p_l: 0.8, epsilon: 0.1 });
+        let model = |scene| Model::new(scene, Params { choice, ..Params::default() });
+        let perceived = perceived(&mut rng, &scenes[1]);
+        let scenes = scenes.iter().chain([&perceived]);
+        scenes.flat_map(|scene| [model(scene), model(scene).with_absent()]).collect()
     }
 
     #[test]
     fn answers_are_a_distribution() {
         for model in models() {
-            let actions = Actions { mode: Mode::Present, ..Actions::default() };
+            let actions = Actions { mode: Mode::Present, choice: true, ..Actions::default() };
             for question in model.questions(actions) {
                 for wanted in everyone(model.hypotheses()) {
                     let answers = Answer::possible(&model, question);
@@ -134,7 +160,7 @@ mod tests {
     #[test]
     fn answers_move_the_belief_by_their_probability() {
         for model in models() {
-            let actions = Actions { mode: Mode::Present, ..Actions::default() };
+            let actions = Actions { mode: Mode::Present, choice: true, ..Actions::default() };
             for question in model.questions(actions) {
                 for answer in Answer::possible(&model, question) {
                     let weights: Vec<f64> = everyone(model.hypotheses())
@@ -156,7 +182,7 @@ mod tests {
     fn a_truthful_answer_is_the_most_probable_one() {
         let scene = bowls();
         let model = Model::new(&scene, Params::default());
-        let actions = Actions { mode: Mode::Present, ..Actions::default() };
+        let actions = Actions { mode: Mode::Present, choice: true, ..Actions::default() };
         for question in model.questions(actions) {
             for wanted in everyone(6) {
                 let truth = Answer::truthful(&model, question, wanted);

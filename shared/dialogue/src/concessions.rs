@@ -92,9 +92,9 @@ mod tests {
     use crate::{DecisionProblem, ModelUser, Step, evaluate, registry};
 
     const ALL: [Actions; 3] = [
-        Actions { mode: Mode::Remote, attribute: true, which: false },
-        Actions { mode: Mode::Remote, attribute: true, which: true },
-        Actions { mode: Mode::Present, attribute: true, which: true },
+        Actions { mode: Mode::Remote, attribute: true, which: false, choice: false },
+        Actions { mode: Mode::Remote, attribute: true, which: true, choice: false },
+        Actions { mode: Mode::Present, attribute: true, which: true, choice: false },
     ];
 
     /// The scene without an attribute and its doubles, with how many objects each one stands for.

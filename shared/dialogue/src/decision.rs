@@ -1,6 +1,6 @@
 //! Decisions of the planners, and the questions that they choose from.
 
-use scene::{AttributeId, Question, ValueId};
+use scene::{AttributeId, Options, Question, ValueId};
 use serde::{Deserialize, Serialize};
 use vocabulary::{Action, Actions};
 
@@ -31,8 +31,9 @@ impl Decision {
 }
 
 impl Model {
-    /// Every question of the action space, useful or not: attribute by attribute the open question
-    /// and the yes/no questions, then the objects to point at.
+    /// Every question of the action space, useful or not: attribute by attribute the open question, the
+    /// yes/no questions and the choices, then the objects to point at. Of an attribute with many values
+    /// the choices are those among the values that most objects have.
     pub fn questions(&self, actions: Actions) -> Vec<Question> {
         let mut questions = Vec::new();
         for k in (0..self.attributes()).map(AttributeId::from) {
@@ -43,12 +44,33 @@ impl Model {
                 let values = (0..self.values(k)).map(ValueId::from);
                 questions.extend(values.map(|v| Question::Attribute(k, v)));
             }
+            if actions.choice {
+                let mut count = vec![0; self.values(k)];
+                for entry in self.column(k) {
+                    count.get_mut(usize::from(*entry)).into_iter().for_each(|count| *count += 1);
+                }
+                let mut values: Vec<ValueId> = (0..count.len()).map(ValueId::from).collect();
+                values.sort_by_key(|v| std::cmp::Reverse(count[v.index()]));
+                questions.extend(choices(&values).map(|options| Question::Choice(k, options)));
+            }
         }
         if actions.point() {
             questions.extend((0..self.objects()).map(|i| Question::Point(i.into())));
         }
         questions
     }
+}
+
+/// The choices among the first values, the largest first.
+pub(crate) fn choices(values: &[ValueId]) -> impl Iterator<Item = Options> {
+    let values = values[..values.len().min(Options::MAX)].to_vec();
+    let mut subsets: Vec<u32> = (0..1 << values.len()).collect();
+    subsets.sort_by_key(|subset| std::cmp::Reverse(subset.count_ones()));
+    subsets.into_iter().filter_map(move |subset| {
+        let is_in = |at: &usize| subset & (1 << at) != 0;
+        let chosen: Vec<ValueId> = (0..values.len()).filter(is_in).map(|at| values[at]).collect();
+        Options::new(&chosen)
+    })
 }
 
 #[cfg(test)]
@@ -62,7 +84,7 @@ mod tests {
     fn the_action_space_of_the_bowls() {
         let model = Model::new(&bowls(), Params::default());
         let count = |mode, attribute, which| {
-            let actions = Actions { mode, attribute, which };
+            let actions = Actions { mode, attribute, which, choice: false };
             let questions = model.questions(actions);
             assert!(questions.iter().all(|q| actions.allow(Action::Ask(*q)) && model.contains(*q)));
             questions.len()
@@ -72,5 +94,10 @@ mod tests {
         assert_eq!(count(Mode::Present, true, false), 11 + 6);
         assert_eq!(count(Mode::Present, false, false), 6);
         assert_eq!(count(Mode::Remote, false, false), 0);
+        let actions = Actions { choice: true, ..Actions::default() };
+        let asked = model.questions(actions).into_iter();
+        let asked = asked.filter(|question| matches!(question, Question::Choice(..)));
+        // Two attributes of three values, two of two, and one of a single value.
+        assert_eq!(asked.count(), 4 + 4 + 1 + 1);
     }
 }

@@ -189,7 +189,8 @@ mod tests {
     use crate::testing::{bowls, markers};
     use crate::{Lookahead, Model, registry};
 
-    const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
+    const YES_NO: Actions =
+        Actions { mode: Mode::Remote, attribute: true, which: false, choice: false };
 
     fn problem(model: &Model) -> DecisionProblem<'_> {
         DecisionProblem::new(model, Costs::SECONDS, YES_NO)

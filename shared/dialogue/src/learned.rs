@@ -6,7 +6,8 @@
 
 use scene::{AttributeId, Question, Reading, Response, ValueId, WordId};
 
-use crate::{CERTAIN_DOUBT, Model, OpenQuestion};
+use crate::observation::named_answer;
+use crate::{CERTAIN_DOUBT, Model, Naming};
 
 impl Model {
     /// Whether any value of an object is in doubt.
@@ -39,13 +40,15 @@ impl Model {
         let about = |word: &WordId| self.meanings(*word).iter().any(|(of, _)| *of == k);
         let named: Vec<usize> =
             (0..reading.base.len()).filter(|at| about(&reading.base[*at])).collect();
-        let answers = question == Question::Which(k) && named.len() == 1;
+        let is_asked = question.attribute() == Some(k);
+        let law = Naming::of(self, question).filter(|_| is_asked);
+        let answers = law
+            .filter(|_| named.len() == 1 && named_answer(self, question, &reading.base).is_some());
         let mut likelihood = 1.0;
         for at in named {
             let (is_it, doubt) = (reading.base[at] == own, reading.doubt.of_word(at));
-            let (is, not) = if answers {
-                let open = OpenQuestion::new(self, k);
-                (open.own, open.other)
+            let (is, not) = if let Some(law) = answers {
+                (law.own, law.other)
             } else {
                 let alpha = self.smoothing(doubt <= CERTAIN_DOUBT);
                 (1.0, alpha / (1.0 + alpha))
@@ -65,6 +68,13 @@ impl Model {
             let wrong = epsilon(reading.doubt.response);
             let is_right = (reading.response == Response::Yes) == (value == v);
             likelihood *= if is_right { 1.0 - wrong } else { wrong };
+        }
+        if let (Question::Choice(_, options), Some(law), None, Response::No) =
+            (question, law, answers, reading.response)
+        {
+            let right = if options.contains(v) { law.other } else { law.own };
+            let doubt = reading.doubt.response;
+            likelihood *= (1.0 - doubt) * right + doubt / law.answers as f64;
         }
         for (at, group) in reading.excluded.iter().enumerate() {
             if let [word] = group.as_slice()

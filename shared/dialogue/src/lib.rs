@@ -23,7 +23,7 @@
 //!     }),
 //! )?;
 //! let model = Model::new(&scene, Params::default());
-//! let actions = Actions { mode: Mode::Remote, attribute: true, which: false };
+//! let actions = Actions { mode: Mode::Remote, attribute: true, which: false, choice: false };
 //! let problem = DecisionProblem::new(&model, Costs::default(), actions);
 //! let mut planner = registry::planner("lookahead")?;
 //!
@@ -75,7 +75,7 @@ pub use decision::Decision;
 pub use evaluate::{Evaluation, evaluate};
 pub use model::Model;
 pub use model_user::ModelUser;
-pub use observation::{CERTAIN_DOUBT, OpenQuestion, log_likelihood};
+pub use observation::{CERTAIN_DOUBT, Naming, log_likelihood};
 pub use planner::{DecisionProblem, Planner, Step};
 pub use planners::{Lookahead, Optimal};
 pub use policy_table::PolicyTable;

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use scene::{AttributeId, ObjectId, Question, Scene, ValueId, WordId};
+use scene::{AttributeId, ObjectId, Options, Question, Scene, ValueId, WordId};
 
 use crate::Confusion;
 use tables::{Column, Smoothing, Tables, Vocabulary, Word};
-use vocabulary::Params;
+use vocabulary::{Params, Reliability};
 
 mod tables;
 
@@ -245,6 +245,18 @@ impl Model {
         self.meanings(word).iter().any(|&(k, v)| self.has(i, k, v))
     }
 
+    /// Whether every hypothesis certainly has one of these values.
+    pub(crate) fn all_have(&self, k: AttributeId, options: Options) -> bool {
+        self.column(k).iter().all(|entry| match self.chances(k, *entry) {
+            Some(chances) => {
+                let is_possible = |v: &usize| chances[*v] > 0.0;
+                let mut possible = (0..chances.len()).filter(is_possible);
+                possible.all(|v| options.contains(ValueId::from(v)))
+            }
+            None => options.contains(ValueId(*entry)),
+        })
+    }
+
     /// Whether the question is about an object, attribute and value of this scene.
     pub fn contains(&self, question: Question) -> bool {
         match question {
@@ -254,13 +266,22 @@ impl Model {
             Question::Attribute(k, v) => {
                 k.index() < self.tables.columns.len() && v.index() < self.values(k)
             }
+            Question::Choice(k, options) => {
+                let is_value = |v: &ValueId| v.index() < self.values(k);
+                k.index() < self.tables.columns.len() && options.values().iter().all(is_value)
+            }
         }
     }
 
     /// Tells everything that answers depend on, as numbers.
     pub(crate) fn identify(&self, tell: &mut dyn FnMut(u64)) {
-        let Params { p_l, epsilon, alpha } = self.params;
+        let Params { p_l, epsilon, alpha, open, choice } = self.params;
         [p_l, epsilon, alpha].into_iter().for_each(|parameter| tell(parameter.to_bits()));
+        for (kind, own) in (1..).zip([open, choice]) {
+            if let Some(Reliability { p_l, epsilon }) = own {
+                [kind, p_l.to_bits(), epsilon.to_bits()].into_iter().for_each(&mut *tell);
+            }
+        }
         tell(self.hypotheses() as u64);
         for column in &self.tables.columns {
             tell(column.words.len() as u64);

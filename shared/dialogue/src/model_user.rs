@@ -58,7 +58,8 @@ mod tests {
     #[test]
     fn people_answer_with_the_models_probabilities() {
         let scene = bowls();
-        let model = Model::new(&scene, Params { p_l: 0.8, epsilon: 0.2, alpha: 0.2 });
+        let model =
+            Model::new(&scene, Params { p_l: 0.8, epsilon: 0.2, alpha: 0.2, ..Params::default() });
         let wanted = scene.object_named("metal2").unwrap();
         let mut user = ModelUser::new(wanted, 61);
         let actions = Actions { mode: Mode::Present, ..Actions::default() };

@@ -6,8 +6,9 @@
 //! | base words | `p_l · Π P(w∣D)`, one factor per word as often as it was said | eq. (4), (5) |
 //! | yes or no, question `point` or `attr` | `p_l(1−ε)` if true of `D`, `p_l·ε` if not; neither: `1−p_l` | eq. (6), (7) |
 //! | yes or no, nothing asked | `1/3` each | section 3.6.2 |
-//! | a value, question `which k` | [`OpenQuestion`] in place of that word's factor | section 7's future work |
-//! | yes or no, question `which k` | `1/3` each: no answer to it | extension |
+//! | a value, question `which k` | [`Naming`] in place of that word's factor | section 7's future work |
+//! | an option, or no, question `choice k S` | the same, "no" being "none of these" | extension |
+//! | yes or no, question `which k`; yes, question `choice k S` | `1/3` each: no answer to it | extension |
 //! | excluded group | `ε` for an object that has all of its words, `1−ε` for others | extension |
 //! | word doubted by `d` | `(1−d) P(w∣D) + d Σ_u κ(u∣w) P(u∣D)`, `κ` of [`Confusion`](crate::Confusion) | extension |
 //! | answer or group doubted by `d` | `ε + d (1/2 − ε)` in place of `ε` | extension |
@@ -19,8 +20,8 @@
 //! A doubt is the probability that something else was said ([`scene::Doubt`]): what a recogniser
 //! misheard, what a person was not sure of.
 
-use scene::{AttributeId, ObjectId, Question, Reading, Response, ValueId, WordId};
-use vocabulary::Params;
+use scene::{AttributeId, ObjectId, Options, Question, Reading, Response, ValueId, WordId};
+use vocabulary::Reliability;
 
 use crate::Model;
 
@@ -102,81 +103,116 @@ fn add_words(model: &Model, question: Question, reading: &Reading, log: &mut [f6
     })
 }
 
-/// How a person answers "what is its k?": the value that the object has with `1 − ε`, each other
-/// value of `V_k` with `ε/(|V_k| − 1)`; silence is `1 − p_l` as for every question.
+/// How a person answers a question by naming a value: "what is its k?", or "v, w or x?".
 ///
-/// An object that lacks the attribute, or is not here, has no known true answer; a user who
-/// wants it is taken to name any value with the same probability. With one value there is nothing
+/// The true answer is given with `1 − ε`, each other one with `ε/(m − 1)`, where `m` is the number of
+/// answers: the values of `V_k`, or the options, and "none of these" unless every hypothesis has one of
+/// them. Silence is `1 − p_l` as for every question.
+///
+/// An object that is not here, or that lacks the attribute of an open question, has no known true answer; a
+/// user who wants it is taken to give any answer with the same probability. With one value there is nothing
 /// to confuse it with, so `ε` plays no part.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OpenQuestion {
-    /// Probability of naming the object's own value, given an answer.
+pub struct Naming {
+    attribute: AttributeId,
+    options: Option<Options>,
+    /// How many answers there are.
+    pub answers: usize,
+    /// Whether "none of these" is one of them.
+    pub neither: bool,
+    /// Probability of the true answer, given an answer.
     pub own: f64,
-    /// Probability of naming one particular other value, given an answer.
+    /// Probability of one particular other answer, given an answer.
     pub other: f64,
-    /// Probability of naming any one value of an attribute that the object lacks.
+    /// Probability of any one answer about an object whose true answer is not known.
     pub lacking: f64,
 }
 
-impl OpenQuestion {
-    /// The answer model of "what is its k?".
-    pub fn new(model: &Model, k: AttributeId) -> Self {
-        let values = model.values(k) as f64;
-        let epsilon = model.params().epsilon;
-        if values < 2.0 {
-            return Self { own: 1.0, other: 0.0, lacking: 1.0 };
+impl Naming {
+    /// The answer model of an open or a choice question; none of other questions.
+    pub fn of(model: &Model, question: Question) -> Option<Self> {
+        let (attribute, options) = match question {
+            Question::Which(k) => (k, None),
+            Question::Choice(k, options) => (k, Some(options)),
+            Question::None | Question::Point(_) | Question::Attribute(..) => return None,
+        };
+        let neither = options.is_some_and(|options| !model.all_have(attribute, options));
+        let values = options.map_or(model.values(attribute), |options| options.values().len());
+        let answers = values + usize::from(neither);
+        let law = Self { attribute, options, answers, neither, own: 1.0, other: 0.0, lacking: 1.0 };
+        if answers < 2 {
+            return Some(law);
         }
-        Self { own: 1.0 - epsilon, other: epsilon / (values - 1.0), lacking: 1.0 / values }
+        let (count, epsilon) = (answers as f64, model.params().of(question).epsilon);
+        let (own, other, lacking) = (1.0 - epsilon, epsilon / (count - 1.0), 1.0 / count);
+        Some(Self { own, other, lacking, ..law })
     }
 
-    /// The same where another value may have been named with probability `doubt`.
-    fn doubted(self, doubt: f64, values: usize) -> Self {
-        let any = 1.0 / values as f64;
+    /// The same where another answer may have been given with probability `doubt`.
+    fn doubted(self, doubt: f64) -> Self {
+        let any = 1.0 / self.answers as f64;
         let blend = |p: f64| if doubt > 0.0 { (1.0 - doubt) * p + doubt * any } else { p };
-        Self { own: blend(self.own), other: blend(self.other), lacking: self.lacking }
+        Self { own: blend(self.own), other: blend(self.other), ..self }
     }
 
-    /// Probability of naming value `v` of attribute `k`, given an answer, for a user who wants an object
-    /// with that entry in the model's column.
-    pub fn answer(&self, model: &Model, (k, v): (AttributeId, ValueId), entry: u16) -> f64 {
-        match (entry, model.chances(k, entry)) {
-            (Model::LACKS | Model::UNKNOWN, _) => self.lacking,
-            (_, Some(chances)) => self.mixture(chances[v.index()]),
-            (own, None) if own == v.0 => self.own,
-            _ => self.other,
-        }
+    /// Probability of naming that value, or none of the options, given an answer, for a user who wants an
+    /// object with that entry in the model's column.
+    pub fn answer(&self, model: &Model, named: Option<ValueId>, entry: u16) -> f64 {
+        let chances = model.chances(self.attribute, entry);
+        self.right(named, entry, chances).map_or(self.lacking, |chance| self.mixture(chance))
     }
 
-    /// The same where the value is `v` with that probability.
+    /// Probability that the answer is true of an entry of the column, or of a value with these
+    /// probabilities; none where that is not known.
+    fn right(&self, named: Option<ValueId>, entry: u16, chances: Option<&[f64]>) -> Option<f64> {
+        let chance = |v: ValueId| match chances {
+            Some(chances) => chances[v.index()],
+            None => f64::from(u8::from(entry == v.0)),
+        };
+        let is_unknown = entry == Model::UNKNOWN || entry == Model::LACKS && self.options.is_none();
+        let of_options = || {
+            let options = self.options.iter().flat_map(|options| options.values());
+            options.map(|v| chance(*v)).sum::<f64>()
+        };
+        (!is_unknown).then(|| named.map_or_else(|| (1.0 - of_options()).max(0.0), chance))
+    }
+
+    /// The same where the answer is true with that probability.
     fn mixture(&self, chance: f64) -> f64 {
         chance * self.own + (1.0 - chance) * self.other
     }
 }
 
-/// The value that answers an open question: what the words name, if they name exactly one.
-/// "On the counter or in the cabinet" is no answer, but its words still count.
-fn open_answer(
+/// The value that answers an open or a choice question: what the words name, if they name exactly one, and
+/// it is an option. "On the counter or in the cabinet" is no answer, but its words still count.
+pub(crate) fn named_answer(
     model: &Model,
     question: Question,
     base: &[WordId],
 ) -> Option<(AttributeId, ValueId)> {
-    let Question::Which(k) = question else { return None };
+    let (k, options) = match question {
+        Question::Which(k) => (k, None),
+        Question::Choice(k, options) => (k, Some(options)),
+        Question::None | Question::Point(_) | Question::Attribute(..) => return None,
+    };
     let mut named = base.iter().flat_map(|&word| model.meanings(word)).filter(|(of, _)| *of == k);
     let &answer = named.next()?;
-    named.all(|&again| again == answer).then_some(answer)
+    let is_option = options.is_none_or(|options| options.contains(answer.1));
+    (is_option && named.all(|&again| again == answer)).then_some(answer)
 }
 
-/// Eq. (4) and (5), with the answer to an open question in place of its word's own factor.
+/// Eq. (4) and (5), with the value that answers a question in place of its word's own factor.
 fn add_base(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
     if reading.base.is_empty() {
         return (1.0 - model.params().p_l).ln();
     }
     let mut constant = model.params().p_l.ln();
-    let answer = open_answer(model, question, &reading.base);
+    let answer = named_answer(model, question, &reading.base);
     let answering = answer.map(|(k, v)| model.word(k, v));
-    if let Some((k, v)) = answer {
+    if let (Some((_, v)), Some(law)) = (answer, Naming::of(model, question)) {
         let said = reading.base.iter().position(|word| Some(*word) == answering);
-        constant += add_open(model, k, v, reading.doubt.of_word(said.unwrap_or(0)), log);
+        let law = law.doubted(reading.doubt.of_word(said.unwrap_or(0)));
+        constant += add_named(model, law, Some(v), log);
     }
     for (at, &word) in reading.base.iter().enumerate() {
         if Some(word) != answering {
@@ -189,20 +225,42 @@ fn add_base(model: &Model, question: Question, reading: &Reading, log: &mut [f64
     constant
 }
 
-fn add_open(model: &Model, k: AttributeId, v: ValueId, doubt: f64, log: &mut [f64]) -> f64 {
-    let open = OpenQuestion::new(model, k).doubted(doubt, model.values(k));
+/// The factor of an answer that names a value, or none of the options.
+fn add_named(model: &Model, law: Naming, named: Option<ValueId>, log: &mut [f64]) -> f64 {
+    let k = law.attribute;
     let column = model.column(k);
     if !model.is_doubtful(k) && column.iter().all(|entry| *entry == column[0]) {
-        return open.answer(model, (k, v), column[0]).ln();
+        return law.answer(model, named, column[0]).ln();
     }
-    let constant = open.own.ln();
-    let others = [open.other, open.lacking].map(|p| p.ln() - constant);
-    let known = |value| match value {
-        Model::LACKS | Model::UNKNOWN => others[1],
-        own if own == v.0 => 0.0,
-        _ => others[0],
+    let constant = law.own.ln();
+    let of = |right: Option<f64>| match right {
+        Some(1.0) => 0.0,
+        right => right.map_or(law.lacking, |chance| law.mixture(chance)).ln() - constant,
     };
-    add_by_value(model, k, log, known, |chances| open.mixture(chances[v.index()]).ln() - constant);
+    let in_doubt = |chances: &[f64]| of(law.right(named, Model::DOUBTFUL, Some(chances)));
+    let [lacks, unknown] =
+        [Model::LACKS, Model::UNKNOWN].map(|entry| of(law.right(named, entry, None)));
+    let other = law.other.ln() - constant;
+    let without = |value| if value == Model::LACKS { lacks } else { unknown };
+    match (named, law.options) {
+        (Some(v), _) => {
+            let known = |value| match value {
+                Model::LACKS | Model::UNKNOWN => without(value),
+                own if own == v.0 => 0.0,
+                _ => other,
+            };
+            add_by_value(model, k, log, known, in_doubt);
+        }
+        (None, Some(options)) => {
+            let known = |value| match value {
+                Model::LACKS | Model::UNKNOWN => without(value),
+                value if options.contains(ValueId(value)) => other,
+                _ => 0.0,
+            };
+            add_by_value(model, k, log, known, in_doubt);
+        }
+        (None, None) => {}
+    }
     constant
 }
 
@@ -227,16 +285,19 @@ fn add_by_value(
 }
 
 /// An error rate of one half says nothing, and is what a doubt of 1 comes to.
-fn doubted(params: Params, doubt: f64) -> Params {
-    Params { epsilon: params.epsilon + doubt * (0.5 - params.epsilon), ..params }
+fn doubted(params: Reliability, doubt: f64) -> Reliability {
+    Reliability { epsilon: params.epsilon + doubt * (0.5 - params.epsilon), ..params }
 }
 
-/// Eq. (6) and (7).
+/// Eq. (6) and (7), and "none of these".
 fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
-    let params = doubted(model.params(), reading.doubt.response);
+    let params = doubted(model.params().of(question), reading.doubt.response);
     let response = reading.response;
     let yes = match (question, response) {
-        (Question::None | Question::Which(_), _) => return (1.0_f64 / 3.0).ln(),
+        (Question::Choice(..), Response::No) => return add_neither(model, question, reading, log),
+        (Question::None | Question::Which(_) | Question::Choice(..), _) => {
+            return (1.0_f64 / 3.0).ln();
+        }
         (_, Response::None | Response::CannotTell | Response::DoesNotMatter) => {
             return (1.0 - params.p_l).ln();
         }
@@ -270,7 +331,18 @@ fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut 
             log[asked.index()] = own + if_true;
             right
         }
-        Question::None | Question::Which(_) => 0.0,
+        Question::None | Question::Which(_) | Question::Choice(..) => 0.0,
+    }
+}
+
+/// "No" to a choice. What was named instead counts as an option, or by its own word.
+fn add_neither(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
+    let heard = model.params().of(question).p_l.ln();
+    match Naming::of(model, question) {
+        Some(law) if law.neither && named_answer(model, question, &reading.base).is_none() => {
+            heard + add_named(model, law.doubted(reading.doubt.response), None, log)
+        }
+        _ => heard,
     }
 }
 
@@ -279,7 +351,7 @@ fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut 
 fn add_excluded(model: &Model, group: &[WordId], doubt: f64, log: &mut [f64]) -> f64 {
     let chance =
         |i: usize| -> f64 { group.iter().map(|&word| model.word_chance(i.into(), word)).product() };
-    let epsilon = doubted(model.params(), doubt).epsilon;
+    let epsilon = doubted(model.params().of(Question::None), doubt).epsilon;
     let constant = (1.0 - epsilon).ln();
     let factor = epsilon.ln() - constant;
     if (0..log.len()).all(|i| chance(i) == 1.0) {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use vocabulary::{Action, Actions, Announce, Costs, Durations};
 
 use crate::user_model::Joint;
-use crate::{Belief, Concessions, Decision, Model, PolicyTable};
+use crate::{Belief, Concessions, Decision, Model, Naming, PolicyTable};
 
 /// The decision problem `(S, A, T, R, Ω, O)` of section 3, but for the belief.
 ///
@@ -48,10 +48,7 @@ impl DecisionProblem<'_> {
     /// Every question that may be asked, useful or not, in the order of [`Model::questions`].
     pub fn questions(&self) -> Vec<Question> {
         let mut questions = self.model.questions(self.actions);
-        questions.retain(|question| match question {
-            Question::Attribute(k, _) | Question::Which(k) => !self.concessions.bar(*k),
-            Question::Point(_) | Question::None => true,
-        });
+        questions.retain(|question| !question.attribute().is_some_and(|k| self.concessions.bar(k)));
         questions
     }
 
@@ -62,6 +59,10 @@ impl DecisionProblem<'_> {
             Action::Wait | Action::Ask(Question::None) => costs.wait_s,
             Action::Ask(Question::Attribute(..)) => costs.attribute_s,
             Action::Ask(Question::Which(_)) => costs.which_s,
+            Action::Ask(question @ Question::Choice(..)) => {
+                let answers = Naming::of(self.model, question).map_or(1, |law| law.answers);
+                costs.choice_s + costs.option_s * (answers as f64 - 1.0)
+            }
             Action::Ask(Question::Point(_)) => costs.point_s,
             Action::Pick(_) => 0.0,
         };

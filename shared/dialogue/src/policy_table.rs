@@ -84,8 +84,11 @@ impl DecisionProblem<'_> {
         for (a, b) in amounts {
             hash = hash.add(a.to_bits()).add(b.to_bits());
         }
-        let Actions { mode, attribute, which } = self.actions;
+        let Actions { mode, attribute, which, choice } = self.actions;
         hash = hash.add(mode as u64).add(u64::from(attribute)).add(u64::from(which));
+        if choice {
+            hash = hash.add(costs.choice_s.to_bits()).add(costs.option_s.to_bits());
+        }
         self.model.identify(&mut |part| hash = hash.add(part));
         if let Some(durations) = self.durations {
             durations.identify(&mut |part| hash = hash.add(part));

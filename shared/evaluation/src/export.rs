@@ -8,7 +8,7 @@
 
 mod name;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
 use dialogue::{Answer, DecisionProblem};
@@ -225,15 +225,13 @@ impl<'a> Writer<'a> {
 /// Returns every answer that a question can get, silence first, and last the denial of a pick (none),
 /// where there is one.
 fn answers(problem: &DecisionProblem<'_>, questions: &[Question]) -> Vec<Option<Answer>> {
-    let is_open = |question: &&Question| matches!(question, Question::Which(_));
-    let mut answers = vec![Answer::Silence];
-    if !questions.iter().all(|question| is_open(&question)) {
-        answers.extend([Answer::Yes, Answer::No]);
-    }
-    for question in questions.iter().filter(is_open) {
-        let values = Answer::possible(problem.model, *question).into_iter();
-        answers.extend(values.filter(|answer| *answer != Answer::Silence));
-    }
+    let possible = |question: &Question| Answer::possible(problem.model, *question);
+    let plain = [Answer::Silence, Answer::Yes, Answer::No];
+    let mut heard = HashSet::from([Answer::Silence]);
+    let told: Vec<Answer> =
+        questions.iter().flat_map(possible).filter(|it| heard.insert(*it)).collect();
+    let mut answers: Vec<Answer> = plain.into_iter().filter(|it| heard.contains(it)).collect();
+    answers.extend(told.into_iter().filter(|answer| !plain.contains(answer)));
     let denied = (!problem.announce.is_final()).then_some(None);
     answers.into_iter().map(Some).chain(denied).collect()
 }
@@ -256,6 +254,12 @@ fn action_name(scene: &Scene, action: Action) -> String {
         Action::Pick(i) => escape("pick", &[object(i)]),
         Action::Ask(Question::Point(i)) => escape("point", &[object(i)]),
         Action::Ask(Question::Which(k)) => escape("which", &[attribute_name(scene, k)]),
+        Action::Ask(Question::Choice(k, options)) => {
+            let values = options.values().iter().map(|v| value_name(scene, k, *v));
+            let names: Vec<&str> =
+                std::iter::once(attribute_name(scene, k)).chain(values).collect();
+            escape("choice", &names)
+        }
         Action::Ask(Question::Attribute(k, v)) => {
             escape("is", &[attribute_name(scene, k), value_name(scene, k, v)])
         }

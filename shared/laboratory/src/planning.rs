@@ -76,15 +76,18 @@ fn problem(scene: Scene, args: &ProblemArgs, follows: bool) -> Result<Problem, F
     };
     let configured = settings.as_ref().map(|settings| &settings.dialogue);
     let params = configured.map_or_else(Params::default, |dialogue| dialogue.params);
+    // Else every answer is as reliable as a yes or no.
+    let params = if follows { params } else { Params { open: None, choice: None, ..params } };
     let preset = args.costs.as_deref().and_then(Costs::preset);
     let costs = preset.or(configured.map(|dialogue| dialogue.costs)).unwrap_or_default();
     let followed = settings.as_ref().filter(|_| follows);
-    let all = Actions { mode: Mode::Remote, attribute: true, which: true };
+    let all = Actions { mode: Mode::Remote, attribute: true, which: true, choice: false };
     let allowed = followed.map_or(all, |settings| settings.dialogue.actions);
     let actions = Actions {
         mode: args.mode.unwrap_or(allowed.mode),
         attribute: allowed.attribute && !args.no_attr,
         which: allowed.which && !args.no_which,
+        choice: (allowed.choice || args.choice) && !args.no_choice,
     };
     let model =
         followed.map_or_else(|| Model::new(&scene, params), |settings| settings.model_of(&scene));
@@ -115,17 +118,29 @@ mod tests {
         let set = [("dialogue.mode", "present"), ("dialogue.announce.heard", "0.5")];
         let set = set.map(|(key, value)| (key.to_owned(), value.to_owned())).to_vec();
         let config = ConfigArgs { config: Some(config), set, profile: None };
-        let (mode, no_attr, no_which, costs, announce) = (None, false, false, None, None);
-        let args = ProblemArgs { mode, no_attr, no_which, costs, announce, config };
+        let args = ProblemArgs {
+            mode: None,
+            no_attr: false,
+            no_which: false,
+            choice: false,
+            no_choice: false,
+            costs: None,
+            announce: None,
+            config,
+        };
         let scene = Path::new("bowls");
         let followed = of_scene(scene, &args, true).unwrap();
         assert_eq!((followed.actions.mode, followed.actions.which), (Mode::Present, false));
         assert_eq!(followed.announce.heard, 0.5);
         let own = of_scene(scene, &args, false).unwrap();
         assert_eq!((own.actions.mode, own.actions.which), (Mode::Remote, true));
+        assert_eq!((own.actions.choice, own.model.params().choice), (false, None));
         assert_eq!(own.announce.heard, 0.0);
         let args = ProblemArgs { mode: Some(Mode::Remote), announce: Some(0.1), ..args };
         let mixed = of_scene(scene, &args, true).unwrap();
+        assert!(!mixed.actions.choice && mixed.model.params().choice.is_some());
+        let choosing = ProblemArgs { choice: true, ..args };
+        assert!(of_scene(scene, &choosing, true).unwrap().actions.choice);
         assert_eq!((mixed.actions.mode, mixed.announce.heard), (Mode::Remote, 0.1));
     }
 }

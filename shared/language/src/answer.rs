@@ -270,9 +270,10 @@ fn implied(base: &[Asserted<'_>], asked: QuestionWords<'_>) -> (Response, f64) {
             let other: Vec<&Asserted<'_>> = other.collect();
             (if other.is_empty() { Response::None } else { Response::No }, other)
         }
-        QuestionWords::Nothing | QuestionWords::PerceivedObject | QuestionWords::Attribute => {
-            (Response::None, Vec::new())
-        }
+        QuestionWords::Nothing
+        | QuestionWords::PerceivedObject
+        | QuestionWords::Attribute
+        | QuestionWords::Choice(_) => (Response::None, Vec::new()),
     };
     (response, implies.iter().map(|value| value.doubt).reduce(f64::min).unwrap_or(0.0))
 }

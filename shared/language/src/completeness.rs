@@ -104,7 +104,7 @@ impl CompletenessJudge {
 
     /// Returns whether the words name a value of the attribute asked about.
     fn answers(&self, reading: &Reading, question: Question) -> bool {
-        let (Question::Attribute(k, _) | Question::Which(k)) = question else { return false };
+        let Some(k) = question.attribute() else { return false };
         let values = self.attributes.get(k.index());
         values.is_some_and(|values| reading.base.iter().any(|word| values.contains(word)))
     }

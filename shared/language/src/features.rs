@@ -231,7 +231,7 @@ impl Context<'_> {
             QuestionWords::Object(words) => (1, words.contains(&word)),
             QuestionWords::PerceivedObject => (2, false),
             QuestionWords::Value(_, asked) => (3, asked == word),
-            QuestionWords::Attribute => (4, false),
+            QuestionWords::Attribute | QuestionWords::Choice(_) => (4, false),
         };
         let asked = [kind, u64::from(is_asked)];
         rows.add(b"question", &asked);

@@ -131,6 +131,11 @@ impl Lexicon {
         &self.lookalikes
     }
 
+    /// The value that is a word of the scene.
+    pub(crate) fn value_of(&self, word: WordId) -> Option<&ValueSense> {
+        self.values.iter().find(|value| value.word == word)
+    }
+
     /// The value at a place that [`Lookalikes`] found.
     pub(crate) fn value(&self, place: usize) -> &ValueSense {
         &self.values[place]

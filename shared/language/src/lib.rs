@@ -78,6 +78,7 @@ mod morphology;
 mod negation;
 mod negation_scope;
 mod objects;
+mod ordinals;
 mod own_words;
 mod paper;
 mod parsed;

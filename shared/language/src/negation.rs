@@ -36,6 +36,7 @@ pub(crate) fn use_of_no(
             let asked_about = match asked {
                 QuestionWords::Value(_, word) => word == value.word,
                 QuestionWords::Object(words) => words.contains(&value.word),
+                QuestionWords::Choice(options) => options.contains(&Some(value.word)),
                 QuestionWords::Nothing
                 | QuestionWords::PerceivedObject
                 | QuestionWords::Attribute => true,

@@ -174,7 +174,10 @@ impl ParsedUtterance<'_> {
 
     /// "maybe", "it could be", and nothing else, in answer to a yes or no question.
     fn is_maybe(&self, best: &Reading) -> bool {
-        let asked = !matches!(self.asked, QuestionWords::Nothing | QuestionWords::Attribute);
+        let asked = matches!(
+            self.asked,
+            QuestionWords::Value(..) | QuestionWords::Object(_) | QuestionWords::PerceivedObject
+        );
         asked
             && *best == Reading { intent: Intent::Inform, ..Reading::default() }
             && self.content.answers.is_empty()

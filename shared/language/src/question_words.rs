@@ -1,6 +1,6 @@
 //! The question that an utterance answers, as far as words go.
 
-use scene::{AttributeId, Question, Role, Scene, WordId};
+use scene::{AttributeId, Options, Question, Role, Scene, ValueId, WordId};
 
 use crate::lexicon::ValueSense;
 use crate::morphology::inflected;
@@ -19,6 +19,8 @@ pub(crate) enum QuestionWords<'a> {
     Value(AttributeId, WordId),
     /// "What colour is it?"
     Attribute,
+    /// "White, metallic or clear?", in the order said.
+    Choice([Option<WordId>; Options::MAX]),
 }
 
 impl QuestionWords<'_> {
@@ -28,7 +30,7 @@ impl QuestionWords<'_> {
         match self {
             Self::Value(_, asked) => group.iter().all(|word| *word == asked),
             Self::Object(words) => group.iter().all(|word| words.contains(word)),
-            Self::Nothing | Self::PerceivedObject | Self::Attribute => false,
+            Self::Nothing | Self::PerceivedObject | Self::Attribute | Self::Choice(_) => false,
         }
     }
 }
@@ -98,6 +100,13 @@ impl SceneQuestions {
         match question {
             Question::None => QuestionWords::Nothing,
             Question::Which(_) => QuestionWords::Attribute,
+            Question::Choice(k, options) => {
+                let values = self.attributes.get(k.index());
+                let word = |v: &ValueId| values.and_then(|values| values.get(v.index()).copied());
+                let mut words = [None; Options::MAX];
+                words.iter_mut().zip(options.values()).for_each(|(slot, v)| *slot = word(v));
+                QuestionWords::Choice(words)
+            }
             Question::Point(i) => self
                 .objects
                 .get(i.index())

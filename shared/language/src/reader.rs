@@ -1,7 +1,7 @@
 //! The reader: runs the pipeline on an utterance.
 
 use ::vocabulary::Language;
-use scene::{Intent, Question, Reading, Reference, Response, Scene, UnknownWord};
+use scene::{Intent, Question, Reading, Reference, Response, Scene, UnknownWord, WordId};
 use words::{Tokens, normalise};
 
 use crate::answer::response;
@@ -13,6 +13,7 @@ use crate::hedges::hedge;
 use crate::indifference::{indifference, is_of_attribute};
 use crate::intent::{intent, is_side_talk, is_statement};
 use crate::lexicon::Lexicon;
+use crate::ordinals::name_options;
 use crate::paper::WordSpotter;
 use crate::parsed::ParsedUtterance;
 use crate::question_words::{QuestionWords, SceneQuestions};
@@ -112,6 +113,10 @@ impl Reader {
         let is_yes_no = matches!(last_question, Question::Attribute(..) | Question::Point(_));
         if is_yes_no && self.lexicon.may_answer() && answers_alone(tokens, &tags, asked) {
             tags = tag(Lexicon::own(), tokens);
+        }
+        if let QuestionWords::Choice(options) = asked {
+            let options: Vec<WordId> = options.into_iter().flatten().collect();
+            name_options(&mut tags, &options, &self.lexicon);
         }
         let clauses = clauses(&tags, tokens.code);
         hedge(&mut tags, &clauses);

@@ -7,7 +7,8 @@ use messages::{
 };
 use proptest::prelude::*;
 use scene::{
-    AttributeId, Doubt, Intent, ObjectId, Question, Reading, Reference, Response, ValueId, WordId,
+    AttributeId, Doubt, Intent, ObjectId, Options, Question, Reading, Reference, Response, ValueId,
+    WordId,
 };
 
 const WORDS: usize = 40;
@@ -128,10 +129,11 @@ proptest! {
             Question::Point(ObjectId(i)),
             Question::Attribute(AttributeId(k), ValueId(v)),
             Question::Which(AttributeId(k)),
+            Question::Choice(AttributeId(k), Options::new(&[v, v ^ 1, v ^ 2].map(ValueId)).unwrap()),
         ] {
             prop_assert_eq!(Question::try_from(WireQuestion::from(question)), Ok(question));
         }
-        let unknown = WireQuestion { kind: 4, ..WireQuestion::default() };
+        let unknown = WireQuestion { kind: 5, ..WireQuestion::default() };
         prop_assert!(Question::try_from(unknown).is_err());
     }
 }

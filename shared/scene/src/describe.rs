@@ -158,7 +158,7 @@ impl Scene {
 }
 
 /// `a`, `a or b`, `a, b or c`.
-fn enumerate(names: &[String], conjunction: &str) -> String {
+pub(crate) fn enumerate(names: &[String], conjunction: &str) -> String {
     match names {
         [first @ .., last] if !first.is_empty() => {
             format!("{} {conjunction} {last}", first.join(", "))

@@ -43,6 +43,7 @@ mod describe;
 mod ids;
 mod json;
 mod model;
+mod options;
 mod perceived;
 mod plural;
 mod question;
@@ -59,6 +60,7 @@ mod tests;
 
 pub use ids::{AttributeId, ObjectId, ValueId, WordId};
 pub use model::{Attribute, Form, Object, Placement, Role, Scene, Value};
+pub use options::Options;
 pub use perceived::{Perceived, likeliest};
 pub use plural::{count, plural};
 pub use question::Question;

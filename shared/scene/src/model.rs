@@ -369,6 +369,8 @@ impl Scene {
             Question::Attribute(k, v) => {
                 self.attributes.get(k.index()).is_some_and(|a| v.index() < a.values.len())
             }
+            Question::Choice(k, options) => (self.attributes.get(k.index()))
+                .is_some_and(|a| options.values().iter().all(|v| v.index() < a.values.len())),
         }
     }
 }

@@ -1,6 +1,6 @@
-//! The robot's questions: `(Q_t, Q_v)` of section 3.3, and the open question of section 7.
+//! The robot's questions: `(Q_t, Q_v)` of section 3.3, and the open and choice questions that extend it.
 
-use crate::{AttributeId, ObjectId, ValueId};
+use crate::{AttributeId, ObjectId, Options, ValueId};
 
 /// A question of the robot's; the observable part of the state.
 #[derive(
@@ -16,4 +16,16 @@ pub enum Question {
     Attribute(AttributeId, ValueId),
     /// "What is its k?": open.
     Which(AttributeId),
+    /// "v, w or x?": which of these values of k.
+    Choice(AttributeId, Options),
+}
+
+impl Question {
+    /// The attribute that it asks about.
+    pub fn attribute(self) -> Option<AttributeId> {
+        match self {
+            Self::Attribute(k, _) | Self::Which(k) | Self::Choice(k, _) => Some(k),
+            Self::None | Self::Point(_) => None,
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value as Json, json};
 
-use crate::{AttributeId, Intent, Question, Reading, Response, Scene};
+use crate::{AttributeId, Intent, Options, Question, Reading, Response, Scene, ValueId};
 
 /// An invalid question in JSON, in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -10,7 +10,8 @@ use crate::{AttributeId, Intent, Question, Reading, Response, Scene};
 pub struct QuestionError(String);
 
 /// Reads `{"type":"none"}` (or `null`), `{"type":"point","object":ID}`,
-/// `{"type":"attr","attribute":K,"value":V}` or `{"type":"which","attribute":K}`.
+/// `{"type":"attr","attribute":K,"value":V}`, `{"type":"which","attribute":K}` or
+/// `{"type":"choice","attribute":K,"values":[V,…]}`.
 ///
 /// # Errors
 /// The first thing that is invalid in this scene.
@@ -28,16 +29,22 @@ pub fn question_from_json(scene: &Scene, json: &Json) -> Result<Question, Questi
         }
         "attr" => {
             let k = attribute(scene, json)?;
-            let name = field(json, "value")?;
-            let v = scene.value_named(k, name).ok_or_else(|| {
-                let attribute = &scene.attributes()[k.index()].name;
-                QuestionError(format!("attribute \"{attribute}\" has no value \"{name}\""))
-            })?;
-            Ok(Question::Attribute(k, v))
+            Ok(Question::Attribute(k, value(scene, k, field(json, "value")?)?))
         }
         "which" => Ok(Question::Which(attribute(scene, json)?)),
+        "choice" => {
+            let k = attribute(scene, json)?;
+            let names = json.get("values").and_then(Json::as_array);
+            let names: Option<Vec<&str>> =
+                names.and_then(|names| names.iter().map(Json::as_str).collect());
+            let wrong = || QuestionError("\"values\" is not a list of 2 to 4 values".to_owned());
+            let values: Vec<ValueId> = (names.ok_or_else(wrong)?.into_iter())
+                .map(|name| value(scene, k, name))
+                .collect::<Result<_, _>>()?;
+            Ok(Question::Choice(k, Options::new(&values).ok_or_else(wrong)?))
+        }
         other => {
-            let known = "the types are none, point, attr and which";
+            let known = "the types are none, point, attr, which and choice";
             Err(QuestionError(format!("unknown question type \"{other}\"; {known}")))
         }
     }
@@ -58,6 +65,12 @@ pub fn question_to_json(scene: &Scene, question: Question) -> Json {
         }
         Question::Which(k) => {
             json!({ "type": "which", "attribute": scene.attributes()[k.index()].name })
+        }
+        Question::Choice(k, options) => {
+            let attribute = &scene.attributes()[k.index()];
+            let names = options.values().iter().map(|v| attribute.values[v.index()].name.as_str());
+            let names: Vec<&str> = names.collect();
+            json!({ "type": "choice", "attribute": attribute.name, "values": names })
         }
     }
 }
@@ -121,6 +134,13 @@ fn published_intent(reading: &Reading) -> Intent {
 fn attribute(scene: &Scene, json: &Json) -> Result<AttributeId, QuestionError> {
     let name = field(json, "attribute")?;
     scene.attribute_named(name).ok_or_else(|| none("attribute", name))
+}
+
+fn value(scene: &Scene, k: AttributeId, name: &str) -> Result<ValueId, QuestionError> {
+    scene.value_named(k, name).ok_or_else(|| {
+        let attribute = &scene.attributes()[k.index()].name;
+        QuestionError(format!("attribute \"{attribute}\" has no value \"{name}\""))
+    })
 }
 
 fn none(what: &str, name: &str) -> QuestionError {

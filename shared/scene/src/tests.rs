@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use serde_json::json;
 
 use crate::{
-    AttributeId, ObjectId, Question, Reading, Role, Scene, Value, ValueId, WordId,
+    AttributeId, ObjectId, Options, Question, Reading, Role, Scene, Value, ValueId, WordId,
     question_from_json, question_to_json, reading_to_json,
 };
 
@@ -66,6 +66,42 @@ fn questions_are_worded_by_the_scene() {
 }
 
 #[test]
+fn choices_are_worded_for_every_kind_of_value() {
+    let (bowls, tools) = (shipped(BOWLS), shipped(TOOLS));
+    let say = |scene: &Scene, k: &str, values: &[&str]| -> Vec<String> {
+        let json = json!({"type": "choice", "attribute": k, "values": values});
+        let question = question_from_json(scene, &json).expect("a question");
+        (0..3).map(|n| scene.phrase_variant(question, n, 1, &[])).collect()
+    };
+    let colours = "white, metallic or clear?";
+    assert_eq!(
+        say(&bowls, "color", &["clear", "white", "metallic"]),
+        [
+            "White, metallic or clear?".to_owned(),
+            format!("What colour is it: {colours}"),
+            format!("Is it {colours}")
+        ],
+    );
+    let places = "in the dishwasher, on the counter or neither?";
+    assert_eq!(
+        say(&bowls, "location", &["dishwasher", "counter"]),
+        [format!("I{}", &places[1..]), format!("Where is it: {places}"), format!("Is it {places}")],
+    );
+    let kinds = "a marker, a pen, a wrench or none of them?";
+    assert_eq!(
+        say(&tools, "kind", &["marker", "pen", "wrench"]),
+        [
+            format!("A{}", &kinds[1..]),
+            format!("What kind of tool is it: {kinds}"),
+            format!("Is it {kinds}")
+        ],
+    );
+    // "Is it small or big?" lists the values itself.
+    let sizes = ["Small or big?", "Is it small or big?", "Small or big?"];
+    assert_eq!(say(&bowls, "size", &["small", "big"]), sizes);
+}
+
+#[test]
 fn wordings_alternate_and_repetitions_are_reworded() {
     let bowls = shipped(BOWLS);
     for question in all_questions(&bowls) {
@@ -73,7 +109,7 @@ fn wordings_alternate_and_repetitions_are_reworded() {
         for (n, time) in (0..6).flat_map(|n| (0..6).map(move |time| (n, time))) {
             let text = bowls.phrase_variant(question, n, time, &[]);
             assert!(text.ends_with('?') && !text.contains(['{', '}']), "{text}");
-            assert!(text.starts_with(char::is_uppercase) && text.len() < 60, "{text}");
+            assert!(text.starts_with(char::is_uppercase) && text.len() < 100, "{text}");
         }
     }
     let say = |json, n, time, choices: &[&str]| {
@@ -85,13 +121,12 @@ fn wordings_alternate_and_repetitions_are_reworded() {
     let color = || json!({"type": "which", "attribute": "color"});
     let this = || json!({"type": "point", "object": "clear"});
     assert_eq!(say(white(), 0, 2, &[]), "White?");
-    assert_eq!(say(white(), 0, 3, &["white", "clear"]), "White or clear?");
-    assert_eq!(say(white(), 0, 3, &["white", "metallic", "clear"]), "White, metallic or clear?");
     assert_eq!(say(white(), 0, 3, &[]), "White: yes or no?");
     assert_eq!(say(white(), 0, 4, &[]), "Once more: is it white?");
     assert_ne!(say(white(), 1, 1, &[]), say(white(), 0, 1, &[]));
     assert_eq!(say(color(), 0, 2, &[]), "Which color?");
     assert_eq!(say(color(), 0, 3, &["white", "clear"]), "White or clear?");
+    assert_eq!(say(color(), 0, 3, &["white", "metallic", "clear"]), "White, metallic or clear?");
     assert_eq!(say(this(), 0, 3, &[]), "This one: yes or no?");
     assert_eq!(say(this(), 0, 2, &[]), "Is it this one?");
 }
@@ -117,8 +152,10 @@ fn all_questions(scene: &Scene) -> Vec<Question> {
     for (k, attribute) in scene.attributes().iter().enumerate() {
         let k = AttributeId::from(k);
         all.push(Question::Which(k));
-        let values = 0..attribute.values.len();
-        all.extend(values.map(|v| Question::Attribute(k, ValueId::from(v))));
+        let values: Vec<ValueId> = (0..attribute.values.len()).map(ValueId::from).collect();
+        all.extend(values.iter().map(|v| Question::Attribute(k, *v)));
+        let options = values.windows(2).chain([&values[..values.len().min(Options::MAX)]]);
+        all.extend(options.filter_map(Options::new).map(|options| Question::Choice(k, options)));
     }
     all
 }
@@ -284,7 +321,7 @@ fn question_json_rejects_unknown_names() {
         (json!("attr"), "a question is an object with a \"type\""),
         (
             json!({"type": "why"}),
-            "unknown question type \"why\"; the types are none, point, attr and which",
+            "unknown question type \"why\"; the types are none, point, attr, which and choice",
         ),
         (json!({"type": "which"}), "\"attribute\" is missing or not a string"),
         (json!({"type": "which", "attribute": "age"}), "the scene has no attribute \"age\""),
@@ -292,6 +329,14 @@ fn question_json_rejects_unknown_names() {
         (
             json!({"type": "attr", "attribute": "color", "value": "big"}),
             "attribute \"color\" has no value \"big\"",
+        ),
+        (
+            json!({"type": "choice", "attribute": "color", "values": ["white", "big"]}),
+            "attribute \"color\" has no value \"big\"",
+        ),
+        (
+            json!({"type": "choice", "attribute": "color", "values": ["white", "white"]}),
+            "\"values\" is not a list of 2 to 4 values",
         ),
     ];
     for (json, expected) in cases {

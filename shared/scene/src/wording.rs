@@ -1,6 +1,9 @@
 //! Wording of the robot's questions.
 
-use crate::{Question, Scene};
+use std::borrow::Cow;
+
+use crate::describe::enumerate;
+use crate::{AttributeId, Options, Question, Scene, ValueId};
 
 /// Default yes/no wordings of an attribute.
 pub(crate) const ASK_YES_NO: [&str; 1] = ["Is the {attribute} {value}?"];
@@ -41,9 +44,9 @@ impl Scene {
     }
 
     /// Returns the wording of `question` as the `n`-th prompt, when it is put for the `time`-th time in
-    /// one interaction, from 1. Wordings take turns; a repeated question is shortened, then lists
-    /// `choices`, the answers that are left (in their spoken form; none where there are too many), and
-    /// then begins in another way each time. The result depends on the arguments alone, so that a
+    /// one interaction, from 1. Wordings take turns; a repeated question is shortened, then put as
+    /// "yes or no?", or lists `choices`, the answers to an open question that are left (in their spoken
+    /// form; none where there are too many), and then begins in another way each time. The result depends on the arguments alone, so that a
     /// replay gives the same words; variant 0 put once is [`Scene::phrase`].
     ///
     /// # Panics
@@ -75,13 +78,41 @@ impl Scene {
         }
     }
 
-    fn wordings(&self, question: Question) -> &[String] {
-        match question {
+    fn wordings(&self, question: Question) -> Cow<'_, [String]> {
+        Cow::Borrowed(match question {
             Question::None => &self.asks().wanted,
             Question::Point(_) => &self.asks().point,
             Question::Attribute(k, _) => &self.attributes()[k.index()].ask_yes_no,
             Question::Which(k) => &self.attributes()[k.index()].ask_which,
+            Question::Choice(k, options) => return Cow::Owned(self.choice_wordings(k, options)),
+        })
+    }
+
+    /// "White or clear?", "What colour is it: white or clear?", "Is it white or clear?"; of the attribute's
+    /// wordings only those that an enumeration fits into.
+    fn choice_wordings(&self, k: AttributeId, options: Options) -> Vec<String> {
+        let attribute = &self.attributes()[k.index()];
+        let listed = self.listed(k, options);
+        let lists_values = |wording: &&String| {
+            attribute.values.iter().any(|value| wording.contains(value.name.as_str()))
+        };
+        let open = attribute.ask_which.iter().find(|wording| !lists_values(wording));
+        let open = open.map(|open| format!("{}: {listed}?", open.trim_end_matches('?').trim_end()));
+        let yes_no = attribute.ask_yes_no.iter().find(|wording| wording.ends_with("{value}?"));
+        let yes_no = yes_no.map(|wording| wording.replace("{value}", &listed));
+        [Some(format!("{}?", capitalised(&listed))), open, yes_no].into_iter().flatten().collect()
+    }
+
+    /// "white, metallic or clear"; with "neither" or "none of them" at the end where an object of the scene
+    /// has none of these values.
+    fn listed(&self, k: AttributeId, options: Options) -> String {
+        let spoken = |v: &ValueId| self.attributes()[k.index()].values[v.index()].spoken.clone();
+        let mut all: Vec<String> = options.values().iter().map(spoken).collect();
+        let has_option = |value: Option<ValueId>| value.is_some_and(|v| options.contains(v));
+        if !self.objects().iter().all(|object| has_option(object.values[k.index()])) {
+            all.push(if all.len() == 2 { "neither" } else { "none of them" }.to_owned());
         }
+        enumerate(&all, "or")
     }
 
     /// A wording with its slots filled.
@@ -89,7 +120,7 @@ impl Scene {
         let wording = wording.replace("{noun}", self.noun());
         match question {
             Question::None | Question::Point(_) => wording,
-            Question::Which(k) => {
+            Question::Which(k) | Question::Choice(k, _) => {
                 wording.replace("{attribute}", &self.attributes()[k.index()].name)
             }
             Question::Attribute(k, v) => {
@@ -108,15 +139,15 @@ impl Scene {
                 Some(format!("{}?", capitalised(spoken)))
             }
             Question::Which(k) => Some(format!("Which {}?", self.attributes()[k.index()].name)),
-            Question::None | Question::Point(_) => None,
+            Question::None | Question::Point(_) | Question::Choice(..) => None,
         }
     }
 
     /// "White, metallic or clear?", "In the dishwasher: yes or no?"
     fn with_choices(&self, question: Question, plain: &str, choices: &[String]) -> String {
         match (question, choices) {
-            (_, [first @ .., last]) if !first.is_empty() => {
-                format!("{} or {last}?", capitalised(&first.join(", ")))
+            (Question::Which(_), [_, _, ..]) => {
+                format!("{}?", capitalised(&enumerate(choices, "or")))
             }
             (Question::Attribute(k, v), _) => {
                 let spoken = &self.attributes()[k.index()].values[v.index()].spoken;
@@ -125,7 +156,7 @@ impl Scene {
             (Question::Point(_), _) => {
                 format!("{}: yes or no?", plain.trim_end_matches('?').trim_end())
             }
-            (Question::None | Question::Which(_), _) => {
+            (Question::None | Question::Which(_) | Question::Choice(..), _) => {
                 format!("Sorry: {}", in_lower_case(plain))
             }
         }

@@ -24,6 +24,8 @@ pub struct Actions {
     pub attribute: bool,
     /// Whether open questions about attributes are asked.
     pub which: bool,
+    /// Whether choices among values of an attribute are asked.
+    pub choice: bool,
 }
 
 /// An action.
@@ -39,7 +41,7 @@ pub enum Action {
 
 impl Default for Actions {
     fn default() -> Self {
-        Self { mode: Mode::Remote, attribute: true, which: true }
+        Self { mode: Mode::Remote, attribute: true, which: true, choice: false }
     }
 }
 
@@ -52,7 +54,7 @@ impl Actions {
 
     /// Whether the robot may ask about attributes at all.
     pub fn about_attributes(&self) -> bool {
-        self.attribute || self.which
+        self.attribute || self.which || self.choice
     }
 
     /// Whether the action space holds that action.
@@ -64,6 +66,7 @@ impl Actions {
             Action::Ask(Question::Point(_)) => self.point(),
             Action::Ask(Question::Attribute(..)) => self.attribute,
             Action::Ask(Question::Which(_)) => self.which,
+            Action::Ask(Question::Choice(..)) => self.choice,
         }
     }
 }
@@ -80,6 +83,9 @@ mod tests {
         assert!(!remote.allow(Action::Ask(Question::Point(ObjectId(0)))));
         assert!(!remote.allow(Action::Ask(Question::Attribute(AttributeId(0), ValueId(0)))));
         assert!(remote.allow(Action::Ask(Question::Which(AttributeId(0)))));
+        let options = scene::Options::new(&[0, 1].map(ValueId)).unwrap();
+        let choice = Action::Ask(Question::Choice(AttributeId(0), options));
+        assert!(!remote.allow(choice) && Actions { choice: true, ..remote }.allow(choice));
         assert!(remote.allow(Action::Wait) && remote.allow(Action::Pick(ObjectId(5))));
     }
 

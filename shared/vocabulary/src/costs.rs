@@ -17,6 +17,10 @@ pub struct Costs {
     pub attribute_s: f64,
     /// Cost of an open question about an attribute, seconds.
     pub which_s: f64,
+    /// Cost of a choice question with a single answer, seconds.
+    pub choice_s: f64,
+    /// Cost of every further answer that it offers, "neither" included, seconds.
+    pub option_s: f64,
     /// Cost of pointing at an object and asking, seconds.
     pub point_s: f64,
     /// Reward of picking the wanted object.
@@ -39,6 +43,8 @@ impl Costs {
         wait_s: 1.0,
         attribute_s: 4.0,
         which_s: 4.5,
+        choice_s: 4.0,
+        option_s: 0.7,
         point_s: 6.0,
         correct: 50.0,
         wrong: 100.0,
@@ -51,6 +57,8 @@ impl Costs {
         wait_s: 1.0,
         attribute_s: 2.0,
         which_s: 2.5,
+        choice_s: 2.0,
+        option_s: 0.35,
         point_s: 6.0,
         correct: 10.0,
         wrong: 20.0,
@@ -62,6 +70,8 @@ impl Costs {
         wait_s: 0.05,
         attribute_s: 0.1,
         which_s: 0.1,
+        choice_s: 0.1,
+        option_s: 0.0175,
         point_s: 0.3,
         correct: 1.0,
         wrong: 1.0,
@@ -89,6 +99,8 @@ impl Costs {
             ("wait_s", self.wait_s),
             ("attribute_s", self.attribute_s),
             ("which_s", self.which_s),
+            ("choice_s", self.choice_s),
+            ("option_s", self.option_s),
             ("point_s", self.point_s),
             ("correct", self.correct),
             ("wrong", self.wrong),
@@ -138,13 +150,16 @@ mod tests {
             wait_s: 0.0,
             attribute_s: -1.0,
             which_s: f64::NAN,
+            choice_s: 0.0,
+            option_s: -0.5,
             point_s: f64::INFINITY,
             correct: 0.0,
             wrong: -100.0,
             discount: 1.0,
         };
         let keys: Vec<_> = broken.check().into_iter().map(|fault| fault.0).collect();
-        let all = ["wait_s", "attribute_s", "which_s", "point_s", "correct", "wrong", "discount"];
+        let asked = ["wait_s", "attribute_s", "which_s", "choice_s", "option_s", "point_s"];
+        let all = [&asked[..], &["correct", "wrong", "discount"]].concat();
         assert_eq!(keys, all);
     }
 

@@ -31,7 +31,8 @@ impl Durations {
     #[inline]
     pub fn question_s(&self, question: Question) -> Option<f64> {
         match question {
-            Question::None => None,
+            // A choice lasts as long as its options are many: Costs says so.
+            Question::None | Question::Choice(..) => None,
             Question::Attribute(k, v) => self.attribute.get(k.index())?.get(v.index()).copied(),
             Question::Which(k) => self.which.get(k.index()).copied(),
             Question::Point(i) => self.point.get(i.index()).copied(),

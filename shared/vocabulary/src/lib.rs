@@ -34,7 +34,7 @@ pub use durations::Durations;
 pub use interaction::{ActKind, Ended, Outcome, PickOutcome, PickPhase, Task};
 pub use interpretation::{Interpretation, NamedReading};
 pub use language::Language;
-pub use params::{Fault, Params};
+pub use params::{Fault, Params, Reliability};
 pub use planners::PLANNERS;
 pub use presentation::{NamedQuestion, Presentation};
 pub use prior::{Prior, PriorObjects};

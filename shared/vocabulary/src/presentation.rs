@@ -1,6 +1,6 @@
 //! Questions as they were put to the user.
 
-use scene::{AttributeId, Question, Scene};
+use scene::{AttributeId, Options, Question, Scene, ValueId};
 use serde::{Deserialize, Serialize};
 
 use crate::ids::PromptId;
@@ -38,6 +38,8 @@ pub enum NamedQuestion {
     Attribute(String, String),
     /// "What is its k?", with the name of k.
     Which(String),
+    /// "v, w or x?", with the names of k and of the values.
+    Choice(String, Vec<String>),
 }
 
 impl NamedQuestion {
@@ -55,6 +57,11 @@ impl NamedQuestion {
                 Self::Attribute(attribute(k).name.clone(), value)
             }
             Question::Which(k) => Self::Which(attribute(k).name.clone()),
+            Question::Choice(k, options) => {
+                let name = |v: &ValueId| attribute(k).values[v.index()].name.clone();
+                let values = options.values().iter().map(name).collect();
+                Self::Choice(attribute(k).name.clone(), values)
+            }
         }
     }
 
@@ -69,6 +76,11 @@ impl NamedQuestion {
                 Some(Question::Attribute(k, value))
             }),
             Self::Which(k) => scene.attribute_named(k).map(Question::Which),
+            Self::Choice(k, values) => scene.attribute_named(k).and_then(|k| {
+                let values = values.iter().map(|v| scene.value_named(k, v));
+                let options = Options::new(&values.collect::<Option<Vec<_>>>()?)?;
+                Some(Question::Choice(k, options))
+            }),
         };
         found.unwrap_or_default()
     }
@@ -79,6 +91,7 @@ impl NamedQuestion {
             Self::None => 0,
             Self::Point(_) | Self::Which(_) => 1,
             Self::Attribute(..) => 2,
+            Self::Choice(_, values) => 1 + values.len(),
         }
     }
 }

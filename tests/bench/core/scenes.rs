@@ -8,13 +8,16 @@ use vocabulary::{Actions, Mode, Params, Rng};
 /// Values of an attribute in random scenes.
 pub(super) const VALUES: usize = 6;
 
-pub(super) const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
-pub(super) const OPEN: Actions = Actions { mode: Mode::Remote, attribute: true, which: true };
-pub(super) const PRESENT: Actions = Actions { mode: Mode::Present, attribute: true, which: false };
+pub(super) const YES_NO: Actions =
+    Actions { mode: Mode::Remote, attribute: true, which: false, choice: false };
+pub(super) const OPEN: Actions =
+    Actions { mode: Mode::Remote, attribute: true, which: true, choice: false };
+pub(super) const PRESENT: Actions =
+    Actions { mode: Mode::Present, attribute: true, which: false, choice: false };
 pub(super) const PRESENT_OPEN: Actions =
-    Actions { mode: Mode::Present, attribute: true, which: true };
+    Actions { mode: Mode::Present, attribute: true, which: true, choice: false };
 pub(super) const POINTING: Actions =
-    Actions { mode: Mode::Present, attribute: false, which: false };
+    Actions { mode: Mode::Present, attribute: false, which: false, choice: false };
 
 /// A scene of the configuration.
 pub(crate) fn configured(name: &str) -> Scene {

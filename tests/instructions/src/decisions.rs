@@ -57,7 +57,7 @@ pub(crate) fn update(objects: usize, times: u32) {
 /// A new planner for each decision, so that nothing is remembered.
 pub(crate) fn lookahead(times: u32) {
     let model = Model::new(&bowls(), Params::default());
-    let actions = Actions { mode: Mode::Remote, attribute: true, which: false };
+    let actions = Actions { mode: Mode::Remote, attribute: true, which: false, choice: false };
     let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
     let belief = Belief::uniform(model.objects());
     for _ in 0..times {

@@ -78,7 +78,14 @@ fn code<E: WireCode>(rng: &mut Rng) -> Code<E> {
 
 fn question(rng: &mut Rng) -> WireQuestion {
     let part = |rng: &mut Rng| [0, 1, u16::MAX][rng.below(3)];
-    WireQuestion { kind: part(rng), object: part(rng), attribute: part(rng), value: part(rng) }
+    WireQuestion {
+        kind: [0, 1, 4, u16::MAX][rng.below(4)],
+        object: part(rng),
+        attribute: part(rng),
+        value: part(rng),
+        further: std::array::from_fn(|_| part(rng)),
+        options: [0, 2, 4, u16::MAX][rng.below(4)],
+    }
 }
 
 /// An act with numbers of the past or of nowhere.

@@ -88,6 +88,7 @@ fn summary(settings: &Settings) -> Vec<String> {
     let asks = [
         (dialogue.actions.attribute, "yes/no"),
         (dialogue.actions.which, "open"),
+        (dialogue.actions.choice, "choice"),
         (dialogue.actions.point(), "pointing"),
     ];
     let asks: Vec<&str> = asks.into_iter().filter(|(on, _)| *on).map(|(_, what)| what).collect();

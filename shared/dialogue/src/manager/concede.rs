@@ -36,11 +36,8 @@ impl Manager {
         heard: &[(f64, Question, Reading)],
     ) -> Preference {
         let Some((question, reading)) = likeliest(heard) else { return Preference::Best };
-        let attribute = match question {
-            Question::Attribute(k, _) | Question::Which(k) => Some(k),
-            Question::None | Question::Point(_) => None,
-        };
-        let name = attribute.map(|k| self.setup.scene.attributes()[k.index()].name.clone());
+        let name =
+            question.attribute().map(|k| self.setup.scene.attributes()[k.index()].name.clone());
         match (reading.response, name) {
             (Response::CannotTell, name) => {
                 add(&mut open.conceded.unknown, name);

@@ -9,7 +9,7 @@ const EPSILON: f64 = 0.1;
 const ALPHA: f64 = 0.5;
 
 fn model(scene: &scene::Scene) -> Model {
-    Model::new(scene, Params { p_l: P_L, epsilon: EPSILON, alpha: ALPHA })
+    Model::new(scene, Params { p_l: P_L, epsilon: EPSILON, alpha: ALPHA, ..Params::default() })
 }
 
 /// Three objects: a red one with a lid, a blue one without, a green one that has no such thing.
@@ -84,6 +84,36 @@ fn the_value_answers_an_open_question() {
     assert_likelihood(which, &["red", "blue"], Response::None, neither);
 }
 
+/// "Red or blue?", with "neither" for the green one; "lidded or open?" of which the green one is neither.
+#[test]
+fn options_and_neither_answer_a_choice() {
+    let third = 1.0 / 3.0;
+    let (own, other) = (1.0 - EPSILON, EPSILON / 2.0);
+    let options = Options::new(&[0, 1].map(ValueId)).unwrap();
+    for k in [COLOR, LID] {
+        let choice = Question::Choice(k, options);
+        let word = if k == COLOR { "blue" } else { "open" };
+        let second = [other, own, other].map(|p| P_L * p);
+        let said = second.map(|p| p * third);
+        assert_likelihood(choice, &[word], Response::None, said);
+        // What is named counts, not the yes or no beside it.
+        assert_likelihood(choice, &[word], Response::Yes, said);
+        assert_likelihood(choice, &[word], Response::No, second.map(|p| P_L * p));
+        let neither = [other, other, own].map(|p| (1.0 - P_L) * P_L * p);
+        assert_likelihood(choice, &[], Response::No, neither);
+        assert_likelihood(choice, &[], Response::Yes, [(1.0 - P_L) * third; 3]);
+    }
+    // A value that was not offered counts by its word, and with a "no" twice.
+    let green = [0.5 / 4.5, 0.5 / 4.5, 1.5 / 3.5].map(|p| P_L * p);
+    let choice = Question::Choice(COLOR, options);
+    assert_likelihood(choice, &["green"], Response::None, green.map(|p| p * third));
+    let no = [0, 1, 2].map(|i| green[i] * P_L * [other, other, own][i]);
+    assert_likelihood(choice, &["green"], Response::No, no);
+    // Where every object has an option, none of them is no answer.
+    let all = Question::Choice(COLOR, Options::new(&[0, 1, 2].map(ValueId)).unwrap());
+    assert_likelihood(all, &[], Response::No, [(1.0 - P_L) * P_L; 3]);
+}
+
 #[test]
 fn an_object_without_the_attribute_may_be_called_anything() {
     let third = 1.0 / 3.0;
@@ -97,10 +127,10 @@ fn open_answers_are_a_distribution() {
     let scene = pots();
     let model = model(&scene);
     for k in [COLOR, LID] {
-        let open = OpenQuestion::new(&model, k);
+        let open = Naming::of(&model, Question::Which(k)).unwrap();
         for i in everyone(3) {
             let sum: f64 = (0..model.values(k))
-                .map(|v| open.answer(&model, (k, ValueId::from(v)), model.column(k)[i.index()]))
+                .map(|v| open.answer(&model, Some(ValueId::from(v)), model.column(k)[i.index()]))
                 .sum();
             assert!((sum - 1.0).abs() < 1e-15, "{k:?} {i:?}: {sum}");
         }
@@ -113,7 +143,7 @@ fn a_single_value_cannot_be_confused() {
         r#"{"objects":[{"name":"a","attributes":{"shape":"round"}},{"name":"b","attributes":{}}],
             "values":{"shape":["round"]}}"#,
     );
-    let open = OpenQuestion::new(&model(&scene), AttributeId(0));
+    let open = Naming::of(&model(&scene), Question::Which(AttributeId(0))).unwrap();
     assert_eq!((open.own, open.lacking), (1.0, 1.0));
     let round = heard(&scene, &["round"], Response::None);
     let log = log_likelihood(&model(&scene), Question::Which(AttributeId(0)), &round);

@@ -4,7 +4,7 @@ use vocabulary::{Mode, Params};
 use super::*;
 use crate::testing::{bowls, uniform};
 
-const ALL: Actions = Actions { mode: Mode::Present, attribute: true, which: true };
+const ALL: Actions = Actions { mode: Mode::Present, attribute: true, which: true, choice: false };
 
 #[test]
 fn what_was_measured_counts_and_the_rest_is_uniform() {

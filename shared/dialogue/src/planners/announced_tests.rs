@@ -9,10 +9,13 @@ use super::*;
 use crate::testing::{bowls, markers, random_durations, random_scene};
 use crate::{Answer, Evaluation, Model, Step, evaluate, registry};
 
-const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
-const OPEN: Actions = Actions { mode: Mode::Remote, attribute: true, which: true };
-const PRESENT: Actions = Actions { mode: Mode::Present, attribute: true, which: false };
-const PICKING: Actions = Actions { mode: Mode::Remote, attribute: false, which: false };
+const YES_NO: Actions =
+    Actions { mode: Mode::Remote, attribute: true, which: false, choice: false };
+const OPEN: Actions = Actions { mode: Mode::Remote, attribute: true, which: true, choice: false };
+const PRESENT: Actions =
+    Actions { mode: Mode::Present, attribute: true, which: false, choice: false };
+const PICKING: Actions =
+    Actions { mode: Mode::Remote, attribute: false, which: false, choice: false };
 
 fn announced<'a>(
     model: &'a Model,
@@ -104,7 +107,8 @@ fn value_iteration_finds_the_same_values() {
     let mut rng = Rng::new(seed);
     let scenes = [markers(), random_scene(&mut rng, 3, &[2, 2], 0)];
     for scene in scenes {
-        let model = Model::new(&scene, Params { p_l: 0.9, epsilon: 0.05, alpha: 0.2 });
+        let model =
+            Model::new(&scene, Params { p_l: 0.9, epsilon: 0.05, alpha: 0.2, ..Params::default() });
         for actions in [YES_NO, PRESENT, PICKING] {
             for denial in [(0.0, 0.0), (0.4, 10.0), (0.8, 6.0), (0.95, 1.0)] {
                 let problem = announced(&model, Costs::SECONDS, actions, denial);
@@ -223,7 +227,7 @@ fn unheard_denials_change_nothing() {
 /// hand for a person who is always heard and never errs.
 #[test]
 fn announcing_replaces_the_last_question() {
-    let params = Params { p_l: 0.95, epsilon: 1e-9, alpha: 0.2 };
+    let params = Params { p_l: 0.95, epsilon: 1e-9, alpha: 0.2, ..Params::default() };
     let model = Model::new(&markers(), params);
     let heard = 0.999_999;
     let (decision, found) =

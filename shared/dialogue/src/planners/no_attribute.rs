@@ -23,7 +23,8 @@ impl Planner for NoAttribute {
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
-        let actions = Actions { mode: problem.actions.mode, attribute: false, which: false };
+        let mode = problem.actions.mode;
+        let actions = Actions { mode, attribute: false, which: false, choice: false };
         self.0.decide(&DecisionProblem { actions, ..*problem }, belief, step)
     }
 }

@@ -9,10 +9,13 @@ use crate::testing::{
 };
 use crate::{Answer, Model, ModelUser, Planner, Step, evaluate, registry};
 
-const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
-const OPEN: Actions = Actions { mode: Mode::Remote, attribute: true, which: true };
-const PRESENT: Actions = Actions { mode: Mode::Present, attribute: true, which: false };
-const POINTING: Actions = Actions { mode: Mode::Present, attribute: false, which: false };
+const YES_NO: Actions =
+    Actions { mode: Mode::Remote, attribute: true, which: false, choice: false };
+const OPEN: Actions = Actions { mode: Mode::Remote, attribute: true, which: true, choice: false };
+const PRESENT: Actions =
+    Actions { mode: Mode::Present, attribute: true, which: false, choice: false };
+const POINTING: Actions =
+    Actions { mode: Mode::Present, attribute: false, which: false, choice: false };
 
 /// Values of the policies at the uniform belief against the optima that public solvers found.
 fn assert_values(scene: &Scene, table: &[(Actions, [f64; 3])]) {

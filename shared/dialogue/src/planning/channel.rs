@@ -1,9 +1,9 @@
 //! Questions as noisy channels: what they cost and how their answers depend on the class.
 
-use scene::{AttributeId, Question};
+use scene::Question;
 use vocabulary::{Action, Costs, Params};
 
-use crate::{DecisionProblem, OpenQuestion};
+use crate::{DecisionProblem, Naming};
 
 /// A question about classes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +12,8 @@ pub(crate) enum Query {
     Is { partition: u16, block: u16 },
     /// Open: in which block of the partition is it?
     Which { partition: u16 },
+    /// In which of some blocks is it, or in none of them? The number is that of the offer of the partition.
+    Choice { partition: u16, offer: u16 },
     /// Yes/no: is it that class?
     Point { class: u32 },
 }
@@ -28,11 +30,11 @@ pub(crate) struct Channel {
     pub(crate) own: f64,
     /// Probability of one particular wrong answer.
     pub(crate) other: f64,
-    /// Probability of one particular answer about a class that lacks the attribute.
+    /// Probability of one particular answer about a class whose true answer is not known.
     pub(crate) lacking: f64,
-    /// Probability of naming a value that no class has, of a class that has the attribute.
+    /// Probability of an answer that is true of no class, about a class whose true answer is known.
     pub(crate) absent_other: f64,
-    /// The same of a class that lacks the attribute.
+    /// The same about a class whose true answer is not known.
     pub(crate) absent_lacking: f64,
     /// Entropy of the answers about one class, nats: what remains open after all answers.
     pub(crate) noise: f64,
@@ -129,25 +131,24 @@ impl Channel {
         }
     }
 
-    /// An open question that can be answered with `named` values that classes have and `absent`
-    /// that none has. An answer of the latter kind tells nothing, unless classes lack the
-    /// attribute.
-    pub(crate) fn open(
+    /// A question that is answered by naming: with one of `named` answers that are true of classes, or of
+    /// `absent` ones that are true of none. An answer of the latter kind tells nothing, unless there are
+    /// classes whose true answer is not known (`lacking`).
+    pub(crate) fn naming(
         problem: &DecisionProblem<'_>,
-        k: AttributeId,
-        named: usize,
-        absent: usize,
+        question: Question,
+        answer: &Naming,
+        (named, absent): (usize, usize),
         lacking: bool,
     ) -> Self {
-        let answer = OpenQuestion::new(problem.model, k);
-        let cost = problem.cost(Action::Ask(Question::Which(k)));
+        let cost = problem.cost(Action::Ask(question));
         let absent_other = absent as f64 * answer.other;
         let known = if lacking { 1.0 } else { 1.0 - absent_other };
-        let unheard = 1.0 - problem.model.params().p_l * known;
+        let unheard = 1.0 - problem.model.params().of(question).p_l * known;
         let (own, other) = (answer.own / known, answer.other / known);
         let absent_other = if lacking { absent_other } else { 0.0 };
         let answers = named + usize::from(lacking && absent > 0);
-        // No class is answered for with less noise than one that has the attribute.
+        // No class is answered for with less noise than one whose true answer is known.
         let noise = surprise(own) + (named as f64 - 1.0) * surprise(other) + surprise(absent_other);
         Self {
             price: Price::new(&problem.costs, cost, unheard),

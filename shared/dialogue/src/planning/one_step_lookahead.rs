@@ -10,6 +10,7 @@ use super::announced::Announced;
 use super::block::{Block, TwoGreatest};
 use super::bound::{Bound, Summary, Value};
 use super::channel::{Channel, Price, Query};
+use super::partition::Offer;
 use super::reduced::Reduced;
 
 /// A belief seen one step ahead.
@@ -139,7 +140,10 @@ impl<'a> OneStepEvaluator<'a> {
         let mut greatest = TwoGreatest::default();
         let mut here = Block::default();
         for &query in &self.reduced.queries {
-            let (Query::Is { partition, .. } | Query::Which { partition }) = query else {
+            let (Query::Is { partition, .. }
+            | Query::Which { partition }
+            | Query::Choice { partition, .. }) = query
+            else {
                 continue;
             };
             let unknown = self.reduced.partition(partition).unknown;
@@ -159,6 +163,10 @@ impl<'a> OneStepEvaluator<'a> {
                     let no = here.without(yes, greatest.but(yes));
                     let unknown = unknown.map_or(0.0, |unknown| unknown.yes);
                     self.yes_no(query, yes, &no, unknown)
+                }
+                Query::Choice { offer, .. } => {
+                    let offer = self.reduced.partition(partition).offer_at(offer);
+                    self.choose(query, offer, &blocks, unknown.map(|unknown| unknown.block))
                 }
                 _ => self.open(query, partition, &blocks),
             });
@@ -219,12 +227,51 @@ impl<'a> OneStepEvaluator<'a> {
                     add(&|block| partition.answer(asked, block, heard));
                 }
             }
+            Query::Choice { offer, .. } => {
+                let offer = partition.offer_at(offer);
+                offer.answers().for_each(|of| add(&|block| partition.chooses(offer, of, block)));
+                if channel.absent_other > 0.0 {
+                    add(&|block| partition.chooses_absent(offer, block));
+                }
+            }
             _ => {
                 partition.named().for_each(|named| add(&|block| partition.names(named, block)));
                 if channel.absent_other > 0.0 {
                     add(&|block| partition.names_absent(block));
                 }
             }
+        }
+        outlook.choice(query, channel, self.entropy)
+    }
+
+    /// A choice among some blocks; what is not here is in the block `unknown`.
+    fn choose(
+        &self,
+        query: Query,
+        offer: &Offer,
+        blocks: &[Block],
+        unknown: Option<u16>,
+    ) -> Choice {
+        let channel = &offer.channel;
+        let mut groups: Vec<Block> =
+            offer.blocks.iter().map(|of| blocks[usize::from(*of)]).collect();
+        if offer.neither {
+            let left = (0..)
+                .zip(blocks)
+                .filter(|(block, _)| !offer.blocks.contains(block) && Some(*block) != unknown);
+            groups.push(left.fold(Block::default(), |sum, (_, block)| sum.plus(block)));
+        }
+        let greatest = TwoGreatest::of(groups.iter());
+        let all = groups.iter().fold(Block::default(), |sum, group| sum.plus(group));
+        let mut outlook = Outlook::new(self.bound);
+        for own in &groups {
+            let others = all.without(own, greatest.but(own));
+            let heard = own.weigh(channel.own).plus(&others.weigh(channel.other));
+            outlook.add(&heard.plus(&self.absent.weigh(channel.lacking)));
+        }
+        if channel.absent_other > 0.0 {
+            let heard = all.weigh(channel.absent_other);
+            outlook.add(&heard.plus(&self.absent.weigh(channel.absent_lacking)));
         }
         outlook.choice(query, channel, self.entropy)
     }

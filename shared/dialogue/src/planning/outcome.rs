@@ -30,6 +30,17 @@ pub(crate) fn outcomes(reduced: &Reduced, query: Query, mass: &[f64]) -> Vec<(f6
                 answers.push(weigh(mass, absent));
             }
         }
+        Query::Choice { partition, offer } => {
+            let partition = reduced.partition(partition);
+            let offer = partition.offer_at(offer);
+            for chosen in offer.answers() {
+                answers
+                    .push(weigh(mass, |c| partition.chooses(offer, chosen, partition.blocks[c])));
+            }
+            if channel.absent_other > 0.0 {
+                answers.push(weigh(mass, |c| partition.chooses_absent(offer, partition.blocks[c])));
+            }
+        }
     }
     answers.into_iter().map(|weighed| normalise(reduced, weighed)).collect()
 }

@@ -1,9 +1,10 @@
 //! An attribute, as a partition of the classes.
 
-use scene::{AttributeId, ObjectId, Question, ValueId};
+use scene::{AttributeId, ObjectId, Options, Question, ValueId};
 
 use super::channel::{Channel, Channels};
-use crate::{DecisionProblem, Model};
+use crate::decision::choices;
+use crate::{DecisionProblem, Model, Naming};
 
 /// An attribute that tells classes apart: those of one block have the same value.
 #[derive(Debug)]
@@ -23,6 +24,25 @@ pub(crate) struct Partition {
     pub(crate) yes_no: Channels,
     /// How "what is its k?" is answered.
     pub(crate) open: Channel,
+    /// The choices that may be asked.
+    pub(crate) offers: Vec<Offer>,
+}
+
+/// A choice among the values of some blocks.
+#[derive(Debug)]
+pub(crate) struct Offer {
+    pub(crate) options: Options,
+    pub(crate) blocks: Vec<u16>,
+    /// Whether "none of these" may be true of a class.
+    pub(crate) neither: bool,
+    pub(crate) channel: Channel,
+}
+
+impl Offer {
+    /// The answers that may be true of a class: each option's block, and none of them.
+    pub(super) fn answers(&self) -> impl Iterator<Item = Option<u16>> {
+        self.blocks.iter().copied().map(Some).chain(self.neither.then_some(None))
+    }
 }
 
 /// Answers to "is its k v?" about a wanted object that is not here.
@@ -99,12 +119,104 @@ impl Partition {
         let absent = model.values(k) - named;
         let unknown = block_of[model.values(k) + 1];
         let unknown = unknown.map(|block| Unknown { block, yes: model.unknown_yes(k) });
-        let open = Channel::open(problem, k, named, absent, lacking);
+        let which = Question::Which(k);
+        let law = Naming::of(model, which)?;
+        let open = Channel::naming(problem, which, &law, (named, absent), lacking);
         let is = |value: &Option<ValueId>| {
             value.map_or(Question::None, |value| Question::Attribute(k, value))
         };
         let yes_no = Channels::yes_no(problem, problem.costs.attribute_s, values.iter().map(is));
-        Some(Self { attribute: k, blocks, values, unknown, doubtful, yes_no, open })
+        let offers = Vec::new();
+        Some(Self { attribute: k, blocks, values, unknown, doubtful, yes_no, open, offers })
+    }
+
+    /// The partition with the choices among its values of greatest probability.
+    pub(super) fn with_offers(mut self, problem: &DecisionProblem<'_>, mass: &[f64]) -> Self {
+        let mut sums = vec![0.0; self.values.len()];
+        for (&block, mass) in self.blocks.iter().zip(mass) {
+            match self.chances(block) {
+                Some(chances) => sums.iter_mut().zip(chances).for_each(|(sum, p)| *sum += p * mass),
+                None => sums[usize::from(block)] += mass,
+            }
+        }
+        let mut named: Vec<usize> = self.named().map(usize::from).collect();
+        named.sort_by(|a, b| sums[*b].total_cmp(&sums[*a]));
+        let values: Vec<ValueId> = named.into_iter().filter_map(|at| self.values[at]).collect();
+        let offers = choices(&values).filter_map(|options| self.offer(problem, options));
+        self.offers = offers.collect();
+        self
+    }
+
+    pub(super) fn offer_at(&self, offer: u16) -> &Offer {
+        &self.offers[usize::from(offer)]
+    }
+
+    fn offer(&self, problem: &DecisionProblem<'_>, options: Options) -> Option<Offer> {
+        let question = Question::Choice(self.attribute, options);
+        let law = Naming::of(problem.model, question)?;
+        let of = |v: &ValueId| self.values.iter().position(|value| *value == Some(*v));
+        let blocks = options.values().iter().map(|v| of(v).map(|at| at as u16));
+        let blocks: Vec<u16> = blocks.collect::<Option<_>>()?;
+        let unknown = self.unknown.map(|unknown| unknown.block);
+        let is_neither = |block: u16| {
+            let chance: f64 = blocks.iter().map(|of| self.chance(block, *of)).sum();
+            Some(block) != unknown && chance < 1.0
+        };
+        let neither = law.neither && self.blocks.iter().any(|block| is_neither(*block));
+        let named = blocks.len() + usize::from(neither);
+        let counts = (named, law.answers - named);
+        let channel = Channel::naming(problem, question, &law, counts, unknown.is_some());
+        Some(Offer { options, blocks, neither, channel })
+    }
+
+    /// Probability of choosing that block's value, or none of the options, about classes in `block`.
+    pub(super) fn chooses(&self, offer: &Offer, chosen: Option<u16>, block: u16) -> f64 {
+        if self.unknown.is_some_and(|unknown| unknown.block == block) {
+            return offer.channel.lacking;
+        }
+        let chance = |of: &u16| self.chance(block, *of);
+        let chance = match chosen {
+            Some(of) => chance(&of),
+            None => 1.0 - offer.blocks.iter().map(chance).sum::<f64>(),
+        };
+        chance * offer.channel.own + (1.0 - chance) * offer.channel.other
+    }
+
+    /// Probability of an answer to a choice that is true of no class, about classes in `block`.
+    pub(super) fn chooses_absent(&self, offer: &Offer, block: u16) -> f64 {
+        let is_unknown = self.unknown.is_some_and(|unknown| unknown.block == block);
+        if is_unknown { offer.channel.absent_lacking } else { offer.channel.absent_other }
+    }
+
+    /// Tells choices apart that are answered differently about a class, given the classes' codes; none where
+    /// a value is in doubt.
+    pub(super) fn choice_code(&self, offer: &Offer, codes: &[u64]) -> Option<Vec<u64>> {
+        if !self.doubtful.is_empty() {
+            return None;
+        }
+        let mut sets = vec![0; offer.answers().count()];
+        for (block, code) in self.blocks.iter().zip(codes) {
+            if self.unknown.is_none_or(|unknown| unknown.block != *block) {
+                let at = offer.answers().position(|of| of.is_none_or(|of| of == *block))?;
+                sets[at] ^= code;
+            }
+        }
+        sets.sort_unstable();
+        let Channel { price, own, other, lacking, .. } = offer.channel;
+        sets.extend([price.times, own, other, lacking].map(f64::to_bits));
+        Some(sets)
+    }
+
+    /// Whether a choice tells no more than a yes/no question that costs no more.
+    pub(super) fn is_plain(&self, offer: &Offer) -> bool {
+        let two = self.doubtful.is_empty() && self.unknown.is_none();
+        let mut plainly = offer.blocks.iter().map(|block| self.yes_no.of(usize::from(*block)));
+        two && offer.answers().count() == 2
+            && plainly.any(|yes_no| {
+                yes_no.cost <= offer.channel.cost
+                    && yes_no.other <= offer.channel.other
+                    && yes_no.price.times <= offer.channel.price.times
+            })
     }
 
     /// Whether classes in that block have no value to be named.
@@ -132,7 +244,11 @@ impl Partition {
         let (values, blocks) = (self.named().count(), self.values.len());
         // Yes and no to each value, each value by its name, and another one.
         let answers = if self.doubtful.is_empty() { 0 } else { 3 * values + 1 };
-        self.blocks.len() + answers * blocks
+        let offered = self.offers.iter().map(|offer| {
+            let answers = if self.doubtful.is_empty() { 1 } else { offer.answers().count() };
+            answers * blocks + offer.blocks.len()
+        });
+        self.blocks.len() + answers * blocks + offered.sum::<usize>()
     }
 
     /// Probability of yes, or no, to "is it in the block `asked`?" about classes in `block`; `is` and `not`

@@ -28,7 +28,7 @@ pub(crate) struct Reduced {
     pub(crate) share: Vec<f64>,
     /// Attributes that tell classes apart.
     pub(crate) partitions: Vec<Partition>,
-    /// Yes/no and open questions about attributes, none the double of another; those about one
+    /// Yes/no, open and choice questions about attributes, none the double of another; those about one
     /// attribute together.
     pub(crate) queries: Vec<Query>,
     /// The class of what is not here.
@@ -59,7 +59,12 @@ impl Reduced {
             EquivalenceClasses::of(problem, belief);
         let asked = if problem.actions.about_attributes() { model.attributes() } else { 0 };
         let asked = (0..asked).map(AttributeId::from).filter(|k| !problem.concessions.bar(*k));
-        let partitions = asked.filter_map(|k| Partition::of(problem, k, &best)).collect();
+        let partitions = asked.filter_map(|k| Partition::of(problem, k, &best));
+        let partitions = partitions.map(|partition| match problem.actions.choice {
+            true => partition.with_offers(problem, &mass),
+            false => partition,
+        });
+        let partitions = partitions.collect();
         let point_at = best.iter().map(|object| Question::Point(*object));
         let point = Channels::yes_no(problem, problem.costs.point_s, point_at);
         let absent = best.iter().position(|object| Some(*object) == model.absent());
@@ -99,6 +104,10 @@ impl Reduced {
         match query {
             Query::Point { class } => Question::Point(self.best[class as usize]),
             Query::Which { partition } => Question::Which(self.partition(partition).attribute),
+            Query::Choice { partition, offer } => {
+                let partition = self.partition(partition);
+                Question::Choice(partition.attribute, partition.offer_at(offer).options)
+            }
             Query::Is { partition, block } => {
                 let partition = self.partition(partition);
                 let value = partition.values[usize::from(block)].unwrap_or(ValueId(0));
@@ -115,6 +124,9 @@ impl Reduced {
                 self.partition(partition).yes_no.of(usize::from(block))
             }
             Query::Which { partition } => &self.partition(partition).open,
+            Query::Choice { partition, offer } => {
+                &self.partition(partition).offer_at(offer).channel
+            }
         }
     }
 
@@ -166,6 +178,7 @@ impl Reduced {
         let everyone = codes.iter().fold(0, |all, code| all ^ code);
         let split = |set: u64| set.min(set ^ everyone);
         let (mut splits, mut open) = (Cheapest::default(), Cheapest::default());
+        let mut choices = Cheapest::default();
         let mut found = Vec::new();
         for (index, partition) in self.partitions.iter().enumerate() {
             let index = index as u16;
@@ -187,6 +200,15 @@ impl Reduced {
                     found.push(Query::Is { partition: index, block });
                 }
             }
+            for (at, offer) in (0..).zip(&partition.offers) {
+                let plain = problem.actions.attribute && partition.is_plain(offer);
+                if offer.channel.capacity > 0.0 && !plain {
+                    let code = partition.choice_code(offer, &codes);
+                    let code = code.unwrap_or_else(|| vec![u64::from(index), at.into()]);
+                    choices.offer(code, offer.channel.cost, found.len());
+                    found.push(Query::Choice { partition: index, offer: at });
+                }
+            }
         }
         if problem.actions.point() && self.classes() > 1 {
             let known = |class: usize, code: u64| {
@@ -197,7 +219,7 @@ impl Reduced {
             let pointed = here.filter(|(class, code)| !known(*class, **code));
             self.pointed = pointed.map(|(class, _)| class as u32).collect();
         }
-        let kept = splits.places().chain(open.places());
+        let kept = splits.places().chain(open.places()).chain(choices.places());
         let mut kept: Vec<usize> = kept.collect();
         kept.sort_unstable();
         self.queries = kept.into_iter().map(|place| found[place]).collect();

@@ -1,5 +1,5 @@
-use scene::{ObjectId, Question, Scene};
-use vocabulary::{Actions, Announce, Costs, Durations, Mode, Params, Rng};
+use scene::{AttributeId, ObjectId, Question, Scene, ValueId};
+use vocabulary::{Actions, Announce, Costs, Durations, Mode, Params, Reliability, Rng};
 
 use super::*;
 use crate::testing::{bowls, perceived, random_durations, random_scene, scene, uniform};
@@ -7,9 +7,13 @@ use crate::{Answer, Belief, DecisionProblem, Model};
 
 mod announced;
 
-const REMOTE: Actions = Actions { mode: Mode::Remote, attribute: true, which: true };
-const PRESENT: Actions = Actions { mode: Mode::Present, attribute: true, which: true };
-const POINTING: Actions = Actions { mode: Mode::Present, attribute: false, which: false };
+const REMOTE: Actions = Actions { mode: Mode::Remote, attribute: true, which: true, choice: false };
+const PRESENT: Actions =
+    Actions { mode: Mode::Present, attribute: true, which: true, choice: false };
+const CHOOSING: Actions =
+    Actions { mode: Mode::Remote, attribute: true, which: false, choice: true };
+const POINTING: Actions =
+    Actions { mode: Mode::Present, attribute: false, which: false, choice: false };
 
 fn problem(model: &Model, actions: Actions, costs: Costs) -> DecisionProblem<'_> {
     DecisionProblem::new(model, costs, actions)
@@ -37,9 +41,19 @@ fn for_many_problems(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Belief, &R
         scenes.push(perceived(&mut rng, &scene));
     }
     for (n, scene) in scenes.iter().enumerate() {
-        let model = Model::new(scene, Params { p_l: 0.9, epsilon: 0.05, alpha: 0.2 });
+        let model =
+            Model::new(scene, Params { p_l: 0.9, epsilon: 0.05, alpha: 0.2, ..Params::default() });
         let model = if n % 2 == 1 { model.with_absent() } else { model };
-        for actions in [REMOTE, Actions { which: false, ..REMOTE }, PRESENT, POINTING] {
+        let own = Reliability { p_l: 0.85, epsilon: 0.08 };
+        let model = if n % 3 == 1 {
+            model.with_params(Params { choice: Some(own), ..model.params() })
+        } else {
+            model
+        };
+        let plain = Actions { which: false, ..REMOTE };
+        for actions in
+            [REMOTE, plain, PRESENT, POINTING, CHOOSING, Actions { choice: true, ..PRESENT }]
+        {
             for (name, costs) in Costs::PRESETS {
                 for draw in 0..6 {
                     let belief = random_belief(&mut rng, model.hypotheses());
@@ -113,6 +127,33 @@ fn objects_that_differ_in_seconds_alone() {
     assert_eq!(reduced.best, [ObjectId(1), ObjectId(0), ObjectId(2), ObjectId(3)]);
     assert_eq!((reduced.interchangeable.len(), &reduced.interchangeable[0]), (1, &(0..2)));
     assert!(reduced.interchange(0, 1, &reduced.mass) && !reduced.interchange(1, 2, &reduced.mass));
+}
+
+/// The choices that matter: of all values, or of two of them; a choice of all but one tells what the choice
+/// of all tells, and one of two values what a yes/no question tells.
+#[test]
+fn choices_that_tell_the_same_are_asked_once() {
+    let asked = |values: usize| -> Vec<usize> {
+        let list: Vec<_> = (0..values)
+            .map(|v| serde_json::json!({"name": format!("o{v}"), "attributes": {"k": format!("v{v}")}}))
+            .collect();
+        let model = Model::new(
+            &crate::testing::scene_of(&serde_json::json!({"objects": list})),
+            Params::default(),
+        );
+        let problem = problem(&model, CHOOSING, Costs::SECONDS);
+        let reduced = Reduced::new(&problem, &Belief::uniform(values));
+        let asked = reduced.queries.iter().map(|query| reduced.question(*query));
+        let options = asked.filter_map(|question| match question {
+            Question::Choice(_, options) => Some(options.values().len()),
+            _ => None,
+        });
+        options.collect()
+    };
+    assert_eq!(asked(2), Vec::<usize>::new());
+    assert_eq!(asked(3), [3]);
+    assert_eq!(asked(4), [4, 2, 2, 2, 2, 2, 2]);
+    assert_eq!(asked(6), [4, 3, 3, 3, 3, 2, 2, 2, 2, 2, 2]);
 }
 
 /// Of two questions with the same answers the cheaper one is asked, whichever comes first.
@@ -203,6 +244,16 @@ fn nothing_better_is_dropped() {
         let kept = one_step.choices.iter().map(|choice| choice.value.lower);
         let best = kept.fold(one_step.stop, f64::max);
         for question in problem.model.questions(problem.actions) {
+            let model = problem.model;
+            let is_held = |k: AttributeId, v: &ValueId| {
+                (0..model.objects()).any(|i| model.chance(i.into(), k, *v) > 0.0)
+            };
+            // What no object has is not offered, although it may show that the wanted one is not here.
+            if let Question::Choice(k, options) = question
+                && !options.values().iter().all(|v| is_held(k, v))
+            {
+                continue;
+            }
             let value = ask_once(problem, belief, question);
             // A question that tells nothing is asked for ever here, which is never worth it.
             assert!(value <= best + 1e-6, "{label} {question:?}: {value} above {best}");
@@ -326,6 +377,7 @@ fn the_bowls_are_solved_in_few_beliefs() {
         (Actions { which: false, ..REMOTE }, 250),
         (Actions { which: false, ..PRESENT }, 250),
         (REMOTE, 50),
+        (CHOOSING, 250),
         (POINTING, 20),
     ] {
         let problem = problem(&model, actions, Costs::SECONDS);

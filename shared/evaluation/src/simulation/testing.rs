@@ -41,7 +41,7 @@ impl House {
 
     /// A remote robot that asks yes/no questions.
     pub(crate) fn problem(&self) -> DecisionProblem<'_> {
-        let actions = Actions { mode: Mode::Remote, attribute: true, which: false };
+        let actions = Actions { mode: Mode::Remote, attribute: true, which: false, choice: false };
         DecisionProblem::new(&self.model, Costs::SECONDS, actions)
     }
 

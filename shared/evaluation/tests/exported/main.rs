@@ -37,15 +37,15 @@ fn odd() -> Scene {
 }
 
 const ACTIONS: [Actions; 5] = [
-    Actions { mode: Mode::Remote, attribute: true, which: true },
-    Actions { mode: Mode::Remote, attribute: true, which: false },
-    Actions { mode: Mode::Present, attribute: true, which: true },
-    Actions { mode: Mode::Present, attribute: false, which: false },
-    Actions { mode: Mode::Remote, attribute: false, which: false },
+    Actions { mode: Mode::Remote, attribute: true, which: true, choice: false },
+    Actions { mode: Mode::Remote, attribute: true, which: false, choice: false },
+    Actions { mode: Mode::Present, attribute: true, which: true, choice: false },
+    Actions { mode: Mode::Present, attribute: false, which: false, choice: false },
+    Actions { mode: Mode::Remote, attribute: false, which: false, choice: false },
 ];
 
 fn for_every_problem(check: impl Fn(&Scene, &DecisionProblem<'_>, &Pomdp)) {
-    let awkward = Params { p_l: 1.0 / 3.0, epsilon: 1e-17, alpha: 0.2 };
+    let awkward = Params { p_l: 1.0 / 3.0, epsilon: 1e-17, alpha: 0.2, ..Params::default() };
     let huge = Costs { wait_s: 1e-300, correct: 1e300, wrong: 0.1 + 0.2, ..Costs::SECONDS };
     for scene in [bowls(), tools(), odd()] {
         let models = [Params::default(), awkward].map(|params| Model::new(&scene, params));

@@ -50,6 +50,12 @@ pub struct ProblemArgs {
     /// Exclude questions like "What colour is it?".
     #[arg(long)]
     pub no_which: bool,
+    /// Include questions like "White, metallic or clear?".
+    #[arg(long, overrides_with = "no_choice")]
+    pub choice: bool,
+    /// Exclude them where the configuration allows them.
+    #[arg(long)]
+    pub no_choice: bool,
     /// Costs of actions and rewards of picks [default: the configuration's].
     #[arg(long, value_name = "PRESET", value_parser = cost_names())]
     pub costs: Option<String>,

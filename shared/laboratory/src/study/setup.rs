@@ -44,6 +44,7 @@ impl Setup {
             let configured = settings.dialogue.actions;
             problem.actions.attribute &= configured.attribute;
             problem.actions.which &= configured.which;
+            problem.actions.choice |= configured.choice && !args.problem.no_choice;
             if args.problem.announce.is_none() {
                 problem.announce = settings.dialogue.announce;
             }

@@ -200,7 +200,7 @@ fn beliefs_become_actions() {
     let scene = scene_file::load(&repository("config/scenes/bowls.toml")).unwrap();
     let model = Model::new(&scene, Params::default());
     let planner = dialogue::registry::planner("lookahead").unwrap();
-    let actions = Actions { mode: Mode::Remote, attribute: true, which: false };
+    let actions = Actions { mode: Mode::Remote, attribute: true, which: false, choice: false };
     let costs = Costs::default();
     let announce = Announce::FINAL;
     let problem =

@@ -1,5 +1,6 @@
 //! The reader on whole utterances: the public set, our own table, and any text at all.
 
+mod choices;
 mod conversation;
 mod formatting;
 mod halting;

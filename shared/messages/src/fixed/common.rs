@@ -3,7 +3,7 @@
 use crate::schema::wire_struct;
 use crate::wire::WireError;
 use iceoryx2::prelude::ZeroCopySend;
-use scene::{AttributeId, ObjectId, Question, ValueId};
+use scene::{AttributeId, ObjectId, Options, Question, ValueId};
 use vocabulary::Presentation;
 use vocabulary::ids::PromptId;
 use vocabulary::time::Time;
@@ -26,14 +26,18 @@ wire_struct! {
 wire_struct! {
     /// A [`Question`] on the wire.
     WireQuestion = "Question" {
-        /// 0 none, 1 point, 2 attribute, 3 which.
+        /// 0 none, 1 point, 2 attribute, 3 which, 4 choice.
         kind: u16,
         /// The object pointed at.
         object: u16,
         /// The attribute asked about.
         attribute: u16,
-        /// The value asked about, its place in the attribute's list.
+        /// The value asked about, its place in the attribute's list; of a choice the first.
         value: u16,
+        /// The other values of a choice, zero where there are fewer.
+        further: [u16; 3],
+        /// Number of values of a choice, else 0.
+        options: u16,
     }
 }
 
@@ -44,8 +48,15 @@ impl From<Question> for WireQuestion {
             Question::Point(i) => (1, i.0, 0, 0),
             Question::Attribute(k, v) => (2, 0, k.0, v.0),
             Question::Which(k) => (3, 0, k.0, 0),
+            Question::Choice(k, options) => (4, 0, k.0, options.values()[0].0),
         };
-        Self { kind, object, attribute, value }
+        let mut wire = Self { kind, object, attribute, value, ..Self::default() };
+        if let Question::Choice(_, options) = question {
+            wire.options = options.values().len() as u16;
+            let further = options.values().iter().skip(1);
+            wire.further.iter_mut().zip(further).for_each(|(slot, v)| *slot = v.0);
+        }
+        wire
     }
 }
 
@@ -59,6 +70,13 @@ impl TryFrom<WireQuestion> for Question {
             1 => Ok(Self::Point(ObjectId(wire.object))),
             2 => Ok(Self::Attribute(AttributeId(wire.attribute), ValueId(wire.value))),
             3 => Ok(Self::Which(AttributeId(wire.attribute))),
+            4 => {
+                let [second, third, fourth] = wire.further;
+                let values = [wire.value, second, third, fourth].map(ValueId);
+                let options = values.get(..usize::from(wire.options)).and_then(Options::new);
+                let options = options.ok_or(WireError::new("options", wire.options.into()))?;
+                Ok(Self::Choice(AttributeId(wire.attribute), options))
+            }
             kind => Err(WireError::new("question kind", kind.into())),
         }
     }

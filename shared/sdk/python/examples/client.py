@@ -22,6 +22,9 @@ def true_answer(scene, question, wanted):
             return "yes" if has.get(name) == values[value] else "no"
         case m.QuestionWhich(attribute):
             return has.get(list(scene.values)[attribute], "no")
+        case m.QuestionChoice(attribute, options):
+            name, values = list(scene.values.items())[attribute]
+            return has.get(name) if has.get(name) in [values[it] for it in options] else "neither"
     return "yes"
 
 

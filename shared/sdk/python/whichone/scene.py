@@ -65,6 +65,9 @@ class Scene:
         match question:
             case m.WireQuestion(kind=1):
                 return f"{self.objects[question.object]}?"
+            case m.WireQuestion(kind=4):
+                options = [question.value, *question.further][:question.options]
+                return self._options(question.attribute, options)
             case m.WireQuestion(kind=2 | 3):
                 name, listed = list(self.values.items())[question.attribute]
                 return f"{name} {listed[question.value]}?" if question.kind == 2 else f"which {name}?"
@@ -75,7 +78,13 @@ class Scene:
                 return f"{name} {listed[value]}?"
             case m.QuestionWhich(attribute):
                 return f"which {list(self.values)[attribute]}?"
+            case m.QuestionChoice(attribute, options):
+                return self._options(attribute, options)
         return ""
+
+    def _options(self, attribute: int, options: Iterable[int]) -> str:
+        listed = list(self.values.values())[attribute]
+        return " or ".join(listed[value] for value in options) + "?"
 
     def spot(self, text: str, also: Iterable[tuple[str, str]] = ()) -> list[tuple[str, int]]:
         """The scene's words in a text, each with the place of its blank-separated word. `also` holds more

@@ -1,5 +1,5 @@
 use messages::{ActKind, Delivery, Outcome, PolicyView};
-use scene::{Question, Scene};
+use scene::{Question, Scene, ValueId};
 use serde::ser::{Serialize, Serializer};
 use vocabulary::{Action, Attributed};
 
@@ -58,7 +58,7 @@ pub struct UserView {
 }
 
 /// A question, in the scene's names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum QuestionView<Name> {
     /// No question.
@@ -80,10 +80,17 @@ pub enum QuestionView<Name> {
         /// The attribute's name.
         attribute: Name,
     },
+    /// "White, metallic or clear?"
+    Choice {
+        /// The attribute's name.
+        attribute: Name,
+        /// The values' names.
+        values: Vec<Name>,
+    },
 }
 
 /// An action, in the scene's names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum ActionView<Name> {
     /// Do nothing for a turn.
@@ -101,7 +108,7 @@ pub enum ActionView<Name> {
 }
 
 /// An action that the planner has weighed.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct AlternativeView<'a> {
     /// The action.
     pub action: ActionView<&'a str>,
@@ -218,6 +225,14 @@ impl<'a, Name: From<&'a str>> QuestionView<Name> {
             Question::Which(attribute) => Self::Which {
                 attribute: scene.attributes()[attribute.index()].name.as_str().into(),
             },
+            Question::Choice(attribute, options) => {
+                let attribute = &scene.attributes()[attribute.index()];
+                let name = |v: &ValueId| attribute.values[v.index()].name.as_str().into();
+                Self::Choice {
+                    attribute: attribute.name.as_str().into(),
+                    values: options.values().iter().map(name).collect(),
+                }
+            }
         })
     }
 }

@@ -47,6 +47,10 @@ export function answers(dialogue, scene) {
     const others = values.length > 2 ? values.filter(({ name }) => name !== question.value) : [];
     return [...YES_NO, ...others.map(spoken), ...ASIDES];
   }
+  if (question.type === "choice") {
+    const options = values.filter(({ name }) => question.values.includes(name));
+    return [...options.map(spoken), offer("none of them", "aside", "answer.none"), ...ASIDES];
+  }
   return question.type === "which" ? [...values.map(spoken), ...ASIDES] : [];
 }
 

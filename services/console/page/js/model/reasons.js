@@ -2,7 +2,8 @@
 /**
  * An action of the robot in the scene's names, as the server sends it.
  * @typedef {{type: "wait"|"not_here"|"say"} | {type: "pick"|"point", object: string}
- *   | {type: "attr", attribute: string, value: string} | {type: "which", attribute: string}} Action
+ *   | {type: "attr", attribute: string, value: string} | {type: "which", attribute: string}
+ *   | {type: "choice", attribute: string, values: string[]}} Action
  */
 
 /**
@@ -19,6 +20,11 @@ export function actionWords(action, scene) {
     return { key, args: { object: object?.label ?? action.object } };
   }
   if (action.type === "attr") return { key, args: { value: spokenValue(action, scene) } };
+  if (action.type === "choice") {
+    const { attribute, values } = action;
+    const options = values.map((value) => spokenValue({ attribute, value }, scene));
+    return { key, args: { options: options.join(", ") } };
+  }
   if (action.type === "which") return { key, args: { attribute: action.attribute } };
   return { key, args: {} };
 }

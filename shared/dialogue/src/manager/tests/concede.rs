@@ -9,10 +9,7 @@ use vocabulary::ids::PromptId;
 use vocabulary::{ActKind, Interpretation};
 
 fn asked_about(state: &State) -> Option<AttributeId> {
-    match state.act.question {
-        Question::Attribute(k, _) | Question::Which(k) => Some(k),
-        Question::None | Question::Point(_) => None,
-    }
+    state.act.question.attribute()
 }
 
 fn any(said: &[&str]) -> Reading {

@@ -52,7 +52,7 @@ impl Settings {
             model,
             costs: Costs::SECONDS,
             durations: self.durations.clone(),
-            actions: Actions { mode: self.mode, attribute: true, which: false },
+            actions: Actions { mode: self.mode, attribute: true, which: false, choice: false },
             announce: Announce { heard: 0.0, cost_s: 8.0 },
             prior: self.prior,
             gestures: self.gestures.then(|| (Gestures::default(), [1.6, 0.0, 0.45])),
@@ -67,7 +67,7 @@ pub(super) fn settings() -> Settings {
     Settings {
         scene: scene_of(BOWLS),
         planner: "lookahead",
-        params: Params { p_l: 0.95, epsilon: 0.01, alpha: 0.2 },
+        params: Params { p_l: 0.95, epsilon: 0.01, alpha: 0.2, ..Params::default() },
         alpha_typed: Some(0.001),
         durations: None,
         mode: Mode::Remote,

@@ -22,7 +22,8 @@ fn simulation_average_matches_the_exact_evaluation() {
     let (seed, n) = (20_261, 20_000);
     let house = House::new();
     let mut rooms = vec![house.room(), house.room(), house.room()];
-    rooms[1].problem.actions = Actions { mode: Mode::Present, attribute: false, which: true };
+    rooms[1].problem.actions =
+        Actions { mode: Mode::Present, attribute: false, which: true, choice: false };
     rooms[2].problem.announce = Announce { heard: 0.8, cost_s: 8.0 };
     for room in &rooms {
         for name in registry::names() {

@@ -11,6 +11,7 @@ use crate::simulation::draw::{chance, one_of};
 /// Seconds by which a late answer is late: least and most.
 const LATE_S: (f64, f64) = (2.0, 20.0);
 const AGAIN: [&str; 3] = ["sorry, what was that?", "can you repeat that?", "what did you say?"];
+const NEITHER: [&str; 3] = ["neither", "none of them", "no, something else"];
 const YES_HEDGED: [&str; 3] = ["i think so", "yes i think so", "i guess so"];
 const NO_HEDGED: [&str; 3] = ["i don't think so", "no i don't think so", "probably not"];
 
@@ -128,6 +129,9 @@ impl Speaker<'_> {
         let model = self.domain.model;
         let text = match answer_or_slip(model, question, self.wanted, manners.slip, self.rng) {
             dialogue::Answer::Yes => self.yes_or_no(question, true),
+            dialogue::Answer::No if matches!(question, Question::Choice(..)) => {
+                self.choose(&NEITHER)
+            }
             dialogue::Answer::No => self.yes_or_no(question, false),
             dialogue::Answer::Value(k, v) => self.open((k, v)),
             dialogue::Answer::Silence => "i don't know".to_owned(),

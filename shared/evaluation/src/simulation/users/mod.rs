@@ -351,7 +351,7 @@ impl SimulatedUser {
             }
             // Nothing that the robot can name is true of an object that is not here.
             (_, None) => match question {
-                Question::Point(_) | Question::Attribute(..) => {
+                Question::Point(_) | Question::Attribute(..) | Question::Choice(..) => {
                     Turn::words(Answer::No.text(domain.scene))
                 }
                 Question::Which(_) | Question::None => Turn::SILENT,

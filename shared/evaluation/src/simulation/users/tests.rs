@@ -6,7 +6,7 @@ use vocabulary::{Actions, Mode};
 
 /// Every question that can be asked.
 fn questions(house: &House) -> Vec<Question> {
-    let actions = Actions { mode: Mode::Present, attribute: true, which: true };
+    let actions = Actions { mode: Mode::Present, attribute: true, which: true, choice: false };
     house.model.questions(actions)
 }
 
