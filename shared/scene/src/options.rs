@@ -18,12 +18,17 @@ impl Options {
 
     /// Sorts the values; none if they are not two to four different ones.
     pub fn new(values: &[ValueId]) -> Option<Self> {
+        Self::of(values).filter(|options| options.count >= 2)
+    }
+
+    /// One to four different values.
+    fn of(values: &[ValueId]) -> Option<Self> {
         let mut kept = [ValueId(0); Self::MAX];
         kept.get_mut(..values.len())?.copy_from_slice(values);
         let used = &mut kept[..values.len()];
         used.sort_unstable();
-        let is_choice = used.len() >= 2 && used.windows(2).all(|pair| pair[0] != pair[1]);
-        is_choice.then_some(Self { values: kept, count: values.len() as u8 })
+        let differ = !used.is_empty() && used.windows(2).all(|pair| pair[0] != pair[1]);
+        differ.then_some(Self { values: kept, count: values.len() as u8 })
     }
 
     /// The values, in the attribute's order, which is the order in which they are said.
@@ -45,9 +50,11 @@ impl Serialize for Options {
 
 impl<'de> Deserialize<'de> for Options {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        let values = Vec::deserialize(from)?;
-        let help = "expected 2 to 4 different values of an attribute";
-        Self::new(&values).ok_or_else(|| serde::de::Error::custom(help))
+        let values: Vec<ValueId> = Vec::deserialize(from)?;
+        let what =
+            || format!("expected up to 4 different values of an attribute, found {values:?}");
+        // Schemas are derived from reading lists of one.
+        Self::of(&values).ok_or_else(|| serde::de::Error::custom(what()))
     }
 }
 

@@ -43,10 +43,15 @@ fn defaults_are_as_documented() {
     assert_eq!(arm_service.stop_deadline, Duration::from_secs(15));
     assert_eq!((group.restart.exits_max, group.restart.window.as_secs()), (5, 60));
 
-    assert_eq!(dialogue.params, vocabulary::Params::default());
+    let reliability = |p_l, epsilon| Some(vocabulary::Reliability { p_l, epsilon });
+    let (open, choice) = (reliability(0.85, 0.03), reliability(0.93, 0.015));
+    assert_eq!(
+        dialogue.params,
+        vocabulary::Params { open, choice, ..vocabulary::Params::default() }
+    );
     assert_eq!(dialogue.costs, vocabulary::Costs::default());
     assert_eq!((dialogue.language, &*dialogue.planner), (Language::Careful, "lookahead"));
-    assert!(dialogue.actions.attribute && !dialogue.actions.which);
+    assert!(dialogue.actions.attribute && !dialogue.actions.which && !dialogue.actions.choice);
     assert_eq!((speech.voice, speech.recogniser), (Voice::Auto, Recogniser::Auto));
     assert_eq!((speech.player, speech.model_dir), (None, None));
     assert_eq!((arm.limb.as_ref(), arm.time_scale, arm.restock), (None, 1.0, true));

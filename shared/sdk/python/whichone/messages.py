@@ -458,22 +458,28 @@ class WireQuestion(Message):
     """A `Question` on the wire."""
 
     wire_name = "Question"
-    wire_size = 8
-    schema_key = "a0c8de0a2f4eaa8d"
+    wire_size = 16
+    schema_key = "b9ff7779db05fdd4"
     kind: int
-    """0 none, 1 point, 2 attribute, 3 which."""
+    """0 none, 1 point, 2 attribute, 3 which, 4 choice."""
     object: int
     """The object pointed at."""
     attribute: int
     """The attribute asked about."""
     value: int
-    """The value asked about, its place in the attribute's list."""
+    """The value asked about, its place in the attribute's list; of a choice the first."""
+    further: Array[int]
+    """The other values of a choice, zero where there are fewer."""
+    options: int
+    """Number of values of a choice, else 0."""
     codes = {}
     _fields_ = [
         ("kind", ctypes.c_uint16),  # 0
         ("object", ctypes.c_uint16),  # 2
         ("attribute", ctypes.c_uint16),  # 4
         ("value", ctypes.c_uint16),  # 6
+        ("further", ctypes.c_uint16 * 3),  # 8
+        ("options", ctypes.c_uint16),  # 14
     ]
 
 
@@ -501,8 +507,8 @@ class AskedQuestion(Message):
     """A question as it was put to the person: one presentation of a prompt."""
 
     wire_name = "AskedQuestion"
-    wire_size = 48
-    schema_key = "2a0adff7531884c8"
+    wire_size = 56
+    schema_key = "f359eb03e3cd3bf8"
     prompt: int
     """`PromptId`."""
     scene: int
@@ -526,9 +532,9 @@ class AskedQuestion(Message):
         ("began_ns", ctypes.c_uint64),  # 16
         ("ended_ns", ctypes.c_uint64),  # 24
         ("question", WireQuestion),  # 32
-        ("presentation", ctypes.c_uint32),  # 40
-        ("whole", ctypes.c_uint8),  # 44
-        ("reserved", ctypes.c_uint8 * 3),  # 45
+        ("presentation", ctypes.c_uint32),  # 48
+        ("whole", ctypes.c_uint8),  # 52
+        ("reserved", ctypes.c_uint8 * 3),  # 53
     ]
 
 
@@ -623,8 +629,8 @@ class Utterance(Message):
     """An accepted utterance. Speech to grounding."""
 
     wire_name = "Utterance"
-    wire_size = 16888
-    schema_key = "1f26d4dc29c15403"
+    wire_size = 16920
+    schema_key = "2778c37ef9a6cb8e"
     seq: int
     """`UtteranceSeq`."""
     asked: Array[AskedQuestion]
@@ -653,16 +659,16 @@ class Utterance(Message):
     _fields_ = [
         ("seq", ctypes.c_uint64),  # 0
         ("asked", AskedQuestion * ASKED_MAX),  # 8
-        ("gesture", WireGesture),  # 200
-        ("onset_ns", ctypes.c_uint64),  # 232
-        ("end_ns", ctypes.c_uint64),  # 240
-        ("accepted_ns", ctypes.c_uint64),  # 248
-        ("source", ctypes.c_uint8),  # 256
-        ("hypothesis_count", ctypes.c_uint8),  # 257
-        ("asked_count", ctypes.c_uint8),  # 258
-        ("reserved", ctypes.c_uint8 * 5),  # 259
-        ("hypotheses", WireHypothesis * HYPOTHESES_MAX),  # 264
-        ("text", fixed_text(16380)),  # 504
+        ("gesture", WireGesture),  # 232
+        ("onset_ns", ctypes.c_uint64),  # 264
+        ("end_ns", ctypes.c_uint64),  # 272
+        ("accepted_ns", ctypes.c_uint64),  # 280
+        ("source", ctypes.c_uint8),  # 288
+        ("hypothesis_count", ctypes.c_uint8),  # 289
+        ("asked_count", ctypes.c_uint8),  # 290
+        ("reserved", ctypes.c_uint8 * 5),  # 291
+        ("hypotheses", WireHypothesis * HYPOTHESES_MAX),  # 296
+        ("text", fixed_text(16380)),  # 536
     ]
 
 
@@ -670,8 +676,8 @@ class Observation(Message):
     """The interpretation of an utterance. Grounding to policy, one for each utterance."""
 
     wire_name = "Observation"
-    wire_size = 13144
-    schema_key = "0f13a3d2de61ee5b"
+    wire_size = 13176
+    schema_key = "c5ceebf880473750"
     seq: int
     """The utterance's `UtteranceSeq`."""
     asked: Array[AskedQuestion]
@@ -706,19 +712,19 @@ class Observation(Message):
     _fields_ = [
         ("seq", ctypes.c_uint64),  # 0
         ("asked", AskedQuestion * ASKED_MAX),  # 8
-        ("gesture", WireGesture),  # 200
-        ("scene_key", ctypes.c_uint64),  # 232
-        ("onset_ns", ctypes.c_uint64),  # 240
-        ("end_ns", ctypes.c_uint64),  # 248
-        ("accepted_ns", ctypes.c_uint64),  # 256
-        ("grounded_ns", ctypes.c_uint64),  # 264
-        ("reading_count", ctypes.c_uint8),  # 272
-        ("asked_count", ctypes.c_uint8),  # 273
-        ("source", ctypes.c_uint8),  # 274
-        ("unknown_role", ctypes.c_uint8),  # 275
-        ("reserved", ctypes.c_uint8 * 4),  # 276
-        ("readings", WireReading * READINGS_MAX),  # 280
-        ("unknown", fixed_text(60)),  # 13080
+        ("gesture", WireGesture),  # 232
+        ("scene_key", ctypes.c_uint64),  # 264
+        ("onset_ns", ctypes.c_uint64),  # 272
+        ("end_ns", ctypes.c_uint64),  # 280
+        ("accepted_ns", ctypes.c_uint64),  # 288
+        ("grounded_ns", ctypes.c_uint64),  # 296
+        ("reading_count", ctypes.c_uint8),  # 304
+        ("asked_count", ctypes.c_uint8),  # 305
+        ("source", ctypes.c_uint8),  # 306
+        ("unknown_role", ctypes.c_uint8),  # 307
+        ("reserved", ctypes.c_uint8 * 4),  # 308
+        ("readings", WireReading * READINGS_MAX),  # 312
+        ("unknown", fixed_text(60)),  # 13112
     ]
 
 
@@ -740,8 +746,8 @@ class RobotAct(Message):
     """The policy's standing decision. Policy to speech and arm, sent again until superseded."""
 
     wire_name = "RobotAct"
-    wire_size = 320
-    schema_key = "f113b0563d170970"
+    wire_size = 328
+    schema_key = "20eaa69401043a69"
     act: int
     """`ActId`."""
     interaction: int
@@ -778,12 +784,12 @@ class RobotAct(Message):
         ("kind", ctypes.c_uint8),  # 28
         ("reserved", ctypes.c_uint8 * 3),  # 29
         ("question", WireQuestion),  # 32
-        ("object", ctypes.c_uint32),  # 40
-        ("attempt", ctypes.c_uint32),  # 44
-        ("scene_key", ctypes.c_uint64),  # 48
-        ("decided_ns", ctypes.c_uint64),  # 56
-        ("utterance", ctypes.c_uint64),  # 64
-        ("text", fixed_text(244)),  # 72
+        ("object", ctypes.c_uint32),  # 48
+        ("attempt", ctypes.c_uint32),  # 52
+        ("scene_key", ctypes.c_uint64),  # 56
+        ("decided_ns", ctypes.c_uint64),  # 64
+        ("utterance", ctypes.c_uint64),  # 72
+        ("text", fixed_text(244)),  # 80
     ]
 
 
@@ -1450,7 +1456,7 @@ class QuestionAttribute(Question):
     attribute: AttributeId
     """The attribute asked about."""
     value: ValueId
-    """The value asked about, its place in the attribute's list."""
+    """The value asked about, its place in the attribute's list; of a choice the first."""
 
 
 @encoding.struct(
@@ -1464,7 +1470,21 @@ class QuestionWhich(Question):
     """The attribute asked about."""
 
 
-Question_ENCODING = encoding.Variants({0: QuestionNone, 1: QuestionPoint, 2: QuestionAttribute, 3: QuestionWhich})
+@encoding.struct(
+    attribute=AttributeId_ENCODING,
+    value=encoding.Sequence(ValueId_ENCODING),
+)
+@dataclass(frozen=True)
+class QuestionChoice(Question):
+    """'v, w or x?': which of these values of k."""
+
+    attribute: AttributeId
+    """The attribute asked about."""
+    value: list[ValueId]
+    """The value asked about, its place in the attribute's list; of a choice the first."""
+
+
+Question_ENCODING = encoding.Variants({0: QuestionNone, 1: QuestionPoint, 2: QuestionAttribute, 3: QuestionWhich, 4: QuestionChoice})
 
 
 class Action:
@@ -1932,7 +1952,7 @@ class PolicyView:
     """The planner that decides, by its name."""
 
 
-PolicyView.wire_name, PolicyView.schema_key = "PolicyView", "d8a348a20319b747"
+PolicyView.wire_name, PolicyView.schema_key = "PolicyView", "920ce4b7ce504bda"
 
 
 @encoding.struct(
