@@ -60,8 +60,8 @@ impl DecisionProblem<'_> {
             Action::Ask(Question::Attribute(..)) => costs.attribute_s,
             Action::Ask(Question::Which(_)) => costs.which_s,
             Action::Ask(question @ Question::Choice(..)) => {
-                let answers = Naming::of(self.model, question).map_or(1, |law| law.answers);
-                costs.choice_s + costs.option_s * (answers as f64 - 1.0)
+                let answers = Naming::of(self.model, question).map_or(2, |law| law.answers);
+                costs.choice_s + costs.option_s * answers.saturating_sub(2) as f64
             }
             Action::Ask(Question::Point(_)) => costs.point_s,
             Action::Pick(_) => 0.0,

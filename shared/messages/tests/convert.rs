@@ -129,7 +129,7 @@ proptest! {
             Question::Point(ObjectId(i)),
             Question::Attribute(AttributeId(k), ValueId(v)),
             Question::Which(AttributeId(k)),
-            Question::Choice(AttributeId(k), Options::new(&[v, v ^ 1, v ^ 2].map(ValueId)).unwrap()),
+            Question::Choice(AttributeId(k), Options::new(&[v % 252, v % 252 + 1, v % 252 + 2].map(ValueId)).unwrap()),
         ] {
             prop_assert_eq!(Question::try_from(WireQuestion::from(question)), Ok(question));
         }

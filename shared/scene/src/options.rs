@@ -15,8 +15,10 @@ pub struct Options {
 impl Options {
     /// Most values that people keep in mind.
     pub const MAX: usize = 4;
+    /// Values from this one on are not offered: messages have a byte for each.
+    pub const VALUES_MAX: u16 = 255;
 
-    /// Sorts the values; none if they are not two to four different ones.
+    /// Sorts the values; none if they are not two to four different ones below [`Self::VALUES_MAX`].
     pub fn new(values: &[ValueId]) -> Option<Self> {
         Self::of(values).filter(|options| options.count >= 2)
     }
@@ -27,7 +29,8 @@ impl Options {
         kept.get_mut(..values.len())?.copy_from_slice(values);
         let used = &mut kept[..values.len()];
         used.sort_unstable();
-        let differ = !used.is_empty() && used.windows(2).all(|pair| pair[0] != pair[1]);
+        let last = used.last().is_some_and(|last| last.0 < Self::VALUES_MAX);
+        let differ = last && used.windows(2).all(|pair| pair[0] != pair[1]);
         differ.then_some(Self { values: kept, count: values.len() as u8 })
     }
 
@@ -68,7 +71,7 @@ mod tests {
             let values: Vec<ValueId> = values.iter().copied().map(ValueId).collect();
             Options::new(&values)
         };
-        for wrong in [&[][..], &[1], &[1, 1], &[0, 1, 2, 3, 4], &[2, 0, 2]] {
+        for wrong in [&[][..], &[1], &[1, 1], &[0, 1, 2, 3, 4], &[2, 0, 2], &[0, 255]] {
             assert_eq!(of(wrong), None, "{wrong:?}");
         }
         let three = of(&[7, 0, 3]).unwrap();

@@ -473,26 +473,22 @@ WHICHONE_ASSERT(offsetof(whichone_stamp_t, sequence) == 20, "offset of Stamp.seq
 typedef struct whichone_question {
     /** 0 none, 1 point, 2 attribute, 3 which, 4 choice. */
     uint16_t kind;
-    /** The object pointed at. */
+    /** The object pointed at; of a choice its first two values, each plus 1, a byte each, the lower
+    first. */
     uint16_t object;
     /** The attribute asked about. */
     uint16_t attribute;
-    /** The value asked about, its place in the attribute's list; of a choice the first. */
+    /** The value asked about, its place in the attribute's list; of a choice its other values in the same
+    way, 0 for none. */
     uint16_t value;
-    /** The other values of a choice, zero where there are fewer. */
-    uint16_t further[3];
-    /** Number of values of a choice, else 0. */
-    uint16_t options;
 } whichone_question_t;
-WHICHONE_ASSERT(sizeof(whichone_question_t) == 16, "size of Question");
+WHICHONE_ASSERT(sizeof(whichone_question_t) == 8, "size of Question");
 WHICHONE_ASSERT(offsetof(whichone_question_t, kind) == 0, "offset of Question.kind");
 WHICHONE_ASSERT(offsetof(whichone_question_t, object) == 2, "offset of Question.object");
 WHICHONE_ASSERT(offsetof(whichone_question_t, attribute) == 4, "offset of Question.attribute");
 WHICHONE_ASSERT(offsetof(whichone_question_t, value) == 6, "offset of Question.value");
-WHICHONE_ASSERT(offsetof(whichone_question_t, further) == 8, "offset of Question.further");
-WHICHONE_ASSERT(offsetof(whichone_question_t, options) == 14, "offset of Question.options");
 #define WHICHONE_QUESTION_TYPE "Question"
-#define WHICHONE_QUESTION_SCHEMA "b9ff7779db05fdd4"
+#define WHICHONE_QUESTION_SCHEMA "a0c8de0a2f4eaa8d"
 
 /** A pointing gesture, or none. */
 typedef struct whichone_gesture {
@@ -529,17 +525,17 @@ typedef struct whichone_asked_question {
     /** Zero. */
     uint8_t reserved[3];
 } whichone_asked_question_t;
-WHICHONE_ASSERT(sizeof(whichone_asked_question_t) == 56, "size of AskedQuestion");
+WHICHONE_ASSERT(sizeof(whichone_asked_question_t) == 48, "size of AskedQuestion");
 WHICHONE_ASSERT(offsetof(whichone_asked_question_t, prompt) == 0, "offset of AskedQuestion.prompt");
 WHICHONE_ASSERT(offsetof(whichone_asked_question_t, scene) == 8, "offset of AskedQuestion.scene");
 WHICHONE_ASSERT(offsetof(whichone_asked_question_t, began_ns) == 16, "offset of AskedQuestion.began_ns");
 WHICHONE_ASSERT(offsetof(whichone_asked_question_t, ended_ns) == 24, "offset of AskedQuestion.ended_ns");
 WHICHONE_ASSERT(offsetof(whichone_asked_question_t, question) == 32, "offset of AskedQuestion.question");
-WHICHONE_ASSERT(offsetof(whichone_asked_question_t, presentation) == 48, "offset of AskedQuestion.presentation");
-WHICHONE_ASSERT(offsetof(whichone_asked_question_t, whole) == 52, "offset of AskedQuestion.whole");
-WHICHONE_ASSERT(offsetof(whichone_asked_question_t, reserved) == 53, "offset of AskedQuestion.reserved");
+WHICHONE_ASSERT(offsetof(whichone_asked_question_t, presentation) == 40, "offset of AskedQuestion.presentation");
+WHICHONE_ASSERT(offsetof(whichone_asked_question_t, whole) == 44, "offset of AskedQuestion.whole");
+WHICHONE_ASSERT(offsetof(whichone_asked_question_t, reserved) == 45, "offset of AskedQuestion.reserved");
 #define WHICHONE_ASKED_QUESTION_TYPE "AskedQuestion"
-#define WHICHONE_ASKED_QUESTION_SCHEMA "f359eb03e3cd3bf8"
+#define WHICHONE_ASKED_QUESTION_SCHEMA "2a0adff7531884c8"
 
 /** A `Hypothesis` on the wire: where its words lie in the utterance's text, and how sure it is. */
 typedef struct whichone_hypothesis {
@@ -647,21 +643,21 @@ typedef struct whichone_utterance {
     /** The text of all hypotheses, one after another. */
     whichone_text_16380_t text;
 } whichone_utterance_t;
-WHICHONE_ASSERT(sizeof(whichone_utterance_t) == 16920, "size of Utterance");
+WHICHONE_ASSERT(sizeof(whichone_utterance_t) == 16888, "size of Utterance");
 WHICHONE_ASSERT(offsetof(whichone_utterance_t, seq) == 0, "offset of Utterance.seq");
 WHICHONE_ASSERT(offsetof(whichone_utterance_t, asked) == 8, "offset of Utterance.asked");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, gesture) == 232, "offset of Utterance.gesture");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, onset_ns) == 264, "offset of Utterance.onset_ns");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, end_ns) == 272, "offset of Utterance.end_ns");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, accepted_ns) == 280, "offset of Utterance.accepted_ns");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, source) == 288, "offset of Utterance.source");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, hypothesis_count) == 289, "offset of Utterance.hypothesis_count");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, asked_count) == 290, "offset of Utterance.asked_count");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, reserved) == 291, "offset of Utterance.reserved");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, hypotheses) == 296, "offset of Utterance.hypotheses");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, text) == 536, "offset of Utterance.text");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, gesture) == 200, "offset of Utterance.gesture");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, onset_ns) == 232, "offset of Utterance.onset_ns");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, end_ns) == 240, "offset of Utterance.end_ns");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, accepted_ns) == 248, "offset of Utterance.accepted_ns");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, source) == 256, "offset of Utterance.source");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, hypothesis_count) == 257, "offset of Utterance.hypothesis_count");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, asked_count) == 258, "offset of Utterance.asked_count");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, reserved) == 259, "offset of Utterance.reserved");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, hypotheses) == 264, "offset of Utterance.hypotheses");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, text) == 504, "offset of Utterance.text");
 #define WHICHONE_UTTERANCE_TYPE "Utterance"
-#define WHICHONE_UTTERANCE_SCHEMA "2778c37ef9a6cb8e"
+#define WHICHONE_UTTERANCE_SCHEMA "1f26d4dc29c15403"
 
 /** The interpretation of an utterance. Grounding to policy, one for each utterance. */
 typedef struct whichone_observation {
@@ -696,24 +692,24 @@ typedef struct whichone_observation {
     /** A word that the scene does not have, for the robot's reply ("plate"); may be empty. */
     whichone_text_60_t unknown;
 } whichone_observation_t;
-WHICHONE_ASSERT(sizeof(whichone_observation_t) == 13176, "size of Observation");
+WHICHONE_ASSERT(sizeof(whichone_observation_t) == 13144, "size of Observation");
 WHICHONE_ASSERT(offsetof(whichone_observation_t, seq) == 0, "offset of Observation.seq");
 WHICHONE_ASSERT(offsetof(whichone_observation_t, asked) == 8, "offset of Observation.asked");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, gesture) == 232, "offset of Observation.gesture");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, scene_key) == 264, "offset of Observation.scene_key");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, onset_ns) == 272, "offset of Observation.onset_ns");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, end_ns) == 280, "offset of Observation.end_ns");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, accepted_ns) == 288, "offset of Observation.accepted_ns");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, grounded_ns) == 296, "offset of Observation.grounded_ns");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, reading_count) == 304, "offset of Observation.reading_count");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, asked_count) == 305, "offset of Observation.asked_count");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, source) == 306, "offset of Observation.source");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, unknown_role) == 307, "offset of Observation.unknown_role");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, reserved) == 308, "offset of Observation.reserved");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, readings) == 312, "offset of Observation.readings");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, unknown) == 13112, "offset of Observation.unknown");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, gesture) == 200, "offset of Observation.gesture");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, scene_key) == 232, "offset of Observation.scene_key");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, onset_ns) == 240, "offset of Observation.onset_ns");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, end_ns) == 248, "offset of Observation.end_ns");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, accepted_ns) == 256, "offset of Observation.accepted_ns");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, grounded_ns) == 264, "offset of Observation.grounded_ns");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, reading_count) == 272, "offset of Observation.reading_count");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, asked_count) == 273, "offset of Observation.asked_count");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, source) == 274, "offset of Observation.source");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, unknown_role) == 275, "offset of Observation.unknown_role");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, reserved) == 276, "offset of Observation.reserved");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, readings) == 280, "offset of Observation.readings");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, unknown) == 13080, "offset of Observation.unknown");
 #define WHICHONE_OBSERVATION_TYPE "Observation"
-#define WHICHONE_OBSERVATION_SCHEMA "c5ceebf880473750"
+#define WHICHONE_OBSERVATION_SCHEMA "0f13a3d2de61ee5b"
 
 /** The highest utterance that the belief holds. Policy to speech. */
 typedef struct whichone_applied_mark {
@@ -755,7 +751,7 @@ typedef struct whichone_robot_act {
     /** Text to say. */
     whichone_text_244_t text;
 } whichone_robot_act_t;
-WHICHONE_ASSERT(sizeof(whichone_robot_act_t) == 328, "size of RobotAct");
+WHICHONE_ASSERT(sizeof(whichone_robot_act_t) == 320, "size of RobotAct");
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, act) == 0, "offset of RobotAct.act");
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, interaction) == 8, "offset of RobotAct.interaction");
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, prompt) == 16, "offset of RobotAct.prompt");
@@ -763,14 +759,14 @@ WHICHONE_ASSERT(offsetof(whichone_robot_act_t, presentation) == 24, "offset of R
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, kind) == 28, "offset of RobotAct.kind");
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, reserved) == 29, "offset of RobotAct.reserved");
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, question) == 32, "offset of RobotAct.question");
-WHICHONE_ASSERT(offsetof(whichone_robot_act_t, object) == 48, "offset of RobotAct.object");
-WHICHONE_ASSERT(offsetof(whichone_robot_act_t, attempt) == 52, "offset of RobotAct.attempt");
-WHICHONE_ASSERT(offsetof(whichone_robot_act_t, scene_key) == 56, "offset of RobotAct.scene_key");
-WHICHONE_ASSERT(offsetof(whichone_robot_act_t, decided_ns) == 64, "offset of RobotAct.decided_ns");
-WHICHONE_ASSERT(offsetof(whichone_robot_act_t, utterance) == 72, "offset of RobotAct.utterance");
-WHICHONE_ASSERT(offsetof(whichone_robot_act_t, text) == 80, "offset of RobotAct.text");
+WHICHONE_ASSERT(offsetof(whichone_robot_act_t, object) == 40, "offset of RobotAct.object");
+WHICHONE_ASSERT(offsetof(whichone_robot_act_t, attempt) == 44, "offset of RobotAct.attempt");
+WHICHONE_ASSERT(offsetof(whichone_robot_act_t, scene_key) == 48, "offset of RobotAct.scene_key");
+WHICHONE_ASSERT(offsetof(whichone_robot_act_t, decided_ns) == 56, "offset of RobotAct.decided_ns");
+WHICHONE_ASSERT(offsetof(whichone_robot_act_t, utterance) == 64, "offset of RobotAct.utterance");
+WHICHONE_ASSERT(offsetof(whichone_robot_act_t, text) == 72, "offset of RobotAct.text");
 #define WHICHONE_ROBOT_ACT_TYPE "RobotAct"
-#define WHICHONE_ROBOT_ACT_SCHEMA "20eaa69401043a69"
+#define WHICHONE_ROBOT_ACT_SCHEMA "f113b0563d170970"
 
 /** The latest prompt that was said. Speech to policy. */
 typedef struct whichone_presented {

@@ -17,7 +17,7 @@ pub struct Costs {
     pub attribute_s: f64,
     /// Cost of an open question about an attribute, seconds.
     pub which_s: f64,
-    /// Cost of a choice question with a single answer, seconds.
+    /// Cost of a choice between two answers, seconds.
     pub choice_s: f64,
     /// Cost of every further answer that it offers, "neither" included, seconds.
     pub option_s: f64,

@@ -83,8 +83,6 @@ fn question(rng: &mut Rng) -> WireQuestion {
         object: part(rng),
         attribute: part(rng),
         value: part(rng),
-        further: std::array::from_fn(|_| part(rng)),
-        options: [0, 2, 4, u16::MAX][rng.below(4)],
     }
 }
 

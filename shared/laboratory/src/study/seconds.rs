@@ -3,7 +3,7 @@
 use command_line::output::table;
 use scene::{ObjectId, Question};
 use serde_json::{Value as Json, json};
-use vocabulary::Action;
+use vocabulary::{Action, Durations};
 
 use super::setup::Setup;
 
@@ -25,7 +25,7 @@ pub(super) fn lines(setup: &Setup) -> Vec<String> {
     let rows: Vec<_> = questions
         .iter()
         .map(|question| {
-            let whole_s = durations.question_s(*question).unwrap_or_default();
+            let whole_s = whole_s(setup, &durations, *question);
             let cost = room.problem.cost(Action::Ask(*question));
             let [said, whole, cost] = [said_s(*question), whole_s, cost].map(two_digits);
             vec![room.scene.phrase(*question), said, whole, cost]
@@ -57,7 +57,7 @@ pub(super) fn to_json(setup: &Setup) -> Json {
             "question": scene::question_to_json(room.scene, question),
             "say_s": room.voice.seconds(&text),
             "text": text,
-            "seconds": durations.question_s(question),
+            "seconds": whole_s(setup, &durations, question),
         })
     };
     let object = |i: ObjectId| {
@@ -74,6 +74,12 @@ pub(super) fn to_json(setup: &Setup) -> Json {
         "questions": spoken(setup).map(question).collect::<Vec<_>>(),
         "objects": objects.map(object).collect::<Vec<_>>(),
     })
+}
+
+/// Seconds of a question in words up to its answer; of a choice, which has no cost of its own, by its words.
+fn whole_s(setup: &Setup, durations: &Durations, question: Question) -> f64 {
+    let said_s = || setup.room().voice.seconds(&setup.room().scene.phrase(question));
+    durations.question_s(question).unwrap_or_else(|| said_s() + setup.answer_s())
 }
 
 /// Returns the questions in words alone.

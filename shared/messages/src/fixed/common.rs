@@ -28,16 +28,13 @@ wire_struct! {
     WireQuestion = "Question" {
         /// 0 none, 1 point, 2 attribute, 3 which, 4 choice.
         kind: u16,
-        /// The object pointed at.
+        /// The object pointed at; of a choice its first two values, each plus 1, a byte each, the lower first.
         object: u16,
         /// The attribute asked about.
         attribute: u16,
-        /// The value asked about, its place in the attribute's list; of a choice the first.
+        /// The value asked about, its place in the attribute's list; of a choice its other values in the
+        /// same way, 0 for none.
         value: u16,
-        /// The other values of a choice, zero where there are fewer.
-        further: [u16; 3],
-        /// Number of values of a choice, else 0.
-        options: u16,
     }
 }
 
@@ -48,16 +45,26 @@ impl From<Question> for WireQuestion {
             Question::Point(i) => (1, i.0, 0, 0),
             Question::Attribute(k, v) => (2, 0, k.0, v.0),
             Question::Which(k) => (3, 0, k.0, 0),
-            Question::Choice(k, options) => (4, 0, k.0, options.values()[0].0),
+            Question::Choice(k, options) => {
+                let [first, second] = packed(options);
+                (4, first, k.0, second)
+            }
         };
-        let mut wire = Self { kind, object, attribute, value, ..Self::default() };
-        if let Question::Choice(_, options) = question {
-            wire.options = options.values().len() as u16;
-            let further = options.values().iter().skip(1);
-            wire.further.iter_mut().zip(further).for_each(|(slot, v)| *slot = v.0);
-        }
-        wire
+        Self { kind, object, attribute, value }
     }
+}
+
+/// The values of a choice, each plus 1, a byte each and the lower byte first; 0 where there are fewer than four.
+fn packed(options: Options) -> [u16; 2] {
+    let mut bytes = [0; Options::MAX];
+    bytes.iter_mut().zip(options.values()).for_each(|(byte, v)| *byte = v.0 as u8 + 1);
+    [u16::from_le_bytes([bytes[0], bytes[1]]), u16::from_le_bytes([bytes[2], bytes[3]])]
+}
+
+fn unpacked(packed: [u16; 2]) -> Option<Options> {
+    let bytes = packed.into_iter().flat_map(u16::to_le_bytes);
+    let used = bytes.filter_map(|byte| byte.checked_sub(1));
+    Options::new(&used.map(|v| ValueId(v.into())).collect::<Vec<_>>())
 }
 
 /// Whether the scene has the question is for the reader to check.
@@ -71,10 +78,8 @@ impl TryFrom<WireQuestion> for Question {
             2 => Ok(Self::Attribute(AttributeId(wire.attribute), ValueId(wire.value))),
             3 => Ok(Self::Which(AttributeId(wire.attribute))),
             4 => {
-                let [second, third, fourth] = wire.further;
-                let values = [wire.value, second, third, fourth].map(ValueId);
-                let options = values.get(..usize::from(wire.options)).and_then(Options::new);
-                let options = options.ok_or(WireError::new("options", wire.options.into()))?;
+                let options = unpacked([wire.object, wire.value]);
+                let options = options.ok_or(WireError::new("options", wire.value.into()))?;
                 Ok(Self::Choice(AttributeId(wire.attribute), options))
             }
             kind => Err(WireError::new("question kind", kind.into())),

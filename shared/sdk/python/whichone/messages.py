@@ -458,28 +458,23 @@ class WireQuestion(Message):
     """A `Question` on the wire."""
 
     wire_name = "Question"
-    wire_size = 16
-    schema_key = "b9ff7779db05fdd4"
+    wire_size = 8
+    schema_key = "a0c8de0a2f4eaa8d"
     kind: int
     """0 none, 1 point, 2 attribute, 3 which, 4 choice."""
     object: int
-    """The object pointed at."""
+    """The object pointed at; of a choice its first two values, each plus 1, a byte each, the lower first."""
     attribute: int
     """The attribute asked about."""
     value: int
-    """The value asked about, its place in the attribute's list; of a choice the first."""
-    further: Array[int]
-    """The other values of a choice, zero where there are fewer."""
-    options: int
-    """Number of values of a choice, else 0."""
+    """The value asked about, its place in the attribute's list; of a choice its other values in the same way,
+    0 for none."""
     codes = {}
     _fields_ = [
         ("kind", ctypes.c_uint16),  # 0
         ("object", ctypes.c_uint16),  # 2
         ("attribute", ctypes.c_uint16),  # 4
         ("value", ctypes.c_uint16),  # 6
-        ("further", ctypes.c_uint16 * 3),  # 8
-        ("options", ctypes.c_uint16),  # 14
     ]
 
 
@@ -507,8 +502,8 @@ class AskedQuestion(Message):
     """A question as it was put to the person: one presentation of a prompt."""
 
     wire_name = "AskedQuestion"
-    wire_size = 56
-    schema_key = "f359eb03e3cd3bf8"
+    wire_size = 48
+    schema_key = "2a0adff7531884c8"
     prompt: int
     """`PromptId`."""
     scene: int
@@ -532,9 +527,9 @@ class AskedQuestion(Message):
         ("began_ns", ctypes.c_uint64),  # 16
         ("ended_ns", ctypes.c_uint64),  # 24
         ("question", WireQuestion),  # 32
-        ("presentation", ctypes.c_uint32),  # 48
-        ("whole", ctypes.c_uint8),  # 52
-        ("reserved", ctypes.c_uint8 * 3),  # 53
+        ("presentation", ctypes.c_uint32),  # 40
+        ("whole", ctypes.c_uint8),  # 44
+        ("reserved", ctypes.c_uint8 * 3),  # 45
     ]
 
 
@@ -629,8 +624,8 @@ class Utterance(Message):
     """An accepted utterance. Speech to grounding."""
 
     wire_name = "Utterance"
-    wire_size = 16920
-    schema_key = "2778c37ef9a6cb8e"
+    wire_size = 16888
+    schema_key = "1f26d4dc29c15403"
     seq: int
     """`UtteranceSeq`."""
     asked: Array[AskedQuestion]
@@ -659,16 +654,16 @@ class Utterance(Message):
     _fields_ = [
         ("seq", ctypes.c_uint64),  # 0
         ("asked", AskedQuestion * ASKED_MAX),  # 8
-        ("gesture", WireGesture),  # 232
-        ("onset_ns", ctypes.c_uint64),  # 264
-        ("end_ns", ctypes.c_uint64),  # 272
-        ("accepted_ns", ctypes.c_uint64),  # 280
-        ("source", ctypes.c_uint8),  # 288
-        ("hypothesis_count", ctypes.c_uint8),  # 289
-        ("asked_count", ctypes.c_uint8),  # 290
-        ("reserved", ctypes.c_uint8 * 5),  # 291
-        ("hypotheses", WireHypothesis * HYPOTHESES_MAX),  # 296
-        ("text", fixed_text(16380)),  # 536
+        ("gesture", WireGesture),  # 200
+        ("onset_ns", ctypes.c_uint64),  # 232
+        ("end_ns", ctypes.c_uint64),  # 240
+        ("accepted_ns", ctypes.c_uint64),  # 248
+        ("source", ctypes.c_uint8),  # 256
+        ("hypothesis_count", ctypes.c_uint8),  # 257
+        ("asked_count", ctypes.c_uint8),  # 258
+        ("reserved", ctypes.c_uint8 * 5),  # 259
+        ("hypotheses", WireHypothesis * HYPOTHESES_MAX),  # 264
+        ("text", fixed_text(16380)),  # 504
     ]
 
 
@@ -676,8 +671,8 @@ class Observation(Message):
     """The interpretation of an utterance. Grounding to policy, one for each utterance."""
 
     wire_name = "Observation"
-    wire_size = 13176
-    schema_key = "c5ceebf880473750"
+    wire_size = 13144
+    schema_key = "0f13a3d2de61ee5b"
     seq: int
     """The utterance's `UtteranceSeq`."""
     asked: Array[AskedQuestion]
@@ -712,19 +707,19 @@ class Observation(Message):
     _fields_ = [
         ("seq", ctypes.c_uint64),  # 0
         ("asked", AskedQuestion * ASKED_MAX),  # 8
-        ("gesture", WireGesture),  # 232
-        ("scene_key", ctypes.c_uint64),  # 264
-        ("onset_ns", ctypes.c_uint64),  # 272
-        ("end_ns", ctypes.c_uint64),  # 280
-        ("accepted_ns", ctypes.c_uint64),  # 288
-        ("grounded_ns", ctypes.c_uint64),  # 296
-        ("reading_count", ctypes.c_uint8),  # 304
-        ("asked_count", ctypes.c_uint8),  # 305
-        ("source", ctypes.c_uint8),  # 306
-        ("unknown_role", ctypes.c_uint8),  # 307
-        ("reserved", ctypes.c_uint8 * 4),  # 308
-        ("readings", WireReading * READINGS_MAX),  # 312
-        ("unknown", fixed_text(60)),  # 13112
+        ("gesture", WireGesture),  # 200
+        ("scene_key", ctypes.c_uint64),  # 232
+        ("onset_ns", ctypes.c_uint64),  # 240
+        ("end_ns", ctypes.c_uint64),  # 248
+        ("accepted_ns", ctypes.c_uint64),  # 256
+        ("grounded_ns", ctypes.c_uint64),  # 264
+        ("reading_count", ctypes.c_uint8),  # 272
+        ("asked_count", ctypes.c_uint8),  # 273
+        ("source", ctypes.c_uint8),  # 274
+        ("unknown_role", ctypes.c_uint8),  # 275
+        ("reserved", ctypes.c_uint8 * 4),  # 276
+        ("readings", WireReading * READINGS_MAX),  # 280
+        ("unknown", fixed_text(60)),  # 13080
     ]
 
 
@@ -746,8 +741,8 @@ class RobotAct(Message):
     """The policy's standing decision. Policy to speech and arm, sent again until superseded."""
 
     wire_name = "RobotAct"
-    wire_size = 328
-    schema_key = "20eaa69401043a69"
+    wire_size = 320
+    schema_key = "f113b0563d170970"
     act: int
     """`ActId`."""
     interaction: int
@@ -784,12 +779,12 @@ class RobotAct(Message):
         ("kind", ctypes.c_uint8),  # 28
         ("reserved", ctypes.c_uint8 * 3),  # 29
         ("question", WireQuestion),  # 32
-        ("object", ctypes.c_uint32),  # 48
-        ("attempt", ctypes.c_uint32),  # 52
-        ("scene_key", ctypes.c_uint64),  # 56
-        ("decided_ns", ctypes.c_uint64),  # 64
-        ("utterance", ctypes.c_uint64),  # 72
-        ("text", fixed_text(244)),  # 80
+        ("object", ctypes.c_uint32),  # 40
+        ("attempt", ctypes.c_uint32),  # 44
+        ("scene_key", ctypes.c_uint64),  # 48
+        ("decided_ns", ctypes.c_uint64),  # 56
+        ("utterance", ctypes.c_uint64),  # 64
+        ("text", fixed_text(244)),  # 72
     ]
 
 
@@ -1442,7 +1437,7 @@ class QuestionPoint(Question):
     """'This one?', pointing at the object."""
 
     object: ObjectId
-    """The object pointed at."""
+    """The object pointed at; of a choice its first two values, each plus 1, a byte each, the lower first."""
 
 
 @encoding.struct(
@@ -1456,7 +1451,8 @@ class QuestionAttribute(Question):
     attribute: AttributeId
     """The attribute asked about."""
     value: ValueId
-    """The value asked about, its place in the attribute's list; of a choice the first."""
+    """The value asked about, its place in the attribute's list; of a choice its other values in the same way,
+    0 for none."""
 
 
 @encoding.struct(
@@ -1481,7 +1477,8 @@ class QuestionChoice(Question):
     attribute: AttributeId
     """The attribute asked about."""
     value: list[ValueId]
-    """The value asked about, its place in the attribute's list; of a choice the first."""
+    """The value asked about, its place in the attribute's list; of a choice its other values in the same way,
+    0 for none."""
 
 
 Question_ENCODING = encoding.Variants({0: QuestionNone, 1: QuestionPoint, 2: QuestionAttribute, 3: QuestionWhich, 4: QuestionChoice})

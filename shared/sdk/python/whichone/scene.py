@@ -66,8 +66,8 @@ class Scene:
             case m.WireQuestion(kind=1):
                 return f"{self.objects[question.object]}?"
             case m.WireQuestion(kind=4):
-                options = [question.value, *question.further][:question.options]
-                return self._options(question.attribute, options)
+                packed = question.object | question.value << 16
+                return self._options(question.attribute, [byte - 1 for byte in packed.to_bytes(4, "little") if byte])
             case m.WireQuestion(kind=2 | 3):
                 name, listed = list(self.values.items())[question.attribute]
                 return f"{name} {listed[question.value]}?" if question.kind == 2 else f"which {name}?"
