@@ -6,6 +6,7 @@
 mod absence;
 mod batch;
 mod camera;
+mod choices;
 mod config;
 mod conform;
 mod console;

@@ -183,10 +183,10 @@ fn hear(
 
 #[cfg(test)]
 mod tests {
-    use vocabulary::{Actions, Costs, Mode, Params};
+    use vocabulary::{Actions, Costs, Mode, Params, Reliability};
 
     use super::*;
-    use crate::testing::{bowls, markers};
+    use crate::testing::{bowls, markers, scene};
     use crate::{Lookahead, Model, registry};
 
     const YES_NO: Actions =
@@ -207,6 +207,25 @@ mod tests {
         assert!((found.success - 0.99).abs() < 1e-9, "{found:?}");
         assert!((found.questions - 1.0 / 0.95).abs() < 1e-6, "{found:?}");
         assert!(found.cut < 1e-8 && found.waiting == 0.0);
+    }
+
+    /// "Red, blue or green?" until answered, then a pick: `V = −4.7 + 0.99 (0.9 (0.98·50 − 0.02·100) + 0.1 V)`.
+    #[test]
+    fn a_choice_among_three_by_hand() {
+        let scene = scene(
+            r#"{"objects":[{"name":"a","attributes":{"color":"red"}},
+                {"name":"b","attributes":{"color":"blue"}},
+                {"name":"c","attributes":{"color":"green"}}]}"#,
+        );
+        let choice = Some(Reliability { p_l: 0.9, epsilon: 0.02 });
+        let model = Model::new(&scene, Params { choice, ..Params::default() });
+        let actions = Actions { choice: true, ..YES_NO };
+        let problem = DecisionProblem { actions, ..problem(&model) };
+        let found = evaluate(&mut Lookahead::default(), &problem, &Belief::uniform(3), 1e-9);
+        let value = (-4.7 + 0.99 * 0.9 * 47.0) / (1.0 - 0.99 * 0.1);
+        assert!((found.value - value).abs() < 1e-6, "{found:?} not {value}");
+        assert!((found.success - 0.98).abs() < 1e-9, "{found:?}");
+        assert!((found.questions - 1.0 / 0.9).abs() < 1e-6, "{found:?}");
     }
 
     #[test]

@@ -105,13 +105,16 @@ impl Manager {
         Content::Question { variant: prompt.0, time, choices, is_last }
     }
 
-    /// Returns the values that the wanted object may have for the attribute of an open question, in their
-    /// spoken form; none where there are too many.
+    /// Returns the values that the wanted object may have for the attribute in question, in their spoken form;
+    /// none where there are too many. Those of a yes/no question are recorded, and not said.
     fn choices(&self, belief: &Belief, question: Question) -> Vec<String> {
-        let Question::Which(k) = question else { return Vec::new() };
+        let (Question::Attribute(k, _) | Question::Which(k)) = question else { return Vec::new() };
         let scene = &self.setup.scene;
         let values = &scene.attributes()[k.index()].values;
         let mut is_left = vec![false; values.len()];
+        if let Question::Attribute(_, v) = question {
+            is_left[v.index()] = true;
+        }
         for object in self.left(belief) {
             if let Some(v) = scene.object(object).values[k.index()] {
                 is_left[v.index()] = true;

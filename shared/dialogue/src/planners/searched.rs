@@ -69,11 +69,9 @@ fn certify(
     searched.min(upper).max(lower)
 }
 
-/// Beliefs that are looked at with that much work, counted in classes looked at times attributes, and in blocks
-/// weighed where values are in doubt.
+/// Beliefs that are looked at with that much work, counted as [`Reduced::work`].
 pub(super) fn affordable(reduced: &Reduced, work: usize) -> usize {
-    let attributes: usize = reduced.partitions.iter().map(|partition| partition.work()).sum();
-    work / (2 * reduced.classes() + attributes)
+    work / reduced.work()
 }
 
 /// Dialogues less probable than this do not count towards the expected number of questions.

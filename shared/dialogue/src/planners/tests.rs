@@ -1,6 +1,6 @@
 use scene::{ObjectId, Question, Response, Scene};
 use serde_json::json;
-use vocabulary::{Actions, Costs, Mode, Params, Rng};
+use vocabulary::{Actions, Costs, Mode, Params, Reliability, Rng};
 
 use super::*;
 use crate::testing::{
@@ -66,6 +66,28 @@ fn the_bowls_are_solved() {
             (OPEN, [38.0755, 3.3147, 0.6893]),
         ],
     );
+}
+
+/// Values and questions that another solver found, rounded to two digits.
+#[test]
+fn choices_are_solved() {
+    let choice = Some(Reliability { p_l: 0.93, epsilon: 0.015 });
+    for (scene, optimum, questions) in [(bowls(), 36.35, 2.15), (tools(), 34.98, 2.17)] {
+        let model = Model::new(&scene, Params { choice, ..Params::default() });
+        let actions = Actions { choice: true, ..YES_NO };
+        let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
+        let belief = Belief::uniform(model.objects());
+        for name in ["lookahead", "optimal"] {
+            let mut planner = registry::planner(name).unwrap();
+            let found = evaluate(&mut *planner, &problem, &belief, 1e-4);
+            let slack = 0.01 + 150.0 * found.cut;
+            assert!((found.value - optimum).abs() < slack, "{name} {}: {found:?}", scene.name());
+            assert!((found.questions - questions).abs() < 0.01, "{name} {found:?}");
+            let (lower, upper) = planner.decide(&problem, &belief, Step::default()).bounds.unwrap();
+            assert!(lower < optimum + 0.005 && upper > optimum - 0.005, "{lower} {upper}");
+            assert!(upper - lower < 0.05, "{name} {}: {lower} {upper}", scene.name());
+        }
+    }
 }
 
 /// What is kept from one run to the next is what would be found again.

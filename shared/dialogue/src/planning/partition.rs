@@ -240,15 +240,17 @@ impl Partition {
 
     /// Number of blocks and classes that are weighed to judge every question about the attribute: the classes are
     /// summed into blocks once, and where a value is in doubt every answer weighs every block.
-    pub(crate) fn work(&self) -> usize {
+    pub(super) fn work(&self) -> usize {
         let (values, blocks) = (self.named().count(), self.values.len());
         // Yes and no to each value, each value by its name, and another one.
         let answers = if self.doubtful.is_empty() { 0 } else { 3 * values + 1 };
-        let offered = self.offers.iter().map(|offer| {
-            let answers = if self.doubtful.is_empty() { 1 } else { offer.answers().count() };
-            answers * blocks + offer.blocks.len()
-        });
-        self.blocks.len() + answers * blocks + offered.sum::<usize>()
+        self.blocks.len() + answers * blocks
+    }
+
+    /// Work to judge a choice: weighing a block takes as long as looking at four classes.
+    pub(super) fn offer_work(&self, offer: &Offer) -> usize {
+        let answers = if self.doubtful.is_empty() { 1 } else { offer.answers().count() };
+        4 * (answers * self.values.len() + offer.blocks.len())
     }
 
     /// Probability of yes, or no, to "is it in the block `asked`?" about classes in `block`; `is` and `not`

@@ -99,6 +99,19 @@ impl Reduced {
         self.classes() - self.doubles.iter().map(|run| run.len() - 1).sum::<usize>()
     }
 
+    /// Work of a look one step ahead, in classes looked at times attributes, and in blocks weighed.
+    pub(crate) fn work(&self) -> usize {
+        let offered = self.queries.iter().map(|query| match *query {
+            Query::Choice { partition, offer } => {
+                let partition = self.partition(partition);
+                partition.offer_work(partition.offer_at(offer))
+            }
+            _ => 0,
+        });
+        let attributes = self.partitions.iter().map(Partition::work);
+        2 * self.classes() + attributes.sum::<usize>() + offered.sum::<usize>()
+    }
+
     /// The question of the scene that a query stands for.
     pub(crate) fn question(&self, query: Query) -> Question {
         match query {

@@ -26,14 +26,14 @@ wire_struct! {
 wire_struct! {
     /// A [`Question`] on the wire.
     WireQuestion = "Question" {
-        /// 0 none, 1 point, 2 attribute, 3 which, 4 choice.
+        /// 0 none, 1 point, 2 attribute, 3 which, 4 choice; the values of a choice, each plus 1, are the bytes of
+        /// `object` and `value`, the lower one first, and 0 where there are fewer than four.
         kind: u16,
-        /// The object pointed at; of a choice its first two values, each plus 1, a byte each, the lower first.
+        /// The object pointed at.
         object: u16,
         /// The attribute asked about.
         attribute: u16,
-        /// The value asked about, its place in the attribute's list; of a choice its other values in the
-        /// same way, 0 for none.
+        /// The value asked about, its place in the attribute's list.
         value: u16,
     }
 }
@@ -54,7 +54,6 @@ impl From<Question> for WireQuestion {
     }
 }
 
-/// The values of a choice, each plus 1, a byte each and the lower byte first; 0 where there are fewer than four.
 fn packed(options: Options) -> [u16; 2] {
     let mut bytes = [0; Options::MAX];
     bytes.iter_mut().zip(options.values()).for_each(|(byte, v)| *byte = v.0 as u8 + 1);

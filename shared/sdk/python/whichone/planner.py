@@ -14,7 +14,8 @@ class Question:
     number: int
     """Its place in `Problem.questions`."""
     kind: str
-    """`attribute` ("Is it white?"), `which` ("What colour is it?"), or `point` ("This one?")."""
+    """`attribute` ("Is it white?"), `which` ("What colour is it?"), `choice` ("White or clear?"), or `point` ("This
+    one?")."""
     attribute: int | None
     """Number of the attribute in the scene."""
     value: int | None
@@ -23,9 +24,11 @@ class Question:
     """Number of the object that is pointed at."""
     cost: float
     """Its cost, a positive number in the unit of the picks' values."""
+    values: list[int]
+    """Numbers of the values of a choice, else empty."""
     answers: list[list[float]]
     """For each answer, silence the last, its probability given each object. Those of a yes/no question are yes, no,
-    silence."""
+    silence; those of a choice its options, "none of these" where that may be true, silence."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +98,7 @@ class Planner:
             request = json.loads(line)
             questions = [
                 Question(number, it["kind"], it.get("attribute"), it.get("value"), it.get("object"), it["cost"],
-                         it["answers"])
+                         it.get("values", []), it["answers"])
                 for number, it in enumerate(request.pop("questions"))]
             decision = self.decide(Problem(questions=questions, **request))
             reply = {"ask": decision.ask and decision.ask.number, "pick": decision.pick, "value": decision.value}
