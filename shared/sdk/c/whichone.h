@@ -471,15 +471,14 @@ WHICHONE_ASSERT(offsetof(whichone_stamp_t, sequence) == 20, "offset of Stamp.seq
 
 /** A `Question` on the wire. */
 typedef struct whichone_question {
-    /** 0 none, 1 point, 2 attribute, 3 which, 4 choice. */
+    /** 0 none, 1 point, 2 attribute, 3 which, 4 choice; the values of a choice, each plus 1, are the
+    bytes of `object` and `value`, the lower one first, and 0 where there are fewer than four. */
     uint16_t kind;
-    /** The object pointed at; of a choice its first two values, each plus 1, a byte each, the lower
-    first. */
+    /** The object pointed at. */
     uint16_t object;
     /** The attribute asked about. */
     uint16_t attribute;
-    /** The value asked about, its place in the attribute's list; of a choice its other values in the same
-    way, 0 for none. */
+    /** The value asked about, its place in the attribute's list. */
     uint16_t value;
 } whichone_question_t;
 WHICHONE_ASSERT(sizeof(whichone_question_t) == 8, "size of Question");

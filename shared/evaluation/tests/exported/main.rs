@@ -36,12 +36,13 @@ fn odd() -> Scene {
     scene(&json!({"objects": objects, "values": values}).to_string())
 }
 
-const ACTIONS: [Actions; 5] = [
+const ACTIONS: [Actions; 6] = [
     Actions { mode: Mode::Remote, attribute: true, which: true, choice: false },
     Actions { mode: Mode::Remote, attribute: true, which: false, choice: false },
     Actions { mode: Mode::Present, attribute: true, which: true, choice: false },
     Actions { mode: Mode::Present, attribute: false, which: false, choice: false },
     Actions { mode: Mode::Remote, attribute: false, which: false, choice: false },
+    Actions { mode: Mode::Remote, attribute: true, which: true, choice: true },
 ];
 
 fn for_every_problem(check: impl Fn(&Scene, &DecisionProblem<'_>, &Pomdp)) {

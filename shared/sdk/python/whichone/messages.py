@@ -461,14 +461,14 @@ class WireQuestion(Message):
     wire_size = 8
     schema_key = "a0c8de0a2f4eaa8d"
     kind: int
-    """0 none, 1 point, 2 attribute, 3 which, 4 choice."""
+    """0 none, 1 point, 2 attribute, 3 which, 4 choice; the values of a choice, each plus 1, are the bytes of
+    `object` and `value`, the lower one first, and 0 where there are fewer than four."""
     object: int
-    """The object pointed at; of a choice its first two values, each plus 1, a byte each, the lower first."""
+    """The object pointed at."""
     attribute: int
     """The attribute asked about."""
     value: int
-    """The value asked about, its place in the attribute's list; of a choice its other values in the same way,
-    0 for none."""
+    """The value asked about, its place in the attribute's list."""
     codes = {}
     _fields_ = [
         ("kind", ctypes.c_uint16),  # 0
@@ -1437,7 +1437,7 @@ class QuestionPoint(Question):
     """'This one?', pointing at the object."""
 
     object: ObjectId
-    """The object pointed at; of a choice its first two values, each plus 1, a byte each, the lower first."""
+    """The object pointed at."""
 
 
 @encoding.struct(
@@ -1451,8 +1451,7 @@ class QuestionAttribute(Question):
     attribute: AttributeId
     """The attribute asked about."""
     value: ValueId
-    """The value asked about, its place in the attribute's list; of a choice its other values in the same way,
-    0 for none."""
+    """The value asked about, its place in the attribute's list."""
 
 
 @encoding.struct(
@@ -1477,8 +1476,7 @@ class QuestionChoice(Question):
     attribute: AttributeId
     """The attribute asked about."""
     value: list[ValueId]
-    """The value asked about, its place in the attribute's list; of a choice its other values in the same way,
-    0 for none."""
+    """The value asked about, its place in the attribute's list."""
 
 
 Question_ENCODING = encoding.Variants({0: QuestionNone, 1: QuestionPoint, 2: QuestionAttribute, 3: QuestionWhich, 4: QuestionChoice})
