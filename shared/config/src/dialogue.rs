@@ -19,6 +19,11 @@ pub struct Dialogue {
     pub params: Params,
     /// Smoothing of words that are certain; [`Language::Paper`] has `params.alpha` for all words.
     pub alpha_typed: f64,
+    /// Probability that a user takes a value for another one, and sticks to it; 0 with
+    /// [`Language::Paper`].
+    pub misperception: f64,
+    /// The same of single attributes, by name.
+    pub misperceptions: Vec<(String, f64)>,
     /// Name of the planner; one of [`PLANNERS`].
     pub planner: String,
     /// Kinds of questions that are allowed.
@@ -74,6 +79,8 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
             ..params(f)
         },
         alpha_typed: f.number("alpha_typed", 1e-6..=100.0),
+        misperception: f.number("misperception", 0.0..=MISPERCEPTION_MAX),
+        misperceptions: f.table("misperceptions", misperceptions),
         planner,
         actions: Actions {
             mode: f.choice("mode", &[("remote", Mode::Remote), ("present", Mode::Present)]),
@@ -87,6 +94,25 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
         turns: f.table("turns", turns),
         prior: f.table("prior", prior),
         gesture: f.table("gesture", gesture),
+    }
+}
+
+/// Largest rate of misperception: beyond it a word says next to nothing.
+const MISPERCEPTION_MAX: f64 = 0.5;
+
+fn misperceptions(f: &mut Fields<'_>) -> Vec<(String, f64)> {
+    let names = f.names().into_iter();
+    names.map(|name| (name.to_owned(), f.number(name, 0.0..=MISPERCEPTION_MAX))).collect()
+}
+
+impl Dialogue {
+    /// Probability that a user takes a value of that attribute for another one.
+    pub fn misperception_of(&self, attribute: &str) -> f64 {
+        let own = self.misperceptions.iter().find(|(name, _)| name == attribute);
+        match self.language {
+            Language::Paper => 0.0,
+            Language::Careful => own.map_or(self.misperception, |(_, rate)| *rate),
+        }
     }
 }
 

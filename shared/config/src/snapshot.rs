@@ -35,6 +35,9 @@ const SRDF: &str = "robot_srdf";
 /// which its decisions were made.
 const DURATIONS: &str = "durations";
 
+/// Settings that snapshots of earlier versions do not state, with the values that they had then.
+const UNSTATED: &str = "[dialogue]\nmisperception = 0.0\n";
+
 impl Settings {
     /// The snapshot's text: every value of every section, the scene's and the robot's files as
     /// they were read, and how long the robot takes for what it does.
@@ -122,7 +125,10 @@ impl Settings {
         }
         let files = Files { scene, robot: urdf.map(|urdf| RobotFiles { urdf, srdf }) };
         let mut tree = part::defaults();
-        tree.merge(layer, &mut Vec::new(), &mut report);
+        let unstated = Table::parse(UNSTATED, &source, &mut report);
+        for layer in unstated.into_iter().chain([layer]) {
+            tree.merge(layer, &mut Vec::new(), &mut report);
+        }
         for (key, value) in changes {
             if let Some(layer) = load::override_layer(option, (key, value), &mut report) {
                 tree.merge(layer, &mut Vec::new(), &mut report);

@@ -48,7 +48,6 @@ mod confusion;
 mod decision;
 mod evaluate;
 mod gesture;
-mod learned;
 pub mod manager;
 mod model;
 mod model_user;
@@ -62,6 +61,7 @@ pub mod registry;
 pub mod rendering;
 mod stable_hash;
 pub mod user_model;
+mod value_evidence;
 
 #[cfg(test)]
 mod testing;
@@ -74,9 +74,10 @@ pub use confusion::{Confusion, NotAConfusion};
 pub use decision::Decision;
 pub use evaluate::{Evaluation, evaluate};
 pub use model::Model;
-pub use model_user::ModelUser;
+pub use model_user::{Errors, ModelUser};
 pub use observation::{CERTAIN_DOUBT, Naming, log_likelihood};
 pub use planner::{DecisionProblem, Planner, Step};
 pub use planners::{Lookahead, Optimal};
 pub use policy_table::PolicyTable;
 pub use posterior::Posterior;
+pub use value_evidence::Said;

@@ -19,6 +19,10 @@ pub struct Model {
     params: Params,
     objects: usize,
     absent: bool,
+    /// The model of a user who takes each value for what it is, where this one is another.
+    plain: Option<Box<Self>>,
+    /// Whether values in doubt have been weighed with what was said in an interaction.
+    is_of_interaction: bool,
     /// Shared by the models of one scene: only parameters differ from person to person.
     tables: Arc<Tables>,
 }
@@ -54,7 +58,8 @@ impl Model {
         let certain = smoothing.clone();
         let mut tables = Tables { confusion, columns, words, smoothing, certain };
         tables.find_what_splits();
-        Self { params, objects, absent: false, tables: Arc::new(tables) }
+        let tables = Arc::new(tables);
+        Self { params, objects, absent: false, plain: None, is_of_interaction: false, tables }
     }
 
     /// The same model of a scene with other objects and the same words.
@@ -65,7 +70,66 @@ impl Model {
     pub fn with_objects(&self, scene: &Scene) -> Self {
         assert_eq!(scene.words().len(), self.tables.words.len(), "a scene with the same words");
         let same = Self::new(scene, self.params).with_certain_words(self.tables.certain.alpha);
-        same.with_confusion(self.tables.confusion.clone())
+        let rates: Vec<f64> =
+            self.tables.columns.iter().map(|column| column.misperceived).collect();
+        same.with_misperceptions(&rates).with_confusion(self.tables.confusion.clone())
+    }
+
+    /// The model of a user who takes the object's value of attribute `k` for another one with
+    /// probability `rates[k]`, each other value alike, and sticks to it: every word and answer about
+    /// the attribute is about the value that the user takes it for. An object that lacks the
+    /// attribute is known to lack it. Without a rate above 0 the model stays as it is.
+    ///
+    /// # Panics
+    /// If there is not a rate from 0 to below 1 for each attribute, or the model has a hypothesis
+    /// beyond the objects already.
+    #[must_use]
+    pub fn with_misperceptions(mut self, rates: &[f64]) -> Self {
+        assert_eq!(rates.len(), self.attributes(), "a rate for each attribute");
+        assert!(rates.iter().all(|rate| (0.0..1.0).contains(rate)), "{rates:?} are not rates");
+        assert!(!self.absent, "the objects' values come first");
+        if rates.iter().all(|rate| *rate == 0.0) {
+            return self;
+        }
+        self.plain = Some(Box::new(self.clone()));
+        let tables = Arc::make_mut(&mut self.tables);
+        for (column, rate) in tables.columns.iter_mut().zip(rates) {
+            column.misperceive(*rate);
+        }
+        tables.find_what_splits();
+        self
+    }
+
+    /// The model that decisions are planned with: attributes of which something was said, as `told`
+    /// has it, are as the user takes them. All others are as they are, and their answers wrong as
+    /// often as by misperception and error together: a search takes answers for independent given
+    /// the object, so it would count on asking again what says nothing new.
+    #[must_use]
+    pub(crate) fn planned(&self, told: impl Fn(AttributeId) -> bool) -> Self {
+        let mut model = self.plain().clone();
+        if self.misperceives() {
+            model = model.with_params(self.params.with_more_errors(self.tables.misperceived()));
+        }
+        let told: Vec<usize> = (0..self.attributes()).filter(|k| told((*k).into())).collect();
+        if self.misperceives() && !told.is_empty() {
+            let tables = Arc::make_mut(&mut model.tables);
+            for k in told {
+                tables.columns[k].clone_from(&self.tables.columns[k]);
+            }
+            tables.find_what_splits();
+            model.is_of_interaction = self.is_of_interaction;
+        }
+        model
+    }
+
+    /// The model of a user who takes each value for what it is.
+    pub(crate) fn plain(&self) -> &Self {
+        self.plain.as_deref().unwrap_or(self)
+    }
+
+    /// Whether the user may take a value for another one.
+    pub fn misperceives(&self) -> bool {
+        self.plain.is_some()
     }
 
     /// The model with another smoothing for words that are certain ([`CERTAIN_DOUBT`](crate::CERTAIN_DOUBT)).
@@ -93,6 +157,7 @@ impl Model {
     pub fn with_absent(mut self) -> Self {
         if !self.absent {
             self.absent = true;
+            self.plain = self.plain.map(|plain| Box::new(plain.with_absent()));
             Arc::make_mut(&mut self.tables).add_unknown();
         }
         self
@@ -105,6 +170,8 @@ impl Model {
     #[must_use]
     pub fn with_confusion(mut self, confusion: Confusion) -> Self {
         assert_eq!(confusion.words(), self.tables.words.len(), "about the scene's words");
+        let plain = self.plain.take();
+        self.plain = plain.map(|plain| Box::new(plain.with_confusion(confusion.clone())));
         Arc::make_mut(&mut self.tables).confusion = confusion;
         self
     }
@@ -118,7 +185,8 @@ impl Model {
     pub fn with_params(&self, params: Params) -> Self {
         assert!(params.check().is_empty(), "parameters out of range: {params:?}");
         assert_eq!(params.alpha, self.params.alpha, "α is not a person's");
-        Self { params, ..self.clone() }
+        let plain = self.plain.as_ref().map(|plain| Box::new(plain.with_params(params)));
+        Self { params, plain, ..self.clone() }
     }
 
     /// `p_l`, `ε` and `α`.
@@ -179,9 +247,13 @@ impl Model {
         1.0 / (self.values(k) as f64 + 1.0)
     }
 
-    /// The value of object `i` for attribute `k`, if it has one; the likeliest of those in doubt.
+    /// The value of object `i` for attribute `k`, if it has one; the likeliest of those in doubt. What
+    /// the user takes it for plays no part.
     pub fn value(&self, i: ObjectId, k: AttributeId) -> Option<ValueId> {
         let entry = self.column(k)[i.index()];
+        if let known @ Some(_) = self.known(k, entry) {
+            return known;
+        }
         match self.chances(k, entry) {
             None => (entry < Self::DOUBTFUL).then_some(ValueId(entry)),
             Some(chances) => {
@@ -204,9 +276,45 @@ impl Model {
         self.tables.columns[k.index()].doubtful.get(usize::from(doubt)).map(Vec::as_slice)
     }
 
+    /// The value that an entry stands for which only the user may take for another one.
+    fn known(&self, k: AttributeId, entry: u16) -> Option<ValueId> {
+        let doubt = entry.checked_sub(Self::DOUBTFUL).filter(|_| entry < Self::UNKNOWN)?;
+        self.tables.columns[k.index()].known.get(usize::from(doubt)).copied().flatten()
+    }
+
     /// Whether any object's value of attribute `k` is in doubt.
     pub fn is_doubtful(&self, k: AttributeId) -> bool {
         !self.tables.columns[k.index()].doubtful.is_empty()
+    }
+
+    /// Probabilities of the values of attribute `k`, for every doubt about it.
+    pub(crate) fn all_chances(&self, k: AttributeId) -> &[Vec<f64>] {
+        &self.tables.columns[k.index()].doubtful
+    }
+
+    /// Mean of [`Model::word_chance`] over the objects.
+    pub(crate) fn mean_word_chance(&self, word: WordId) -> f64 {
+        let all = (0..self.objects).map(|i| self.word_chance(i.into(), word));
+        all.sum::<f64>() / self.objects as f64
+    }
+
+    /// The words that may have been said where one was heard with a doubt, each with its share.
+    pub(crate) fn said_instead(
+        &self,
+        word: WordId,
+        doubt: f64,
+    ) -> impl Iterator<Item = (WordId, f64)> + '_ {
+        self.tables.confusion.said_instead(word, doubt)
+    }
+
+    /// The denominator of eq. (5), and the weight of an object's own word: what a word says beyond
+    /// the value that it names. Added to every entry but for a constant that is returned.
+    pub(crate) fn add_vocabulary(&self, is_certain: bool, out: &mut [f64]) -> f64 {
+        let tables = &*self.tables;
+        let Smoothing { alpha, vocabulary } =
+            if is_certain { &tables.certain } else { &tables.smoothing };
+        out.iter_mut().zip(&vocabulary.above).for_each(|(entry, above)| *entry -= above);
+        (1.0 + alpha).ln() - vocabulary.least
     }
 
     /// `α` of words, which may be another for those that are certain.
@@ -214,8 +322,15 @@ impl Model {
         if is_certain { self.tables.certain.alpha } else { self.tables.smoothing.alpha }
     }
 
+    /// Whether values in doubt have been weighed with what was said in an interaction, so that the
+    /// model will hardly recur.
+    pub(crate) fn is_of_interaction(&self) -> bool {
+        self.is_of_interaction
+    }
+
     /// Multiplies the probabilities of values in doubt by their likelihoods.
     pub(crate) fn weigh_doubts(&mut self, k: AttributeId, likelihood: &[f64]) {
+        self.is_of_interaction = true;
         for chances in &mut Arc::make_mut(&mut self.tables).columns[k.index()].doubtful {
             chances.iter_mut().zip(likelihood).for_each(|(chance, p)| *chance *= p);
             let sum: f64 = chances.iter().sum();

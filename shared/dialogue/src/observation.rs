@@ -12,7 +12,7 @@
 //! | excluded group | `ε` for an object that has all of its words, `1−ε` for others | extension |
 //! | word doubted by `d` | `(1−d) P(w∣D) + d Σ_u κ(u∣w) P(u∣D)`, `κ` of [`Confusion`](crate::Confusion) | extension |
 //! | answer or group doubted by `d` | `ε + d (1/2 − ε)` in place of `ε` | extension |
-//! | value of `D` in doubt | the mixture over what it may be, per word and answer | extension |
+//! | value of `D` in doubt | the mixture over what it may be ([`crate::Said`]) | extension |
 //!
 //! Words that are certain ([`CERTAIN_DOUBT`]) may have an `α` of their own
 //! ([`Model::with_certain_words`]).
@@ -20,10 +20,13 @@
 //! A doubt is the probability that something else was said ([`scene::Doubt`]): what a recogniser
 //! misheard, what a person was not sure of.
 
+use std::borrow::Cow;
+
 use scene::{AttributeId, ObjectId, Options, Question, Reading, Response, ValueId, WordId};
-use vocabulary::Reliability;
+use vocabulary::{Params, Reliability};
 
 use crate::Model;
+use crate::value_evidence::ValueEvidence;
 
 /// Doubt up to which a word counts as certain: it was typed, or recognised beyond doubt.
 pub const CERTAIN_DOUBT: f64 = 0.02;
@@ -97,9 +100,18 @@ pub(crate) fn weigh(model: &Model, question: Question, reading: &Reading, log: &
 /// What was said of the object's own values.
 fn add_words(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
     let constant = add_base(model, question, reading, log);
-    let said = reading.excluded.iter().enumerate().filter(|(_, group)| !group.is_empty());
-    said.fold(constant, |constant, (at, group)| {
+    let is_of_value = |group: &[WordId]| match group {
+        [word] => model.doubtful_attribute(*word).is_some(),
+        _ => group.is_empty(),
+    };
+    let said = reading.excluded.iter().enumerate().filter(|(_, group)| !is_of_value(group));
+    let constant = said.fold(constant, |constant, (at, group)| {
         constant + add_excluded(model, group, reading.doubt.of_group(at), log)
+    });
+    let attributes = (0..model.attributes()).map(AttributeId::from);
+    attributes.filter(|k| model.is_doubtful(*k)).fold(constant, |constant, k| {
+        let said = ValueEvidence::of_words(model, k, question, reading);
+        constant + said.map_or(0.0, |said| said.weigh(model, k, log))
     })
 }
 
@@ -114,7 +126,7 @@ fn add_words(model: &Model, question: Question, reading: &Reading, log: &mut [f6
 /// to confuse it with, so `ε` plays no part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Naming {
-    attribute: AttributeId,
+    pub(crate) attribute: AttributeId,
     options: Option<Options>,
     /// How many answers there are.
     pub answers: usize,
@@ -149,7 +161,7 @@ impl Naming {
     }
 
     /// The same where another answer may have been given with probability `doubt`.
-    fn doubted(self, doubt: f64) -> Self {
+    pub(crate) fn doubted(self, doubt: f64) -> Self {
         let any = 1.0 / self.answers as f64;
         let blend = |p: f64| if doubt > 0.0 { (1.0 - doubt) * p + doubt * any } else { p };
         Self { own: blend(self.own), other: blend(self.other), ..self }
@@ -164,7 +176,12 @@ impl Naming {
 
     /// Probability that the answer is true of an entry of the column, or of a value with these
     /// probabilities; none where that is not known.
-    fn right(&self, named: Option<ValueId>, entry: u16, chances: Option<&[f64]>) -> Option<f64> {
+    pub(crate) fn right(
+        &self,
+        named: Option<ValueId>,
+        entry: u16,
+        chances: Option<&[f64]>,
+    ) -> Option<f64> {
         let chance = |v: ValueId| match chances {
             Some(chances) => chances[v.index()],
             None => f64::from(u8::from(entry == v.0)),
@@ -175,6 +192,16 @@ impl Naming {
             options.map(|v| chance(*v)).sum::<f64>()
         };
         (!is_unknown).then(|| named.map_or_else(|| (1.0 - of_options()).max(0.0), chance))
+    }
+
+    /// Probability of naming that value, or none of the options, of an object of value `m`.
+    pub(crate) fn of_value(&self, named: Option<ValueId>, m: ValueId) -> f64 {
+        self.right(named, m.0, None).map_or(self.lacking, |chance| self.mixture(chance))
+    }
+
+    /// The same of an object that lacks the attribute, and of what is not here.
+    pub(crate) fn without_value(&self, named: Option<ValueId>) -> [f64; 2] {
+        [Model::LACKS, Model::UNKNOWN].map(|entry| self.of_value(named, ValueId(entry)))
     }
 
     /// The same where the answer is true with that probability.
@@ -209,14 +236,19 @@ fn add_base(model: &Model, question: Question, reading: &Reading, log: &mut [f64
     let mut constant = model.params().p_l.ln();
     let answer = named_answer(model, question, &reading.base);
     let answering = answer.map(|(k, v)| model.word(k, v));
-    if let (Some((_, v)), Some(law)) = (answer, Naming::of(model, question)) {
+    let plain = answer.filter(|(k, _)| !model.is_doubtful(*k));
+    if let (Some((_, v)), Some(law)) = (plain, Naming::of(model, question)) {
         let said = reading.base.iter().position(|word| Some(*word) == answering);
         let law = law.doubted(reading.doubt.of_word(said.unwrap_or(0)));
-        constant += add_named(model, law, Some(v), log);
+        constant += add_named(model, law, Some(v), None, log);
     }
     for (at, &word) in reading.base.iter().enumerate() {
         if Some(word) != answering {
-            constant += match reading.doubt.of_word(at) {
+            let doubt = reading.doubt.of_word(at);
+            constant += match doubt {
+                _ if model.doubtful_attribute(word).is_some() => {
+                    model.add_vocabulary(doubt <= CERTAIN_DOUBT, log)
+                }
                 0.0 => model.add_log_word(word, log),
                 doubt => model.add_doubted_word(word, doubt, log),
             };
@@ -226,7 +258,14 @@ fn add_base(model: &Model, question: Question, reading: &Reading, log: &mut [f64
 }
 
 /// The factor of an answer that names a value, or none of the options.
-fn add_named(model: &Model, law: Naming, named: Option<ValueId>, log: &mut [f64]) -> f64 {
+/// `said` are words beside the answer, about the same value.
+fn add_named(
+    model: &Model,
+    law: Naming,
+    named: Option<ValueId>,
+    said: Option<&ValueEvidence>,
+    log: &mut [f64],
+) -> f64 {
     let k = law.attribute;
     let column = model.column(k);
     if !model.is_doubtful(k) && column.iter().all(|entry| *entry == column[0]) {
@@ -237,7 +276,10 @@ fn add_named(model: &Model, law: Naming, named: Option<ValueId>, log: &mut [f64]
         Some(1.0) => 0.0,
         right => right.map_or(law.lacking, |chance| law.mixture(chance)).ln() - constant,
     };
-    let in_doubt = |chances: &[f64]| of(law.right(named, Model::DOUBTFUL, Some(chances)));
+    let in_doubt = |chances: &[f64]| {
+        let chances = said.map_or(Cow::Borrowed(chances), |said| said.condition(chances).into());
+        of(law.right(named, Model::DOUBTFUL, Some(&chances)))
+    };
     let [lacks, unknown] =
         [Model::LACKS, Model::UNKNOWN].map(|entry| of(law.right(named, entry, None)));
     let other = law.other.ln() - constant;
@@ -289,6 +331,17 @@ fn doubted(params: Reliability, doubt: f64) -> Reliability {
     Reliability { epsilon: params.epsilon + doubt * (0.5 - params.epsilon), ..params }
 }
 
+impl Model {
+    /// Probability that an answer or a denial is wrong which was something else with probability
+    /// `doubt`.
+    pub(crate) fn error_rate(&self, doubt: f64) -> f64 {
+        {
+            let Params { p_l, epsilon, .. } = self.params();
+            doubted(Reliability { p_l, epsilon }, doubt).epsilon
+        }
+    }
+}
+
 /// Eq. (6) and (7), and "none of these".
 fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
     let params = doubted(model.params().of(question), reading.doubt.response);
@@ -312,8 +365,12 @@ fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut 
         }
         Question::Attribute(k, v) => {
             let known = |value| if value == v.0 { if_true } else { if_false };
+            // The words beside an answer are about the same value.
+            let said = ValueEvidence::of_words(model, k, question, reading);
             add_by_value(model, k, log, known, |chances| {
-                mixture(chances[v.index()], if_true, if_false)
+                let chance =
+                    said.as_ref().map_or(chances[v.index()], |it| it.condition(chances)[v.index()]);
+                mixture(chance, if_true, if_false)
             });
             if let Some(absent) = model.absent() {
                 let unknown = model.unknown_yes(k);
@@ -340,7 +397,8 @@ fn add_neither(model: &Model, question: Question, reading: &Reading, log: &mut [
     let heard = model.params().of(question).p_l.ln();
     match Naming::of(model, question) {
         Some(law) if law.neither && named_answer(model, question, &reading.base).is_none() => {
-            heard + add_named(model, law.doubted(reading.doubt.response), None, log)
+            let said = ValueEvidence::of_words(model, law.attribute, question, reading);
+            heard + add_named(model, law.doubted(reading.doubt.response), None, said.as_ref(), log)
         }
         _ => heard,
     }

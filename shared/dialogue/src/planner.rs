@@ -25,6 +25,8 @@ pub struct DecisionProblem<'a> {
     pub announce: Announce,
     /// What the user said of attributes in this interaction.
     pub concessions: &'a Concessions,
+    /// Questions that are not asked again: their answers are known.
+    pub spent: &'a [Question],
 }
 
 static NOTHING_CONCEDED: Concessions = Concessions::NONE;
@@ -34,7 +36,7 @@ impl<'a> DecisionProblem<'a> {
     /// conceded nothing.
     pub fn new(model: &'a Model, costs: Costs, actions: Actions) -> Self {
         let (announce, concessions) = (Announce::FINAL, &NOTHING_CONCEDED);
-        Self { model, costs, actions, durations: None, announce, concessions }
+        Self { model, costs, actions, durations: None, announce, concessions, spent: &[] }
     }
 
     /// The same problem as a planner sees it that takes picks for final.
@@ -48,7 +50,8 @@ impl DecisionProblem<'_> {
     /// Every question that may be asked, useful or not, in the order of [`Model::questions`].
     pub fn questions(&self) -> Vec<Question> {
         let mut questions = self.model.questions(self.actions);
-        questions.retain(|question| !question.attribute().is_some_and(|k| self.concessions.bar(k)));
+        let is_barred = |it: &Question| it.attribute().is_some_and(|k| self.concessions.bar(k));
+        questions.retain(|question| !self.spent.contains(question) && !is_barred(question));
         questions
     }
 

@@ -1,11 +1,13 @@
 //! What is believed in an interaction: about the wanted object alone, as in the paper, or about the
 //! person who answers as well.
 
+use std::borrow::Cow;
+
 use scene::{Question, Reading};
 use serde::{Deserialize, Serialize};
 
 use crate::user_model::{Joint, Person};
-use crate::{Belief, BeliefError, Decision, DecisionProblem, Model, Planner, Step};
+use crate::{Belief, BeliefError, Decision, DecisionProblem, Model, Planner, Said, Step};
 
 /// A belief over the hypotheses, perhaps together with the person's error rate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -14,6 +16,9 @@ pub enum Posterior {
     Object(Belief),
     /// How this person answers is learned meanwhile.
     ObjectAndPerson(Joint),
+    /// The user may take a value for another one ([`Model::with_misperceptions`]): what is believed of
+    /// the object, and what was said of each attribute.
+    Perceived(Box<Self>, Said),
 }
 
 impl Posterior {
@@ -26,11 +31,34 @@ impl Posterior {
         }
     }
 
+    /// The same for a user who may take a value for another one.
+    #[must_use]
+    pub fn of_perceived(self) -> Self {
+        Self::Perceived(Box::new(self), Said::default())
+    }
+
+    /// What was said of each attribute, where the user may take a value for another one.
+    pub fn said(&self) -> Option<&Said> {
+        match self {
+            Self::Object(_) | Self::ObjectAndPerson(_) => None,
+            Self::Perceived(_, said) => Some(said),
+        }
+    }
+
+    /// The model after what was said: values as the user takes them.
+    pub fn model<'a>(&self, model: &'a Model) -> Cow<'a, Model> {
+        match self.said() {
+            Some(said) if !said.is_empty() => Cow::Owned(said.in_model(model)),
+            _ => Cow::Borrowed(model),
+        }
+    }
+
     /// The belief over the hypotheses.
     pub fn belief(&self) -> Belief {
         match self {
             Self::Object(belief) => belief.clone(),
             Self::ObjectAndPerson(joint) => joint.belief(),
+            Self::Perceived(of, _) => of.belief(),
         }
     }
 
@@ -39,6 +67,7 @@ impl Posterior {
         match self {
             Self::Object(_) => None,
             Self::ObjectAndPerson(joint) => Some(joint.person()),
+            Self::Perceived(of, _) => of.person(),
         }
     }
 
@@ -50,6 +79,11 @@ impl Posterior {
         match self {
             Self::Object(belief) => belief.update_mixture(model, heard),
             Self::ObjectAndPerson(joint) => joint.update_mixture(model, heard),
+            Self::Perceived(of, said) => {
+                let known = said.in_model(model);
+                of.update_mixture(&known, heard);
+                said.hear(&known, heard);
+            }
         }
     }
 
@@ -61,13 +95,16 @@ impl Posterior {
         match self {
             Self::Object(belief) => belief.weigh(log_likelihood),
             Self::ObjectAndPerson(joint) => joint.weigh(log_likelihood),
+            Self::Perceived(of, _) => of.weigh(log_likelihood),
         }
     }
 
     /// Takes in that a question was answered, or was not although there was time.
     pub fn see_answer(&mut self, answered: bool) {
-        if let Self::ObjectAndPerson(joint) = self {
-            joint.person_mut().see_answer(answered);
+        match self {
+            Self::Object(_) => {}
+            Self::ObjectAndPerson(joint) => joint.person_mut().see_answer(answered),
+            Self::Perceived(of, _) => of.see_answer(answered),
         }
     }
 
@@ -84,6 +121,10 @@ impl Posterior {
         match self {
             Self::Object(belief) => planner.decide(problem, belief, step),
             Self::ObjectAndPerson(joint) => planner.decide_with(problem, joint, step),
+            Self::Perceived(of, said) => {
+                let model = said.in_model(problem.model).planned(|k| said.of(k).is_some());
+                of.decide(planner, &DecisionProblem { model: &model, ..*problem }, step)
+            }
         }
     }
 
@@ -92,6 +133,10 @@ impl Posterior {
         match self {
             Self::Object(belief) => belief.key_into(key),
             Self::ObjectAndPerson(joint) => joint.key_into(key),
+            Self::Perceived(of, said) => {
+                of.key_into(key);
+                said.key_into(key);
+            }
         }
     }
 
@@ -103,6 +148,7 @@ impl Posterior {
         Ok(match self {
             Self::Object(belief) => Self::Object(Belief::from_key(&belief.key())?),
             Self::ObjectAndPerson(joint) => Self::ObjectAndPerson(joint.rounded()?),
+            Self::Perceived(of, said) => Self::Perceived(Box::new(of.rounded()?), said.clone()),
         })
     }
 }

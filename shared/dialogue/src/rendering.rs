@@ -47,6 +47,7 @@ pub fn text(scene: &Scene, act: &Act) -> String {
             format!("I cannot put the {object} back, so I still hold it. Shall I give it to you?")
         }
         Content::CallingOff => "All right, if it is not too late.".to_owned(),
+        Content::Offered(nearest) => offered(nearest),
         Content::Keeping => "It stays with you, unless I already hold it.".to_owned(),
         Content::Forgotten => "I have lost a part of my memory; please ask me again.".to_owned(),
         Content::NotHere => {
@@ -65,6 +66,16 @@ fn wanted(scene: &Scene, time: u32) -> String {
         0 | 1 => "What would you like?".to_owned(),
         2 => scene.phrase(Question::None),
         _ => remarks::example(scene),
+    }
+}
+
+/// "There are the blue pen and the black pen. Do you want the blue pen?"
+fn offered(nearest: &[String]) -> String {
+    let Some(first) = nearest.first() else { return String::new() };
+    let asks = format!("Do you want the {first}?");
+    match nearest.len() {
+        1 => asks,
+        _ => format!("There are {}. {asks}", remarks::list(nearest, "and")),
     }
 }
 

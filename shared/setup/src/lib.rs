@@ -97,7 +97,11 @@ impl DialogueSettings for Settings {
         let model = Model::new(scene, self.dialogue.params);
         match self.dialogue.language {
             Language::Paper => model,
-            Language::Careful => model.with_certain_words(self.dialogue.alpha_typed),
+            Language::Careful => {
+                let rate = |it: &scene::Attribute| self.dialogue.misperception_of(&it.name);
+                let rates: Vec<f64> = scene.attributes().iter().map(rate).collect();
+                model.with_certain_words(self.dialogue.alpha_typed).with_misperceptions(&rates)
+            }
         }
     }
 }

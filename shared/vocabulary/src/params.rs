@@ -51,6 +51,17 @@ impl Params {
         own.unwrap_or(Reliability { p_l: self.p_l, epsilon: self.epsilon })
     }
 
+    /// The parameters with answers to questions of every kind wrong more often by `rate`.
+    #[must_use]
+    pub fn with_more_errors(self, rate: f64) -> Self {
+        let more = |epsilon: f64| (epsilon + rate).min(EPSILON_MAX);
+        let own = |of: Option<Reliability>| {
+            of.map(|own| Reliability { epsilon: more(own.epsilon), ..own })
+        };
+        let (open, choice) = (own(self.open), own(self.choice));
+        Self { epsilon: more(self.epsilon), open, choice, ..self }
+    }
+
     /// Every parameter that is out of range; empty if the model can be built from them.
     ///
     /// The open ends matter: at `p_l` or `ε` of 0 or 1 a single utterance would rule objects out
@@ -84,6 +95,9 @@ impl Reliability {
         faults
     }
 }
+
+/// Largest error rate with which an answer still says something.
+const EPSILON_MAX: f64 = 0.499;
 
 const PROBABILITY: &str = "use a number above 0 and below 1, e.g. 0.95";
 

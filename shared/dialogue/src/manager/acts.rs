@@ -79,8 +79,9 @@ impl Manager {
         let Some(open) = &mut state.open else { return };
         let prompt = state.act.prompt;
         await_answer(open, prompt);
-        let content = match state.act.line.content {
+        let content = match &state.act.line.content {
             Content::Wanted(time) => Content::Wanted(time + 1),
+            Content::Offered(nearest) => Content::Offered(nearest.clone()),
             _ => self.wording(open, prompt),
         };
         let act = &mut state.act;

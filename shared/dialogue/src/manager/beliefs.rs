@@ -60,7 +60,8 @@ impl Manager {
 
     /// Returns the posterior before anything is said.
     pub(super) fn beginning(&self, state: &State) -> Posterior {
-        Posterior::new(self.prior(state), self.person(state))
+        let posterior = Posterior::new(self.prior(state), self.person(state));
+        if self.setup.model.misperceives() { posterior.of_perceived() } else { posterior }
     }
 
     /// Updates a posterior by Bayes' rule with one utterance.
@@ -83,13 +84,13 @@ impl Manager {
     }
 
     /// Returns the observation model after what was said of the wanted object: what values in doubt are
-    /// likely to be.
+    /// likely to be. A posterior of what the user perceives keeps that itself.
     pub(super) fn learned<'a>(
         &'a self,
         evidence: impl Iterator<Item = &'a Evidence>,
     ) -> Cow<'a, Model> {
         let mut model = Cow::Borrowed(&self.setup.model);
-        if model.has_doubts() {
+        if model.has_doubts() && !model.misperceives() {
             evidence.for_each(|it| model.to_mut().learn(&it.in_scene(&self.setup.scene)));
         }
         model
@@ -103,7 +104,7 @@ impl Manager {
             let interpretations = evidence.in_scene(&self.setup.scene);
             let Evidence { gesture, mark, .. } = evidence;
             self.update(&mut posterior, &model, (&interpretations, *gesture, mark.as_ref()));
-            if model.has_doubts() {
+            if model.has_doubts() && !model.misperceives() {
                 model.to_mut().learn(&interpretations);
             }
         }

@@ -189,4 +189,6 @@ pub enum Content {
     Keeping,
     /// The object of that description was called off and cannot go back: asks whether to hand it over.
     Kept(String),
+    /// Asks whether the first of the objects of these descriptions is wanted; the others come next.
+    Offered(Vec<String>),
 }

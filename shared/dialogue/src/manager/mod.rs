@@ -10,6 +10,7 @@
 //! | `attribution.rs` | the questions that an utterance answers |
 //! | `inform.rs`, `correct.rs` | content of an utterance: while deciding, and while the arm fetches |
 //! | `concede.rs` | what the user cannot tell, and what does not matter |
+//! | `misfit.rs` | offers where what was said fits no object |
 //! | `references.rs` | "the other one", "the smaller one" |
 //! | `hand_over.rs`, `held_back.rs` | refusals after a hand-over; picks while the motion stop is latched |
 //! | `queue.rs` | requests for several objects |
@@ -37,6 +38,7 @@ mod inform;
 mod intents;
 mod kept;
 mod line;
+mod misfit;
 mod objects;
 mod pointing;
 mod put_back;
@@ -265,8 +267,13 @@ impl Manager {
         let concessions = open.conceded.in_scene(&self.setup.scene);
         // What was said of values in doubt counts for the questions to come.
         let model = self.learned(open.evidence.iter()).into_owned();
-        let problem =
-            DecisionProblem { model: &model, concessions: &concessions, ..self.setup.problem() };
+        let spent = open.spent();
+        let problem = DecisionProblem {
+            model: &model,
+            concessions: &concessions,
+            spent: &spent,
+            ..self.setup.problem()
+        };
         Some(open.posterior.decide(&mut *self.planner, &problem, step))
     }
 
@@ -296,6 +303,15 @@ impl Manager {
             bounds,
             ..Act::default()
         };
+        let instead = matches!(action, Action::Ask(_) | Action::Wait)
+            .then(|| self.offer_instead(state, value))
+            .flatten();
+        if let Some((object, mut line)) = instead {
+            if line.preface == Preface::None {
+                line.preface = basis.preface;
+            }
+            return self.offer(state, object, line, reasons);
+        }
         match action {
             Action::Wait => set(state, reasons),
             Action::Ask(question) => self.ask(state, question, basis, reasons),
@@ -304,6 +320,13 @@ impl Manager {
                 set_reasons(state, reasons);
             }
             Action::Pick(object) => {
+                let offer = (!exhausted).then(|| self.offer_first(state, object)).flatten();
+                if let Some(mut line) = offer {
+                    if line.preface == Preface::None {
+                        line.preface = basis.preface;
+                    }
+                    return self.offer(state, object, line, reasons);
+                }
                 let preface = match basis.preface {
                     Preface::None => self.left_over(state, object),
                     preface => preface,

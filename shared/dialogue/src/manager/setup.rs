@@ -35,7 +35,7 @@ pub struct Setup {
 impl Setup {
     /// Returns the decision problem for planners.
     pub(super) fn problem(&self) -> DecisionProblem<'_> {
-        let problem = DecisionProblem::new(&self.model, self.costs, self.actions);
+        let problem = DecisionProblem::new(self.model.plain(), self.costs, self.actions);
         DecisionProblem { durations: self.durations.as_ref(), announce: self.announce, ..problem }
     }
 }

@@ -106,6 +106,9 @@ pub struct Timing {
 /// Questions and lines of an interaction that are remembered: nobody answers older ones.
 pub const PROMPTS_MAX: usize = 64;
 
+/// How often a question is asked in an interaction, repetitions after silence not counted.
+const ASKED_MAX: usize = 2;
+
 /// Appends an item and drops the oldest beyond the limit.
 pub(super) fn push_bounded<T>(items: &mut Vec<T>, item: T) {
     if items.len() >= PROMPTS_MAX {
@@ -194,6 +197,19 @@ impl Interaction {
     pub(super) fn add_prompt(&mut self, prompt: Prompt) {
         self.questions += 1;
         push_bounded(&mut self.prompts, prompt);
+    }
+
+    /// Returns the questions that were asked as often as one is ([`ASKED_MAX`]). A user who may take a
+    /// value for another one says the same again.
+    pub(super) fn spent(&self) -> Vec<Question> {
+        if self.posterior.said().is_none() {
+            return Vec::new();
+        }
+        let asked = |question| self.prompts.iter().filter(|it| it.question == question).count();
+        let mut all: Vec<Question> = self.prompts.iter().map(|prompt| prompt.question).collect();
+        all.retain(|question| *question != Question::None && asked(*question) >= ASKED_MAX);
+        all.dedup();
+        all
     }
 
     /// Adds a line said since the pick was ordered; the oldest one is dropped for lack of room.

@@ -40,7 +40,11 @@ pub(super) struct Column {
     /// Probabilities of the values of hypotheses whose value is in doubt, by entry from
     /// [`Model::DOUBTFUL`] on.
     pub(super) doubtful: Vec<Vec<f64>>,
+    /// The value of each of these where it is known, and only the user may take it for another.
+    pub(super) known: Vec<Option<ValueId>>,
     pub(super) words: Vec<WordId>,
+    /// Probability that a user takes a value for another one.
+    pub(super) misperceived: f64,
     /// Per value: whether some hypotheses have it and others do not.
     pub(super) splits: Vec<bool>,
 }
@@ -63,6 +67,11 @@ impl Tables {
             *vocabulary = Vocabulary::new(known.chain([(*alpha * words).ln()]).collect());
         }
         self.find_what_splits();
+    }
+
+    /// The highest rate of misperception of an attribute.
+    pub(super) fn misperceived(&self) -> f64 {
+        self.columns.iter().map(|column| column.misperceived).fold(0.0, f64::max)
     }
 
     /// `|V_D|` of every object.
@@ -108,6 +117,33 @@ impl Tables {
     }
 }
 
+impl Column {
+    /// Lets a user take each value for another one with that probability, any other alike.
+    pub(super) fn misperceive(&mut self, rate: f64) {
+        let values = self.words.len();
+        if values < 2 || rate <= 0.0 {
+            return;
+        }
+        self.misperceived = rate;
+        let other = rate / (values - 1) as f64;
+        let blur = |chance: f64| chance * (1.0 - rate) + (1.0 - chance) * other;
+        for chances in &mut self.doubtful {
+            chances.iter_mut().for_each(|chance| *chance = blur(*chance));
+        }
+        let mut place = vec![None; values];
+        for entry in self.values.iter_mut().filter(|entry| **entry < Model::DOUBTFUL) {
+            let v = usize::from(*entry);
+            let (doubtful, known) = (&mut self.doubtful, &mut self.known);
+            *entry = *place[v].get_or_insert_with(|| {
+                let is_own = |m: usize| f64::from(u8::from(m == v));
+                doubtful.push((0..values).map(|m| blur(is_own(m))).collect());
+                known.push(Some(ValueId::from(v)));
+                Model::DOUBTFUL + (doubtful.len() - 1) as u16
+            });
+        }
+    }
+}
+
 impl Smoothing {
     /// `lengths` are `|V_D|` of the objects, `words` is `|V|`.
     pub(super) fn new(alpha: f64, lengths: impl Iterator<Item = usize>, words: usize) -> Self {
@@ -140,6 +176,7 @@ impl Column {
         };
         let values = scene.objects().iter().map(&mut entry).collect();
         let words = scene.attributes()[k.index()].values.iter().map(|value| value.word).collect();
-        Self { values, doubtful, words, splits: Vec::new() }
+        let known = vec![None; doubtful.len()];
+        Self { values, doubtful, known, words, misperceived: 0.0, splits: Vec::new() }
     }
 }

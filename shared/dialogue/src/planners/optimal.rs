@@ -87,8 +87,8 @@ impl Planner for Optimal {
             return known.clone();
         }
         let decision = self.solve(problem, &stands_for(belief, &key));
-        // What was conceded is of one interaction; the table is for those that recur.
-        if problem.concessions.is_empty() {
+        // What was conceded, or perceived, is of one interaction; the table is for what recurs.
+        if problem.concessions.is_empty() && !problem.model.is_of_interaction() {
             self.table.insert(problem_key, &key, decision.clone());
         }
         decision

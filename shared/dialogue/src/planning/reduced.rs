@@ -190,6 +190,10 @@ impl Reduced {
         let codes: Vec<u64> = self.mass.iter().map(|_| rng.next_u64()).collect();
         let everyone = codes.iter().fold(0, |all, code| all ^ code);
         let split = |set: u64| set.min(set ^ everyone);
+        let is_spent = |attribute: AttributeId, value: Option<ValueId>| {
+            let asked = |v| Question::Attribute(attribute, v);
+            problem.spent.contains(&value.map_or(Question::Which(attribute), asked))
+        };
         let (mut splits, mut open) = (Cheapest::default(), Cheapest::default());
         let mut choices = Cheapest::default();
         let mut found = Vec::new();
@@ -199,12 +203,16 @@ impl Reduced {
             let plain = problem.actions.attribute
                 && partition.is_yes_no()
                 && plainly.fold(f64::INFINITY, f64::min) <= partition.open.cost;
-            if problem.actions.which && partition.tells() && !plain {
+            let is_open = problem.actions.which && !is_spent(partition.attribute, None);
+            if is_open && partition.tells() && !plain {
                 open.offer(partition.identity(), partition.open.cost, found.len());
                 found.push(Query::Which { partition: index });
             }
             if problem.actions.attribute {
                 for (block, set) in partition.sets(&codes) {
+                    if is_spent(partition.attribute, partition.values[usize::from(block)]) {
+                        continue;
+                    }
                     let split = match (partition.unknown, partition.doubt_code(block)) {
                         (None, 0) => split(set),
                         (unknown, doubt) => set ^ doubt ^ unknown.map_or(0, |u| u.yes.to_bits()),

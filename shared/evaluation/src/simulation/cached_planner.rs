@@ -1,6 +1,7 @@
 //! Planner that remembers its decisions by belief.
 
 use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Arc, PoisonError, RwLock};
 
 use dialogue::user_model::Joint;
@@ -85,6 +86,15 @@ impl CachedPlanner {
     }
 }
 
+/// Appends what changes of the problem in the course of an interaction.
+fn problem_into(problem: &DecisionProblem<'_>, key: &mut Vec<i64>) {
+    problem.model.doubts_into(key);
+    let mut hasher = DefaultHasher::new();
+    let (concessions, spent) = (problem.concessions, problem.spent);
+    (&concessions.unknown, &concessions.indifferent, spent).hash(&mut hasher);
+    key.push(hasher.finish().cast_signed());
+}
+
 impl Planner for CachedPlanner {
     fn name(&self) -> &'static str {
         self.planner.name()
@@ -93,6 +103,7 @@ impl Planner for CachedPlanner {
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
         self.situation.0 = step.step == 0;
         belief.key_into(&mut self.situation.1);
+        problem_into(problem, &mut self.situation.1);
         self.cached(problem, || Posterior::Object(belief.clone()))
     }
 
@@ -104,6 +115,7 @@ impl Planner for CachedPlanner {
     ) -> Decision {
         self.situation.0 = step.step == 0;
         joint.key_into(&mut self.situation.1);
+        problem_into(problem, &mut self.situation.1);
         self.cached(problem, || Posterior::ObjectAndPerson(joint.clone()))
     }
 

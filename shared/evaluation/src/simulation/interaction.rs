@@ -112,8 +112,8 @@ pub fn interact(
     };
     play.begin(&user.request(room.domain()));
     loop {
-        let (kind, pick, question) =
-            (play.state.act.kind, play.state.act.pick, play.state.act.question);
+        let question = play.manager.question_put(&play.state);
+        let (kind, pick) = (play.state.act.kind, play.state.act.pick);
         let verdict = match (kind, pick) {
             (ActKind::Pick, Some((_, object))) if !play.is_denied(object, user) => {
                 return play.pick(object, user.wanted());
@@ -177,7 +177,7 @@ impl<'r, 'a> Play<'r, 'a> {
     fn ask(&mut self, question: Question, user: &mut SimulatedUser) -> Option<Verdict> {
         self.pay(Action::Ask(question));
         self.questions += 1;
-        let aimed = match question {
+        let aimed = match self.state.act.question {
             Question::Point(object) => Some(object),
             _ => None,
         };
@@ -186,7 +186,10 @@ impl<'r, 'a> Play<'r, 'a> {
         }
         self.aimed = aimed;
         let began = self.now();
-        self.seconds += self.room.voice.seconds(&self.room.scene.phrase(question));
+        self.seconds += match self.state.act.question {
+            Question::None => self.said_s(),
+            question => self.room.voice.seconds(&self.room.scene.phrase(question)),
+        };
         let presentation = Presentation {
             prompt: self.state.act.prompt,
             number: self.state.act.presentation,

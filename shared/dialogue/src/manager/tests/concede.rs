@@ -22,9 +22,15 @@ fn until_pick(manager: &mut Manager, mut state: State, wanted: &str) -> (State, 
     let object = scene.object_named(wanted).unwrap();
     let mut asked = Vec::new();
     while state.act.kind == ActKind::Ask {
-        let Question::Attribute(k, v) = state.act.question else { panic!("{:?}", state.act) };
-        asked.push(k);
-        let response = if scene.has(object, k, v) { Response::Yes } else { Response::No };
+        let holds = match manager.question_put(&state) {
+            Question::Attribute(k, v) => {
+                asked.push(k);
+                scene.has(object, k, v)
+            }
+            Question::Point(offered) => offered == object,
+            other => panic!("{other:?}"),
+        };
+        let response = if holds { Response::Yes } else { Response::No };
         state = reply(manager, &state, answer(response));
     }
     (state, asked)
@@ -42,14 +48,23 @@ fn an_attribute_that_the_user_cannot_tell_is_not_asked_about_again() {
     assert!(!asked.contains(&k) && end.act.kind == ActKind::Pick, "{asked:?}");
 }
 
-/// Where nothing else tells them apart, they are named and one is taken.
+/// Where nothing else tells them apart, they are named, one is offered, and it is taken only if the
+/// user cannot tell once more.
 #[test]
 fn objects_that_the_user_cannot_tell_apart_are_named() {
     let mut manager = manager();
     let mut state = first(&mut manager, words(&["metallic"]));
+    let mut offers = Vec::new();
     while state.act.kind == ActKind::Ask {
+        if let Question::Point(offered) = manager.question_put(&state) {
+            let line = text(&state);
+            let named = line.starts_with("There are two: the ") && line.ends_with('?');
+            assert!(named && line.contains("Do you want the "), "{line}");
+            offers.push(offered);
+        }
         state = reply(&mut manager, &state, answer(Response::CannotTell));
     }
+    assert_eq!(offers, [state.act.pick.expect("a pick").1]);
     let line = text(&state);
     assert!(line.starts_with("There are two: the ") && line.contains("I will take the"), "{line}");
     let scene = settings().scene;

@@ -22,6 +22,8 @@ pub(super) struct Settings {
     pub(super) params: Params,
     /// Smoothing of words that are certain; none in the paper's language.
     pub(super) alpha_typed: Option<f64>,
+    /// Rate of misperception of every attribute.
+    pub(super) misperception: f64,
     pub(super) durations: Option<Durations>,
     pub(super) mode: Mode,
     pub(super) prior: Prior,
@@ -47,6 +49,8 @@ impl Settings {
             Some(alpha) => model.with_certain_words(alpha),
             None => model,
         };
+        let rates = vec![self.misperception; model.attributes()];
+        let model = model.with_misperceptions(&rates);
         Setup {
             scene: self.scene.clone(),
             model,
@@ -69,6 +73,7 @@ pub(super) fn settings() -> Settings {
         planner: "lookahead",
         params: Params { p_l: 0.95, epsilon: 0.01, alpha: 0.2, ..Params::default() },
         alpha_typed: Some(0.001),
+        misperception: 0.015,
         durations: None,
         mode: Mode::Remote,
         prior: Prior { objects: PriorObjects::Uniform, smoothing: 1.0, absent: 0.0 },

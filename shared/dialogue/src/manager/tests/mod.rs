@@ -8,6 +8,7 @@ mod hand_over;
 mod held_back;
 mod kept;
 mod long;
+mod misfit;
 mod person;
 mod pointing;
 mod prior;
@@ -21,14 +22,14 @@ mod turns;
 mod words;
 
 use super::{Cause, State};
-use fixture::{answer, asked, at, belief, heard, manager, reply, settings};
+use fixture::{answer, asked, at, belief, heard, manager, reply, settings, settings_with};
 use scene::{Intent, ObjectId, Question, Reading, Response};
 use vocabulary::Outcome;
 use vocabulary::ids::{PromptId, UtteranceSeq};
 
 #[test]
 fn a_late_answer_is_scored_against_the_question_that_was_heard() {
-    let mut manager = manager();
+    let mut manager = settings_with(|it| it.misperception = 0.0).manager();
     let first = asked(&mut manager);
     let second = reply(&mut manager, &first, answer(Response::Yes));
     assert_ne!(second.act.question, first.act.question, "another question stands now");

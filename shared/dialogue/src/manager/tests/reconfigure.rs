@@ -86,7 +86,7 @@ fn the_same_scene_gives_the_same_belief_bit_for_bit() {
 fn an_answer_to_a_question_from_before_still_counts() {
     let state = white_asked(&mut manager());
     let question = state.act.prompt;
-    let changed = bowls(&["white"], "");
+    let changed = Settings { misperception: 0.0, ..bowls(&["white"], "") };
     let mut manager = changed.manager();
     let after = manager.next(&state, &Cause::Reconfigured, at(2));
     let asked = &after.open.as_ref().unwrap().prompts[0].named;

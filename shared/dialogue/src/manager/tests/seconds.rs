@@ -27,7 +27,8 @@ pub(super) fn pointing(settings: &mut Settings) {
 fn truthful_users_are_asked_as_few_questions() {
     let cases: [(Change, u32); 2] = [(with_durations, 3), (pointing, 5)];
     for (change, questions_max) in cases {
-        let mut manager = settings_with(change).manager();
+        let settings = Settings { misperception: 0.0, ..settings_with(change) };
+        let mut manager = settings.manager();
         let model = manager.model().clone();
         for wanted in (0..6).map(ObjectId::from) {
             let mut state = first(&mut manager, Reading::default());

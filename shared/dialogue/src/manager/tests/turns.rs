@@ -76,7 +76,7 @@ fn a_prompt_answer_counts_for_the_question_before_it() {
     let (state, asked) = two_questions(&mut manager);
     let heard = spoken(3, &asked, 7.9, Response::Yes);
     let after = manager.next(&state, &Cause::Utterance(heard), at(9));
-    assert!(mass(&after, asked[0].prompt) > 0.97, "{}", mass(&after, asked[0].prompt));
+    assert!(mass(&after, asked[0].prompt) > 0.95, "{}", mass(&after, asked[0].prompt));
 }
 
 /// "No. … No!", the second time as the next question begins: no one has heard that one yet.
@@ -117,7 +117,7 @@ fn an_answer_to_a_repeated_question_answers_it() {
         let third =
             manager.next(&second, &heard(3, &[next, again, one], 9.9, Response::Yes), at(11));
         let mass = mass(&third, next.prompt);
-        assert!(mass > 0.97, "typed: {typed}, {mass}");
+        assert!(mass > 0.95, "typed: {typed}, {mass}");
     }
 }
 

@@ -7,6 +7,7 @@
 //! | kind | answers | speaks |
 //! |---|---|---|
 //! | `model` | with the probabilities of eq. (6) and (7), silent with `1 − p_l`, wrong with `ε` | in observations: nothing is misread |
+//! | `mistaken-R` | as `model`, but takes each value for another one in R % of the cases and sticks to it; slips in 0.5 % | in observations |
 //! | `truthful` | always, and always right | one word |
 //! | `noisy` | wrong in 5 to 20 % and silent in 20 to 30 % of the cases, drawn per user | one word, through a recogniser that drops and confuses words |
 //! | `human` | mostly right; by value, with corrections, hedges, more than was asked, and late | sentences, through a better recogniser |
@@ -19,7 +20,7 @@ mod recogniser;
 mod timing;
 mod wording;
 
-use dialogue::{Answer, Model};
+use dialogue::{Answer, Errors, Model};
 use scene::{ObjectId, Question, Scene};
 use vocabulary::{Announce, Rng};
 
@@ -36,6 +37,9 @@ const NOISY_WRONG: (f64, f64) = (0.05, 0.20);
 const NOISY_SILENT: (f64, f64) = (0.20, 0.30);
 /// Probabilities that a noisy user's request names no, one, and two values.
 const NOISY_REQUEST: [f64; 3] = [0.5, 0.3, 0.2];
+
+/// Share of the answers in which mistaken users say other than they mean.
+const MISTAKEN_SLIP: f64 = 0.005;
 
 /// Share of the announcements that a noisy user attends to.
 const NOISY_ATTENDS: f64 = 0.6;
@@ -124,15 +128,22 @@ pub enum UserKind {
     Noisy,
     /// As people talk.
     Human,
+    /// Takes each value for another one in that many of a hundred cases, and sticks to it.
+    Mistaken(u8),
 }
 
 impl UserKind {
     /// All kinds by name.
-    pub const ALL: [(&'static str, Self); 4] = [
+    pub const ALL: [(&'static str, Self); 9] = [
         ("model", Self::Model),
         ("truthful", Self::Truthful),
         ("noisy", Self::Noisy),
         ("human", Self::Human),
+        ("mistaken-0", Self::Mistaken(0)),
+        ("mistaken-1", Self::Mistaken(1)),
+        ("mistaken-3", Self::Mistaken(3)),
+        ("mistaken-5", Self::Mistaken(5)),
+        ("mistaken-10", Self::Mistaken(10)),
     ];
 
     /// The kind of that name.
@@ -157,6 +168,8 @@ impl UserKind {
 pub enum Policy {
     /// The answer distribution of the observation model.
     Model,
+    /// The same with errors of one's own.
+    Erring(Errors),
     /// Always right, in one word; with probability `by_value` a yes or no is replaced by the value
     /// itself ("it is white").
     Truthful {
@@ -183,6 +196,10 @@ impl From<UserKind> for Policy {
             UserKind::Truthful => Self::Truthful { by_value: 0.0 },
             UserKind::Noisy => Self::Noisy,
             UserKind::Human => Self::Talkative(&Manners::EVERYDAY),
+            UserKind::Mistaken(percent) => {
+                let misperception = f64::from(percent) / 100.0;
+                Self::Erring(Errors { misperception, slip: MISTAKEN_SLIP })
+            }
         }
     }
 }
@@ -211,6 +228,9 @@ impl SimulatedUser {
     pub fn new(policy: Policy, wanted: ObjectId, mut rng: Rng) -> Self {
         let traits = match policy {
             Policy::Model => Traits::Model(dialogue::ModelUser::new(wanted, rng.next_u64())),
+            Policy::Erring(errors) => {
+                Traits::Model(dialogue::ModelUser::erring(wanted, rng.next_u64(), errors))
+            }
             Policy::Truthful { by_value } => Traits::Truthful { by_value },
             Policy::Unreliable { answers, random } => Traits::Unreliable { answers, random },
             Policy::Noisy => {

@@ -1,0 +1,142 @@
+//! Users who take a value for another one, and say so each time.
+
+use super::fixture::{Settings, answer, first, reply, settings, settings_of};
+use crate::manager::{Manager, State};
+use crate::rendering;
+use scene::{AttributeId, ObjectId, Question, Reading, Response, ValueId};
+use vocabulary::ActKind;
+
+const TOOLS: &str = include_str!("../../../../../config/scenes/tools.toml");
+
+/// A user who wants an object and takes one attribute for another value.
+struct User {
+    wanted: ObjectId,
+    mistaken: (AttributeId, ValueId),
+}
+
+impl User {
+    fn answer(&self, manager: &Manager, question: Question) -> Response {
+        let model = manager.model();
+        let holds = match question {
+            Question::Point(object) => object == self.wanted,
+            Question::Attribute(k, v) if k == self.mistaken.0 => v == self.mistaken.1,
+            Question::Attribute(k, v) => model.has(self.wanted, k, v),
+            other => panic!("{other:?}"),
+        };
+        if holds { Response::Yes } else { Response::No }
+    }
+}
+
+/// Every single misbelief about an object of the scene.
+fn misbeliefs(settings: &Settings) -> Vec<User> {
+    let manager = settings.manager();
+    let model = manager.model();
+    let mut all = Vec::new();
+    for wanted in (0..model.objects()).map(ObjectId::from) {
+        for k in (0..model.attributes()).map(AttributeId::from) {
+            let others = (0..model.values(k)).map(ValueId::from);
+            let others = others.filter(|v| model.value(wanted, k).is_some_and(|own| own != *v));
+            all.extend(others.map(|v| User { wanted, mistaken: (k, v) }));
+        }
+    }
+    all
+}
+
+fn asked(state: &State) -> Vec<Question> {
+    state.open.as_ref().unwrap().prompts.iter().map(|prompt| prompt.question).collect()
+}
+
+/// Talks until the robot picks, and returns the last state.
+fn talk(manager: &mut Manager, user: &User) -> State {
+    let mut state = first(manager, Reading::default());
+    while state.act.kind == ActKind::Ask {
+        let said = user.answer(manager, manager.question_put(&state));
+        state = reply(manager, &state, answer(said));
+    }
+    state
+}
+
+#[test]
+fn no_misbelief_leads_round_in_circles() {
+    for settings in [settings(), settings_of(TOOLS)] {
+        let mut manager = settings.manager();
+        let all = misbeliefs(&settings);
+        assert!(all.len() >= 36);
+        for user in all {
+            let state = talk(&mut manager, &user);
+            let asked = asked(&state);
+            let named = || settings.scene.object(user.wanted).name.clone();
+            assert!(asked.len() <= 15, "{} {:?}: {asked:?}", named(), user.mistaken);
+            for question in &asked {
+                let times = asked.iter().filter(|it| *it == question).count();
+                assert!(times <= 2, "{} {:?}: {question:?}", named(), user.mistaken);
+            }
+        }
+    }
+}
+
+/// Where what is said fits no object, none is fetched without a word.
+#[test]
+fn what_fits_nothing_is_offered_before_it_is_fetched() {
+    for settings in [settings(), settings_of(TOOLS)] {
+        let mut manager = settings.manager();
+        let model = manager.model().clone();
+        let perceived = |user: &User, k: AttributeId| {
+            if k == user.mistaken.0 { Some(user.mistaken.1) } else { model.value(user.wanted, k) }
+        };
+        let fits = |user: &User, i: ObjectId| {
+            let mut attributes = (0..model.attributes()).map(AttributeId::from);
+            attributes.all(|k| model.value(i, k) == perceived(user, k))
+        };
+        let mut wrong = 0;
+        for user in misbeliefs(&settings) {
+            if (0..model.objects()).any(|i| fits(&user, i.into())) {
+                continue;
+            }
+            let state = talk(&mut manager, &user);
+            let picked = state.act.pick.expect("a pick").1;
+            // An attribute that was not asked about is no misfit.
+            let denies = asked(&state).iter().any(|question| match question {
+                Question::Attribute(k, v) => {
+                    (perceived(&user, *k) == Some(*v)) != model.has(picked, *k, *v)
+                }
+                _ => false,
+            });
+            let is_offered = asked(&state).contains(&Question::Point(picked));
+            assert!(!denies || is_offered, "{:?}: {:?}", user.mistaken, asked(&state));
+            wrong += usize::from(denies && picked != user.wanted);
+        }
+        assert_eq!(wrong, 0, "what is offered can be declined");
+    }
+}
+
+#[test]
+fn the_user_is_told_what_there_is_not_and_what_there_is() {
+    let settings = settings_of(TOOLS);
+    let mut manager = settings.manager();
+    let base = ["red", "pen"].map(|word| settings.scene.word_named(word).unwrap()).to_vec();
+    let mut state = first(&mut manager, Reading { base, ..Reading::default() });
+    let line = rendering::text(&settings.scene, &state.act);
+    assert!(line.starts_with("There are no red pens here."), "{line}");
+    for _ in 0..8 {
+        let Question::Point(_) = manager.question_put(&state) else {
+            let said = match manager.question_put(&state) {
+                Question::Attribute(k, v) => {
+                    let name = &settings.scene.attributes()[k.index()].values[v.index()].name;
+                    if ["red", "pen"].contains(&name.as_str()) {
+                        Response::Yes
+                    } else {
+                        Response::No
+                    }
+                }
+                other => panic!("{other:?}"),
+            };
+            state = reply(&mut manager, &state, answer(said));
+            continue;
+        };
+        let line = rendering::text(&settings.scene, &state.act);
+        assert!(line.contains("Do you want the "), "{line}");
+        return;
+    }
+    panic!("nothing is offered: {:?}", asked(&state));
+}

@@ -1,0 +1,420 @@
+//! What an utterance says about the values of an attribute that are in doubt: a camera is not sure of
+//! them, or the user may take one for another ([`Model::with_misperceptions`]).
+//!
+//! Words and answers about one attribute are independent only given its value: a user who has said no
+//! to "is it white?" of an object that may be white, or that the user believes to be grey, says no
+//! again. So all of them count by value first, and the probabilities of the values come last:
+//!
+//! `P(o₁ … o_n | D) = Π_k Σ_m P(m_k = m | D) Π_j P(o_j | m)`.
+
+use scene::{AttributeId, Question, Reading, Response, ValueId, WordId};
+use serde::{Deserialize, Serialize};
+
+use crate::observation::named_answer;
+use crate::{CERTAIN_DOUBT, Model, Naming};
+
+/// Likelihood of what was said of one attribute, by the object's value of it.
+#[derive(Clone, Debug)]
+pub(crate) struct ValueEvidence {
+    /// By value.
+    by_value: Vec<f64>,
+    /// Of an object that lacks the attribute.
+    lacking: f64,
+    /// Of what is not here.
+    unknown: f64,
+}
+
+impl ValueEvidence {
+    fn none(values: usize) -> Self {
+        Self { by_value: vec![1.0; values], lacking: 1.0, unknown: 1.0 }
+    }
+
+    /// The words of a reading about attribute `k`; none if there are none, or no value of it is in
+    /// doubt.
+    pub(crate) fn of_words(
+        model: &Model,
+        k: AttributeId,
+        question: Question,
+        reading: &Reading,
+    ) -> Option<Self> {
+        let answer = named_answer(model, question, &reading.base).filter(|(of, _)| *of == k);
+        let answering = answer.map(|(k, v)| model.word(k, v));
+        let is_about = |word: &WordId| model.doubtful_attribute(*word) == Some(k);
+        let mut evidence = Self::none(model.values(k));
+        let mut says = false;
+        for (at, &word) in reading.base.iter().enumerate().filter(|(_, word)| is_about(word)) {
+            let first = reading.base.iter().position(|it| *it == word) == Some(at);
+            let doubt = reading.doubt.of_word(at);
+            match answer {
+                Some((_, v)) if Some(word) == answering => {
+                    if let Some(law) = Naming::of(model, question).filter(|_| first) {
+                        evidence.add_named(law.doubted(doubt), Some(v));
+                    }
+                }
+                _ => evidence.add_word(model, k, (word, doubt)),
+            }
+            says = true;
+        }
+        for (at, group) in reading.excluded.iter().enumerate() {
+            if let [word] = group.as_slice()
+                && is_about(word)
+            {
+                let wrong = model.error_rate(reading.doubt.of_group(at));
+                evidence.add([1.0 - wrong; 2], |m| {
+                    if model.word(k, m) == *word { wrong } else { 1.0 - wrong }
+                });
+                says = true;
+            }
+        }
+        says.then_some(evidence)
+    }
+
+    /// All that a reading says about attribute `k`.
+    fn of(model: &Model, k: AttributeId, question: Question, reading: &Reading) -> Option<Self> {
+        let words = Self::of_words(model, k, question, reading);
+        if question.attribute() != Some(k) {
+            return words;
+        }
+        let mut evidence = words.clone().unwrap_or_else(|| Self::none(model.values(k)));
+        let doubt = reading.doubt.response;
+        match (question, reading.response) {
+            (Question::Attribute(_, v), Response::Yes | Response::No) => {
+                let wrong = model.error_rate(doubt);
+                let yes = reading.response == Response::Yes;
+                let of = |is_own: bool| if is_own == yes { 1.0 - wrong } else { wrong };
+                let unknown = model.unknown_yes(k);
+                let unknown = if yes { unknown } else { 1.0 - unknown };
+                evidence.add([of(false), unknown], |m| of(m == v));
+            }
+            (Question::Choice(..), Response::No)
+                if named_answer(model, question, &reading.base).is_none() =>
+            {
+                let Some(law) = Naming::of(model, question).filter(|law| law.neither) else {
+                    return words;
+                };
+                evidence.add_named(law.doubted(doubt), None);
+            }
+            _ => return words,
+        }
+        Some(evidence)
+    }
+
+    /// Takes in more: its likelihood by value, of an object that lacks the attribute, and of what is
+    /// not here.
+    fn add(&mut self, [lacking, unknown]: [f64; 2], of: impl Fn(ValueId) -> f64) {
+        self.lacking *= lacking;
+        self.unknown *= unknown;
+        for (m, likelihood) in self.by_value.iter_mut().enumerate() {
+            *likelihood *= of(ValueId::from(m));
+        }
+    }
+
+    /// Eq. (5) without its denominator, relative to a value's own word. Words of other attributes that
+    /// may have been said instead count by the share of hypotheses that have them.
+    fn add_word(&mut self, model: &Model, k: AttributeId, (word, doubt): (WordId, f64)) {
+        let alpha = model.smoothing(doubt <= CERTAIN_DOUBT);
+        let mut said = vec![0.0; model.values(k)];
+        let mut elsewhere = alpha;
+        for (u, share) in model.said_instead(word, doubt) {
+            let own = model.meanings(u).iter().find(|(of, _)| *of == k);
+            match own {
+                Some((_, v)) => said[v.index()] += share,
+                None => elsewhere += share * model.mean_word_chance(u),
+            }
+        }
+        self.add([elsewhere / (1.0 + alpha); 2], |m| (said[m.index()] + elsewhere) / (1.0 + alpha));
+    }
+
+    fn add_named(&mut self, law: Naming, named: Option<ValueId>) {
+        self.add(law.without_value(named), |m| law.of_value(named, m));
+    }
+
+    /// Probabilities of the values after this, given those before it.
+    pub(crate) fn condition(&self, chances: &[f64]) -> Vec<f64> {
+        let all = self.mean(chances);
+        chances.iter().zip(&self.by_value).map(|(p, it)| p * it / all).collect()
+    }
+
+    fn mean(&self, chances: &[f64]) -> f64 {
+        chances.iter().zip(&self.by_value).map(|(p, it)| p * it).sum()
+    }
+
+    /// Adds the logarithm of the likelihood to every entry, but for a constant that is returned. No
+    /// entry rises.
+    pub(crate) fn weigh(&self, model: &Model, k: AttributeId, log: &mut [f64]) -> f64 {
+        let column = model.column(k);
+        let in_doubt: Vec<f64> =
+            model.all_chances(k).iter().map(|chances| self.mean(chances).ln()).collect();
+        let known: Vec<f64> = self.by_value.iter().map(|it| it.ln()).collect();
+        let factor = |entry: u16| match entry {
+            Model::LACKS => self.lacking.ln(),
+            Model::UNKNOWN => self.unknown.ln(),
+            entry if entry >= Model::DOUBTFUL => in_doubt[usize::from(entry - Model::DOUBTFUL)],
+            entry => known[usize::from(entry)],
+        };
+        let greatest = column.iter().map(|entry| factor(*entry)).fold(f64::NEG_INFINITY, f64::max);
+        log.iter_mut().zip(column).for_each(|(log, entry)| *log += factor(*entry) - greatest);
+        greatest
+    }
+}
+
+/// Units of a key in a likelihood of 1.
+const KEY_UNITS: f64 = 1e9;
+
+/// What was said so far in an interaction of the attributes with values in doubt: logarithms of its
+/// likelihood by value, up to a constant.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Said(Vec<(AttributeId, Vec<f64>)>);
+
+impl Said {
+    /// Takes in what may have been heard; `model` is the one after all that was heard before.
+    pub(crate) fn hear(&mut self, model: &Model, heard: &[(f64, Question, Reading)]) {
+        for k in (0..model.attributes()).map(AttributeId::from) {
+            let Some(likelihood) = model.said_of(k, heard) else { continue };
+            let at = self.0.iter().position(|(of, _)| *of == k).unwrap_or_else(|| {
+                self.0.push((k, vec![0.0; likelihood.len()]));
+                self.0.len() - 1
+            });
+            let sums = &mut self.0[at].1;
+            sums.iter_mut().zip(&likelihood).for_each(|(sum, p)| *sum += p.ln());
+            let greatest = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            sums.iter_mut().for_each(|sum| *sum -= greatest);
+        }
+    }
+
+    /// Whether nothing was said of them.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Likelihood of all that was said of attribute `k`, by value, the greatest 1; none if nothing was.
+    pub fn of(&self, k: AttributeId) -> Option<Vec<f64>> {
+        let (_, log) = self.0.iter().find(|(of, _)| *of == k)?;
+        Some(log.iter().map(|log| log.exp()).collect())
+    }
+
+    /// Appends whole numbers that are equal for what differs by rounding alone.
+    pub(crate) fn key_into(&self, key: &mut Vec<i64>) {
+        let mut all: Vec<&(AttributeId, Vec<f64>)> = self.0.iter().collect();
+        all.sort_by_key(|(k, _)| *k);
+        for (k, log) in all {
+            key.push(k.index() as i64);
+            key.extend(log.iter().map(|log| (log.exp() * KEY_UNITS).round() as i64));
+        }
+    }
+
+    /// The model of objects as the user takes them after this.
+    pub fn in_model(&self, model: &Model) -> Model {
+        let mut model = model.clone();
+        for (k, _) in &self.0 {
+            let likelihood = self.of(*k).unwrap_or_default();
+            model.weigh_doubts(*k, &likelihood);
+        }
+        model
+    }
+}
+
+impl Model {
+    /// Whether any value of an object is in doubt.
+    pub(crate) fn has_doubts(&self) -> bool {
+        (0..self.attributes()).any(|k| self.is_doubtful(k.into()))
+    }
+
+    /// The attribute with values in doubt that a word is about, if it is about no other one.
+    pub(crate) fn doubtful_attribute(&self, word: WordId) -> Option<AttributeId> {
+        match self.meanings(word) {
+            [(k, _)] if self.is_doubtful(*k) => Some(*k),
+            _ => None,
+        }
+    }
+
+    /// Appends the probabilities of values in doubt in whole units.
+    pub fn doubts_into(&self, key: &mut Vec<i64>) {
+        for k in (0..self.attributes()).map(AttributeId::from) {
+            let all = self.all_chances(k).iter().flatten();
+            key.extend(all.map(|p| (p * KEY_UNITS).round() as i64));
+        }
+    }
+
+    /// Updates the probabilities of values in doubt by Bayes' rule with what may have been heard.
+    pub(crate) fn learn(&mut self, heard: &[(f64, Question, Reading)]) {
+        for k in (0..self.attributes()).map(AttributeId::from) {
+            if let Some(likelihood) = self.said_of(k, heard) {
+                self.weigh_doubts(k, &likelihood);
+            }
+        }
+    }
+
+    /// Likelihood of what may have been heard of attribute `k`, by value; none if nothing was said of
+    /// it. A reading that says nothing of it counts as likely as one that does is on average.
+    fn said_of(&self, k: AttributeId, heard: &[(f64, Question, Reading)]) -> Option<Vec<f64>> {
+        if !self.is_doubtful(k) {
+            return None;
+        }
+        let mut says = false;
+        let mut likelihood = vec![0.0; self.values(k)];
+        for (weight, question, reading) in heard {
+            let evidence = ValueEvidence::of(self, k, *question, reading);
+            says |= evidence.is_some();
+            let by_value = evidence.map_or_else(|| vec![1.0; likelihood.len()], |it| it.by_value);
+            let mean = by_value.iter().sum::<f64>() / by_value.len() as f64;
+            likelihood.iter_mut().zip(by_value).for_each(|(sum, p)| *sum += weight * p / mean);
+        }
+        (says && likelihood.iter().any(|p| *p > 0.0)).then_some(likelihood)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use scene::{ObjectId, Perceived, Scene};
+    use vocabulary::{Params, Rng};
+
+    use super::*;
+    use crate::testing::{bowls, heard, markers, random_scene, tools};
+    use crate::{Belief, Posterior};
+
+    /// Two objects of which one may be red: asking the same again tells no more than a person's error.
+    #[test]
+    fn the_same_answer_again_tells_little_more() {
+        let file = markers();
+        let object = |number: u16, red: f64| Perceived {
+            number: ObjectId(number),
+            name: format!("it-{number}"),
+            classes: vec![("R".to_owned(), 1.0)],
+            attributes: vec![(
+                "color".to_owned(),
+                vec![("red".to_owned(), red), ("blue".to_owned(), 1.0 - red)],
+            )],
+            xyz: [0.0; 3],
+            yaw: 0.0,
+            seen_by: Vec::new(),
+            taken: false,
+        };
+        let scene = file.with_objects(&[object(2, 0.8), object(3, 0.2)]);
+        let mut model = Model::new(&file, Params::default()).with_objects(&scene);
+        let red = Question::Attribute(AttributeId(0), ValueId(0));
+        let no = [(1.0, red, heard(&scene, &[], Response::No))];
+        let mut belief = Belief::uniform(2);
+        let mut said = Vec::new();
+        for _ in 0..3 {
+            belief.update_mixture(&model, &no);
+            model.learn(&no);
+            said.push(belief.probability(ObjectId(1)));
+        }
+        // The joint distribution over object and colour, by hand.
+        let epsilon = Params::default().epsilon;
+        let exact = |times: i32| {
+            let no =
+                |red: f64| red * epsilon.powi(times) + (1.0 - red) * (1.0 - epsilon).powi(times);
+            no(0.2) / (no(0.2) + no(0.8))
+        };
+        for (times, p) in (1..).zip(said) {
+            assert!((p - exact(times)).abs() < 1e-12, "{times}: {p} not {}", exact(times));
+        }
+    }
+
+    /// What is believed after anything that is certain, against the sum over all that the user may
+    /// take the object for.
+    #[test]
+    fn the_belief_is_the_sum_over_what_the_user_perceives() {
+        let seed = 11;
+        let mut rng = Rng::new(seed);
+        for scene in [bowls(), tools(), random_scene(&mut rng, 7, &[3, 2, 4, 1], 5)] {
+            let rate = |k: usize| 0.02 + 0.01 * k as f64;
+            let rates: Vec<f64> = (0..scene.attributes().len()).map(rate).collect();
+            let plain = Model::new(&scene, Params::default());
+            let model = plain.clone().with_misperceptions(&rates);
+            let mut posterior =
+                Posterior::new(Belief::uniform(model.objects()), None).of_perceived();
+            let mut heard = Vec::new();
+            for _ in 0..12 {
+                let reading = random_reading(&mut rng, &scene, &model);
+                posterior.update_mixture(&model, std::slice::from_ref(&reading));
+                heard.push(reading);
+                let expected = by_hand(&model, &rates, &heard);
+                for (i, expected) in expected.into_iter().enumerate() {
+                    let got = posterior.belief().probability(i.into());
+                    assert!((got - expected).abs() < 1e-12, "seed {seed}: {i}: {got}, {expected}");
+                }
+            }
+        }
+    }
+
+    /// An answer, some with a word beside it, a request, or a denial.
+    fn random_reading(rng: &mut Rng, scene: &Scene, model: &Model) -> (f64, Question, Reading) {
+        let k = AttributeId::from(rng.below(scene.attributes().len()));
+        let v = ValueId::from(rng.below(model.values(k)));
+        let word = model.word(k, v);
+        let response = [Response::Yes, Response::No, Response::None][rng.below(3)];
+        let base = if rng.below(2) == 0 { vec![word] } else { vec![] };
+        let excluded = if rng.below(3) == 0 { vec![vec![word]] } else { vec![] };
+        let question =
+            [Question::Attribute(k, v), Question::Which(k), Question::None][rng.below(3)];
+        (1.0, question, Reading { base, excluded, response, ..Reading::default() })
+    }
+
+    /// `P(D | heard)`, attribute by attribute over all that the user may take the value for. An object
+    /// of that value alone says how likely a reading is.
+    fn by_hand(model: &Model, rates: &[f64], heard: &[(f64, Question, Reading)]) -> Vec<f64> {
+        let params = model.params();
+        let of = |i: usize| -> f64 {
+            let object = ObjectId::from(i);
+            let words: f64 = (0..model.attributes())
+                .filter(|k| model.value(object, (*k).into()).is_some())
+                .count() as f64;
+            let all: f64 = (0..model.attributes()).map(|k| model.values(k.into()) as f64).sum();
+            let one = |k: usize, m: Option<usize>| -> f64 {
+                let each = heard.iter().map(|(_, question, reading)| {
+                    let is =
+                        |word: WordId| m.is_some_and(|m| model.word(k.into(), m.into()) == word);
+                    let about = |word: WordId| model.meanings(word)[0].0.index() == k;
+                    let mut p = 1.0;
+                    for &word in reading.base.iter().filter(|word| about(**word)) {
+                        p *= if *question == Question::Which(k.into()) {
+                            let n = model.values(k.into()) as f64;
+                            let wrong = params.epsilon / (n - 1.0).max(1.0);
+                            let own = if n < 2.0 { 1.0 } else { 1.0 - params.epsilon };
+                            if m.is_none() {
+                                1.0 / n
+                            } else if is(word) {
+                                own
+                            } else {
+                                wrong
+                            }
+                        } else {
+                            let own = f64::from(u8::from(is(word)));
+                            (own + params.alpha) / (words + params.alpha * all)
+                        };
+                    }
+                    for group in reading.excluded.iter().filter(|group| about(group[0])) {
+                        p *= if is(group[0]) { params.epsilon } else { 1.0 - params.epsilon };
+                    }
+                    if let Question::Attribute(asked, v) = question
+                        && asked.index() == k
+                        && reading.response != Response::None
+                    {
+                        let right = (m == Some(v.index())) == (reading.response == Response::Yes);
+                        p *= if right { 1.0 - params.epsilon } else { params.epsilon };
+                    }
+                    p
+                });
+                each.product()
+            };
+            let attribute = |k: usize| -> f64 {
+                let n = model.values(k.into());
+                let Some(own) = model.value(object, k.into()) else { return one(k, None) };
+                if n < 2 {
+                    return one(k, Some(0));
+                }
+                let chance = |m: usize| {
+                    if m == own.index() { 1.0 - rates[k] } else { rates[k] / (n - 1) as f64 }
+                };
+                (0..n).map(|m| chance(m) * one(k, Some(m))).sum()
+            };
+            (0..model.attributes()).map(attribute).product()
+        };
+        let all: Vec<f64> = (0..model.objects()).map(of).collect();
+        let sum: f64 = all.iter().sum();
+        all.into_iter().map(|p| p / sum).collect()
+    }
+}
