@@ -8,14 +8,14 @@ use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 use std::sync::LazyLock;
 
-use scene::{AttributeId, Reference, Role, Scene, Value, WordId};
+use scene::{AttributeId, Role, Scene, Value, WordId};
 use words::{Gap, Token, Tokens, normalise};
 
 use crate::closed_class::{is_answer, is_closed};
 use crate::hedges::sureness;
 use crate::lookalikes::Lookalikes;
 use crate::morphology::{inflected, singulars};
-use crate::references::by_size;
+use crate::relation_words::by_quality;
 use crate::relations::{Form, forms, words};
 use crate::token_class::Class;
 use crate::vocabulary;
@@ -291,7 +291,7 @@ impl Lexicon {
             singulars.filter(|form| !self.lookalikes.is_common(form)).collect();
         for form in inflected(last, quality).into_iter().chain(singulars) {
             // Of three sizes "smaller" need not be small.
-            if self.values[place].one_of_two || by_size(&form) == Reference::None {
+            if self.values[place].one_of_two || by_quality(&form).is_none() {
                 self.add(&[lead, &[form]].concat(), Meaning::Value(place));
             }
         }

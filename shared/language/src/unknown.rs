@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-use scene::{Reference, Role, UnknownWord};
+use scene::{Role, UnknownWord};
 use words::Tokens;
 
 use crate::clauses::{Clause, Topic};
-use crate::references::by_size;
+use crate::related::Related;
+use crate::relation_words::by_quality;
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
 use crate::vocabulary::is_unlisted_quality;
@@ -22,12 +23,17 @@ pub(crate) fn unknown_words(
     tokens: &Tokens<'_>,
     tags: &[Tag<'_>],
     clauses: &[Clause],
+    related: &[Related],
 ) -> Vec<UnknownWord> {
     let mut words: Vec<UnknownWord> = Vec::new();
     for clause in clauses.iter().filter(|clause| clause.topic != Topic::Off) {
         let asked = clause.requests || clause.topic == Topic::AskBack;
         let mut rest = clause.span.clone();
         while let Some(at) = rest.next() {
+            if let Some(known) = related.iter().find(|it| it.tags.contains(&at)) {
+                rest.start = known.tags.end;
+                continue;
+            }
             let word = if let Some(relation) = relation(&tags[..clause.span.end], at) {
                 rest.start = relation.end;
                 UnknownWord { text: said(tokens, tags, relation), role: Role::Place }
@@ -75,7 +81,7 @@ fn is_counted(tags: &[Tag<'_>], at: usize) -> bool {
     let is_led = before(tags, at).is_some_and(|it| it.is_any(classes![Determiner Possessive]));
     // "the top shelf" is a place.
     let is_part = after(tags, at).is_some_and(|next| next.is_role(Role::Place));
-    let is_known = SPOKEN_OF.contains(&tag.word) || by_size(tag.word) != Reference::None;
+    let is_known = SPOKEN_OF.contains(&tag.word) || by_quality(tag.word).is_some();
     is_led && !is_part && !is_known
 }
 

@@ -1,6 +1,6 @@
 //! Content of an utterance about the wanted object.
 
-use scene::{Question, Reading, Reference, Response};
+use scene::{Question, Reading, Reference, Relation, Response};
 use vocabulary::Interpretation;
 use vocabulary::time::Time;
 
@@ -31,6 +31,11 @@ impl Manager {
         let refused = refused.map(|it| Mark::Not(it.picked));
         self.open(state, said.utterance);
         let Some(open) = &mut state.open else { return };
+        if said.spoken_of.is_some() {
+            // It compares to what was handed over.
+            let relations = said.heard.interpretations.iter_mut().map(|(.., it)| it);
+            relations.filter(|it| is_comparison(it)).for_each(forget_relation);
+        }
         for mark in said.spoken_of.take().into_iter().chain(refused) {
             self.take_in(open, Heard { mark: Some(mark), ..Heard::default() });
         }
@@ -51,8 +56,10 @@ impl Manager {
         let held_back = open.held_back.take_if(|it| !it.is_kept());
         let held_back = held_back.and_then(|it| self.setup.scene.object_named(&it.name));
         let denial = held_back.and_then(|object| self.denial(object, &heard.interpretations));
+        let relation = self.relation(&heard);
         self.take_in(open, heard);
         denial.into_iter().for_each(|denial| self.take_in(open, denial));
+        self.relate(open, relation);
         if let mark @ Some(_) = self.compared(open, refers) {
             self.take_in(open, Heard { mark, ..Heard::default() });
         }
@@ -198,6 +205,16 @@ impl Manager {
             objects: Vec::new(),
         })
     }
+}
+
+/// Returns whether a reading compares: "a bigger one".
+fn is_comparison(reading: &Reading) -> bool {
+    matches!(reading.refers, Reference::Relation(Relation::More(_)))
+}
+
+fn forget_relation(reading: &mut Reading) {
+    reading.refers = Reference::None;
+    reading.further.clear();
 }
 
 /// Returns whether no reading has a content.

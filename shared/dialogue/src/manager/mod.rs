@@ -10,7 +10,7 @@
 //! | `attribution.rs` | the questions that an utterance answers |
 //! | `inform.rs`, `correct.rs` | content of an utterance: while deciding, and while the arm fetches |
 //! | `concede.rs` | what the user cannot tell, and what does not matter |
-//! | `references.rs` | "the other one", "the smaller one" |
+//! | `references.rs`, `relate.rs` | "the other one", "the same again"; "the leftmost", "longer than the red one" |
 //! | `hand_over.rs`, `held_back.rs` | refusals after a hand-over; picks while the motion stop is latched |
 //! | `queue.rs` | requests for several objects |
 //! | `replies.rs` | answers to what the user asks |
@@ -44,6 +44,7 @@ mod queue;
 mod reconfigure;
 mod references;
 mod refold;
+mod relate;
 mod replies;
 mod rules;
 mod setup;
