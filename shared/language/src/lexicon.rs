@@ -180,7 +180,8 @@ impl Lexicon {
     fn add_values(&mut self, scene: &Scene) {
         let mut places: HashMap<WordId, usize> = HashMap::new();
         let mut all = Vec::new();
-        for (k, attribute) in scene.attributes().iter().enumerate() {
+        let own = scene.attributes().iter().enumerate().filter(|(_, it)| !it.by_place);
+        for (k, attribute) in own {
             for value in &attribute.values {
                 let place = *places.entry(value.word).or_insert_with(|| {
                     let (word, role, attributes) = (value.word, value.role(), Vec::new());
@@ -326,7 +327,7 @@ impl Lexicon {
     }
 
     fn add_names(&mut self, scene: &Scene) {
-        let attributes = scene.attributes().iter();
+        let attributes = scene.attributes().iter().filter(|it| !it.by_place);
         let attributes = attributes.flat_map(|a| std::iter::once(&a.name).chain(&a.synonyms));
         let noun = std::iter::once((scene.noun(), Class::Head));
         for (name, class) in noun.chain(attributes.map(|name| (name.as_str(), Class::Attribute))) {

@@ -1,5 +1,5 @@
 //! Where an utterance says how the wanted object lies or compares to others: "the second from the left", "next to the
-//! clear one", "longer". A word that the scene has as a value is that value.
+//! clear one", "longer".
 
 use std::ops::Range;
 
@@ -26,6 +26,18 @@ pub(crate) struct Related {
     pub(crate) tags: Range<usize>,
 }
 
+impl Related {
+    /// Returns whether it is of places, and not of the objects themselves.
+    pub(crate) fn is_of_place(&self) -> bool {
+        match self.relation {
+            Relation::Nth(measure, _) | Relation::More(measure) | Relation::Middle(measure) => {
+                !measure.is_of_object()
+            }
+            Relation::Beside | Relation::Between => true,
+        }
+    }
+}
+
 /// Returns the relations that are said of the wanted object. `placed`: the scene knows where its objects are.
 pub(crate) fn related(
     tokens: &Tokens<'_>,
@@ -38,7 +50,7 @@ pub(crate) fn related(
         let said = Said { tokens, tags: &tags[..clause.span.end] };
         let mut rest = clause.span.clone();
         while let Some(at) = rest.next() {
-            let here = said.at(at).filter(|it| placed || is_of_objects(it.relation));
+            let here = said.at(at).filter(|it| placed || !it.is_of_place());
             if let Some(related) = here {
                 rest.start = related.tags.end;
                 found.push(related);
@@ -56,15 +68,6 @@ pub(crate) fn too_much(tags: &[Tag<'_>], at: usize) -> Option<Relation> {
     Some(Relation::More(measure.reverse()))
 }
 
-fn is_of_objects(relation: Relation) -> bool {
-    match relation {
-        Relation::Nth(measure, _) | Relation::More(measure) | Relation::Middle(measure) => {
-            measure.is_of_object()
-        }
-        Relation::Beside | Relation::Between => false,
-    }
-}
-
 /// The tags up to the end of a clause.
 struct Said<'t, 'a> {
     tokens: &'t Tokens<'a>,
@@ -77,10 +80,15 @@ impl Said<'_, '_> {
         if let Some(relation) = too_much(self.tags, at) {
             return self.alone(relation, at..at + 1);
         }
-        if self.tags[at].is_value() || self.is_denied(at) {
+        if self.is_denied(at) {
             return None;
         }
-        let (phrase, is_word) = (self.phrase(at), self.tags[at].word == self.tags[at].last);
+        if self.tags[at].is_value() {
+            // "smaller" may be a name of a value, and compare to what was handed over as well.
+            let relation = by_quality(self.tags[at].word).filter(|_| self.is_word(at))?;
+            return self.alone(relation, at..at + 1);
+        }
+        let (phrase, is_word) = (self.phrase(at), self.is_word(at));
         if let Some(relation) = relation_to(&phrase) {
             return self.to_another(relation, at);
         }
@@ -101,6 +109,10 @@ impl Said<'_, '_> {
 
     fn alone(&self, relation: Relation, tags: Range<usize>) -> Option<Related> {
         Some(Related { relation, to: Vec::new(), tags })
+    }
+
+    fn is_word(&self, at: usize) -> bool {
+        self.tags[at].word == self.tags[at].last
     }
 
     /// The words of a tag.
@@ -135,8 +147,8 @@ impl Said<'_, '_> {
             Some("me" | "us") => Some(Measure::NearUser),
             _ => None,
         };
-        // "put it next to me" says where it goes.
-        let is_where = self.tags[at].word != "next" && self.tags[at].word != "beside";
+        // "close to me" is vague, and "put it next to me" says where it goes.
+        let is_where = self.tags[at].word.ends_with("est");
         match near {
             Some(measure) if relation == Relation::Beside && is_where => {
                 self.alone(Relation::Nth(measure, 1), at..at + 2)

@@ -18,20 +18,24 @@ const COMPOUND_MAX: usize = 3;
 /// Most words of a landmark that are repeated: "the small white cup".
 const LANDMARK_MAX: usize = 4;
 
-/// Attribute and object words that the scene does not have, for the robot's reply.
+/// Attribute and object words that the scene does not have, for the robot's reply; last the places that it may know how
+/// to tell.
 pub(crate) fn unknown_words(
     tokens: &Tokens<'_>,
     tags: &[Tag<'_>],
     clauses: &[Clause],
     related: &[Related],
 ) -> Vec<UnknownWord> {
-    let mut words: Vec<UnknownWord> = Vec::new();
+    let (mut words, mut places): (Vec<UnknownWord>, Vec<UnknownWord>) = Default::default();
     for clause in clauses.iter().filter(|clause| clause.topic != Topic::Off) {
         let asked = clause.requests || clause.topic == Topic::AskBack;
         let mut rest = clause.span.clone();
         while let Some(at) = rest.next() {
             if let Some(known) = related.iter().find(|it| it.tags.contains(&at)) {
                 rest.start = known.tags.end;
+                let text = said(tokens, tags, known.tags.clone());
+                places
+                    .extend(known.is_of_place().then_some(UnknownWord { text, role: Role::Place }));
                 continue;
             }
             let word = if let Some(relation) = relation(&tags[..clause.span.end], at) {
@@ -47,6 +51,7 @@ pub(crate) fn unknown_words(
             }
         }
     }
+    words.extend(places);
     words
 }
 

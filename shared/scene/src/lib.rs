@@ -38,6 +38,7 @@
 //! ```
 
 mod ambiguity;
+mod by_place;
 mod check;
 mod describe;
 mod ids;

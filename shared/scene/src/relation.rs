@@ -95,6 +95,11 @@ impl Measure {
         self as usize >= Self::Big as usize
     }
 
+    /// Returns whether it grows with what is measured: "big", and not "small".
+    pub(crate) fn is_positive(self) -> bool {
+        (self as usize).is_multiple_of(2)
+    }
+
     /// Returns the reverse.
     #[must_use]
     pub fn reverse(self) -> Self {

@@ -1,7 +1,7 @@
 //! Truth of relations in a scene: computed from the places, sizes and masses of its objects, graded by how plain
 //! it is.
 
-use crate::{Measure, ObjectId, Placement, Relation, Scene};
+use crate::{Measure, ObjectId, Placement, Relation, Scene, WordId};
 
 /// Difference of places at which people take one side to be meant with odds of `e`, metres.
 const PLACE_M: f64 = 0.02;
@@ -13,6 +13,9 @@ const RATIO_LOOSE: f64 = 0.1;
 const BESIDE_M: f64 = 0.04;
 /// Distance from the line between two objects at which "between" is said `e` times less often, metres.
 const ASIDE_M: f64 = 0.1;
+
+/// Truth below which a relation to another object is true of none.
+const TRUE_MIN: f64 = 0.1;
 
 /// Names of sizes, from small to large: values that have these names are ordered by them where no measured
 /// size tells objects apart.
@@ -64,7 +67,21 @@ impl Scene {
         let most = about.among.iter().filter_map(of).fold(0.0, f64::max);
         let known = about.among.iter().filter_map(of).count();
         let scaled = |truth: Option<f64>| truth.map(|truth| (truth / most).min(1.0));
-        (known > 1 && most > 0.0).then(|| truths.into_iter().map(scaled).collect())
+        let least = if about.to.is_empty() { 0.0 } else { TRUE_MIN };
+        (known > 1 && most > least).then(|| truths.into_iter().map(scaled).collect())
+    }
+
+    /// Returns whether a word is a value that stands for more of a measure: "long" for [`Measure::Long`].
+    pub fn is_value_of(&self, word: WordId, measure: Measure) -> bool {
+        let values = self.attributes().iter().flat_map(|attribute| &attribute.values);
+        let names = values
+            .filter(|value| value.word == word)
+            .flat_map(|value| std::iter::once(&value.name).chain(&value.synonyms));
+        let middle = SIZES.len() / 2;
+        let mut ranks =
+            names.filter_map(|name| SIZES.iter().position(|names| names.contains(&name.as_str())));
+        measure.is_of_object()
+            && ranks.any(|rank| if measure.is_positive() { rank > middle } else { rank < middle })
     }
 
     /// The probability of each object to be at one of these places in the order of those that may be meant.
@@ -188,7 +205,7 @@ impl Scene {
         if !measure.is_of_object() || matches!(measure, Measure::Heavy | Measure::Light) {
             return None;
         }
-        let sign = if measure as usize % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if measure.is_positive() { 1.0 } else { -1.0 };
         let rank = |k: usize, i: ObjectId| {
             let value = &self.attributes()[k].values[self.object(i).values[k]?.index()];
             let rank = SIZES.iter().position(|names| names.contains(&&*value.name));
@@ -239,7 +256,7 @@ impl Scene {
     }
 
     /// Directions to the left and away from the viewer, horizontal.
-    fn axes(&self, view: View) -> [[f64; 2]; 2] {
+    pub(crate) fn axes(&self, view: View) -> [[f64; 2]; 2] {
         let back = match view {
             View::Robot => [1.0, 0.0],
             View::User(at) => {
@@ -299,7 +316,7 @@ fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 

@@ -18,6 +18,8 @@ const NAMED_MAX: usize = 64;
 pub(super) struct Said {
     relation: Relation,
     to: Vec<Vec<ObjectId>>,
+    /// Words of the scene beside it.
+    base: Vec<WordId>,
     /// Share of the interpretations that have it.
     share: f64,
 }
@@ -27,6 +29,12 @@ impl Manager {
     pub(super) fn relation(&self, heard: &Heard<'_>) -> Option<Said> {
         let (_, question, reading) = heard.interpretations.first()?;
         let Reference::Relation(relation) = reading.refers else { return None };
+        if let Relation::Nth(measure, 1) | Relation::More(measure) = relation
+            && reading.base.iter().any(|word| self.setup.scene.is_value_of(*word, measure))
+        {
+            // "longer" is what the scene calls long.
+            return None;
+        }
         let named: Vec<Vec<ObjectId>> =
             reading.further.iter().map(|words| self.objects_with(words)).collect();
         if named.iter().any(Vec::is_empty) {
@@ -39,7 +47,7 @@ impl Manager {
             .iter()
             .filter(|(.., it)| (it.refers, &it.further) == (reading.refers, &reading.further));
         let share = same.map(|(weight, ..)| weight).sum::<f64>() / all;
-        Some(Said { relation, to, share })
+        Some(Said { relation, to, base: reading.base.clone(), share })
     }
 
     /// "No, a bigger one", "the one to the left of it": the object that was asked about, where that is one.
@@ -67,9 +75,10 @@ impl Manager {
     /// Returns how likely a relation would be said of each object, of those that are left; none where the scene cannot
     /// tell.
     fn likely(&self, open: &Interaction, said: &Said) -> Option<Mark> {
-        let Said { relation, to, share } = said;
+        let Said { relation, to, base, share } = said;
         let left = self.left(&open.belief());
-        let among = if left.len() > 1 { left } else { self.all_objects().collect() };
+        // One that is fetched already is not all that may be meant.
+        let among = if left.len() > 1 { left } else { self.objects_with(base) };
         let about = Related { among: &among, to, view: self.view() };
         let truths = self.setup.scene.truths(*relation, &about)?;
         let epsilon = self.setup.model.params().epsilon;
@@ -94,11 +103,15 @@ impl Manager {
         Some(Mark::Likely { named, others })
     }
 
-    /// Updates an interaction with a relation that was said.
-    pub(super) fn relate(&self, open: &mut Interaction, said: Option<Said>) {
-        if let mark @ Some(_) = said.and_then(|said| self.likely(open, &said)) {
+    /// Updates an interaction with a relation that was said. Returns whether the scene can tell of which objects it is
+    /// true.
+    pub(super) fn relate(&self, open: &mut Interaction, said: Option<Said>) -> bool {
+        let mark = said.and_then(|said| self.likely(open, &said));
+        let is_known = mark.is_some();
+        if is_known {
             self.take_in(open, Heard { mark, ..Heard::default() });
         }
+        is_known
     }
 
     /// Returns the objects that compare so to what was handed over, of these.
