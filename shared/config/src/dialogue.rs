@@ -1,7 +1,7 @@
 //! `dialogue.toml`: understanding, belief and decisions.
 
 use diagnostics::{Fields, Report, Table};
-use scene::Scene;
+use scene::{Scene, View};
 use serde_json::json;
 use vocabulary::gesture::{Direction, Gestures};
 use vocabulary::reaction::Reaction;
@@ -61,6 +61,21 @@ pub struct Gesture {
     pub model: Gestures,
     /// Origin of the pointing ray, metres, frame `base`.
     pub person_xyz_m: [f64; 3],
+}
+
+impl Dialogue {
+    /// Returns the scene in which objects that are alike are told apart by place, as the user sees them where the
+    /// user's place is known; in the paper's language the scene as it is.
+    pub fn by_place(&self, scene: Scene) -> Scene {
+        let view = match self.gesture.enabled {
+            true => View::User(self.gesture.person_xyz_m),
+            false => View::Robot,
+        };
+        match self.language {
+            Language::Careful => scene.by_place(view),
+            Language::Paper => scene,
+        }
+    }
 }
 
 pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {

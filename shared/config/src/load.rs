@@ -95,6 +95,7 @@ pub(crate) fn check(
     let Files { scene: file, robot } = files;
     let scene =
         file.as_ref().and_then(|TextFile { label, text }| Scene::examine(label, text, &mut report));
+    let scene = scene.map(|scene| dialogue.by_place(scene));
     if let Some(scene) = &scene {
         dialogue::check_person(scene, &dialogue.gesture, &tree, &mut report);
     }

@@ -25,6 +25,10 @@ impl Settings {
         let reads = core.or_else(|| Some(part::part_service(service)?.reads)).unwrap_or(ANY);
         let everywhere =
             [self.scene_file().text.clone(), self.resolved.value_text("group.perception")];
+        // They tell objects apart by place.
+        let view = ["dialogue.language", "dialogue.gesture"];
+        let everywhere =
+            everywhere.into_iter().chain(view.map(|key| self.resolved.value_text(key)));
         reads.iter().map(|key| self.text_at(key)).chain(everywhere).collect()
     }
 

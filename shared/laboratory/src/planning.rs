@@ -81,6 +81,10 @@ fn problem(scene: Scene, args: &ProblemArgs, follows: bool) -> Result<Problem, F
     let preset = args.costs.as_deref().and_then(Costs::preset);
     let costs = preset.or(configured.map(|dialogue| dialogue.costs)).unwrap_or_default();
     let followed = settings.as_ref().filter(|_| follows);
+    let scene = match followed {
+        Some(settings) => settings.dialogue.by_place(scene),
+        None => scene,
+    };
     let all = Actions { mode: Mode::Remote, attribute: true, which: true, choice: false };
     let allowed = followed.map_or(all, |settings| settings.dialogue.actions);
     let actions = Actions {

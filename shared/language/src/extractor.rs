@@ -10,7 +10,7 @@ use crate::lexicon::{Sense, ValueSense};
 use crate::negation::{self, NoUse};
 use crate::negation_scope::NegationScope;
 use crate::question_words::QuestionWords;
-use crate::references::too_much;
+use crate::related::too_much;
 use crate::repair;
 use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};

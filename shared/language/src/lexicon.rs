@@ -8,14 +8,14 @@ use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 use std::sync::LazyLock;
 
-use scene::{AttributeId, Reference, Role, Scene, Value, WordId};
+use scene::{AttributeId, Role, Scene, Value, WordId};
 use words::{Gap, Token, Tokens, normalise};
 
 use crate::closed_class::{is_answer, is_closed};
 use crate::hedges::sureness;
 use crate::lookalikes::Lookalikes;
 use crate::morphology::{inflected, singulars};
-use crate::references::by_size;
+use crate::relation_words::by_quality;
 use crate::relations::{Form, forms, words};
 use crate::token_class::Class;
 use crate::vocabulary;
@@ -185,7 +185,8 @@ impl Lexicon {
     fn add_values(&mut self, scene: &Scene) {
         let mut places: HashMap<WordId, usize> = HashMap::new();
         let mut all = Vec::new();
-        for (k, attribute) in scene.attributes().iter().enumerate() {
+        let own = scene.attributes().iter().enumerate().filter(|(_, it)| !it.by_place);
+        for (k, attribute) in own {
             for value in &attribute.values {
                 let place = *places.entry(value.word).or_insert_with(|| {
                     let (word, role, attributes) = (value.word, value.role(), Vec::new());
@@ -296,7 +297,7 @@ impl Lexicon {
             singulars.filter(|form| !self.lookalikes.is_common(form)).collect();
         for form in inflected(last, quality).into_iter().chain(singulars) {
             // Of three sizes "smaller" need not be small.
-            if self.values[place].one_of_two || by_size(&form) == Reference::None {
+            if self.values[place].one_of_two || by_quality(&form).is_none() {
                 self.add(&[lead, &[form]].concat(), Meaning::Value(place));
             }
         }
@@ -331,7 +332,7 @@ impl Lexicon {
     }
 
     fn add_names(&mut self, scene: &Scene) {
-        let attributes = scene.attributes().iter();
+        let attributes = scene.attributes().iter().filter(|it| !it.by_place);
         let attributes = attributes.flat_map(|a| std::iter::once(&a.name).chain(&a.synonyms));
         let noun = std::iter::once((scene.noun(), Class::Head));
         for (name, class) in noun.chain(attributes.map(|name| (name.as_str(), Class::Attribute))) {

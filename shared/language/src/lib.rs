@@ -87,6 +87,8 @@ mod questions;
 mod read_back;
 mod reader;
 mod references;
+mod related;
+mod relation_words;
 mod relations;
 mod repair;
 mod spelling;

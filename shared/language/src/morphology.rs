@@ -17,6 +17,12 @@ pub(crate) fn inflected(word: &str, quality: bool) -> Vec<String> {
     forms
 }
 
+/// The comparative and the superlative of a quality.
+pub(crate) fn comparatives(word: &str) -> Option<[String; 2]> {
+    let stem = quality_stem(word, word.chars().last().filter(char::is_ascii_alphabetic)?);
+    Some(["er", "est"].map(|ending| format!("{stem}{ending}")))
+}
+
 /// The singulars that a word may be the plural of, the likelier first: "nut" of "nuts", "berry" of "berries", "box" of
 /// "boxes", "rose" of "roses".
 pub(crate) fn singulars(word: &str) -> Vec<String> {

@@ -26,6 +26,8 @@ pub(crate) struct ParsedUtterance<'a> {
     pub(crate) response: (Response, f64),
     pub(crate) intent: Intent,
     pub(crate) refers: Reference,
+    /// Words of each object that it refers to.
+    pub(crate) to: Vec<Vec<WordId>>,
     pub(crate) asked: QuestionWords<'a>,
     pub(crate) tags: Vec<Tag<'a>>,
     pub(crate) clauses: Vec<Clause>,
@@ -38,13 +40,16 @@ impl ParsedUtterance<'_> {
     /// The best reading.
     pub(crate) fn reading(&self) -> Reading {
         let objects = match self.intent {
-            Intent::Inform => objects(&self.tags, &self.content, self.asked),
+            Intent::Inform if !self.is_relation() => objects(&self.tags, &self.content, self.asked),
             _ => vec![self.content.base.clone()],
         };
         let words = |object: &Vec<Asserted<'_>>| -> Vec<WordId> {
             object.iter().map(|value| value.word).collect()
         };
         let mut reading = self.reading_of(&objects[0]);
+        if self.is_relation() {
+            return reading;
+        }
         reading.further = objects.iter().skip(1).map(words).collect();
         reading.further.extend(self.content.asked.iter().take(MORE_MAX).map(|word| vec![*word]));
         if objects.len() == 1
@@ -56,6 +61,10 @@ impl ParsedUtterance<'_> {
             reading.response = Response::DoesNotMatter;
         }
         reading
+    }
+
+    fn is_relation(&self) -> bool {
+        matches!(self.refers, Reference::Relation(_))
     }
 
     /// How many beside the first, of what is described: "both cups", "two red mugs", "three bowls",
@@ -127,7 +136,7 @@ impl ParsedUtterance<'_> {
             excluded: excluded.iter().map(|group| group.words.clone()).collect(),
             intent: self.intent,
             refers: self.refers,
-            further: Vec::new(),
+            further: self.to.clone(),
             doubt: Doubt {
                 base: known(base.iter().map(|value| value.doubt)),
                 excluded: known(excluded.iter().map(|group| group.doubt)),

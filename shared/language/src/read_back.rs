@@ -27,9 +27,9 @@ enum Found {
 pub fn word_findings(scene: &Scene) -> WordFindings {
     let (own, mut pairs) = (own_words(scene), WordFindings::default());
     let reading = ReadBack { scene, reader: Reader::new(scene, Language::Careful) };
-    let values: Vec<(usize, usize)> = (scene.attributes().iter().enumerate())
-        .flat_map(|(k, attribute)| (0..attribute.values.len()).map(move |v| (k, v)))
-        .collect();
+    let named = scene.attributes().iter().enumerate().filter(|(_, it)| !it.by_place);
+    let values: Vec<(usize, usize)> =
+        named.flat_map(|(k, attribute)| (0..attribute.values.len()).map(move |v| (k, v))).collect();
     let names = |&(k, v): &(usize, usize)| 1 + scene.attributes()[k].values[v].synonyms.len();
     let phrases = values.iter().map(names).sum::<usize>() * OF_NAME;
     let stride = phrases.div_ceil(PHRASES_MAX).max(1);

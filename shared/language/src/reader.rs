@@ -19,6 +19,7 @@ use crate::parsed::ParsedUtterance;
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::questions::{fetches_it, question};
 use crate::references::reference;
+use crate::related::related;
 use crate::tagger::{answers_alone, tag};
 use crate::unknown::unknown_words;
 
@@ -29,6 +30,8 @@ pub struct Reader {
     spotter: WordSpotter,
     lexicon: Lexicon,
     questions: SceneQuestions,
+    /// The scene knows where objects are.
+    placed: bool,
 }
 
 impl Reader {
@@ -39,6 +42,7 @@ impl Reader {
             spotter: WordSpotter::new(scene),
             lexicon: Lexicon::new(scene),
             questions: SceneQuestions::new(scene),
+            placed: scene.objects().iter().filter(|it| it.placement.is_some()).count() > 1,
         }
     }
 
@@ -74,7 +78,9 @@ impl Reader {
                 let text = normalise(text);
                 let tokens = Tokens::of(&text);
                 let parsed = self.parse(&tokens, Question::None);
-                unknown_words(&tokens, &parsed.tags, &parsed.clauses)
+                let (tags, clauses) = (&parsed.tags, &parsed.clauses);
+                let related = related(&tokens, tags, clauses, self.placed);
+                unknown_words(&tokens, tags, clauses, &related)
             }
         }
     }
@@ -122,7 +128,8 @@ impl Reader {
         hedge(&mut tags, &clauses);
         let mut content = extract(&tags, &clauses, asked);
         let new = matches!(asked, QuestionWords::Nothing);
-        let refers = reference(&tags, &clauses, asked);
+        let relations = related(tokens, &tags, &clauses, self.placed);
+        let (refers, to) = reference(&tags, &clauses, asked, relations);
         let says_nothing = content.base.is_empty() && content.excluded.is_empty();
         let is_statement = new && refers == Reference::None && is_statement(&tags, &clauses);
         let is_aside = is_statement || says_nothing && is_side_talk(&tags, &clauses);
@@ -156,6 +163,17 @@ impl Reader {
             }
         }
         let (questions, code) = (&self.questions, tokens.code);
-        ParsedUtterance { content, response, intent, refers, asked, tags, clauses, questions, code }
+        ParsedUtterance {
+            content,
+            response,
+            intent,
+            refers,
+            to,
+            asked,
+            tags,
+            clauses,
+            questions,
+            code,
+        }
     }
 }

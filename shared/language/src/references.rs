@@ -1,19 +1,29 @@
-//! Objects that are pointed to by what was spoken of: "the other one", "the smaller one", "the same
-//! again".
+//! Objects that are pointed to by what was spoken of, or by how they lie and compare: "the other one", "the smaller
+//! one", "the same again".
 
-use scene::Reference;
+use scene::{Reference, WordId};
 
 use crate::clauses::{Clause, Topic};
 use crate::question_words::QuestionWords;
+use crate::related::Related;
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
 
-/// Returns the last reference of an utterance; one by size is preferred to "other".
+/// Returns the last reference of an utterance, and the words of each object that it is to; a relation is preferred to
+/// the others.
 pub(crate) fn reference(
     tags: &[Tag<'_>],
     clauses: &[Clause],
     asked: QuestionWords<'_>,
-) -> Reference {
+    mut related: Vec<Related>,
+) -> (Reference, Vec<Vec<WordId>>) {
+    if let Some(Related { relation, to, .. }) = related.pop() {
+        return (Reference::Relation(relation), to);
+    }
+    (spoken_of(tags, clauses, asked), Vec::new())
+}
+
+fn spoken_of(tags: &[Tag<'_>], clauses: &[Clause], asked: QuestionWords<'_>) -> Reference {
     // "again!"
     let bare = |tag: &Tag<'_>| tag.word == "again" || tag.is_any(classes![Filler Courtesy]);
     if matches!(asked, QuestionWords::Nothing)
@@ -40,11 +50,6 @@ fn refers(tags: &[Tag<'_>], at: usize, new: bool) -> Reference {
     if is_denied(tags, at) {
         return Reference::None;
     }
-    let size = too_much(tags, at).unwrap_or(by_size(tag.word));
-    if size != Reference::None {
-        let relative = matches!(size, Reference::Smaller | Reference::Larger);
-        return if relative && is_compared(tags, at) { Reference::None } else { size };
-    }
     match tag.word {
         "other" | "different" | "another" | "next" if is_another(tags, at) => Reference::Other,
         // "try another one", "a different one", "some other one"
@@ -54,39 +59,10 @@ fn refers(tags: &[Tag<'_>], at: usize, new: bool) -> Reference {
     }
 }
 
-/// "too big": a smaller one is wanted.
-pub(crate) fn too_much(tags: &[Tag<'_>], at: usize) -> Option<Reference> {
-    let is_too = before(tags, at).is_some_and(|before| before.last == "too");
-    let is_noun = after(tags, at).is_some_and(|next| next.is(Class::Head) || next.is_value());
-    match tags[at].word {
-        _ if !is_too || is_noun => None,
-        "big" | "large" | "huge" | "long" | "tall" | "thick" | "wide" => Some(Reference::Smaller),
-        "small" | "little" | "tiny" | "short" | "thin" | "narrow" => Some(Reference::Larger),
-        _ => None,
-    }
-}
-
-/// What a comparative or superlative of size refers to.
-pub(crate) fn by_size(word: &str) -> Reference {
-    match word {
-        "smaller" | "littler" | "tinier" | "shorter" => Reference::Smaller,
-        "bigger" | "larger" | "longer" | "taller" => Reference::Larger,
-        "smallest" | "littlest" | "tiniest" | "shortest" => Reference::Smallest,
-        "biggest" | "largest" | "longest" | "tallest" => Reference::Largest,
-        _ => Reference::None,
-    }
-}
-
-/// "not the smaller one".
+/// "not the other one".
 fn is_denied(tags: &[Tag<'_>], at: usize) -> bool {
     let mut lead = tags[..at].iter().rev().take_while(|tag| tag.is_any(classes![Determiner Not]));
     !tags[at].pauses() && lead.any(|tag| tag.is(Class::Not))
-}
-
-/// "bigger than the red one": compared with what is named, not with what was spoken of.
-fn is_compared(tags: &[Tag<'_>], at: usize) -> bool {
-    let named = |tag: &Tag<'_>| !tag.is_any(classes![It Pointer]);
-    after(tags, at).is_some_and(|tag| tag.is(Class::Than)) && tags.get(at + 2).is_none_or(named)
 }
 
 /// "the other", "another mug", but not "another place" and "the other purple one".

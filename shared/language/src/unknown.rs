@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-use scene::{Reference, Role, UnknownWord};
+use scene::{Role, UnknownWord};
 use words::Tokens;
 
 use crate::clauses::{Clause, Topic};
-use crate::references::by_size;
+use crate::related::Related;
+use crate::relation_words::by_quality;
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
 use crate::vocabulary::is_unlisted_quality;
@@ -17,17 +18,26 @@ const COMPOUND_MAX: usize = 3;
 /// Most words of a landmark that are repeated: "the small white cup".
 const LANDMARK_MAX: usize = 4;
 
-/// Attribute and object words that the scene does not have, for the robot's reply.
+/// Attribute and object words that the scene does not have, for the robot's reply; last the places that it may know how
+/// to tell.
 pub(crate) fn unknown_words(
     tokens: &Tokens<'_>,
     tags: &[Tag<'_>],
     clauses: &[Clause],
+    related: &[Related],
 ) -> Vec<UnknownWord> {
-    let mut words: Vec<UnknownWord> = Vec::new();
+    let (mut words, mut places): (Vec<UnknownWord>, Vec<UnknownWord>) = Default::default();
     for clause in clauses.iter().filter(|clause| clause.topic != Topic::Off) {
         let asked = clause.requests || clause.topic == Topic::AskBack;
         let mut rest = clause.span.clone();
         while let Some(at) = rest.next() {
+            if let Some(known) = related.iter().find(|it| it.tags.contains(&at)) {
+                rest.start = known.tags.end;
+                let text = said(tokens, tags, known.tags.clone());
+                places
+                    .extend(known.is_of_place().then_some(UnknownWord { text, role: Role::Place }));
+                continue;
+            }
             let word = if let Some(relation) = relation(&tags[..clause.span.end], at) {
                 rest.start = relation.end;
                 UnknownWord { text: said(tokens, tags, relation), role: Role::Place }
@@ -41,6 +51,7 @@ pub(crate) fn unknown_words(
             }
         }
     }
+    words.extend(places);
     words
 }
 
@@ -75,7 +86,7 @@ fn is_counted(tags: &[Tag<'_>], at: usize) -> bool {
     let is_led = before(tags, at).is_some_and(|it| it.is_any(classes![Determiner Possessive]));
     // "the top shelf" is a place.
     let is_part = after(tags, at).is_some_and(|next| next.is_role(Role::Place));
-    let is_known = SPOKEN_OF.contains(&tag.word) || by_size(tag.word) != Reference::None;
+    let is_known = SPOKEN_OF.contains(&tag.word) || by_quality(tag.word).is_some();
     is_led && !is_part && !is_known
 }
 

@@ -1,7 +1,7 @@
 //! Enums as bytes in fixed layouts, and the check of bytes that another process wrote.
 
 use crate::definition::FieldType;
-use scene::{Intent, Reference, Response, Role};
+use scene::{Intent, Reference, Relation, Response, Role};
 use std::marker::PhantomData;
 
 /// An invalid value on the wire.
@@ -240,15 +240,33 @@ wire_codes! {
         GoOn = 20,
     }
 }
-wire_codes! {
-    Reference {
-        None = 0,
-        Other = 1,
-        Same = 2,
-        Smaller = 3,
-        Larger = 4,
-        Smallest = 5,
-        Largest = 6,
-        Any = 7,
+
+impl WireCode for Reference {
+    const NAME: &'static str = "Reference";
+    const CODES: &'static [(Self, &'static str, u8)] = &[
+        (Self::None, "None", 0),
+        (Self::Other, "Other", 1),
+        (Self::Same, "Same", 2),
+        (Self::Smaller, "Smaller", 3),
+        (Self::Larger, "Larger", 4),
+        (Self::Smallest, "Smallest", 5),
+        (Self::Largest, "Largest", 6),
+        (Self::Any, "Any", 7),
+        // Which one is in a field of its own.
+        (Self::Relation(Relation::Beside), "Relation", 8),
+    ];
+
+    fn to_byte(self) -> u8 {
+        match self {
+            Self::None => 0,
+            Self::Other => 1,
+            Self::Same => 2,
+            Self::Smaller => 3,
+            Self::Larger => 4,
+            Self::Smallest => 5,
+            Self::Largest => 6,
+            Self::Any => 7,
+            Self::Relation(_) => 8,
+        }
     }
 }

@@ -7,8 +7,8 @@ use messages::{
 };
 use proptest::prelude::*;
 use scene::{
-    AttributeId, Doubt, Intent, ObjectId, Options, Question, Reading, Reference, Response, ValueId,
-    WordId,
+    AttributeId, Doubt, Intent, Measure, ObjectId, Options, Question, Reading, Reference, Relation,
+    Response, ValueId, WordId,
 };
 
 const WORDS: usize = 40;
@@ -38,7 +38,8 @@ prop_compose! {
             Intent::StartOver, Intent::AskBack, Intent::AskCount, Intent::PutBack, Intent::StopAndCancel,
             Intent::GoOn,
         ]),
-        refers in prop::sample::select(vec![Reference::None, Reference::Other, Reference::Largest]),
+        refers in prop::sample::select(vec![Reference::None, Reference::Other, Reference::Relation(Relation::Beside),
+            Reference::Relation(Relation::Nth(Measure::Right, 3))]),
         further in prop::collection::vec(words(EXCLUDED_WORDS_MAX), 0..=FURTHER_MAX),
     ) -> Reading {
         let first = |doubts: Vec<f64>, len: usize| doubts.into_iter().take(len).collect();

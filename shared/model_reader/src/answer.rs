@@ -1,6 +1,6 @@
 //! The model's answer, read strictly: what is not in the scene or not in the agreed form is refused.
 
-use scene::{Intent, Reading, Reference, Response, Scene, WordId};
+use scene::{Intent, Measure, Reading, Reference, Relation, Response, Scene, WordId};
 use serde::Deserialize;
 
 /// Most readings of an answer.
@@ -85,11 +85,22 @@ fn reading(scene: &Scene, asked: &[usize], entry: Entry) -> Result<ModelReading,
         response,
         excluded: groups(scene, "excluded", &excluded, EXCLUDED_MAX)?,
         intent,
-        refers,
+        refers: related(refers),
         further: groups(scene, "further", &further, FURTHER_MAX)?,
         ..Reading::default()
     };
     Ok(ModelReading { question, weight, reading })
+}
+
+/// "the smaller one" as a relation, which is evidence of how objects compare.
+fn related(refers: Reference) -> Reference {
+    match refers {
+        Reference::Smaller => Reference::Relation(Relation::More(Measure::Small)),
+        Reference::Larger => Reference::Relation(Relation::More(Measure::Big)),
+        Reference::Smallest => Reference::Relation(Relation::Nth(Measure::Small, 1)),
+        Reference::Largest => Reference::Relation(Relation::Nth(Measure::Big, 1)),
+        refers => refers,
+    }
 }
 
 fn groups(

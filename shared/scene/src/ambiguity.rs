@@ -45,7 +45,7 @@ impl Scene {
     }
 
     fn missing_attributes(&self, found: &mut Vec<String>) {
-        for (k, attribute) in self.attributes().iter().enumerate() {
+        for (k, attribute) in self.attributes().iter().enumerate().filter(|(_, it)| !it.by_place) {
             let lacks = self.objects().iter().filter(|object| object.values[k].is_none());
             let lacks: Vec<&str> = lacks.map(|object| object.name.as_str()).collect();
             if let Some(first) = lacks.first().filter(|_| lacks.len() < self.objects().len()) {

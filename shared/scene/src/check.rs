@@ -243,6 +243,7 @@ fn build_attribute(attribute: DraftAttribute, ids: &HashMap<String, WordId>) -> 
         values,
         ask_yes_no: wordings(attribute.ask_yes_no, &wording::ASK_YES_NO),
         ask_which: wordings(attribute.ask_which, &wording::ASK_WHICH),
+        by_place: false,
     }
 }
 

@@ -97,6 +97,13 @@ impl Scene {
         self.values_of(object).find(|&(k, v)| self.value(k, v).role() == Role::Kind)
     }
 
+    /// Returns whether an object has a value, or may be said to have it: one that is like no other is in no row, and may be
+    /// further left than the left one of a row.
+    fn may_have(&self, i: ObjectId, k: AttributeId, v: ValueId) -> bool {
+        let is_in_none = || self.object(i).values[k.index()].is_none();
+        self.has(i, k, v) || self.attributes()[k.index()].by_place && is_in_none()
+    }
+
     /// The fewest values that no rival has all of; where there are none, those that rule out any.
     fn telling(&self, object: ObjectId, rivals: &[ObjectId]) -> Values {
         if rivals.is_empty() {
@@ -108,11 +115,11 @@ impl Scene {
         let mut values: Values = self
             .values_of(object)
             .filter(|&(k, v)| self.value(k, v).role() != Role::Kind)
-            .filter(|&(k, v)| rivals.iter().any(|&i| !self.has(i, k, v)))
+            .filter(|&(k, v)| rivals.iter().any(|&i| !self.may_have(i, k, v)))
             .collect();
         values.sort_by_key(is_place);
         let unique = |chosen: &[(AttributeId, ValueId)]| {
-            !rivals.iter().any(|&i| chosen.iter().all(|&(k, v)| self.has(i, k, v)))
+            !rivals.iter().any(|&i| chosen.iter().all(|&(k, v)| self.may_have(i, k, v)))
         };
         if let Some(one) = values.iter().find(|&&one| unique(&[one])) {
             return vec![*one];
@@ -131,15 +138,14 @@ impl Scene {
     fn most_telling(&self, values: &[(AttributeId, ValueId)], mut rivals: Vec<ObjectId>) -> Values {
         let mut chosen = Values::new();
         loop {
-            let left = values
-                .iter()
-                .enumerate()
-                .map(|(n, &(k, v))| (rivals.iter().filter(|&&i| self.has(i, k, v)).count(), n));
+            let left = values.iter().enumerate().map(|(n, &(k, v))| {
+                (rivals.iter().filter(|&&i| self.may_have(i, k, v)).count(), n)
+            });
             let Some((_, best)) = left.min().filter(|(left, _)| *left < rivals.len()) else {
                 return chosen;
             };
             let (k, v) = values[best];
-            rivals.retain(|&i| self.has(i, k, v));
+            rivals.retain(|&i| self.may_have(i, k, v));
             chosen.push((k, v));
         }
     }

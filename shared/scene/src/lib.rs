@@ -38,6 +38,7 @@
 //! ```
 
 mod ambiguity;
+mod by_place;
 mod check;
 mod describe;
 mod ids;
@@ -50,6 +51,8 @@ mod question;
 mod question_json;
 mod reading;
 mod reading_text;
+mod relation;
+mod relation_truth;
 mod spoken;
 mod stable_hash;
 mod toml_form;
@@ -66,5 +69,7 @@ pub use plural::{count, plural};
 pub use question::Question;
 pub use question_json::{QuestionError, question_from_json, question_to_json, reading_to_json};
 pub use reading::{Doubt, Intent, Reading, Reference, Response, UnknownWord};
+pub use relation::{Measure, Relation};
+pub use relation_truth::{Related, View};
 pub use spoken::{WordFindings, WordProblem};
 pub use stable_hash::StableHash;

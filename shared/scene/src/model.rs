@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 
+use crate::by_place::ByPlace;
 use crate::wording::Asks;
 use crate::{AttributeId, ObjectId, Question, StableHash, ValueId, WordId};
 
@@ -18,6 +19,8 @@ pub struct Scene {
     key: u64,
     names: Names,
     vocabularies: Vocabularies,
+    /// How objects are told apart by place, where they are.
+    pub(crate) places: Option<ByPlace>,
 }
 
 /// One object that can be asked for.
@@ -90,6 +93,9 @@ pub struct Attribute {
     pub ask_yes_no: Vec<String>,
     /// Open wordings, e.g. `What colour is it?`; at least one, the usual one first.
     pub ask_which: Vec<String>,
+    /// Of places in a row, and not of the scene file: people say them as relations
+    /// ([`Relation`](crate::Relation)).
+    pub by_place: bool,
 }
 
 /// A value of an attribute.
@@ -256,14 +262,8 @@ impl Scene {
         };
         let vocabularies = vocabularies(&objects, &attributes);
         let key = key(&objects, &attributes);
-        Self { name, noun, asks, objects, attributes, words, key, names, vocabularies }
-    }
-
-    /// The same words about other objects.
-    pub(crate) fn with(&self, objects: Vec<Object>) -> Self {
-        let (name, noun, asks) = (self.name.clone(), self.noun.clone(), self.asks.clone());
-        let (attributes, words) = (self.attributes.clone(), self.words.clone());
-        Self::assemble(name, noun, asks, objects, attributes, words)
+        let places = None;
+        Self { name, noun, asks, objects, attributes, words, key, names, vocabularies, places }
     }
 
     /// The scene's name.

@@ -71,7 +71,7 @@ impl Scene {
 
     fn object_of(&self, perceived: &Perceived) -> Object {
         let chances: Vec<Option<Vec<f64>>> =
-            (0..self.attributes().len()).map(|k| self.chances_of(perceived, k.into())).collect();
+            self.own_attributes().map(|k| self.chances_of(perceived, k)).collect();
         let likeliest = |chances: &Option<Vec<f64>>| {
             let chances = chances.as_ref()?;
             let likelier =
@@ -87,6 +87,11 @@ impl Scene {
             chances: chances.into_iter().map(|it| it.filter(|it| !is_certain(it))).collect(),
             placement: self.placement_of(perceived),
         }
+    }
+
+    fn own_attributes(&self) -> impl Iterator<Item = AttributeId> + '_ {
+        let own = self.attributes().iter().enumerate().filter(|(_, it)| !it.by_place);
+        own.map(|(k, _)| k.into())
     }
 
     /// Size and grasp are those of the class, the place is the perceived one.

@@ -1,7 +1,7 @@
 //! Understood utterances: `(l_b, l_r)` of section 3.6, extended by excluded values, references and
 //! intents.
 
-use crate::{Role, WordId};
+use crate::{Relation, Role, WordId};
 
 /// The answer to a question, `l_r`.
 #[derive(
@@ -97,6 +97,8 @@ pub enum Reference {
     Largest,
     /// "either", "you choose": any of those that may be meant.
     Any,
+    /// "the leftmost one", "longer than the red one": by place, order or size.
+    Relation(Relation),
 }
 
 /// One way to understand an utterance.
@@ -114,7 +116,7 @@ pub struct Reading {
     /// The object that it points to by what was spoken of.
     pub refers: Reference,
     /// Words of each further object that is asked for ("… and the white cup"); of [`Intent::AskWhich`], each value that
-    /// it is about ("is it long or short").
+    /// it is about ("is it long or short"); of a [`Relation`], of each object that it relates to.
     pub further: Vec<Vec<WordId>>,
     /// Doubts about its parts.
     pub doubt: Doubt,

@@ -36,8 +36,12 @@ impl Reading {
             Response::DoesNotMatter => Some("does not matter"),
             Response::None => None,
         };
+        let relation = match self.refers {
+            Reference::Relation(relation) => Some(relation.text()),
+            _ => None,
+        };
         let refers = match self.refers {
-            Reference::None => None,
+            Reference::None | Reference::Relation(_) => None,
             Reference::Other => Some("the other one"),
             Reference::Same => Some("the same one"),
             Reference::Smaller => Some("the smaller one"),
@@ -46,14 +50,18 @@ impl Reading {
             Reference::Largest => Some("the biggest one"),
             Reference::Any => Some("any one"),
         };
-        let given = [intent, response, refers].into_iter().flatten();
-        let mut parts: Vec<String> = given.map(str::to_owned).collect();
+        let given = [intent, response, refers].into_iter().flatten().map(str::to_owned);
+        let mut parts: Vec<String> = given.chain(relation).collect();
         parts.extend(self.base.iter().map(|id| word(id).to_owned()));
         parts.extend(self.excluded.iter().map(|group| {
             let group: Vec<&str> = group.iter().map(word).collect();
             format!("not {}", group.join(" and "))
         }));
-        let joint = if self.intent == Intent::AskWhich { "or" } else { "then" };
+        let joint = match (self.intent, self.refers) {
+            (Intent::AskWhich, _) => "or",
+            (_, Reference::Relation(_)) => "of",
+            _ => "then",
+        };
         parts.extend(self.further.iter().map(|group| {
             let group: Vec<&str> = group.iter().map(word).collect();
             format!("{joint} {}", group.join(" "))

@@ -28,10 +28,12 @@ impl Manager {
             _ => self.denial(object, &heard.interpretations),
         };
         let is_denied = denial.is_some();
+        let relation = self.relation(&heard);
         self.take_in(open, heard);
         if let Some(denial) = denial {
             self.take_in(open, denial);
         }
+        self.relate(open, relation);
         let is_unlikely = open.belief().probability(object) < LIKELY;
         if state.act.kind == ActKind::Pick && (is_denied || is_unlikely) {
             open.corrected = true;

@@ -27,13 +27,20 @@ pub struct Evidence {
     pub mark: Option<Mark>,
 }
 
-/// Objects, by name, that the user refused or meant beyond the words of the scene.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// Objects, by name, that the user refused, meant or described beyond the words of the scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Mark {
     /// Refused.
     Not(String),
     /// One of these is meant.
     OneOf(Vec<String>),
+    /// How likely a relation would be said of each, as the scene was then.
+    Likely {
+        /// Of these objects.
+        named: Vec<(String, f64)>,
+        /// Of every other one.
+        others: f64,
+    },
 }
 
 /// Factor of an object that was refused: beyond what any words can make up for.
@@ -50,6 +57,10 @@ impl Mark {
                 Self::Not(refused) if name == Some(refused) => REFUSED,
                 Self::OneOf(meant) if name.is_none_or(|name| !meant.contains(name)) => NOT_MEANT,
                 Self::Not(_) | Self::OneOf(_) => 1.0,
+                Self::Likely { named, others } => {
+                    let of = |(known, _): &&(String, f64)| name == Some(known);
+                    named.iter().find(of).map_or(*others, |(_, factor)| *factor)
+                }
             }
         };
         (0..hypotheses).map(|i| factor(i).ln()).collect()
@@ -59,6 +70,7 @@ impl Mark {
         match self {
             Self::Not(_) => 1,
             Self::OneOf(names) => names.len(),
+            Self::Likely { named, .. } => named.len(),
         }
     }
 }

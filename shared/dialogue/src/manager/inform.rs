@@ -1,6 +1,6 @@
 //! Content of an utterance about the wanted object.
 
-use scene::{Question, Reading, Reference, Response};
+use scene::{Question, Reading, Reference, Relation, Response, Role};
 use vocabulary::Interpretation;
 use vocabulary::time::Time;
 
@@ -31,6 +31,11 @@ impl Manager {
         let refused = refused.map(|it| Mark::Not(it.picked));
         self.open(state, said.utterance);
         let Some(open) = &mut state.open else { return };
+        if said.spoken_of.is_some() {
+            // It compares to what was handed over.
+            let relations = said.heard.interpretations.iter_mut().map(|(.., it)| it);
+            relations.filter(|it| is_comparison(it)).for_each(forget_relation);
+        }
         for mark in said.spoken_of.take().into_iter().chain(refused) {
             self.take_in(open, Heard { mark: Some(mark), ..Heard::default() });
         }
@@ -44,15 +49,23 @@ impl Manager {
     /// place of a remark on the utterance.
     pub(super) fn consider(&mut self, state: &mut State, said: Statement<'_>, preface: Preface) {
         self.note_said(state, said.utterance);
-        let (preference, remark) = self.note_concessions(state, &said.heard);
-        let preface = if preface == Preface::None { remark } else { preface };
-        let Statement { utterance, shares, heard, refers, at, .. } = said;
+        let (preference, mut remark) = self.note_concessions(state, &said.heard);
+        let Statement { utterance, shares, mut heard, refers, at, .. } = said;
         let Some(open) = &mut state.open else { return };
         let held_back = open.held_back.take_if(|it| !it.is_kept());
         let held_back = held_back.and_then(|it| self.setup.scene.object_named(&it.name));
         let denial = held_back.and_then(|object| self.denial(object, &heard.interpretations));
+        let relation = self.relation(&heard);
+        if relation.is_some() {
+            heard.unknown = heard.unknown.filter(|word| word.role != Role::Place);
+        }
         self.take_in(open, heard);
         denial.into_iter().for_each(|denial| self.take_in(open, denial));
+        let is_place = matches!(&remark, Preface::UnknownWord(word) if word.role == Role::Place);
+        if self.relate(open, relation) && is_place {
+            remark = Preface::None;
+        }
+        let preface = if preface == Preface::None { remark } else { preface };
         if let mark @ Some(_) = self.compared(open, refers) {
             self.take_in(open, Heard { mark, ..Heard::default() });
         }
@@ -198,6 +211,16 @@ impl Manager {
             objects: Vec::new(),
         })
     }
+}
+
+/// Returns whether a reading compares: "a bigger one".
+fn is_comparison(reading: &Reading) -> bool {
+    matches!(reading.refers, Reference::Relation(Relation::More(_)))
+}
+
+fn forget_relation(reading: &mut Reading) {
+    reading.refers = Reference::None;
+    reading.further.clear();
 }
 
 /// Returns whether no reading has a content.

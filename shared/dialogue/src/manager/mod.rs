@@ -11,7 +11,7 @@
 //! | `inform.rs`, `correct.rs` | content of an utterance: while deciding, and while the arm fetches |
 //! | `concede.rs` | what the user cannot tell, and what does not matter |
 //! | `misfit.rs` | offers where what was said fits no object |
-//! | `references.rs` | "the other one", "the smaller one" |
+//! | `references.rs`, `relate.rs` | "the other one", "the same again"; "the leftmost", "longer than the red one" |
 //! | `hand_over.rs`, `held_back.rs` | refusals after a hand-over; picks while the motion stop is latched |
 //! | `queue.rs` | requests for several objects |
 //! | `replies.rs` | answers to what the user asks |
@@ -46,6 +46,7 @@ mod queue;
 mod reconfigure;
 mod references;
 mod refold;
+mod relate;
 mod replies;
 mod rules;
 mod setup;
@@ -74,7 +75,7 @@ pub use stop::{MotionStop, Stop, StopOrder};
 use acts::{order_again, say, set, set_reasons};
 use objects::SceneFile;
 use pointing::Pointing;
-use scene::{ObjectId, Scene};
+use scene::{AttributeId, ObjectId, Scene};
 use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 use vocabulary::time::Time;
 use vocabulary::{ActKind, Action, Ended, Outcome, PickOutcome, Table, TurnTaking};
@@ -261,10 +262,12 @@ impl Manager {
 
     /// Asks the planner.
     fn plan(&mut self, state: &mut State) -> Option<Decision> {
+        let rows = self.misleading_places(&state.open.as_ref()?.belief());
         let open = state.open.as_mut()?;
         let step = Step { interaction: open.id.0, step: open.step };
         open.step += 1;
-        let concessions = open.conceded.in_scene(&self.setup.scene);
+        let mut concessions = open.conceded.in_scene(&self.setup.scene);
+        concessions.unknown.extend(rows);
         // What was said of values in doubt counts for the questions to come.
         let model = self.learned(open.evidence.iter()).into_owned();
         let spent = open.spent();
@@ -275,6 +278,15 @@ impl Manager {
             ..self.setup.problem()
         };
         Some(open.posterior.decide(&mut *self.planner, &problem, step))
+    }
+
+    /// Returns the attribute of places in rows while an object that is in none may be meant: it may be further left than
+    /// "the left one".
+    fn misleading_places(&self, belief: &Belief) -> Option<AttributeId> {
+        let scene = &self.setup.scene;
+        let k = scene.attributes().iter().position(|attribute| attribute.by_place)?;
+        let is_in_none = |i: &ObjectId| scene.object(*i).values[k].is_none();
+        self.left(belief).iter().any(is_in_none).then(|| k.into())
     }
 
     fn carry_out(

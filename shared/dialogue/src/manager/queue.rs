@@ -1,6 +1,6 @@
 //! Requests for several objects: one after the other.
 
-use scene::{ObjectId, Question, Reading, WordId};
+use scene::{ObjectId, Question, Reading, Reference, WordId};
 use vocabulary::time::Time;
 
 use super::Manager;
@@ -16,6 +16,9 @@ impl Manager {
     /// Puts the further objects of a request in the queue, and returns what is said about it.
     pub(super) fn enqueue(&self, state: &mut State, heard: &Heard<'_>) -> Preface {
         let Some((.., reading)) = heard.interpretations.first() else { return Preface::None };
+        if matches!(reading.refers, Reference::Relation(_)) {
+            return Preface::None;
+        }
         let words = self.setup.scene.words();
         let names = |group: &[WordId]| -> Vec<String> {
             group.iter().map(|word| words[word.index()].clone()).collect()

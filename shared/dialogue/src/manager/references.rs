@@ -1,7 +1,7 @@
-//! What an utterance points to by what was spoken of: "the other one", "the same again", "the smaller
-//! one".
+//! What an utterance points to by what was spoken of: "the other one", "the same again", and compared to what was handed
+//! over "a smaller one". Comparisons of journals from before there were relations are marks ([`Manager::compared`]).
 
-use scene::{ObjectId, Reference, Role, WordId};
+use scene::{ObjectId, Reference, Relation, Role, WordId};
 use vocabulary::Outcome;
 
 use super::Manager;
@@ -52,6 +52,14 @@ impl Manager {
             Reference::Smaller => self.of_other_size(delivered, others, |size, own| size < own),
             Reference::Larger => self.of_other_size(delivered, others, |size, own| size > own),
             Reference::Smallest | Reference::Largest if is_bare => self.of_kind(delivered),
+            Reference::Relation(relation @ Relation::More(measure))
+                if measure.is_of_object() && reading.further.is_empty() =>
+            {
+                self.comparable(relation, delivered, others)
+            }
+            Reference::Relation(Relation::Nth(measure, _)) if measure.is_of_object() && is_bare => {
+                self.of_kind(delivered)
+            }
             _ => return None,
         };
         let is_alike = is_bare || reading.refers == Reference::Same;
@@ -133,6 +141,7 @@ impl Manager {
             Reference::Smaller | Reference::Smallest => false,
             Reference::Larger | Reference::Largest => true,
             Reference::None | Reference::Any | Reference::Other | Reference::Same => return None,
+            Reference::Relation(_) => return None,
         };
         let left = self.left(&open.belief());
         let sizes = self.sizes(&left)?;

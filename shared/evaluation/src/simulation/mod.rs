@@ -18,6 +18,8 @@
 mod cached_planner;
 mod draw;
 mod interaction;
+#[cfg(test)]
+mod relations;
 mod tally;
 #[cfg(test)]
 mod testing;

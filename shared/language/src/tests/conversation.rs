@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use ::vocabulary::Language;
-use scene::{Reading, Scene, WordId};
+use scene::{Reading, Reference, Scene, WordId};
 
 use super::scene;
 use super::table::{Case, cases, question};
@@ -31,7 +31,10 @@ fn written(scene: &Scene, reading: &Reading) -> String {
     let mut parts = words(&reading.base);
     parts.extend(reading.excluded.iter().map(|group| format!("-{}", words(group).join("+"))));
     let response = name(serde_json::json!(reading.response));
-    let refers = name(serde_json::json!(reading.refers));
+    let refers = match reading.refers {
+        Reference::Relation(relation) => relation.text().replace(' ', "_"),
+        refers => name(serde_json::json!(refers)),
+    };
     let intent = name(serde_json::json!(reading.intent));
     parts.extend(Some(response).filter(|name| name != "none"));
     parts.extend(Some(format!("@{refers}")).filter(|name| name != "@none"));

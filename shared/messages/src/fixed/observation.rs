@@ -6,7 +6,7 @@ use crate::schema::wire_struct;
 use crate::text::FixedText;
 use crate::wire::{Code, WireError, WireField};
 use iceoryx2::prelude::ZeroCopySend;
-use scene::{Doubt, Intent, Reading, Reference, Response, Role, UnknownWord, WordId};
+use scene::{Doubt, Intent, Reading, Reference, Relation, Response, Role, UnknownWord, WordId};
 use vocabulary::Interpretation;
 
 /// Readings of one utterance, for all questions together.
@@ -57,8 +57,8 @@ wire_struct! {
         excluded_count: u8,
         /// Used entries of `further`.
         further_count: u8,
-        /// Zero.
-        reserved: [u8; 1],
+        /// [`scene::Relation::code`] of a relation in `refers`; else zero.
+        relation: u8,
     }
 }
 
@@ -72,6 +72,10 @@ impl WireReading {
             response: reading.response.into(),
             intent: reading.intent.into(),
             refers: reading.refers.into(),
+            relation: match reading.refers {
+                Reference::Relation(relation) => relation.code(),
+                _ => 0,
+            },
             base_count: reading.base.len().min(BASE_WORDS_MAX) as u8,
             excluded_count: reading.excluded.len().min(EXCLUDED_GROUPS_MAX) as u8,
             further_count: reading.further.len().min(FURTHER_MAX) as u8,
@@ -116,7 +120,13 @@ impl WireReading {
             response: checked_share("doubt", self.response_doubt.into())?,
         };
         let (response, intent) = (self.response.get(), self.intent.get());
-        Ok(Reading { base, excluded, response, intent, refers: self.refers.get(), further, doubt })
+        let refers = match self.refers.get() {
+            Reference::Relation(_) => Relation::of_code(self.relation)
+                .map(Reference::Relation)
+                .ok_or_else(|| WireError::new("relation", self.relation.into()))?,
+            refers => refers,
+        };
+        Ok(Reading { base, excluded, response, intent, refers, further, doubt })
     }
 }
 
