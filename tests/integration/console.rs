@@ -9,6 +9,8 @@ use tungstenite::Message;
 use whichone_tests::console::{Page, Visitor, http};
 use whichone_tests::{Group, wait_for};
 
+const YES_NO: &str = "dialogue.choice_questions=false";
+
 fn ok(done: &Json) -> bool {
     assert!(done["ok"].as_bool().is_some(), "{done}");
     done["ok"] == true
@@ -31,7 +33,7 @@ fn have_it_fetch(page: &mut Page) {
 
 #[test]
 fn page_follows_a_dialogue_to_the_hand_over() {
-    let group = Group::up(&[]);
+    let group = Group::up(&[YES_NO]);
     let mut page = group.page(&Visitor::operator(1));
     assert_eq!(page.welcome["protocol"], 2);
     page.until_part("turn", |turn| turn["state"] == "idle");
@@ -68,7 +70,7 @@ fn page_follows_a_dialogue_to_the_hand_over() {
 
 #[test]
 fn not_that_denies_the_question_or_the_pick() {
-    let group = Group::up(&["arm.time_scale=2.0"]);
+    let group = Group::up(&["arm.time_scale=2.0", YES_NO]);
     let mut page = group.page(&Visitor::operator(1));
     page.until_part("dialogue", |dialogue| dialogue["interaction"] == 0);
     assert!(why(&page.ask("not_that", &Json::Null)).contains("neither"));

@@ -11,11 +11,17 @@ use whichone_sdk::{Exit, Failure, ObjectId, Question, Scene};
 
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The answer of a user who wants this object; none where it is not yes or no.
-fn answer(question: Question, wanted: ObjectId, scene: &Scene) -> Option<&'static str> {
+/// The answer of a user who wants this object; none to an open question.
+fn answer(question: Question, wanted: ObjectId, scene: &Scene) -> Option<&str> {
     let yes = match question {
         Question::Point(object) => object == wanted,
         Question::Attribute(attribute, value) => scene.has(wanted, attribute, value),
+        Question::Choice(attribute, options) => {
+            let values = &scene.attributes()[attribute.index()].values;
+            let own = scene.object(wanted).values[attribute.index()];
+            let own = own.filter(|value| options.contains(*value));
+            return Some(own.map_or("none of them", |value| &values[value.index()].name));
+        }
         _ => return None,
     };
     Some(if yes { "yes" } else { "no" })

@@ -48,7 +48,8 @@ export function answers(dialogue, scene) {
     return [...YES_NO, ...others.map(spoken), ...ASIDES];
   }
   if (question.type === "choice") {
-    const options = values.filter(({ name }) => question.values.includes(name));
+    const known = scene?.attributes.find(({ name }) => name === question.attribute);
+    const options = (known?.values ?? []).filter(({ name }) => question.values.includes(name));
     return [...options.map(spoken), offer("none of them", "aside", "answer.none"), ...ASIDES];
   }
   return question.type === "which" ? [...values.map(spoken), ...ASIDES] : [];
