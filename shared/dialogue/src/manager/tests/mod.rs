@@ -14,6 +14,7 @@ mod prior;
 mod put_back;
 mod queue;
 mod reconfigure;
+mod relate;
 mod replies;
 mod rules;
 mod seconds;
