@@ -17,7 +17,8 @@ const BOUNDS: [Bound; 3] = [
     Bound {
         name: "lines of the core, with its tests",
         first: 135_525.0,
-        at_most: 120_000.0,
+        // Choice questions, relations from geometry, and users who take a value for another one.
+        at_most: 122_500.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {

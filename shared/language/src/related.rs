@@ -263,8 +263,10 @@ impl Said<'_, '_> {
 
     /// "the left bowl", "the middle", but not "the left shelf".
     fn is_of_object(&self, at: usize) -> bool {
-        let is_led = before(self.tags, at)
-            .is_some_and(|it| it.is_value() || it.is_any(classes![Determiner Possessive]));
+        let is_headed = || after(self.tags, at).is_some_and(|it| it.is(Class::Head));
+        let is_led = before(self.tags, at).is_some_and(|it| {
+            it.is_any(classes![Determiner Possessive]) || it.is_value() && is_headed()
+        });
         let is_place = |next: &Tag<'_>| {
             next.is_role(Role::Place) || next.is_unknown() || next.is_any(classes![Unlisted])
         };

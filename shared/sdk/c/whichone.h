@@ -324,6 +324,8 @@ enum whichone_reference {
     WHICHONE_REFERENCE_LARGEST = 6,
     /** "either", "you choose": any of those that may be meant. */
     WHICHONE_REFERENCE_ANY = 7,
+    /** "the leftmost one", "longer than the red one": by place, order or size. */
+    WHICHONE_REFERENCE_RELATION = 8,
 };
 
 enum whichone_response {
@@ -591,8 +593,8 @@ typedef struct whichone_reading {
     uint8_t excluded_count;
     /** Used entries of `further`. */
     uint8_t further_count;
-    /** Zero. */
-    uint8_t reserved[1];
+    /** `Relation::code` of a relation in `refers`; else zero. */
+    uint8_t relation;
 } whichone_reading_t;
 WHICHONE_ASSERT(sizeof(whichone_reading_t) == 400, "size of Reading");
 WHICHONE_ASSERT(offsetof(whichone_reading_t, weight) == 0, "offset of Reading.weight");
@@ -611,9 +613,9 @@ WHICHONE_ASSERT(offsetof(whichone_reading_t, refers) == 395, "offset of Reading.
 WHICHONE_ASSERT(offsetof(whichone_reading_t, base_count) == 396, "offset of Reading.base_count");
 WHICHONE_ASSERT(offsetof(whichone_reading_t, excluded_count) == 397, "offset of Reading.excluded_count");
 WHICHONE_ASSERT(offsetof(whichone_reading_t, further_count) == 398, "offset of Reading.further_count");
-WHICHONE_ASSERT(offsetof(whichone_reading_t, reserved) == 399, "offset of Reading.reserved");
+WHICHONE_ASSERT(offsetof(whichone_reading_t, relation) == 399, "offset of Reading.relation");
 #define WHICHONE_READING_TYPE "Reading"
-#define WHICHONE_READING_SCHEMA "3df25522accf9501"
+#define WHICHONE_READING_SCHEMA "a59be7e903333f82"
 
 /** An accepted utterance. Speech to grounding. */
 typedef struct whichone_utterance {
@@ -708,7 +710,7 @@ WHICHONE_ASSERT(offsetof(whichone_observation_t, reserved) == 276, "offset of Ob
 WHICHONE_ASSERT(offsetof(whichone_observation_t, readings) == 280, "offset of Observation.readings");
 WHICHONE_ASSERT(offsetof(whichone_observation_t, unknown) == 13080, "offset of Observation.unknown");
 #define WHICHONE_OBSERVATION_TYPE "Observation"
-#define WHICHONE_OBSERVATION_SCHEMA "0f13a3d2de61ee5b"
+#define WHICHONE_OBSERVATION_SCHEMA "c0b0d1010bbb96f9"
 
 /** The highest utterance that the belief holds. Policy to speech. */
 typedef struct whichone_applied_mark {

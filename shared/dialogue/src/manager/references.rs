@@ -1,7 +1,7 @@
 //! What an utterance points to by what was spoken of: "the other one", "the same again", and compared to what was handed
 //! over "a smaller one". Comparisons of journals from before there were relations are marks ([`Manager::compared`]).
 
-use scene::{ObjectId, Reference, Relation, Role, WordId};
+use scene::{ObjectId, Reading, Reference, Relation, Role, WordId};
 use vocabulary::Outcome;
 
 use super::Manager;
@@ -42,7 +42,7 @@ impl Manager {
     pub(super) fn resolve(&self, state: &State, heard: &Heard<'_>) -> Option<Mark> {
         let delivered = self.delivered(state)?;
         let (.., reading) = heard.interpretations.first()?;
-        let is_bare = reading.base.is_empty();
+        let is_bare = self.says_no_more(reading);
         let fits = |i: &ObjectId| self.fits(reading, *i);
         let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
         let others: Vec<ObjectId> = objects.filter(|i| *i != delivered && fits(i)).collect();
@@ -62,12 +62,23 @@ impl Manager {
             }
             _ => return None,
         };
-        let is_alike = is_bare || reading.refers == Reference::Same;
+        // "the smallest" is one of all of its kind.
+        let is_one_of_kind = matches!(reading.refers, Reference::Relation(Relation::Nth(..)));
+        let is_alike = is_bare && !is_one_of_kind || reading.refers == Reference::Same;
         let meant = if is_alike { self.most_alike(state, delivered, meant) } else { meant };
         match meant[..] {
             [] => Some(self.not(delivered)),
             _ => Some(self.one_of(&meant)),
         }
+    }
+
+    /// Returns whether nothing is said beside the reference: "bigger" may be a name of a value as well.
+    fn says_no_more(&self, reading: &Reading) -> bool {
+        let measure = match reading.refers {
+            Reference::Relation(Relation::More(measure) | Relation::Nth(measure, 1)) => measure,
+            _ => return reading.base.is_empty(),
+        };
+        reading.base.iter().all(|word| self.setup.scene.is_value_of(*word, measure))
     }
 
     /// Returns the objects that the robot has just listed, where a request without a kind of thing

@@ -114,7 +114,7 @@ fn question(scene: &Scene, text: &str) -> Question {
 
 fn scene(root: &Path, name: &str) -> Scene {
     let file = format!("{name}.toml");
-    let folders = [root.join("tests/fixtures/relations"), root.join("config/scenes")];
+    let folders = [root.join("tests/talk/scenes"), root.join("config/scenes")];
     let path = folders.iter().map(|folder| folder.join(&file)).find(|path| path.exists());
     let text = std::fs::read_to_string(path.expect("the scene")).expect("the scene's text");
     Scene::from_toml(&file, &text).unwrap_or_else(|problems| panic!("{problems}"))

@@ -339,6 +339,8 @@ class Reference(IntEnum):
     """'the biggest one', of those that the words describe."""
     ANY = 7
     """'either', 'you choose': any of those that may be meant."""
+    RELATION = 8
+    """'the leftmost one', 'longer than the red one': by place, order or size."""
 
 
 class Response(IntEnum):
@@ -562,7 +564,7 @@ class WireReading(Message):
 
     wire_name = "Reading"
     wire_size = 400
-    schema_key = "3df25522accf9501"
+    schema_key = "a59be7e903333f82"
     weight: float
     """Probability among the readings for the same question; they sum to 1."""
     base_doubt: Array[float]
@@ -596,8 +598,8 @@ class WireReading(Message):
     """Used entries of `excluded`."""
     further_count: int
     """Used entries of `further`."""
-    reserved: Array[int]
-    """Zero."""
+    relation: int
+    """`Relation::code` of a relation in `refers`; else zero."""
     codes = {"response": Response, "intent": Intent, "refers": Reference}
     _fields_ = [
         ("weight", ctypes.c_double),  # 0
@@ -616,7 +618,7 @@ class WireReading(Message):
         ("base_count", ctypes.c_uint8),  # 396
         ("excluded_count", ctypes.c_uint8),  # 397
         ("further_count", ctypes.c_uint8),  # 398
-        ("reserved", ctypes.c_uint8 * 1),  # 399
+        ("relation", ctypes.c_uint8),  # 399
     ]
 
 
@@ -672,7 +674,7 @@ class Observation(Message):
 
     wire_name = "Observation"
     wire_size = 13144
-    schema_key = "0f13a3d2de61ee5b"
+    schema_key = "c0b0d1010bbb96f9"
     seq: int
     """The utterance's `UtteranceSeq`."""
     asked: Array[AskedQuestion]

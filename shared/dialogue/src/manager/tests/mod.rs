@@ -15,6 +15,7 @@ mod prior;
 mod put_back;
 mod queue;
 mod reconfigure;
+mod relate;
 mod replies;
 mod rules;
 mod seconds;
