@@ -29,12 +29,9 @@ impl Planner for AlwaysAsk {
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
         let actions = match problem.actions.mode {
-            Mode::Present => Actions {
-                mode: Mode::Present,
-                attribute: false,
-                which: false,
-                choice: false,
-            },
+            Mode::Present => {
+                Actions { mode: Mode::Present, attribute: false, which: false, choice: false }
+            }
             Mode::Remote => problem.actions,
         };
         let problem = &DecisionProblem { actions, ..problem.with_final_picks() };
