@@ -35,8 +35,18 @@ const SRDF: &str = "robot_srdf";
 /// which its decisions were made.
 const DURATIONS: &str = "durations";
 
-/// Settings that snapshots of earlier versions do not state, with the values that they had then.
-const UNSTATED: &str = "[dialogue]\nmisperception = 0.0\n";
+/// Settings that snapshots of earlier versions do not state, with the values that they had then: answers
+/// of all kinds came through alike.
+fn unstated(layer: &Table) -> String {
+    let dialogue = layer.get("dialogue").and_then(Node::as_table);
+    let number = |key| dialogue.and_then(|it| it.get(key)).and_then(Node::as_number);
+    let reliability = number("p_l").zip(number("epsilon"));
+    let kinds = reliability.iter().flat_map(|(p_l, epsilon)| {
+        let table = |kind| format!("[dialogue.{kind}]\np_l = {p_l:?}\nepsilon = {epsilon:?}\n");
+        ["open", "choice"].map(table)
+    });
+    format!("[dialogue]\nmisperception = 0.0\n{}", kinds.collect::<String>())
+}
 
 impl Settings {
     /// The snapshot's text: every value of every section, the scene's and the robot's files as
@@ -125,7 +135,7 @@ impl Settings {
         }
         let files = Files { scene, robot: urdf.map(|urdf| RobotFiles { urdf, srdf }) };
         let mut tree = part::defaults();
-        let unstated = Table::parse(UNSTATED, &source, &mut report);
+        let unstated = Table::parse(&unstated(&layer), &source, &mut report);
         for layer in unstated.into_iter().chain([layer]) {
             tree.merge(layer, &mut Vec::new(), &mut report);
         }

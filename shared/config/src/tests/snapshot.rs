@@ -88,3 +88,23 @@ fn a_missing_or_damaged_snapshot_is_rejected() {
     let bare = Settings::load_snapshot(run.path()).unwrap_err().to_string();
     assert!(bare.contains("the scene is missing"), "{bare}");
 }
+
+/// What a recording of an earlier version does not state is as it was then.
+#[test]
+fn settings_of_an_earlier_version_keep_their_meaning() {
+    let over = [("dialogue.epsilon".to_owned(), "0.02".to_owned())];
+    let settings = Settings::load(&shipped(), None, &over).unwrap();
+    let mut tree: toml::Table = settings.snapshot().parse().unwrap();
+    let dialogue = tree["dialogue"].as_table_mut().unwrap();
+    for key in ["misperception", "misperceptions", "open", "choice", "choice_questions"] {
+        dialogue.remove(key).unwrap();
+    }
+    let read = Settings::from_snapshot("old", &tree.to_string(), ("", &[])).unwrap();
+    let params = read.dialogue.params;
+    assert_eq!((params.p_l, params.epsilon), (0.95, 0.02));
+    for own in [params.open, params.choice] {
+        assert_eq!(own.map(|own| (own.p_l, own.epsilon)), Some((0.95, 0.02)));
+    }
+    assert_eq!(read.dialogue.misperception_of("color"), 0.0);
+    assert!(!read.dialogue.actions.choice);
+}
