@@ -80,7 +80,7 @@ impl ModelUser {
                 }
             };
             let chances: Vec<f64> = (0..values).map(chance).collect();
-            self.rng.index(chances.into_iter()).map(ValueId::from)
+            self.rng.index(chances).map(ValueId::from)
         });
         self.perceived.push((k, perceived));
         perceived
