@@ -117,7 +117,9 @@ export function mountCards(element, context) {
 function askedValue(dialogue) {
   const question = dialogue?.decision === "ask" ? dialogue.question : null;
   if (question?.type === "attr") return { attribute: question.attribute, value: question.value };
-  return ["which", "choice"].includes(question?.type) ? { attribute: question.attribute, value: null } : null;
+  return ["which", "choice"].includes(question?.type)
+    ? { attribute: question.attribute, value: null }
+    : null;
 }
 
 /** Changes the list; cards that stand elsewhere then glide there. All is read before it is written. */
