@@ -26,7 +26,9 @@ pub(super) fn not_that(scene: &Scene, latest: &Latest) -> Result<String, String>
                 .then(|| format!("no, not the {}", scene.describe(object)))
                 .ok_or(NOTHING.into())
         }
-        (ActKind::Ask, Question::Attribute(..) | Question::Point(_)) => Ok(NO.to_owned()),
+        (ActKind::Ask, Question::Attribute(..) | Question::Point(_) | Question::Choice(..)) => {
+            Ok(NO.to_owned())
+        }
         (ActKind::Ask, _) => {
             Err("this is not a yes/no question; help: say which one it is".to_owned())
         }
@@ -61,7 +63,7 @@ pub(super) fn start_over(latest: &Latest) -> Result<&'static str, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{AttributeId, ValueId};
+    use scene::{AttributeId, Options, ValueId};
 
     const BOWLS: &str = include_str!("../../../../config/scenes/bowls.toml");
 
@@ -90,6 +92,8 @@ mod tests {
     #[test]
     fn corrections_deny_the_question_or_the_fetched_object() {
         let value = Question::Attribute(AttributeId::from(0), ValueId::from(0));
+        let options = Options::new(&[0, 1].map(ValueId)).unwrap();
+        let choice = Question::Choice(AttributeId::from(0), options);
         let (picks, idle) = (latest(ActKind::Pick, Question::None), Latest::default());
         let moves = PickPhase::Moving.into();
         let arm = ArmStatus { interaction: 3, object: 5, phase: moves, ..ArmStatus::default() };
@@ -97,6 +101,7 @@ mod tests {
         for (latest, expected) in [
             (latest(ActKind::Ask, value), Some("no")),
             (latest(ActKind::Ask, Question::Point(ObjectId::from(1))), Some("no")),
+            (latest(ActKind::Ask, choice), Some("no")),
             (latest(ActKind::Ask, Question::Which(AttributeId::from(0))), None),
             (picks, Some("no, not the white bowl on the counter")),
             (fetches.clone(), Some("no, not the clear bowl")),
