@@ -75,7 +75,7 @@ pub use stop::{MotionStop, Stop, StopOrder};
 use acts::{order_again, say, set, set_reasons};
 use objects::SceneFile;
 use pointing::Pointing;
-use scene::{AttributeId, ObjectId, Scene};
+use scene::{ObjectId, Scene};
 use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 use vocabulary::time::Time;
 use vocabulary::{ActKind, Action, Ended, Outcome, PickOutcome, Table, TurnTaking};
@@ -262,12 +262,10 @@ impl Manager {
 
     /// Asks the planner.
     fn plan(&mut self, state: &mut State) -> Option<Decision> {
-        let rows = self.misleading_places(&state.open.as_ref()?.belief());
+        let concessions = self.concessions(state.open.as_ref()?);
         let open = state.open.as_mut()?;
         let step = Step { interaction: open.id.0, step: open.step };
         open.step += 1;
-        let mut concessions = open.conceded.in_scene(&self.setup.scene);
-        concessions.unknown.extend(rows);
         // What was said of values in doubt counts for the questions to come.
         let model = self.learned(open.evidence.iter()).into_owned();
         let spent = open.spent();
@@ -278,15 +276,6 @@ impl Manager {
             ..self.setup.problem()
         };
         Some(open.posterior.decide(&mut *self.planner, &problem, step))
-    }
-
-    /// Returns the attribute of places in rows while an object that is in none may be meant: it may be further left than
-    /// "the left one".
-    fn misleading_places(&self, belief: &Belief) -> Option<AttributeId> {
-        let scene = &self.setup.scene;
-        let k = scene.attributes().iter().position(|attribute| attribute.by_place)?;
-        let is_in_none = |i: &ObjectId| scene.object(*i).values[k].is_none();
-        self.left(belief).iter().any(is_in_none).then(|| k.into())
     }
 
     fn carry_out(

@@ -1,12 +1,15 @@
 //! Relations by place, order and size as evidence: the truth of "the leftmost", "longer than the red one" for each
 //! object is the likelihood of saying so, never certain.
 
-use scene::{ObjectId, Question, Reading, Reference, Related, Relation, Response, View, WordId};
+use scene::{
+    AttributeId, ObjectId, Question, Reading, Reference, Related, Relation, Response, View, WordId,
+};
 
 use super::Manager;
 use super::attribution::Heard;
 use super::evidence::Mark;
 use super::state::Interaction;
+use crate::Concessions;
 
 /// Truth below which an object shares the likelihood of all others.
 const TRUTH_MIN: f64 = 0.01;
@@ -112,6 +115,20 @@ impl Manager {
             self.take_in(open, Heard { mark, ..Heard::default() });
         }
         is_known
+    }
+
+    /// Returns what the user conceded. Nothing is asked about places in rows while an object that is in none may be meant:
+    /// it may be further left than "the left one".
+    pub(super) fn concessions(&self, open: &Interaction) -> Concessions {
+        let scene = &self.setup.scene;
+        let mut concessions = open.conceded.in_scene(scene);
+        let row = scene.attributes().iter().position(|attribute| attribute.by_place);
+        let misleads = |k: &usize| {
+            let is_in_none = |i: &ObjectId| scene.object(*i).values[*k].is_none();
+            self.left(&open.belief()).iter().any(is_in_none)
+        };
+        concessions.unknown.extend(row.filter(misleads).map(AttributeId::from));
+        concessions
     }
 
     /// Returns the objects that compare so to what was handed over, of these.
