@@ -47,6 +47,24 @@ impl Confusion {
         }
     }
 
+    /// The model about the first `words` words, or with more, of which nothing is known.
+    #[must_use]
+    pub(crate) fn resized(mut self, words: usize) -> Self {
+        if words == self.rows.len() {
+            return self;
+        }
+        let mut all = Self::even(words);
+        self.rows.truncate(words);
+        for (row, mut known) in all.rows.iter_mut().zip(self.rows) {
+            known.resize(words, 0.0);
+            let sum: f64 = known.iter().sum();
+            if sum > 0.0 {
+                *row = known.into_iter().map(|share| share / sum).collect();
+            }
+        }
+        all
+    }
+
     /// How many words it is about.
     pub fn words(&self) -> usize {
         self.rows.len()

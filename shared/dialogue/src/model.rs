@@ -62,17 +62,16 @@ impl Model {
         Self { params, objects, absent: false, plain: None, is_of_interaction: false, tables }
     }
 
-    /// The same model of a scene with other objects and the same words.
-    ///
-    /// # Panics
-    /// If the words are not the same.
+    /// The same model of a scene with other objects and the same words, but for those of the places
+    /// by which objects that are alike are told apart: they come last.
     #[must_use]
     pub fn with_objects(&self, scene: &Scene) -> Self {
-        assert_eq!(scene.words().len(), self.tables.words.len(), "a scene with the same words");
         let same = Self::new(scene, self.params).with_certain_words(self.tables.certain.alpha);
-        let rates: Vec<f64> =
+        let mut rates: Vec<f64> =
             self.tables.columns.iter().map(|column| column.misperceived).collect();
-        same.with_misperceptions(&rates).with_confusion(self.tables.confusion.clone())
+        rates.resize(scene.attributes().len(), 0.0);
+        let confusion = self.tables.confusion.clone().resized(scene.words().len());
+        same.with_misperceptions(&rates).with_confusion(confusion)
     }
 
     /// The model of a user who takes the object's value of attribute `k` for another one with

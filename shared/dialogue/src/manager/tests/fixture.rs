@@ -73,7 +73,7 @@ pub(super) fn settings() -> Settings {
         planner: "lookahead",
         params: Params { p_l: 0.95, epsilon: 0.01, alpha: 0.2, ..Params::default() },
         alpha_typed: Some(0.001),
-        misperception: 0.015,
+        misperception: 0.0125,
         durations: None,
         mode: Mode::Remote,
         prior: Prior { objects: PriorObjects::Uniform, smoothing: 1.0, absent: 0.0 },
