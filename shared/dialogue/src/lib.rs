@@ -80,4 +80,4 @@ pub use planner::{DecisionProblem, Planner, Step};
 pub use planners::{Lookahead, Optimal};
 pub use policy_table::PolicyTable;
 pub use posterior::Posterior;
-pub use value_evidence::Said;
+pub use value_evidence::ValueLikelihoods;

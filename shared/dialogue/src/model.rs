@@ -5,10 +5,12 @@ use std::sync::Arc;
 use scene::{AttributeId, ObjectId, Options, Question, Scene, ValueId, WordId};
 
 use crate::Confusion;
-use tables::{Column, Smoothing, Tables, Vocabulary, Word};
+use tables::{Column, Smoothing, Tables, Word};
 use vocabulary::{Params, Reliability};
 
+mod misperception;
 mod tables;
+mod words;
 
 /// What equations (4)–(7) need of a scene, attribute by attribute.
 ///
@@ -19,7 +21,7 @@ pub struct Model {
     params: Params,
     objects: usize,
     absent: bool,
-    /// The model of a user who takes each value for what it is, where this one is another.
+    /// The same for a user who takes values for what they are, if this user may not.
     plain: Option<Box<Self>>,
     /// Whether values in doubt have been weighed with what was said in an interaction.
     is_of_interaction: bool,
@@ -72,63 +74,6 @@ impl Model {
         rates.resize(scene.attributes().len(), 0.0);
         let confusion = self.tables.confusion.clone().resized(scene.words().len());
         same.with_misperceptions(&rates).with_confusion(confusion)
-    }
-
-    /// The model of a user who takes the object's value of attribute `k` for another one with
-    /// probability `rates[k]`, each other value alike, and sticks to it: every word and answer about
-    /// the attribute is about the value that the user takes it for. An object that lacks the
-    /// attribute is known to lack it. Without a rate above 0 the model stays as it is.
-    ///
-    /// # Panics
-    /// If there is not a rate from 0 to below 1 for each attribute, or the model has a hypothesis
-    /// beyond the objects already.
-    #[must_use]
-    pub fn with_misperceptions(mut self, rates: &[f64]) -> Self {
-        assert_eq!(rates.len(), self.attributes(), "a rate for each attribute");
-        assert!(rates.iter().all(|rate| (0.0..1.0).contains(rate)), "{rates:?} are not rates");
-        assert!(!self.absent, "the objects' values come first");
-        if rates.iter().all(|rate| *rate == 0.0) {
-            return self;
-        }
-        self.plain = Some(Box::new(self.clone()));
-        let tables = Arc::make_mut(&mut self.tables);
-        for (column, rate) in tables.columns.iter_mut().zip(rates) {
-            column.misperceive(*rate);
-        }
-        tables.find_what_splits();
-        self
-    }
-
-    /// The model that decisions are planned with: attributes of which something was said, as `told`
-    /// has it, are as the user takes them. All others are as they are, and their answers wrong as
-    /// often as by misperception and error together: a search takes answers for independent given
-    /// the object, so it would count on asking again what says nothing new.
-    #[must_use]
-    pub(crate) fn planned(&self, told: impl Fn(AttributeId) -> bool) -> Self {
-        let mut model = self.plain().clone();
-        if self.misperceives() {
-            model = model.with_params(self.params.with_more_errors(self.tables.misperceived()));
-        }
-        let told: Vec<usize> = (0..self.attributes()).filter(|k| told((*k).into())).collect();
-        if self.misperceives() && !told.is_empty() {
-            let tables = Arc::make_mut(&mut model.tables);
-            for k in told {
-                tables.columns[k].clone_from(&self.tables.columns[k]);
-            }
-            tables.find_what_splits();
-            model.is_of_interaction = self.is_of_interaction;
-        }
-        model
-    }
-
-    /// The model of a user who takes each value for what it is.
-    pub(crate) fn plain(&self) -> &Self {
-        self.plain.as_deref().unwrap_or(self)
-    }
-
-    /// Whether the user may take a value for another one.
-    pub fn misperceives(&self) -> bool {
-        self.plain.is_some()
     }
 
     /// The model with another smoothing for words that are certain ([`CERTAIN_DOUBT`](crate::CERTAIN_DOUBT)).
@@ -275,12 +220,6 @@ impl Model {
         self.tables.columns[k.index()].doubtful.get(usize::from(doubt)).map(Vec::as_slice)
     }
 
-    /// The value that an entry stands for which only the user may take for another one.
-    fn known(&self, k: AttributeId, entry: u16) -> Option<ValueId> {
-        let doubt = entry.checked_sub(Self::DOUBTFUL).filter(|_| entry < Self::UNKNOWN)?;
-        self.tables.columns[k.index()].known.get(usize::from(doubt)).copied().flatten()
-    }
-
     /// Whether any object's value of attribute `k` is in doubt.
     pub fn is_doubtful(&self, k: AttributeId) -> bool {
         !self.tables.columns[k.index()].doubtful.is_empty()
@@ -291,40 +230,9 @@ impl Model {
         &self.tables.columns[k.index()].doubtful
     }
 
-    /// Mean of [`Model::word_chance`] over the objects.
-    pub(crate) fn mean_word_chance(&self, word: WordId) -> f64 {
-        let all = (0..self.objects).map(|i| self.word_chance(i.into(), word));
-        all.sum::<f64>() / self.objects as f64
-    }
-
-    /// The words that may have been said where one was heard with a doubt, each with its share.
-    pub(crate) fn said_instead(
-        &self,
-        word: WordId,
-        doubt: f64,
-    ) -> impl Iterator<Item = (WordId, f64)> + '_ {
-        self.tables.confusion.said_instead(word, doubt)
-    }
-
-    /// The denominator of eq. (5), and the weight of an object's own word: what a word says beyond
-    /// the value that it names. Added to every entry but for a constant that is returned.
-    pub(crate) fn add_vocabulary(&self, is_certain: bool, out: &mut [f64]) -> f64 {
-        let tables = &*self.tables;
-        let Smoothing { alpha, vocabulary } =
-            if is_certain { &tables.certain } else { &tables.smoothing };
-        out.iter_mut().zip(&vocabulary.above).for_each(|(entry, above)| *entry -= above);
-        (1.0 + alpha).ln() - vocabulary.least
-    }
-
     /// `α` of words, which may be another for those that are certain.
     pub(crate) fn smoothing(&self, is_certain: bool) -> f64 {
         if is_certain { self.tables.certain.alpha } else { self.tables.smoothing.alpha }
-    }
-
-    /// Whether values in doubt have been weighed with what was said in an interaction, so that the
-    /// model will hardly recur.
-    pub(crate) fn is_of_interaction(&self) -> bool {
-        self.is_of_interaction
     }
 
     /// Multiplies the probabilities of values in doubt by their likelihoods.
@@ -403,65 +311,6 @@ impl Model {
             column.values.iter().for_each(|value| tell(u64::from(*value)));
             column.words.iter().for_each(|word| tell(word.index() as u64));
         }
-    }
-
-    /// `ln P(w | D)` of eq. (5), but for a constant that is returned, added to every entry. The
-    /// constant is chosen so that entries only fall.
-    pub(crate) fn add_log_word(&self, word: WordId, out: &mut [f64]) -> f64 {
-        if self.is_doubtful_word(word) {
-            return self.add_doubted_word(word, 0.0, out);
-        }
-        let Smoothing { alpha, vocabulary } = &self.tables.certain;
-        let own = (1.0 + alpha).ln();
-        let other = alpha.ln() - own;
-        let constant = own - vocabulary.least;
-        if !self.tables.words[word.index()].splits {
-            let has = self.has_word(ObjectId(0), word);
-            return if has { constant } else { constant + other };
-        }
-        let entries = out.iter_mut().zip(&vocabulary.above);
-        match self.meanings(word) {
-            &[(k, v)] => {
-                for ((entry, above), &value) in entries.zip(self.column(k)) {
-                    let factor = if value == v.0 { 0.0 } else { other };
-                    *entry += factor - above;
-                }
-            }
-            _ => {
-                for (i, (entry, above)) in entries.enumerate() {
-                    let factor = if self.has_word(ObjectId::from(i), word) { 0.0 } else { other };
-                    *entry += factor - above;
-                }
-            }
-        }
-        constant
-    }
-}
-
-impl Model {
-    /// As [`Model::add_log_word`] for a word that was said with `1 − doubt`, and else was one that
-    /// is taken for it: `ln ((1−d) P(w|D) + d Σ_u κ(u|w) P(u|D))`.
-    pub(crate) fn add_doubted_word(&self, word: WordId, doubt: f64, out: &mut [f64]) -> f64 {
-        let tables = &*self.tables;
-        let is_certain = doubt <= crate::CERTAIN_DOUBT;
-        let Smoothing { alpha, vocabulary } =
-            if is_certain { &tables.certain } else { &tables.smoothing };
-        let Vocabulary { least, above } = vocabulary;
-        let mut said = vec![*alpha; out.len()];
-        for (u, share) in tables.confusion.said_instead(word, doubt) {
-            if self.is_doubtful_word(u) {
-                let chance = |i: usize| self.word_chance(ObjectId::from(i), u);
-                said.iter_mut().enumerate().for_each(|(i, s)| *s += share * chance(i));
-                continue;
-            }
-            let own = |i: usize| self.has_word(ObjectId::from(i), u);
-            said.iter_mut().enumerate().filter(|(i, _)| own(*i)).for_each(|(_, s)| *s += share);
-        }
-        let constant = (1.0 + alpha).ln() - least;
-        for ((entry, said), above) in out.iter_mut().zip(said).zip(above) {
-            *entry += (said / (1.0 + alpha)).ln() - above;
-        }
-        constant
     }
 }
 

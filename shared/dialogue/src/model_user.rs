@@ -63,7 +63,7 @@ impl ModelUser {
         drawn.map_or(Answer::Silence, |index| answers[index])
     }
 
-    /// What the user takes the attribute for; none if the object lacks it.
+    /// Returns the value that the user believes the object to have, if it has the attribute.
     fn perceive(&mut self, model: &Model, k: AttributeId) -> Option<ValueId> {
         if let Some((_, known)) = self.perceived.iter().find(|(of, _)| *of == k) {
             return *known;

@@ -12,7 +12,7 @@
 //! | excluded group | `ε` for an object that has all of its words, `1−ε` for others | extension |
 //! | word doubted by `d` | `(1−d) P(w∣D) + d Σ_u κ(u∣w) P(u∣D)`, `κ` of [`Confusion`](crate::Confusion) | extension |
 //! | answer or group doubted by `d` | `ε + d (1/2 − ε)` in place of `ε` | extension |
-//! | value of `D` in doubt | the mixture over what it may be ([`crate::Said`]) | extension |
+//! | value of `D` in doubt | the mixture over what it may be ([`crate::ValueLikelihoods`]) | extension |
 //!
 //! Words that are certain ([`CERTAIN_DOUBT`]) may have an `α` of their own
 //! ([`Model::with_certain_words`]).

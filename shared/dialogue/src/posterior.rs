@@ -7,7 +7,9 @@ use scene::{Question, Reading};
 use serde::{Deserialize, Serialize};
 
 use crate::user_model::{Joint, Person};
-use crate::{Belief, BeliefError, Decision, DecisionProblem, Model, Planner, Said, Step};
+use crate::{
+    Belief, BeliefError, Decision, DecisionProblem, Model, Planner, Step, ValueLikelihoods,
+};
 
 /// A belief over the hypotheses, perhaps together with the person's error rate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,7 +20,7 @@ pub enum Posterior {
     ObjectAndPerson(Joint),
     /// The user may take a value for another one ([`Model::with_misperceptions`]): what is believed of
     /// the object, and what was said of each attribute.
-    Perceived(Box<Self>, Said),
+    Perceived(Box<Self>, ValueLikelihoods),
 }
 
 impl Posterior {
@@ -34,11 +36,11 @@ impl Posterior {
     /// The same for a user who may take a value for another one.
     #[must_use]
     pub fn of_perceived(self) -> Self {
-        Self::Perceived(Box::new(self), Said::default())
+        Self::Perceived(Box::new(self), ValueLikelihoods::default())
     }
 
-    /// What was said of each attribute, where the user may take a value for another one.
-    pub fn said(&self) -> Option<&Said> {
+    /// What was said of each attribute, for a user who may take a value for another one.
+    pub fn said(&self) -> Option<&ValueLikelihoods> {
         match self {
             Self::Object(_) | Self::ObjectAndPerson(_) => None,
             Self::Perceived(_, said) => Some(said),
@@ -148,7 +150,7 @@ impl Posterior {
         Ok(match self {
             Self::Object(belief) => Self::Object(Belief::from_key(&belief.key())?),
             Self::ObjectAndPerson(joint) => Self::ObjectAndPerson(joint.rounded()?),
-            Self::Perceived(of, said) => Self::Perceived(Box::new(of.rounded()?), said.clone()),
+            Self::Perceived(of, said) => Self::Perceived(Box::new(of.rounded()?), said.rounded()),
         })
     }
 }

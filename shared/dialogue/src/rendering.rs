@@ -118,7 +118,7 @@ pub fn object(scene: &Scene, object: ObjectId) -> String {
 fn unknown(scene: &Scene, UnknownWord { text, role }: &UnknownWord) -> String {
     match role {
         Role::Kind => {
-            let all: Vec<ObjectId> = (0..scene.objects().len()).map(ObjectId::from).collect();
+            let all: Vec<ObjectId> = scene.ids().collect();
             let there = scene.plural_nouns(&all);
             format!("There are no {} here, only {there}. ", scene::plural(text))
         }

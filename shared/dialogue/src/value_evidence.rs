@@ -29,8 +29,7 @@ impl ValueEvidence {
         Self { by_value: vec![1.0; values], lacking: 1.0, unknown: 1.0 }
     }
 
-    /// The words of a reading about attribute `k`; none if there are none, or no value of it is in
-    /// doubt.
+    /// The words of a reading about attribute `k`, if there are any and a value of it is in doubt.
     pub(crate) fn of_words(
         model: &Model,
         k: AttributeId,
@@ -72,31 +71,31 @@ impl ValueEvidence {
     /// All that a reading says about attribute `k`.
     fn of(model: &Model, k: AttributeId, question: Question, reading: &Reading) -> Option<Self> {
         let words = Self::of_words(model, k, question, reading);
-        if question.attribute() != Some(k) {
-            return words;
-        }
-        let mut evidence = words.clone().unwrap_or_else(|| Self::none(model.values(k)));
         let doubt = reading.doubt.response;
+        let all = |words: Option<Self>| words.unwrap_or_else(|| Self::none(model.values(k)));
         match (question, reading.response) {
-            (Question::Attribute(_, v), Response::Yes | Response::No) => {
+            (Question::Attribute(asked, v), Response::Yes | Response::No) if asked == k => {
                 let wrong = model.error_rate(doubt);
                 let yes = reading.response == Response::Yes;
                 let of = |is_own: bool| if is_own == yes { 1.0 - wrong } else { wrong };
                 let unknown = model.unknown_yes(k);
                 let unknown = if yes { unknown } else { 1.0 - unknown };
-                evidence.add([of(false), unknown], |m| of(m == v));
+                let mut all = all(words);
+                all.add([of(false), unknown], |m| of(m == v));
+                Some(all)
             }
-            (Question::Choice(..), Response::No)
-                if named_answer(model, question, &reading.base).is_none() =>
+            (Question::Choice(asked, _), Response::No)
+                if asked == k && named_answer(model, question, &reading.base).is_none() =>
             {
                 let Some(law) = Naming::of(model, question).filter(|law| law.neither) else {
                     return words;
                 };
-                evidence.add_named(law.doubted(doubt), None);
+                let mut all = all(words);
+                all.add_named(law.doubted(doubt), None);
+                Some(all)
             }
-            _ => return words,
+            _ => words,
         }
-        Some(evidence)
     }
 
     /// Takes in more: its likelihood by value, of an object that lacks the attribute, and of what is
@@ -164,9 +163,9 @@ const KEY_UNITS: f64 = 1e9;
 /// What was said so far in an interaction of the attributes with values in doubt: logarithms of its
 /// likelihood by value, up to a constant.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Said(Vec<(AttributeId, Vec<f64>)>);
+pub struct ValueLikelihoods(Vec<(AttributeId, Vec<f64>)>);
 
-impl Said {
+impl ValueLikelihoods {
     /// Takes in what may have been heard; `model` is the one after all that was heard before.
     pub(crate) fn hear(&mut self, model: &Model, heard: &[(f64, Question, Reading)]) {
         for k in (0..model.attributes()).map(AttributeId::from) {
@@ -187,7 +186,8 @@ impl Said {
         self.0.is_empty()
     }
 
-    /// Likelihood of all that was said of attribute `k`, by value, the greatest 1; none if nothing was.
+    /// Likelihood by value of all that was said of attribute `k`, relative to the greatest. None if
+    /// nothing was said of it.
     pub fn of(&self, k: AttributeId) -> Option<Vec<f64>> {
         let (_, log) = self.0.iter().find(|(of, _)| *of == k)?;
         Some(log.iter().map(|log| log.exp()).collect())
@@ -201,6 +201,15 @@ impl Said {
             key.push(k.index() as i64);
             key.extend(log.iter().map(|log| (log.exp() * KEY_UNITS).round() as i64));
         }
+    }
+
+    /// The likelihoods that stand for all of one key.
+    pub(crate) fn rounded(&self) -> Self {
+        let whole = |log: &f64| ((log.exp() * KEY_UNITS).round().max(0.1) / KEY_UNITS).ln();
+        let of = |(k, log): &(AttributeId, Vec<f64>)| (*k, log.iter().map(whole).collect());
+        let mut all: Vec<(AttributeId, Vec<f64>)> = self.0.iter().map(of).collect();
+        all.sort_by_key(|(k, _)| *k);
+        Self(all)
     }
 
     /// The model of objects as the user takes them after this.
@@ -245,8 +254,7 @@ impl Model {
         }
     }
 
-    /// Likelihood of what may have been heard of attribute `k`, by value; none if nothing was said of
-    /// it. A reading that says nothing of it counts as likely as one that does is on average.
+    /// Likelihood by value of all readings about attribute `k`, if one says anything of it. A reading that says nothing of it counts as likely as one that does is on average.
     fn said_of(&self, k: AttributeId, heard: &[(f64, Question, Reading)]) -> Option<Vec<f64>> {
         if !self.is_doubtful(k) {
             return None;

@@ -3,6 +3,7 @@
 use scene::WordId;
 
 use crate::lexicon::{Lexicon, Sense};
+use crate::relation_words::ordinal;
 use crate::tagger::{Tag, after};
 use crate::token_class::Class;
 
@@ -23,13 +24,11 @@ pub(crate) fn name_options<'a>(tags: &mut [Tag<'a>], options: &[WordId], lexicon
 }
 
 fn place(tag: &Tag<'_>, count: usize) -> Option<usize> {
-    let word = if tag.word == "number" { tag.last } else { tag.word };
-    match word {
-        "first" | "1st" | "former" | "one" => Some(0),
-        "second" | "2nd" | "two" => Some(1),
-        "third" | "3rd" | "three" => Some(2),
-        "fourth" | "4th" | "four" => Some(3),
-        "last" | "final" | "latter" => count.checked_sub(1),
-        _ => None,
+    let from_0 = |n: Option<u8>| n.map(|n| usize::from(n) - 1);
+    match (tag.word, tag.last) {
+        ("former", _) => Some(0),
+        ("last" | "final" | "latter", _) => count.checked_sub(1),
+        ("number", last) => from_0(ordinal(&format!("number {last}"))),
+        (word, _) => from_0(ordinal(word)),
     }
 }

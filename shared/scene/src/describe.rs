@@ -13,7 +13,7 @@ impl Scene {
     /// of thing that it is, with as few of its values as tell it apart, qualities before places.
     /// Where nothing does, with all that help.
     pub fn describe(&self, object: ObjectId) -> String {
-        let all: Vec<ObjectId> = (0..self.objects().len()).map(ObjectId::from).collect();
+        let all: Vec<ObjectId> = self.ids().collect();
         self.describe_among(object, &all)
     }
 

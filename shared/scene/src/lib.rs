@@ -70,6 +70,6 @@ pub use question::Question;
 pub use question_json::{QuestionError, question_from_json, question_to_json, reading_to_json};
 pub use reading::{Doubt, Intent, Reading, Reference, Response, UnknownWord};
 pub use relation::{Measure, Relation};
-pub use relation_truth::{Related, View};
+pub use relation_truth::{Related, View, size_rank};
 pub use spoken::{WordFindings, WordProblem};
 pub use stable_hash::StableHash;

@@ -328,6 +328,11 @@ impl Scene {
         objects.filter(|(_, object)| object.placement.is_some()).map(|(i, _)| i.into())
     }
 
+    /// The numbers of the objects.
+    pub fn ids(&self) -> impl Iterator<Item = ObjectId> + use<> {
+        (0..self.objects.len()).map(ObjectId::from)
+    }
+
     /// The object `i`.
     pub fn object(&self, i: ObjectId) -> &Object {
         &self.objects[i.index()]

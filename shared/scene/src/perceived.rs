@@ -65,7 +65,7 @@ impl Scene {
 
     /// Returns the object with that number.
     pub fn numbered(&self, number: ObjectId) -> Option<ObjectId> {
-        let mut all = (0..self.objects().len()).map(ObjectId::from);
+        let mut all = self.ids();
         all.find(|object| self.number(*object) == number)
     }
 

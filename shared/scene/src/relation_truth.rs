@@ -27,6 +27,11 @@ const SIZES: [&[&str]; 5] = [
     &["huge", "giant", "gigantic", "enormous"],
 ];
 
+/// Returns the rank of a value that names a size, from 0 for the smallest.
+pub fn size_rank(name: &str) -> Option<usize> {
+    SIZES.iter().position(|names| names.contains(&name))
+}
+
 /// Place from which left, right, in front and behind are seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum View {
@@ -78,8 +83,7 @@ impl Scene {
             .filter(|value| value.word == word)
             .flat_map(|value| std::iter::once(&value.name).chain(&value.synonyms));
         let middle = SIZES.len() / 2;
-        let mut ranks =
-            names.filter_map(|name| SIZES.iter().position(|names| names.contains(&name.as_str())));
+        let mut ranks = names.filter_map(|name| size_rank(name));
         measure.is_of_object()
             && ranks.any(|rank| if measure.is_positive() { rank > middle } else { rank < middle })
     }
@@ -208,8 +212,7 @@ impl Scene {
         let sign = if measure.is_positive() { 1.0 } else { -1.0 };
         let rank = |k: usize, i: ObjectId| {
             let value = &self.attributes()[k].values[self.object(i).values[k]?.index()];
-            let rank = SIZES.iter().position(|names| names.contains(&&*value.name));
-            rank.map(|rank| sign * rank as f64)
+            size_rank(&value.name).map(|rank| sign * rank as f64)
         };
         let ranked = |k: usize| self.ids().map(|i| rank(k, i)).collect::<Vec<_>>();
         let mut ranks = (0..self.attributes().len()).map(ranked);
@@ -269,10 +272,6 @@ impl Scene {
             }
         };
         [[-back[1], back[0]], back]
-    }
-
-    fn ids(&self) -> impl Iterator<Item = ObjectId> {
-        (0..self.objects().len()).map(ObjectId::from)
     }
 
     fn place(&self, i: ObjectId) -> Option<[f64; 2]> {

@@ -128,9 +128,16 @@ impl Manager {
 
     /// Returns the objects that may well be wanted, in the scene's order.
     pub(super) fn left(&self, belief: &Belief) -> Vec<ObjectId> {
-        let objects = || (0..self.setup.scene.objects().len()).map(ObjectId::from);
+        let objects = || self.setup.scene.ids();
         let most = objects().map(|i| belief.probability(i)).fold(0.0, f64::max);
         objects().filter(|i| belief.probability(*i) >= LEFT_SHARE * most).collect()
+    }
+
+    /// Returns the same objects, the likeliest first.
+    pub(super) fn left_by_probability(&self, belief: &Belief) -> Vec<ObjectId> {
+        let mut left = self.left(belief);
+        left.sort_by(|a, b| belief.probability(*b).total_cmp(&belief.probability(*a)));
+        left
     }
 
     pub(super) fn pick(

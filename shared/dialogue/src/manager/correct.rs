@@ -52,7 +52,7 @@ impl Manager {
         let (scene, model) = (&self.setup.scene, &self.setup.model);
         let of = |word: WordId| model.meanings(word).iter().map(|(k, _)| *k);
         let said: Vec<AttributeId> = reading.base.iter().flat_map(|word| of(*word)).collect();
-        let objects = (0..scene.objects().len()).map(ObjectId::from);
+        let objects = scene.ids();
         let fits = |i: &ObjectId| reading.base.iter().all(|word| model.has_word(*i, *word));
         let fitting: Vec<ObjectId> = objects.filter(fits).collect();
         let is_replaced = |name: &String| {

@@ -1,8 +1,8 @@
-//! What was said fits no object, or tells those that are left no further: the nearest ones are offered
-//! before one of them is fetched.
+//! Offers: if what was said fits no object, or does not tell the last ones apart, the nearest ones are
+//! offered before one of them is fetched.
 //!
-//! The user, who may not see the objects, learns so what is here. The answer is about the object and
-//! not about what the user took it for.
+//! A user in another room learns in this way which objects are here. The answer is about the object,
+//! and no longer about what the user took it for.
 
 use scene::{AttributeId, ObjectId, Question, ValueId};
 
@@ -11,6 +11,7 @@ use super::line::{AboutObjects, Content, Line, Preface, Remark};
 use super::state::{Act, Interaction, State};
 use super::{LEFT_MAX, Manager};
 use crate::Belief;
+use crate::planning::Price;
 use vocabulary::ActKind;
 
 /// Probability that the user takes an object for what it is, below which it does not fit.
@@ -18,110 +19,98 @@ const FITS_MIN: f64 = 0.5;
 /// Probability from which the user takes an attribute for one value.
 const TAKEN_MIN: f64 = 0.5;
 
+/// An object that is offered, and the line for it.
+pub(super) type Offered = (ObjectId, Line);
+
 impl Manager {
-    /// Returns the line with which the object is offered instead of being fetched at once: what was
-    /// said does not fit it, or the user cannot tell those that are left apart. None where it was
-    /// offered before, or the user takes values for what they are.
-    pub(super) fn offer_first(&mut self, state: &State, object: ObjectId) -> Option<Line> {
+    /// Returns the offer of the object that would be fetched now, if what was said does not fit it, or
+    /// if the user cannot tell it from others. It is offered once, and only to a user who may take a
+    /// value for another one.
+    pub(super) fn offer_first(&mut self, state: &State, object: ObjectId) -> Option<Offered> {
         let open = state.open.as_ref().filter(|open| !is_offered(open, object))?;
-        open.posterior.said()?;
-        let misfit = {
-            let mut certain = vec![0.0; self.setup.model.objects()];
-            certain[object.index()] = 1.0;
-            self.fit(open, &certain) < FITS_MIN
-        };
+        // What is not here is concluded, and cannot be offered.
+        let is_here = Some(object) != self.setup.model.absent();
+        let fit = self.fit(open, |i| f64::from(u8::from(i == object))).filter(|_| is_here)?;
         let alike = self.left_over(state, object);
         if alike != Preface::None {
-            return Some(Line { preface: alike, content: self.offered_content(vec![object]) });
+            let content = Content::Offered(vec![self.description(object)]);
+            return Some((object, Line { preface: alike, content }));
         }
-        misfit.then(|| self.offering(open, object))
+        (fit < FITS_MIN).then(|| (object, self.offering(open, object)))
     }
 
-    /// Returns the object that is offered, and the line for it, instead of asking a question of that
-    /// value: what was said fits nothing, and asking on is worth no more.
-    pub(super) fn offer_instead(&mut self, state: &State, value: f64) -> Option<(ObjectId, Line)> {
+    /// Returns the offer to make instead of asking a question of that value: what was said fits no
+    /// object, and further questions are worth no more.
+    pub(super) fn offer_instead(&mut self, state: &State, value: f64) -> Option<Offered> {
         let open = state.open.as_ref()?;
-        open.posterior.said()?;
         let belief = open.belief();
-        if self.fit(open, &belief.probabilities()) >= FITS_MIN {
+        if self.fit(open, |i| belief.probability(i))? >= FITS_MIN {
             return None;
         }
-        let mut nearest = self.left(&belief);
-        nearest.sort_by(|a, b| belief.probability(*b).total_cmp(&belief.probability(*a)));
+        let mut nearest = self.left_by_probability(&belief);
         nearest.truncate(LEFT_MAX);
         let object = *nearest.iter().find(|it| !is_offered(open, **it))?;
         let chances: Vec<f64> = nearest.iter().map(|it| belief.probability(*it)).collect();
-        let costs = &self.setup.costs;
-        (self.worth_of_offers(&chances) >= value - costs.attribute_s)
-            .then(|| (object, self.offering(open, object)))
+        let is_worth = self.worth_of_offers(&chances) >= value - self.setup.costs.attribute_s;
+        is_worth.then(|| (object, self.offering(open, object)))
     }
 
     /// Returns the value of offering objects of these probabilities one after another, until one is
     /// accepted.
     fn worth_of_offers(&self, chances: &[f64]) -> f64 {
         let (costs, params) = (&self.setup.costs, self.setup.model.params());
+        let price = Price::new(costs, costs.point_s, 1.0 - params.p_l);
+        let accepted = costs.pick_value(1.0 - params.epsilon);
         let mut left = 1.0;
-        let lefts: Vec<f64> = (chances.iter())
-            .map(|p| {
-                let share = (p / left).min(1.0);
-                left = (left - p).max(f64::MIN_POSITIVE);
-                share
-            })
-            .collect();
-        let again = 1.0 - costs.discount * (1.0 - params.p_l);
-        let discount = costs.discount * params.p_l / again;
-        lefts.iter().rev().fold(costs.wait_value(), |denied, right| {
-            let right = *right;
-            let accepted = costs.pick_value(1.0 - params.epsilon);
-            let offered = discount * (right * accepted + (1.0 - right) * denied);
-            costs.pick_value(right).max(offered - costs.point_s / again)
+        let mut rights = Vec::new();
+        for chance in chances {
+            rights.push((chance / left).min(1.0));
+            left = (left - chance).max(f64::MIN_POSITIVE);
+        }
+        rights.into_iter().rev().fold(costs.wait_value(), |denied, right| {
+            costs.pick_value(right).max(price.pay(right * accepted + (1.0 - right) * denied))
         })
     }
 
-    /// How well what was said fits, over objects of these probabilities: for each attribute the
-    /// probability that the user takes the object for what it is, times the likelihood of what was said
-    /// of that value, relative to the likeliest one's.
-    fn fit(&self, open: &Interaction, probabilities: &[f64]) -> f64 {
-        let Some(said) = open.posterior.said() else { return 1.0 };
+    /// How well what was said fits, on average over the objects: for each attribute the probability
+    /// that the user takes the object for what it is, times the likelihood of what was said of that
+    /// value, relative to the likeliest one's. None for a user who takes values for what they are.
+    fn fit(&self, open: &Interaction, probability: impl Fn(ObjectId) -> f64) -> Option<f64> {
+        let said = open.posterior.said()?;
         let model = open.posterior.model(&self.setup.model);
         let attributes = (0..model.attributes()).map(AttributeId::from);
-        let told: Vec<(AttributeId, Vec<f64>)> =
+        let known: Vec<(AttributeId, Vec<f64>)> =
             attributes.filter_map(|k| Some((k, said.of(k)?))).collect();
         let fits = |i: ObjectId| -> f64 {
             let own = |(k, likelihood): &(AttributeId, Vec<f64>)| {
                 let own = model.value(i, *k)?;
                 Some(model.chance(i, *k, own) * likelihood[own.index()])
             };
-            told.iter().filter_map(own).product()
+            known.iter().filter_map(own).product()
         };
-        let objects = probabilities.iter().take(model.objects()).enumerate();
-        objects.filter(|(_, p)| **p > 0.0).map(|(i, p)| p * fits(i.into())).sum()
+        Some(self.setup.scene.ids().map(|i| probability(i) * fits(i)).sum())
     }
 
+    /// Returns the line that offers an object: what there is not, and what comes nearest.
     fn offering(&mut self, open: &Interaction, object: ObjectId) -> Line {
         let belief = open.belief();
         let preface = self.nothing_fits(open, &belief);
-        let mut nearest = self.left(&belief);
-        nearest.sort_by(|a, b| belief.probability(*b).total_cmp(&belief.probability(*a)));
+        let mut nearest = self.left_by_probability(&belief);
         nearest.retain(|it| *it != object && !is_offered(open, *it));
         nearest.insert(0, object);
         nearest.truncate(LEFT_MAX);
-        Line { preface, content: self.offered_content(nearest) }
+        let descriptions = nearest.into_iter().map(|it| self.description(it)).collect();
+        Line { preface, content: Content::Offered(descriptions) }
     }
 
-    fn offered_content(&mut self, objects: Vec<ObjectId>) -> Content {
-        Content::Offered(objects.into_iter().map(|it| self.description(it)).collect())
-    }
-
-    /// "There are no red pens here.", where that is what the user has described.
+    /// "There are no red pens here.", if the user has described one.
     fn nothing_fits(&self, open: &Interaction, belief: &Belief) -> Preface {
         let (scene, model) = (&self.setup.scene, open.posterior.model(&self.setup.model));
         let Some(said) = open.posterior.said() else { return Preface::None };
         let taken = |k: AttributeId| -> Option<ValueId> {
             said.of(k)?;
             let of = |v: ValueId| -> f64 {
-                let objects = (0..model.objects()).map(ObjectId::from);
-                objects.map(|i| belief.probability(i) * model.chance(i, k, v)).sum()
+                scene.ids().map(|i| belief.probability(i) * model.chance(i, k, v)).sum()
             };
             (0..model.values(k)).map(ValueId::from).find(|v| of(*v) > TAKEN_MIN)
         };
@@ -129,7 +118,7 @@ impl Manager {
         let taken: Vec<(AttributeId, ValueId)> =
             attributes.filter_map(|k| Some((k, taken(k)?))).collect();
         let has_all = |i: ObjectId| taken.iter().all(|&(k, v)| model.has(i, k, v));
-        if taken.len() < 2 || (0..model.objects()).map(ObjectId::from).any(has_all) {
+        if taken.len() < 2 || scene.ids().any(has_all) {
             return Preface::None;
         }
         let name = |(k, v): &(AttributeId, ValueId)| {
@@ -140,8 +129,12 @@ impl Manager {
         Preface::Remark(Remark::Objects { asked, words, objects })
     }
 
-    /// Asks whether the object is wanted.
-    pub(super) fn offer(&self, state: &mut State, object: ObjectId, line: Line, reasons: Act) {
+    /// Asks whether the object is wanted, after the remark that was due if the offer has none.
+    pub(super) fn offer(&self, state: &mut State, offered: Offered, due: Preface, reasons: Act) {
+        let (object, mut line) = offered;
+        if line.preface == Preface::None {
+            line.preface = due;
+        }
         let Some(open) = &mut state.open else { return };
         open.presentations += 1;
         let prompt = self.new_prompt(state, Question::Point(object));

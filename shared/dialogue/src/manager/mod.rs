@@ -10,6 +10,7 @@
 //! | `attribution.rs` | the questions that an utterance answers |
 //! | `inform.rs`, `correct.rs` | content of an utterance: while deciding, and while the arm fetches |
 //! | `concede.rs` | what the user cannot tell, and what does not matter |
+//! | `decide.rs` | decisions, asked of the planner and carried out |
 //! | `misfit.rs` | offers where what was said fits no object |
 //! | `references.rs`, `relate.rs` | "the other one", "the same again"; "the leftmost", "longer than the red one" |
 //! | `hand_over.rs`, `held_back.rs` | refusals after a hand-over; picks while the motion stop is latched |
@@ -29,6 +30,7 @@ mod attribution;
 mod beliefs;
 mod concede;
 mod correct;
+mod decide;
 mod evidence;
 mod floor;
 mod hand_over;
@@ -72,20 +74,18 @@ pub use state::{
 };
 pub use stop::{MotionStop, Stop, StopOrder};
 
-use acts::{order_again, say, set, set_reasons};
+use acts::{order_again, say, set};
 use objects::SceneFile;
 use pointing::Pointing;
 use scene::{ObjectId, Scene};
 use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 use vocabulary::time::Time;
-use vocabulary::{ActKind, Action, Ended, Outcome, PickOutcome, Table, TurnTaking};
+use vocabulary::{ActKind, Ended, Outcome, PickOutcome, Table, TurnTaking};
 
-use crate::{Belief, Decision, DecisionProblem, Model, Planner, PolicyTable, Step, rendering};
+use crate::{DecisionProblem, Model, Planner, PolicyTable, rendering};
 
 /// Objects that are named before one of them is picked.
 const LEFT_MAX: usize = 3;
-/// Alternatives that an act lists.
-const ALTERNATIVES_MAX: usize = 5;
 
 /// The dialogue manager of one scene and one decision problem.
 pub struct Manager {
@@ -227,125 +227,6 @@ impl Manager {
     /// Returns the decisions that the planner keeps.
     pub fn table(&self) -> Option<&PolicyTable> {
         self.planner.table()
-    }
-
-    /// Decides on the present belief.
-    fn decide(&mut self, state: &mut State, basis: Basis, at: Time) {
-        if self.ask_about_kept(state, basis.preface.clone(), at) {
-            return;
-        }
-        let Some(decision) = self.plan(state) else { return };
-        let standing = Action::Ask(state.act.question);
-        let others = decision.alternatives.iter().map(|(action, _)| *action);
-        let mut questions = others.filter(|action| matches!(action, Action::Ask(_)));
-        let action = match (basis.preference, decision.action) {
-            (Preference::Any, action) => state
-                .open
-                .as_ref()
-                .map_or(action, |open| Action::Pick(self.likeliest_object(&open.belief()))),
-            (Preference::Otherwise, action) if action == standing => {
-                questions.next().unwrap_or(action)
-            }
-            (_, action) => action,
-        };
-        self.carry_out(state, action, decision, basis, at);
-    }
-
-    /// Returns the likeliest of the scene's objects; of several the first.
-    fn likeliest_object(&self, belief: &Belief) -> ObjectId {
-        let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
-        let likelier = |best: ObjectId, next: ObjectId| {
-            if belief.probability(next) > belief.probability(best) { next } else { best }
-        };
-        objects.reduce(likelier).unwrap_or(ObjectId(0))
-    }
-
-    /// Asks the planner.
-    fn plan(&mut self, state: &mut State) -> Option<Decision> {
-        let concessions = self.concessions(state.open.as_ref()?);
-        let open = state.open.as_mut()?;
-        let step = Step { interaction: open.id.0, step: open.step };
-        open.step += 1;
-        // What was said of values in doubt counts for the questions to come.
-        let model = self.learned(open.evidence.iter()).into_owned();
-        let spent = open.spent();
-        let problem = DecisionProblem {
-            model: &model,
-            concessions: &concessions,
-            spent: &spent,
-            ..self.setup.problem()
-        };
-        Some(open.posterior.decide(&mut *self.planner, &problem, step))
-    }
-
-    fn carry_out(
-        &mut self,
-        state: &mut State,
-        action: Action,
-        decision: Decision,
-        basis: Basis,
-        at: Time,
-    ) {
-        let Some(open) = &state.open else { return };
-        let exhausted = open.presentations >= self.setup.turns.questions_max;
-        let action = match action {
-            Action::Ask(_) if exhausted => Action::Pick(open.belief().most_likely()),
-            action => action,
-        };
-        let Decision { value, mut alternatives, expected_questions, bounds, .. } = decision;
-        alternatives.truncate(ALTERNATIVES_MAX);
-        let utterance = basis.utterance;
-        let reasons = Act {
-            utterance,
-            decided: at,
-            value,
-            alternatives,
-            expected_questions,
-            bounds,
-            ..Act::default()
-        };
-        let instead = matches!(action, Action::Ask(_) | Action::Wait)
-            .then(|| self.offer_instead(state, value))
-            .flatten();
-        if let Some((object, mut line)) = instead {
-            if line.preface == Preface::None {
-                line.preface = basis.preface;
-            }
-            return self.offer(state, object, line, reasons);
-        }
-        match action {
-            Action::Wait => set(state, reasons),
-            Action::Ask(question) => self.ask(state, question, basis, reasons),
-            Action::Pick(object) if self.setup.model.absent() == Some(object) => {
-                self.close(state, Outcome::NotHere, at, Content::NotHere);
-                set_reasons(state, reasons);
-            }
-            Action::Pick(object) => {
-                let offer = (!exhausted).then(|| self.offer_first(state, object)).flatten();
-                if let Some(mut line) = offer {
-                    if line.preface == Preface::None {
-                        line.preface = basis.preface;
-                    }
-                    return self.offer(state, object, line, reasons);
-                }
-                let preface = match basis.preface {
-                    Preface::None => self.left_over(state, object),
-                    preface => preface,
-                };
-                self.pick(state, object, preface, reasons);
-            }
-        }
-    }
-
-    /// Names the objects that the user cannot tell apart before one of them is picked.
-    fn left_over(&mut self, state: &State, object: ObjectId) -> Preface {
-        let Some(open) = &state.open else { return Preface::None };
-        let left = self.left(&open.belief());
-        let is_told = open.conceded.unknown.is_empty();
-        if is_told || !(2..=LEFT_MAX).contains(&left.len()) || !left.contains(&object) {
-            return Preface::None;
-        }
-        Preface::Left(left.into_iter().map(|i| self.description(i)).collect())
     }
 
     /// Repeats the question after a silent response window, or abandons the interaction.

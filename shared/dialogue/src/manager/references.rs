@@ -1,7 +1,7 @@
 //! What an utterance points to by what was spoken of: "the other one", "the same again", and compared to what was handed
 //! over "a smaller one". Comparisons of journals from before there were relations are marks ([`Manager::compared`]).
 
-use scene::{ObjectId, Reading, Reference, Relation, Role, WordId};
+use scene::{ObjectId, Reading, Reference, Relation, Role, WordId, size_rank};
 use vocabulary::Outcome;
 
 use super::Manager;
@@ -10,16 +10,6 @@ use super::evidence::Mark;
 use super::line::{Content, Remark};
 use super::replies::said;
 use super::state::{Interaction, State};
-
-/// Names of sizes, from small to large; values of an attribute that has no other names are ordered by
-/// it.
-const SIZES: [&[&str]; 5] = [
-    &["tiny", "mini"],
-    &["small", "little", "short", "thin", "narrow", "low"],
-    &["medium", "middle", "mid-size"],
-    &["big", "large", "long", "tall", "thick", "wide", "high"],
-    &["huge", "giant", "gigantic", "enormous"],
-];
 
 /// Relative difference up to which sizes are the same.
 const SAME: f64 = 0.01;
@@ -44,7 +34,7 @@ impl Manager {
         let (.., reading) = heard.interpretations.first()?;
         let is_bare = self.says_no_more(reading);
         let fits = |i: &ObjectId| self.fits(reading, *i);
-        let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
+        let objects = self.setup.scene.ids();
         let others: Vec<ObjectId> = objects.filter(|i| *i != delivered && fits(i)).collect();
         let meant = match reading.refers {
             Reference::Same if fits(&delivered) => vec![delivered],
@@ -124,8 +114,7 @@ impl Manager {
     /// Returns the objects of the same kind, itself included.
     fn of_kind(&self, object: ObjectId) -> Vec<ObjectId> {
         let scene = &self.setup.scene;
-        let objects = (0..scene.objects().len()).map(ObjectId::from);
-        objects.filter(|i| scene.noun_of(*i) == scene.noun_of(object)).collect()
+        scene.ids().filter(|i| scene.noun_of(*i) == scene.noun_of(object)).collect()
     }
 
     /// Returns those of the objects that are most like `object`: in kind, in what was said of it, and
@@ -174,8 +163,7 @@ impl Manager {
         let rank_in = |k: usize, i: &ObjectId| {
             let value = scene.object(*i).values[k]?;
             let value = &scene.attributes()[k].values[value.index()];
-            let is_named = |names: &&[&str]| names.contains(&value.name.as_str());
-            SIZES.iter().position(is_named).map(|rank| rank as f64 + 1.0)
+            size_rank(&value.name).map(|rank| rank as f64 + 1.0)
         };
         let differ = |sizes: &Vec<Option<f64>>| {
             let most = sizes.iter().flatten().copied().fold(0.0, f64::max);

@@ -18,7 +18,7 @@ const NAMED_MAX: usize = 64;
 
 /// A relation that was said.
 #[derive(Clone, Debug)]
-pub(super) struct Said {
+pub(super) struct SaidRelation {
     relation: Relation,
     to: Vec<Vec<ObjectId>>,
     /// Words of the scene beside it.
@@ -29,7 +29,7 @@ pub(super) struct Said {
 
 impl Manager {
     /// Returns the relation in the likeliest reading; none where it is to something that the scene does not have.
-    pub(super) fn relation(&self, heard: &Heard<'_>) -> Option<Said> {
+    pub(super) fn relation(&self, heard: &Heard<'_>) -> Option<SaidRelation> {
         let (_, question, reading) = heard.interpretations.first()?;
         let Reference::Relation(relation) = reading.refers else { return None };
         if let Relation::Nth(measure, 1) | Relation::More(measure) = relation
@@ -50,7 +50,7 @@ impl Manager {
             .iter()
             .filter(|(.., it)| (it.refers, &it.further) == (reading.refers, &reading.further));
         let share = same.map(|(weight, ..)| weight).sum::<f64>() / all;
-        Some(Said { relation, to, base: reading.base.clone(), share })
+        Some(SaidRelation { relation, to, base: reading.base.clone(), share })
     }
 
     /// "No, a bigger one", "the one to the left of it": the object that was asked about, where that is one.
@@ -58,7 +58,7 @@ impl Manager {
         let asked = match question {
             Question::Point(object) => vec![object],
             Question::Attribute(k, v) => {
-                self.all_objects().filter(|i| self.setup.scene.has(*i, k, v)).collect()
+                self.setup.scene.ids().filter(|i| self.setup.scene.has(*i, k, v)).collect()
             }
             Question::None | Question::Which(_) | Question::Choice(..) => Vec::new(),
         };
@@ -68,17 +68,13 @@ impl Manager {
 
     fn objects_with(&self, words: &[WordId]) -> Vec<ObjectId> {
         let has = |i: &ObjectId| words.iter().all(|word| self.setup.model.has_word(*i, *word));
-        self.all_objects().filter(has).collect()
-    }
-
-    fn all_objects(&self) -> impl Iterator<Item = ObjectId> {
-        (0..self.setup.scene.objects().len()).map(ObjectId::from)
+        self.setup.scene.ids().filter(has).collect()
     }
 
     /// Returns how likely a relation would be said of each object, of those that are left; none where the scene cannot
     /// tell.
-    fn likely(&self, open: &Interaction, said: &Said) -> Option<Mark> {
-        let Said { relation, to, base, share } = said;
+    fn likely(&self, open: &Interaction, said: &SaidRelation) -> Option<Mark> {
+        let SaidRelation { relation, to, base, share } = said;
         let left = self.left(&open.belief());
         // One that is fetched already is not all that may be meant.
         let among = if left.len() > 1 { left } else { self.objects_with(base) };
@@ -92,7 +88,7 @@ impl Manager {
             };
             share * truth.map_or(any, of_truth) + (1.0 - share) * any
         };
-        let mut all: Vec<(ObjectId, Option<f64>)> = self.all_objects().zip(truths).collect();
+        let mut all: Vec<(ObjectId, Option<f64>)> = self.setup.scene.ids().zip(truths).collect();
         all.sort_by(|a, b| b.1.unwrap_or(any).total_cmp(&a.1.unwrap_or(any)));
         let is_named = |(_, truth): &&(ObjectId, Option<f64>)| truth.unwrap_or(any) >= TRUTH_MIN;
         let named = all.iter().take_while(is_named).count().min(NAMED_MAX);
@@ -108,7 +104,7 @@ impl Manager {
 
     /// Updates an interaction with a relation that was said. Returns whether the scene can tell of which objects it is
     /// true.
-    pub(super) fn relate(&self, open: &mut Interaction, said: Option<Said>) -> bool {
+    pub(super) fn relate(&self, open: &mut Interaction, said: Option<SaidRelation>) -> bool {
         let mark = said.and_then(|said| self.likely(open, &said));
         let is_known = mark.is_some();
         if is_known {

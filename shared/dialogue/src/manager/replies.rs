@@ -108,8 +108,7 @@ impl Manager {
 
     /// Returns the objects that the words of a reading describe.
     pub(super) fn described(&self, reading: &Reading) -> impl Iterator<Item = ObjectId> {
-        let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
-        objects.filter(move |object| self.fits(reading, *object))
+        self.setup.scene.ids().filter(move |object| self.fits(reading, *object))
     }
 
     /// Returns whether the words of a reading describe the object.
@@ -131,9 +130,7 @@ impl Manager {
         let delivered = || state.handed_over.as_ref().map(|it| &it.interaction);
         let Some(open) = state.open.as_ref().or_else(delivered) else { return Reason::None };
         if open.pick.is_none() {
-            let belief = open.belief();
-            let mut left = self.left(&belief);
-            left.sort_by(|a, b| belief.probability(*b).total_cmp(&belief.probability(*a)));
+            let mut left = self.left_by_probability(&open.belief());
             left.truncate(RIVALS_MAX);
             return Reason::Between(left.into_iter().map(|i| self.description(i)).collect());
         }

@@ -20,7 +20,7 @@ mod told;
 mod tests;
 
 pub(crate) use bound::{Bound, Value};
-pub(crate) use channel::Query;
+pub(crate) use channel::{Price, Query};
 pub(crate) use one_step_lookahead::{Choice, OneStepEvaluator, OneStepLookahead};
 pub(crate) use outcome::outcomes;
 pub(crate) use reduced::Reduced;

@@ -190,10 +190,6 @@ impl Reduced {
         let codes: Vec<u64> = self.mass.iter().map(|_| rng.next_u64()).collect();
         let everyone = codes.iter().fold(0, |all, code| all ^ code);
         let split = |set: u64| set.min(set ^ everyone);
-        let is_spent = |attribute: AttributeId, value: Option<ValueId>| {
-            let asked = |v| Question::Attribute(attribute, v);
-            problem.spent.contains(&value.map_or(Question::Which(attribute), asked))
-        };
         let (mut splits, mut open) = (Cheapest::default(), Cheapest::default());
         let mut choices = Cheapest::default();
         let mut found = Vec::new();
@@ -203,16 +199,12 @@ impl Reduced {
             let plain = problem.actions.attribute
                 && partition.is_yes_no()
                 && plainly.fold(f64::INFINITY, f64::min) <= partition.open.cost;
-            let is_open = problem.actions.which && !is_spent(partition.attribute, None);
-            if is_open && partition.tells() && !plain {
+            if problem.actions.which && partition.tells() && !plain {
                 open.offer(partition.identity(), partition.open.cost, found.len());
                 found.push(Query::Which { partition: index });
             }
             if problem.actions.attribute {
                 for (block, set) in partition.sets(&codes) {
-                    if is_spent(partition.attribute, partition.values[usize::from(block)]) {
-                        continue;
-                    }
                     let split = match (partition.unknown, partition.doubt_code(block)) {
                         (None, 0) => split(set),
                         (unknown, doubt) => set ^ doubt ^ unknown.map_or(0, |u| u.yes.to_bits()),
@@ -231,19 +223,32 @@ impl Reduced {
                 }
             }
         }
-        if problem.actions.point() && self.classes() > 1 {
-            let known = |class: usize, code: u64| {
-                let asked = splits.cost(&split(code));
-                asked.is_some_and(|cost| cost <= self.point.of(class).cost)
-            };
-            let here = codes.iter().enumerate().filter(|(class, _)| Some(*class) != self.absent);
-            let pointed = here.filter(|(class, code)| !known(*class, **code));
-            self.pointed = pointed.map(|(class, _)| class as u32).collect();
-        }
+        self.find_pointed(problem, &codes, |code| splits.cost(&split(code)));
         let kept = splits.places().chain(open.places()).chain(choices.places());
         let mut kept: Vec<usize> = kept.collect();
         kept.sort_unstable();
-        self.queries = kept.into_iter().map(|place| found[place]).collect();
+        let kept = kept.into_iter().map(|place| found[place]);
+        self.queries =
+            kept.filter(|query| !problem.spent.contains(&self.question(*query))).collect();
+    }
+
+    /// Collects the classes to point at: each but those that a
+    /// question tells apart at no higher cost; `asked` is the cost of the question with that split.
+    fn find_pointed(
+        &mut self,
+        problem: &DecisionProblem<'_>,
+        codes: &[u64],
+        asked: impl Fn(u64) -> Option<f64>,
+    ) {
+        if !problem.actions.point() || self.classes() < 2 {
+            return;
+        }
+        let known = |class: usize, code: u64| {
+            asked(code).is_some_and(|cost| cost <= self.point.of(class).cost)
+        };
+        let here = codes.iter().enumerate().filter(|(class, _)| Some(*class) != self.absent);
+        let pointed = here.filter(|(class, code)| !known(*class, **code));
+        self.pointed = pointed.map(|(class, _)| class as u32).collect();
     }
 }
 

@@ -6,6 +6,7 @@ use crate::testing::{bowls, perceived, random_durations, random_scene, scene, un
 use crate::{Answer, Belief, DecisionProblem, Model};
 
 mod announced;
+mod choices;
 
 const REMOTE: Actions = Actions { mode: Mode::Remote, attribute: true, which: true, choice: false };
 const PRESENT: Actions =
@@ -127,33 +128,6 @@ fn objects_that_differ_in_seconds_alone() {
     assert_eq!(reduced.best, [ObjectId(1), ObjectId(0), ObjectId(2), ObjectId(3)]);
     assert_eq!((reduced.interchangeable.len(), &reduced.interchangeable[0]), (1, &(0..2)));
     assert!(reduced.interchange(0, 1, &reduced.mass) && !reduced.interchange(1, 2, &reduced.mass));
-}
-
-/// The choices that matter: of all values, or of two of them; a choice of all but one tells what the choice
-/// of all tells, and one of two values what a yes/no question tells.
-#[test]
-fn choices_that_tell_the_same_are_asked_once() {
-    let asked = |values: usize| -> Vec<usize> {
-        let list: Vec<_> = (0..values)
-            .map(|v| serde_json::json!({"name": format!("o{v}"), "attributes": {"k": format!("v{v}")}}))
-            .collect();
-        let model = Model::new(
-            &crate::testing::scene_of(&serde_json::json!({"objects": list})),
-            Params::default(),
-        );
-        let problem = problem(&model, CHOOSING, Costs::SECONDS);
-        let reduced = Reduced::new(&problem, &Belief::uniform(values));
-        let asked = reduced.queries.iter().map(|query| reduced.question(*query));
-        let options = asked.filter_map(|question| match question {
-            Question::Choice(_, options) => Some(options.values().len()),
-            _ => None,
-        });
-        options.collect()
-    };
-    assert_eq!(asked(2), Vec::<usize>::new());
-    assert_eq!(asked(3), [3]);
-    assert_eq!(asked(4), [4, 2, 2, 2, 2, 2, 2]);
-    assert_eq!(asked(6), [4, 3, 3, 3, 3, 2, 2, 2, 2, 2, 2]);
 }
 
 /// Of two questions with the same answers the cheaper one is asked, whichever comes first.

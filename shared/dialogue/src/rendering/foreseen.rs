@@ -29,7 +29,7 @@ pub fn foreseen(scene: &Scene) -> Vec<String> {
     let ask = |n| questions.iter().map(move |question| scene.phrase_variant(*question, n, 1, &[]));
     let mut objects: Vec<ObjectId> = scene.placed().collect();
     if objects.is_empty() {
-        objects = (0..scene.objects().len()).map(ObjectId::from).collect();
+        objects = scene.ids().collect();
     }
     let picks =
         objects.into_iter().take(PICKS_MAX).map(|i| fetching(&scene.describe(i), &Preface::None));

@@ -98,7 +98,7 @@ fn word_for(attribute: &Attribute) -> &str {
 
 /// "mugs and cups": everything that there is.
 fn all_nouns(scene: &Scene) -> String {
-    let all: Vec<ObjectId> = (0..scene.objects().len()).map(ObjectId::from).collect();
+    let all: Vec<ObjectId> = scene.ids().collect();
     scene.plural_nouns(&all)
 }
 

@@ -1,0 +1,78 @@
+//! Users who take a value for another one.
+
+use std::sync::Arc;
+
+use scene::{AttributeId, ValueId};
+
+use super::Model;
+
+impl Model {
+    /// The model of a user who takes the object's value of attribute `k` for another one with
+    /// probability `rates[k]`, each other value alike, and sticks to it: every word and answer about
+    /// the attribute is about the value that the user takes it for. An object that lacks the
+    /// attribute is known to lack it. Without a rate above 0 the model stays as it is.
+    ///
+    /// # Panics
+    /// If there is not a rate from 0 to below 1 for each attribute, or the model has a hypothesis
+    /// beyond the objects already.
+    #[must_use]
+    pub fn with_misperceptions(mut self, rates: &[f64]) -> Self {
+        assert_eq!(rates.len(), self.attributes(), "a rate for each attribute");
+        assert!(rates.iter().all(|rate| (0.0..1.0).contains(rate)), "{rates:?} are not rates");
+        assert!(!self.absent, "the objects' values come first");
+        if rates.iter().all(|rate| *rate == 0.0) {
+            return self;
+        }
+        self.plain = Some(Box::new(self.clone()));
+        let tables = Arc::make_mut(&mut self.tables);
+        for (column, rate) in tables.columns.iter_mut().zip(rates) {
+            column.misperceive(*rate);
+        }
+        tables.find_what_splits();
+        self
+    }
+
+    /// The model that decisions are planned with: attributes of which something was said, as `told`
+    /// has it, are as the user takes them. All others are as they are, and their answers wrong as
+    /// often as by misperception and error together: a search takes answers for independent given
+    /// the object, so it would count on asking again what says nothing new.
+    #[must_use]
+    pub(crate) fn planned(&self, told: impl Fn(AttributeId) -> bool) -> Self {
+        let mut model = self.plain().clone();
+        if self.misperceives() {
+            model = model.with_params(self.params.with_more_errors(self.tables.misperceived()));
+        }
+        let told: Vec<usize> = (0..self.attributes()).filter(|k| told((*k).into())).collect();
+        if self.misperceives() && !told.is_empty() {
+            let tables = Arc::make_mut(&mut model.tables);
+            for k in told {
+                tables.columns[k].clone_from(&self.tables.columns[k]);
+            }
+            tables.find_what_splits();
+            model.is_of_interaction = self.is_of_interaction;
+        }
+        model
+    }
+
+    /// The model of a user who takes values for what they are.
+    pub(crate) fn plain(&self) -> &Self {
+        self.plain.as_deref().unwrap_or(self)
+    }
+
+    /// Whether the user may take a value for another one.
+    pub fn misperceives(&self) -> bool {
+        self.plain.is_some()
+    }
+
+    /// The value that an entry stands for which only the user may take for another one.
+    pub(super) fn known(&self, k: AttributeId, entry: u16) -> Option<ValueId> {
+        let doubt = entry.checked_sub(Self::DOUBTFUL).filter(|_| entry < Self::UNKNOWN)?;
+        self.tables.columns[k.index()].known.get(usize::from(doubt)).copied().flatten()
+    }
+
+    /// Whether values in doubt have been weighed with what was said in an interaction, so that the
+    /// model will hardly recur.
+    pub(crate) fn is_of_interaction(&self) -> bool {
+        self.is_of_interaction
+    }
+}
