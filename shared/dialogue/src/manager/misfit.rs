@@ -137,16 +137,16 @@ impl Manager {
         }
         let Some(open) = &mut state.open else { return };
         open.presentations += 1;
-        let prompt = self.new_prompt(state, Question::Point(object));
-        set(state, Act { kind: ActKind::Ask, prompt, presentation: 1, line, ..reasons });
+        let question = Question::Point(object);
+        let prompt = self.new_prompt(state, question);
+        set(state, Act { kind: ActKind::Ask, prompt, presentation: 1, question, line, ..reasons });
     }
+}
 
-    /// Returns the question that the standing act puts. What is offered is asked about in words: the
-    /// arm does not point.
-    pub fn question_put(&self, state: &State) -> Question {
-        let offered = state.open.as_ref().filter(|_| state.act.kind == ActKind::Ask);
-        let prompt = offered.and_then(|open| open.prompt(state.act.prompt));
-        prompt.map_or(state.act.question, |prompt| prompt.question)
+impl Act {
+    /// Returns whether the object in question is named in words alone, and not pointed at.
+    pub fn is_in_words(&self) -> bool {
+        matches!(self.line.content, Content::Offered(_))
     }
 }
 

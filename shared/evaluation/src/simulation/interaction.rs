@@ -112,7 +112,7 @@ pub fn interact(
     };
     play.begin(&user.request(room.domain()));
     loop {
-        let question = play.manager.question_put(&play.state);
+        let question = play.state.act.question;
         let (kind, pick) = (play.state.act.kind, play.state.act.pick);
         let verdict = match (kind, pick) {
             (ActKind::Pick, Some((_, object))) if !play.is_denied(object, user) => {
@@ -177,8 +177,9 @@ impl<'r, 'a> Play<'r, 'a> {
     fn ask(&mut self, question: Question, user: &mut SimulatedUser) -> Option<Verdict> {
         self.pay(Action::Ask(question));
         self.questions += 1;
-        let aimed = match self.state.act.question {
-            Question::Point(object) => Some(object),
+        let in_words = self.state.act.is_in_words();
+        let aimed = match question {
+            Question::Point(object) if !in_words => Some(object),
             _ => None,
         };
         if let (Some(object), Some(motions)) = (aimed, self.room.motions) {
@@ -186,8 +187,8 @@ impl<'r, 'a> Play<'r, 'a> {
         }
         self.aimed = aimed;
         let began = self.now();
-        self.seconds += match self.state.act.question {
-            Question::None => self.said_s(),
+        self.seconds += match question {
+            _ if in_words => self.said_s(),
             question => self.room.voice.seconds(&self.room.scene.phrase(question)),
         };
         let presentation = Presentation {
