@@ -50,6 +50,7 @@ fn why(cause: &Cause) -> String {
         Cause::StopReport { confirmed: true } => "ordered stop confirmed".to_owned(),
         Cause::StopReport { confirmed: false } => "ordered stop not confirmed in time".to_owned(),
         Cause::SetAside(over) => format!("journal set aside, numbers up to {over} are over"),
+        Cause::Forget(person) => format!("{person} is forgotten"),
     }
 }
 

@@ -96,7 +96,7 @@ fn descriptions(scene: &Scene) -> Named<String> {
 
 fn user(state: &State) -> Option<UserRecord> {
     let open = state.open.as_ref().and_then(|open| open.posterior.person());
-    let params = open.or(state.person.as_ref())?.params(vocabulary::Params::default());
+    let params = open.or(state.users.person.as_ref())?.params(vocabulary::Params::default());
     Some(UserRecord { p_l: params.p_l, epsilon: params.epsilon })
 }
 
@@ -135,6 +135,7 @@ fn cause(names: &Names<'_>, cause: &Cause) -> PolicyCause {
         Cause::MotionStop(MotionStop::Stopped) => PolicyCause::Stopped,
         Cause::StopReport { confirmed } => PolicyCause::StopReport { confirmed: *confirmed },
         Cause::SetAside(numbers_over) => PolicyCause::SetAside { numbers_over: *numbers_over },
+        Cause::Forget(person) => PolicyCause::Forget { person: person.to_string() },
     }
 }
 

@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use std::process::ExitCode;
 use vocabulary::ids::{PromptId, UtteranceSeq};
-use vocabulary::{PickOutcome, PickPhase, Presentation};
+use vocabulary::{PersonId, PickOutcome, PickPhase, Presentation};
 
 /// Runs the program: a service of a group, or an inspection of its records.
 pub fn run() -> ExitCode {
@@ -245,6 +245,7 @@ impl PolicyNode {
             unknown: observation.unknown(),
             gesture: observation.gesture.target_m().ok()?,
             more: false,
+            from: PersonId::default(),
         })
     }
 

@@ -38,6 +38,8 @@ pub struct Dialogue {
     pub turns: TurnTaking,
     /// Prior belief.
     pub prior: Prior,
+    /// Whether to learn about people who give their name; not with [`Language::Paper`].
+    pub learns: bool,
     /// Pointing gestures.
     pub gesture: Gesture,
 }
@@ -108,6 +110,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
         announce: f.table("announce", announce),
         turns: f.table("turns", turns),
         prior: f.table("prior", prior),
+        learns: f.table("people", |f| f.flag("learn")),
         gesture: f.table("gesture", gesture),
     }
 }

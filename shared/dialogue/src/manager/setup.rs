@@ -28,6 +28,8 @@ pub struct Setup {
     pub gestures: Option<(Gestures, [f64; 3])>,
     /// Settings of turn-taking.
     pub turns: TurnTaking,
+    /// Whether to learn about people who give their name.
+    pub learns: bool,
     /// Whether the objects come from perception; those of the scene are what they may be.
     pub perceives: bool,
 }

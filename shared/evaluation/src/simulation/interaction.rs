@@ -59,6 +59,7 @@ impl<'a> Room<'a> {
             prior: Prior { objects: PriorObjects::Uniform, smoothing: 1.0, absent: 0.0 },
             gestures: None,
             perceives: false,
+            learns: true,
             turns: TurnTaking { attribution: Attribution::Onset, ..self.turns },
         };
         let planner: Box<dyn Planner + Send> = Box::new(planner);

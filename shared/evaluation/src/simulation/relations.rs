@@ -53,6 +53,7 @@ fn manager(scene: &Scene, question: Question) -> Manager {
         gestures: None,
         turns: TurnTaking { attribution: Attribution::Onset, ..TurnTaking::default() },
         perceives: false,
+        learns: true,
     };
     Manager::new(setup, Box::new(Asks(question)), 0)
 }

@@ -109,6 +109,11 @@ pub enum PolicyCause {
         /// Every number up to this one is over.
         numbers_over: u64,
     },
+    /// A person wanted to be forgotten.
+    Forget {
+        /// The person's name.
+        person: String,
+    },
 }
 
 /// One way to understand an utterance.

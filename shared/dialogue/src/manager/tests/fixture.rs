@@ -62,6 +62,7 @@ impl Settings {
             gestures: self.gestures.then(|| (Gestures::default(), [1.6, 0.0, 0.45])),
             turns: self.turns,
             perceives: false,
+            learns: true,
         }
     }
 }
