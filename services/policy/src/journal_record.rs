@@ -106,6 +106,7 @@ fn cause(names: &Names<'_>, cause: &Cause) -> PolicyCause {
         Cause::Utterance(heard) => PolicyCause::Utterance {
             utterance: heard.seq.0,
             typed: heard.typed,
+            from: Some(heard.from.to_string()).filter(|from| !from.is_empty()),
             onset_ns: heard.onset.ns(),
             end_ns: heard.end.ns(),
             accepted_ns: heard.accepted.ns(),

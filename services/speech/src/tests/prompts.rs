@@ -108,6 +108,7 @@ fn words_answer_no_question_that_their_client_had_not_shown() {
         onset_ns: 0,
         end_ns: 0,
         seen_prompt,
+        from: String::new(),
         sound: Sound::Text("yes".to_owned()),
     };
     assert_eq!(speech.take(1.0, In::Injection(yes(7))).asked(), [(7, 1, 0)]);

@@ -39,6 +39,11 @@ impl History {
         }
     }
 
+    /// Deliveries by object, in the order of the names.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, u64)> {
+        self.delivered.iter().map(|(name, count)| (name.as_str(), *count))
+    }
+
     /// Returns the deliveries of an object.
     pub fn of(&self, name: &str) -> u64 {
         self.delivered.get(name).copied().unwrap_or(0)

@@ -94,7 +94,7 @@ impl<T: Schema + Serialize + DeserializeOwned + std::fmt::Debug> WriteBytes for 
 macro_rules! open {
     ($bus:ident, $topic:ident, $fixed:ident, $encoded:ident) => {
         open!(@ $bus, $topic, $fixed [
-            Receipt Utterance Presented Activity Hearing Partial AudioChunk Observation AppliedMark RobotAct
+            Receipt Utterance Presented Activity Hearing Partial AudioChunk Observation AppliedMark Forget RobotAct
             ArmStatus JointStates
         ] robot [
             JointState AssemblyState JointCommand JointTrajectoryPoint SpeedRatio EndpointState EndEffectorCommand

@@ -61,6 +61,12 @@ impl Store<u32> for Disk {
         Ok(())
     }
 
+    fn erase(&mut self, snapshot: &[u32]) -> Result<(), RotateError> {
+        self.rotate(snapshot)?;
+        self.0.lock().unwrap().erasures += 1;
+        Ok(())
+    }
+
     fn rotate(&mut self, snapshot: &[u32]) -> Result<(), RotateError> {
         let mut state = self.0.lock().unwrap();
         state.attempts += 1;

@@ -56,6 +56,8 @@ pub enum PolicyCause {
         utterance: u64,
         /// Whether it was typed, or given whole in another way.
         typed: bool,
+        /// Name of the person who spoke, where it is known.
+        from: Option<String>,
         /// When the user began to speak, or typed.
         onset_ns: u64,
         /// When the user had finished.
