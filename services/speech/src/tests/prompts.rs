@@ -129,3 +129,28 @@ fn superseded_question_may_still_be_answered() {
     let utterance = outputs.utterance().unwrap();
     assert_eq!(utterance.asked().unwrap()[0].ended_ns, 0, "it is being spoken");
 }
+
+#[test]
+fn utterance_names_who_typed_it_and_a_name_that_cannot_be_printed_is_refused() {
+    let said = |from: &str| {
+        In::Injection(Injection {
+            key: RequestKey([1; 16]),
+            onset_ns: 0,
+            end_ns: 0,
+            seen_prompt: 0,
+            from: from.to_owned(),
+            sound: Sound::Text("yes".to_owned()),
+        })
+    };
+    for (from, expected) in [(" Ann ", "Ann"), ("", ""), ("guest", "")] {
+        let utterance = Speech::new().take(1.0, said(from)).utterance().unwrap();
+        assert_eq!(utterance.from.as_str(), Ok(expected), "{from:?}");
+    }
+    for (from, reason) in [(&*"n".repeat(65), "at most 64 bytes"), ("a\tb", "printable")] {
+        let outputs = Speech::new().take(1.0, said(from));
+        let receipt = outputs.receipt().unwrap();
+        assert_eq!(receipt.status, ReceiptStatus::Refused.code());
+        assert!(receipt.note.as_str().unwrap().contains(reason), "{receipt:?}");
+        assert!(outputs.utterance().is_none());
+    }
+}

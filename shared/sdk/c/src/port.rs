@@ -6,9 +6,9 @@ use messages::layout::{self, WireMessage};
 use messages::schema::Schema;
 use messages::topics::Topic;
 use messages::{
-    Activity, AppliedMark, ArmStatus, AudioChunk, Hearing, Injection, JointStates, Observation,
-    Partial, PolicyView, Presented, Receipt, RobotAct, Sighting, TableView, TrajectoryView,
-    Utterance, WorldView, robot,
+    Activity, AppliedMark, ArmStatus, AudioChunk, Forget, Hearing, Injection, JointStates,
+    Observation, Partial, PolicyView, Presented, Receipt, RobotAct, Sighting, TableView,
+    TrajectoryView, Utterance, WorldView, robot,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
