@@ -192,6 +192,7 @@ fn identical_bowls_are_told_apart_by_place() {
             voice: Voice::default(),
             pace: &pace,
             motions: None,
+            people: Acquaintance::default(),
             request: true,
             denials: false,
         };
