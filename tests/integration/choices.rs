@@ -30,10 +30,12 @@ fn fetch(
     wanted: &str,
     answer: impl Fn(&[String]) -> String,
 ) -> (Json, Vec<Vec<String>>) {
-    let (mut answered, mut offered) = (0, Vec::new());
-    group.say("get me a mug");
+    let mut offered = Vec::new();
+    let mut answered = group.dialogue()["prompt"].as_u64().unwrap_or(0);
+    let mut says = "get me a mug".to_owned();
     loop {
-        let seen = group.follow("a question or a pick", 20.0, |state| {
+        let say = || group.say(&says);
+        let seen = group.follow_from("a question or a pick", 20.0, say, |state| {
             let dialogue = state["dialogue"].take();
             let is_new = dialogue["prompt"].as_u64()? > answered;
             let decides = dialogue["decision"] == "pick"
@@ -49,11 +51,11 @@ fn fetch(
             let options: Vec<String> = serde_json::from_value(question["values"].clone()).unwrap();
             let text = seen["text"].as_str().unwrap();
             assert!(text.ends_with("or none of them?") || text.ends_with("or neither?"), "{text}");
-            group.say(&answer(&options));
+            says = answer(&options);
             offered.push(options);
         } else {
             assert_eq!(question["type"], "attr", "{seen}");
-            group.say(if question["value"] == wanted { "yes" } else { "no" });
+            says = if question["value"] == wanted { "yes" } else { "no" }.to_owned();
         }
     }
 }

@@ -117,8 +117,7 @@ fn page_is_open_where_the_configuration_says_so() {
     assert_eq!(http(&anyone, "GET", "/api/state", &[], "").0, 200);
     assert_eq!(http(&anyone, "GET", "/api/state", &["Host: evil.example"], "").0, 421);
     drop(Page::open(&anyone, &Visitor::operator(1)).unwrap());
-    let log = std::fs::read_to_string(group.paths().log_file("console")).unwrap();
-    assert!(log.contains("every user of this machine can operate the robot"), "{log}");
+    group.wait_for_log("console", "every user of this machine can operate the robot");
     group.down();
 }
 
@@ -130,8 +129,7 @@ fn port_in_use_is_avoided() {
     let group = Group::up(&[&listen]);
     let place = group.console();
     assert!(!place.place.ends_with(&format!(":{port}")), "{place}");
-    let log = std::fs::read_to_string(group.paths().log_file("console")).unwrap();
-    assert!(log.contains("another one is used"), "{log}");
+    group.wait_for_log("console", "another one is used");
     assert_eq!(group.status()["console"], format!("http://{place}/"));
     group.down();
 }

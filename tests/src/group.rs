@@ -208,7 +208,10 @@ impl Group {
 
     /// As [`Group::follow`], from before `begin` is called: it misses nothing that this causes, however soon it is
     /// over.
-    fn follow_from<T>(
+    ///
+    /// # Panics
+    /// As [`wait_for`].
+    pub fn follow_from<T>(
         &self,
         what: &str,
         seconds: f64,
@@ -294,6 +297,18 @@ impl Group {
     /// Checks the journals as an operator would.
     pub fn verify_journals(&self) {
         self.must(&["journal", "--verify"]);
+    }
+
+    /// Waits until the log of a service, or of the supervisor, has these words, and returns it: lines are written
+    /// in the background.
+    ///
+    /// # Panics
+    /// As [`wait_for`].
+    pub fn wait_for_log(&self, of: &str, words: &str) -> String {
+        let log = || std::fs::read_to_string(self.paths.log_file(of)).unwrap_or_default();
+        wait_for(&format!("{words:?} in the log of {of}"), 10.0, || {
+            Some(log()).filter(|log| log.contains(words))
+        })
     }
 
     /// Returns the ends of the logs, for a failed test.

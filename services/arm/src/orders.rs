@@ -38,7 +38,7 @@ impl ArmNode {
         let is_new = id != self.act.id;
         let kind = act.kind.get();
         let aim = match (kind, question) {
-            (ActKind::Ask, Question::Point(object)) => Some(object),
+            (ActKind::Ask, Question::Point(object)) if act.in_words == 0 => Some(object),
             _ => None,
         };
         if is_new {

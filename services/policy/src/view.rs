@@ -20,6 +20,7 @@ pub(crate) fn act(manager: &Manager, state: &State) -> RobotAct {
         prompt: act.prompt.0,
         presentation: act.presentation,
         kind: act.kind.code(),
+        in_words: u8::from(act.is_in_words()),
         question: numbered(scene, answerable(manager, state)).into(),
         object: act.pick.map_or(0, |(_, object)| scene.number(object).0.into()),
         attempt: act.pick.map_or(0, |(pick, _)| pick.attempt),

@@ -124,7 +124,7 @@ impl<'r, 'a> Play<'r, 'a> {
     /// Talks until a pick is decided; the verdict where none is.
     fn go_on(&mut self, user: &mut SimulatedUser) -> Result<ObjectId, Verdict> {
         loop {
-            let question = self.manager.question_put(&self.state);
+            let question = self.state.act.question;
             let (kind, pick) = (self.state.act.kind, self.state.act.pick);
             let verdict = match (kind, pick) {
                 (ActKind::Pick, Some((_, object))) if !self.is_denied(object, user) => {
@@ -207,8 +207,9 @@ impl<'r, 'a> Play<'r, 'a> {
     fn ask(&mut self, question: Question, user: &mut SimulatedUser) -> Option<Verdict> {
         self.pay(Action::Ask(question));
         self.questions += 1;
-        let aimed = match self.state.act.question {
-            Question::Point(object) => Some(object),
+        let in_words = self.state.act.is_in_words();
+        let aimed = match question {
+            Question::Point(object) if !in_words => Some(object),
             _ => None,
         };
         if let (Some(object), Some(motions)) = (aimed, self.room.motions) {
@@ -216,8 +217,8 @@ impl<'r, 'a> Play<'r, 'a> {
         }
         self.aimed = aimed;
         let began = self.now();
-        self.seconds += match self.state.act.question {
-            Question::None => self.said_s(),
+        self.seconds += match question {
+            _ if in_words => self.said_s(),
             question => self.room.voice.seconds(&self.room.scene.phrase(question)),
         };
         let presentation = self.presentation(question, began);

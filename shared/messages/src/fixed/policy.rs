@@ -31,8 +31,11 @@ wire_struct! {
         presentation: u32,
         /// [`ActKind`].
         kind: Code<ActKind>,
+        /// 1 where the question names its object in words alone, as "do you want the blue pen?" does: the arm does not
+        /// point at it. Else 0.
+        in_words: u8,
         /// Zero.
-        reserved: [u8; 3],
+        reserved: [u8; 2],
         /// The question of an `Ask`; of a `Pick` or `PutBack`, its object: it can be denied; of a `Say`, the object that can be refused or confirmed, if any.
         question: WireQuestion,
         /// [`ObjectId`] of a `Pick` or `PutBack`.

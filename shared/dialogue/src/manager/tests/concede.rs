@@ -22,7 +22,7 @@ fn until_pick(manager: &mut Manager, mut state: State, wanted: &str) -> (State, 
     let object = scene.object_named(wanted).unwrap();
     let mut asked = Vec::new();
     while state.act.kind == ActKind::Ask {
-        let holds = match manager.question_put(&state) {
+        let holds = match state.act.question {
             Question::Attribute(k, v) => {
                 asked.push(k);
                 scene.has(object, k, v)
@@ -56,7 +56,7 @@ fn objects_that_the_user_cannot_tell_apart_are_named() {
     let mut state = first(&mut manager, words(&["metallic"]));
     let mut offers = Vec::new();
     while state.act.kind == ActKind::Ask {
-        if let Question::Point(offered) = manager.question_put(&state) {
+        if let Question::Point(offered) = state.act.question {
             let line = text(&state);
             let named = line.starts_with("There are two: the ") && line.ends_with('?');
             assert!(named && line.contains("Do you want the "), "{line}");

@@ -50,7 +50,7 @@ fn asked(state: &State) -> Vec<Question> {
 fn talk(manager: &mut Manager, user: &User) -> State {
     let mut state = first(manager, Reading::default());
     while state.act.kind == ActKind::Ask {
-        let said = user.answer(manager, manager.question_put(&state));
+        let said = user.answer(manager, state.act.question);
         state = reply(manager, &state, answer(said));
     }
     state
@@ -119,8 +119,8 @@ fn the_user_is_told_what_there_is_not_and_what_there_is() {
     let line = rendering::text(&settings.scene, &state.act);
     assert!(line.starts_with("There are no red pens here."), "{line}");
     for _ in 0..8 {
-        let Question::Point(_) = manager.question_put(&state) else {
-            let said = match manager.question_put(&state) {
+        let Question::Point(_) = state.act.question else {
+            let said = match state.act.question {
                 Question::Attribute(k, v) => {
                     let name = &settings.scene.attributes()[k.index()].values[v.index()].name;
                     if ["red", "pen"].contains(&name.as_str()) {
