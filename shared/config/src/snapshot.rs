@@ -45,7 +45,8 @@ fn unstated(layer: &Table) -> String {
         let table = |kind| format!("[dialogue.{kind}]\np_l = {p_l:?}\nepsilon = {epsilon:?}\n");
         ["open", "choice"].map(table)
     });
-    format!("[dialogue]\nmisperception = 0.0\n{}", kinds.collect::<String>())
+    let kinds: String = kinds.collect();
+    format!("[dialogue]\nmisperception = 0.0\nchoice_questions = false\n{kinds}")
 }
 
 impl Settings {

@@ -44,7 +44,7 @@ pub struct Speaker {
 }
 
 /// Steps in a factor of two.
-const STEPS: f64 = 4.0;
+const STEPS: f64 = 2.0;
 /// Highest rate of errors of a person, whatever was learned.
 const RATE_MAX: f64 = 0.4;
 

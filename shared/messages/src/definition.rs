@@ -244,7 +244,9 @@ mod tests {
         let text = ros2::<RobotAct>();
         let (own, nested) = text.split_once(SEPARATOR).unwrap();
         assert!(own.contains("uint8 KIND_PUT_BACK=5\n"), "{own}");
-        assert!(own.contains("\nuint8 kind\nuint8[3] reserved\nwhichone/Question question\n"));
+        assert!(own.contains(
+            "\nuint8 kind\nuint8 in_words\nuint8[2] reserved\nwhichone/Question question\n"
+        ));
         assert!(own.ends_with("whichone/Text244 text\n"), "{own}");
         assert!(nested.contains("MSG: whichone/Question\nuint16 kind\n"), "{nested}");
         assert!(nested.contains("MSG: whichone/Text244\nuint32 len\nuint8[244] bytes\n"));

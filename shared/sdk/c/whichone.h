@@ -734,8 +734,11 @@ typedef struct whichone_robot_act {
     uint32_t presentation;
     /** `ActKind`. */
     uint8_t kind /* enum whichone_act_kind */;
+    /** 1 where the question names its object in words alone, as "do you want the blue pen?" does: the arm
+    does not point at it. Else 0. */
+    uint8_t in_words;
     /** Zero. */
-    uint8_t reserved[3];
+    uint8_t reserved[2];
     /** The question of an `Ask`; of a `Pick` or `PutBack`, its object: it can be denied; of a `Say`, the
     object that can be refused or confirmed, if any. */
     whichone_question_t question;
@@ -758,7 +761,8 @@ WHICHONE_ASSERT(offsetof(whichone_robot_act_t, interaction) == 8, "offset of Rob
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, prompt) == 16, "offset of RobotAct.prompt");
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, presentation) == 24, "offset of RobotAct.presentation");
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, kind) == 28, "offset of RobotAct.kind");
-WHICHONE_ASSERT(offsetof(whichone_robot_act_t, reserved) == 29, "offset of RobotAct.reserved");
+WHICHONE_ASSERT(offsetof(whichone_robot_act_t, in_words) == 29, "offset of RobotAct.in_words");
+WHICHONE_ASSERT(offsetof(whichone_robot_act_t, reserved) == 30, "offset of RobotAct.reserved");
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, question) == 32, "offset of RobotAct.question");
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, object) == 40, "offset of RobotAct.object");
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, attempt) == 44, "offset of RobotAct.attempt");
@@ -767,7 +771,7 @@ WHICHONE_ASSERT(offsetof(whichone_robot_act_t, decided_ns) == 56, "offset of Rob
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, utterance) == 64, "offset of RobotAct.utterance");
 WHICHONE_ASSERT(offsetof(whichone_robot_act_t, text) == 72, "offset of RobotAct.text");
 #define WHICHONE_ROBOT_ACT_TYPE "RobotAct"
-#define WHICHONE_ROBOT_ACT_SCHEMA "f113b0563d170970"
+#define WHICHONE_ROBOT_ACT_SCHEMA "0b532968dd30c91a"
 
 /** The latest prompt that was said. Speech to policy. */
 typedef struct whichone_presented {

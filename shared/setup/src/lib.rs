@@ -89,7 +89,7 @@ impl DialogueSettings for Settings {
             prior: dialogue.prior,
             gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
             turns: dialogue.turns,
-            learns: dialogue.learns && dialogue.language == Language::Careful,
+            people: dialogue.people,
             perceives: self.group.perception.enabled,
         })
     }

@@ -36,7 +36,7 @@ pub use interaction::{ActKind, Ended, Outcome, PickOutcome, PickPhase, Task};
 pub use interpretation::{Interpretation, NamedReading};
 pub use language::Language;
 pub use params::{Fault, Params, Reliability};
-pub use person::{NotAPerson, PERSON_BYTES_MAX, PersonId};
+pub use person::{Acquaintance, NotAPerson, PERSON_BYTES_MAX, PersonId};
 pub use planners::PLANNERS;
 pub use presentation::{NamedQuestion, Presentation};
 pub use prior::{Prior, PriorObjects};

@@ -16,6 +16,22 @@ const GUEST: &str = "guest";
 #[serde(transparent)]
 pub struct PersonId(String);
 
+/// What is learned about people who give their name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Acquaintance {
+    /// Whether anything is.
+    pub learns: bool,
+    /// Deliveries to a person from which on the prior over objects is by what they had fetched.
+    pub prior_from: u64,
+}
+
+/// As shipped.
+impl Default for Acquaintance {
+    fn default() -> Self {
+        Self { learns: true, prior_from: 5 }
+    }
+}
+
 /// A text that is not the name of a person.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotAPerson {

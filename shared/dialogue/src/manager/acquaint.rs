@@ -6,7 +6,7 @@ use vocabulary::time::Time;
 
 use super::Manager;
 use super::evidence::{Evidence, Mark};
-use super::people::{KnownPerson, PRIOR_FROM, People};
+use super::people::{KnownPerson, People};
 use super::state::{Interaction, State};
 use crate::{Lesson, Speaker};
 
@@ -27,7 +27,7 @@ impl Interaction {
 impl Manager {
     /// Returns the person as one who speaks; none of nobody in particular.
     pub(super) fn speaker(&self, state: &State, from: &PersonId) -> Option<Speaker> {
-        if from.is_nobody() || !self.setup.learns {
+        if from.is_nobody() || !self.setup.people.learns {
             return None;
         }
         let unknown = || KnownPerson { id: from.clone(), ..KnownPerson::default() };
@@ -37,8 +37,8 @@ impl Manager {
 
     /// Returns the person, if the prior over objects is theirs.
     pub(super) fn regular<'a>(&self, state: &'a State, from: &PersonId) -> Option<&'a KnownPerson> {
-        let known = state.people().get(from).filter(|_| self.setup.learns)?;
-        (known.deliveries >= PRIOR_FROM).then_some(known)
+        let known = state.people().get(from).filter(|_| self.setup.people.learns)?;
+        (known.deliveries >= self.setup.people.prior_from).then_some(known)
     }
 
     /// Learns from the delivery with which an interaction has ended.

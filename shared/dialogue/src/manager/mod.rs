@@ -69,7 +69,7 @@ pub use hand_over::HandedOver;
 pub use held_back::{HeldBack, Wait};
 pub use history::History;
 pub use line::{AboutObjects, Content, Line, Preface, Reason, Remark};
-pub use people::{KnownPerson, PEOPLE_MAX, PRIOR_FROM, People, Users};
+pub use people::{KnownPerson, PEOPLE_MAX, People, Users};
 pub use put_back::{Progress, PuttingBack, WithUser};
 pub use refold::{Mismatch, refold, refold_since};
 pub use setup::Setup;

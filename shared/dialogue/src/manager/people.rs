@@ -17,8 +17,6 @@ pub const PEOPLE_MAX: usize = 32;
 const NAMES_MAX: usize = 64;
 /// Observations that a configured rate is worth.
 const STRENGTH: f64 = 20.0;
-/// Deliveries to a person from which on the prior over objects is theirs.
-pub const PRIOR_FROM: u64 = 5;
 
 /// What was learned about those who speak. In journals it once was `person: Option<Person>`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

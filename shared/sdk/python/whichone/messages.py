@@ -744,7 +744,7 @@ class RobotAct(Message):
 
     wire_name = "RobotAct"
     wire_size = 320
-    schema_key = "f113b0563d170970"
+    schema_key = "0b532968dd30c91a"
     act: int
     """`ActId`."""
     interaction: int
@@ -755,6 +755,9 @@ class RobotAct(Message):
     """Number of times the prompt has been requested: 1, and one more for each repetition."""
     kind: int
     """`ActKind`."""
+    in_words: int
+    """1 where the question names its object in words alone, as 'do you want the blue pen?' does: the arm does
+    not point at it. Else 0."""
     reserved: Array[int]
     """Zero."""
     question: WireQuestion
@@ -779,7 +782,8 @@ class RobotAct(Message):
         ("prompt", ctypes.c_uint64),  # 16
         ("presentation", ctypes.c_uint32),  # 24
         ("kind", ctypes.c_uint8),  # 28
-        ("reserved", ctypes.c_uint8 * 3),  # 29
+        ("in_words", ctypes.c_uint8),  # 29
+        ("reserved", ctypes.c_uint8 * 2),  # 30
         ("question", WireQuestion),  # 32
         ("object", ctypes.c_uint32),  # 40
         ("attempt", ctypes.c_uint32),  # 44
