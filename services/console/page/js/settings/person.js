@@ -25,7 +25,11 @@ export const whoSpeaks = () => nameOf(recall("from") ?? "");
  * @param {any} t
  */
 export function personField(t) {
-  const hint = h("p", { class: "settings-hint", id: "settings-from-hint", text: t("settings.from.hint") });
+  const hint = h("p", {
+    class: "settings-hint",
+    id: "settings-from-hint",
+    text: t("settings.from.hint"),
+  });
   const input = h("input", {
     class: "settings-name",
     type: "text",

@@ -22,6 +22,7 @@ pub(crate) const BOUNDS: [(&str, usize); 13] = [
     ("JOINTS_MAX", JOINTS_MAX),
     ("JOINT_STATE_LEN", JOINT_STATE_LEN),
     ("LIMB_JOINTS", LIMB_JOINTS),
+    ("PERSON_BYTES_MAX", vocabulary::PERSON_BYTES_MAX),
     ("READINGS_MAX", READINGS_MAX),
     ("UTTERANCE_BYTES_MAX", UTTERANCE_BYTES_MAX),
 ];
