@@ -10,7 +10,7 @@ use serde_reflection::{ContainerFormat, Format, FormatHolder, VariantFormat};
 use crate::layouts::{self, Layout};
 
 /// Bounds that the types of fields name.
-pub(crate) const BOUNDS: [(&str, usize); 13] = [
+pub(crate) const BOUNDS: [(&str, usize); 14] = [
     ("ASKED_MAX", ASKED_MAX),
     ("BASE_WORDS_MAX", BASE_WORDS_MAX),
     ("CHUNK_SAMPLES_MAX", CHUNK_SAMPLES_MAX),
