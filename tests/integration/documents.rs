@@ -61,6 +61,7 @@ documents! {
     document_perception: "docs/perception.md" after "";
     document_planners: "docs/planners.md" after "";
     document_pomdp: "docs/pomdp.md" after "";
+    document_people: "docs/people.md" after UP;
     document_recording: "docs/recording.md" after A_DIALOGUE;
     document_replay: "docs/replay.md" after A_DIALOGUE;
     document_robots: "docs/robots.md" after "";

@@ -34,6 +34,7 @@ mod live;
 mod metrics;
 mod model;
 mod own_voice;
+mod people;
 mod perception;
 mod physics;
 mod planners;

@@ -119,6 +119,7 @@ impl Dice {
             onset_age_ns: Some(u64::MAX),
             end_age_ns: Some(0),
             seen_prompt: u64::MAX,
+            from: "n".repeat(self.roll(100) as usize),
             sound,
         };
         let bytes = postcard::to_stdvec(&said).unwrap_or_default();

@@ -12,7 +12,7 @@ use messages::SoundFile;
 use serde::{Deserialize, Serialize};
 
 /// Of the codes: the other end reads those of its own version alone.
-const VERSION: u8 = 2;
+const VERSION: u8 = 3;
 /// Sample rates, hertz. Others, 0 among them, are of no sound.
 const RATES_HZ: RangeInclusive<u32> = 1_000..=192_000;
 /// Largest line, bytes: more than five minutes of speech.

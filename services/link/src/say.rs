@@ -41,6 +41,8 @@ pub struct Said {
     pub end_age_ns: Option<u64>,
     /// See [`Injection`].
     pub seen_prompt: u64,
+    /// See [`Injection`].
+    pub from: String,
     /// What was said. A file is its contents.
     pub sound: Sent,
 }
@@ -118,6 +120,7 @@ impl<Q> Asked<Q> {
             let times = (Time(time_ns(times.0, now)), Time(time_ns(times.1, now)));
             let submission = Submission::new(sound, times, now, said.sound.patience())
                 .after(PromptId(said.seen_prompt))
+                .by(&said.from)
                 .under(said.key);
             self.waiting.push(Waiting { submission, callers: vec![caller] });
         }
@@ -214,13 +217,13 @@ impl Outbound {
         let is_due = |pending: &&mut Pending| now >= pending.due;
         let due = self.waiting.iter_mut().filter(is_due).map(|pending| {
             let Pending { injection, arrived, due, .. } = pending;
-            let Injection { key, onset_ns, end_ns, seen_prompt, ref sound } = *injection;
+            let Injection { key, onset_ns, end_ns, seen_prompt, ref from, ref sound } = *injection;
             // What was said when it arrived was not said when it is sent again.
             let age = |at_ns| age_ns(at_ns, now).or_else(|| age_ns(arrived.ns(), now));
             let sent = Sent::Sound(sound.clone());
             *due = now + sent.patience() + GRACE;
             let (onset_age_ns, end_age_ns) = (age(onset_ns), age(end_ns));
-            Said { key, onset_age_ns, end_age_ns, seen_prompt, sound: sent }
+            Said { key, onset_age_ns, end_age_ns, seen_prompt, from: from.clone(), sound: sent }
         });
         due.collect()
     }
@@ -261,6 +264,7 @@ mod tests {
             onset_ns: onset.ns(),
             end_ns: 0,
             seen_prompt: 3,
+            from: "Ann".to_owned(),
             sound: Sound::Text(format!("words {key}")),
         }
     }
@@ -353,6 +357,7 @@ mod tests {
         assert_eq!(injection.onset_ns, at(499_200).ns());
         assert_eq!(injection.end_ns, at(499_900).ns());
         assert_eq!((injection.key, injection.seen_prompt), (said.key, 3));
+        assert_eq!(injection.from, "Ann");
     }
 
     #[test]
@@ -387,6 +392,7 @@ mod tests {
             onset_age_ns: None,
             end_age_ns: None,
             seen_prompt: 0,
+            from: String::new(),
             sound: Sent::Sound(Sound::Text("words".into())),
         };
         let sound = || Sound::Text("words".into());

@@ -18,13 +18,14 @@ struct Checkpoint {
     rejected: u64,
     waiting_since: Option<Time>,
     next_send: Time,
+    forgot: u64,
 }
 
 impl PolicyNode {
     /// Returns the state; `None` where objects are followed, which is not described.
     pub(crate) fn whole_state(&self) -> Option<Vec<u8>> {
         let Self { manager: _, state, perceived, floor, said, heard_of_speech, .. } = self;
-        let Self { rested, rejected, waiting_since, next_send, .. } = self;
+        let Self { rested, rejected, waiting_since, next_send, forgot, .. } = self;
         if perceived.is_some() {
             return None;
         }
@@ -37,6 +38,7 @@ impl PolicyNode {
             rejected: *rejected,
             waiting_since: *waiting_since,
             next_send: *next_send,
+            forgot: *forgot,
         };
         postcard::to_stdvec(&checkpoint).ok()
     }
@@ -53,6 +55,7 @@ impl PolicyNode {
             rejected,
             waiting_since,
             next_send,
+            forgot,
         } = checkpoint.map_err(|_| NodeError::foreign_checkpoint())?;
         let record = Record { cause: Cause::Snapshot, at: Time(0), state };
         let node = Self::recover(config, vec![record])?;
@@ -64,6 +67,7 @@ impl PolicyNode {
             rejected,
             waiting_since,
             next_send,
+            forgot,
             ..node
         })
     }

@@ -32,7 +32,8 @@ pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
 fn why(cause: &Cause) -> String {
     match cause {
         Cause::Snapshot => "state at the start of the file".to_owned(),
-        Cause::Utterance(heard) => format!("utterance {}", heard.seq),
+        Cause::Utterance(heard) if heard.from.is_nobody() => format!("utterance {}", heard.seq),
+        Cause::Utterance(heard) => format!("utterance {} of {}", heard.seq, heard.from),
         Cause::Silence => "silence".to_owned(),
         Cause::Quiet => "the user has finished".to_owned(),
         Cause::PickEnded { pick, outcome } => {
@@ -50,6 +51,7 @@ fn why(cause: &Cause) -> String {
         Cause::StopReport { confirmed: true } => "ordered stop confirmed".to_owned(),
         Cause::StopReport { confirmed: false } => "ordered stop not confirmed in time".to_owned(),
         Cause::SetAside(over) => format!("journal set aside, numbers up to {over} are over"),
+        Cause::Forget(person) => format!("{person} is forgotten"),
     }
 }
 

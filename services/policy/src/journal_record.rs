@@ -96,7 +96,7 @@ fn descriptions(scene: &Scene) -> Named<String> {
 
 fn user(state: &State) -> Option<UserRecord> {
     let open = state.open.as_ref().and_then(|open| open.posterior.person());
-    let params = open.or(state.person.as_ref())?.params(vocabulary::Params::default());
+    let params = open.or(state.users.person.as_ref())?.params(vocabulary::Params::default());
     Some(UserRecord { p_l: params.p_l, epsilon: params.epsilon })
 }
 
@@ -106,6 +106,7 @@ fn cause(names: &Names<'_>, cause: &Cause) -> PolicyCause {
         Cause::Utterance(heard) => PolicyCause::Utterance {
             utterance: heard.seq.0,
             typed: heard.typed,
+            from: Some(heard.from.to_string()).filter(|from| !from.is_empty()),
             onset_ns: heard.onset.ns(),
             end_ns: heard.end.ns(),
             accepted_ns: heard.accepted.ns(),
@@ -135,6 +136,7 @@ fn cause(names: &Names<'_>, cause: &Cause) -> PolicyCause {
         Cause::MotionStop(MotionStop::Stopped) => PolicyCause::Stopped,
         Cause::StopReport { confirmed } => PolicyCause::StopReport { confirmed: *confirmed },
         Cause::SetAside(numbers_over) => PolicyCause::SetAside { numbers_over: *numbers_over },
+        Cause::Forget(person) => PolicyCause::Forget { person: person.to_string() },
     }
 }
 

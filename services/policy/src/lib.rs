@@ -7,6 +7,7 @@
 mod checkpoint;
 mod inspection;
 mod journal_record;
+pub mod people;
 mod perceived;
 pub mod planner;
 mod planner_program;
@@ -20,15 +21,15 @@ mod tests;
 use dialogue::manager::{Cause, Floor, HEARING_MAX, Manager, MotionStop, Record, State, Utterance};
 use messages::inbox::{Inbox, Verdict};
 use messages::{
-    Activity, AppliedMark, ArmStatus, MessageRef, Observation, PolicyView, PresentationState,
-    Presented, RobotAct, Sighting, Source, TableView, WorldView,
+    Activity, AppliedMark, ArmStatus, Forget, MessageRef, Observation, PolicyView,
+    PresentationState, Presented, RobotAct, Sighting, Source, TableView, WorldView,
 };
 use perceived::Perceived;
 use serde::{Deserialize, Serialize};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use std::process::ExitCode;
 use vocabulary::ids::{PromptId, UtteranceSeq};
-use vocabulary::{PickOutcome, PickPhase, Presentation};
+use vocabulary::{PersonId, PickOutcome, PickPhase, Presentation};
 
 /// Runs the program: a service of a group, or an inspection of its records.
 pub fn run() -> ExitCode {
@@ -59,6 +60,8 @@ pub enum In<'a> {
     World(Box<WorldView>),
     /// From a camera, another source or a client.
     Sighting(Box<Sighting>),
+    /// From a client.
+    Forget(Forget),
 }
 
 /// Output of the policy.
@@ -109,6 +112,10 @@ pub struct PolicyNode {
     /// Since when an earlier observation is missing.
     waiting_since: Option<Time>,
     next_send: Time,
+    /// Key of the latest order to forget a person that was carried out.
+    forgot: u64,
+    /// A person was forgotten whose name the journal still holds.
+    erases: bool,
 }
 
 impl Node for PolicyNode {
@@ -119,6 +126,7 @@ impl Node for PolicyNode {
 
     fn recover(config: Config, mut records: Vec<Record>) -> Result<Self, NodeError> {
         let Config { mut manager, tracker } = config;
+        let erases = records.iter().any(|record| matches!(record.cause, Cause::Forget(_)));
         let state = records.pop().map_or_else(|| manager.first(), |record| record.state);
         if state.settings_key == manager.key() {
             manager.follow(&state);
@@ -134,6 +142,8 @@ impl Node for PolicyNode {
             rejected: 0,
             waiting_since: None,
             next_send: Time(0),
+            forgot: 0,
+            erases,
         })
     }
 
@@ -160,6 +170,7 @@ impl Node for PolicyNode {
             }
             Event::Message(In::World(world)) => self.note_grippers(&world),
             Event::Message(In::Sighting(sighting)) => self.sight(&sighting, now, fx),
+            Event::Message(In::Forget(order)) => self.forget(&order, now, fx),
             Event::Tick => self.tick(now, fx),
             Event::Shutdown => fx.exit(),
         }
@@ -171,6 +182,10 @@ impl Node for PolicyNode {
 
     fn pending_since(&self) -> Option<Time> {
         self.waiting_since
+    }
+
+    fn take_erasure(&mut self) -> bool {
+        std::mem::take(&mut self.erases)
     }
 
     fn checkpoint(&self) -> Option<Vec<u8>> {
@@ -245,7 +260,22 @@ impl PolicyNode {
             unknown: observation.unknown(),
             gesture: observation.gesture.target_m().ok()?,
             more: false,
+            from: observation.person().ok()?,
         })
+    }
+
+    /// Forgets a person, unless this order is repeated.
+    fn forget(&mut self, order: &Forget, now: Time, fx: &mut Fx) {
+        let person = order.person.as_str().ok().and_then(|name| PersonId::new(name).ok());
+        let Some(person) = person.filter(|person| !person.is_nobody()) else {
+            self.rejected += 1;
+            return;
+        };
+        if order.key == self.forgot {
+            return;
+        }
+        (self.forgot, self.erases) = (order.key, true);
+        self.apply(Cause::Forget(person), now, fx);
     }
 
     /// Reports the effect of a stop that a user ordered: only a status that is younger than the order shows it.
@@ -358,6 +388,7 @@ impl PolicyNode {
         fx.publish(Out::Act(Box::new(view::act(&self.manager, &self.state))));
         fx.publish(Out::Mark(AppliedMark { seq: self.state.applied.0 }));
         let view = view::view(&self.manager, &self.state, self.rejected);
+        let view = PolicyView { forgot: self.forgot, ..view };
         fx.publish(Out::View(Box::new(view)));
         self.next_send = now + RESEND_EVERY;
     }

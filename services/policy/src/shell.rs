@@ -7,8 +7,8 @@ use config::Settings;
 use dialogue::manager::Record;
 use messages::Service;
 use messages::{
-    Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, Sighting,
-    TableView, WorldView, topics,
+    Activity, AppliedMark, ArmStatus, Forget, Observation, PolicyView, Presented, RobotAct,
+    Sighting, TableView, WorldView, topics,
 };
 use service::Time;
 use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, PortError, Reader, Writer};
@@ -112,6 +112,7 @@ pub struct PolicyShell {
     presented: Reader<Presented>,
     activity: Reader<Activity>,
     arm: Reader<ArmStatus>,
+    forget: Reader<Forget>,
     mark: Writer<AppliedMark>,
     act: Writer<RobotAct>,
     view: EncodedWriter<PolicyView>,
@@ -145,6 +146,7 @@ impl Shell<PolicyNode> for PolicyShell {
             presented: bus.reader(&topics::PRESENTED)?,
             activity: bus.reader(&topics::ACTIVITY)?,
             arm: bus.reader(&topics::STATUS)?,
+            forget: bus.reader(&topics::FORGET)?,
             mark: bus.writer(&topics::MARK)?,
             act: bus.writer(&topics::ACT)?,
             view: bus.encoded_writer(&topics::VIEW)?,
@@ -157,6 +159,7 @@ impl Shell<PolicyNode> for PolicyShell {
         self.activity.drain(|message| take(In::Activity(*message)))?;
         self.observations.drain(|message| take(In::Observation(message.into())))?;
         self.arm.drain(|message| take(In::Arm(*message)))?;
+        self.forget.drain(|order| take(In::Forget(*order)))?;
         let Some(table) = &mut self.table else { return Ok(()) };
         if let Some(world) = table.world.latest()? {
             take(In::World(Box::new(world)));

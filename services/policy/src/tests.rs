@@ -4,6 +4,7 @@
 mod arm;
 mod journal;
 mod objects;
+mod people;
 mod set_aside;
 mod settings;
 mod stop;

@@ -106,6 +106,7 @@ pub(crate) fn view(manager: &Manager, state: &State, rejected: u64) -> PolicyVie
         scene_key: scene_key(manager, state),
         applied: state.applied.0,
         interaction: open.map_or(0, |open| open.id.0),
+        from: open.map(|open| open.from().to_string()).unwrap_or_default(),
         belief,
         absent,
         person: manager.user_params(state),
@@ -125,5 +126,6 @@ pub(crate) fn view(manager: &Manager, state: &State, rejected: u64) -> PolicyVie
         refusable: delivery(manager, state),
         refused: rejected,
         planner: manager.planner().to_owned(),
+        forgot: 0,
     }
 }

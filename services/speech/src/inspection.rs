@@ -30,8 +30,10 @@ pub(crate) fn line(record: &Record) -> String {
                 .gesture
                 .map(|[x, y, z]| format!("pointing at x {x:.3} m, y {y:.3} m, z {z:.3} m"));
             let said: Vec<String> = words.into_iter().chain(pointed).collect();
-            let source = source(accepted.source);
-            format!("utterance {} accepted {source}: {}", accepted.seq, said.join(", "))
+            let source = source(accepted.origin.source);
+            let from = &accepted.origin.from;
+            let from = if from.is_nobody() { String::new() } else { format!(" from {from}") };
+            format!("utterance {} accepted {source}{from}: {}", accepted.seq, said.join(", "))
         }
         Record::Presented(presentation) => {
             let Presentation { prompt, number, complete, .. } = *presentation;

@@ -25,7 +25,8 @@ fn accepted_record(settings: &[Settings], accepted: &Accepted) -> AcceptedRecord
         text: best.map(|best| best.text.clone()).unwrap_or_default(),
         confidence: best.map_or(1.0, |best| best.weight / total),
         hypotheses: accepted.hypotheses.clone(),
-        source: accepted.source,
+        source: accepted.origin.source,
+        from: Some(accepted.origin.from.to_string()).filter(|from| !from.is_empty()),
         gesture_m: accepted.gesture,
         asked: accepted.asked.iter().map(|put| presentation(settings, put)).collect(),
         onset_ns: accepted.onset.ns(),
@@ -59,6 +60,8 @@ mod tests {
 
     use super::*;
     use crate::inspection;
+    use crate::record::Origin;
+    use vocabulary::PersonId;
 
     fn settings() -> Settings {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config");
@@ -73,7 +76,7 @@ mod tests {
             segment: (0, 1),
             hypotheses: vec![Hypothesis::certain("get me the white bowl")],
             gesture: None,
-            source: Source::Text,
+            origin: Source::Text.into(),
             asked: Vec::new(),
             onset: Time(second),
             end: Time(second),
@@ -97,7 +100,7 @@ mod tests {
         let spoken = Accepted {
             seq: UtteranceSeq(2),
             hypotheses: vec![word("yes", 3.0), word("yet", 1.0)],
-            source: Source::Microphone,
+            origin: Source::Microphone.into(),
             asked: vec![put],
             onset: Time(3 * second + second / 2),
             end: Time(4 * second),
@@ -108,7 +111,7 @@ mod tests {
         let pointed = Accepted {
             seq: UtteranceSeq(3),
             hypotheses: Vec::new(),
-            source: Source::Gesture,
+            origin: Origin { source: Source::Gesture, from: PersonId::new("Ann").unwrap() },
             gesture: Some([0.5, 0.25, 0.0]),
             ..typed.clone()
         };

@@ -5,7 +5,7 @@ use messages::{
 };
 use serde::{Deserialize, Serialize};
 use service::Time;
-use vocabulary::Presentation;
+use vocabulary::{PersonId, Presentation};
 
 use crate::Hypothesis;
 use crate::utterance_content::as_text;
@@ -36,8 +36,8 @@ pub struct Accepted {
     pub hypotheses: Vec<Hypothesis>,
     /// The point that was pointed at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,
-    /// Origin of the utterance.
-    pub source: Source,
+    /// The channel, and who spoke.
+    pub origin: Origin,
     /// The latest questions whose sound had begun by then, newest first.
     pub asked: Vec<Presentation>,
     /// When the speech began.
@@ -48,6 +48,59 @@ pub struct Accepted {
     pub snr_db: f32,
     /// When it was accepted.
     pub accepted: Time,
+}
+
+/// The channel of an utterance, and the person who spoke as far as that is known.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "StoredOrigin", into = "StoredOrigin")]
+pub struct Origin {
+    /// The channel.
+    pub source: Source,
+    /// The person.
+    pub from: PersonId,
+}
+
+/// An origin in a journal, where there once was a [`Source`]: the same bytes mean the same, and persons came later.
+#[derive(Serialize, Deserialize)]
+enum StoredOrigin {
+    Text,
+    Wav,
+    Microphone,
+    Browser,
+    Gesture,
+    From(Source, PersonId),
+}
+
+impl From<StoredOrigin> for Origin {
+    fn from(stored: StoredOrigin) -> Self {
+        match stored {
+            StoredOrigin::Text => Source::Text.into(),
+            StoredOrigin::Wav => Source::Wav.into(),
+            StoredOrigin::Microphone => Source::Microphone.into(),
+            StoredOrigin::Browser => Source::Browser.into(),
+            StoredOrigin::Gesture => Source::Gesture.into(),
+            StoredOrigin::From(source, from) => Self { source, from },
+        }
+    }
+}
+
+impl From<Origin> for StoredOrigin {
+    fn from(Origin { source, from }: Origin) -> Self {
+        match source {
+            source if !from.is_nobody() => Self::From(source, from),
+            Source::Text => Self::Text,
+            Source::Wav => Self::Wav,
+            Source::Microphone => Self::Microphone,
+            Source::Browser => Self::Browser,
+            Source::Gesture => Self::Gesture,
+        }
+    }
+}
+
+impl From<Source> for Origin {
+    fn from(source: Source) -> Self {
+        Self { source, from: PersonId::default() }
+    }
 }
 
 impl Accepted {
@@ -66,7 +119,7 @@ impl Accepted {
             confidence: best.map_or(1.0, |best| best.weight / total) as f32,
             snr_db: self.snr_db,
             status: ReceiptStatus::Accepted.code(),
-            source: self.source.into(),
+            source: self.origin.source.into(),
             note: FixedText::truncated(&as_text(text, self.gesture)),
             ..Receipt::default()
         }
@@ -80,7 +133,8 @@ impl Accepted {
             onset_ns: self.onset.ns(),
             end_ns: self.end.ns(),
             accepted_ns: self.accepted.ns(),
-            source: self.source.into(),
+            source: self.origin.source.into(),
+            from: FixedText::truncated(self.origin.from.as_str()),
             ..Utterance::default()
         };
         let asked: Vec<AskedQuestion> = self.asked.iter().map(AskedQuestion::from).collect();
@@ -91,5 +145,25 @@ impl Accepted {
             debug_assert!(fitted.is_ok(), "an accepted utterance fits");
         }
         utterance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn origin_in_a_journal_is_the_source_alone_where_nobody_is_known() {
+        for source in
+            [Source::Text, Source::Wav, Source::Microphone, Source::Browser, Source::Gesture]
+        {
+            let bytes = postcard::to_stdvec(&source).unwrap();
+            let nobody = Origin::from(source);
+            assert_eq!(postcard::to_stdvec(&nobody).unwrap(), bytes, "{source:?}");
+            assert_eq!(postcard::from_bytes::<Origin>(&bytes).unwrap(), nobody);
+            let ann = Origin { source, from: PersonId::new("Ann").unwrap() };
+            let bytes = postcard::to_stdvec(&ann).unwrap();
+            assert_eq!(postcard::from_bytes::<Origin>(&bytes).unwrap(), ann);
+        }
     }
 }

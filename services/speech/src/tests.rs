@@ -68,7 +68,14 @@ impl Speech {
         let key = RequestKey([key; 16]);
         self.take(
             after_s,
-            In::Injection(Injection { key, onset_ns: 0, end_ns: 0, seen_prompt: 0, sound }),
+            In::Injection(Injection {
+                key,
+                onset_ns: 0,
+                end_ns: 0,
+                seen_prompt: 0,
+                from: String::new(),
+                sound,
+            }),
         )
     }
 

@@ -27,6 +27,7 @@ use speech_engines::stream::StreamEvent;
 use speech_engines::vad::Closing;
 use std::ops::RangeInclusive;
 use stop_order::StopOrder;
+use vocabulary::PersonId;
 use waiting_requests::{Request, SHARE, WaitingRequests};
 
 /// Longest time that a user's speech delays the robot's prompts.
@@ -89,6 +90,10 @@ impl UtteranceIntake {
             self.obey_unmarked(&origin, injection.sound, now, fx);
             return false;
         }
+        let from = match PersonId::new(&injection.from) {
+            Ok(from) => from,
+            Err(error) => return self.reject(&origin, &format!("from: {error}"), fx),
+        };
         let (source, content) = match injection.sound {
             Sound::Text(text) => {
                 (Source::Text, Ok(UtteranceContent::words(vec![Hypothesis::certain(text)])))
@@ -109,7 +114,7 @@ impl UtteranceIntake {
                 return self.talk(origin, longest_s, now, fx);
             }
         };
-        self.enqueue(Origin { source, ..origin }, content, player, now, fx)
+        self.enqueue(Origin { source, from, ..origin }, content, player, now, fx)
     }
 
     /// Has a request wait for its turn, which may be now. Returns whether it is new.

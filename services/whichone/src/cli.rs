@@ -12,6 +12,7 @@ use service::group::{ENV_GROUP, GroupName};
 mod group;
 mod link;
 mod objects;
+mod people;
 mod record;
 mod scene;
 mod talk;
@@ -23,6 +24,7 @@ pub use group::{
 };
 pub use link::LinkArgs;
 pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
+pub use people::{PeopleArgs, PeopleVerb};
 pub use record::{OpenArgs, RecordVerb, RecorderArgs};
 pub use scene::{SceneCheckArgs, SceneNewArgs, ScenePlaceArgs, SceneShowArgs, SceneVerb};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalAction, JournalArgs, ListenArgs};
@@ -243,6 +245,8 @@ pub enum Verb {
     Point(PointArgs),
     /// List or change the objects on the table, where they come from perception.
     Objects(ObjectsArgs),
+    /// List, export or forget what was learned about people who gave their name.
+    People(PeopleArgs),
     /// Play a WAV file to the robot's speech recogniser.
     Listen(ListenArgs),
     /// Talk to the robot through the microphone of its computer.

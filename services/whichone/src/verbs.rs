@@ -26,6 +26,7 @@ mod logs;
 mod motion;
 mod objects;
 mod operate;
+mod people;
 mod record;
 mod scene;
 mod speak;
@@ -64,6 +65,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Say(args) => speak::say(&paths()?, &args, out),
         Verb::Point(args) => speak::point(&paths()?, &args, out),
         Verb::Objects(args) => objects::objects(&paths()?, &args, out),
+        Verb::People(args) => people::people(&paths()?, &args, out),
         Verb::Listen(args) => listen::listen(&paths()?, &args, out),
         Verb::Talk(args) => speak::talk(&paths()?, &args, out),
         Verb::Watch(args) => watch::watch(&paths()?, &args, out),

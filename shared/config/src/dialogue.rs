@@ -6,8 +6,8 @@ use serde_json::json;
 use vocabulary::gesture::{Direction, Gestures};
 use vocabulary::reaction::Reaction;
 use vocabulary::{
-    Actions, Announce, Attribution, Costs, Fault, Language, Mode, PLANNERS, Params, Prior,
-    PriorObjects, Reliability, TurnTaking,
+    Acquaintance, Actions, Announce, Attribution, Costs, Fault, Language, Mode, PLANNERS, Params,
+    Prior, PriorObjects, Reliability, TurnTaking,
 };
 
 /// The dialogue.
@@ -38,6 +38,8 @@ pub struct Dialogue {
     pub turns: TurnTaking,
     /// Prior belief.
     pub prior: Prior,
+    /// What to learn about people who give their name; nothing with [`Language::Paper`].
+    pub people: Acquaintance,
     /// Pointing gestures.
     pub gesture: Gesture,
 }
@@ -85,9 +87,10 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
         f.not_one_of("planner", &planner, &PLANNERS);
     }
     let (costs, costs_from) = f.table("costs", costs);
+    let language =
+        f.choice("language", &[("careful", Language::Careful), ("paper", Language::Paper)]);
     Dialogue {
-        language: f
-            .choice("language", &[("careful", Language::Careful), ("paper", Language::Paper)]),
+        language,
         params: Params {
             open: Some(f.table("open", reliability)),
             choice: Some(f.table("choice", reliability)),
@@ -108,6 +111,10 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
         announce: f.table("announce", announce),
         turns: f.table("turns", turns),
         prior: f.table("prior", prior),
+        people: {
+            let people = f.table("people", people);
+            Acquaintance { learns: people.learns && language == Language::Careful, ..people }
+        },
         gesture: f.table("gesture", gesture),
     }
 }
@@ -219,6 +226,10 @@ fn prior(f: &mut Fields<'_>) -> Prior {
 
 /// Maximum coordinate of the user, metres.
 const PERSON_MAX_M: f64 = 20.0;
+
+fn people(f: &mut Fields<'_>) -> Acquaintance {
+    Acquaintance { learns: f.flag("learn"), prior_from: f.whole("prior_from", 0..=1_000_000) }
+}
 
 fn gesture(f: &mut Fields<'_>) -> Gesture {
     let enabled = f.flag("enabled");

@@ -26,6 +26,7 @@ use scene::{AttributeId, ObjectId, Options, Question, Reading, Response, ValueId
 use vocabulary::{Params, Reliability};
 
 use crate::Model;
+use crate::speaker::Channel;
 use crate::value_evidence::ValueEvidence;
 
 /// Doubt up to which a word counts as certain: it was typed, or recognised beyond doubt.
@@ -158,6 +159,11 @@ impl Naming {
         let (count, epsilon) = (answers as f64, model.params().of(question).epsilon);
         let (own, other, lacking) = (1.0 - epsilon, epsilon / (count - 1.0), 1.0 / count);
         Some(Self { own, other, lacking, ..law })
+    }
+
+    /// The channel of its answers.
+    pub(crate) fn channel(&self) -> Channel {
+        if self.options.is_some() { Channel::Choice } else { Channel::Open }
     }
 
     /// The same where another answer may have been given with probability `doubt`.

@@ -6,6 +6,7 @@ use std::borrow::Cow;
 use scene::{Question, Reading};
 use serde::{Deserialize, Serialize};
 
+use crate::speaker::Speaker;
 use crate::user_model::{Joint, Person};
 use crate::{
     Belief, BeliefError, Decision, DecisionProblem, Model, Planner, Step, ValueLikelihoods,
@@ -21,6 +22,8 @@ pub enum Posterior {
     /// The user may take a value for another one ([`Model::with_misperceptions`]): what is believed of
     /// the object, and what was said of each attribute.
     Perceived(Box<Self>, ValueLikelihoods),
+    /// It is known who speaks: the observation model is that of the person.
+    Of(Speaker, Box<Self>),
 }
 
 impl Posterior {
@@ -39,16 +42,43 @@ impl Posterior {
         Self::Perceived(Box::new(self), ValueLikelihoods::default())
     }
 
+    /// The same of a person; the posterior is as under the person's own model.
+    #[must_use]
+    pub fn of_speaker(self, speaker: Speaker) -> Self {
+        Self::Of(speaker, Box::new(self))
+    }
+
+    /// The same of nobody in particular.
+    #[must_use]
+    pub(crate) fn of_anybody(self) -> Self {
+        match self {
+            Self::Of(_, of) => *of,
+            of => of,
+        }
+    }
+
+    /// The person who speaks, where that is known.
+    pub fn speaker(&self) -> Option<&Speaker> {
+        match self {
+            Self::Of(speaker, _) => Some(speaker),
+            _ => None,
+        }
+    }
+
     /// What was said of each attribute, for a user who may take a value for another one.
     pub fn said(&self) -> Option<&ValueLikelihoods> {
         match self {
             Self::Object(_) | Self::ObjectAndPerson(_) => None,
             Self::Perceived(_, said) => Some(said),
+            Self::Of(_, of) => of.said(),
         }
     }
 
     /// The model after what was said: values as the user takes them.
     pub fn model<'a>(&self, model: &'a Model) -> Cow<'a, Model> {
+        if let Self::Of(speaker, of) = self {
+            return Cow::Owned(of.model(&speaker.model(model)).into_owned());
+        }
         match self.said() {
             Some(said) if !said.is_empty() => Cow::Owned(said.in_model(model)),
             _ => Cow::Borrowed(model),
@@ -60,7 +90,7 @@ impl Posterior {
         match self {
             Self::Object(belief) => belief.clone(),
             Self::ObjectAndPerson(joint) => joint.belief(),
-            Self::Perceived(of, _) => of.belief(),
+            Self::Perceived(of, _) | Self::Of(_, of) => of.belief(),
         }
     }
 
@@ -69,7 +99,7 @@ impl Posterior {
         match self {
             Self::Object(_) => None,
             Self::ObjectAndPerson(joint) => Some(joint.person()),
-            Self::Perceived(of, _) => of.person(),
+            Self::Perceived(of, _) | Self::Of(_, of) => of.person(),
         }
     }
 
@@ -86,6 +116,7 @@ impl Posterior {
                 of.update_mixture(&known, heard);
                 said.hear(&known, heard);
             }
+            Self::Of(speaker, of) => of.update_mixture(&speaker.model(model), heard),
         }
     }
 
@@ -97,7 +128,7 @@ impl Posterior {
         match self {
             Self::Object(belief) => belief.weigh(log_likelihood),
             Self::ObjectAndPerson(joint) => joint.weigh(log_likelihood),
-            Self::Perceived(of, _) => of.weigh(log_likelihood),
+            Self::Perceived(of, _) | Self::Of(_, of) => of.weigh(log_likelihood),
         }
     }
 
@@ -106,7 +137,7 @@ impl Posterior {
         match self {
             Self::Object(_) => {}
             Self::ObjectAndPerson(joint) => joint.person_mut().see_answer(answered),
-            Self::Perceived(of, _) => of.see_answer(answered),
+            Self::Perceived(of, _) | Self::Of(_, of) => of.see_answer(answered),
         }
     }
 
@@ -127,6 +158,10 @@ impl Posterior {
                 let model = said.in_model(problem.model).planned(|k| said.of(k).is_some());
                 of.decide(planner, &DecisionProblem { model: &model, ..*problem }, step)
             }
+            Self::Of(speaker, of) => {
+                let model = speaker.model(problem.model);
+                of.decide(planner, &DecisionProblem { model: &model, ..*problem }, step)
+            }
         }
     }
 
@@ -138,6 +173,10 @@ impl Posterior {
             Self::Perceived(of, said) => {
                 of.key_into(key);
                 said.key_into(key);
+            }
+            Self::Of(speaker, of) => {
+                of.key_into(key);
+                speaker.key_into(key);
             }
         }
     }
@@ -151,6 +190,7 @@ impl Posterior {
             Self::Object(belief) => Self::Object(Belief::from_key(&belief.key())?),
             Self::ObjectAndPerson(joint) => Self::ObjectAndPerson(joint.rounded()?),
             Self::Perceived(of, said) => Self::Perceived(Box::new(of.rounded()?), said.rounded()),
+            Self::Of(speaker, of) => Self::Of(speaker.clone(), Box::new(of.rounded()?)),
         })
     }
 }

@@ -164,6 +164,17 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
         self.rotate_until(snapshot, |_| Ok(()))
     }
 
+    /// As [`Journal::rotate`], but keeps no older file: what the snapshot does not hold is gone. A crash in between may
+    /// leave older ones, until this is done again.
+    ///
+    /// # Errors
+    /// See [`RotateError`].
+    pub fn erase(&mut self, snapshot: &[R]) -> Result<(), RotateError> {
+        self.rotate(snapshot)?;
+        rotate::remove_old(&self.path)
+            .map_err(|source| RotateError::Io { doing: "remove the old journals", source })
+    }
+
     pub(crate) fn rotate_until(
         &mut self,
         snapshot: &[R],

@@ -85,6 +85,12 @@ pub(crate) fn clear_unfinished(path: &Path) -> io::Result<()> {
     }
 }
 
+/// Removes the old journals.
+pub(crate) fn remove_old(path: &Path) -> io::Result<()> {
+    (1..=KEPT).try_for_each(|n| absent_is_fine(fs::remove_file(suffixed(path, n))))?;
+    sync_folder(path)
+}
+
 fn write_new(new: &Path, bytes: &[u8]) -> io::Result<File> {
     absent_is_fine(fs::remove_file(new))?;
     let mut file = File::create_new(new)?;

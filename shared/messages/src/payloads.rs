@@ -30,6 +30,9 @@ pub struct Injection {
     /// The latest prompt that the user was shown before; 0: not known. What is said answers no later
     /// one, however long that has been said already: the client may not have heard of it.
     pub seen_prompt: u64,
+    /// Name of the person who types or points, printable and of at most 64 bytes; empty or `guest`: nobody in
+    /// particular, of whom nothing is learned. Of sound nobody is known.
+    pub from: String,
     /// Text to be heard.
     pub sound: Sound,
 }
@@ -70,6 +73,8 @@ pub struct PolicyView {
     pub applied: u64,
     /// The open interaction, 0 for none.
     pub interaction: u64,
+    /// Name of the person whose interaction it is; empty: nobody in particular.
+    pub from: String,
     /// Probability of each object, in the scene's order or in that of [`objects`](Self::objects).
     pub belief: Vec<f64>,
     /// Numbers of the objects of the belief, where they come from perception; empty where they are
@@ -110,6 +115,8 @@ pub struct PolicyView {
     pub refused: u64,
     /// The planner that decides, by its name.
     pub planner: String,
+    /// Key of the latest [`Forget`](crate::Forget) that was carried out.
+    pub forgot: u64,
 }
 
 impl PolicyView {

@@ -166,6 +166,14 @@ pub const OBJECTS: Topic = Topic {
     readers: &[Service::Arm],
     ..topic::<TableView>("scene/objects", Some(Service::Policy))
 };
+/// Clients to policy.
+pub const FORGET: Topic = Topic {
+    readers: &[Service::Policy],
+    writers_max: CLIENTS_MAX,
+    readers_max: SERVICES_MAX,
+    history: 0,
+    ..topic::<Forget>("policy/forget", None)
+};
 /// Policy to clients.
 pub const VIEW: Topic = topic::<PolicyView>("policy/view", Some(Service::Policy));
 /// Arm to policy and speech, and to the console, whose pages show it.
@@ -284,7 +292,7 @@ pub mod robot {
 
 /// Every topic that the group's services and clients share, but for those of [`robot`], which are only
 /// used with a robot behind them.
-pub const ALL: [Topic; 18] = [
+pub const ALL: [Topic; 19] = [
     INJECTION,
     AUDIO,
     RECEIPT,
@@ -298,6 +306,7 @@ pub const ALL: [Topic; 18] = [
     ACT,
     SIGHTING,
     OBJECTS,
+    FORGET,
     VIEW,
     STATUS,
     JOINTS,

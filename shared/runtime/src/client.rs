@@ -12,12 +12,13 @@ use crate::{clock, epoch};
 use messages::{ClientId, Injection, Receipt, RequestKey, Sound, topics};
 use std::sync::OnceLock;
 use std::time::Duration;
+use vocabulary::PERSON_BYTES_MAX;
 
 /// First and longest pause of a client that polls.
 const POLL_EVERY: (Duration, Duration) = (Duration::from_micros(100), Duration::from_millis(2));
 
-/// Most bytes of an [`Injection`] beside its sound: a key, two times and a number.
-const INJECTION_BYTES: usize = 16 + 3 * 10;
+/// Most bytes of an [`Injection`] beside its sound: a key, two times, a number and a name with its length.
+const INJECTION_BYTES: usize = 16 + 3 * 10 + 1 + PERSON_BYTES_MAX;
 
 /// Pauses of a client that polls topics: short at first, because services answer within a millisecond
 /// or two, then longer.

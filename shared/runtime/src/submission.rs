@@ -28,7 +28,8 @@ impl Submission {
     pub fn new(sound: Sound, (began, ended): (Time, Time), now: Time, patience: Span) -> Self {
         let (onset_ns, end_ns) = (began.ns(), ended.ns());
         let key = request_key(own_id());
-        let injection = Injection { key, onset_ns, end_ns, seen_prompt: 0, sound };
+        let from = String::new();
+        let injection = Injection { key, onset_ns, end_ns, seen_prompt: 0, from, sound };
         Self { injection, patience, expires: now + patience, sent: None, receipts: Vec::new() }
     }
 
@@ -43,6 +44,13 @@ impl Submission {
     #[must_use]
     pub fn after(mut self, seen: PromptId) -> Self {
         self.injection.seen_prompt = seen.0;
+        self
+    }
+
+    /// States who speaks, by a name that the speech service judges; empty: nobody in particular.
+    #[must_use]
+    pub fn by(mut self, from: impl Into<String>) -> Self {
+        self.injection.from = from.into();
         self
     }
 

@@ -211,7 +211,9 @@ fn submission_has_room_for_its_sound_whatever_its_size() {
         let client = Client::join(&shm.paths).unwrap();
         let (writer, _receipts) = client.submission(&sound).unwrap();
         let (key, most) = (RequestKey([u8::MAX; 16]), u64::MAX);
-        let injection = Injection { key, onset_ns: most, end_ns: most, seen_prompt: most, sound };
+        let from = "n".repeat(64);
+        let injection =
+            Injection { key, onset_ns: most, end_ns: most, seen_prompt: most, from, sound };
         writer.send(&injection).unwrap();
         assert_eq!(reader.latest().unwrap(), Some(injection));
     }
@@ -227,7 +229,8 @@ fn writers_are_read_in_turn_and_one_that_keeps_sending_does_not_hold_the_reader(
         let writer = bus.encoded_writer::<Injection>(&topics::INJECTION).unwrap();
         move |text: &str| {
             let (key, sound) = (RequestKey::default(), Sound::Text(text.to_owned()));
-            let injection = Injection { key, onset_ns: 0, end_ns: 0, seen_prompt: 0, sound };
+            let from = String::new();
+            let injection = Injection { key, onset_ns: 0, end_ns: 0, seen_prompt: 0, from, sound };
             // The bus is kept with its writer.
             let _ = &bus;
             writer.send(&injection).unwrap();

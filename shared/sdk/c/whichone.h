@@ -28,6 +28,7 @@
 #define WHICHONE_JOINTS_MAX 17u
 #define WHICHONE_JOINT_STATE_LEN 17u
 #define WHICHONE_LIMB_JOINTS 7u
+#define WHICHONE_PERSON_BYTES_MAX 64u
 #define WHICHONE_READINGS_MAX 32u
 #define WHICHONE_UTTERANCE_BYTES_MAX 16380u
 #define WHICHONE_NO_QUESTION 255u
@@ -421,6 +422,12 @@ typedef struct whichone_text_60 {
     char bytes[60];
 } whichone_text_60_t;
 
+/** UTF-8 text of at most 64 bytes, without a zero at its end. */
+typedef struct whichone_text_64 {
+    uint32_t len;
+    char bytes[64];
+} whichone_text_64_t;
+
 /** UTF-8 text of at most 200 bytes, without a zero at its end. */
 typedef struct whichone_text_200 {
     uint32_t len;
@@ -638,13 +645,15 @@ typedef struct whichone_utterance {
     /** Number of used entries of `asked`. */
     uint8_t asked_count;
     /** Zero. */
-    uint8_t reserved[5];
+    uint8_t reserved;
+    /** Name of the person who speaks; empty: nobody in particular. */
+    whichone_text_64_t from;
     /** Recognition hypotheses, most likely first. */
     whichone_hypothesis_t hypotheses[WHICHONE_HYPOTHESES_MAX];
     /** The text of all hypotheses, one after another. */
     whichone_text_16380_t text;
 } whichone_utterance_t;
-WHICHONE_ASSERT(sizeof(whichone_utterance_t) == 16888, "size of Utterance");
+WHICHONE_ASSERT(sizeof(whichone_utterance_t) == 16952, "size of Utterance");
 WHICHONE_ASSERT(offsetof(whichone_utterance_t, seq) == 0, "offset of Utterance.seq");
 WHICHONE_ASSERT(offsetof(whichone_utterance_t, asked) == 8, "offset of Utterance.asked");
 WHICHONE_ASSERT(offsetof(whichone_utterance_t, gesture) == 200, "offset of Utterance.gesture");
@@ -655,10 +664,11 @@ WHICHONE_ASSERT(offsetof(whichone_utterance_t, source) == 256, "offset of Uttera
 WHICHONE_ASSERT(offsetof(whichone_utterance_t, hypothesis_count) == 257, "offset of Utterance.hypothesis_count");
 WHICHONE_ASSERT(offsetof(whichone_utterance_t, asked_count) == 258, "offset of Utterance.asked_count");
 WHICHONE_ASSERT(offsetof(whichone_utterance_t, reserved) == 259, "offset of Utterance.reserved");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, hypotheses) == 264, "offset of Utterance.hypotheses");
-WHICHONE_ASSERT(offsetof(whichone_utterance_t, text) == 504, "offset of Utterance.text");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, from) == 260, "offset of Utterance.from");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, hypotheses) == 328, "offset of Utterance.hypotheses");
+WHICHONE_ASSERT(offsetof(whichone_utterance_t, text) == 568, "offset of Utterance.text");
 #define WHICHONE_UTTERANCE_TYPE "Utterance"
-#define WHICHONE_UTTERANCE_SCHEMA "1f26d4dc29c15403"
+#define WHICHONE_UTTERANCE_SCHEMA "a9b84ed794b730c1"
 
 /** The interpretation of an utterance. Grounding to policy, one for each utterance. */
 typedef struct whichone_observation {
@@ -686,14 +696,14 @@ typedef struct whichone_observation {
     uint8_t source /* enum whichone_source */;
     /** `Role` of `unknown`. */
     uint8_t unknown_role /* enum whichone_role */;
-    /** Zero. */
-    uint8_t reserved[4];
+    /** Of the utterance. */
+    whichone_text_64_t from;
     /** Possible meanings: for each question asked and for none, most likely first. */
     whichone_reading_t readings[WHICHONE_READINGS_MAX];
     /** A word that the scene does not have, for the robot's reply ("plate"); may be empty. */
     whichone_text_60_t unknown;
 } whichone_observation_t;
-WHICHONE_ASSERT(sizeof(whichone_observation_t) == 13144, "size of Observation");
+WHICHONE_ASSERT(sizeof(whichone_observation_t) == 13208, "size of Observation");
 WHICHONE_ASSERT(offsetof(whichone_observation_t, seq) == 0, "offset of Observation.seq");
 WHICHONE_ASSERT(offsetof(whichone_observation_t, asked) == 8, "offset of Observation.asked");
 WHICHONE_ASSERT(offsetof(whichone_observation_t, gesture) == 200, "offset of Observation.gesture");
@@ -706,11 +716,11 @@ WHICHONE_ASSERT(offsetof(whichone_observation_t, reading_count) == 272, "offset 
 WHICHONE_ASSERT(offsetof(whichone_observation_t, asked_count) == 273, "offset of Observation.asked_count");
 WHICHONE_ASSERT(offsetof(whichone_observation_t, source) == 274, "offset of Observation.source");
 WHICHONE_ASSERT(offsetof(whichone_observation_t, unknown_role) == 275, "offset of Observation.unknown_role");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, reserved) == 276, "offset of Observation.reserved");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, readings) == 280, "offset of Observation.readings");
-WHICHONE_ASSERT(offsetof(whichone_observation_t, unknown) == 13080, "offset of Observation.unknown");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, from) == 276, "offset of Observation.from");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, readings) == 344, "offset of Observation.readings");
+WHICHONE_ASSERT(offsetof(whichone_observation_t, unknown) == 13144, "offset of Observation.unknown");
 #define WHICHONE_OBSERVATION_TYPE "Observation"
-#define WHICHONE_OBSERVATION_SCHEMA "c0b0d1010bbb96f9"
+#define WHICHONE_OBSERVATION_SCHEMA "5b9560b6ac211b48"
 
 /** The highest utterance that the belief holds. Policy to speech. */
 typedef struct whichone_applied_mark {
@@ -721,6 +731,23 @@ WHICHONE_ASSERT(sizeof(whichone_applied_mark_t) == 8, "size of AppliedMark");
 WHICHONE_ASSERT(offsetof(whichone_applied_mark_t, seq) == 0, "offset of AppliedMark.seq");
 #define WHICHONE_APPLIED_MARK_TYPE "AppliedMark"
 #define WHICHONE_APPLIED_MARK_SCHEMA "1462b9620e386d8b"
+
+/** An order to forget what was learned about a person. Clients to policy, sent again until
+`PolicyView::forgot` has its key. `PolicyView::forgot`: PolicyView::forgot */
+typedef struct whichone_forget {
+    /** Made by the client, not 0, kept through its retries. */
+    uint64_t key;
+    /** Name of the person. */
+    whichone_text_64_t person;
+    /** Zero. */
+    uint8_t reserved[4];
+} whichone_forget_t;
+WHICHONE_ASSERT(sizeof(whichone_forget_t) == 80, "size of Forget");
+WHICHONE_ASSERT(offsetof(whichone_forget_t, key) == 0, "offset of Forget.key");
+WHICHONE_ASSERT(offsetof(whichone_forget_t, person) == 8, "offset of Forget.person");
+WHICHONE_ASSERT(offsetof(whichone_forget_t, reserved) == 76, "offset of Forget.reserved");
+#define WHICHONE_FORGET_TYPE "Forget"
+#define WHICHONE_FORGET_SCHEMA "d8d270a2349d4c69"
 
 /** The policy's standing decision. Policy to speech and arm, sent again until superseded. */
 typedef struct whichone_robot_act {
@@ -1321,8 +1348,8 @@ WHICHONE_ASSERT(offsetof(whichone_drill_t, reserved) == 59, "offset of Drill.res
 #define WHICHONE_DRILL_SCHEMA "e7e4101d0e5c7dab"
 
 /* Payloads without a structure: postcard in a slice of bytes. */
-#define WHICHONE_INJECTION_SCHEMA "fdd28f9b36a33309"
-#define WHICHONE_POLICY_VIEW_SCHEMA "920ce4b7ce504bda"
+#define WHICHONE_INJECTION_SCHEMA "4c4f7035bc34a0cc"
+#define WHICHONE_POLICY_VIEW_SCHEMA "0f26593076b2e607"
 #define WHICHONE_WORLD_VIEW_SCHEMA "5c25bcd9afb51360"
 #define WHICHONE_TRAJECTORY_VIEW_SCHEMA "531c464cf29b0cf3"
 #define WHICHONE_SIGHTING_SCHEMA "3238153cdb355974"
@@ -1384,6 +1411,9 @@ static const whichone_topic_t whichone_scene_sightings = {
 /** Carries TableView. */
 static const whichone_topic_t whichone_scene_objects = {
     "scene/objects", "u8", WHICHONE_TABLE_VIEW_SCHEMA, 0, 1, "policy", {"arm", NULL}, 1, 1};
+/** Carries Forget. */
+static const whichone_topic_t whichone_policy_forget = {
+    "policy/forget", "Forget", WHICHONE_FORGET_SCHEMA, sizeof(whichone_forget_t), _Alignof(whichone_forget_t), NULL, {"policy", NULL}, 1, 0};
 /** Carries PolicyView. */
 static const whichone_topic_t whichone_policy_view = {
     "policy/view", "u8", WHICHONE_POLICY_VIEW_SCHEMA, 0, 1, "policy", {NULL}, 1, 1};

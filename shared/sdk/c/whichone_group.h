@@ -67,6 +67,10 @@ uint64_t whichone_now_ns(void);
  * number, or 0 with the reason on standard error. */
 uint64_t whichone_say(whichone_group_t *group, const char *text, double seconds);
 
+/** As `whichone_say`, for a person: `from` is a name of at most 64 bytes. What they have had fetched teaches the robot how
+ * they speak; `whichone people forget` has it forget that. */
+uint64_t whichone_say_from(whichone_group_t *group, const char *from, const char *text, double seconds);
+
 /** Stops the arm and latches the stop, on the motion stop's own path: it needs no shared memory and no disk. Returns
  * true once the arm is at rest. The order is repeated for `seconds`, or, if they are below 0, for as long as the group
  * runs; warnings on standard error say that it is not confirmed. On false use the robot's own emergency stop. */

@@ -39,6 +39,8 @@ pub(crate) trait Store<R>: Send + 'static {
     fn append_all(&mut self, records: &[R]) -> Result<(), AppendError>;
     fn sync(&mut self, vital: bool) -> Result<(), SyncError>;
     fn rotate(&mut self, snapshot: &[R]) -> Result<(), RotateError>;
+    /// As `rotate`, and removes what was before.
+    fn erase(&mut self, snapshot: &[R]) -> Result<(), RotateError>;
     fn bytes(&self) -> u64;
     /// Number of the next record.
     fn next_seq(&self) -> u64;
@@ -57,6 +59,10 @@ impl<R: Serialize + DeserializeOwned + 'static> Store<R> for Journal<R> {
         Self::rotate(self, snapshot)
     }
 
+    fn erase(&mut self, snapshot: &[R]) -> Result<(), RotateError> {
+        Self::erase(self, snapshot)
+    }
+
     fn bytes(&self) -> u64 {
         Self::bytes(self)
     }
@@ -70,14 +76,16 @@ impl<R: Serialize + DeserializeOwned + 'static> Store<R> for Journal<R> {
 enum Job<R> {
     /// The records of one pass.
     Append { records: Vec<R>, vital: bool },
-    /// A snapshot that replaces everything before.
-    Rotate(Vec<R>),
+    /// A snapshot that replaces everything before, which is kept beside it or erased.
+    Rotate { snapshot: Vec<R>, erases: bool },
 }
 
 /// News of the thread.
 enum Report {
     /// So many passes are durable, and the journal has this length.
     Durable { passes: u64, bytes: u64 },
+    /// Everything before a snapshot is gone.
+    Erased,
     /// The disk is full.
     Short(String),
     /// The journal cannot be used any more.
@@ -97,6 +105,8 @@ pub(crate) struct Commit<Out, Record> {
     is_short: bool,
     bytes: u64,
     rotate_at: u64,
+    /// Everything before the next snapshot is to be erased.
+    erases: bool,
 }
 
 impl<Out, Record: Send + 'static> Commit<Out, Record> {
@@ -125,6 +135,7 @@ impl<Out, Record: Send + 'static> Commit<Out, Record> {
             is_short: false,
             bytes,
             rotate_at: ROTATE_BYTES,
+            erases: false,
         })
     }
 
@@ -171,10 +182,11 @@ impl<Out, Record: Send + 'static> Commit<Out, Record> {
                             "the disk has space again; everything that waited is written"
                         );
                     }
-                    if bytes < ROTATE_BYTES {
+                    if bytes < ROTATE_BYTES && !self.erases {
                         self.rotate_at = ROTATE_BYTES;
                     }
                 }
+                Report::Erased => self.erases = false,
                 Report::Short(what) => {
                     if !std::mem::replace(&mut self.is_short, true) {
                         tracing::error!("{what}; waiting for space");
@@ -202,6 +214,11 @@ impl<Out, Record: Send + 'static> Commit<Out, Record> {
         self.is_short
     }
 
+    /// Has everything before the next snapshot erased, which is wanted at once.
+    pub(crate) fn erase(&mut self) {
+        (self.erases, self.rotate_at) = (true, 0);
+    }
+
     /// Returns whether the journal is long, and everything durable.
     pub(crate) fn wants_snapshot(&self) -> bool {
         self.jobs.is_some() && self.is_settled() && self.bytes >= self.rotate_at
@@ -214,7 +231,8 @@ impl<Out, Record: Send + 'static> Commit<Out, Record> {
     pub(crate) fn rotate(&mut self, snapshot: Vec<Record>) -> Result<(), Failure> {
         self.rotate_at = self.bytes + ROTATE_AGAIN_BYTES;
         let Some(jobs) = &self.jobs else { return Ok(()) };
-        jobs.send(Job::Rotate(snapshot)).map_err(|_| gone())
+        let erases = self.erases;
+        jobs.send(Job::Rotate { snapshot, erases }).map_err(|_| gone())
     }
 }
 
@@ -288,7 +306,7 @@ impl<R, S: Store<R>> Writer<R, S> {
             }
             match self.backlog.pop_front() {
                 None => return Ok(()),
-                Some(Job::Rotate(snapshot)) => self.rotate(&snapshot)?,
+                Some(Job::Rotate { snapshot, erases }) => self.rotate(&snapshot, erases)?,
                 Some(job) => self.backlog.push_front(job),
             }
         }
@@ -333,10 +351,17 @@ impl<R, S: Store<R>> Writer<R, S> {
         }
     }
 
-    fn rotate(&mut self, snapshot: &[R]) -> Result<(), Failure> {
+    fn rotate(&mut self, snapshot: &[R], erases: bool) -> Result<(), Failure> {
         let first = self.store.next_seq();
-        match self.store.rotate(snapshot) {
+        let rotated = match erases {
+            true => self.store.erase(snapshot),
+            false => self.store.rotate(snapshot),
+        };
+        match rotated {
             Ok(()) => {
+                if erases {
+                    self.reports.send(Report::Erased);
+                }
                 self.report_durable();
                 self.clock.note(first);
                 tracing::info!(records = snapshot.len(), "journal rotated with a snapshot");

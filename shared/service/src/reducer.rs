@@ -90,6 +90,11 @@ pub trait Node: Sized + 'static {
         None
     }
 
+    /// Returns, once, whether the journal must be replaced by [`Node::snapshot`] now, and what it held be erased.
+    fn take_erasure(&mut self) -> bool {
+        false
+    }
+
     /// Returns the whole state, so that a flight can begin here; `None` where what is in progress, or the
     /// kind of node, does not permit that.
     fn checkpoint(&self) -> Option<Vec<u8>> {

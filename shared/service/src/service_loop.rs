@@ -182,6 +182,9 @@ impl<P: Program> Loop<P> {
             self.node.on_durable();
             self.tap.durable();
         }
+        if self.node.take_erasure() {
+            self.commit.erase();
+        }
         if self.commit.wants_snapshot()
             && let Some(snapshot) = self.node.snapshot()
         {

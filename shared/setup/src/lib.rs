@@ -89,6 +89,7 @@ impl DialogueSettings for Settings {
             prior: dialogue.prior,
             gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
             turns: dialogue.turns,
+            people: dialogue.people,
             perceives: self.group.perception.enabled,
         })
     }

@@ -8,7 +8,7 @@ use dialogue::{DecisionProblem, Model, registry};
 use evaluation::simulation::{CHUNK, CachedPlanner, Room, UserKind, interactions};
 use language::Reader;
 use preflight::{Pace, Voice};
-use vocabulary::{Costs, Language, Params, TurnTaking};
+use vocabulary::{Acquaintance, Costs, Language, Params, TurnTaking};
 
 /// Chunks of interactions that are timed, after one that fills the planner's memory.
 const CHUNKS: u64 = 20;
@@ -25,6 +25,7 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
         voice: Voice::default(),
         pace: &pace,
         motions: None,
+        people: Acquaintance::default(),
         request: true,
         denials: true,
     };

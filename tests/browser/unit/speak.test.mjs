@@ -31,10 +31,10 @@ describe("what is said by a press", () => {
     const { context, did } = page({ ...ME, lines: LINES, dialogue: { prompt: 5 } });
     await speak("yes", context);
     assert.equal(did.length, 1);
-    const { verb, text, source, seen } = did[0];
+    const { verb, text, source, seen, from } = did[0];
     assert.deepEqual(
-      { verb, text, source, seen },
-      { verb: "say", text: "yes", source: "typed", seen: 5 },
+      { verb, text, source, seen, from },
+      { verb: "say", text: "yes", source: "typed", seen: 5, from: "" },
     );
     await speak("no", context, { began: 500, seen: 4 });
     assert.deepEqual([did[1].seen, did[1].began_ms, did[1].ended_ms], [4, 1_500, 9_000]);

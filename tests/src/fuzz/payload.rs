@@ -42,6 +42,7 @@ pub(super) fn injections() -> Vec<Injection> {
         onset_ns: 5,
         end_ns: 9,
         seen_prompt: 3,
+        from: "Ann".to_owned(),
         sound,
     };
     (1..).zip(sounds).map(injection).collect()

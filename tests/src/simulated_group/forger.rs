@@ -148,6 +148,7 @@ fn injection(rng: &mut Rng) -> Injection {
         onset_ns: number(rng),
         end_ns: number(rng),
         seen_prompt: number(rng),
+        from: ["", "Ann", "a\nb"][rng.below(3)].to_owned(),
         sound,
     }
 }

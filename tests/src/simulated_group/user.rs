@@ -189,8 +189,10 @@ impl GroupUser {
         let typed = matches!(sound, Sound::Text(_) | Sound::Point { .. });
         let end_ns = if typed { 0 } else { time(utterance.end_s).ns() };
         let onset_ns = time(utterance.onset_s).ns();
-        self.unacknowledged
-            .push((Injection { key: key(n), onset_ns, end_ns, seen_prompt: 0, sound }, now));
+        self.unacknowledged.push((
+            Injection { key: key(n), onset_ns, end_ns, seen_prompt: 0, from: String::new(), sound },
+            now,
+        ));
     }
 
     /// Returns what the clients send now: each injection again until it is acknowledged.

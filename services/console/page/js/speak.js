@@ -2,6 +2,7 @@
 // Words of the operator that were typed or clicked: one way to the robot for both.
 
 import { whoControls } from "./model/turn.js";
+import { whoSpeaks } from "./settings/person.js";
 
 /** Longest wait for a connection that has just broken, milliseconds. */
 const OUTAGE_MS = 4_000;
@@ -21,7 +22,7 @@ export async function speak(text, { link, store }, when = {}) {
     await link.do("take_control");
   }
   const times = { began_ms: link.toServer(began), ended_ms: link.serverNow() };
-  return link.do("say", { text, source: "typed", seen, ...times });
+  return link.do("say", { text, source: "typed", seen, from: whoSpeaks(), ...times });
 }
 
 /**

@@ -50,7 +50,7 @@ impl Submissions {
         if own.count() >= WORDS_MAX.0 || self.0.len() >= WORDS_MAX.1 {
             return Err("too many utterances at a time; help: wait a moment".to_owned());
         }
-        let Words { text, alternatives, spoken, began, ended, seen, key } = words;
+        let Words { text, alternatives, spoken, began, ended, seen, from, key } = words;
         let sound = if spoken {
             let other =
                 |(text, weight): (String, f64)| Hypothesis { weight, ..Hypothesis::certain(text) };
@@ -61,7 +61,7 @@ impl Submissions {
             Sound::Text(text)
         };
         let said = (began.unwrap_or(now), ended.unwrap_or(Time(0)));
-        let submission = Submission::new(sound, said, now, PATIENCE).after(seen);
+        let submission = Submission::new(sound, said, now, PATIENCE).after(seen).by(from.as_str());
         let submission = match key {
             Some(key) => submission.under(key),
             None => submission.of(client),

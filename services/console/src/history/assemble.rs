@@ -144,7 +144,7 @@ impl Assembler {
             PolicyCause::Objects { .. } => Event::Objects,
             PolicyCause::Stopped => Event::Stopped,
             // The arm comes to rest within a moment.
-            PolicyCause::Stopping => return,
+            PolicyCause::Stopping | PolicyCause::Forget { .. } => return,
             PolicyCause::StopReport { confirmed: true } => Event::StopConfirmed,
             PolicyCause::StopReport { confirmed: false } => Event::StopUnconfirmed,
             PolicyCause::Released => Event::Released,

@@ -4,6 +4,7 @@ use messages::{PromptId, RequestKey};
 use serde_json::Value as Json;
 use service::Time;
 use service::control::Watched;
+use vocabulary::PersonId;
 
 use super::ViewerId;
 use crate::voice::PcmFrame;
@@ -42,6 +43,8 @@ pub struct Words {
     pub ended: Option<Time>,
     /// The robot's latest prompt that the page had shown before; 0 where that is not known.
     pub seen: PromptId,
+    /// Who speaks.
+    pub from: PersonId,
     /// Key of the request, the same for each repetition of it; none where nothing repeats it.
     pub key: Option<RequestKey>,
 }
@@ -55,6 +58,7 @@ pub fn typed(text: &str) -> Words {
         began: None,
         ended: None,
         seen: PromptId(0),
+        from: PersonId::default(),
         key: None,
     }
 }

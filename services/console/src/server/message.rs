@@ -3,6 +3,7 @@
 use messages::PromptId;
 use serde_json::Value as Json;
 use service::Time;
+use vocabulary::PersonId;
 
 use crate::hub::command::{Verb, Words};
 use crate::hub::{Role, ViewerId};
@@ -145,7 +146,17 @@ fn words(json: &Json, now: Time) -> Result<Words, String> {
         seen => seen.as_u64().ok_or("seen: expected the number of a prompt")?,
     };
     let seen = PromptId(seen);
-    Ok(Words { text, alternatives: alternatives(json)?, spoken, began, ended, seen, key: None })
+    let alternatives = alternatives(json)?;
+    Ok(Words { text, alternatives, spoken, began, ended, seen, from: person(json)?, key: None })
+}
+
+/// Returns the person who speaks; a page that says nothing about it speaks for nobody in particular.
+fn person(json: &Json) -> Result<PersonId, String> {
+    let name = match &json["from"] {
+        Json::Null => "",
+        name => name.as_str().ok_or("from: expected a name")?,
+    };
+    PersonId::new(name).map_err(|error| format!("from: {error}"))
 }
 
 /// Returns the words of an utterance, on one line.
@@ -236,9 +247,10 @@ mod tests {
     fn message_say_carries_times_and_alternatives() {
         let json = json!({"t": "do", "id": 3, "do": "say", "text": " the red one ",
                           "began_ms": 999_000.5, "ended_ms": 1_000_200.0, "source": "browser",
-                          "alternatives": [{"text": "the bed one", "weight": 0.2}]});
+                          "alternatives": [{"text": "the bed one", "weight": 0.2}],
+                          "from": " Ann "});
         let Ok(Message::Do(3, Do::Ask(Verb::Say(words)))) = read(json) else { panic!() };
-        assert_eq!(words.text, "the red one");
+        assert_eq!((words.text.as_str(), words.from.as_str()), ("the red one", "Ann"));
         assert_eq!(words.began, Some(Time(999_000_500_000)));
         assert_eq!(words.ended, Some(NOW), "slightly ahead becomes now");
         assert!(words.spoken && words.alternatives == [("the bed one".to_owned(), 0.2)]);
@@ -256,6 +268,8 @@ mod tests {
         assert!(say("text", json!("a".repeat(1_001))).contains("1001"));
         assert!(say("began_ms", json!(5)).contains("two minutes"));
         assert!(say("began_ms", json!("x")).contains("began_ms"));
+        assert!(say("from", json!("a\nb")).contains("from: expected a printable name"));
+        assert!(say("from", json!(3)).contains("from"));
         assert!(say("source", json!("radio")).contains("radio"));
         assert!(say("alternatives", json!([{"text": "b", "weight": 0}])).contains("weight"));
         assert!(wrong(json!({"t": "do", "id": 3, "do": "dance"})).contains("dance"));
@@ -269,7 +283,7 @@ mod tests {
 
     /// Any JSON, mostly of the keys and values that mean something.
     fn any_json() -> impl Strategy<Value = Json> {
-        let keys = "t|id|do|text|alternatives|weight|began_ms|ended_ms|source|viewer|service|at|\
+        let keys = "t|id|do|text|alternatives|weight|began_ms|ended_ms|source|from|viewer|service|at|\
                     session|protocol|role|name|last_line|page";
         let words = "do|say|ping|hello|stop|resume|study[.]begin|give_control|restart_service|browser|\
                      v[0-9]{1,20}|\\PC{0,8}|[\u{0}-\u{1f}\u{7f}-\u{9f}]{1,4}";

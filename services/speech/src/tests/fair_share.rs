@@ -13,7 +13,14 @@ impl Speech {
         let (key, sound) = (RequestKey::new(client, number), Sound::Text(text.to_owned()));
         self.take(
             0.001,
-            In::Injection(Injection { key, onset_ns: 0, end_ns: 0, seen_prompt: 0, sound }),
+            In::Injection(Injection {
+                key,
+                onset_ns: 0,
+                end_ns: 0,
+                seen_prompt: 0,
+                from: String::new(),
+                sound,
+            }),
         )
     }
 

@@ -108,6 +108,7 @@ fn words_answer_no_question_that_their_client_had_not_shown() {
         onset_ns: 0,
         end_ns: 0,
         seen_prompt,
+        from: String::new(),
         sound: Sound::Text("yes".to_owned()),
     };
     assert_eq!(speech.take(1.0, In::Injection(yes(7))).asked(), [(7, 1, 0)]);
@@ -127,4 +128,29 @@ fn superseded_question_may_still_be_answered() {
     assert_eq!(outputs.asked(), [(8, 1, 0), (7, 1, 0)], "newest first");
     let utterance = outputs.utterance().unwrap();
     assert_eq!(utterance.asked().unwrap()[0].ended_ns, 0, "it is being spoken");
+}
+
+#[test]
+fn utterance_names_who_typed_it_and_a_name_that_cannot_be_printed_is_refused() {
+    let said = |from: &str| {
+        In::Injection(Injection {
+            key: RequestKey([1; 16]),
+            onset_ns: 0,
+            end_ns: 0,
+            seen_prompt: 0,
+            from: from.to_owned(),
+            sound: Sound::Text("yes".to_owned()),
+        })
+    };
+    for (from, expected) in [(" Ann ", "Ann"), ("", ""), ("guest", "")] {
+        let utterance = Speech::new().take(1.0, said(from)).utterance().unwrap();
+        assert_eq!(utterance.from.as_str(), Ok(expected), "{from:?}");
+    }
+    for (from, reason) in [(&*"n".repeat(65), "at most 64 bytes"), ("a\tb", "printable")] {
+        let outputs = Speech::new().take(1.0, said(from));
+        let receipt = outputs.receipt().unwrap();
+        assert_eq!(receipt.status, ReceiptStatus::Refused.code());
+        assert!(receipt.note.as_str().unwrap().contains(reason), "{receipt:?}");
+        assert!(outputs.utterance().is_none());
+    }
 }

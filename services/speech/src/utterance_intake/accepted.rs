@@ -147,7 +147,7 @@ mod tests {
             segment: (0, 1),
             hypotheses: Vec::new(),
             gesture: None,
-            source: Source::Text,
+            origin: Source::Text.into(),
             asked: Vec::new(),
             onset: Time(seq),
             end: Time(seq),

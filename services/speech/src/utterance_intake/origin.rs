@@ -3,14 +3,14 @@
 use crate::RecognisedSegment;
 use crate::hearing::{Heard, SecondView};
 use crate::pending_sounds::PendingSound;
-use crate::record::Accepted;
+use crate::record::{self, Accepted};
 use crate::utterance_content::UtteranceContent;
 use messages::{
     FixedText, Injection, Receipt, ReceiptStatus, RequestKey, SecondState, Source, UtteranceSeq,
 };
 use service::{Span, Time};
-use vocabulary::Presentation;
 use vocabulary::ids::PromptId;
+use vocabulary::{PersonId, Presentation};
 
 /// Origin of an utterance.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
@@ -19,6 +19,8 @@ pub(super) struct Origin {
     /// Number and total of the segment.
     pub(super) segment: (u32, u32),
     pub(super) source: Source,
+    /// Who typed or pointed.
+    pub(super) from: PersonId,
     /// Beginning and end of the speech, 0 without speech.
     pub(super) span: (Time, Time),
     /// The latest prompt that the user was shown before; 0 where that is not known.
@@ -53,7 +55,8 @@ impl Origin {
 
     fn new(key: RequestKey, segment: (u32, u32), source: Source) -> Self {
         let (span, seen) = ((Time(0), Time(0)), PromptId(0));
-        Self { key, segment, source, span, seen, snr_db: 0.0, heard: None }
+        let from = PersonId::default();
+        Self { key, segment, source, from, span, seen, snr_db: 0.0, heard: None }
     }
 
     /// Adds what the recogniser measured. The times of a live sound are known; those of a recording
@@ -87,6 +90,7 @@ impl Origin {
         now: Time,
     ) -> Accepted {
         let Self { key, segment, source, span: (onset, end), seen, snr_db, .. } = *self;
+        let from = self.from.clone();
         asked.retain(|question| seen == PromptId(0) || question.prompt <= seen);
         let accepted = now;
         Accepted {
@@ -95,7 +99,7 @@ impl Origin {
             segment,
             hypotheses,
             gesture,
-            source,
+            origin: record::Origin { source, from },
             asked,
             onset,
             end,

@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand, ValueEnum};
 use messages::Service;
+use vocabulary::{NotAPerson, PersonId};
 
 use super::ConfigArgs;
 
@@ -24,6 +25,9 @@ pub struct SayArgs {
     /// An alternative hypothesis with its weight; TEXT itself has the rest of 1. May be repeated.
     #[arg(long = "or", value_name = "TEXT=WEIGHT", value_parser = alternative)]
     pub alternatives: Vec<(String, f64)>,
+    /// Name of the person who speaks, at most 64 bytes: the robot learns from deliveries how they speak (`whichone people`).
+    #[arg(long, value_name = "NAME", default_value = "", hide_default_value = true, value_parser = person)]
+    pub from: PersonId,
     /// Confidence of each word of TEXT, 0 to 1, separated by commas.
     #[arg(long, value_name = "P,P,…", value_delimiter = ',')]
     pub confidence: Vec<f32>,
@@ -99,6 +103,9 @@ pub struct ChatArgs {
     /// The configuration of a group to be started.
     #[command(flatten)]
     pub config: ConfigArgs,
+    /// Name of the person who speaks, at most 64 bytes: the robot learns from deliveries how they speak (`whichone people`).
+    #[arg(long, value_name = "NAME", default_value = "", hide_default_value = true, value_parser = person)]
+    pub from: PersonId,
     /// Keep a group running that was started for this chat.
     #[arg(long)]
     pub keep: bool,
@@ -220,4 +227,9 @@ mod tests {
             assert!(seconds(wrong).is_err(), "{wrong}");
         }
     }
+}
+
+/// Reads the name of a person.
+pub(crate) fn person(name: &str) -> Result<PersonId, NotAPerson> {
+    PersonId::new(name)
 }

@@ -36,7 +36,7 @@ pub(super) fn chat(paths: &GroupPaths, args: &ChatArgs, out: &mut Output<'_>) ->
     }
     let is_own = !is_running && up::bring_up(paths, &args.config)?;
     let ready = if is_running { Ok(()) } else { up::wait_ready(paths) };
-    let talked = ready.and_then(|()| talk(paths, &interrupt, out));
+    let talked = ready.and_then(|()| talk(paths, args, &interrupt, out));
     if is_own && !args.keep {
         note("stopping the group that was started for this chat");
         operate::down(paths, STOP, &mut Output::to(io::sink(), true))?;
@@ -44,8 +44,15 @@ pub(super) fn chat(paths: &GroupPaths, args: &ChatArgs, out: &mut Output<'_>) ->
     talked
 }
 
-fn talk(paths: &GroupPaths, interrupt: &Interrupt, out: &mut Output<'_>) -> Outcome {
-    let mut chat = Chat::new(Conversation::join(paths)?, MotionOrders::open(paths)?, out);
+fn talk(
+    paths: &GroupPaths,
+    args: &ChatArgs,
+    interrupt: &Interrupt,
+    out: &mut Output<'_>,
+) -> Outcome {
+    let mut conversation = Conversation::join(paths)?;
+    conversation.speak_as(args.from.clone());
+    let mut chat = Chat::new(conversation, MotionOrders::open(paths)?, out);
     let talked = chat.run(paths, interrupt);
     chat.orders.finish(interrupt, None, talked)
 }

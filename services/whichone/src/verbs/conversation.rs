@@ -17,6 +17,7 @@ use service::group::{GroupPaths, ShmName};
 use service::submission::Submission;
 use service::view::{Latest, LatestTopics, quiet};
 use service::{Span, Time};
+use vocabulary::PersonId;
 
 #[cfg(test)]
 pub(super) mod example;
@@ -32,6 +33,8 @@ const CHECK_EVERY: Duration = Duration::from_secs(1);
 pub(super) struct Conversation {
     topics: LatestTopics,
     injections: Option<EncodedWriter<Injection>>,
+    /// Who speaks.
+    from: PersonId,
     /// Utterances to submit, first to last; only the first has been sent.
     saying: VecDeque<Submission>,
     /// Keys of all utterances of this client.
@@ -61,6 +64,7 @@ impl Conversation {
                 false => LatestTopics::open(client.bus())?,
             },
             injections: None,
+            from: PersonId::default(),
             saying: VecDeque::new(),
             own: HashSet::new(),
             latest: Latest::default(),
@@ -101,6 +105,11 @@ impl Conversation {
         &self.paths
     }
 
+    /// States who speaks from now on; at first nobody in particular.
+    pub(super) fn speak_as(&mut self, from: PersonId) {
+        self.from = from;
+    }
+
     /// Submits an utterance after those that are pending. It is resent under one key until it is
     /// answered, so that a restart neither loses nor duplicates it.
     pub(super) fn say(&mut self, text: &str) -> Result<(), Failure> {
@@ -110,7 +119,8 @@ impl Conversation {
         let sound = Sound::Text(text.to_owned());
         let now = clock::now();
         let submission = Submission::new(sound, (now, Time(0)), now, Span(u64::MAX / 2))
-            .after(PromptId(self.latest.presented.prompt));
+            .after(PromptId(self.latest.presented.prompt))
+            .by(self.from.as_str());
         self.own.insert(submission.key());
         self.saying.push_back(submission);
         Ok(())

@@ -17,6 +17,7 @@ use service::group::GroupPaths;
 use service::printable::one_line;
 use service::submission::Submission;
 use service::{Span, Time};
+use vocabulary::PersonId;
 
 use super::availability::{AFTER_SPEECH, Availability, Lookout};
 use super::hearing;
@@ -37,15 +38,16 @@ pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> O
         true => (transcript(args)?, when(args)?),
         false => (Sound::Text(text.clone()), (clock::now(), Time(0))),
     };
+    let said = Said { sound, said, from: &args.from };
     if !language::is_stop(&text) {
-        return give_said(paths, sound, said, args.timeout, None, out);
+        return give_said(paths, &said, args.timeout, None, out);
     }
     // The stop needs no speech service: it goes to the arm at once, on its own path, and outlives the words.
     let interrupt = Interrupt::listen()?;
     let orders = MotionOrders::open(paths)?;
     orders.give(MotionOrder::Stop);
     orders.await_news(STOPS_WITHIN);
-    let given = give_said(paths, sound, said, args.timeout, Some(&interrupt), out);
+    let given = give_said(paths, &said, args.timeout, Some(&interrupt), out);
     orders.finish(&interrupt, Some(args.timeout), given)
 }
 
@@ -98,26 +100,34 @@ pub(super) fn give(
     timeout: Duration,
     out: &mut Output<'_>,
 ) -> Outcome {
-    give_said(paths, sound, (clock::now(), Time(0)), timeout, None, out)
+    let (said, from) = ((clock::now(), Time(0)), &PersonId::default());
+    give_said(paths, &Said { sound, said, from }, timeout, None, out)
+}
+
+/// What was said, when it began and ended, and by whom.
+struct Said<'a> {
+    sound: Sound,
+    said: (Time, Time),
+    from: &'a PersonId,
 }
 
 fn give_said(
     paths: &GroupPaths,
-    sound: Sound,
-    said: (Time, Time),
+    Said { sound, said, from }: &Said<'_>,
     timeout: Duration,
     interrupt: Option<&Interrupt>,
     out: &mut Output<'_>,
 ) -> Outcome {
     let patience = Span::from_s(timeout.as_secs_f64());
-    let mut submission = Submission::new(sound.clone(), said, clock::now(), patience);
+    let mut submission =
+        Submission::new(sound.clone(), *said, clock::now(), patience).by(from.as_str());
     // The speech service alone answers, and keeps what the others will need.
     let mut lookout = Lookout::of(&[Service::Speech]).with_shortages();
     loop {
         let services = Availability::request(paths);
         let memory = paths.shm_name().ok();
         let client = Client::join(paths)?;
-        let (injections, receipts) = client.submission(&sound)?;
+        let (injections, receipts) = client.submission(sound)?;
         let services = services.wait();
         services.require(Service::Speech)?;
         let mut is_replaced = false;

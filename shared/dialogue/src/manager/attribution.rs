@@ -10,7 +10,8 @@ use vocabulary::{
 
 use super::Manager;
 use super::evidence::Mark;
-use super::state::{State, Utterance};
+use super::state::State;
+use super::utterance::Utterance;
 use crate::answer_attribution::{Candidate, QUESTION_S, Shares};
 
 /// Weights below this say nothing.

@@ -8,7 +8,7 @@ use super::state::{Interaction, State};
 use crate::user_model::Person;
 use crate::{Belief, Model, Posterior};
 use std::borrow::Cow;
-use vocabulary::PriorObjects;
+use vocabulary::{PersonId, PriorObjects};
 
 /// Interpretations, the point that is pointed at, and objects that are refused or meant.
 type Content<'a> = (&'a [(f64, Question, Reading)], Option<[f64; 3]>, Option<&'a Mark>);
@@ -19,16 +19,26 @@ const TAKEN: f64 = 1e-12;
 impl Manager {
     /// Returns the belief of an interaction in which nothing was said.
     pub fn prior(&self, state: &State) -> Belief {
+        self.prior_of(state, &PersonId::default())
+    }
+
+    /// Returns the same of a person: by what they had fetched, once that is known.
+    fn prior_of(&self, state: &State, from: &PersonId) -> Belief {
         let objects = self.setup.scene.objects();
         let any_taken = objects.iter().any(|object| object.taken);
-        let mut weights = match self.setup.prior.objects {
-            PriorObjects::Uniform if self.setup.model.absent().is_none() && !any_taken => {
+        let history = match (self.regular(state, from), self.setup.prior.objects) {
+            (Some(person), _) => Some(&person.fetched),
+            (None, PriorObjects::History) => Some(&state.history),
+            (None, PriorObjects::Uniform) => None,
+        };
+        let mut weights = match history {
+            None if self.setup.model.absent().is_none() && !any_taken => {
                 return Belief::uniform(objects.len());
             }
-            PriorObjects::Uniform => vec![1.0 / objects.len() as f64; objects.len()],
-            PriorObjects::History => {
+            None => vec![1.0 / objects.len() as f64; objects.len()],
+            Some(history) => {
                 let names = objects.iter().map(|object| object.name.as_str());
-                state.history.prior(names, self.setup.prior.smoothing)
+                history.prior(names, self.setup.prior.smoothing)
             }
         };
         for (weight, object) in weights.iter_mut().zip(objects) {
@@ -47,21 +57,33 @@ impl Manager {
     /// answered: that says nothing about the object, so it counts at once.
     fn person(&self, state: &State) -> Option<Person> {
         let known =
-            || state.person.clone().unwrap_or_else(|| Person::new(self.setup.model.params()));
+            || state.users.person.clone().unwrap_or_else(|| Person::new(self.setup.model.params()));
         self.planner.uses_user_model().then(known)
     }
 
     /// Returns the expected `p_l` and `ε` of the user, where they are learned.
     pub fn user_params(&self, state: &State) -> Option<(f64, f64)> {
-        let open = state.open.as_ref().and_then(|open| open.posterior.person().cloned());
-        let params = open.or_else(|| self.person(state))?.params(self.setup.model.params());
+        let configured = self.setup.model.params();
+        let open = state.open.as_ref();
+        let params = match open.and_then(|open| open.posterior.speaker()) {
+            Some(speaker) if !self.planner.uses_user_model() => speaker.params(configured),
+            _ => {
+                let open = open.and_then(|open| open.posterior.person().cloned());
+                open.or_else(|| self.person(state))?.params(configured)
+            }
+        };
         Some((params.p_l, params.epsilon))
     }
 
-    /// Returns the posterior before anything is said.
-    pub(super) fn beginning(&self, state: &State) -> Posterior {
-        let posterior = Posterior::new(self.prior(state), self.person(state));
-        if self.setup.model.misperceives() { posterior.of_perceived() } else { posterior }
+    /// Returns the posterior before that person says anything.
+    pub(super) fn beginning(&self, state: &State, from: &PersonId) -> Posterior {
+        let posterior = Posterior::new(self.prior_of(state, from), self.person(state));
+        let posterior =
+            if self.setup.model.misperceives() { posterior.of_perceived() } else { posterior };
+        match self.speaker(state, from) {
+            Some(speaker) => posterior.of_speaker(speaker),
+            None => posterior,
+        }
     }
 
     /// Updates a posterior by Bayes' rule with one utterance.
@@ -98,7 +120,7 @@ impl Manager {
 
     /// Returns the posterior after all evidence of the interaction, in the present scene.
     pub(super) fn fold(&self, state: &State, open: &Interaction) -> Posterior {
-        let mut posterior = self.beginning(state);
+        let mut posterior = self.beginning(state, &open.from());
         let mut model = self.learned(std::iter::empty());
         for evidence in &open.evidence {
             let interpretations = evidence.in_scene(&self.setup.scene);
@@ -118,6 +140,6 @@ impl Manager {
             open.posterior.see_answer(answered);
         }
         person.see_answer(answered);
-        state.person = Some(person);
+        state.users.person = Some(person);
     }
 }

@@ -12,7 +12,8 @@ use super::concede::likeliest;
 use super::evidence::Mark;
 use super::line::{Content, Preface};
 use super::references::reference;
-use super::state::{Basis, State, Utterance};
+use super::state::{Basis, State};
+use super::utterance::Utterance;
 
 /// Probability below which the object being fetched is fetched no further.
 const LIKELY: f64 = 0.5;

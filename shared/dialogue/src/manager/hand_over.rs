@@ -11,8 +11,9 @@ use super::attribution::Heard;
 use super::evidence::Mark;
 use super::line::Preface;
 use super::put_back::{WithUser, refuse};
-use super::state::{Interaction, Preference, State, Utterance};
+use super::state::{Interaction, Preference, State};
 use super::turn::Statement;
+use super::utterance::Utterance;
 
 /// A delivery that can still be refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

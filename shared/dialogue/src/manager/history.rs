@@ -15,7 +15,12 @@ pub struct History {
 impl History {
     /// Counts a delivery.
     pub fn count(&mut self, name: &str) {
-        if !self.delivered.contains_key(name) && self.delivered.len() >= NAMES_MAX {
+        self.count_within(name, NAMES_MAX);
+    }
+
+    /// Counts a delivery, and at most so many names.
+    pub fn count_within(&mut self, name: &str, names_max: usize) {
+        if !self.delivered.contains_key(name) && self.delivered.len() >= names_max {
             // Of several the last by name, so that a replay drops the same.
             let rarest = self.delivered.iter().rev().min_by_key(|(_, count)| **count);
             if let Some(rarest) = rarest.map(|(name, _)| name.clone()) {
@@ -32,6 +37,11 @@ impl History {
             0 | 1 => drop(self.delivered.remove(name)),
             more => drop(self.delivered.insert(name.to_owned(), more - 1)),
         }
+    }
+
+    /// Deliveries by object, in the order of the names.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, u64)> {
+        self.delivered.iter().map(|(name, count)| (name.as_str(), *count))
     }
 
     /// Returns the deliveries of an object.

@@ -10,8 +10,9 @@ use super::concede::likeliest;
 use super::evidence::{Evidence, Mark};
 use super::line::{AboutObjects, Preface, Remark};
 use super::rules::{CONTENT, first};
-use super::state::{Basis, Deferred, Interaction, Preference, State, Utterance};
+use super::state::{Basis, Deferred, Interaction, Preference, State};
 use super::turn::{Statement, Turn};
+use super::utterance::Utterance;
 
 impl Manager {
     /// Handles the words about the wanted object.
@@ -160,7 +161,8 @@ impl Manager {
     pub(super) fn open(&mut self, state: &mut State, utterance: &Utterance) {
         state.handed_over = None;
         state.last_interaction = state.last_interaction.next();
-        let (id, posterior) = (state.last_interaction, self.beginning(state));
+        let posterior = self.beginning(state, &utterance.from);
+        let id = state.last_interaction;
         let mut open = Interaction::new(id, utterance.accepted, posterior, utterance.seq);
         open.objects = self.known_objects();
         state.open = Some(open);

@@ -12,9 +12,10 @@ use super::line::{Content, Preface, Remark};
 use super::put_back::{Progress, PuttingBack};
 use super::replies::likeliest;
 use super::rules::{INTENTS, first};
-use super::state::{State, Utterance};
+use super::state::{Interaction, State};
 use super::stop::StopOrder;
 use super::turn::Turn;
+use super::utterance::Utterance;
 
 impl Manager {
     /// Processes one utterance. Whatever its content, it counts as applied, and what was typed gets an
@@ -90,7 +91,8 @@ impl Manager {
     }
 
     fn forget(&mut self, state: &mut State, at: Time) {
-        let beginning = self.beginning(state);
+        let from = state.open.as_ref().map(Interaction::from).unwrap_or_default();
+        let beginning = self.beginning(state, &from);
         let is_putting_back = state.to_put_back().is_some();
         match &mut state.open {
             None if is_putting_back => {}

@@ -16,6 +16,7 @@
 //! | `hand_over.rs`, `held_back.rs` | refusals after a hand-over; picks while the motion stop is latched |
 //! | `queue.rs` | requests for several objects |
 //! | `replies.rs` | answers to what the user asks |
+//! | `people.rs`, `acquaint.rs` | people who gave their name, and what is learned about them |
 //! | `beliefs.rs`, `pointing.rs` | prior, updates, the user model, gestures |
 //! | `acts.rs` | decisions as standing acts |
 //! | `put_back.rs` | putting back what was handed over |
@@ -25,6 +26,7 @@
 //! | `objects.rs` | objects from perception |
 //! | `refold.rs` | check of a journal |
 
+mod acquaint;
 mod acts;
 mod attribution;
 mod beliefs;
@@ -42,6 +44,7 @@ mod kept;
 mod line;
 mod misfit;
 mod objects;
+mod people;
 mod pointing;
 mod put_back;
 mod queue;
@@ -57,6 +60,7 @@ mod stop;
 #[cfg(test)]
 mod tests;
 mod turn;
+mod utterance;
 
 pub use concede::Conceded;
 pub use evidence::{Evidence, Mark, NAMES_MAX};
@@ -65,14 +69,16 @@ pub use hand_over::HandedOver;
 pub use held_back::{HeldBack, Wait};
 pub use history::History;
 pub use line::{AboutObjects, Content, Line, Preface, Reason, Remark};
+pub use people::{KnownPerson, PEOPLE_MAX, People, Users};
 pub use put_back::{Progress, PuttingBack, WithUser};
 pub use refold::{Mismatch, refold, refold_since};
 pub use setup::Setup;
 pub use state::{
     Act, Basis, Cause, Deferred, Interaction, KnownObject, PROMPTS_MAX, Preference, Prompt, Record,
-    Stage, State, Timing, Utterance,
+    Stage, State, Timing,
 };
 pub use stop::{MotionStop, Stop, StopOrder};
+pub use utterance::Utterance;
 
 use acts::{order_again, say, set};
 use objects::SceneFile;
@@ -187,6 +193,7 @@ impl Manager {
             Cause::MotionStop(stop) => self.note_stop(state, *stop, at),
             Cause::StopReport { confirmed } => self.report_stop(state, *confirmed, at),
             Cause::SetAside(over) => self.set_aside(state, *over, at),
+            Cause::Forget(person) => self.forget_person(state, person, at),
         }
     }
 
@@ -270,6 +277,9 @@ impl Manager {
         let delivered = state.open.as_ref().filter(|_| outcome == PickOutcome::Delivered).cloned();
         if let Some(open) = &delivered {
             state.history.count(&open.picked);
+            if state.act.kind == ActKind::Pick {
+                self.learn(state, open, object);
+            }
             self.hand_over_from_table(state, &open.picked, true);
         }
         let description = self.description(object);
@@ -318,7 +328,7 @@ impl Manager {
         }
         let questions = open.questions;
         if let Some(person) = open.posterior.person() {
-            state.person = Some(person.clone());
+            state.users.person = Some(person.clone());
         }
         state.ended = Some(Ended {
             interaction: open.id,

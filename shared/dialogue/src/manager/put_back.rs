@@ -11,7 +11,8 @@ use super::Manager;
 use super::acts::{next_key, say, say_with, set};
 use super::attribution::Heard;
 use super::line::{Content, Line, Preface, Remark};
-use super::state::{Act, Basis, State, Utterance, push_bounded};
+use super::state::{Act, Basis, State, push_bounded};
+use super::utterance::Utterance;
 
 /// Share of an utterance's readings from which it is plain that it asks to put something back.
 const PLAIN: f64 = 0.5;
@@ -311,5 +312,6 @@ pub(super) fn refuse(state: &mut State, with_user: &WithUser) {
     if let Some(ended) = state.ended.as_mut().filter(delivered) {
         ended.outcome = Outcome::Refused;
         state.history.discount(&with_user.name);
+        state.users.people.take_back(with_user.interaction);
     }
 }

@@ -7,7 +7,8 @@ use super::Manager;
 use super::attribution::Heard;
 use super::evidence::Mark;
 use super::line::{AboutObjects, Preface, Remark};
-use super::state::{Basis, Interaction, Preference, State, Utterance};
+use super::state::{Basis, Interaction, Preference, State};
+use super::utterance::Utterance;
 
 /// Most objects that wait for their turn.
 const QUEUE_MAX: usize = 8;
@@ -47,9 +48,10 @@ impl Manager {
     pub(super) fn serve_queue(&mut self, state: &mut State, preface: Preface, at: Time) {
         let words = state.queue.remove(0);
         let before = state.handed_over.take().map(|it| it.interaction);
+        let from = before.as_ref().map(Interaction::from).unwrap_or_default();
         let before = before.filter(|before| is_described(before, &words));
         let (seq, accepted) = (state.applied, at);
-        self.open(state, &Utterance { seq, accepted, ..Utterance::default() });
+        self.open(state, &Utterance { seq, accepted, from, ..Utterance::default() });
         let base = words.iter().filter_map(|word| self.setup.scene.word_named(word)).collect();
         let reading = Reading { base, ..Reading::default() };
         let interpretations = vec![(1.0, Question::None, reading)];

@@ -6,7 +6,8 @@ use vocabulary::ActKind;
 use super::Manager;
 use super::hand_over::HandedOver;
 use super::line::{AboutObjects, Content, Reason, Remark};
-use super::state::{Interaction, State, Utterance};
+use super::state::{Interaction, State};
+use super::utterance::Utterance;
 
 /// Most objects that a reason names.
 const RIVALS_MAX: usize = 3;

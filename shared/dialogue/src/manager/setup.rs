@@ -2,7 +2,7 @@
 
 use scene::Scene;
 use vocabulary::gesture::Gestures;
-use vocabulary::{Actions, Announce, Costs, Durations, Prior, TurnTaking};
+use vocabulary::{Acquaintance, Actions, Announce, Costs, Durations, Prior, TurnTaking};
 
 use crate::{DecisionProblem, Model};
 
@@ -28,6 +28,8 @@ pub struct Setup {
     pub gestures: Option<(Gestures, [f64; 3])>,
     /// Settings of turn-taking.
     pub turns: TurnTaking,
+    /// What to learn about people who give their name.
+    pub people: Acquaintance,
     /// Whether the objects come from perception; those of the scene are what they may be.
     pub perceives: bool,
 }

@@ -5,15 +5,12 @@
 //! struct no new field. What a struct has to state further is a variant of a field that it has ([`Stop`],
 //! [`HeldBack`]).
 
-use scene::{ObjectId, Question, UnknownWord};
+use scene::{ObjectId, Question};
 use serde::{Deserialize, Serialize};
 use vocabulary::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 use vocabulary::reaction::Reaction;
 use vocabulary::time::Time;
-use vocabulary::{
-    ActKind, Action, Attributed, Ended, Interpretation, NamedQuestion, PickOutcome, Presentation,
-    Table,
-};
+use vocabulary::{ActKind, Action, Attributed, Ended, NamedQuestion, PersonId, PickOutcome, Table};
 
 use super::concede::Conceded;
 use super::evidence::Evidence;
@@ -21,9 +18,10 @@ use super::hand_over::HandedOver;
 use super::held_back::HeldBack;
 use super::history::History;
 use super::line::{Line, Preface};
+use super::people::Users;
 use super::put_back::{PuttingBack, WithUser};
 use super::stop::{MotionStop, Stop};
-use crate::user_model::Person;
+use super::utterance::Utterance;
 use crate::{Belief, Posterior};
 
 /// The dialogue's state.
@@ -63,8 +61,8 @@ pub struct State {
     pub stop: Stop,
     /// Deliveries by object.
     pub history: History,
-    /// The user as learned in earlier interactions, where the planner uses it.
-    pub person: Option<Person>,
+    /// What was learned about those who speak.
+    pub users: Users,
     /// The user's reaction times as observed so far.
     pub timing: Timing,
 }
@@ -346,45 +344,8 @@ pub enum Cause {
         /// Whether the arm has confirmed the stop.
         confirmed: bool,
     },
-}
-
-/// An utterance of the user with its interpretations.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Utterance {
-    /// Its number.
-    pub seq: UtteranceSeq,
-    /// The latest presentations whose sound had begun when it was accepted, newest first.
-    pub presentations: Vec<Presentation>,
-    /// Whether it was typed, or given whole in another way; else it was spoken live.
-    pub typed: bool,
-    /// When the user began to speak, or typed.
-    pub onset: Time,
-    /// When the user had finished.
-    pub end: Time,
-    /// When it was accepted.
-    pub accepted: Time,
-    /// Interpretations as an answer to each of the presentations, and to none.
-    pub interpretations: Vec<Interpretation>,
-    /// A word that the scene does not have.
-    pub unknown: Option<UnknownWord>,
-    /// The point that the user points at, metres, frame `base`.
-    pub gesture: Option<[f64; 3]>,
-    /// Whether the user is still speaking, or more speech is being recognised.
-    pub more: bool,
-}
-
-impl Utterance {
-    /// Returns true if every interpretation answers one of its presentations, or none.
-    pub fn is_consistent(&self) -> bool {
-        let answers = self.interpretations.iter().filter_map(|one| one.answers);
-        answers.into_iter().all(|answered| answered < self.presentations.len())
-    }
-
-    /// Returns the last question that the user had heard completely before beginning to speak.
-    pub fn heard(&self) -> PromptId {
-        let heard = |put: &&Presentation| put.complete && put.ended <= Some(self.onset);
-        self.presentations.iter().find(heard).map_or(PromptId(0), |put| put.prompt)
-    }
+    /// A person wants to be forgotten.
+    Forget(PersonId),
 }
 
 /// A journal record: the cause of a change, its time, and the state after it.

@@ -7,7 +7,8 @@ use super::Manager;
 use super::attribution::Heard;
 use super::evidence::Mark;
 use super::references::reference;
-use super::state::{State, Utterance};
+use super::state::State;
+use super::utterance::Utterance;
 
 /// An utterance with its intent.
 pub(super) struct Turn<'a> {

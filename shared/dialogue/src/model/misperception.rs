@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use scene::{AttributeId, ValueId};
+use vocabulary::Params;
 
 use super::Model;
 
@@ -23,13 +24,44 @@ impl Model {
         if rates.iter().all(|rate| *rate == 0.0) {
             return self;
         }
+        self.misperceive(|k| rates[k.index()]);
+        self
+    }
+
+    fn misperceive(&mut self, rate: impl Fn(AttributeId) -> f64) {
         self.plain = Some(Box::new(self.clone()));
         let tables = Arc::make_mut(&mut self.tables);
-        for (column, rate) in tables.columns.iter_mut().zip(rates) {
-            column.misperceive(*rate);
+        for (k, column) in tables.columns.iter_mut().enumerate() {
+            column.misperceive(rate(k.into()));
         }
         tables.find_what_splits();
-        self
+    }
+
+    /// The model of a person with these parameters, with that `α` of words and of words that are certain, and
+    /// these rates of misperception, if a user may take a value for another one at all.
+    #[must_use]
+    pub(crate) fn of_person(
+        &self,
+        params: Params,
+        [alpha, certain]: [f64; 2],
+        rate: impl Fn(AttributeId) -> f64,
+    ) -> Self {
+        let mut model = self.plain().with_params(params);
+        // Persons come and go: tables of decisions are for what recurs.
+        model.is_of_interaction = true;
+        if [alpha, certain] != [false, true].map(|is_certain| model.smoothing(is_certain)) {
+            let objects = model.objects;
+            Arc::make_mut(&mut model.tables).smooth(objects, alpha, certain);
+        }
+        if self.misperceives() {
+            model.misperceive(rate);
+        }
+        model
+    }
+
+    /// Probability that the user takes a value of attribute `k` for another one.
+    pub(crate) fn misperceived(&self, k: AttributeId) -> f64 {
+        self.tables.columns[k.index()].misperceived
     }
 
     /// The model that decisions are planned with: attributes of which something was said, as `told`
@@ -65,7 +97,7 @@ impl Model {
     }
 
     /// The value that an entry stands for which only the user may take for another one.
-    pub(super) fn known(&self, k: AttributeId, entry: u16) -> Option<ValueId> {
+    pub(crate) fn known(&self, k: AttributeId, entry: u16) -> Option<ValueId> {
         let doubt = entry.checked_sub(Self::DOUBTFUL).filter(|_| entry < Self::UNKNOWN)?;
         self.tables.columns[k.index()].known.get(usize::from(doubt)).copied().flatten()
     }

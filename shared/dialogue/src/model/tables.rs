@@ -69,6 +69,15 @@ impl Tables {
         self.find_what_splits();
     }
 
+    /// Gives the words another `α`, and those that are certain one of their own.
+    pub(super) fn smooth(&mut self, objects: usize, alpha: f64, certain: f64) {
+        let (lengths, words) = (self.vocabulary_lengths(objects), self.words.len());
+        let absent = self.smoothing.vocabulary.above.len() - objects;
+        let lengths = || lengths.iter().copied().chain(std::iter::repeat_n(0, absent));
+        self.smoothing = Smoothing::new(alpha, lengths(), words);
+        self.certain = Smoothing::new(certain, lengths(), words);
+    }
+
     /// The highest rate of misperception of an attribute.
     pub(super) fn misperceived(&self) -> f64 {
         self.columns.iter().map(|column| column.misperceived).fold(0.0, f64::max)

@@ -12,6 +12,17 @@ impl Model {
         all.sum::<f64>() / self.objects as f64
     }
 
+    /// `|V|`: how many words there are.
+    pub(crate) fn words(&self) -> usize {
+        self.tables.words.len()
+    }
+
+    /// Mean of `|V_D|` over the objects.
+    pub(crate) fn mean_own_words(&self) -> f64 {
+        let lengths = self.tables.vocabulary_lengths(self.objects);
+        lengths.iter().sum::<usize>() as f64 / self.objects as f64
+    }
+
     /// The words that may have been said where one was heard with a doubt, each with its share.
     pub(crate) fn said_instead(
         &self,

@@ -86,8 +86,11 @@ impl CachedPlanner {
     }
 }
 
-/// Appends what changes of the problem in the course of an interaction.
+/// Appends what changes of the problem in the course of an interaction, and from one person to another.
 fn problem_into(problem: &DecisionProblem<'_>, key: &mut Vec<i64>) {
+    let params = problem.model.params();
+    let own = [params.open, params.choice].into_iter().flatten().map(|own| own.epsilon);
+    key.extend(own.chain([params.epsilon]).map(|epsilon| epsilon.to_bits().cast_signed()));
     problem.model.doubts_into(key);
     let mut hasher = DefaultHasher::new();
     let (concessions, spent) = (problem.concessions, problem.spent);

@@ -12,6 +12,8 @@ pub(crate) enum Stream {
     Clock = 2,
     /// Dialogues in real time.
     Turns = 3,
+    /// What a person wants, from one dialogue to the next.
+    Wishes = 4,
 }
 
 /// The random numbers of interaction `number`, the same for every policy.
@@ -41,7 +43,7 @@ mod tests {
         let first = |seed, kind, number| stream(seed, kind, number).next_u64();
         let mut all = std::collections::HashSet::new();
         for number in 0..100 {
-            for kind in [Stream::Person, Stream::Clock, Stream::Turns] {
+            for kind in [Stream::Person, Stream::Clock, Stream::Turns, Stream::Wishes] {
                 assert!(all.insert(first(1, kind, number)));
                 assert_eq!(first(1, kind, number), first(1, kind, number));
             }

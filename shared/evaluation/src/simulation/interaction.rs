@@ -1,70 +1,15 @@
 //! One interaction in turns, from the request to the hand-over: the user's replies, the clock and the
 //! costs. The dialogue itself is conducted by the dialogue manager.
 
-use dialogue::manager::{Cause, Manager, Setup, State, Utterance};
-use dialogue::{DecisionProblem, Planner, rendering};
-use language::Reader;
-use preflight::{Motions, Pace, Voice};
-use scene::{Intent, ObjectId, Question, Reading, Response, Scene};
+use dialogue::manager::{Cause, Manager, State, Utterance};
+use dialogue::{Answer, rendering};
+use scene::{Intent, ObjectId, Question, Reading, Response};
 use vocabulary::time::{Span, Time};
-use vocabulary::{
-    ActKind, Action, Attribution, Interpretation, PickOutcome, Presentation, Prior, PriorObjects,
-    Rng, TurnTaking,
-};
+use vocabulary::{ActKind, Action, Interpretation, PersonId, PickOutcome, Presentation, Rng};
 
-use crate::simulation::cached_planner::CachedPlanner;
-use crate::simulation::users::{Domain, Reply, SimulatedUser, Turn};
+use crate::simulation::room::Room;
+use crate::simulation::users::{Reply, SimulatedUser, Turn};
 use user_study::Verdict;
-
-/// Everything about a study but policy and people.
-#[derive(Clone, Copy, Debug)]
-pub struct Room<'a> {
-    /// The objects.
-    pub scene: &'a Scene,
-    /// Reads what people say about them.
-    pub reader: &'a Reader,
-    /// Decision rule and costs.
-    pub problem: DecisionProblem<'a>,
-    /// Turn-taking rules.
-    pub turns: TurnTaking,
-    /// Duration model of the robot's speech.
-    pub voice: Voice,
-    /// Duration model of people's speech and of the recogniser.
-    pub pace: &'a Pace,
-    /// Duration model of the arm; none: it takes no time.
-    pub motions: Option<&'a Motions>,
-    /// `true` if people begin with a request; else the robot begins without knowledge.
-    pub request: bool,
-    /// Whether people deny a wrong object that the robot announces, as they can until it is gripped.
-    pub denials: bool,
-}
-
-impl<'a> Room<'a> {
-    /// The objects that users talk about.
-    pub fn domain(&self) -> Domain<'a> {
-        Domain { scene: self.scene, model: self.problem.model }
-    }
-
-    /// Returns a dialogue manager that decides by a planner. Each utterance follows the question that
-    /// it answers, so it is attributed by its onset.
-    pub fn manager(&self, planner: CachedPlanner) -> Manager {
-        let DecisionProblem { model, costs, actions, durations, announce, .. } = self.problem;
-        let setup = Setup {
-            scene: self.scene.clone(),
-            model: model.clone(),
-            costs,
-            durations: durations.cloned(),
-            actions,
-            announce,
-            prior: Prior { objects: PriorObjects::Uniform, smoothing: 1.0, absent: 0.0 },
-            gestures: None,
-            perceives: false,
-            turns: TurnTaking { attribution: Attribution::Onset, ..self.turns },
-        };
-        let planner: Box<dyn Planner + Send> = Box::new(planner);
-        Manager::new(setup, planner, 0).without_recall()
-    }
-}
 
 /// A simulated interaction that has ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,6 +31,8 @@ pub struct SimulatedInteraction {
     pub answers: u32,
     /// … for another question than the one that was answered.
     pub misplaced: u32,
+    /// What the robot believed of the object when it decided to pick it.
+    pub stated: Option<f64>,
 }
 
 /// Plays one interaction of `user` with `manager`. `clock` draws durations alone.
@@ -96,38 +43,31 @@ pub fn interact(
     clock: &mut Rng,
 ) -> SimulatedInteraction {
     let state = manager.first();
-    let mut play = Play {
-        room,
-        manager,
-        clock,
-        state,
-        aimed: None,
-        questions: 0,
-        denied: 0,
-        waits: 0,
-        answers: 0,
-        seconds: 0.0,
-        value: 0.0,
-        discount: 1.0,
-    };
-    play.begin(&user.request(room.domain()));
-    loop {
-        let question = play.state.act.question;
-        let (kind, pick) = (play.state.act.kind, play.state.act.pick);
-        let verdict = match (kind, pick) {
-            (ActKind::Pick, Some((_, object))) if !play.is_denied(object, user) => {
-                return play.pick(object, user.wanted());
-            }
-            (ActKind::Pick, Some(_)) => None,
-            (ActKind::Ask, _) => play.ask(question, user),
-            (ActKind::Wait, _) => play.wait(user),
-            _ => Some(play.closed()),
-        };
-        if let Some(verdict) = verdict {
-            return play.end(verdict, None);
-        }
-    }
+    Play::new(room, manager, clock, (state, Time(0), PersonId::default())).first_pick(user)
 }
+
+/// Plays the next interaction with a person, whom the manager knows from `state`. A wrong object is
+/// refused until the right one is handed over; what is returned is about the first one.
+pub(super) fn interact_again(
+    room: &Room<'_>,
+    manager: &mut Manager,
+    (state, from): (&mut State, PersonId),
+    user: &mut SimulatedUser,
+    clock: &mut Rng,
+) -> SimulatedInteraction {
+    // Long after the last one.
+    let begins = state.act.decided + Span::from_s(PAUSE_S);
+    let mut play = Play::new(room, manager, clock, (std::mem::take(state), begins, from));
+    let ended = play.first_pick(user);
+    play.hand_over(user);
+    *state = play.state;
+    ended
+}
+
+/// Time between two interactions of a person.
+const PAUSE_S: f64 = 3600.0;
+/// Objects that are handed over until the user gives up.
+const HAND_OVERS_MAX: u32 = 6;
 
 /// An interaction in progress: user, clock and costs. The dialogue itself is the manager's.
 struct Play<'r, 'a> {
@@ -135,6 +75,8 @@ struct Play<'r, 'a> {
     manager: &'r mut Manager,
     clock: &'r mut Rng,
     state: State,
+    begins: Time,
+    from: PersonId,
     aimed: Option<ObjectId>,
     questions: u32,
     denied: u32,
@@ -146,12 +88,100 @@ struct Play<'r, 'a> {
 }
 
 impl<'r, 'a> Play<'r, 'a> {
+    fn new(
+        room: &'r Room<'a>,
+        manager: &'r mut Manager,
+        clock: &'r mut Rng,
+        (state, begins, from): (State, Time, PersonId),
+    ) -> Self {
+        Self {
+            room,
+            manager,
+            clock,
+            state,
+            begins,
+            from,
+            aimed: None,
+            questions: 0,
+            denied: 0,
+            waits: 0,
+            answers: 0,
+            seconds: 0.0,
+            value: 0.0,
+            discount: 1.0,
+        }
+    }
+
+    /// Plays from the request to the first pick, or to the end without one.
+    fn first_pick(&mut self, user: &mut SimulatedUser) -> SimulatedInteraction {
+        self.begin(&user.request(self.room.domain()));
+        match self.go_on(user) {
+            Ok(object) => self.pick(object, user.wanted()),
+            Err(verdict) => self.end(verdict, None),
+        }
+    }
+
+    /// Talks until a pick is decided; the verdict where none is.
+    fn go_on(&mut self, user: &mut SimulatedUser) -> Result<ObjectId, Verdict> {
+        loop {
+            let question = self.state.act.question;
+            let (kind, pick) = (self.state.act.kind, self.state.act.pick);
+            let verdict = match (kind, pick) {
+                (ActKind::Pick, Some((_, object))) if !self.is_denied(object, user) => {
+                    return Ok(object);
+                }
+                (ActKind::Pick, Some(_)) => None,
+                (ActKind::Ask, _) => self.ask(question, user),
+                (ActKind::Wait, _) => self.wait(user),
+                _ => Some(self.closed()),
+            };
+            if let Some(verdict) = verdict {
+                return Err(verdict);
+            }
+        }
+    }
+
+    /// Hands over what is picked, until it is what the user wants. A user who has an object in the hand
+    /// does not err.
+    fn hand_over(&mut self, user: &mut SimulatedUser) {
+        for _ in 0..HAND_OVERS_MAX {
+            let (ActKind::Pick, Some((pick, object))) = (self.state.act.kind, self.state.act.pick)
+            else {
+                return;
+            };
+            self.step(&Cause::PickEnded { pick, outcome: PickOutcome::Delivered });
+            if Some(object) == user.wanted() {
+                return;
+            }
+            let put = self.presentation(Question::Point(object), self.now());
+            self.seconds += 1.0;
+            self.hear(&Reply::Answer(Answer::No), Some(put), self.seconds, 1.0);
+            if self.state.open.is_none() || self.go_on(user).is_err() {
+                return;
+            }
+        }
+    }
+
+    /// Returns the presentation of the standing line, as that question, which began then and ends now.
+    fn presentation(&self, question: Question, began: Time) -> Presentation {
+        Presentation {
+            prompt: self.state.act.prompt,
+            number: self.state.act.presentation,
+            question,
+            scene: self.state.scene_key,
+            began,
+            ended: Some(self.now()),
+            complete: true,
+        }
+    }
+
     /// Makes the user's request, or a bare one where the user makes none.
     fn begin(&mut self, request: &Turn) {
+        let before = self.state.ended.clone();
         if self.room.request && matches!(request.reply, Reply::Words(_)) {
             self.hear(&request.reply, None, 0.0, 0.0);
         }
-        if self.state.open.is_none() && self.state.ended.is_none() {
+        if self.state.open.is_none() && self.state.ended == before {
             let utterance = self
                 .utterance(None, vec![Interpretation { weight: 1.0, ..Interpretation::default() }]);
             self.step(&Cause::Utterance(utterance));
@@ -159,7 +189,7 @@ impl<'r, 'a> Play<'r, 'a> {
     }
 
     fn now(&self) -> Time {
-        Time(0) + Span::from_s(self.seconds)
+        self.begins + Span::from_s(self.seconds)
     }
 
     fn step(&mut self, cause: &Cause) {
@@ -191,15 +221,7 @@ impl<'r, 'a> Play<'r, 'a> {
             _ if in_words => self.said_s(),
             question => self.room.voice.seconds(&self.room.scene.phrase(question)),
         };
-        let presentation = Presentation {
-            prompt: self.state.act.prompt,
-            number: self.state.act.presentation,
-            question,
-            scene: self.state.scene_key,
-            began,
-            ended: Some(self.now()),
-            complete: true,
-        };
+        let presentation = self.presentation(question, began);
         let turn = user.answer(self.room.domain(), question);
         self.listen(&turn, Some(presentation));
         None
@@ -267,8 +289,8 @@ impl<'r, 'a> Play<'r, 'a> {
         let likeliest = interpretations.iter().max_by(|a, b| a.weight.total_cmp(&b.weight));
         self.answers += u32::from(likeliest.is_some_and(|it| says_something(&it.reading)));
         let utterance = Utterance {
-            onset: Time(0) + Span::from_s(onset_s),
-            end: Time(0) + Span::from_s(onset_s + speech_s),
+            onset: self.begins + Span::from_s(onset_s),
+            end: self.begins + Span::from_s(onset_s + speech_s),
             ..self.utterance(presentation, interpretations)
         };
         self.step(&Cause::Utterance(utterance));
@@ -284,6 +306,7 @@ impl<'r, 'a> Play<'r, 'a> {
             presentations: presentation.into_iter().collect(),
             accepted: self.now(),
             interpretations,
+            from: self.from.clone(),
             ..Utterance::default()
         }
     }
@@ -317,15 +340,7 @@ impl<'r, 'a> Play<'r, 'a> {
         }
         let began = self.now();
         self.seconds += said_s;
-        let presentation = Presentation {
-            prompt: self.state.act.prompt,
-            number: self.state.act.presentation,
-            question: Question::Point(object),
-            scene: self.state.scene_key,
-            began,
-            ended: Some(self.now()),
-            complete: true,
-        };
+        let presentation = self.presentation(Question::Point(object), began);
         let onset_s = self.seconds + reaction_s;
         self.seconds = announced_s + heard_s;
         self.hear(&turn.reply, Some(presentation), onset_s, speech_s);
@@ -342,14 +357,16 @@ impl<'r, 'a> Play<'r, 'a> {
         true
     }
 
-    fn pick(self, object: ObjectId, wanted: Option<ObjectId>) -> SimulatedInteraction {
+    fn pick(&mut self, object: ObjectId, wanted: Option<ObjectId>) -> SimulatedInteraction {
         let verdict = if Some(object) == wanted { Verdict::Right } else { Verdict::Wrong };
         self.end(verdict, Some(object))
     }
 
-    fn end(mut self, verdict: Verdict, picked: Option<ObjectId>) -> SimulatedInteraction {
+    fn end(&mut self, verdict: Verdict, picked: Option<ObjectId>) -> SimulatedInteraction {
         self.value += self.discount * verdict.worth(&self.room.problem.costs);
         let talk_s = self.seconds;
+        let open = self.state.open.as_ref();
+        let stated = picked.and_then(|object| Some(open?.belief().probability(object)));
         if let Some(object) = picked {
             self.seconds += self.fetch_s(object);
         }
@@ -362,6 +379,7 @@ impl<'r, 'a> Play<'r, 'a> {
             value: self.value,
             answers: self.answers,
             misplaced: 0,
+            stated,
         }
     }
 

@@ -10,6 +10,7 @@
 //! | what | where |
 //! |---|---|
 //! | one interaction with the dialogue manager, from the request to the hand-over | `interaction.rs` |
+//! | several interactions with one person, whom the robot comes to know | `people.rs` |
 //! | a planner that remembers its decisions | `cached_planner.rs` |
 //! | the simulated user: errors, wording, recogniser, timing | `users/` |
 //! | the same dialogues with people and robot talking in real time | `turns/` |
@@ -18,8 +19,10 @@
 mod cached_planner;
 mod draw;
 mod interaction;
+mod people;
 #[cfg(test)]
 mod relations;
+mod room;
 mod tally;
 #[cfg(test)]
 mod testing;
@@ -27,7 +30,9 @@ pub mod turns;
 pub mod users;
 
 use dialogue::manager::Manager;
-pub use interaction::{Room, SimulatedInteraction, interact};
+pub use interaction::{SimulatedInteraction, interact};
+pub use people::acquainted;
+pub use room::Room;
 
 pub use cached_planner::{CachedPlanner, SharedDecisions};
 pub use tally::{HISTOGRAM, Tally};

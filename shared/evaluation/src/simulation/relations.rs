@@ -13,8 +13,8 @@ use scene::{ObjectId, Question, Scene, View, question_from_json};
 use serde_json::json;
 use vocabulary::time::{Span, Time};
 use vocabulary::{
-    Action, Actions, Announce, Attribution, Costs, Interpretation, Language, Mode, Params,
-    Presentation, Prior, PriorObjects, TurnTaking,
+    Acquaintance, Action, Actions, Announce, Attribution, Costs, Interpretation, Language, Mode,
+    Params, Presentation, Prior, PriorObjects, TurnTaking,
 };
 
 use crate::simulation::testing::planner;
@@ -53,6 +53,7 @@ fn manager(scene: &Scene, question: Question) -> Manager {
         gestures: None,
         turns: TurnTaking { attribution: Attribution::Onset, ..TurnTaking::default() },
         perceives: false,
+        people: Acquaintance::default(),
     };
     Manager::new(setup, Box::new(Asks(question)), 0)
 }
@@ -191,6 +192,7 @@ fn identical_bowls_are_told_apart_by_place() {
             voice: Voice::default(),
             pace: &pace,
             motions: None,
+            people: Acquaintance::default(),
             request: true,
             denials: false,
         };

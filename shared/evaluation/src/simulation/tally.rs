@@ -23,6 +23,8 @@ pub struct Tally {
     pub seconds: Mean,
     /// Discounted return.
     pub value: Mean,
+    /// What the robot believed of the objects that it decided to pick.
+    pub stated: Mean,
     /// Answers that counted for another question than the one they were given to.
     pub misplaced: u64,
     /// Answers that counted.
@@ -47,6 +49,7 @@ impl Tally {
         self.talk_s.add(ended.talk_s);
         self.seconds.add(ended.seconds);
         self.value.add(ended.value);
+        ended.stated.into_iter().for_each(|stated| self.stated.add(stated));
         self.misplaced += u64::from(ended.misplaced);
         self.answers += u64::from(ended.answers);
         self.histogram[(ended.questions as usize).min(HISTOGRAM - 1)] += 1;
@@ -62,6 +65,7 @@ impl Tally {
         self.talk_s.merge(&other.talk_s);
         self.seconds.merge(&other.seconds);
         self.value.merge(&other.value);
+        self.stated.merge(&other.stated);
         self.misplaced += other.misplaced;
         self.answers += other.answers;
         for (sum, more) in self.histogram.iter_mut().zip(other.histogram) {
@@ -108,6 +112,7 @@ mod tests {
             value: -1.0,
             answers: questions,
             misplaced: 0,
+            stated: Some(0.9),
         }
     }
 

@@ -4,7 +4,7 @@ use dialogue::{DecisionProblem, Model, registry};
 use language::Reader;
 use preflight::{Pace, Voice};
 use scene::Scene;
-use vocabulary::{Actions, Costs, Language, Mode, Params, TurnTaking};
+use vocabulary::{Acquaintance, Actions, Costs, Language, Mode, Params, TurnTaking};
 
 use crate::simulation::users::Domain;
 use crate::simulation::{CachedPlanner, Room};
@@ -54,6 +54,7 @@ impl House {
             voice: Voice::default(),
             pace: &self.pace,
             motions: None,
+            people: Acquaintance::default(),
             request: true,
             denials: true,
         }

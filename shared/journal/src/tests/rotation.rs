@@ -39,6 +39,20 @@ fn journal_rotation_keeps_the_latest_old_journals() {
     }
 }
 
+#[test]
+fn journal_that_is_erased_holds_the_snapshot_alone() {
+    let test = TestJournal::new();
+    let (mut journal, _) = test.open();
+    (1..=KEPT + 1).for_each(|n| journal.rotate(&[entry(n)]).unwrap());
+    journal.erase(&[entry(9)]).unwrap();
+    journal.append(&entry(10)).unwrap();
+    journal.sync().unwrap();
+    drop(journal);
+    assert_eq!(test.recover().records, [entry(9), entry(10)]);
+    let old = (1..=KEPT).filter(|n| test.old(*n).exists());
+    assert_eq!(old.count(), 0, "{:?}", test.names());
+}
+
 /// A journal with one old one, and a rotation to `entry(9)` that stops before `step`.
 fn stopped_before(step: Step) -> (TestJournal, Journal<Entry>, RotateError) {
     let test = TestJournal::new();

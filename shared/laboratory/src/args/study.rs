@@ -1,6 +1,6 @@
 //! Arguments of `study`.
 
-use std::num::{NonZeroU64, NonZeroUsize};
+use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser};
@@ -40,6 +40,15 @@ pub struct StudyArgs {
         default_value_ifs([("preset", "paper-present", "3"), ("preset", "paper-remote", "45")])
     )]
     pub interactions: NonZeroU64,
+    /// Talk in turns with people who give their name, and count the dialogues of these numbers with each of them,
+    /// from 1: the robot comes to know them. A wrong object is refused until the right one comes, and counts as
+    /// wrong.
+    #[arg(long, value_name = "N,…", value_delimiter = ',', conflicts_with = "preset")]
+    pub dialogues: Vec<NonZeroU32>,
+    /// How much more often these people want some objects than others: in proportion to 1 / rank^S, in an order
+    /// of each person's own.
+    #[arg(long, value_name = "S", default_value_t = 0.0, requires = "dialogues")]
+    pub zipf: f64,
     /// Seed of all randomness.
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,

@@ -1,5 +1,7 @@
 //! Design of a study: a row per policy and kind of people, and per rules of turn-taking.
 
+use std::num::NonZeroU32;
+
 use dialogue::registry;
 use evaluation::simulation::UserKind;
 use evaluation::simulation::turns::Rules;
@@ -22,6 +24,15 @@ pub(super) struct Row {
 pub(super) enum People {
     /// In turns.
     InTurns(UserKind),
+    /// In turns, in the dialogue of that number with each person.
+    Known {
+        /// Answers of the person.
+        kind: UserKind,
+        /// From 1.
+        dialogue: u32,
+        /// What the person wants ([`evaluation::simulation::acquainted`]).
+        zipf: f64,
+    },
     /// In real time.
     RealTime {
         /// The rules of turn-taking.
@@ -37,15 +48,23 @@ impl People {
     /// Their name.
     pub(super) fn name(&self) -> &'static str {
         match self {
-            Self::InTurns(kind) => kind.name(),
+            Self::InTurns(kind) | Self::Known { kind, .. } => kind.name(),
             Self::RealTime { name, .. } => name,
+        }
+    }
+
+    /// Returns the number of the dialogue with each person, where they are known.
+    pub(super) fn dialogue(&self) -> Option<u32> {
+        match self {
+            Self::Known { dialogue, .. } => Some(*dialogue),
+            Self::InTurns(_) | Self::RealTime { .. } => None,
         }
     }
 
     /// Returns the name of the rules; empty for a dialogue in turns.
     pub(super) fn rules(&self) -> String {
         match self {
-            Self::InTurns(_) => String::new(),
+            Self::InTurns(_) | Self::Known { .. } => String::new(),
             Self::RealTime { rules, .. } => rules.to_string(),
         }
     }
@@ -68,8 +87,13 @@ pub(super) fn rows(args: &StudyArgs, planner: &str) -> Result<Vec<Row>, Failure>
         listed(&args.users, &[]).iter().filter_map(|name| UserKind::named(name)).collect();
     let mut rows = Vec::new();
     for policy in &policies {
-        let row = |kind: &UserKind| Row { policy: policy.clone(), people: People::InTurns(*kind) };
-        rows.extend(kinds.iter().map(row));
+        let row = |people: People| Row { policy: policy.clone(), people };
+        for kind in kinds.iter().copied() {
+            let zipf = args.zipf;
+            let known = |n: &NonZeroU32| row(People::Known { kind, dialogue: n.get(), zipf });
+            rows.extend(args.dialogues.iter().map(known));
+            rows.extend(args.dialogues.is_empty().then(|| row(People::InTurns(kind))));
+        }
     }
     let timed = policies.iter().find(|name| *name == planner).or(policies.first());
     for name in listed(&args.turns, &Rules::ALL) {

@@ -54,6 +54,7 @@ fn columns(row: &Row, tally: &Tally) -> Vec<(&'static str, Json)> {
     let mut columns = vec![
         ("policy", json!(row.policy)),
         ("people", json!(row.people.name())),
+        ("dialogue", json!(row.people.dialogue())),
         ("turn_taking", json!(row.people.rules())),
         ("interactions", json!(tally.interactions())),
         ("right", json!(tally.right)),
@@ -69,6 +70,7 @@ fn columns(row: &Row, tally: &Tally) -> Vec<(&'static str, Json)> {
         (["talk_s", "talk_s_low", "talk_s_high"], &tally.talk_s),
         (["seconds", "seconds_low", "seconds_high"], &tally.seconds),
         (["return", "return_low", "return_high"], &tally.value),
+        (["stated", "stated_low", "stated_high"], &tally.stated),
     ];
     for ([name, low, high], mean) in means {
         let interval = mean.interval();

@@ -11,7 +11,7 @@ use std::thread;
 use dialogue::manager::Manager;
 use dialogue::registry;
 use evaluation::simulation::{
-    CHUNK, CachedPlanner, Room, SharedDecisions, Tally, interactions, turns,
+    CHUNK, CachedPlanner, Room, SharedDecisions, Tally, acquainted, interactions, turns,
 };
 use vocabulary::{Attribution, TurnTaking};
 
@@ -82,11 +82,12 @@ fn merge(rows: usize, pieces: &[Piece], done: &[Option<Tally>]) -> Vec<Tally> {
     tallies
 }
 
-/// What decides in a row: its policy, and whether in real time, where a pick is final.
-type Decider<'a> = (&'a str, bool);
+/// What decides in a row: its policy, whether in real time, where a pick is final, and whether it knows people.
+type Decider<'a> = (&'a str, bool, bool);
 
 fn decider(row: &Row) -> Decider<'_> {
-    (row.policy.as_str(), row.people.in_real_time())
+    let people = &row.people;
+    (row.policy.as_str(), people.in_real_time(), people.dialogue().is_some())
 }
 
 /// One thread's side.
@@ -114,7 +115,11 @@ impl Worker<'_> {
             if people.in_real_time() {
                 room.problem = room.problem.with_final_picks();
             }
-            self.managers.insert(decider, room.manager(planner));
+            let manager = match people.dialogue() {
+                Some(_) => room.learning_manager(planner),
+                None => room.manager(planner),
+            };
+            self.managers.insert(decider, manager);
         }
         let Some(manager) = self.managers.get_mut(&decider) else {
             return Tally::default();
@@ -127,6 +132,10 @@ impl Worker<'_> {
                 let attribution = Attribution::Onset;
                 manager.set_turns(TurnTaking { attribution, ..self.room.turns });
                 interactions(&self.room, manager, *kind, self.seed, numbers)
+            }
+            People::Known { kind, dialogue, zipf } => {
+                let who = (*kind, *dialogue, *zipf);
+                acquainted(&self.room, manager, who, self.seed, numbers)
             }
             People::RealTime { rules, kind, .. } => {
                 turns::dialogues(&self.room, manager, rules, kind, self.seed, numbers)

@@ -9,7 +9,7 @@ use language::Reader;
 use manipulation::Robot;
 use preflight::{ArmSetup, Extent, Motions, Pace, Voice, measure};
 use service::exit::{Exit, Failure};
-use vocabulary::{Durations, Language, Mode, TurnTaking};
+use vocabulary::{Acquaintance, Durations, Language, Mode, TurnTaking};
 
 use crate::args::{Preset, ProblemArgs, StudyArgs};
 use crate::batch::Problem;
@@ -20,6 +20,7 @@ pub(super) struct Setup {
     reader: Reader,
     problem: Problem,
     turns: TurnTaking,
+    people: Acquaintance,
     voice: Voice,
     pace: Pace,
     motions: Option<Motions>,
@@ -51,6 +52,7 @@ impl Setup {
         }
         let settings = problem.settings.as_ref();
         let turns = settings.map_or_else(TurnTaking::default, |it| it.dialogue.turns);
+        let people = settings.map_or_else(Acquaintance::default, |it| it.dialogue.people);
         let voice = settings.map_or_else(Voice::default, |settings| Voice {
             words_per_minute: f64::from(settings.speech.voice_words_per_minute),
         });
@@ -58,7 +60,8 @@ impl Setup {
         let (reader, request) = (Reader::new(&problem.scene, language), !args.no_request);
         let (motions, pace) = (motions(&problem)?, Pace::default());
         let denials = args.preset.is_none();
-        let mut setup = Self { reader, problem, turns, voice, pace, motions, request, denials };
+        let mut setup =
+            Self { reader, problem, turns, people, voice, pace, motions, request, denials };
         if args.measured_costs {
             setup.problem.durations = Some(setup.durations());
         }
@@ -75,6 +78,7 @@ impl Setup {
             voice: self.voice,
             pace: &self.pace,
             motions: self.motions.as_ref(),
+            people: self.people,
             request: self.request,
             denials: self.denials,
         }

@@ -19,6 +19,7 @@ pub(super) fn lines(setup: &Setup, results: &[(&Row, Tally)]) -> Vec<String> {
             "PEOPLE",
             "SUCCESS %",
             "95 %",
+            "STATED %",
             "QUESTIONS",
             seconds,
             "DENIED",
@@ -41,6 +42,7 @@ pub(super) fn lines(setup: &Setup, results: &[(&Row, Tally)]) -> Vec<String> {
 fn cells(row: &Row, tally: &Tally) -> Vec<String> {
     let mut cells = vec![row.policy.clone()];
     cells.extend(common(row, tally, &tally.seconds));
+    cells.insert(4, format!("{:.2}", 100.0 * tally.stated.mean()));
     cells.push(format!("{:.3}", tally.denied.mean()));
     cells.push(format!("{:.3}", tally.value.mean()));
     cells.push(interval(tally.value.interval(), 1.0, 3));
@@ -56,12 +58,18 @@ fn timed_cells(row: &Row, tally: &Tally) -> Vec<String> {
 
 fn common(row: &Row, tally: &Tally, seconds: &Mean) -> [String; 5] {
     [
-        row.people.name().to_owned(),
+        people(row),
         format!("{:.2}", 100.0 * tally.success()),
         interval(tally.success_interval(), 100.0, 2),
         format!("{:.3}", tally.questions.mean()),
         format!("{:.2}", seconds.mean()),
     ]
+}
+
+/// With whom, and in which dialogue.
+fn people(row: &Row) -> String {
+    let name = row.people.name();
+    row.people.dialogue().map_or_else(|| name.to_owned(), |n| format!("{name}, dialogue {n}"))
 }
 
 fn interval(interval: Interval, unit: f64, digits: usize) -> String {

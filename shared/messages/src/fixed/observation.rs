@@ -7,7 +7,7 @@ use crate::text::FixedText;
 use crate::wire::{Code, WireError, WireField};
 use iceoryx2::prelude::ZeroCopySend;
 use scene::{Doubt, Intent, Reading, Reference, Relation, Response, Role, UnknownWord, WordId};
-use vocabulary::Interpretation;
+use vocabulary::{Interpretation, PERSON_BYTES_MAX, PersonId};
 
 /// Readings of one utterance, for all questions together.
 pub const READINGS_MAX: usize = 32;
@@ -208,8 +208,8 @@ wire_struct! {
         source: Code<Source>,
         /// [`scene::Role`] of `unknown`.
         unknown_role: Code<Role>,
-        /// Zero.
-        reserved: [u8; 4],
+        /// Of the utterance.
+        from: FixedText<PERSON_BYTES_MAX>,
         /// Possible meanings: for each question asked and for none, most likely first.
         readings: [WireReading; READINGS_MAX],
         /// A word that the scene does not have, for the robot's reply ("plate"); may be empty.
@@ -235,6 +235,15 @@ impl Observation {
     pub fn unknown(&self) -> Option<UnknownWord> {
         let text = self.unknown.as_str().ok().filter(|text| !text.is_empty())?;
         Some(UnknownWord { text: text.to_owned(), role: self.unknown_role.get() })
+    }
+
+    /// The person who speaks.
+    ///
+    /// # Errors
+    /// Bytes that are not a name.
+    pub fn person(&self) -> Result<PersonId, WireError> {
+        let name = self.from.as_str()?;
+        PersonId::new(name).map_err(|_| WireError::new("person", name.len() as u32))
     }
 
     /// The questions that the utterance may answer, newest first.

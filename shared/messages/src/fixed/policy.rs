@@ -7,12 +7,28 @@ use crate::wire::{Code, wire_codes};
 use crate::{ActKind, InteractionId, PickId, WireError, judge};
 use iceoryx2::prelude::ZeroCopySend;
 use scene::{ObjectId, Question};
+use vocabulary::PERSON_BYTES_MAX;
 
 wire_struct! {
     /// The highest utterance that the belief holds. Policy to speech.
     AppliedMark = "AppliedMark" {
         /// `UtteranceSeq`.
         seq: u64,
+    }
+}
+
+wire_struct! {
+    /// An order to forget what was learned about a person. Clients to policy, sent again until [`PolicyView::forgot`]
+    /// has its key.
+    ///
+    /// [`PolicyView::forgot`]: crate::PolicyView::forgot
+    Forget = "Forget" {
+        /// Made by the client, not 0, kept through its retries.
+        key: u64,
+        /// Name of the person.
+        person: FixedText<PERSON_BYTES_MAX>,
+        /// Zero.
+        reserved: [u8; 4],
     }
 }
 

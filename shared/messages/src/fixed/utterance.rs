@@ -6,6 +6,7 @@ use crate::text::{FixedText, TextTooLong};
 use crate::wire::{Code, WireError, wire_enum};
 use iceoryx2::prelude::ZeroCopySend;
 use serde::{Deserialize, Serialize};
+use vocabulary::PERSON_BYTES_MAX;
 
 /// Longest utterance, all hypotheses together, in bytes.
 pub const UTTERANCE_BYTES_MAX: usize = 16_380;
@@ -94,7 +95,9 @@ wire_struct! {
         /// Number of used entries of `asked`.
         asked_count: u8,
         /// Zero.
-        reserved: [u8; 5],
+        reserved: u8,
+        /// Name of the person who speaks; empty: nobody in particular.
+        from: FixedText<PERSON_BYTES_MAX>,
         /// Recognition hypotheses, most likely first.
         hypotheses: [WireHypothesis; HYPOTHESES_MAX],
         /// The text of all hypotheses, one after another.

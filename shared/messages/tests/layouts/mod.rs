@@ -43,6 +43,7 @@ pub(crate) fn structs() -> Vec<Layout> {
         Utterance,
         Observation,
         AppliedMark,
+        Forget,
         RobotAct,
         Presented,
         Activity,

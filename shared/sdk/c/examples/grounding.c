@@ -103,6 +103,7 @@ static void observe(const whichone_utterance_t *utterance, const whichone_group_
     observation->seq = utterance->seq;
     memcpy(observation->asked, utterance->asked, sizeof observation->asked);
     observation->asked_count = utterance->asked_count;
+    observation->from = utterance->from;
     observation->gesture = utterance->gesture;
     observation->source = utterance->source;
     observation->onset_ns = utterance->onset_ns;

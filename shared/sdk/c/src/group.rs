@@ -5,12 +5,13 @@ use std::fs;
 
 use messages::{MotionOrder, ReceiptStatus, Sound};
 use service::bus::{Bus, Identity};
-use service::client::{Client, deliver};
+use service::client::{Client, submit};
 use service::exit::Failure;
 use service::group::{ENV_GROUP, GroupName, GroupPaths};
 use service::lifecycle::{Environment, Lifecycle};
 use service::logging::{self, LogFlush};
 use service::stop_socket::{self, default_patience};
+use service::submission::Submission;
 use service::{Span, Time, clock};
 
 use crate::{complain, or_complain, text};
@@ -97,7 +98,7 @@ impl Group {
         Ok((name.clone(), lifecycle))
     }
 
-    fn say(&self, text: &str, patience: Span) -> Result<u64, String> {
+    fn say(&self, from: &str, text: &str, patience: Span) -> Result<u64, String> {
         let Role::Client(client) = &self.role else {
             return Err("a service does not speak to the robot; help: join the group as a client"
                 .to_owned());
@@ -105,7 +106,8 @@ impl Group {
         let (writer, receipts) = client.submissions().map_err(|error| error.to_string())?;
         let sound = Sound::Text(text.to_owned());
         let said = (Time(0), Time(0));
-        let receipts = deliver(&writer, &receipts, sound, said, patience, || {
+        let mut submission = Submission::new(sound, said, clock::now(), patience).by(from);
+        let receipts = submit(&writer, &receipts, &mut submission, || {
             (!self.paths.control_socket().exists()).then(|| "the group is not running".to_owned())
         });
         let receipts = receipts.map_err(|error| error.to_string())?;
@@ -189,7 +191,25 @@ pub unsafe extern "C" fn whichone_say(
     // SAFETY: as the caller promises.
     let (Some(group), Some(words)) = (unsafe { (group.as_ref(), text(words)) }) else { return 0 };
     let patience = Span::from_s(seconds.clamp(0.0, 3600.0));
-    or_complain(group.say(words, patience)).unwrap_or_default()
+    or_complain(group.say("", words, patience)).unwrap_or_default()
+}
+
+/// As [`whichone_say`], for a person by their name.
+///
+/// # Safety
+/// `group` is null or joined; `from` and `words` are null, or end with a zero.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn whichone_say_from(
+    group: *const Group,
+    from: *const c_char,
+    words: *const c_char,
+    seconds: f64,
+) -> u64 {
+    // SAFETY: as the caller promises.
+    let given = unsafe { (group.as_ref(), text(from), text(words)) };
+    let (Some(group), Some(from), Some(words)) = given else { return 0 };
+    let patience = Span::from_s(seconds.clamp(0.0, 3600.0));
+    or_complain(group.say(from, words, patience)).unwrap_or_default()
 }
 
 /// Stops the arm and latches the stop. Returns false after saying why it is not confirmed.

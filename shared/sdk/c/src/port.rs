@@ -6,9 +6,9 @@ use messages::layout::{self, WireMessage};
 use messages::schema::Schema;
 use messages::topics::Topic;
 use messages::{
-    Activity, AppliedMark, ArmStatus, AudioChunk, Hearing, Injection, JointStates, Observation,
-    Partial, PolicyView, Presented, Receipt, RobotAct, Sighting, TableView, TrajectoryView,
-    Utterance, WorldView, robot,
+    Activity, AppliedMark, ArmStatus, AudioChunk, Forget, Hearing, Injection, JointStates,
+    Observation, Partial, PolicyView, Presented, Receipt, RobotAct, Sighting, TableView,
+    TrajectoryView, Utterance, WorldView, robot,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -94,7 +94,7 @@ impl<T: Schema + Serialize + DeserializeOwned + std::fmt::Debug> WriteBytes for 
 macro_rules! open {
     ($bus:ident, $topic:ident, $fixed:ident, $encoded:ident) => {
         open!(@ $bus, $topic, $fixed [
-            Receipt Utterance Presented Activity Hearing Partial AudioChunk Observation AppliedMark RobotAct
+            Receipt Utterance Presented Activity Hearing Partial AudioChunk Observation AppliedMark Forget RobotAct
             ArmStatus JointStates
         ] robot [
             JointState AssemblyState JointCommand JointTrajectoryPoint SpeedRatio EndpointState EndEffectorCommand

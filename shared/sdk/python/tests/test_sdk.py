@@ -103,7 +103,8 @@ class Messages(unittest.TestCase):
             self.assertIn(head, golden)
             block = golden.split(head)[1].split("\n\n")[0].splitlines()
             offsets = [(line.split()[2].rstrip(":"), int(line.split()[0])) for line in block]
-            self.assertEqual(offsets, [(name, getattr(message, name).offset) for name, *_ in message._fields_])
+            found = [(name.removesuffix("_"), getattr(message, name).offset) for name, *_ in message._fields_]
+            self.assertEqual(offsets, found)
         self.assertEqual(set(m.TOPICS), {line.split()[0] for line in golden.splitlines() if " waking [" in line})
 
     def test_encoded_messages_round_trip(self):
@@ -111,24 +112,26 @@ class Messages(unittest.TestCase):
                   m.SoundTalk(longest_s=2.5),
                   m.SoundTranscript(hypotheses=[m.Hypothesis(text="a", weight=0.5, word_confidence=[0.25])])]
         for sound in sounds:
-            injection = m.Injection(key=bytes(range(16)), onset_ns=2**63, end_ns=0, seen_prompt=300, sound=sound)
+            injection = m.Injection(key=bytes(range(16)), onset_ns=2**63, end_ns=0, seen_prompt=300, from_="Ann",
+                                    sound=sound)
             self.assertEqual(decode(m.Injection, encode(injection)), injection)
-        data = encode(m.Injection(key=b"k" * 16, onset_ns=0, end_ns=127, seen_prompt=128, sound=sounds[0]))
-        self.assertEqual(data, b"k" * 16 + b"\x00\x7f\x80\x01\x00\x06hell\xc3\xb6")
+        data = encode(m.Injection(key=b"k" * 16, onset_ns=0, end_ns=127, seen_prompt=128, from_="A", sound=sounds[0]))
+        self.assertEqual(data, b"k" * 16 + b"\x00\x7f\x80\x01\x01A\x00\x06hell\xc3\xb6")
 
     def test_malformed_bytes_are_refused(self):
-        whole = encode(m.Injection(key=b"k" * 16, onset_ns=0, end_ns=0, seen_prompt=0, sound=m.SoundText("hello")))
+        sound = m.SoundText("hello")
+        whole = encode(m.Injection(key=b"k" * 16, onset_ns=0, end_ns=0, seen_prompt=0, from_="", sound=sound))
         for cut in range(len(whole)):
             with self.assertRaises(InvalidMessage):
                 decode(m.Injection, whole[:cut])
-        wrong = [whole + b"\0", whole[:19] + b"\x09" + whole[20:], whole[:16] + b"\xff" * 20,
-                 whole[:20] + b"\xff\xff\xff\xff\x0f", whole[:-1] + b"\xff"]
+        wrong = [whole + b"\0", whole[:20] + b"\x09" + whole[21:], whole[:16] + b"\xff" * 20,
+                 whole[:21] + b"\xff\xff\xff\xff\x0f", whole[:-1] + b"\xff"]
         for data in wrong:
             with self.assertRaises(InvalidMessage):
                 decode(m.Injection, data)
 
     def test_values_that_do_not_fit_are_refused(self):
-        good = {"key": b"k" * 16, "onset_ns": 0, "end_ns": 0, "seen_prompt": 0, "sound": m.SoundText("a")}
+        good = {"key": b"k" * 16, "onset_ns": 0, "end_ns": 0, "seen_prompt": 0, "from_": "", "sound": m.SoundText("a")}
         for wrong in ({"key": b"k"}, {"onset_ns": -1}, {"end_ns": 2**64}, {"sound": "a"}):
             with self.assertRaises(InvalidMessage):
                 encode(m.Injection(**(good | wrong)))

@@ -124,23 +124,24 @@ class Client:
                 yield now
             time.sleep(every_s)
 
-    def say(self, text: str, *, timeout: float = 10.0) -> int:
-        """Says something to the robot, as if typed. Returns the utterance's number once it is durable: it will be
+    def say(self, text: str, *, from_: str = "", timeout: float = 10.0) -> int:
+        """Says something to the robot, as if typed; `from_` is the name of the person who speaks, at most 64 bytes.
+        Returns the utterance's number once it is durable: it will be
         applied once, whatever is killed. Raises `Refused` or `TimeoutError`."""
-        return self._deliver(m.SoundText(text), timeout)
+        return self._deliver(m.SoundText(text), from_, timeout)
 
-    def point(self, xyz: Sequence[float], words: str = "", *, timeout: float = 10.0) -> int:
+    def point(self, xyz: Sequence[float], words: str = "", *, from_: str = "", timeout: float = 10.0) -> int:
         """Points at a place (metres, frame `base`), with words or without. Otherwise as `say`."""
-        return self._deliver(m.SoundPoint(target_m=[float(x) for x in xyz], words=words), timeout)
+        return self._deliver(m.SoundPoint(target_m=[float(x) for x in xyz], words=words), from_, timeout)
 
-    def hypotheses(self, wordings: Sequence[tuple[str, float]], *, timeout: float = 10.0) -> int:
+    def hypotheses(self, wordings: Sequence[tuple[str, float]], *, from_: str = "", timeout: float = 10.0) -> int:
         """Says what a recogniser has heard: wordings with their weights, most likely first. Otherwise as `say`."""
         heard = [m.Hypothesis(text=text, weight=weight, word_confidence=[]) for text, weight in wordings]
-        return self._deliver(m.SoundTranscript(hypotheses=heard), timeout)
+        return self._deliver(m.SoundTranscript(hypotheses=heard), from_, timeout)
 
-    def _deliver(self, sound: m.Sound, timeout: float) -> int:
+    def _deliver(self, sound: m.Sound, from_: str, timeout: float) -> int:
         key = self._identity + secrets.token_bytes(8)
-        injection = m.Injection(key=key, onset_ns=0, end_ns=0, seen_prompt=0, sound=sound)
+        injection = m.Injection(key=key, onset_ns=0, end_ns=0, seen_prompt=0, from_=from_, sound=sound)
         until, due = time.monotonic() + timeout, 0.0
         while (now := time.monotonic()) < until:
             if now >= due:

@@ -25,6 +25,7 @@ HYPOTHESES_MAX = 5
 JOINTS_MAX = 17
 JOINT_STATE_LEN = 17
 LIMB_JOINTS = 7
+PERSON_BYTES_MAX = 64
 READINGS_MAX = 32
 UTTERANCE_BYTES_MAX = 16380
 NO_QUESTION = 255
@@ -626,8 +627,8 @@ class Utterance(Message):
     """An accepted utterance. Speech to grounding."""
 
     wire_name = "Utterance"
-    wire_size = 16888
-    schema_key = "1f26d4dc29c15403"
+    wire_size = 16952
+    schema_key = "a9b84ed794b730c1"
     seq: int
     """`UtteranceSeq`."""
     asked: Array[AskedQuestion]
@@ -646,8 +647,10 @@ class Utterance(Message):
     """Number of used entries of `hypotheses`; the first is the best. 0 for a gesture without words."""
     asked_count: int
     """Number of used entries of `asked`."""
-    reserved: Array[int]
+    reserved: int
     """Zero."""
+    from_: Text
+    """Name of the person who speaks; empty: nobody in particular."""
     hypotheses: Array[WireHypothesis]
     """Recognition hypotheses, most likely first."""
     text: Text
@@ -663,9 +666,10 @@ class Utterance(Message):
         ("source", ctypes.c_uint8),  # 256
         ("hypothesis_count", ctypes.c_uint8),  # 257
         ("asked_count", ctypes.c_uint8),  # 258
-        ("reserved", ctypes.c_uint8 * 5),  # 259
-        ("hypotheses", WireHypothesis * HYPOTHESES_MAX),  # 264
-        ("text", fixed_text(16380)),  # 504
+        ("reserved", ctypes.c_uint8),  # 259
+        ("from_", fixed_text(64)),  # 260
+        ("hypotheses", WireHypothesis * HYPOTHESES_MAX),  # 328
+        ("text", fixed_text(16380)),  # 568
     ]
 
 
@@ -673,8 +677,8 @@ class Observation(Message):
     """The interpretation of an utterance. Grounding to policy, one for each utterance."""
 
     wire_name = "Observation"
-    wire_size = 13144
-    schema_key = "c0b0d1010bbb96f9"
+    wire_size = 13208
+    schema_key = "5b9560b6ac211b48"
     seq: int
     """The utterance's `UtteranceSeq`."""
     asked: Array[AskedQuestion]
@@ -699,8 +703,8 @@ class Observation(Message):
     """`Source` of the utterance."""
     unknown_role: int
     """`Role` of `unknown`."""
-    reserved: Array[int]
-    """Zero."""
+    from_: Text
+    """Of the utterance."""
     readings: Array[WireReading]
     """Possible meanings: for each question asked and for none, most likely first."""
     unknown: Text
@@ -719,9 +723,9 @@ class Observation(Message):
         ("asked_count", ctypes.c_uint8),  # 273
         ("source", ctypes.c_uint8),  # 274
         ("unknown_role", ctypes.c_uint8),  # 275
-        ("reserved", ctypes.c_uint8 * 4),  # 276
-        ("readings", WireReading * READINGS_MAX),  # 280
-        ("unknown", fixed_text(60)),  # 13080
+        ("from_", fixed_text(64)),  # 276
+        ("readings", WireReading * READINGS_MAX),  # 344
+        ("unknown", fixed_text(60)),  # 13144
     ]
 
 
@@ -736,6 +740,27 @@ class AppliedMark(Message):
     codes = {}
     _fields_ = [
         ("seq", ctypes.c_uint64),  # 0
+    ]
+
+
+class Forget(Message):
+    """An order to forget what was learned about a person. Clients to policy, sent again until
+    `PolicyView::forgot` has its key. `PolicyView::forgot`: PolicyView::forgot"""
+
+    wire_name = "Forget"
+    wire_size = 80
+    schema_key = "d8d270a2349d4c69"
+    key: int
+    """Made by the client, not 0, kept through its retries."""
+    person: Text
+    """Name of the person."""
+    reserved: Array[int]
+    """Zero."""
+    codes = {}
+    _fields_ = [
+        ("key", ctypes.c_uint64),  # 0
+        ("person", fixed_text(64)),  # 8
+        ("reserved", ctypes.c_uint8 * 4),  # 76
     ]
 
 
@@ -1802,6 +1827,7 @@ Sound_ENCODING = encoding.Variants({0: SoundText, 1: SoundWav, 2: SoundPoint, 3:
     onset_ns=encoding.UNSIGNED,
     end_ns=encoding.UNSIGNED,
     seen_prompt=encoding.UNSIGNED,
+    from_=encoding.STR,
     sound=Sound_ENCODING,
 )
 @dataclass(kw_only=True)
@@ -1818,11 +1844,14 @@ class Injection:
     seen_prompt: int
     """The latest prompt that the user was shown before; 0: not known. What is said answers no later one,
     however long that has been said already: the client may not have heard of it."""
+    from_: str
+    """Name of the person who types or points, printable and of at most 64 bytes; empty or `guest`: nobody in
+    particular, of whom nothing is learned. Of sound nobody is known."""
     sound: Sound
     """Text to be heard."""
 
 
-Injection.wire_name, Injection.schema_key = "Injection", "fdd28f9b36a33309"
+Injection.wire_name, Injection.schema_key = "Injection", "4c4f7035bc34a0cc"
 
 
 @encoding.struct(
@@ -1881,6 +1910,7 @@ class PhaseWay:
     scene_key=encoding.UNSIGNED,
     applied=encoding.UNSIGNED,
     interaction=encoding.UNSIGNED,
+    from_=encoding.STR,
     belief=encoding.Sequence(encoding.F64),
     objects=encoding.Sequence(ObjectId_ENCODING),
     absent=encoding.F64,
@@ -1900,6 +1930,7 @@ class PhaseWay:
     refusable=encoding.Optional(encoding.Nested(Delivery)),
     refused=encoding.UNSIGNED,
     planner=encoding.STR,
+    forgot=encoding.UNSIGNED,
 )
 @dataclass(kw_only=True)
 class PolicyView:
@@ -1911,6 +1942,8 @@ class PolicyView:
     """Highest utterance applied."""
     interaction: int
     """The open interaction, 0 for none."""
+    from_: str
+    """Name of the person whose interaction it is; empty: nobody in particular."""
     belief: list[float]
     """Probability of each object, in the scene's order or in that of `objects`."""
     objects: list[ObjectId]
@@ -1951,9 +1984,11 @@ class PolicyView:
     """Observations refused because they made no sense."""
     planner: str
     """The planner that decides, by its name."""
+    forgot: int
+    """Key of the latest `Forget` that was carried out."""
 
 
-PolicyView.wire_name, PolicyView.schema_key = "PolicyView", "920ce4b7ce504bda"
+PolicyView.wire_name, PolicyView.schema_key = "PolicyView", "0f26593076b2e607"
 
 
 @encoding.struct(
@@ -2101,6 +2136,7 @@ TOPICS: dict[str, Topic] = {
     "policy/act": Topic("policy/act", RobotAct, writer="policy", wakes=("speech", "arm", "console",), buffer=1, history=1),
     "scene/sightings": Topic("scene/sightings", Sighting, writer=None, wakes=("policy", "recorder",), buffer=16, history=0),
     "scene/objects": Topic("scene/objects", TableView, writer="policy", wakes=("arm",), buffer=1, history=1),
+    "policy/forget": Topic("policy/forget", Forget, writer=None, wakes=("policy",), buffer=1, history=0),
     "policy/view": Topic("policy/view", PolicyView, writer="policy", wakes=(), buffer=1, history=1),
     "arm/status": Topic("arm/status", ArmStatus, writer="arm", wakes=("policy", "speech", "console",), buffer=1, history=1),
     "arm/joints": Topic("arm/joints", JointStates, writer="arm", wakes=("ros2",), buffer=16, history=1),

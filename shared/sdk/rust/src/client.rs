@@ -7,13 +7,15 @@ use messages::{
     topics,
 };
 use runtime::bus::{Bus, EncodedReader, EncodedWriter, Reader};
-use runtime::client::{Polling, deliver};
+use runtime::client::{Polling, submit};
 use runtime::clock;
 use runtime::exit::{Exit, Failure};
 use runtime::group::{ENV_GROUP, GroupName, GroupPaths};
 use runtime::stop_socket::{self, StopState, default_patience};
+use runtime::submission::Submission;
 use runtime::{Span, Time};
 use scene::{ObjectId, Question, Scene};
+use vocabulary::PersonId;
 
 use crate::settings;
 
@@ -55,6 +57,8 @@ pub struct Client {
     presented: Presented,
     /// The latest utterance of this client, 0 for none.
     said: u64,
+    /// Who speaks through this client.
+    from: PersonId,
     client: runtime::client::Client,
 }
 
@@ -88,6 +92,7 @@ impl Client {
             status: None,
             presented: Presented::default(),
             said: 0,
+            from: PersonId::default(),
             client,
             paths,
         })
@@ -101,6 +106,17 @@ impl Client {
     /// The group's shared memory, to read other topics.
     pub fn bus(&self) -> &Bus {
         self.client.bus()
+    }
+
+    /// States who speaks through this client from now on; at first nobody in particular. What they have had fetched
+    /// teaches the robot how they speak, and `whichone people forget` has it forget that.
+    ///
+    /// # Errors
+    /// A name of more than 64 bytes, or one that cannot be printed.
+    pub fn speak_as(&mut self, name: &str) -> Result<(), Failure> {
+        let wrong = |error: vocabulary::NotAPerson| Failure::new(Exit::Usage, error.to_string());
+        self.from = PersonId::new(name).map_err(wrong)?;
+        Ok(())
     }
 
     /// Says something to the robot, as if typed. Returns the utterance's number once it is durable: it will be
@@ -122,8 +138,10 @@ impl Client {
 
     fn submit(&mut self, sound: Sound) -> Result<u64, Failure> {
         let said = (clock::now(), Time(0));
-        let Self { injections, receipts, .. } = self;
-        let receipts = deliver(injections, receipts, sound, said, ACCEPT_PATIENCE, || None)?;
+        let Self { injections, receipts, from, .. } = self;
+        let mut submission =
+            Submission::new(sound, said, clock::now(), ACCEPT_PATIENCE).by(from.as_str());
+        let receipts = submit(injections, receipts, &mut submission, || None)?;
         let receipt = receipts.first();
         let accepted = receipt.filter(|receipt| receipt.status == ReceiptStatus::Accepted);
         if let Some(receipt) = accepted {

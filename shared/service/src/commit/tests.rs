@@ -16,6 +16,7 @@ struct State {
     is_broken: bool,
     attempts: u32,
     snapshots: Vec<Vec<u32>>,
+    erasures: u32,
     bytes: u64,
 }
 
@@ -58,6 +59,12 @@ impl Store<u32> for Disk {
         }
         let waiting = std::mem::take(&mut state.waiting);
         state.synced.push(waiting);
+        Ok(())
+    }
+
+    fn erase(&mut self, snapshot: &[u32]) -> Result<(), RotateError> {
+        self.rotate(snapshot)?;
+        self.0.lock().unwrap().erasures += 1;
         Ok(())
     }
 
@@ -210,6 +217,29 @@ fn long_journal_is_rotated_when_all_is_durable_and_a_failure_is_tried_again_late
     commit.rotate(vec![8]).unwrap();
     until(&mut commit, |commit| commit.bytes == 10);
     assert_eq!(disk.get(|state| state.snapshots.clone()).last(), Some(&vec![8]));
+    assert!(!commit.wants_snapshot());
+}
+
+#[test]
+fn journal_is_erased_at_once_and_again_after_a_failure() {
+    let disk = Disk::default();
+    let mut commit = start(&disk);
+    commit.erase();
+    pass(&mut commit, &[1], &[]);
+    until(&mut commit, Commit::is_settled);
+    assert!(commit.wants_snapshot(), "a short journal, too");
+    disk.set(|state| (state.is_full, state.attempts) = (true, 0));
+    commit.rotate(vec![7]).unwrap();
+    until(&mut commit, |_| disk.get(|state| state.attempts) > 0);
+    disk.set(|state| (state.is_full, state.bytes) = (false, ROTATE_AGAIN_BYTES));
+    pass(&mut commit, &[2], &[]);
+    until(&mut commit, Commit::is_settled);
+    assert!(commit.wants_snapshot(), "later");
+    commit.rotate(vec![8]).unwrap();
+    until(&mut commit, |commit| !commit.erases);
+    assert_eq!(disk.get(|state| state.erasures), 1);
+    pass(&mut commit, &[3], &[]);
+    until(&mut commit, Commit::is_settled);
     assert!(!commit.wants_snapshot());
 }
 

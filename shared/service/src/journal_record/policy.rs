@@ -56,6 +56,8 @@ pub enum PolicyCause {
         utterance: u64,
         /// Whether it was typed, or given whole in another way.
         typed: bool,
+        /// Name of the person who spoke, where it is known.
+        from: Option<String>,
         /// When the user began to speak, or typed.
         onset_ns: u64,
         /// When the user had finished.
@@ -108,6 +110,11 @@ pub enum PolicyCause {
     SetAside {
         /// Every number up to this one is over.
         numbers_over: u64,
+    },
+    /// A person wanted to be forgotten.
+    Forget {
+        /// The person's name.
+        person: String,
     },
 }
 

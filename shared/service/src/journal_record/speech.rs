@@ -36,6 +36,8 @@ pub struct AcceptedRecord {
     pub hypotheses: Vec<Hypothesis>,
     /// Where it came from.
     pub source: Source,
+    /// Name of the person who spoke, where it is known.
+    pub from: Option<String>,
     /// The point that was pointed at, metres, frame `base`.
     pub gesture_m: Option<[f64; 3]>,
     /// The latest questions whose sound had begun by then, newest first.

@@ -11,6 +11,8 @@ use crate::Time;
 pub struct DialogueView<'a> {
     /// The open interaction, 0 for none.
     pub interaction: u64,
+    /// Name of the person whose interaction it is; empty where nobody in particular speaks.
+    pub from: &'a str,
     /// Highest utterance that is part of it.
     pub applied: u64,
     /// Probability of each object, by name, in the scene's order.
@@ -148,6 +150,7 @@ impl<'a> DialogueView<'a> {
         let names = scene.objects().iter().map(|object| object.name.as_str());
         Self {
             interaction: view.interaction,
+            from: &view.from,
             applied: view.applied,
             belief: names.zip(view.belief.iter().copied()).collect(),
             absent: view.absent,

@@ -17,6 +17,7 @@ fn policy_view(scene: &Scene) -> PolicyView {
         scene_key: scene.key(),
         applied: 3,
         interaction: 7,
+        from: "Ann".to_owned(),
         belief: vec![0.5, 0.25, 0.125, 0.125, 0.0, 0.0],
         absent: 0.0,
         person: Some((0.9, 0.05)),

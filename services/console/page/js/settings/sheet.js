@@ -5,6 +5,7 @@ import { keep, recall } from "../kept.js";
 import { openSheet } from "../sheet.js";
 import { LANGUAGES } from "../strings.js";
 import { choose, chosen, LOOK } from "./look.js";
+import { personField } from "./person.js";
 
 const LANGUAGE_NAMES = { en: "English", de: "Deutsch" };
 
@@ -38,6 +39,7 @@ export function makeSettings({ store, t }) {
     add(t(`settings.${name}`), looks(name, t));
   }
   add(t("settings.keys"), keys(t));
+  add(t("settings.from"), ...personField(t));
   document.body.append(dialog);
   return { open: () => openSheet(dialog, store), add };
 }

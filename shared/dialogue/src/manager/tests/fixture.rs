@@ -7,8 +7,8 @@ use vocabulary::gesture::Gestures;
 use vocabulary::ids::{PickId, PromptId, UtteranceSeq};
 use vocabulary::time::Time;
 use vocabulary::{
-    ActKind, Actions, Announce, Costs, Durations, Interpretation, Mode, Params, PickOutcome,
-    Presentation, Prior, PriorObjects, TurnTaking,
+    Acquaintance, ActKind, Actions, Announce, Costs, Durations, Interpretation, Mode, Params,
+    PickOutcome, Presentation, Prior, PriorObjects, TurnTaking,
 };
 
 const BOWLS: &str = include_str!("../../../../../config/scenes/bowls.toml");
@@ -27,6 +27,7 @@ pub(super) struct Settings {
     pub(super) durations: Option<Durations>,
     pub(super) mode: Mode,
     pub(super) prior: Prior,
+    pub(super) people: Acquaintance,
     pub(super) gestures: bool,
     pub(super) turns: TurnTaking,
 }
@@ -62,6 +63,7 @@ impl Settings {
             gestures: self.gestures.then(|| (Gestures::default(), [1.6, 0.0, 0.45])),
             turns: self.turns,
             perceives: false,
+            people: self.people,
         }
     }
 }
@@ -77,6 +79,7 @@ pub(super) fn settings() -> Settings {
         durations: None,
         mode: Mode::Remote,
         prior: Prior { objects: PriorObjects::Uniform, smoothing: 1.0, absent: 0.0 },
+        people: Acquaintance::default(),
         gestures: false,
         turns: TurnTaking::default(),
     }

@@ -9,6 +9,7 @@ mod held_back;
 mod kept;
 mod long;
 mod misfit;
+mod people;
 mod person;
 mod pointing;
 mod prior;

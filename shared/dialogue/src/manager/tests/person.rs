@@ -92,12 +92,12 @@ fn reconfiguration_learns_nothing_twice() {
         state = reply(&mut manager, &state, answer(Response::No));
         let again = manager.next(&state, &Cause::Reconfigured, at(seq));
         assert_eq!(again.open.as_ref().unwrap().posterior, state.open.as_ref().unwrap().posterior);
-        assert_eq!(again.person, state.person);
+        assert_eq!(again.users.person, state.users.person);
     }
     // Another planner takes people as configured, and keeps what is known for later.
     let plain = settings().manager().next(&state, &Cause::Reconfigured, at(20));
     assert!(plain.open.as_ref().unwrap().posterior.person().is_none());
-    assert_eq!(plain.person, state.person);
+    assert_eq!(plain.users.person, state.users.person);
     let back = manager.next(&plain, &Cause::Reconfigured, at(21));
     assert_eq!(back.open.unwrap().posterior, state.open.unwrap().posterior);
 }
@@ -107,7 +107,7 @@ fn other_planners_learn_nothing() {
     let mut manager = manager();
     let state = asked(&mut manager);
     let state = manager.next(&state, &Cause::Silence, at(9));
-    assert_eq!((state.person.clone(), manager.user_params(&state)), (None, None));
+    assert_eq!((state.users.person.clone(), manager.user_params(&state)), (None, None));
     assert!(state.open.unwrap().posterior.person().is_none());
 }
 

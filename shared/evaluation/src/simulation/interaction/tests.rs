@@ -2,7 +2,8 @@ use super::*;
 use crate::simulation::testing::{House, planner as planner_of};
 use crate::simulation::{UserKind, interactions};
 use dialogue::{Belief, evaluate, registry};
-use vocabulary::{Actions, Announce, Costs, Mode};
+use preflight::{Motions, Pace};
+use vocabulary::{Actions, Announce, Costs, Mode, TurnTaking};
 
 fn play(house: &House, planner: &str, wanted: &str, turns: Vec<Turn>) -> SimulatedInteraction {
     let mut manager = house.room().manager(planner_of(planner));

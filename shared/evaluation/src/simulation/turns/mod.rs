@@ -17,7 +17,7 @@ mod talk;
 pub use rules::{Rules, UnknownRule};
 
 use crate::simulation::draw::{Stream, stream};
-use crate::simulation::interaction::Room;
+use crate::simulation::room::Room;
 use crate::simulation::tally::Tally;
 use crate::simulation::users::TimedKind;
 use dialogue::manager::Manager;

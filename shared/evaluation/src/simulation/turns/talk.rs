@@ -8,7 +8,8 @@ use vocabulary::time::{Span, Time};
 use vocabulary::{ActKind, Action, Attribution, Interpretation, Presentation, Rng, TurnTaking};
 
 use super::rules::Rules;
-use crate::simulation::interaction::{Room, SimulatedInteraction};
+use crate::simulation::interaction::SimulatedInteraction;
+use crate::simulation::room::Room;
 use crate::simulation::users::{Reply, TimedKind, TimedUser, TimedUtterance};
 use user_study::Verdict;
 
@@ -230,6 +231,7 @@ impl Talk<'_> {
             value: self.value,
             answers: self.heard,
             misplaced: self.misplaced,
+            stated: None,
         }
     }
 }

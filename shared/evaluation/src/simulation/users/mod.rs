@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | `model` | with the probabilities of eq. (6) and (7), silent with `1 − p_l`, wrong with `ε` | in observations: nothing is misread |
 //! | `mistaken-R` | as `model`, but takes each value for another one in R % of the cases and sticks to it; slips in 0.5 % | in observations |
+//! | `wrong-R` | as `model`, but wrong in R % of the answers, each by itself | in observations |
 //! | `truthful` | always, and always right | one word |
 //! | `noisy` | wrong in 5 to 20 % and silent in 20 to 30 % of the cases, drawn per user | one word, through a recogniser that drops and confuses words |
 //! | `human` | mostly right; by value, with corrections, hedges, more than was asked, and late | sentences, through a better recogniser |
@@ -130,11 +131,13 @@ pub enum UserKind {
     Human,
     /// Takes each value for another one in that many of a hundred cases, and sticks to it.
     Mistaken(u8),
+    /// Answers wrongly in that many of a hundred cases, each by itself.
+    Wrong(u8),
 }
 
 impl UserKind {
     /// All kinds by name.
-    pub const ALL: [(&'static str, Self); 9] = [
+    pub const ALL: [(&'static str, Self); 11] = [
         ("model", Self::Model),
         ("truthful", Self::Truthful),
         ("noisy", Self::Noisy),
@@ -144,6 +147,8 @@ impl UserKind {
         ("mistaken-3", Self::Mistaken(3)),
         ("mistaken-5", Self::Mistaken(5)),
         ("mistaken-10", Self::Mistaken(10)),
+        ("wrong-5", Self::Wrong(5)),
+        ("wrong-10", Self::Wrong(10)),
     ];
 
     /// The kind of that name.
@@ -199,6 +204,9 @@ impl From<UserKind> for Policy {
             UserKind::Mistaken(percent) => {
                 let misperception = f64::from(percent) / 100.0;
                 Self::Erring(Errors { misperception, slip: MISTAKEN_SLIP })
+            }
+            UserKind::Wrong(percent) => {
+                Self::Erring(Errors { misperception: 0.0, slip: f64::from(percent) / 100.0 })
             }
         }
     }

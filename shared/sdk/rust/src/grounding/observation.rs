@@ -34,6 +34,7 @@ pub fn message(
         asked: utterance.asked,
         asked_count: utterance.asked_count,
         source: utterance.source,
+        from: utterance.from,
         scene_key: scene.key(),
         gesture: heard.gesture_m.into(),
         onset_ns: utterance.onset_ns,

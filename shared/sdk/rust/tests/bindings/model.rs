@@ -10,7 +10,7 @@ use serde_reflection::{ContainerFormat, Format, FormatHolder, VariantFormat};
 use crate::layouts::{self, Layout};
 
 /// Bounds that the types of fields name.
-pub(crate) const BOUNDS: [(&str, usize); 13] = [
+pub(crate) const BOUNDS: [(&str, usize); 14] = [
     ("ASKED_MAX", ASKED_MAX),
     ("BASE_WORDS_MAX", BASE_WORDS_MAX),
     ("CHUNK_SAMPLES_MAX", CHUNK_SAMPLES_MAX),
@@ -22,6 +22,7 @@ pub(crate) const BOUNDS: [(&str, usize); 13] = [
     ("JOINTS_MAX", JOINTS_MAX),
     ("JOINT_STATE_LEN", JOINT_STATE_LEN),
     ("LIMB_JOINTS", LIMB_JOINTS),
+    ("PERSON_BYTES_MAX", vocabulary::PERSON_BYTES_MAX),
     ("READINGS_MAX", READINGS_MAX),
     ("UTTERANCE_BYTES_MAX", UTTERANCE_BYTES_MAX),
 ];

@@ -84,19 +84,25 @@ fn put_struct(out: &mut String, message: &Struct, docs: &Docs) {
         "    wire_name = \"{name}\"\n    wire_size = {size}\n    schema_key = \"{key}\""
     );
     for (field, _, ty) in fields {
-        let _ = writeln!(out, "    {field}: {}", annotation(ty));
+        let _ = writeln!(out, "    {}: {}", name_of(field), annotation(ty));
         put_doc(out, "    ", &docs.of_field(rust, field));
     }
     let codes = fields.iter().filter_map(|(field, _, ty)| match ty {
-        Type::Code(name) => Some(format!("\"{field}\": {name}")),
+        Type::Code(name) => Some(format!("\"{}\": {name}", name_of(field))),
         _ => None,
     });
     let _ = writeln!(out, "    codes = {{{}}}", codes.collect::<Vec<_>>().join(", "));
     out.push_str("    _fields_ = [\n");
     for (field, offset, ty) in fields {
+        let field = name_of(field);
         let _ = writeln!(out, "        (\"{field}\", {}),  # {offset}", ctype(ty));
     }
     out.push_str("    ]\n");
+}
+
+/// The name of a field: one that is a keyword of Python ends with an underscore.
+fn name_of(field: &str) -> &str {
+    if field == "from" { "from_" } else { field }
 }
 
 fn annotation(ty: &Type) -> String {
@@ -146,8 +152,9 @@ fn put_type(
             let _ = writeln!(out, "{name}_ENCODING = {}", codec(inner, model));
         }
         ContainerFormat::Struct(fields) => {
-            let codecs =
-                fields.iter().map(|it| format!("    {}={},\n", it.name, codec(&it.value, model)));
+            let codecs = fields
+                .iter()
+                .map(|it| format!("    {}={},\n", name_of(&it.name), codec(&it.value, model)));
             let codecs: String = codecs.collect();
             let _ = write!(
                 out,
@@ -156,7 +163,7 @@ fn put_type(
             put_doc(out, "    ", &docs.of(name));
             out.push('\n');
             for field in fields {
-                let _ = writeln!(out, "    {}: {}", field.name, hint(&field.value));
+                let _ = writeln!(out, "    {}: {}", name_of(&field.name), hint(&field.value));
                 put_doc(out, "    ", &docs.of_field(name, &field.name));
             }
             if let Some(key) = key {

@@ -1,0 +1,110 @@
+//! Utterances as the manager hears them, and their form in journals.
+
+use scene::UnknownWord;
+use serde::{Deserialize, Serialize};
+use vocabulary::ids::{PromptId, UtteranceSeq};
+use vocabulary::time::Time;
+use vocabulary::{Interpretation, PersonId, Presentation};
+
+/// An utterance of the user with its interpretations.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Stored", into = "Stored")]
+pub struct Utterance {
+    /// Its number.
+    pub seq: UtteranceSeq,
+    /// The latest presentations whose sound had begun when it was accepted, newest first.
+    pub presentations: Vec<Presentation>,
+    /// Whether it was typed, or given whole in another way; else it was spoken live.
+    pub typed: bool,
+    /// When the user began to speak, or typed.
+    pub onset: Time,
+    /// When the user had finished.
+    pub end: Time,
+    /// When it was accepted.
+    pub accepted: Time,
+    /// Interpretations as an answer to each of the presentations, and to none.
+    pub interpretations: Vec<Interpretation>,
+    /// A word that the scene does not have.
+    pub unknown: Option<UnknownWord>,
+    /// The point that the user points at, metres, frame `base`.
+    pub gesture: Option<[f64; 3]>,
+    /// Whether the user is still speaking, or more speech is being recognised.
+    pub more: bool,
+    /// Who spoke, as far as the channel knows.
+    pub from: PersonId,
+}
+
+impl Utterance {
+    /// Returns true if every interpretation answers one of its presentations, or none.
+    pub fn is_consistent(&self) -> bool {
+        let answers = self.interpretations.iter().filter_map(|one| one.answers);
+        answers.into_iter().all(|answered| answered < self.presentations.len())
+    }
+
+    /// Returns the last question that the user had heard completely before beginning to speak.
+    pub fn heard(&self) -> PromptId {
+        let heard = |put: &&Presentation| put.complete && put.ended <= Some(self.onset);
+        self.presentations.iter().find(heard).map_or(PromptId(0), |put| put.prompt)
+    }
+}
+
+/// An utterance in a journal: its fields in order.
+type Stored = (
+    (UtteranceSeq, Vec<Presentation>, bool),
+    (Time, Time, Time),
+    (Vec<Interpretation>, Option<UnknownWord>, Option<[f64; 3]>),
+    MoreFrom,
+);
+
+/// The last fields, where there once was `more: bool`: the same bytes mean the same, and persons are variants that
+/// came later.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum MoreFrom {
+    Whole,
+    More,
+    WholeFrom(PersonId),
+    MoreFrom(PersonId),
+}
+
+impl From<Stored> for Utterance {
+    fn from(stored: Stored) -> Self {
+        let ((seq, presentations, typed), (onset, end, accepted), said, more) = stored;
+        let (interpretations, unknown, gesture) = said;
+        let (more, from) = match more {
+            MoreFrom::Whole => (false, PersonId::default()),
+            MoreFrom::More => (true, PersonId::default()),
+            MoreFrom::WholeFrom(from) => (false, from),
+            MoreFrom::MoreFrom(from) => (true, from),
+        };
+        Self {
+            seq,
+            presentations,
+            typed,
+            onset,
+            end,
+            accepted,
+            interpretations,
+            unknown,
+            gesture,
+            more,
+            from,
+        }
+    }
+}
+
+impl From<Utterance> for Stored {
+    fn from(it: Utterance) -> Self {
+        let more = match (it.more, it.from.is_nobody()) {
+            (false, true) => MoreFrom::Whole,
+            (true, true) => MoreFrom::More,
+            (false, false) => MoreFrom::WholeFrom(it.from),
+            (true, false) => MoreFrom::MoreFrom(it.from),
+        };
+        (
+            (it.seq, it.presentations, it.typed),
+            (it.onset, it.end, it.accepted),
+            (it.interpretations, it.unknown, it.gesture),
+            more,
+        )
+    }
+}
