@@ -70,8 +70,7 @@ mod tests {
     use super::*;
     use crate::simulation::CachedPlanner;
     use crate::simulation::testing::House;
-    use dialogue::{Lookahead, Model};
-    use vocabulary::{Params, Reliability};
+    use dialogue::Lookahead;
 
     /// People who err are known after some dialogues: they get what they want more often, and the robot
     /// is as sure as it may be.
@@ -91,39 +90,5 @@ mod tests {
         let off = |tally: &Tally| tally.stated.mean() - tally.success();
         assert!(off(&first) > 0.06, "seed {seed}: {}", off(&first));
         assert!(off(&later).abs() < 0.04, "seed {seed}: {}", off(&later));
-    }
-
-    /// The table of docs/pomdp.md: success, what was stated, and questions, by the number of the dialogue.
-    #[test]
-    #[ignore = "prints a table, in minutes"]
-    fn curve() {
-        let (people, house) = (2_000, House::new());
-        for choice in [false, true] {
-            let params = Params {
-                choice: choice.then_some(Reliability { p_l: 0.93, epsilon: 0.015 }),
-                ..Params::default()
-            };
-            let model = Model::new(&house.scene, params).with_certain_words(0.001);
-            let mut room = Room { request: false, ..house.room() };
-            room.problem.model = &model;
-            room.problem.actions.choice = choice;
-            room.people.prior_from = u64::MAX;
-            let planner = Lookahead { beliefs_max: 300, tolerance: 1e-4 };
-            let mut manager = room.learning_manager(CachedPlanner::new(Box::new(planner)));
-            for kind in [UserKind::Wrong(5), UserKind::Wrong(10), UserKind::Model] {
-                for dialogue in [1, 3, 10, 30] {
-                    let who = (kind, dialogue, 0.0);
-                    let tally = acquainted(&room, &mut manager, who, 3, 0..people);
-                    let [success, stated] = [tally.success(), tally.stated.mean()];
-                    let questions = tally.questions.mean();
-                    let name = kind.name();
-                    println!(
-                        "choices {choice}, {name}, dialogue {dialogue}: {:.1} %, {:.1} %, {questions:.1}",
-                        100.0 * success,
-                        100.0 * stated
-                    );
-                }
-            }
-        }
     }
 }
