@@ -48,7 +48,7 @@ pub enum Verb {
     /// With simulated users it prints, per policy and user model, the success rate, the number of
     /// questions, the duration in seconds and the return, each with its 95 % interval.
     /// The same seed gives the same table, byte for byte, on any number of threads.
-    Study(StudyArgs),
+    Study(Box<StudyArgs>),
     /// Show the arm's motions without a group.
     Arm {
         /// Action.

@@ -122,7 +122,7 @@ impl Manager {
     pub(super) fn fold(&self, state: &State, open: &Interaction) -> Posterior {
         let mut posterior = self.beginning(state, &open.from());
         let mut model = self.learned(std::iter::empty());
-        for evidence in &open.evidence {
+        for evidence in open.counting() {
             let interpretations = evidence.in_scene(&self.setup.scene);
             let Evidence { gesture, mark, .. } = evidence;
             self.update(&mut posterior, &model, (&interpretations, *gesture, mark.as_ref()));

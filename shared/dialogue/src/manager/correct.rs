@@ -2,14 +2,14 @@
 //! against the object, the pick is called off and the interaction continues.
 
 use scene::{AttributeId, Doubt, ObjectId, Question, Reading, Reference, Response, WordId};
-use vocabulary::ActKind;
 use vocabulary::time::Time;
+use vocabulary::{ActKind, NamedQuestion};
 
 use super::Manager;
 use super::acts::call_off;
 use super::attribution::{Heard, PLAIN};
 use super::concede::likeliest;
-use super::evidence::Mark;
+use super::evidence::{Evidence, Mark};
 use super::line::{Content, Preface};
 use super::references::reference;
 use super::state::{Basis, State};
@@ -66,11 +66,24 @@ impl Manager {
         };
         let Some(mut open) = state.open.take() else { return };
         let mut is_changed = false;
-        for (.., earlier) in open.evidence.iter_mut().flat_map(|it| &mut it.interpretations) {
-            if earlier.doubt == Doubt::default() && earlier.base.iter().any(is_replaced) {
-                earlier.base.retain(|name| !is_replaced(name));
-                is_changed = true;
+        let mut answers = Vec::new();
+        for evidence in open.evidence.iter_mut().filter(|it| it.counts()) {
+            let before = evidence.clone();
+            for (.., earlier) in &mut evidence.interpretations {
+                if earlier.doubt == Doubt::default() && earlier.base.iter().any(is_replaced) {
+                    earlier.base.retain(|name| !is_replaced(name));
+                    is_changed = true;
+                }
             }
+            let is_answer = before.interpretations.first().is_some_and(|(_, question, _)| {
+                matches!(question, NamedQuestion::Choice(..) | NamedQuestion::Which(_))
+            });
+            if *evidence != before && is_answer {
+                answers.push(Evidence { mark: Some(Mark::Replaced), ..before });
+            }
+        }
+        if open.posterior.speaker().is_some() {
+            answers.into_iter().for_each(|answer| open.remember(answer));
         }
         if is_changed {
             open.posterior = self.fold(state, &open);

@@ -53,7 +53,7 @@ impl Manager {
         let step = Step { interaction: open.id.0, step: open.step };
         open.step += 1;
         // What was said of values in doubt counts for the questions to come.
-        let model = self.learned(open.evidence.iter()).into_owned();
+        let model = self.learned(open.counting()).into_owned();
         let spent = open.spent();
         let problem = DecisionProblem {
             model: &model,

@@ -41,6 +41,9 @@ pub enum Mark {
         /// Of every other one.
         others: f64,
     },
+    /// The utterance is an answer that a later one has replaced. It counts no longer, but still teaches about the
+    /// person who gave it.
+    Replaced,
 }
 
 /// Factor of an object that was refused: beyond what any words can make up for.
@@ -56,7 +59,7 @@ impl Mark {
             match self {
                 Self::Not(refused) if name == Some(refused) => REFUSED,
                 Self::OneOf(meant) if name.is_none_or(|name| !meant.contains(name)) => NOT_MEANT,
-                Self::Not(_) | Self::OneOf(_) => 1.0,
+                Self::Not(_) | Self::OneOf(_) | Self::Replaced => 1.0,
                 Self::Likely { named, others } => {
                     let of = |(known, _): &&(String, f64)| name == Some(known);
                     named.iter().find(of).map_or(*others, |(_, factor)| *factor)
@@ -69,6 +72,7 @@ impl Mark {
     fn names(&self) -> usize {
         match self {
             Self::Not(_) => 1,
+            Self::Replaced => 0,
             Self::OneOf(names) => names.len(),
             Self::Likely { named, .. } => named.len(),
         }
@@ -76,6 +80,11 @@ impl Mark {
 }
 
 impl Evidence {
+    /// Returns whether it counts: no later one has replaced it.
+    pub(super) fn counts(&self) -> bool {
+        self.mark != Some(Mark::Replaced)
+    }
+
     /// Returns the interpretations in a scene.
     pub fn in_scene(&self, scene: &Scene) -> Vec<(f64, Question, Reading)> {
         let of = |(weight, question, reading): &(f64, NamedQuestion, NamedReading)| {
@@ -104,6 +113,11 @@ impl Evidence {
 }
 
 impl Interaction {
+    /// Returns the content of the utterances that count.
+    pub(super) fn counting(&self) -> impl Iterator<Item = &Evidence> {
+        self.evidence.iter().filter(|it| it.counts())
+    }
+
     /// Adds the content of an utterance; beyond [`NAMES_MAX`] the oldest is dropped.
     pub fn remember(&mut self, evidence: Evidence) {
         self.evidence.push(evidence);

@@ -112,7 +112,7 @@ impl Manager {
     /// Updates the interaction's posterior with an utterance, and remembers its content.
     pub(super) fn take_in(&self, open: &mut Interaction, heard: Heard) {
         let Heard { interpretations, unknown, gesture, mark } = heard;
-        let model = self.learned(open.evidence.iter());
+        let model = self.learned(open.evidence.iter().filter(|it| it.counts()));
         let content = (&interpretations[..], gesture, mark.as_ref());
         self.update(&mut open.posterior, &model, content);
         if self.recall {

@@ -16,7 +16,7 @@ pub const PEOPLE_MAX: usize = 32;
 /// Most objects and attributes, by name, that are counted for one person.
 const NAMES_MAX: usize = 64;
 /// Observations that a configured rate is worth.
-const STRENGTH: f64 = 20.0;
+const STRENGTH: f64 = 10.0;
 
 /// What was learned about those who speak. In journals it once was `person: Option<Person>`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -131,6 +131,12 @@ impl People {
     }
 }
 
+/// The rate that is expected of a person. Nobody is taken to err less than configured: who has not erred in a
+/// few dialogues may yet, and would be asked too little.
+fn expected(known: &Count, configured: f64) -> f64 {
+    known.mean(configured, STRENGTH).max(configured)
+}
+
 impl KnownPerson {
     /// Takes in what an interaction has shown, in a scene.
     pub(super) fn take_in(&mut self, scene: &Scene, lesson: &Lesson, object: &str) {
@@ -158,12 +164,12 @@ impl KnownPerson {
     pub(super) fn speaker(&self, scene: &Scene, configured: &Model) -> Speaker {
         let channels = Channel::ALL.map(|channel| {
             let known = &self.channels[channel as usize];
-            channel_steps(configured, channel, |rate| known.mean(rate, STRENGTH))
+            channel_steps(configured, channel, |rate| expected(known, rate))
         });
         let of = |(k, attribute): (usize, &scene::Attribute)| {
             let known = self.attributes.iter().find(|(name, _)| *name == attribute.name);
             let rate = configured.misperceived(k.into());
-            known.map_or(0, |(_, count)| steps(rate, count.mean(rate, STRENGTH)))
+            known.map_or(0, |(_, count)| steps(rate, expected(count, rate)))
         };
         let attributes = scene.attributes().iter().enumerate().map(of).collect();
         Speaker { from: self.id.clone(), channels, attributes }

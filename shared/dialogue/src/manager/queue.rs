@@ -69,13 +69,13 @@ impl Manager {
     /// Returns the objects that are no longer meant by the words of an interaction: the one fetched in
     /// it, and those before.
     fn fetched(&self, before: &Interaction) -> Vec<Mark> {
-        let earlier = before.evidence.iter().filter_map(|evidence| evidence.mark.clone());
+        let earlier = before.counting().filter_map(|evidence| evidence.mark.clone());
         earlier.chain([Mark::Not(before.picked.clone())]).collect()
     }
 }
 
 /// Returns whether these words described the object of an interaction.
 fn is_described(interaction: &Interaction, words: &[String]) -> bool {
-    let likeliest = interaction.evidence.iter().filter_map(|it| it.interpretations.first());
+    let likeliest = interaction.counting().filter_map(|it| it.interpretations.first());
     likeliest.into_iter().any(|(.., reading)| reading.base == words)
 }

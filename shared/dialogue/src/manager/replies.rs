@@ -151,7 +151,7 @@ pub(super) fn likeliest(said: &Utterance, intent: Intent) -> Option<&Reading> {
 
 /// Returns the scene's words that were said, each once.
 pub(super) fn said(open: &Interaction) -> Vec<String> {
-    let likeliest = open.evidence.iter().filter_map(|it| it.interpretations.first());
+    let likeliest = open.counting().filter_map(|it| it.interpretations.first());
     let mut words: Vec<String> = Vec::new();
     for word in likeliest.flat_map(|(.., reading)| &reading.base) {
         if !words.contains(word) {

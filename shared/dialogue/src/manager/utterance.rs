@@ -53,17 +53,17 @@ type Stored = (
     (UtteranceSeq, Vec<Presentation>, bool),
     (Time, Time, Time),
     (Vec<Interpretation>, Option<UnknownWord>, Option<[f64; 3]>),
-    MoreFrom,
+    Ending,
 );
 
 /// The last fields, where there once was `more: bool`: the same bytes mean the same, and persons are variants that
 /// came later.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-enum MoreFrom {
+enum Ending {
     Whole,
     More,
-    WholeFrom(PersonId),
-    MoreFrom(PersonId),
+    WholeOf(PersonId),
+    MoreOf(PersonId),
 }
 
 impl From<Stored> for Utterance {
@@ -71,10 +71,10 @@ impl From<Stored> for Utterance {
         let ((seq, presentations, typed), (onset, end, accepted), said, more) = stored;
         let (interpretations, unknown, gesture) = said;
         let (more, from) = match more {
-            MoreFrom::Whole => (false, PersonId::default()),
-            MoreFrom::More => (true, PersonId::default()),
-            MoreFrom::WholeFrom(from) => (false, from),
-            MoreFrom::MoreFrom(from) => (true, from),
+            Ending::Whole => (false, PersonId::default()),
+            Ending::More => (true, PersonId::default()),
+            Ending::WholeOf(from) => (false, from),
+            Ending::MoreOf(from) => (true, from),
         };
         Self {
             seq,
@@ -95,10 +95,10 @@ impl From<Stored> for Utterance {
 impl From<Utterance> for Stored {
     fn from(it: Utterance) -> Self {
         let more = match (it.more, it.from.is_nobody()) {
-            (false, true) => MoreFrom::Whole,
-            (true, true) => MoreFrom::More,
-            (false, false) => MoreFrom::WholeFrom(it.from),
-            (true, false) => MoreFrom::MoreFrom(it.from),
+            (false, true) => Ending::Whole,
+            (true, true) => Ending::More,
+            (false, false) => Ending::WholeOf(it.from),
+            (true, false) => Ending::MoreOf(it.from),
         };
         (
             (it.seq, it.presentations, it.typed),

@@ -17,6 +17,7 @@ fn tally(right: u32, wrong: u32) -> Tally {
             value: 1.0,
             answers: 1,
             misplaced: 0,
+            stated: None,
         });
     }
     tally
