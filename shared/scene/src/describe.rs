@@ -1,5 +1,6 @@
 //! Objects in words, as a person would name them.
 
+use crate::forms::{definite, is_number, is_owner, measured};
 use crate::plural::plural;
 use crate::{AttributeId, ObjectId, Role, Scene, Value, ValueId};
 
@@ -58,7 +59,7 @@ impl Scene {
     pub fn list(&self, objects: &[ObjectId], conjunction: &str) -> String {
         let mut names: Vec<String> = Vec::new();
         for &object in objects {
-            let name = format!("the {}", self.describe_with_quality(object, objects));
+            let name = definite(&self.describe_with_quality(object, objects));
             if !names.contains(&name) {
                 names.push(name);
             }
@@ -150,16 +151,21 @@ impl Scene {
         }
     }
 
-    /// Qualities, then the kind (or the scene's noun), then parts and places.
+    /// Owners, then qualities, then numbers, then the kind (or the scene's noun), then parts and places.
     pub(crate) fn compose(&self, values: &[(AttributeId, ValueId)]) -> String {
-        let values: Vec<&Value> = values.iter().map(|&(k, v)| self.value(k, v)).collect();
-        let of = |role: Role| values.iter().filter(move |value| value.role() == role);
-        let qualities = of(Role::Quality).rev().map(|value| value.bare());
-        let kind = of(Role::Kind).next().map_or(self.noun(), |value| value.bare());
-        let after = of(Role::Part).chain(of(Role::Place)).map(|value| value.after_noun());
-        let after: Vec<String> = after.collect();
-        let after = after.iter().map(String::as_str);
-        qualities.chain([kind]).chain(after).collect::<Vec<_>>().join(" ")
+        let valued = |&(k, v): &(AttributeId, ValueId)| (k, self.value(k, v));
+        let all: Vec<(AttributeId, &Value)> = values.iter().map(valued).collect();
+        let of = |role: Role| all.iter().filter(move |(_, value)| value.role() == role);
+        let mut qualities: Vec<(AttributeId, &Value)> = of(Role::Quality).rev().copied().collect();
+        qualities.sort_by_key(|(_, value)| (!is_owner(&value.spoken), is_number(&value.spoken)));
+        let quality = |(k, value): &(AttributeId, &Value)| match is_number(&value.spoken) {
+            true => format!("{} {}", self.attributes()[k.index()].name, value.spoken),
+            false => measured(&value.spoken).unwrap_or_else(|| value.spoken.clone()),
+        };
+        let kind = of(Role::Kind).next().map_or(self.noun(), |(_, value)| value.bare());
+        let after = of(Role::Part).chain(of(Role::Place)).map(|(_, value)| value.after_noun());
+        let before = qualities.iter().map(quality);
+        before.chain([kind.to_owned()]).chain(after).collect::<Vec<_>>().join(" ")
     }
 }
 
