@@ -151,8 +151,15 @@ impl Scene {
         }
     }
 
-    /// Owners, then qualities, then numbers, then the kind (or the scene's noun), then parts and places.
-    pub(crate) fn compose(&self, values: &[(AttributeId, ValueId)]) -> String {
+    /// Returns these values as a description, `Anna's red mug on the shelf`; the noun is their kind, or else the
+    /// scene's noun.
+    pub fn compose(&self, values: &[(AttributeId, ValueId)]) -> String {
+        let kind = values.iter().map(|&(k, v)| self.value(k, v)).find(|v| v.role() == Role::Kind);
+        self.compose_around(kind.map_or(self.noun(), Value::bare), values)
+    }
+
+    /// Returns these values around a noun: owners, then qualities, then numbers, the noun, then parts and places.
+    pub fn compose_around(&self, noun: &str, values: &[(AttributeId, ValueId)]) -> String {
         let valued = |&(k, v): &(AttributeId, ValueId)| (k, self.value(k, v));
         let all: Vec<(AttributeId, &Value)> = values.iter().map(valued).collect();
         let of = |role: Role| all.iter().filter(move |(_, value)| value.role() == role);
@@ -162,10 +169,9 @@ impl Scene {
             true => format!("{} {}", self.attributes()[k.index()].name, value.spoken),
             false => measured(&value.spoken).unwrap_or_else(|| value.spoken.clone()),
         };
-        let kind = of(Role::Kind).next().map_or(self.noun(), |(_, value)| value.bare());
-        let after = of(Role::Part).chain(of(Role::Place)).map(|(_, value)| value.after_noun());
         let before = qualities.iter().map(quality);
-        before.chain([kind.to_owned()]).chain(after).collect::<Vec<_>>().join(" ")
+        let after = of(Role::Part).chain(of(Role::Place)).map(|(_, value)| value.after_noun());
+        before.chain([noun.to_owned()]).chain(after).collect::<Vec<_>>().join(" ")
     }
 }
 

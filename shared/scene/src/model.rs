@@ -269,7 +269,7 @@ impl Value {
 
     /// The value without an article, as it stands beside a noun or for one: "felt tip" of "a felt
     /// tip".
-    pub(crate) fn bare(&self) -> &str {
+    pub fn bare(&self) -> &str {
         without_article(&self.spoken).filter(|_| self.role == Role::Kind).unwrap_or(&self.spoken)
     }
 
