@@ -3,7 +3,8 @@
 mod foreseen;
 mod remarks;
 
-use scene::{ObjectId, Question, Role, Scene, UnknownWord};
+use remarks::capitalised;
+use scene::{ObjectId, Question, Role, Scene, UnknownWord, definite};
 use vocabulary::{ActKind, Action, PickOutcome};
 
 use crate::manager::{Act, Content, Preface};
@@ -23,20 +24,22 @@ pub fn text(scene: &Scene, act: &Act) -> String {
         }
         Content::Wanted(time) => wanted(scene, *time),
         Content::Fetching(object) if is_out_of_reach(scene, act) => {
-            format!("You mean the {object}.")
+            format!("You mean {}.", definite(object))
         }
         Content::Fetching(object) => fetching(object, &act.line.preface),
         Content::HeldBack(object) => {
-            format!("I stay stopped until you resume. Shall I get the {object} then?")
+            format!("I stay stopped until you resume. Shall I get {} then?", definite(object))
         }
-        Content::AskToRelease(object) => format!("Say yes, and I will get the {object}."),
+        Content::AskToRelease(object) => format!("Say yes, and I will get {}.", definite(object)),
         Content::PuttingBack(object) => {
-            format!("I will put the {object} back. Please hold it between my fingers.")
+            format!("I will put {} back. Please hold it between my fingers.", definite(object))
         }
         Content::PutBackHeldBack(object) => {
-            format!("I stay stopped until you resume. Shall I put the {object} back then?")
+            format!("I stay stopped until you resume. Shall I put {} back then?", definite(object))
         }
-        Content::AskToPutBack(object) => format!("Say yes, and I will put the {object} back."),
+        Content::AskToPutBack(object) => {
+            format!("Say yes, and I will put {} back.", definite(object))
+        }
         Content::PutBackEnded(object, outcome) => put_back_ended(object, *outcome),
         Content::Confirmed => "All right, once you resume.".to_owned(),
         Content::PickEnded(object, outcome) => pick_ended(object, *outcome),
@@ -44,7 +47,10 @@ pub fn text(scene: &Scene, act: &Act) -> String {
         Content::Correcting | Content::Cancelled => "All right.".to_owned(),
         // Whether the arm can still leave it turns out only when the pick ends.
         Content::Kept(object) => {
-            format!("I cannot put the {object} back, so I still hold it. Shall I give it to you?")
+            format!(
+                "I cannot put {} back, so I still hold it. Shall I give it to you?",
+                definite(object)
+            )
         }
         Content::CallingOff => "All right, if it is not too late.".to_owned(),
         Content::Offered(nearest) => offered(nearest),
@@ -72,7 +78,7 @@ fn wanted(scene: &Scene, time: u32) -> String {
 /// "There are the blue pen and the black pen. Do you want the blue pen?"
 fn offered(nearest: &[String]) -> String {
     let Some(first) = nearest.first() else { return String::new() };
-    let asks = format!("Do you want the {first}?");
+    let asks = format!("Do you want {}?", definite(first));
     match nearest.len() {
         1 => asks,
         _ => format!("There are {}. {asks}", remarks::list(nearest, "and")),
@@ -88,9 +94,10 @@ fn is_out_of_reach(scene: &Scene, act: &Act) -> bool {
 }
 
 fn fetching(object: &str, preface: &Preface) -> String {
+    let object = definite(object);
     match preface {
-        Preface::Left(_) => format!("I will take the {object}."),
-        _ => format!("I will get the {object}."),
+        Preface::Left(_) => format!("I will take {object}."),
+        _ => format!("I will get {object}."),
     }
 }
 
@@ -135,12 +142,12 @@ fn preface(scene: &Scene, preface: &Preface) -> String {
             let noun = scene.noun();
             format!("{}{}", changed(noun, gone, "gone"), changed(noun, new, "new"))
         }
-        Preface::SceneChanged => format!("The {}s here have changed. ", scene.noun()),
+        Preface::SceneChanged => format!("The {} here have changed. ", scene::plural(scene.noun())),
         Preface::Remark(it) => format!("{} ", remarks::text(scene, it, ActKind::Ask)),
         Preface::InTurn(objects) => {
             let name = |(n, words): (usize, &Vec<String>)| match n.checked_sub(1) {
                 Some(before) if objects[before] == *words => "another".to_owned(),
-                _ => format!("the {}", remarks::group(scene, words, None)),
+                _ => definite(&remarks::group(scene, words, None)),
             };
             let objects: Vec<String> = objects.iter().enumerate().map(name).collect();
             format!("First {}. ", objects.join(", then "))
@@ -161,23 +168,26 @@ const DESCRIPTION_MAX: usize = 60;
 fn changed(noun: &str, objects: &[String], how: &str) -> String {
     match objects {
         [] => String::new(),
-        [one] if one.len() <= DESCRIPTION_MAX => format!("The {one} is {how}. "),
+        [one] if one.len() <= DESCRIPTION_MAX => {
+            format!("{} is {how}. ", capitalised(&definite(one)))
+        }
         [_] => format!("One {noun} is {how}. "),
-        more => format!("{} {noun}s are {how}. ", more.len()),
+        more => format!("{} {} are {how}. ", more.len(), scene::plural(noun)),
     }
 }
 
 fn pick_ended(it: &str, outcome: PickOutcome) -> String {
+    let it = definite(it);
     match outcome {
-        PickOutcome::Delivered => format!("Here is the {it}."),
-        PickOutcome::Unreachable => format!("I cannot reach the {it}."),
+        PickOutcome::Delivered => format!("Here is {it}."),
+        PickOutcome::Unreachable => format!("I cannot reach {it}."),
         PickOutcome::Interrupted => {
-            format!("I was interrupted while grasping the {it}. Please look before you ask again.")
+            format!("I was interrupted while grasping {it}. Please look before you ask again.")
         }
         PickOutcome::Missed => {
-            format!("I could not get hold of the {it}. It may have moved a little.")
+            format!("I could not get hold of {it}. It may have moved a little.")
         }
-        PickOutcome::Vanished => format!("The {it} is no longer there."),
+        PickOutcome::Vanished => format!("{} is no longer there.", capitalised(&it)),
         PickOutcome::Blocked => {
             "My arm did not move as it should. Please look before you ask again.".to_owned()
         }
@@ -188,22 +198,21 @@ fn pick_ended(it: &str, outcome: PickOutcome) -> String {
 }
 
 fn put_back_ended(it: &str, outcome: PickOutcome) -> String {
+    let it = definite(it);
     match outcome {
-        PickOutcome::PutBack => format!("I have put the {it} back."),
-        PickOutcome::Cancelled => format!("The {it} stays with you."),
+        PickOutcome::PutBack => format!("I have put {it} back."),
+        PickOutcome::Cancelled => format!("{} stays with you.", capitalised(&it)),
         PickOutcome::Missed => {
-            format!(
-                "I could not take hold of the {it}. Please hold it between my fingers next time."
-            )
+            format!("I could not take hold of {it}. Please hold it between my fingers next time.")
         }
-        PickOutcome::Unreachable => format!("I cannot put the {it} back where it was."),
+        PickOutcome::Unreachable => format!("I cannot put {it} back where it was."),
         PickOutcome::Pending
         | PickOutcome::Delivered
         | PickOutcome::Interrupted
         | PickOutcome::Vanished
         | PickOutcome::Kept
-        | PickOutcome::Blocked => format!(
-            "I was interrupted while putting the {it} back. Please look before you ask again."
-        ),
+        | PickOutcome::Blocked => {
+            format!("I was interrupted while putting {it} back. Please look before you ask again.")
+        }
     }
 }

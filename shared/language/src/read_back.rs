@@ -71,8 +71,10 @@ impl ReadBack<'_> {
                 ],
                 false => self.scene.requests(value, name),
             };
+            let said = self.scene.request_for(&[(k.into(), v.into())]);
+            let robots = (*name == value.name && !requests.contains(&said)).then_some(said);
             let denials = if own { Vec::new() } else { self.scene.denials(value, name) };
-            let phrases = requests.into_iter().map(|phrase| (phrase, false));
+            let phrases = requests.into_iter().chain(robots).map(|phrase| (phrase, false));
             for (phrase, denied) in phrases.chain(denials.into_iter().map(|phrase| (phrase, true)))
             {
                 match self.read(&phrase, &[value.word], denied) {

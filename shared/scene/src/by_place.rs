@@ -81,6 +81,7 @@ impl Scene {
                 spoken: spoken(place, places.view),
                 word: WordId::from(word),
                 role: Role::Place,
+                is_noun: false,
             }
         });
         let attribute = Attribute {

@@ -4,6 +4,8 @@ use std::collections::HashMap;
 
 use diagnostics::{Report, Table, suggestion};
 
+use crate::forms::{align_parts, defaults, with_capital};
+use crate::model::is_part_of;
 use crate::{Attribute, Object, Placement, Role, Scene, Value, ValueId, WordId, wording};
 
 /// A table while its meaning is checked.
@@ -224,25 +226,39 @@ fn shared_word(attribute: &DraftAttribute) -> String {
 
 fn build_attribute(attribute: DraftAttribute, ids: &HashMap<String, WordId>) -> Attribute {
     let shared = shared_word(&attribute);
-    let values = (attribute.values.into_iter())
+    let name = attribute.name;
+    let mut is_guessed = Vec::new();
+    let mut values: Vec<Value> = (attribute.values.into_iter())
         .map(|value| {
             let spoken = value.spoken.unwrap_or_else(|| value.name.clone());
             let named = role(value.role.as_ref()).or(role(attribute.role.as_ref()));
+            is_guessed.push(named.is_none());
             Value {
                 word: ids[&value.name],
-                role: named.unwrap_or_else(|| Role::guess(&value.name, &spoken, &shared)),
-                spoken,
+                role: named.unwrap_or_else(|| Role::guess(&name, &value.name, &spoken, &shared)),
+                is_noun: is_part_of(&name, &spoken),
+                spoken: with_capital(spoken),
                 synonyms: value.synonyms.iter().map(|synonym| synonym.to_lowercase()).collect(),
                 name: value.name,
             }
         })
         .collect();
+    // "scissors" and "milk" beside "a wrench".
+    if values.iter().any(|value| value.role == Role::Kind) {
+        let guessed = values.iter_mut().zip(is_guessed).filter(|(_, is_guessed)| *is_guessed);
+        let qualities = guessed.filter(|(value, _)| value.role == Role::Quality);
+        qualities.for_each(|(value, _)| value.role = Role::Kind);
+    }
+    if attribute.ask_yes_no.is_empty() {
+        align_parts(&mut values);
+    }
+    let common = defaults(&values);
     Attribute {
-        name: attribute.name,
+        name,
         synonyms: attribute.synonyms.iter().map(|synonym| synonym.to_lowercase()).collect(),
+        ask_yes_no: wordings(attribute.ask_yes_no, &[common.yes_no]),
+        ask_which: wordings(attribute.ask_which, &[common.which]),
         values,
-        ask_yes_no: wordings(attribute.ask_yes_no, &wording::ASK_YES_NO),
-        ask_which: wordings(attribute.ask_which, &wording::ASK_WHICH),
         by_place: false,
     }
 }

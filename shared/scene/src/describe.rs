@@ -1,5 +1,8 @@
 //! Objects in words, as a person would name them.
 
+use std::cmp::Reverse;
+
+use crate::forms::{definite, is_number, is_owner, measured};
 use crate::plural::plural;
 use crate::{AttributeId, ObjectId, Role, Scene, Value, ValueId};
 
@@ -58,7 +61,7 @@ impl Scene {
     pub fn list(&self, objects: &[ObjectId], conjunction: &str) -> String {
         let mut names: Vec<String> = Vec::new();
         for &object in objects {
-            let name = format!("the {}", self.describe_with_quality(object, objects));
+            let name = definite(&self.describe_with_quality(object, objects));
             if !names.contains(&name) {
                 names.push(name);
             }
@@ -150,16 +153,30 @@ impl Scene {
         }
     }
 
-    /// Qualities, then the kind (or the scene's noun), then parts and places.
-    pub(crate) fn compose(&self, values: &[(AttributeId, ValueId)]) -> String {
-        let values: Vec<&Value> = values.iter().map(|&(k, v)| self.value(k, v)).collect();
-        let of = |role: Role| values.iter().filter(move |value| value.role() == role);
-        let qualities = of(Role::Quality).rev().map(|value| value.bare());
-        let kind = of(Role::Kind).next().map_or(self.noun(), |value| value.bare());
-        let after = of(Role::Part).chain(of(Role::Place)).map(|value| value.after_noun());
-        let after: Vec<String> = after.collect();
-        let after = after.iter().map(String::as_str);
-        qualities.chain([kind]).chain(after).collect::<Vec<_>>().join(" ")
+    /// Returns these values as a description, `Anna's red mug on the shelf`; the noun is their kind, or else the
+    /// scene's noun.
+    pub fn compose(&self, values: &[(AttributeId, ValueId)]) -> String {
+        let kind = values.iter().map(|&(k, v)| self.value(k, v)).find(|v| v.role() == Role::Kind);
+        self.compose_around(kind.map_or(self.noun(), Value::bare), values)
+    }
+
+    /// Returns these values around a noun: owners, then qualities, then numbers, the noun, then parts and places.
+    pub fn compose_around(&self, noun: &str, values: &[(AttributeId, ValueId)]) -> String {
+        let valued = |&(k, v): &(AttributeId, ValueId)| (k, self.value(k, v));
+        let all: Vec<(AttributeId, &Value)> = values.iter().map(valued).collect();
+        let of = |role: Role| all.iter().filter(move |(_, value)| value.role() == role);
+        let mut qualities: Vec<(AttributeId, &Value)> = of(Role::Quality).copied().collect();
+        // The last attribute is said first; two values of one keep their order.
+        qualities.sort_by_key(|(k, value)| {
+            (!is_owner(&value.spoken), is_number(&value.spoken), Reverse(*k))
+        });
+        let quality = |(k, value): &(AttributeId, &Value)| match is_number(&value.spoken) {
+            true => format!("{} {}", self.attributes()[k.index()].name, value.spoken),
+            false => measured(&value.spoken).unwrap_or_else(|| value.spoken.clone()),
+        };
+        let before = qualities.iter().map(quality);
+        let after = of(Role::Part).chain(of(Role::Place)).map(|(_, value)| value.after_noun());
+        before.chain([noun.to_owned()]).chain(after).collect::<Vec<_>>().join(" ")
     }
 }
 

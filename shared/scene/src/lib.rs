@@ -41,6 +41,7 @@ mod ambiguity;
 mod by_place;
 mod check;
 mod describe;
+mod forms;
 mod ids;
 mod json;
 mod model;
@@ -61,6 +62,7 @@ mod wording;
 #[cfg(test)]
 mod tests;
 
+pub use forms::definite;
 pub use ids::{AttributeId, ObjectId, ValueId, WordId};
 pub use model::{Attribute, Form, Object, Placement, Role, Scene, Value};
 pub use options::Options;

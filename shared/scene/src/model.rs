@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 
 use crate::by_place::ByPlace;
+use crate::forms::{has_quantity, indefinite, without_article};
 use crate::wording::Asks;
 use crate::{AttributeId, ObjectId, Question, StableHash, ValueId, WordId};
 
@@ -110,6 +111,8 @@ pub struct Value {
     /// The same string in `V`.
     pub word: WordId,
     pub(crate) role: Role,
+    /// Whether it is a part named without an article: "green handle".
+    pub(crate) is_noun: bool,
 }
 
 /// Grammatical role of a value: a key of the scene file, or else guessed from the `spoken` form.
@@ -139,14 +142,20 @@ impl Role {
 
     /// Guesses the role of a value from its name and its `spoken` form; `shared` is the last word of the `spoken` forms
     /// of its attribute, if they have one in common, or else the attribute's name.
-    pub(crate) fn guess(name: &str, spoken: &str, shared: &str) -> Self {
+    pub(crate) fn guess(attribute: &str, name: &str, spoken: &str, shared: &str) -> Self {
         let starts = |relation: &&str| {
             spoken.strip_prefix(*relation).is_some_and(|rest| rest.starts_with(' '))
         };
         if RELATIONS.iter().any(starts) {
             return Self::Place;
         }
-        if HAVING.iter().any(starts) {
+        if PLACES.contains(&spoken) {
+            return Self::Place;
+        }
+        if HAVING.iter().any(starts) || starts(&"no") || spoken.starts_with("to ") {
+            return Self::Part;
+        }
+        if spoken.strip_prefix("some ").is_some_and(|rest| rest != name) {
             return Self::Part;
         }
         match without_article(spoken) {
@@ -155,10 +164,60 @@ impl Role {
                 let rest = noun.strip_prefix(name).unwrap_or_default();
                 if rest.trim_start() == shared && rest != shared { Self::Part } else { Self::Kind }
             }
+            // "green handle" of the attribute "handle", "wrapped in foil".
+            None if is_part_of(attribute, spoken) || is_continued(attribute, spoken) => Self::Part,
             None => Self::Quality,
         }
     }
 }
+
+/// Returns whether a form is a part named without an article, "green handle" of the attribute "handle"; not of an
+/// attribute that is a place, as in "top shelf".
+pub(crate) fn is_part_of(attribute: &str, spoken: &str) -> bool {
+    let is_place = |place: &&str| attribute.ends_with(*place);
+    let is_first = |word: &&str| spoken.strip_prefix(*word).is_some_and(|it| it.starts_with(' '));
+    let before = spoken.strip_suffix(attribute).and_then(|before| before.strip_suffix(' '));
+    before.is_some_and(|before| !before.is_empty())
+        && !PLACE_NOUNS.iter().any(is_place)
+        && !RELATIONS.iter().chain(HAVING).any(is_first)
+}
+
+/// Returns whether a form is an adjective with what it needs after it: "older than a year". Names of things may
+/// have the same words in them: "The Lord of the Rings", "toast on a plate".
+fn is_continued(attribute: &str, spoken: &str) -> bool {
+    let mut words = spoken.split(' ').skip(1);
+    let is_link = |word: &str| ["in", "on", "at", "to", "than", "by", "from"].contains(&word);
+    spoken.starts_with(char::is_lowercase)
+        && !THING_NOUNS.contains(&attribute)
+        && words.any(is_link)
+        && !spoken.rsplit(' ').next().is_some_and(is_link)
+}
+
+/// Places without a relation.
+const PLACES: &[&str] = &[
+    "upstairs",
+    "downstairs",
+    "outside",
+    "inside",
+    "indoors",
+    "outdoors",
+    "here",
+    "there",
+    "nearby",
+    "underneath",
+    "overhead",
+];
+/// Attributes that are places of things and not parts of them.
+const PLACE_NOUNS: &[&str] = &[
+    "place", "location", "position", "room", "shelf", "drawer", "cupboard", "cabinet", "table",
+    "tray", "rack", "hook", "bin", "box", "floor", "counter", "bench", "desk", "side", "kind",
+    "type", "size",
+];
+/// Attributes whose values are things.
+const THING_NOUNS: &[&str] = &[
+    "kind", "type", "item", "object", "thing", "name", "title", "dish", "content", "contents",
+    "product",
+];
 
 /// Relations of a thing to where it is.
 const RELATIONS: &[&str] = &[
@@ -202,11 +261,6 @@ const HAVING: &[&str] = &[
     "containing",
 ];
 
-/// The text without "a" or "an" before it, if it has one.
-fn without_article(text: &str) -> Option<&str> {
-    ["a ", "an "].iter().find_map(|article| text.strip_prefix(article))
-}
-
 impl Value {
     /// Returns the grammatical role of the value.
     pub fn role(&self) -> Role {
@@ -215,15 +269,18 @@ impl Value {
 
     /// The value without an article, as it stands beside a noun or for one: "felt tip" of "a felt
     /// tip".
-    pub(crate) fn bare(&self) -> &str {
+    pub fn bare(&self) -> &str {
         without_article(&self.spoken).filter(|_| self.role == Role::Kind).unwrap_or(&self.spoken)
     }
 
-    /// The value as it stands after a noun: "in the dishwasher", "with a green handle".
+    /// The value as it stands after a noun: "in the dishwasher", "with a green handle", "with no handle".
     pub fn after_noun(&self) -> String {
-        match without_article(&self.spoken).filter(|_| self.role == Role::Part) {
-            Some(_) => format!("with {}", self.spoken),
-            None => self.spoken.clone(),
+        let spoken = &self.spoken;
+        let is_noun = self.role == Role::Part && self.is_noun;
+        match has_quantity(spoken) {
+            true if self.role == Role::Part => format!("with {spoken}"),
+            false if is_noun => format!("with {} {spoken}", indefinite(spoken)),
+            _ => spoken.clone(),
         }
     }
 }

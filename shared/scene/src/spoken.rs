@@ -1,5 +1,6 @@
 //! The phrases in which people name the values of a scene.
 
+use crate::forms::definite;
 use crate::{AttributeId, Role, Scene, Value, ValueId};
 
 /// What reading a scene's own words back has found. The reader is a parameter elsewhere.
@@ -78,6 +79,6 @@ impl Scene {
 
     /// Returns the phrase that asks for a thing with these values.
     pub fn request_for(&self, values: &[(AttributeId, ValueId)]) -> String {
-        format!("get me the {}", self.compose(values))
+        format!("get me {}", definite(&self.compose(values)))
     }
 }

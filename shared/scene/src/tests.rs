@@ -1,6 +1,7 @@
 //! Readers of scenes, their diagnostics, and the shipped scenes.
 
 mod choices;
+mod wordings;
 
 use expect_test::expect_file;
 use proptest::prelude::*;

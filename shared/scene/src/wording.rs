@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use crate::describe::enumerate;
+use crate::forms::indefinite;
 use crate::{AttributeId, Options, Question, Scene, ValueId};
 
 /// Default yes/no wordings of an attribute.
@@ -73,8 +74,18 @@ impl Scene {
                 #[expect(clippy::cast_possible_truncation, reason = "below the number of leads")]
                 let lead = (again % LEADS.len() as u64) as usize;
                 let wording = plain(n + again + again / LEADS.len() as u64);
-                format!("{} {}", LEADS[lead], in_lower_case(&wording))
+                format!("{} {}", LEADS[lead], self.continued(question, &wording))
             }
+        }
+    }
+
+    /// Returns a wording as it continues after a colon; a value at its beginning keeps its own capital.
+    fn continued(&self, question: Question, wording: &str) -> String {
+        let values = question.attribute().map(|k| &self.attributes()[k.index()].values);
+        let mut values = values.into_iter().flatten();
+        match values.any(|value| wording.starts_with(value.spoken.as_str())) {
+            true => wording.to_owned(),
+            false => in_lower_case(wording),
         }
     }
 
@@ -126,7 +137,10 @@ impl Scene {
             Question::Attribute(k, v) => {
                 let attribute = &self.attributes()[k.index()];
                 let wording = wording.replace("{attribute}", &attribute.name);
-                wording.replace("{value}", &attribute.values[v.index()].spoken)
+                let spoken = &attribute.values[v.index()].spoken;
+                let article = format!(" {} {{value}}", indefinite(spoken));
+                let wording = wording.replace(" an {value}", " a {value}");
+                wording.replace(" a {value}", &article).replace("{value}", spoken)
             }
         }
     }
@@ -157,7 +171,7 @@ impl Scene {
                 format!("{}: yes or no?", plain.trim_end_matches('?').trim_end())
             }
             (Question::None | Question::Which(_) | Question::Choice(..), _) => {
-                format!("Sorry: {}", in_lower_case(plain))
+                format!("Sorry: {}", self.continued(question, plain))
             }
         }
     }
@@ -174,7 +188,12 @@ fn in_lower_case(text: &str) -> String {
     }
 }
 
+/// Returns a text with a capital first; "iPhone" and "v1.2" have a spelling of their own.
 fn capitalised(text: &str) -> String {
+    let mut rest = text.split(' ').next().unwrap_or_default().chars().skip(1);
+    if rest.any(|c| c.is_uppercase() || c.is_numeric()) {
+        return text.to_owned();
+    }
     let mut chars = text.chars();
     let first = chars.next().into_iter().flat_map(char::to_uppercase);
     first.chain(chars).collect()
@@ -210,6 +229,10 @@ mod tests {
         ] {
             assert_eq!(in_lower_case(text), small);
         }
+        assert_eq!(
+            [capitalised("iPhone or v1.2"), capitalised("v1.2")],
+            ["iPhone or v1.2", "v1.2"]
+        );
         assert_eq!(capitalised("in the dishwasher"), "In the dishwasher");
         assert_eq!(capitalised("éclair"), "Éclair");
     }

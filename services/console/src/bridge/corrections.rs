@@ -23,7 +23,7 @@ pub(super) fn not_that(scene: &Scene, latest: &Latest) -> Result<String, String>
             let object = ObjectId::from(fetched(view, latest.arm.as_ref()));
             let is_known = view.scene_key == scene.key() && object.index() < scene.objects().len();
             is_known
-                .then(|| format!("no, not the {}", scene.describe(object)))
+                .then(|| format!("no, not {}", scene::definite(&scene.describe(object))))
                 .ok_or(NOTHING.into())
         }
         (ActKind::Ask, Question::Attribute(..) | Question::Point(_) | Question::Choice(..)) => {

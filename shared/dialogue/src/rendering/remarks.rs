@@ -1,6 +1,6 @@
 //! English of the robot's remarks: answers to what the user asks.
 
-use scene::{Attribute, ObjectId, Role, Scene, Value};
+use scene::{Attribute, AttributeId, ObjectId, Role, Scene, Value, ValueId, definite};
 use vocabulary::ActKind;
 
 use crate::manager::{AboutObjects, Reason, Remark};
@@ -60,15 +60,15 @@ pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
 fn only_fetches(scene: &Scene, offered: Option<&str>) -> String {
     let only = "I can only fetch things and put them back.";
     match offered.and_then(|name| scene.object_named(name)) {
-        Some(object) => format!("{only} Shall I get the {}?", scene.describe(object)),
+        Some(object) => format!("{only} Shall I get {}?", definite(&scene.describe(object))),
         None => only.to_owned(),
     }
 }
 
 /// "You can say what you want, for example: the red mug."
 pub(super) fn example(scene: &Scene) -> String {
-    let object = scene.describe(ObjectId(0));
-    format!("You can say what you want, for example: the {object}.")
+    let object = definite(&scene.describe(ObjectId(0)));
+    format!("You can say what you want, for example: {object}.")
 }
 
 /// Returns what there is to choose from.
@@ -107,7 +107,7 @@ fn about_objects(scene: &Scene, asked: AboutObjects, words: &[String], names: &[
     let group = group(scene, words, Some(&objects));
     let listed = || {
         let list = match objects[..] {
-            [one] => format!("the {}", scene.describe(one)),
+            [one] => definite(&scene.describe(one)),
             // Telling each from all others takes the square of their number.
             [..] if objects.len() > LISTED_MAX => return None,
             _ => scene.list(&objects, "and"),
@@ -126,7 +126,9 @@ fn about_objects(scene: &Scene, asked: AboutObjects, words: &[String], names: &[
         }),
         (AboutObjects::Whether, _) => format!("Yes, I see {}.", listed().unwrap_or(group)),
         (AboutObjects::Which, _) => format!("I see {}.", listed().unwrap_or(group)),
-        (AboutObjects::Count, [one]) => format!("There is one: the {}.", scene.describe(*one)),
+        (AboutObjects::Count, [one]) => {
+            format!("There is one: {}.", definite(&scene.describe(*one)))
+        }
         (AboutObjects::Count, _) => match listed() {
             Some(list) => format!("There are {count} {group}: {list}."),
             None => format!("There are {count} {group}."),
@@ -136,20 +138,22 @@ fn about_objects(scene: &Scene, asked: AboutObjects, words: &[String], names: &[
 
 /// "red cups on the shelf": what the words describe; in plural for these objects, or else one.
 pub(super) fn group(scene: &Scene, words: &[String], plural_of: Option<&[ObjectId]>) -> String {
-    // As `Scene::describe` has them: the qualities of the first attribute are nearest to the noun.
-    let values = scene.attributes().iter().rev().flat_map(|attribute| &attribute.values);
-    let said: Vec<&Value> = values.filter(|value| words.contains(&value.name)).collect();
-    let of = |role: Role| said.iter().filter(move |value| value.role() == role);
-    let qualities = of(Role::Quality).map(|value| value.name.clone());
-    let kind = of(Role::Kind).next().map_or(scene.noun(), |value| value.name.as_str());
-    let noun = match plural_of {
-        None => kind.to_owned(),
-        Some([]) => scene::plural(kind),
-        Some(objects) => scene.plural_nouns(objects),
-    };
-    let after = of(Role::Part).chain(of(Role::Place)).map(|value| value.after_noun());
-    let parts: Vec<String> = qualities.chain([noun]).chain(after).collect();
-    parts.join(" ")
+    let attributes = scene.attributes().iter().enumerate();
+    let values = attributes.flat_map(|(k, attribute)| {
+        let said = attribute.values.iter().enumerate();
+        let said = said.filter(|(_, value)| words.contains(&value.name));
+        said.map(move |(v, value)| ((k.into(), v.into()), value))
+    });
+    let (said, values): (Vec<(AttributeId, ValueId)>, Vec<&Value>) = values.unzip();
+    let kind = values.iter().find(|value| value.role() == Role::Kind);
+    match plural_of {
+        None => scene.compose(&said),
+        Some([]) => {
+            let kind = kind.map_or(scene.noun(), |value| value.bare());
+            scene.compose_around(&scene::plural(kind), &said)
+        }
+        Some(objects) => scene.compose_around(&scene.plural_nouns(objects), &said),
+    }
 }
 
 /// "It is on the shelf.", "One is short and one is long."
@@ -204,7 +208,7 @@ pub(super) fn list(descriptions: &[String], conjunction: &str) -> String {
             items.push(format!("{} more", descriptions.len() - items.len()));
             break;
         }
-        items.push(format!("the {description}"));
+        items.push(definite(description));
     }
     joined_with(&items, conjunction)
 }
@@ -230,7 +234,7 @@ pub(super) fn number(n: usize) -> String {
     WORDS.get(n).map_or_else(|| n.to_string(), |word| (*word).to_owned())
 }
 
-fn capitalised(text: &str) -> String {
+pub(super) fn capitalised(text: &str) -> String {
     let mut chars = text.chars();
     let first = chars.next().into_iter().flat_map(char::to_uppercase);
     first.chain(chars).collect()

@@ -8,6 +8,7 @@ mod own_words;
 mod readings;
 mod shapes;
 mod table;
+mod wordings;
 
 use std::sync::LazyLock;
 use std::time::Instant;
