@@ -7,9 +7,7 @@ use rustix::process::Signal;
 use serde_json::{Value as Json, json};
 use tungstenite::Message;
 use whichone_tests::console::{Page, Visitor, http};
-use whichone_tests::{Group, wait_for};
-
-const YES_NO: &str = "dialogue.choice_questions=false";
+use whichone_tests::{Group, YES_NO, wait_for};
 
 fn ok(done: &Json) -> bool {
     assert!(done["ok"].as_bool().is_some(), "{done}");

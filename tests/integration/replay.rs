@@ -15,7 +15,7 @@ use service::lifecycle::Environment;
 use service::service_loop::Program;
 use service::{Effects, Event, Never, Node, Time};
 use tempfile::TempDir;
-use whichone_tests::{Ended, Group, program, run, settings, wait_for};
+use whichone_tests::{Ended, Group, YES_NO, program, run, settings, wait_for};
 
 const SERVICES: [&str; 4] = ["speech", "grounding", "policy", "arm"];
 
@@ -31,7 +31,7 @@ fn reports(ended: &Ended) -> Vec<Report> {
 
 /// Flights of four dialogues, in each of which another service was killed during the fetch.
 fn flights_with_kills() -> TempDir {
-    let group = Group::up(&["arm.time_scale=15.0", "group.flight.free_min_mib=0"]);
+    let group = Group::up(&["arm.time_scale=15.0", "group.flight.free_min_mib=0", YES_NO]);
     for service in SERVICES {
         let outcome = group.fetch_while("the bowl", "clear", || {
             let before = group.incarnation(service);

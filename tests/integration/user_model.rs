@@ -1,10 +1,8 @@
 //! The learned error rate of the user.
 
-use whichone_tests::{Group, wait_for};
+use whichone_tests::{Group, YES_NO, wait_for};
 
 const LEARNS: &str = "dialogue.planner=information-seeking";
-/// Answers to choices have an error rate of their own, which is not a person's.
-const YES_NO: &str = "dialogue.choice_questions=false";
 
 fn errs(group: &Group) -> f64 {
     group.dialogue()["person"]["epsilon"].as_f64().expect("it learns")

@@ -28,6 +28,9 @@ use config::Settings;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+/// The setting by which only yes/no questions are asked, for tests of answers that name nothing.
+pub const YES_NO: &str = "dialogue.choice_questions=false";
+
 /// The settings of the profile of the arm with six joints: a group has the profile for tests.
 pub const UR5E: [&str; 4] = [
     "group.scene=blocks",

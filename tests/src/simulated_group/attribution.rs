@@ -63,6 +63,8 @@ fn count(rule: &str, channel: Channel, dialogues: u64, seed: u64) -> Count {
     let settings = settings(&[
         ("dialogue.turns.attribution", rule),
         ("dialogue.turns.response_window_s", WINDOW),
+        // The answer to a choice names what it answers; a yes does not.
+        ("dialogue.choice_questions", "false"),
     ]);
     let live = channel == Channel::Live;
     let mut count = Count { rule: rule.to_owned(), live, ..Count::default() };

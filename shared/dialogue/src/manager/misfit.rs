@@ -7,7 +7,6 @@
 use scene::{AttributeId, ObjectId, Question, ValueId};
 
 use super::acts::set;
-use super::evidence::Mark;
 use super::line::{AboutObjects, Content, Line, Preface, Remark};
 use super::state::{Act, Interaction, State};
 use super::{LEFT_MAX, Manager};
@@ -30,25 +29,14 @@ impl Manager {
     pub(super) fn offer_first(&mut self, state: &State, object: ObjectId) -> Option<Offered> {
         let open = state.open.as_ref().filter(|open| !is_offered(open, object))?;
         // What is not here is concluded, and cannot be offered.
-        if Some(object) == self.setup.model.absent() || self.is_referred_to(open, object) {
-            return None;
-        }
-        let fit = self.fit(open, |i| f64::from(u8::from(i == object)))?;
+        let is_here = Some(object) != self.setup.model.absent();
+        let fit = self.fit(open, |i| f64::from(u8::from(i == object))).filter(|_| is_here)?;
         let alike = self.left_over(state, object);
         if alike != Preface::None {
             let content = Content::Offered(vec![self.description(object)]);
             return Some((object, Line { preface: alike, content }));
         }
         (fit < FITS_MIN).then(|| (object, self.offering(open, object)))
-    }
-
-    /// Whether the user has referred to the object itself ("the other one"), whatever its values are
-    /// taken for.
-    fn is_referred_to(&self, open: &Interaction, object: ObjectId) -> bool {
-        let name = &self.setup.scene.object(object).name;
-        let mut marks = open.evidence.iter().filter_map(|it| it.mark.as_ref());
-        marks
-            .any(|mark| matches!(mark, Mark::OneOf(meant) if meant.len() == 1 && meant[0] == *name))
     }
 
     /// Returns the offer to make instead of asking a question of that value: what was said fits no
