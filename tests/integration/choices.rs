@@ -38,9 +38,9 @@ fn fetch(
         let seen = group.follow_from("a question or a pick", 20.0, say, |state| {
             let dialogue = state["dialogue"].take();
             let is_new = dialogue["prompt"].as_u64()? > answered;
-            let decides = dialogue["decision"] == "pick"
-                || dialogue["decision"] == "ask" && dialogue["question"]["type"] != "none";
-            (is_new && decides).then_some(dialogue)
+            // What is said before a question has been put does not answer it.
+            let is_turn = dialogue["decision"] == "pick" || dialogue["expects_answer"] == true;
+            (is_new && is_turn).then_some(dialogue)
         });
         answered = seen["prompt"].as_u64().unwrap();
         if seen["decision"] == "pick" {

@@ -287,7 +287,7 @@ impl ViewModel {
         let further = listed::further(&self.scene, &self.standing, view, arm.as_ref());
         let listed = || self.standing.iter().copied().chain(further.iter().copied());
         let dialogue = |view| {
-            let dialogue = DialogueView::new(&self.scene, view);
+            let dialogue = DialogueView::new(&self.scene, view, presented);
             let belief = listed().filter_map(|i| dialogue.belief.get(i.index()).copied()).collect();
             DialogueView { belief, ..dialogue }
         };

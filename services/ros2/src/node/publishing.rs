@@ -5,7 +5,7 @@ use crate::clock::SystemClock;
 use crate::objects;
 use crate::types::Text;
 use config::Settings;
-use service::view::{ArmView, DialogueView, HearingView, Speaker, View, drain, quiet};
+use service::view::{ArmView, HearingView, Speaker, View, drain, quiet};
 use service::{Span, Time};
 
 /// Shortest interval between two publications of the objects or of the state.
@@ -83,7 +83,7 @@ impl Node {
     pub(super) fn state_text(&self) -> String {
         let Self { scene, latest, .. } = self;
         let view = View {
-            dialogue: latest.view.as_ref().map(|view| DialogueView::new(scene, view)),
+            dialogue: latest.dialogue(scene),
             said: self.lines.said(),
             hearing: latest.hearing.as_ref().map(HearingView::new),
             arm: latest.arm.as_ref().map(|arm| ArmView::new(scene, arm)),

@@ -29,21 +29,29 @@ pub(super) fn people(paths: &GroupPaths, args: &PeopleArgs, out: &mut Output<'_>
             let mut people = read(paths)?;
             if let Some(person) = person {
                 people.retain(|known| known.name == person.as_str());
-                found(paths, &people, person)?;
+                if people.is_empty() {
+                    let (name, group) = (one_line(person.as_str()), paths.name());
+                    let what = format!("group {group} knows nobody called `{name}`");
+                    let help = "help: `whichone people`";
+                    return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
+                }
             }
             out.json(&people)?;
             Ok(Exit::Ok)
         }
         PeopleVerb::Forget { person, timeout } => {
-            let mut people = read(paths)?;
-            people.retain(|known| known.name == person.as_str());
-            found(paths, &people, person)?;
+            // Records of the journal have the name from the first word on, before anything is learned.
+            let is_known = read(paths)?.iter().any(|known| known.name == person.as_str());
             forget(paths, person, *timeout)?;
             if out.is_json() {
                 out.json(&json!({ "forgotten": person.as_str() }))?;
                 return Ok(Exit::Ok);
             }
-            out.line(format_args!("{} is forgotten", one_line(person.as_str())))?;
+            let name = one_line(person.as_str());
+            out.line(format_args!("{name} is forgotten"))?;
+            if !is_known {
+                note(format_args!("nothing was learned about {name}; help: `whichone people` lists names"));
+            }
             note(
                 "what was said stays for a while in the speech service's journal, in recordings and in flights",
             );
@@ -62,15 +70,6 @@ fn read(paths: &GroupPaths) -> Result<Vec<PersonRecord>, Failure> {
     }
     known(&file)
         .map_err(|error| Failure::new(Exit::Storage, format!("{}: {error}", file.display())))
-}
-
-fn found(paths: &GroupPaths, people: &[PersonRecord], person: &PersonId) -> Result<(), Failure> {
-    if people.is_empty() {
-        let (name, group) = (one_line(person.as_str()), paths.name());
-        let what = format!("group {group} knows nobody called `{name}`");
-        return Err(Failure::new(Exit::NotReached, format!("{what}; help: `whichone people`")));
-    }
-    Ok(())
 }
 
 fn list(people: &[PersonRecord], out: &mut Output<'_>) -> Outcome {

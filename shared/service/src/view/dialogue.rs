@@ -1,4 +1,4 @@
-use messages::{ActKind, Delivery, Outcome, PolicyView};
+use messages::{ActKind, Delivery, Outcome, PolicyView, Presented};
 use scene::{Question, Scene, ValueId};
 use serde::ser::{Serialize, Serializer};
 use vocabulary::{Action, Attributed};
@@ -26,6 +26,8 @@ pub struct DialogueView<'a> {
     pub decision: ActKind,
     /// The question in force; none where it is of another scene.
     pub question: Option<QuestionView<&'a str>>,
+    /// Whether that question has been put to its end and waits for an answer.
+    pub expects_answer: bool,
     /// Prompt of the robot's latest line, 0 for none.
     pub prompt: u64,
     /// The robot's latest line.
@@ -146,7 +148,7 @@ pub struct DeliveryView<'a> {
 
 impl<'a> DialogueView<'a> {
     /// Makes the view of what the policy has published; objects by their names in `scene`.
-    pub fn new(scene: &'a Scene, view: &'a PolicyView) -> Self {
+    pub fn new(scene: &'a Scene, view: &'a PolicyView, presented: &Presented) -> Self {
         let names = scene.objects().iter().map(|object| object.name.as_str());
         Self {
             interaction: view.interaction,
@@ -157,6 +159,7 @@ impl<'a> DialogueView<'a> {
             person: view.person.map(|(p_l, epsilon)| UserView { p_l, epsilon }),
             decision: view.decision,
             question: QuestionView::new(scene, view.question),
+            expects_answer: view.open_question(presented).is_some(),
             prompt: view.prompt,
             text: &view.text,
             value: view.value,

@@ -4,7 +4,7 @@ use messages::{
 };
 use scene::Scene;
 
-use super::TableScene;
+use super::{DialogueView, TableScene};
 use crate::Time;
 use crate::bus::{Bus, BusError, EncodedReader, PortError, Reader};
 
@@ -144,6 +144,11 @@ impl Latest {
     pub fn is_settled(&self) -> bool {
         let applied = self.view.as_ref().is_some_and(|view| view.applied >= self.accepted);
         applied && self.activity.is_some_and(|activity| activity.pending == 0)
+    }
+
+    /// Returns belief and decision for display; none until the policy has published.
+    pub fn dialogue<'a>(&'a self, scene: &'a Scene) -> Option<DialogueView<'a>> {
+        self.view.as_ref().map(|view| DialogueView::new(scene, view, &self.presented))
     }
 
     /// Returns the question in force, once it has been presented completely.

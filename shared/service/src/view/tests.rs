@@ -72,7 +72,7 @@ fn asked() -> Latest {
 #[test]
 fn view_keeps_its_keys() {
     let scene = Scene::from_toml("bowls.toml", BOWLS).unwrap();
-    let policy = policy_view(&scene);
+    let latest = asked();
     let hearing = Hearing {
         microphone: MicrophoneState::Listening.into(),
         level_db: -31.4,
@@ -89,7 +89,7 @@ fn view_keeps_its_keys() {
         ..ArmStatus::default()
     };
     let view = View {
-        dialogue: Some(DialogueView::new(&scene, &policy)),
+        dialogue: latest.dialogue(&scene),
         said: vec![SaidView { who: Speaker::Robot, text: "Is it white?" }],
         hearing: Some(HearingView::new(&hearing)),
         arm: Some(ArmView::new(&scene, &arm)),

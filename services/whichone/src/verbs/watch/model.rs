@@ -5,7 +5,7 @@ use scene::Scene;
 use service::clock;
 use service::group::GroupPaths;
 use service::status::GroupStatus;
-use service::view::{ArmView, DialogueView, HearingView, Latest, Lines, View};
+use service::view::{ArmView, HearingView, Latest, Lines, View};
 
 use crate::verbs::conversation::Conversation;
 use service::exit::Failure;
@@ -63,7 +63,7 @@ impl WatchModel {
     pub(super) fn view(&self) -> View<'_, GroupStatus> {
         let (scene, latest) = (self.scene(), self.latest());
         View {
-            dialogue: latest.view.as_ref().map(|view| DialogueView::new(scene, view)),
+            dialogue: latest.dialogue(scene),
             said: self.lines.said(),
             hearing: latest.hearing.as_ref().map(HearingView::new),
             arm: latest.arm.as_ref().map(|arm| ArmView::new(scene, arm)),
