@@ -83,7 +83,6 @@ fn dependents(package: &str) -> BTreeSet<String> {
 fn few_crates_depend_on_the_dialogue() {
     let allowed = [
         "evaluation",
-        "instructions",
         "laboratory",
         "policy",
         "setup",
@@ -101,7 +100,6 @@ fn few_crates_depend_on_the_language() {
         "console",
         "evaluation",
         "grounding",
-        "instructions",
         "laboratory",
         "reader_training",
         "speech",

@@ -26,7 +26,7 @@ pub(crate) fn baxter(times: u32) {
 }
 
 pub(crate) fn ur5e(times: u32) {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/robots/ur5e");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../config/robots/ur5e");
     let read = |ext| std::fs::read_to_string(format!("{folder}.{ext}")).expect("a readable file");
     let description = Description::parse(&read("urdf"), Some(&read("srdf"))).expect("a robot");
     let robot = Robot::from_description(&description).expect("a robot with one arm");

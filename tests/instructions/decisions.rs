@@ -18,7 +18,7 @@ const UTTERANCES: [&str; 4] = [
 
 /// The six bowls of the configuration.
 pub(crate) fn bowls() -> Scene {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../config/scenes/bowls.toml");
     let text = std::fs::read_to_string(path).expect("a readable scene");
     Scene::from_toml("bowls.toml", &text).expect("a valid scene")
 }

@@ -27,7 +27,7 @@ fn write(observation: &mut Observation, meant: &Interpretation) {
 
 /// The reducer without its shell: neither journal nor shared memory.
 pub(crate) fn step(times: u32) {
-    let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
+    let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../config"));
     let settings = Settings::load(config, None, &[]).expect("the shipped configuration");
     let manager = settings.manager().expect("its manager");
     let mut node = PolicyNode::recover(manager.into(), Vec::new()).expect("a first start");
