@@ -1,5 +1,5 @@
 import { defineConfig } from "@playwright/test";
-import { CHROMIUM_FLAGS, launchOptions } from "./lib/chromium.mjs";
+import { launchOptions, PLAIN_FLAGS } from "./lib/chromium.mjs";
 import { TARGET } from "./lib/program.mjs";
 
 // Each test starts a group and a browser of its own; two at a time fill two cores. The deadlines are for
@@ -20,6 +20,6 @@ export default defineConfig({
     locale: "en-US",
     trace: "retain-on-failure",
     screenshot: "only-on-failure",
-    launchOptions: launchOptions(CHROMIUM_FLAGS),
+    launchOptions: launchOptions(PLAIN_FLAGS),
   },
 });

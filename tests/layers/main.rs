@@ -81,15 +81,8 @@ fn dependents(package: &str) -> BTreeSet<String> {
 /// `vocabulary`.
 #[test]
 fn few_crates_depend_on_the_dialogue() {
-    let allowed = [
-        "evaluation",
-        "laboratory",
-        "policy",
-        "setup",
-        "speech",
-        "whichone",
-        "whichone-tests",
-    ];
+    let allowed =
+        ["evaluation", "laboratory", "policy", "setup", "speech", "whichone", "whichone-tests"];
     assert_eq!(dependents("dialogue"), allowed.map(str::to_owned).into());
 }
 

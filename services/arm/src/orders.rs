@@ -7,7 +7,7 @@ use messages::pick::{Order, Pick, judge};
 use messages::{
     ActId, ActKind, MotionOrder, MotionPhase, PickId, PickOutcome, PickPhase, RobotAct, Task,
 };
-use scene::{ObjectId, Question};
+use scene::ObjectId;
 use service::Time;
 use service::stop_socket::{RELEASE_PATIENCE, RESUME_AFTER, StopOrder};
 
@@ -28,25 +28,17 @@ impl ArmNode {
         if id < self.act.id || act.scene_key != self.config.scene.key() {
             return;
         }
-        let question = match act.judge() {
-            Ok((question, _)) => question,
-            Err(error) => {
-                tracing::warn!(%id, %error, "act rejected");
-                return;
-            }
-        };
+        if let Err(error) = act.judge() {
+            return tracing::warn!(%id, %error, "act rejected");
+        }
         let is_new = id != self.act.id;
-        let kind = act.kind.get();
-        let aim = match (kind, question) {
-            (ActKind::Ask, Question::Point(object)) if act.in_words == 0 => Some(object),
-            _ => None,
-        };
+        let aim = act.pointed_at();
         if is_new {
             self.plan_failures.forget_aim(self.act.aim, aim);
             self.urgent = true;
         }
         self.act = StandingAct { id, aim };
-        match (kind, u16::try_from(act.object).map(ObjectId)) {
+        match (act.kind.get(), u16::try_from(act.object).map(ObjectId)) {
             (ActKind::Pick, Ok(object)) => {
                 self.order((act.pick_id(), object, Task::Fetch), is_new, now, fx);
             }

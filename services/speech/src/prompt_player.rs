@@ -116,9 +116,7 @@ impl PromptPlayer {
         let scene = act.scene_key;
         let presentation =
             Presentation { prompt, number, question, scene, ..Presentation::default() };
-        let points =
-            kind == ActKind::Ask && matches!(question, Question::Point(_)) && act.in_words == 0;
-        let aim_until = points.then(|| now + AIM_TIMEOUT);
+        let aim_until = act.pointed_at().map(|_| now + AIM_TIMEOUT);
         let (act, text) = (ActId(act.act), text.to_owned());
         self.waiting = Some(Waiting { act, presentation, text, aim_until });
     }

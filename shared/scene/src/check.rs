@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use diagnostics::{Report, Table, suggestion};
 
 use crate::forms::{align_parts, defaults, with_capital};
-use crate::model::is_part_of;
+use crate::role::is_part_of;
 use crate::{Attribute, Object, Placement, Role, Scene, Value, ValueId, WordId, wording};
 
 /// A table while its meaning is checked.

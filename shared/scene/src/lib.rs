@@ -54,6 +54,7 @@ mod reading;
 mod reading_text;
 mod relation;
 mod relation_truth;
+mod role;
 mod spoken;
 mod stable_hash;
 mod toml_form;
@@ -64,7 +65,7 @@ mod tests;
 
 pub use forms::definite;
 pub use ids::{AttributeId, ObjectId, ValueId, WordId};
-pub use model::{Attribute, Form, Object, Placement, Role, Scene, Value};
+pub use model::{Attribute, Form, Object, Placement, Scene, Value};
 pub use options::Options;
 pub use perceived::{Perceived, likeliest};
 pub use plural::{count, plural};
@@ -73,5 +74,6 @@ pub use question_json::{QuestionError, question_from_json, question_to_json, rea
 pub use reading::{Doubt, Intent, Reading, Reference, Response, UnknownWord};
 pub use relation::{Measure, Relation};
 pub use relation_truth::{Related, View, size_rank};
+pub use role::Role;
 pub use spoken::{WordFindings, WordProblem};
 pub use stable_hash::StableHash;

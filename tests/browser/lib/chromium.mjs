@@ -35,10 +35,11 @@ export const launchOptions = (args) => ({
   env: { ...process.env, TMPDIR: tmpdir() },
 });
 
-/** A browser in which words replace the picture, whose drawing takes most of the processor: for tests of anything else. */
-export const WITHOUT_PICTURE = {
-  launchOptions: launchOptions([...FLAGS, "--disable-gpu", "--disable-software-rasterizer"]),
-};
+/** Flags with which words replace the picture, whose drawing takes most of the processor. */
+export const PLAIN_FLAGS = [...FLAGS, "--disable-gpu", "--disable-software-rasterizer"];
+
+/** A browser that draws the picture: for the tests of it. */
+export const WITH_PICTURE = { launchOptions: launchOptions(CHROMIUM_FLAGS) };
 
 /**
  * Flags of a microphone that plays a WAV file once, and is granted without a question.

@@ -4,10 +4,13 @@ import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { arm, distance, drawn, drawnFinely, shown } from "../lib/arm.mjs";
 import { expectAccessible } from "../lib/axe.mjs";
+import { WITH_PICTURE } from "../lib/chromium.mjs";
 import { ROOT } from "../lib/program.mjs";
 import { t } from "../lib/strings.mjs";
 import { answerUntilPicked, expectDelivered, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
+
+test.use(WITH_PICTURE);
 
 const file = (path) => readFile(join(ROOT, path), "utf8");
 

@@ -1,8 +1,11 @@
 // Who draws the arm's picture: a worker or, where workers cannot, the page itself.
 
 import { arm, BROWSERS_BY_THREAD, distance, drawn, drawnFinely, shown } from "../lib/arm.mjs";
+import { WITH_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";
+
+test.use(WITH_PICTURE);
 
 const stage = (page) => page.locator(".arm-stage");
 const notice = (page) => page.locator(".arm-notice");

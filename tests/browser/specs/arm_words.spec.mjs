@@ -1,11 +1,8 @@
 // A browser without WebGL: text replaces the drawing of the arm.
 
 import { arm, BROWSERS_BY_THREAD } from "../lib/arm.mjs";
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";
-
-test.use(WITHOUT_PICTURE);
 
 for (const [thread, make] of Object.entries(BROWSERS_BY_THREAD)) {
   test(`words say what the arm does where the ${thread} would draw it`, async ({

@@ -2,8 +2,11 @@
 
 import { drawn } from "../lib/arm.mjs";
 import { expectAccessible } from "../lib/axe.mjs";
+import { WITH_PICTURE } from "../lib/chromium.mjs";
 import { nextDecision, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
+
+test.use(WITH_PICTURE);
 
 for (const viewport of [
   { width: 1920, height: 1080 },

@@ -3,9 +3,12 @@
 import { createServer } from "node:http";
 import { drawn } from "../lib/arm.mjs";
 import { expectAccessible } from "../lib/axe.mjs";
+import { WITH_PICTURE } from "../lib/chromium.mjs";
 import { Group } from "../lib/group.mjs";
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";
+
+test.use(WITH_PICTURE);
 
 const PICTURE = Buffer.from(
   "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNkYPhfDwAChwGA60e6kgAAAABJRU5ErkJggg==",

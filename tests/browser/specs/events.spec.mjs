@@ -1,12 +1,9 @@
 // What happens besides the conversation is in the details.
 
 import { expectAccessible } from "../lib/axe.mjs";
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { stopByKey, transcript, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
-
-test.use(WITHOUT_PICTURE);
 
 test("restarts and stops are events, not lines of the conversation", async ({
   console: page,

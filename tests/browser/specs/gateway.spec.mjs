@@ -2,11 +2,14 @@
 
 import { drawn } from "../lib/arm.mjs";
 import { expectAccessible } from "../lib/axe.mjs";
+import { WITH_PICTURE } from "../lib/chromium.mjs";
 import { Gateway } from "../lib/gateway.mjs";
 import { t } from "../lib/strings.mjs";
 import { nextDecision, question, stopByKey, type } from "../lib/talk.mjs";
 import { test as base, expect } from "../lib/test.mjs";
 import { until } from "../lib/until.mjs";
+
+test.use(WITH_PICTURE);
 
 const test = base.extend({
   gateway: async ({ group }, use) => {

@@ -1,12 +1,11 @@
 // STOP pressed again and again never releases itself, whatever the rhythm and the key.
 
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { releaseCounts } from "../lib/group.mjs";
 import { resumeButton } from "../lib/resume.mjs";
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";
 
-test.use({ ...WITHOUT_PICTURE, hasTouch: true });
+test.use({ hasTouch: true });
 
 /** Time between two presses, milliseconds: 60 from 50 ms to 2 s. */
 const RHYTHMS = Array.from({ length: 60 }, (_, n) => Math.round(50 + (n * 1_950) / 59));

@@ -4,7 +4,6 @@ import { spawn } from "node:child_process";
 import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { expectAccessible } from "../lib/axe.mjs";
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { program } from "../lib/program.mjs";
 import { t } from "../lib/strings.mjs";
 import { answerUntilPicked, type } from "../lib/talk.mjs";
@@ -12,7 +11,7 @@ import { expect, test } from "../lib/test.mjs";
 import { until } from "../lib/until.mjs";
 
 // The console is killed, and the group goes down.
-test.use({ ...WITHOUT_PICTURE, provoked: ["WebSocket connection", "ERR_CONNECTION_REFUSED"] });
+test.use({ provoked: ["WebSocket connection", "ERR_CONNECTION_REFUSED"] });
 
 const sheetOf = (page) => page.getByRole("dialog", { name: t("history.title") });
 const show = (page) => page.getByRole("button", { name: t("history.show") }).click();

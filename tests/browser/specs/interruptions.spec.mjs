@@ -1,6 +1,5 @@
 // What a page outlives.
 
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import {
   answerUntilPicked,
@@ -11,8 +10,6 @@ import {
   type,
 } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
-
-test.use(WITHOUT_PICTURE);
 
 // The browser itself reports a socket that cannot be opened.
 const LINK_LOST = ["WebSocket connection", "ERR_CONNECTION_REFUSED"];

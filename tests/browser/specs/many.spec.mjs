@@ -3,12 +3,9 @@
 import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { answer } from "../lib/person.mjs";
 import { nextDecision, question, transcript, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
-
-test.use(WITHOUT_PICTURE);
 
 const COUNT = 3_000;
 const DIGITS = ["zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"];

@@ -1,13 +1,10 @@
 // What can be said to the robot at a press: examples, answers, and what to say of a hand-over.
 
 import { expectAccessible } from "../lib/axe.mjs";
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { expectDelivered, nextDecision, offer, question, transcript, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
 import { until } from "../lib/until.mjs";
-
-test.use(WITHOUT_PICTURE);
 
 const handedOver = (page) => question(page).getByText(t("delivery.kicker"), { exact: true });
 

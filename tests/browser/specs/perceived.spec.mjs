@@ -1,7 +1,10 @@
 // Objects from perception: the page shows those that are on the table, where they are.
 
 import { distance, drawn, shown } from "../lib/arm.mjs";
+import { WITH_PICTURE } from "../lib/chromium.mjs";
 import { expect, test } from "../lib/test.mjs";
+
+test.use(WITH_PICTURE);
 
 test.use({ settings: ["group.perception.enabled=true"] });
 

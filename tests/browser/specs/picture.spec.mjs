@@ -1,9 +1,12 @@
 // The names in the arm's picture, and a click on an object.
 
 import { drawn, drawnFinely } from "../lib/arm.mjs";
+import { WITH_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { transcript } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
+
+test.use(WITH_PICTURE);
 
 const SIZES = {
   desktop: { width: 1440, height: 900 },

@@ -1,11 +1,8 @@
 // The one sheet of settings.
 
 import { expectAccessible } from "../lib/axe.mjs";
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";
-
-test.use(WITHOUT_PICTURE);
 
 test("what is set is in force at once, and still after a reload", async ({ console: page }) => {
   const root = page.locator("html");

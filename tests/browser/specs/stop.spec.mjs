@@ -1,12 +1,9 @@
 // The motion stop.
 
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { expectStopped, resume, resumeButton } from "../lib/resume.mjs";
 import { t } from "../lib/strings.mjs";
 import { answerUntilPicked, expectDelivered, stopByKey, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
-
-test.use(WITHOUT_PICTURE);
 
 const stopped = async (group) => (await group.state()).arm.stopped;
 const stop = (page) => page.getByRole("button", { name: t("stop.stop") });

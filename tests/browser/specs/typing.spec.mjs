@@ -1,11 +1,8 @@
 // A whole interaction by typing.
 
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { answerUntilPicked, expectDelivered, question, transcript, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
-
-test.use(WITHOUT_PICTURE);
 
 test("a person gets the right bowl by typing", async ({ console: page, group }) => {
   await type(page, "get me the bowl");

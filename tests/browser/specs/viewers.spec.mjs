@@ -1,11 +1,8 @@
 // Two people look at the same robot.
 
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { answerUntilPicked, expectDelivered, transcript, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
-
-test.use(WITHOUT_PICTURE);
 
 test("one talks, the other watches, and control is handed over", async ({
   console: first,

@@ -1,13 +1,12 @@
 // Talking with the robot: through the page's microphone to the recogniser, and its questions back.
 
 import { expectAccessible } from "../lib/axe.mjs";
-import { WITHOUT_PICTURE } from "../lib/chromium.mjs";
 import { answer } from "../lib/person.mjs";
 import { expect, test } from "../lib/test.mjs";
 import { until } from "../lib/until.mjs";
 import { ALOUD, giveMicrophone, hears, holdAndSpeak, saidLast, speak } from "../lib/voice.mjs";
 
-test.use({ ...WITHOUT_PICTURE, settings: ALOUD });
+test.use({ settings: ALOUD });
 
 /** The robot's next act that differs from the previous one. */
 const next = (group, before) =>

@@ -1,7 +1,10 @@
 // The page is small, in the user's language, and sends requests only to the robot.
 
+import { WITH_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";
+
+test.use(WITH_PICTURE);
 
 /** Bytes of the first view as they cross the network, without the part in 3D. */
 const FIRST_VIEW_BYTES_MAX = 300_000;

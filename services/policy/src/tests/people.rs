@@ -70,11 +70,11 @@ fn deliveries_teach_who_gave_a_name_and_an_order_has_the_policy_forget_one() {
 fn view_names_the_person_of_the_first_utterance_while_the_interaction_is_open() {
     let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
     let from = |outputs: &[Out]| {
-        let views = outputs.iter().filter_map(|out| match out {
+        let name = |out: &Out| match out {
             Out::View(view) => Some(view.from.clone()),
             _ => None,
-        });
-        views.last().unwrap()
+        };
+        outputs.iter().rev().find_map(name).unwrap()
     };
     let (_, outputs) = tell(&mut node, said_by(1, "Ann"), at(1));
     assert_eq!(from(&outputs), "Ann");

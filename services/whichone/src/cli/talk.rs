@@ -195,6 +195,11 @@ pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     sensible.then(|| Duration::from_secs_f64(seconds)).ok_or_else(wrong)
 }
 
+/// Reads the name of a person.
+pub(crate) fn person(name: &str) -> Result<PersonId, NotAPerson> {
+    PersonId::new(name)
+}
+
 /// A text with its weight.
 fn alternative(text: &str) -> Result<(String, f64), String> {
     let wrong = || "expected TEXT=WEIGHT with a weight between 0 and 1, e.g. `the red one=0.3`";
@@ -227,9 +232,4 @@ mod tests {
             assert!(seconds(wrong).is_err(), "{wrong}");
         }
     }
-}
-
-/// Reads the name of a person.
-pub(crate) fn person(name: &str) -> Result<PersonId, NotAPerson> {
-    PersonId::new(name)
 }

@@ -82,6 +82,16 @@ impl RobotAct {
         (self.kind == ActKind::PutBack).then_some((self.pick_id(), ObjectId(object)))
     }
 
+    /// The object that the arm points at while it asks.
+    pub fn pointed_at(&self) -> Option<ObjectId> {
+        match Question::try_from(self.question) {
+            Ok(Question::Point(object)) => {
+                (self.kind == ActKind::Ask && self.in_words == 0).then_some(object)
+            }
+            _ => None,
+        }
+    }
+
     /// Judges what the policy alone can know: its numbers, its question and its text.
     ///
     /// # Errors
