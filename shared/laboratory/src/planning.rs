@@ -142,7 +142,7 @@ mod tests {
         assert_eq!(own.announce.heard, 0.0);
         let args = ProblemArgs { mode: Some(Mode::Remote), announce: Some(0.1), ..args };
         let mixed = of_scene(scene, &args, true).unwrap();
-        assert!(!mixed.actions.choice && mixed.model.params().choice.is_some());
+        assert!(mixed.actions.choice && mixed.model.params().choice.is_some());
         let choosing = ProblemArgs { choice: true, ..args };
         assert!(of_scene(scene, &choosing, true).unwrap().actions.choice);
         assert_eq!((mixed.actions.mode, mixed.announce.heard), (Mode::Remote, 0.1));

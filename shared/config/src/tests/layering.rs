@@ -51,7 +51,7 @@ fn defaults_are_as_documented() {
     );
     assert_eq!(dialogue.costs, vocabulary::Costs::default());
     assert_eq!((dialogue.language, &*dialogue.planner), (Language::Careful, "lookahead"));
-    assert!(dialogue.actions.attribute && !dialogue.actions.which && !dialogue.actions.choice);
+    assert!(dialogue.actions.attribute && !dialogue.actions.which && dialogue.actions.choice);
     assert_eq!((speech.voice, speech.recogniser), (Voice::Auto, Recogniser::Auto));
     assert_eq!((speech.player, speech.model_dir), (None, None));
     assert_eq!((arm.limb.as_ref(), arm.time_scale, arm.restock), (None, 1.0, true));
