@@ -82,7 +82,7 @@ struct Package {
 /// Every crate of others that the workspace is built and tested with, by name and version.
 fn packages() -> Vec<Package> {
     let output = Command::new(env!("CARGO"))
-        .args(["tree", "--offline", "--locked", "--workspace", "--prefix", "none", "--no-dedupe"])
+        .args(["tree", "--offline", "--locked", "--workspace", "--prefix", "none"])
         .args([
             "--features",
             "ros2/dds,link/zenoh,grounding/tls",
@@ -95,8 +95,7 @@ fn packages() -> Vec<Package> {
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let lines: BTreeSet<String> =
-        String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect();
+    let lines = distinct(&output.stdout);
     let package = |line: &String| {
         let (package, licence) = line.split_once('\t')?;
         let mut words = package.split(' ');
@@ -145,14 +144,20 @@ fn is_allowed(expression: &str) -> bool {
 /// Every crate, with its features, that `cargo build` with these arguments compiles.
 fn built(arguments: &[&str]) -> BTreeSet<String> {
     let output = Command::new(env!("CARGO"))
-        .args(["tree", "--offline", "--locked", "--prefix", "none", "--no-dedupe"])
+        .args(["tree", "--offline", "--locked", "--prefix", "none"])
         .args(["--edges", "normal,build", "--format", "{p} [{f}]"])
         .args(arguments)
         .current_dir(TOP)
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect()
+    distinct(&output.stdout)
+}
+
+/// Returns the lines of `cargo tree`, which marks a package whose dependencies it has shown already.
+fn distinct(output: &[u8]) -> BTreeSet<String> {
+    let lines = std::str::from_utf8(output).unwrap().lines();
+    lines.map(|line| line.strip_suffix(" (*)").unwrap_or(line).to_owned()).collect()
 }
 
 #[test]
