@@ -8,26 +8,52 @@ import { until } from "../lib/until.mjs";
 
 const handedOver = (page) => question(page).getByText(t("delivery.kicker"), { exact: true });
 
-test("an example is a request; answers are said as if typed", async ({ console: page, group }) => {
-  await expectAccessible(page);
-  await offer(page, "“get me the bowl”").click();
-  await expect(transcript(page)).toContainText("get me the bowl");
-  const first = await nextDecision(group, 0);
-  for (const name of [t("answer.yes"), t("answer.no"), t("answer.any")]) {
-    await expect(offer(page, name)).toBeVisible();
-  }
-  await offer(page, t("answer.unknown")).click();
-  await expect(transcript(page)).toContainText("I don't know");
-  const second = await nextDecision(group, first.prompt);
-  expect(second.question).not.toEqual(first.question);
-  await page.keyboard.press(t("keys.no_key"));
-  const third = await nextDecision(group, second.prompt);
-  expect(third.applied).toBeGreaterThan(second.applied);
+test.describe("a question of yes or no", () => {
+  test.use({ settings: ["dialogue.choice_questions=false"] });
+
+  test("an example is a request; answers are said as if typed", async ({
+    console: page,
+    group,
+  }) => {
+    await expectAccessible(page);
+    await offer(page, "“get me the bowl”").click();
+    await expect(transcript(page)).toContainText("get me the bowl");
+    const first = await nextDecision(group, 0);
+    for (const name of [t("answer.yes"), t("answer.no"), t("answer.any")]) {
+      await expect(offer(page, name)).toBeVisible();
+    }
+    await offer(page, t("answer.unknown")).click();
+    await expect(transcript(page)).toContainText("I don't know");
+    const second = await nextDecision(group, first.prompt);
+    expect(second.question).not.toEqual(first.question);
+    await page.keyboard.press(t("keys.no_key"));
+    const third = await nextDecision(group, second.prompt);
+    expect(third.applied).toBeGreaterThan(second.applied);
+  });
+});
+
+test("a choice has its values to press", async ({ console: page, group }) => {
+  await type(page, "get me the bowl");
+  const { question: asked, prompt } = await nextDecision(group, 0);
+  expect(asked.type).toBe("choice");
+  const { scene } = await group.state();
+  const { values } = scene.attributes.find(({ name }) => name === asked.attribute);
+  const options = values.filter(({ name }) => asked.values.includes(name));
+  for (const { spoken } of options) await expect(offer(page, spoken)).toBeVisible();
+  const isAll = options.length === values.length;
+  await expect(offer(page, t("answer.none"))).toBeVisible({ visible: !isAll });
+  await offer(page, options[0].spoken).click();
+  await expect(transcript(page)).toContainText(options[0].spoken);
+  await nextDecision(group, prompt);
 });
 
 test.describe("a question with several values", () => {
   test.use({
-    settings: ["dialogue.open_questions=true", "dialogue.attribute_questions=false"],
+    settings: [
+      "dialogue.open_questions=true",
+      "dialogue.attribute_questions=false",
+      "dialogue.choice_questions=false",
+    ],
   });
 
   test("has each of them to press", async ({ console: page, group }) => {

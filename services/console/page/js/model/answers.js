@@ -50,7 +50,9 @@ export function answers(dialogue, scene) {
   if (question.type === "choice") {
     const known = scene?.attributes.find(({ name }) => name === question.attribute);
     const options = (known?.values ?? []).filter(({ name }) => question.values.includes(name));
-    return [...options.map(spoken), offer("none of them", "aside", "answer.none"), ...ASIDES];
+    const isAll = options.length === known?.values.length;
+    const none = isAll ? [] : [offer("none of them", "aside", "answer.none")];
+    return [...options.map(spoken), ...none, ...ASIDES];
   }
   return question.type === "which" ? [...values.map(spoken), ...ASIDES] : [];
 }

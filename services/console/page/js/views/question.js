@@ -12,6 +12,9 @@ import { press } from "./press.js";
 /** A question shows without its voice after this time: there may be none. */
 const VOICE_MS = 1_500;
 
+/** Words of more characters than these are set smaller: answers and objects need room, too. */
+const LONG = 48;
+
 /**
  * Shows in large type the robot's question or sentence, or what it has handed over, with what can be
  * said to it at a press, and corrections.
@@ -69,6 +72,7 @@ export function mountQuestion(element, context) {
     setText(kicker, now.kicker);
     setText(words, now.words);
     setAttribute(words, "lang", now.lang ?? null);
+    setAttribute(words, "data-length", now.words.length > LONG ? "long" : null);
     setAttribute(element, "data-kind", now.kind);
     picture(delivery?.object ?? null, scene);
     const mine = whoControls(store.get("control"), store.get("welcome")) === "mine";
