@@ -134,9 +134,9 @@ fn shells_are_offered_the_names_of_the_running_group() {
     let script = installed.must(&["completions", "bash"]).stdout;
     let ask = "COMP_WORDS=(whichone restart gro) COMP_CWORD=2; _whichone whichone gro restart; echo ${COMPREPLY[@]}";
     let mut bash = Command::new("bash");
-    bash.args(["-c", &format!("{script}\n{ask}")]).current_dir(installed.empty());
+    bash.arg("-s").current_dir(installed.empty());
     bash.env("PATH", format!("{}:/usr/bin:/bin", installed.folder.path().join("bin").display()));
     bash.env("HOME", installed.empty()).env(ENV_HOME, installed.group.paths().home());
-    let ended = run(&mut bash, "", 20.0);
+    let ended = run(&mut bash, &format!("{script}\n{ask}\n"), 20.0);
     assert_eq!(ended.stdout, "grounding\n", "{ended:?}");
 }

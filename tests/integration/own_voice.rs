@@ -15,7 +15,7 @@ use speech_engines::recogniser::{PocketSphinx, PocketSphinxOptions, Recogniser};
 use speech_engines::voice::Synthesiser;
 use whichone_tests::console::Page;
 use whichone_tests::spoken::{Pink, Room, SPEAKERS, SPEECH_RMS, Speaker, levelled};
-use whichone_tests::{Group, wait_for};
+use whichone_tests::{Group, wait_for, wait_for_or_none};
 
 use crate::console_voice::{ALOUD, ECHO_FREE, Stream, listening, receipt, said};
 use crate::speech::spoken;
@@ -178,7 +178,7 @@ impl Kitchen {
         let is_it = |receipt: &Receipt| {
             receipt.source == Source::Microphone && Time(receipt.end_ns) + Span::from_ms(300) > end
         };
-        wait_for("what is heard at the microphone", 40.0, || {
+        let found = wait_for_or_none(40.0, || {
             let mut found = None;
             self.receipts
                 .drain(|receipt| {
@@ -188,7 +188,9 @@ impl Kitchen {
                 })
                 .unwrap();
             found
-        })
+        });
+        found
+            .unwrap_or_else(|| panic!("nothing was heard at the microphone\n{}", self.group.logs()))
     }
 
     fn down(self) {

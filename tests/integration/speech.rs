@@ -27,8 +27,15 @@ pub(crate) fn answer_by_voice(group: &Group, mut say: impl FnMut(&str)) {
             return;
         }
         asked = dialogue["text"].as_str().unwrap().to_owned();
-        let wanted = ["small", "white", "plastic", "counter"];
-        say(if wanted.iter().any(|word| asked.contains(word)) { "yes" } else { "no" });
+        let is_wanted = |words: &str| {
+            ["small", "white", "plastic", "counter"].iter().any(|wanted| words.contains(wanted))
+        };
+        let options = dialogue["question"]["values"].as_array();
+        let chosen = options.map(|options| {
+            let mut options = options.iter().filter_map(Value::as_str);
+            options.find(|option| is_wanted(option)).unwrap_or("none of them")
+        });
+        say(chosen.unwrap_or(if is_wanted(&asked) { "yes" } else { "no" }));
     }
 }
 

@@ -62,7 +62,7 @@ pub fn wait_for<T>(what: &str, seconds: f64, fact: impl FnMut() -> Option<T>) ->
 }
 
 /// As [`wait_for`]; none where that panics.
-fn wait_for_or_none<T>(seconds: f64, mut fact: impl FnMut() -> Option<T>) -> Option<T> {
+pub fn wait_for_or_none<T>(seconds: f64, mut fact: impl FnMut() -> Option<T>) -> Option<T> {
     let until = Instant::now() + Duration::from_secs_f64(BUSY * seconds);
     loop {
         let value = fact();
