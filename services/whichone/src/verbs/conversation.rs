@@ -7,7 +7,7 @@ use std::collections::{HashSet, VecDeque};
 use std::time::{Duration, Instant};
 
 use config::Settings;
-use messages::{Injection, PolicyView, PromptId, Receipt, RequestKey, Sound, topics};
+use messages::{Injection, PolicyView, Receipt, RequestKey, Sound, topics};
 use scene::Scene;
 use service::bus::EncodedWriter;
 use service::client::{Client, Polling};
@@ -119,7 +119,7 @@ impl Conversation {
         let sound = Sound::Text(text.to_owned());
         let now = clock::now();
         let submission = Submission::new(sound, (now, Time(0)), now, Span(u64::MAX / 2))
-            .after(PromptId(self.latest.presented.prompt))
+            .after(self.latest.prompt())
             .by(self.from.as_str());
         self.own.insert(submission.key());
         self.saying.push_back(submission);
