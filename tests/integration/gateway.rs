@@ -225,7 +225,10 @@ fn gateway_records_what_it_passes_on_however_it_is_ordered() {
     let alternatives = json!([{ "text": "get me the metal bowl", "weight": 1e6 }]);
     page.ask("say", &json!({ "text": "hello there", "alternatives": alternatives }));
     let said = gateway.wait_for_entry("ann", "say", "ordered");
-    assert_eq!((&said["text"], &said["with"]["alternatives"]), (&json!("hello there"), &alternatives));
+    assert_eq!(
+        (&said["text"], &said["with"]["alternatives"]),
+        (&json!("hello there"), &alternatives)
+    );
     page.ask("restart_service", &json!({ "text": "policy", "service": "recorder" }));
     assert_eq!(gateway.wait_for_entry("ann", "restart_service", "ordered")["text"], "recorder");
     let twice = r#"{"t":"do","id":70,"do":"say","text":"hello","text":"get me the clear bowl"}"#;
@@ -238,7 +241,8 @@ fn gateway_records_what_it_passes_on_however_it_is_ordered() {
     (0..STOPS).for_each(|_| page.send(&json!({ "t": "do", "id": 9, "do": "stop" })));
     page.send_raw(tungstenite::Message::binary(silence(7, 0)));
     page.send(&json!({ "t": "do", "id": 10, "do": "stop" }));
-    drop(page);
+    page.send_raw(tungstenite::Message::Close(None));
+    page.until("the end of the page", |page| page.closed.clone());
     let closed = gateway.wait_for_entry("ann", "close", "done");
     let entries = gateway.audit();
     let stops = entries.iter().filter(|it| it["what"] == "stop" && it["outcome"] == "ordered");

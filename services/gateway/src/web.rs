@@ -14,7 +14,7 @@ use axum::routing::{get, post};
 use roster::Name;
 use serde_json::json;
 use web_server::connections::{Connection, Of};
-use web_server::login::{pause, secret_of, stepping_stone, token_of};
+use web_server::login::{form_limit, pause, secret_of, stepping_stone, token_of};
 use web_server::request::{bearer, is_own, wants_page};
 use web_server::security::{content_policy, harden};
 
@@ -47,7 +47,7 @@ pub(crate) fn router(gateway: Arc<Gateway>) -> Router {
     Router::new()
         .route("/", get(list))
         .route("/_/robots", get(robots))
-        .route("/_/login", get(login_page).post(login))
+        .route("/_/login", get(login_page).post(login).layer(form_limit()))
         .route("/_/logout", post(logout))
         .route("/_/healthz", get(|| async { "ready\n" }))
         .route("/_/{file}", get(file))
