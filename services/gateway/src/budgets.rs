@@ -8,8 +8,9 @@ use roster::Name;
 
 /// Logins, pages and orders of a person at once, and how many more each second.
 const BUDGET: (f64, f64) = (20.0, 10.0);
-/// Open pages of a person.
-pub(crate) const PAGES_MAX: usize = 64;
+/// Open pages of a person, and of all.
+const PAGES_EACH: usize = 32;
+const PAGES_MAX: usize = 256;
 
 /// How many logins, pages and orders each person may still give.
 #[derive(Debug, Default)]
@@ -37,16 +38,15 @@ impl Budgets {
 pub(crate) struct Places(Arc<Mutex<BTreeMap<Name, usize>>>);
 
 impl Places {
-    /// Takes a place for a page; `None` where the person has them all.
+    /// Takes a place for a page; `None` where the person has too many, or all are taken.
     pub(crate) fn take(&self, person: &Name) -> Option<Place> {
         let mut all = lock(&self.0);
-        let taken = all.entry(person.clone()).or_default();
-        let place = Place { all: Arc::clone(&self.0), person: person.clone() };
-        *taken += 1;
-        // Where it was one too many, the place gives it back.
-        let has = *taken <= PAGES_MAX;
-        drop(all);
-        has.then_some(place)
+        let taken = all.get(person).copied().unwrap_or(0);
+        if taken >= PAGES_EACH || all.values().sum::<usize>() >= PAGES_MAX {
+            return None;
+        }
+        all.insert(person.clone(), taken + 1);
+        Some(Place { all: Arc::clone(&self.0), person: person.clone() })
     }
 }
 
@@ -94,7 +94,7 @@ mod tests {
     fn pages_of_a_person_are_bounded_and_give_their_places_back() {
         let ([ann, bob], places) = (people(), Places::default());
         let mut open: Vec<Place> = (0..500).filter_map(|_| places.take(&bob)).collect();
-        assert_eq!(open.len(), PAGES_MAX);
+        assert_eq!(open.len(), PAGES_EACH);
         assert!(places.take(&ann).is_some() && places.take(&bob).is_none());
         open.pop();
         assert!(places.take(&bob).is_some());

@@ -45,7 +45,7 @@ use roster::Name;
 const TIDY_EVERY: Duration = Duration::from_secs(10);
 const LOOK_EVERY: Duration = Duration::from_millis(100);
 /// Most connections, pages among them.
-const CONNECTIONS_MAX: usize = 1_024;
+const CONNECTIONS_MAX: usize = 512;
 /// Time for open pages to be closed.
 const CLOSE: Duration = Duration::from_secs(2);
 
