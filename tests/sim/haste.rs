@@ -27,8 +27,7 @@ fn credited(group: &SimulatedGroup) -> (usize, Vec<String>) {
                 |record| matches!(&record.cause, Cause::Utterance(heard) if heard.seq == seq),
             );
         let attributed = record.map(|record| &record.state.attributed);
-        let of_prompt = attributed.into_iter().flat_map(|it| &it.questions);
-        let share: f64 = of_prompt.filter(|it| it.prompt == *prompt).map(|it| it.share).sum();
+        let share = attributed.map_or(0.0, |attributed| attributed.share(*prompt));
         (share < 0.999).then(|| format!("{prompt:?}, {seq:?}: {attributed:?}"))
     });
     (answers.len(), wrong.collect())
