@@ -18,8 +18,8 @@ pub(crate) struct Frame {
 impl Frame {
     /// Reads the header; `None` of what is no frame of sound.
     pub(crate) fn read(bytes: &[u8]) -> Option<Self> {
-        let (header, sound) = bytes.split_first_chunk()?;
-        let is_frame = matches!(header, [1, 0..=7, 0, 0, ..]) && sound.len() % 2 == 0;
+        let (header, sound) = bytes.split_first_chunk::<HEADER>()?;
+        let is_frame = matches!(*header, [1, 0..=7, 0, 0, ..]) && sound.len() % 2 == 0;
         is_frame.then_some(Self { header: *header, samples: sound.len() as u64 / 2 })
     }
 

@@ -226,9 +226,16 @@ impl SimulatedGroup {
     /// The user at the terminal answers each question so long after it is shown; the robot's voice needs time for
     /// synthesis, and the speech service may die at each question.
     #[must_use]
-    pub fn answered_in_haste(self, after: Span, synthesis: Span, dies_at_questions: bool) -> Self {
-        let client = self.client.map(|client| Client { hasty: Some(after), ..client });
-        Self { client, synthesis, dies_at_questions, ..self }
+    pub fn answered_in_haste(
+        mut self,
+        after: Span,
+        synthesis: Span,
+        dies_at_questions: bool,
+    ) -> Self {
+        if let Some(client) = &mut self.client {
+            client.hasty = Some(after);
+        }
+        Self { synthesis, dies_at_questions, ..self }
     }
 
     /// The log of the dialogue.
