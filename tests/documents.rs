@@ -182,10 +182,11 @@ fn constant(text: &str, name: &str) -> Option<f64> {
 fn amount(cell: &str) -> f64 {
     let mut words = cell.split_whitespace();
     let number: f64 = words.next().unwrap().parse().unwrap_or_else(|_| panic!("{cell}"));
-    number * [("KiB", 1024.0), ("MiB", 1_048_576.0)]
-        .into_iter()
-        .find_map(|(unit, bytes)| (words.clone().next() == Some(unit)).then_some(bytes))
-        .unwrap_or(1.0)
+    number
+        * [("KiB", 1024.0), ("MiB", 1_048_576.0)]
+            .into_iter()
+            .find_map(|(unit, bytes)| (words.clone().next() == Some(unit)).then_some(bytes))
+            .unwrap_or(1.0)
 }
 
 /// Checks the number in a cell against the constant that it names, if any.
@@ -225,13 +226,15 @@ fn peers_take_no_more_than_documented() {
         assert!(section.contains(&format!("{most} MiB")), "{process}: {most} MiB");
     }
     let orders = "const ORDERS: usize = 16;";
-    let socket = std::fs::read_to_string(Path::new(TOP).join("services/gateway/src/socket.rs")).unwrap();
+    let socket =
+        std::fs::read_to_string(Path::new(TOP).join("services/gateway/src/socket.rs")).unwrap();
     assert!(socket.contains(orders) && socket.contains("const QUEUE: usize = 8;"), "{orders}");
 }
 
 #[test]
 fn constants_are_read() {
-    let text = "pub const A: usize = 64 << 10;\nconst B: u64 = 3 * 1_024;\nconst AB: usize = f();\n";
+    let text =
+        "pub const A: usize = 64 << 10;\nconst B: u64 = 3 * 1_024;\nconst AB: usize = f();\n";
     assert_eq!(constant(text, "A"), Some(65_536.0));
     assert_eq!(constant(text, "B"), Some(3_072.0));
     assert_eq!((constant(text, "AB"), constant(text, "C")), (None, None));
