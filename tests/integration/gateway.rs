@@ -237,9 +237,9 @@ fn gateway_records_what_it_passes_on_however_it_is_ordered() {
         gateway.audit().iter().any(|it| it["text"] == "get me the clear bowl").then_some(())
     });
 
-    // Stops beyond the budget, and sound, of a page that closes at once.
-    (0..STOPS).for_each(|_| page.send(&json!({ "t": "do", "id": 9, "do": "stop" })));
+    // Sound, and stops beyond the budget, of a page that closes at once.
     page.send_raw(tungstenite::Message::binary(silence(7, 0)));
+    (0..STOPS).for_each(|_| page.send(&json!({ "t": "do", "id": 9, "do": "stop" })));
     page.send(&json!({ "t": "do", "id": 10, "do": "stop" }));
     page.send_raw(tungstenite::Message::Close(None));
     page.until("the end of the page", |page| page.closed.clone());
