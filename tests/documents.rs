@@ -163,3 +163,79 @@ fn wrong_commands_are_found() {
     }
     assert_eq!(wrong("whichone dance; whichone say --loud x"), 2);
 }
+
+/// Returns the value of a constant in the text of a source file: a product of numbers, some of them shifted.
+fn constant(text: &str, name: &str) -> Option<f64> {
+    let line = text.lines().find(|line| line.contains(&format!("const {name}: ")))?;
+    let (_, value) = line.trim_end_matches(';').split_once(" = ")?;
+    let number = |text: &str| text.trim().replace('_', "").parse::<f64>().ok();
+    value.split('*').try_fold(1.0, |product, factor| {
+        let factor = match factor.split_once("<<") {
+            Some((number_of, bits)) => number(number_of)? * number(bits)?.exp2(),
+            None => number(factor)?,
+        };
+        Some(product * factor)
+    })
+}
+
+/// Reads "64 KiB" or "64"; what follows is left out.
+fn amount(cell: &str) -> f64 {
+    let mut words = cell.split_whitespace();
+    let number: f64 = words.next().unwrap().parse().unwrap_or_else(|_| panic!("{cell}"));
+    number
+        * [("KiB", 1024.0), ("MiB", 1_048_576.0)]
+            .into_iter()
+            .find_map(|(unit, bytes)| (words.clone().next() == Some(unit)).then_some(bytes))
+            .unwrap_or(1.0)
+}
+
+/// Checks the number in a cell against the constant that it names, if any.
+fn checked_amount(cell: &str) -> f64 {
+    let stated = amount(cell);
+    let named = cell.split_once("[`").and_then(|(_, rest)| rest.split_once("`]("));
+    if let Some((name, rest)) = named {
+        let path = rest.split(')').next().unwrap();
+        let text = std::fs::read_to_string(Path::new(TOP).join(path)).unwrap();
+        assert_eq!(constant(&text, name), Some(stated), "{name} of {path}, in SECURITY.md");
+    }
+    stated
+}
+
+/// For each listener: what one peer may take, times the number of peers, is what is documented.
+#[test]
+fn peers_take_no_more_than_documented() {
+    const MIB: f64 = 1_048_576.0;
+    let text = page(Path::new("SECURITY.md")).text;
+    let (_, section) = text.split_once("## What peers may take").unwrap();
+    let section = section.split("\n## ").next().unwrap();
+    let mut sums = std::collections::BTreeMap::<&str, f64>::new();
+    for line in section.lines().filter(|line| line.starts_with("| ")).skip(1) {
+        let cells: Vec<&str> = line.trim_matches('|').split(" | ").map(str::trim).collect();
+        let [process, of_what, most, each, together] = cells[..] else { panic!("{line}") };
+        let product = checked_amount(most) * checked_amount(each);
+        let stated = amount(together);
+        assert!((0.0..0.1 * MIB).contains(&(stated - product)), "{of_what}: {}", product / MIB);
+        let times = if of_what.contains("each of 11 topics") { 11.0 } else { 1.0 };
+        *sums.entry(process).or_default() += times * stated;
+    }
+    for (process, most) in
+        [("console", 64.0), ("gateway", 512.0), ("ROS 1", 128.0), ("supervisor", 8.0), ("arm", 8.0)]
+    {
+        let sum = sums[process] / MIB;
+        assert!(sum <= most, "{process}: {sum} MiB");
+        assert!(section.contains(&format!("{most} MiB")), "{process}: {most} MiB");
+    }
+    let orders = "const ORDERS: usize = 16;";
+    let socket =
+        std::fs::read_to_string(Path::new(TOP).join("services/gateway/src/socket.rs")).unwrap();
+    assert!(socket.contains(orders) && socket.contains("const QUEUE: usize = 8;"), "{orders}");
+}
+
+#[test]
+fn constants_are_read() {
+    let text =
+        "pub const A: usize = 64 << 10;\nconst B: u64 = 3 * 1_024;\nconst AB: usize = f();\n";
+    assert_eq!(constant(text, "A"), Some(65_536.0));
+    assert_eq!(constant(text, "B"), Some(3_072.0));
+    assert_eq!((constant(text, "AB"), constant(text, "C")), (None, None));
+}

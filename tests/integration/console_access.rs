@@ -192,3 +192,51 @@ fn page_loads_among_half_open_connections() {
     drop((crowd, page));
     group.down();
 }
+
+/// Resident memory of a process, MiB.
+fn resident_mib(pid: Pid) -> u64 {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", pid.as_raw_nonzero())).unwrap();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+    let kib: u64 = line.trim().trim_end_matches(" kB").parse().unwrap();
+    kib / 1024
+}
+
+/// Sixty uploads that never end, of one who has the token, first without control and then with it.
+#[test]
+fn large_bodies_take_no_memory_that_stays() {
+    const BYTES: usize = 7 << 20;
+    let group = Group::up(&[]);
+    let place = group.console();
+    let before = resident_mib(group.pid("console"));
+    let bearer = place.token.clone().expect("a token");
+    let chunk = vec![b' '; 1 << 16];
+    let upload = |session: &str| {
+        let mut stream = TcpStream::connect(&place.place).unwrap();
+        stream.set_write_timeout(Some(std::time::Duration::from_millis(300))).unwrap();
+        let head = format!(
+            "POST /api/editor/check HTTP/1.1\r\nHost: {place}\r\nOrigin: http://{place}\r\n\
+             Authorization: Bearer {bearer}\r\nX-Whichone-Session: {session}\r\n\
+             Content-Length: {BYTES}\r\n\r\n"
+        );
+        // A server that does not want it closes the connection, or does not read.
+        let mut sent = stream.write_all(head.as_bytes()).map(|()| head.len());
+        for _ in 0..BYTES / chunk.len() - 1 {
+            sent = sent.and_then(|_| stream.write_all(&chunk).map(|()| chunk.len()));
+        }
+        stream
+    };
+    let operator = Visitor::operator(1);
+    let mut page = group.page(&operator);
+    assert!(ok(&page.ask("take_control", &Json::Null)));
+    for session in ["", operator.session.as_str()] {
+        let held: Vec<TcpStream> = (0..60).map(|_| upload(session)).collect();
+        let used = resident_mib(group.pid("console"));
+        assert!(used < before + 64, "{before} MiB before, {used} MiB with {}", held.len());
+        assert!(ok(&page.ask("stop", &Json::Null)));
+        assert_eq!(http(&place, "GET", "/api/state", &[], "").0, 200);
+    }
+    let used = resident_mib(group.pid("console"));
+    assert!(used < before + 64, "{before} MiB before, {used} MiB after");
+    drop(page);
+    group.down();
+}

@@ -3,6 +3,7 @@
 use rustix::process::Signal;
 use serde_json::{Value, json};
 use std::path::Path;
+use std::time::{Duration, Instant};
 use whichone_tests::console::{Console, Page, Visitor, http};
 use whichone_tests::gateway::Gateway;
 use whichone_tests::{Group, wait_for};
@@ -199,6 +200,96 @@ fn gateway_with_a_full_disk_stops_and_commands_nothing_else() {
         assert!(done["ok"] == false && why.contains("cannot be recorded"), "{done}");
     }
     assert_eq!(group.arm()["stopped"], true);
+    assert!(gateway.end().success());
+    group.down();
+}
+
+/// A frame of 0.1 s of silence in a page's stream of sound.
+fn silence(stream: u32, before: u64) -> Vec<u8> {
+    let mut bytes = vec![1, 0, 0, 0];
+    bytes.extend(stream.to_le_bytes());
+    bytes.extend(0_f64.to_le_bytes());
+    bytes.extend(before.to_le_bytes());
+    bytes.extend([0; 3_200]);
+    bytes
+}
+
+/// What an operator's page may try so that the audit says less, or something else, than what was ordered.
+#[test]
+fn gateway_records_what_it_passes_on_however_it_is_ordered() {
+    const STOPS: usize = 60;
+    let group = Group::up(&[]);
+    let (gateway, robot) = started(&group);
+    let ann = gateway.console(&robot, &gateway.add("ann", &["--operator", &robot]));
+    let mut page = Page::open(&ann, &visitor(1)).unwrap();
+    let alternatives = json!([{ "text": "get me the metal bowl", "weight": 1e6 }]);
+    page.ask("say", &json!({ "text": "hello there", "alternatives": alternatives }));
+    let said = gateway.wait_for_entry("ann", "say", "ordered");
+    assert_eq!(
+        (&said["text"], &said["with"]["alternatives"]),
+        (&json!("hello there"), &alternatives)
+    );
+    page.ask("restart_service", &json!({ "text": "policy", "service": "recorder" }));
+    assert_eq!(gateway.wait_for_entry("ann", "restart_service", "ordered")["text"], "recorder");
+    let twice = r#"{"t":"do","id":70,"do":"say","text":"hello","text":"get me the clear bowl"}"#;
+    page.send_raw(tungstenite::Message::text(twice));
+    wait_for("the words that count", 10.0, || {
+        gateway.audit().iter().any(|it| it["text"] == "get me the clear bowl").then_some(())
+    });
+
+    // Sound, and stops beyond the budget, of a page that closes at once.
+    page.send_raw(tungstenite::Message::binary(silence(7, 0)));
+    (0..STOPS).for_each(|_| page.send(&json!({ "t": "do", "id": 9, "do": "stop" })));
+    page.send(&json!({ "t": "do", "id": 10, "do": "stop" }));
+    page.send_raw(tungstenite::Message::Close(None));
+    page.until("the end of the page", |page| page.closed.clone());
+    let closed = gateway.wait_for_entry("ann", "close", "done");
+    let entries = gateway.audit();
+    let stops = entries.iter().filter(|it| it["what"] == "stop" && it["outcome"] == "ordered");
+    let counted = stops.map(|stop| match stop["text"].as_str() {
+        Some(more) => more.trim_end_matches(" more").parse().unwrap(),
+        None => 1,
+    });
+    assert_eq!(counted.sum::<usize>(), STOPS + 1, "{entries:#?}");
+    assert_eq!(group.arm()["stopped"], true);
+    assert_eq!(gateway.wait_for_entry("ann", "sound", "ordered")["order"][0], closed["order"][0]);
+    assert!(gateway.end().success());
+    group.down();
+}
+
+#[test]
+fn gateway_closes_pages_when_their_session_or_secret_ends() {
+    let group = Group::up(&[]);
+    let (gateway, robot) = started(&group);
+    let secret = gateway.add("ann", &["--operator", "*"]);
+    let [here, root] = [&robot, ""].map(|robot| gateway.console(robot, &secret).without_token());
+    let log_in = || {
+        let (_, head, _) = http(&root, "GET", &format!("/{robot}/?token={secret}"), &[], "");
+        let lower = head.to_lowercase();
+        let (_, cookie) = lower.split_once("set-cookie: ").unwrap_or_else(|| panic!("{head}"));
+        cookie.split(';').next().unwrap().to_owned()
+    };
+    let open = |number, cookie: &str| {
+        let headers = vec![("cookie", cookie.to_owned())];
+        Page::open(&here, &Visitor { headers, ..Visitor::operator(number) }).unwrap()
+    };
+    let (first, second) = (log_in(), log_in());
+    let (mut out, mut renewed) = (open(1, &first), open(2, &second));
+    let mut by_secret = Page::open(&gateway.console(&robot, &secret), &visitor(3)).unwrap();
+    let origin = format!("Origin: http://{}", gateway.place);
+    let began = Instant::now();
+    let (status, head, _) =
+        http(&root, "POST", "/_/logout", &[&origin, &format!("Cookie: {first}")], "");
+    assert_eq!(status, 303, "{head}");
+    let closed = out.until("the end of the page", |page| page.closed.clone());
+    assert!(closed.0 == 1008 && began.elapsed() < Duration::from_secs(2), "{closed:?}");
+    assert_eq!(renewed.ask("stop", &json!({}))["ok"], true, "another session goes on");
+    let began = Instant::now();
+    assert_eq!(gateway.call("add", &["ann", "--operator", "*", "--renew"]).code, Some(0));
+    for page in [&mut renewed, &mut by_secret] {
+        let closed = page.until("the end of the page", |page| page.closed.clone());
+        assert!(closed.0 == 1008 && began.elapsed() < Duration::from_secs(4), "{closed:?}");
+    }
     assert!(gateway.end().success());
     group.down();
 }

@@ -22,6 +22,7 @@ mod forged;
 mod full_log;
 mod full_memory;
 mod gateway;
+mod haste;
 mod hearing;
 mod installed;
 mod interrupted;

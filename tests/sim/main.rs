@@ -14,6 +14,7 @@
 mod bad_days;
 mod checkers;
 mod forged;
+mod haste;
 mod objects;
 mod turns;
 

@@ -3,13 +3,13 @@
 use axum::http::{HeaderMap, header};
 use roster::Name;
 use web_server::request::{bearer, is_for_this_machine, text};
-use web_server::sessions::{Rules, Sessions, unix_s};
+use web_server::sessions::{Rules, SessionName, Sessions, hash, unix_s};
 
 use crate::people::People;
 
 /// The rules of people's sessions.
 pub(crate) const SESSIONS: Rules =
-    Rules { cookie: "whichone_gateway", most: 512, life_s: 7 * 24 * 3_600 };
+    Rules { cookie: "whichone_gateway", most: 512, each: 32, life_s: 7 * 24 * 3_600 };
 /// Their file in the gateway's folder.
 pub(crate) const SESSIONS_FILE: &str = "sessions.json";
 
@@ -58,15 +58,46 @@ impl Address {
     }
 }
 
-/// Returns the person who makes a request, by the secret as a bearer or by the cookie of a session.
-pub(crate) fn person(
-    headers: &HeaderMap,
-    people: &People,
-    sessions: &Sessions<Name>,
-) -> Option<Name> {
-    match bearer(headers) {
-        Some(secret) => people.with_secret(secret).cloned(),
-        None => sessions.person(headers, unix_s(), |of, secret| people.has_secret(of, secret)),
+/// A person who is known, and by what.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Known {
+    /// The person.
+    pub(crate) person: Name,
+    by: By,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum By {
+    /// The hash of the secret.
+    Secret(String),
+    Session(SessionName),
+}
+
+impl Known {
+    /// Returns the person who makes a request, by the secret as a bearer or by the cookie of a session.
+    pub(crate) fn of(
+        headers: &HeaderMap,
+        people: &People,
+        sessions: &Sessions<Name>,
+    ) -> Option<Self> {
+        if let Some(secret) = bearer(headers) {
+            let by = By::Secret(hash(secret));
+            return Some(Self { person: people.with_secret(secret)?.clone(), by });
+        }
+        let is_valid = |of: &Name, secret: &str| people.has_secret(of, secret);
+        let (person, session) = sessions.person(headers, unix_s(), is_valid)?;
+        Some(Self { person, by: By::Session(session) })
+    }
+
+    /// Returns whether the person is still known by it: the secret is the same, and the session has not ended.
+    pub(crate) fn lasts(&self, people: &People, sessions: &Sessions<Name>) -> bool {
+        match &self.by {
+            By::Secret(secret) => people.has_secret(&self.person, secret),
+            By::Session(session) => {
+                let is_valid = |of: &Name, secret: &str| people.has_secret(of, secret);
+                sessions.lasts(session, unix_s(), is_valid)
+            }
+        }
     }
 }
 
@@ -128,11 +159,16 @@ mod tests {
         assert!(!stored.contains(&value) && !stored.contains(&secret));
         let again = sessions();
         let with = |value: &str| headers(&[("cookie", &format!("whichone_gateway_0={value}"))]);
-        let known = |value: &str| person(&with(value), &file.current(), &again);
-        assert_eq!(known(&value), Some(ann.clone()));
-        assert_eq!(known(&secret), None);
+        let of = |headers: &HeaderMap| Known::of(headers, &file.current(), &again);
+        let known = of(&with(&value)).unwrap();
+        let bearer = of(&headers(&[("authorization", &format!("Bearer {secret}"))])).unwrap();
+        assert_eq!((&known.person, &bearer.person), (&ann, &ann));
+        assert_eq!(of(&with(&secret)), None);
+        let lasts = |known: &Known| known.lasts(&file.current(), &again);
+        assert!(lasts(&known) && lasts(&bearer));
         people::add(&path, &ann, &[], &[], true).unwrap();
-        assert_eq!(known(&value), None);
+        assert_eq!(of(&with(&value)), None);
+        assert!(!lasts(&known) && !lasts(&bearer), "with the secret ends what it has opened");
         again.end(&with(&value));
         assert_eq!(std::fs::read_to_string(folder.path().join(SESSIONS_FILE)).unwrap(), "[]");
     }

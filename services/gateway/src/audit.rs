@@ -12,6 +12,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use roster::Name;
 use serde::Serialize;
+use serde_json::Value;
 use tokio::sync::oneshot;
 
 /// The file in the gateway's folder; full ones are `audit.1.jsonl`, newest first.
@@ -47,13 +48,16 @@ pub struct Entry {
     /// Of which robot; none for the gateway itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub robot: Option<Name>,
-    /// What: the page's command (`stop`, `resume`, `say` …), `speech`, `open`, `close`, `login`.
+    /// What: the page's command (`stop`, `resume`, `say` …), `sound`, `speech`, `open`, `close`, `login`.
     pub what: String,
     /// What became of it.
     pub outcome: Outcome,
     /// The words that were said, or the reason of a failure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
+    /// Everything else in the order that is passed on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub with: Option<Value>,
     /// Number of the connection, and of the order in it: an order and its outcome have the same.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<(u64, u64)>,
@@ -70,6 +74,7 @@ impl Entry {
             what: what.to_owned(),
             outcome,
             text: None,
+            with: None,
             order: None,
         }
     }
@@ -104,11 +109,13 @@ impl Audit {
         answer.await.map_err(|_| io::Error::other("the audit has ended"))?
     }
 
-    /// Writes an entry soon. What cannot be written is in the gateway's log.
-    pub fn note(&self, entry: &Entry) {
-        if let Err(error) = self.send(entry, None) {
+    /// Writes an entry soon; returns whether it is on its way. What cannot be written is in the gateway's log.
+    pub fn note(&self, entry: &Entry) -> bool {
+        let sent = self.send(entry, None);
+        if let Err(error) = &sent {
             tracing::error!(%error, ?entry, "not in the audit");
         }
+        sent.is_ok()
     }
 
     fn send(&self, entry: &Entry, done: Option<oneshot::Sender<io::Result<()>>>) -> io::Result<()> {

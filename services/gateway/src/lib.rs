@@ -8,6 +8,7 @@
 
 mod access;
 pub mod audit;
+mod budgets;
 pub mod cli;
 pub mod feed;
 mod mirrors;
@@ -16,6 +17,7 @@ mod proxy;
 mod robots;
 pub mod rules;
 mod socket;
+mod sounds;
 mod web;
 
 use std::net::SocketAddr;
@@ -34,6 +36,7 @@ use web_server::sessions::Sessions;
 
 use access::{Address, SESSIONS, SESSIONS_FILE};
 use audit::Audit;
+use budgets::{Budgets, Places};
 use people::PeopleFile;
 use robots::Robots;
 use roster::Name;
@@ -42,7 +45,7 @@ use roster::Name;
 const TIDY_EVERY: Duration = Duration::from_secs(10);
 const LOOK_EVERY: Duration = Duration::from_millis(100);
 /// Most connections, pages among them.
-const CONNECTIONS_MAX: usize = 1_024;
+const CONNECTIONS_MAX: usize = 512;
 /// Time for open pages to be closed.
 const CLOSE: Duration = Duration::from_secs(2);
 
@@ -71,6 +74,10 @@ struct Gateway {
     address: Address,
     /// Number of pages that were opened.
     visits: AtomicU64,
+    /// What each person may still have written into the audit.
+    budgets: Budgets,
+    /// The places of each person's pages.
+    places: Places,
     ending: watch::Sender<bool>,
 }
 
@@ -130,6 +137,8 @@ impl Gateway {
             robots: Robots::new(&options.groups, options.keys.as_deref(), folder)?,
             address,
             visits: AtomicU64::new(0),
+            budgets: Budgets::default(),
+            places: Places::default(),
             ending: watch::channel(false).0,
         })
     }

@@ -10,8 +10,8 @@ use web_server::sessions::hash;
 
 use crate::people::Right;
 
-/// Longest text in the audit, characters: as long as an utterance may be.
-const TEXT_MAX: usize = 1_000;
+/// Largest order, bytes: it is recorded whole. The longest words with five alternatives fit.
+const ORDER_BYTES_MAX: usize = 40 << 10;
 
 /// A frame of a page, judged.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,8 +33,10 @@ pub struct Order {
     pub id: u64,
     /// The command.
     pub what: String,
-    /// The words that are said, or the service that is restarted.
+    /// The words that are said, the service that is restarted, or the page that gets control.
     pub text: Option<String>,
+    /// Everything else that is passed on, but for times.
+    pub with: Option<Value>,
 }
 
 impl Order {
@@ -56,11 +58,13 @@ pub enum Answered {
     Done(u64, Result<(), String>),
     /// Words of the page's microphone that the robot has accepted.
     Heard(String),
+    /// The end of a stream of the page's microphone.
+    Over(u64),
 }
 
 /// Judges a text frame of a page of `person`, whose right to this robot is `right`.
 pub fn judge(text: &str, person: &Name, right: Right) -> Verdict {
-    let error = |error: &str| Verdict::Answer(json!({ "t": "error", "error": error }).to_string());
+    let error = |why: &str| Verdict::Answer(error(why));
     let mut frame: Value = match serde_json::from_str(text) {
         Ok(frame) => frame,
         Err(why) => return error(&format!("invalid JSON: {why}")),
@@ -71,16 +75,33 @@ pub fn judge(text: &str, person: &Name, right: Right) -> Verdict {
             introduce(&mut frame, person, right);
             Verdict::Pass(frame.to_string())
         }
-        Some("do") => match order(&frame) {
-            Some(order) if right == Right::Operator => Verdict::Order(order, frame.to_string()),
-            Some(order) => {
-                let why = refused(order.id, &viewers_error(person));
-                Verdict::Refused(order, why)
-            }
-            None => error("expected id, a whole number from 0 on, and do, a text"),
-        },
+        Some("do") => judge_order(frame, person, right)
+            .unwrap_or_else(|| error("expected id, a whole number from 0 on, and do, a text")),
         _ => error("t: expected hello, ping or do"),
     }
+}
+
+fn judge_order(frame: Value, person: &Name, right: Right) -> Option<Verdict> {
+    let text = frame.to_string();
+    let order = order(frame)?;
+    let why = match right {
+        Right::Viewer => viewers_error(person),
+        Right::Operator if order.is_stop() => {
+            let stop = json!({ "t": "do", "id": order.id, "do": "stop" }).to_string();
+            return Some(Verdict::Order(order, stop));
+        }
+        Right::Operator if text.len() > ORDER_BYTES_MAX => {
+            format!("expected an order of at most {ORDER_BYTES_MAX} bytes, found {}", text.len())
+        }
+        Right::Operator => return Some(Verdict::Order(order, text)),
+    };
+    let answer = refused(order.id, &why);
+    Some(Verdict::Refused(order, answer))
+}
+
+/// The answer to a frame that is none.
+pub(crate) fn error(why: &str) -> String {
+    json!({ "t": "error", "error": why }).to_string()
 }
 
 /// The answer to an order that is not passed on.
@@ -107,11 +128,29 @@ fn introduce(frame: &mut Value, person: &Name, right: Right) {
     }
 }
 
-fn order(frame: &Value) -> Option<Order> {
-    let (id, what) = (frame["id"].as_u64()?, frame["do"].as_str()?);
-    let text = ["text", "service", "viewer"].iter().find_map(|key| frame[*key].as_str());
-    let short = |text: &str| text.chars().take(TEXT_MAX).collect();
-    Some(Order { id, what: what.chars().take(40).collect(), text: text.map(short) })
+/// Takes an order apart for the audit.
+fn order(frame: Value) -> Option<Order> {
+    let Value::Object(mut said) = frame else { return None };
+    let what = said.remove("do")?.as_str()?.to_owned();
+    // A stop counts without a number as well.
+    let id = said.remove("id").and_then(|id| id.as_u64()).or((what == "stop").then_some(0))?;
+    let main = match what.as_str() {
+        "say" => "text",
+        "restart_service" => "service",
+        "give_control" => "viewer",
+        _ => "",
+    };
+    let text = match said.remove(main) {
+        Some(Value::String(text)) => Some(text),
+        other => other.map(|other| other.to_string()),
+    };
+    // What a page adds by itself orders nothing.
+    for key in ["t", "began_ms", "ended_ms"] {
+        said.remove(key);
+    }
+    said.retain(|key, value| !value.is_null() && !(key == "source" && value == "typed"));
+    let with = (!said.is_empty()).then_some(Value::Object(said));
+    Some(Order { id, what, text, with })
 }
 
 /// Reads what the audit wants to know of a console's frame.
@@ -120,8 +159,11 @@ pub fn answered(text: &str) -> Option<Answered> {
     let is_one = ["{\"t\":\"done\"", "{\"t\":\"receipt\""].iter().any(|it| text.starts_with(it));
     let frame: Value = is_one.then(|| serde_json::from_str(text).ok())??;
     if frame["t"] == "receipt" {
-        let heard = frame["text"].as_str().filter(|_| frame["status"] == "accepted");
-        return heard.map(|text| Answered::Heard(text.to_owned()));
+        return match frame["status"].as_str() {
+            Some("accepted") => Some(Answered::Heard(frame["text"].as_str()?.to_owned())),
+            Some("over") => Some(Answered::Over(frame["stream"].as_u64()?)),
+            _ => None,
+        };
     }
     let why = || frame["error"].as_str().unwrap_or_default().to_owned();
     let result = if frame["ok"] == true { Ok(()) } else { Err(why()) };
@@ -165,7 +207,7 @@ mod tests {
         let ping = json!({ "t": "ping", "at": 1.5 });
         assert_eq!(judged(ping.clone(), Right::Viewer), Verdict::Pass(ping.to_string()));
         for bad in
-            [json!([]), json!({}), json!({ "t": "state" }), json!({ "t": "do", "do": "stop" })]
+            [json!([]), json!({}), json!({ "t": "state" }), json!({ "t": "do", "do": "say" })]
         {
             for right in [Right::Viewer, Right::Operator] {
                 assert!(matches!(judged(bad.clone(), right), Verdict::Answer(_)), "{bad}");
@@ -179,9 +221,12 @@ mod tests {
             let Verdict::Order(order, text) = judged(frame.clone(), Right::Operator) else {
                 panic!("{frame}")
             };
-            assert_eq!(text, frame.to_string());
-            assert_eq!((order.id, order.text.as_deref()), (4, Some("the bowl")));
+            let stop = json!({ "t": "do", "id": 4, "do": "stop" });
+            let expected = if order.is_stop() { stop } else { frame };
+            assert_eq!((text, order.id), (expected.to_string(), 4));
         }
+        let unnumbered = judged(json!({ "t": "do", "do": "stop" }), Right::Operator);
+        assert!(matches!(unnumbered, Verdict::Order(order, _) if order.is_stop()));
         // Of a key that comes twice, what counts here counts there.
         let twice = r#"{"t":"ping","at":1,"t":"do","id":1,"do":"say","do":"stop"}"#;
         let verdict = judge(twice, &Name::new("ann").unwrap(), Right::Operator);
@@ -189,6 +234,46 @@ mod tests {
         assert!(order.is_stop());
         assert_eq!(text.matches("\"do\"").count(), 2, "{text}");
         assert!(!text.contains("say"), "{text}");
+    }
+
+    #[test]
+    fn audit_has_all_of_an_order_that_is_passed_on() {
+        for (order, text, with) in [
+            (
+                json!({ "do": "say", "text": "the bowl", "source": "typed" }),
+                Some("the bowl"),
+                json!(null),
+            ),
+            (
+                json!({ "do": "say", "text": "hello there", "began_ms": 1, "source": "browser",
+                        "alternatives": [{ "text": "get me the metal bowl", "weight": 1e6 }] }),
+                Some("hello there"),
+                json!({ "source": "browser",
+                        "alternatives": [{ "text": "get me the metal bowl", "weight": 1e6 }] }),
+            ),
+            (
+                json!({ "do": "restart_service", "text": "policy", "service": "recorder" }),
+                Some("recorder"),
+                json!({ "text": "policy" }),
+            ),
+            (json!({ "do": "say", "text": ["the bowl"] }), Some("[\"the bowl\"]"), json!(null)),
+            (json!({ "do": "give_control", "viewer": "v3" }), Some("v3"), json!(null)),
+            (json!({ "do": "study.begin", "id": 3, "plan": 1 }), None, json!({ "plan": 1 })),
+            (
+                json!({ "do": "say", "text": "yes", "from": "Ann" }),
+                Some("yes"),
+                json!({ "from": "Ann" }),
+            ),
+        ] {
+            let mut frame = order.clone();
+            (frame["t"], frame["id"]) = (json!("do"), json!(7));
+            let Verdict::Order(put_down, passed) = judged(frame, Right::Operator) else { panic!() };
+            assert_eq!((put_down.text.as_deref(), put_down.with.unwrap_or_default()), (text, with));
+            let passed: Value = serde_json::from_str(&passed).unwrap();
+            assert_eq!(passed["do"], order["do"]);
+        }
+        let long = json!({ "t": "do", "id": 1, "do": "say", "text": "a".repeat(50_000) });
+        assert!(matches!(judged(long, Right::Operator), Verdict::Refused(..)));
     }
 
     #[test]
@@ -217,7 +302,9 @@ mod tests {
         assert_eq!(read(failed), Some(Answered::Done(9, Err("no".into()))));
         let heard = json!({ "t": "receipt", "stream": 7, "status": "accepted", "text": "yes" });
         assert_eq!(read(heard), Some(Answered::Heard("yes".into())));
-        let other = json!({ "t": "receipt", "stream": 7, "status": "over", "text": "yes" });
+        let over = json!({ "t": "receipt", "stream": 7, "status": "over", "text": "" });
+        assert_eq!(read(over), Some(Answered::Over(7)));
+        let other = json!({ "t": "receipt", "stream": 7, "status": "refused", "text": "yes" });
         assert_eq!(read(other), None);
         assert_eq!(read(json!({ "t": "state", "parts": {} })), None);
     }

@@ -2,8 +2,9 @@
 //! for the audit, stops for nothing.
 
 use std::collections::VecDeque;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::pin::pin;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
 use axum::extract::ws::{CloseFrame, Message as Page, WebSocket};
@@ -13,16 +14,19 @@ use futures_util::{SinkExt, StreamExt};
 use roster::Name;
 use tokio::net::TcpStream;
 use tokio::sync::mpsc::{self, Receiver, Sender};
-use tokio::time::{Instant, interval, timeout};
+use tokio::time::{interval, timeout};
 use tokio_tungstenite::tungstenite::Message as Console;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::{WebSocketStream, client_async};
 
-use crate::Gateway;
-use crate::audit::{Entry, Outcome};
+use crate::access::Known;
+use crate::audit::Outcome;
 use crate::people::Right;
-use crate::robots;
-use crate::rules::{Answered, Order, Verdict, answered, judge, refused};
+use crate::rules::{Order, Verdict, answered, error, judge, refused};
+use crate::sounds::{self, Sounds};
+use crate::{Gateway, robots};
+
+mod notes;
 
 /// Largest frame of a page, bytes: the console's own limit.
 pub(crate) const FRAME_BYTES_MAX: usize = 64 << 10;
@@ -32,12 +36,13 @@ const QUEUE: usize = 8;
 const ORDERS: usize = 16;
 /// Orders whose outcome is awaited.
 const AWAITED_MAX: usize = 256;
-/// Orders that are given at once, and how many more each second.
-const BUDGET: (f64, f64) = (20.0, 10.0);
 /// Longest silence of a page, pongs included.
 const SILENCE_MAX: Duration = Duration::from_secs(60);
-/// Interval at which the person's rights are looked at.
-const RIGHTS_EVERY: Duration = Duration::from_secs(1);
+/// Interval at which the person's rights and session are looked at.
+const RIGHTS_EVERY: Duration = Duration::from_millis(500);
+/// Timeout of what the robot hears in the sound of a page that is gone.
+const HEARD_WITHIN: Duration = Duration::from_secs(5);
+const REVOKED: &str = "the person's rights have changed, or the session has ended";
 /// Timeout of a console's greeting, and of a goodbye.
 const PATIENCE: Duration = Duration::from_secs(5);
 
@@ -80,54 +85,103 @@ pub(crate) async fn open(
 #[derive(Debug)]
 pub(crate) struct Visit<'a> {
     gateway: &'a Gateway,
-    person: Name,
+    known: Known,
     robot: Name,
     right: Right,
     /// Number of the connection in the audit.
     number: u64,
     awaited: Mutex<VecDeque<(u64, String)>>,
-    budget: Mutex<(f64, Instant)>,
+    sounds: Sounds,
     /// Stops that were given: a release that waits for the audit is void after one.
     stops: AtomicU64,
+    /// Those of them that have no entry in the audit yet.
+    uncounted_stops: AtomicU64,
+    /// Why nothing more is passed on, once the person may not order any more.
+    is_revoked: AtomicBool,
 }
 
 impl<'a> Visit<'a> {
-    /// A page of `person`.
-    pub(crate) fn new(gateway: &'a Gateway, person: Name, robot: Name, right: Right) -> Self {
+    /// A page of a person.
+    pub(crate) fn new(gateway: &'a Gateway, known: Known, robot: Name, right: Right) -> Self {
         let number = gateway.visits.fetch_add(1, Ordering::Relaxed) + 1;
         Self {
             gateway,
-            person,
+            known,
             robot,
             right,
             number,
             awaited: Mutex::default(),
-            budget: Mutex::new((BUDGET.0, Instant::now())),
+            sounds: Sounds::default(),
             stops: AtomicU64::new(0),
+            uncounted_stops: AtomicU64::new(0),
+            is_revoked: AtomicBool::new(false),
         }
     }
 
-    /// Serves the page until one side ends, or the person's rights change.
+    /// Serves the page until one side ends, or the person may not see the robot any more. What the page has ordered
+    /// until then is passed on, and what it has said is recorded, though it is gone.
     pub(crate) async fn serve(self, page: WebSocket, console: ConsoleSocket) {
         self.note("open", Outcome::Done, None, Some(self.right.word().to_owned()));
         let (mut page_out, mut page_in) = page.split();
         let (mut console_out, mut console_in) = console.split();
-        let (to_page, for_page) = mpsc::channel(QUEUE);
-        let (to_console, for_console) = mpsc::channel(QUEUE);
-        let (to_audit, for_audit) = mpsc::channel(ORDERS);
-        let (code, reason) = tokio::select! {
-            end = write_page(&mut page_out, for_page) => end,
-            end = write_console(&mut console_out, for_console) => end,
-            end = self.read_page(&mut page_in, &to_console, &to_page, &to_audit) => end,
-            end = self.read_console(&mut console_in, &to_page) => end,
-            end = self.audit(for_audit, &to_console, &to_page) => end,
-            end = self.watch() => end,
-        };
-        self.note("close", Outcome::Done, None, Some(reason.clone()));
+        let (code, reason) =
+            self.pass(&mut page_out, &mut page_in, &mut console_out, &mut console_in).await;
         let frame = CloseFrame { code, reason: short(&reason).into() };
         // Either side may be gone already.
         let _ = timeout(PATIENCE, page_out.send(Page::Close(Some(frame)))).await;
+        self.hear_out(&mut console_out, &mut console_in).await;
+        self.note_more_stops();
+        self.note("close", Outcome::Done, None, Some(reason));
         let _ = timeout(PATIENCE, console_out.send(Console::Close(None))).await;
+    }
+
+    /// Passes frames between both sides.
+    async fn pass(
+        &self,
+        page_out: &mut SplitSink<WebSocket, Page>,
+        page_in: &mut SplitStream<WebSocket>,
+        console_out: &mut SplitSink<ConsoleSocket, Console>,
+        console_in: &mut SplitStream<ConsoleSocket>,
+    ) -> End {
+        let (to_page, for_page) = mpsc::channel(QUEUE);
+        let (to_console, for_console) = mpsc::channel(QUEUE);
+        let (to_audit, for_audit) = mpsc::channel(ORDERS);
+        let mut auditing = pin!(self.audit(for_audit, to_console.clone(), to_page.clone()));
+        let mut writing = pin!(write_console(console_out, for_console));
+        let end = tokio::select! {
+            end = &mut auditing => return end,
+            end = &mut writing => return end,
+            end = self.read_console(console_in, &to_page) => return end,
+            end = write_page(page_out, for_page) => end,
+            end = self.read_page(page_in, &to_console, &to_page, &to_audit) => end,
+            end = self.watch() => end,
+        };
+        drop((to_console, to_page, to_audit));
+        let _ = timeout(PATIENCE, async { tokio::join!(auditing, writing) }).await;
+        end
+    }
+
+    /// Ends the page's streams of sound, and records what the robot still hears in them.
+    async fn hear_out(
+        &self,
+        console_out: &mut SplitSink<ConsoleSocket, Console>,
+        console_in: &mut SplitStream<ConsoleSocket>,
+    ) {
+        let hear = async {
+            for end in self.sounds.ends() {
+                console_out.send(Console::binary(end)).await.ok()?;
+            }
+            while !self.sounds.are_over() {
+                if let Console::Text(text) = console_in.next().await?.ok()? {
+                    answered(&text).into_iter().for_each(|answer| self.outcome(answer));
+                }
+            }
+            Some(())
+        };
+        if !matches!(timeout(HEARD_WITHIN, hear).await, Ok(Some(()))) {
+            let why = "the page was gone before its words were known".to_owned();
+            self.note("speech", Outcome::Failed, None, Some(why));
+        }
     }
 
     async fn read_page(
@@ -145,7 +199,7 @@ impl<'a> Visit<'a> {
                 Err(_) => return (1008, "nothing was received for 60 s".to_owned()),
             };
             let sent = match frame {
-                Page::Text(text) => match judge(&text, &self.person, self.right) {
+                Page::Text(text) => match judge(&text, &self.known.person, self.right) {
                     Verdict::Pass(text) => to_console.send(Console::text(text)).await.is_ok(),
                     Verdict::Order(order, text) => {
                         self.order(order, text, to_console, to_page, to_audit).await
@@ -153,14 +207,17 @@ impl<'a> Visit<'a> {
                     Verdict::Refused(order, answer) => {
                         // A page repeats a stop that is refused.
                         if self.has_budget() {
-                            self.note_order(&order, Outcome::Refused, order.text.clone());
+                            self.gateway.audit.note(&self.entry_of(&order, Outcome::Refused));
                         }
                         to_page.send(Page::text(answer)).await.is_ok()
                     }
                     Verdict::Answer(answer) => to_page.send(Page::text(answer)).await.is_ok(),
                 },
                 Page::Binary(sound) if self.right == Right::Operator => {
-                    to_console.send(Console::Binary(sound)).await.is_ok()
+                    match self.admit_sound(&sound) {
+                        Ok(()) => to_console.send(Console::Binary(sound)).await.is_ok(),
+                        Err(why) => to_page.send(Page::text(error(why))).await.is_ok(),
+                    }
                 }
                 Page::Close(_) => return (1000, "the page was closed".to_owned()),
                 Page::Binary(_) | Page::Ping(_) | Page::Pong(_) => true,
@@ -169,6 +226,19 @@ impl<'a> Visit<'a> {
                 return (1011, "the other side is gone".to_owned());
             }
         }
+    }
+
+    /// Records a stream of sound that begins.
+    fn admit_sound(&self, sound: &[u8]) -> Result<(), &'static str> {
+        let frame = sounds::Frame::read(sound).ok_or("expected a frame of sound")?;
+        let is_recorded = || {
+            let stream = format!("stream {}", frame.stream());
+            self.has_budget() && self.note("sound", Outcome::Ordered, None, Some(stream))
+        };
+        if self.sounds.is_new(&frame) && !is_recorded() || !self.sounds.take(frame) {
+            return Err("too much sound at a time; help: wait a moment");
+        }
+        Ok(())
     }
 
     /// Passes a stop on, and hands other orders to the audit; returns whether the page goes on.
@@ -180,19 +250,15 @@ impl<'a> Visit<'a> {
         to_page: &Sender<Page>,
         to_audit: &Sender<(Order, String, u64)>,
     ) -> bool {
-        let has_budget = self.has_budget();
         if order.is_stop() {
             self.stops.fetch_add(1, Ordering::Relaxed);
             let sent = to_console.send(Console::text(text)).await.is_ok();
-            if has_budget {
-                self.note_order(&order, Outcome::Ordered, None);
-                self.await_outcome(&order);
-            }
+            self.note_stop(&order);
             return sent;
         }
         let id = order.id;
         let stops = self.stops.load(Ordering::Relaxed);
-        if has_budget && to_audit.try_send((order, text, stops)).is_ok() {
+        if self.has_budget() && to_audit.try_send((order, text, stops)).is_ok() {
             return true;
         }
         let why = "too many orders at a time; help: wait a moment";
@@ -203,33 +269,30 @@ impl<'a> Visit<'a> {
     async fn audit(
         &self,
         mut orders: Receiver<(Order, String, u64)>,
-        to_console: &Sender<Console>,
-        to_page: &Sender<Page>,
+        to_console: Sender<Console>,
+        to_page: Sender<Page>,
     ) -> End {
         while let Some((order, text, stops)) = orders.recv().await {
-            let entry =
-                self.entry(&order.what, Outcome::Ordered, Some(order.id), order.text.clone());
-            let recorded = self.gateway.audit.record(&entry).await;
+            let recorded =
+                self.gateway.audit.record(&self.entry_of(&order, Outcome::Ordered)).await;
             let is_void = || order.is_resume() && stops != self.stops.load(Ordering::Relaxed);
             let why = match recorded {
                 Err(error) => Some(format!(
                     "not ordered, as it cannot be recorded: {error}; help: see the gateway's disk"
                 )),
                 Ok(()) if is_void() => Some("a stop was given meanwhile".to_owned()),
+                Ok(()) if self.is_revoked.load(Ordering::Relaxed) => Some(REVOKED.to_owned()),
                 Ok(()) => None,
             };
-            let sent = match why {
-                None => {
-                    self.await_outcome(&order);
-                    to_console.send(Console::text(text)).await.is_ok()
-                }
-                Some(why) => {
-                    let answer = refused(order.id, &why);
-                    self.note_order(&order, Outcome::Refused, Some(why));
-                    to_page.send(Page::text(answer)).await.is_ok()
-                }
-            };
-            if !sent {
+            if let Some(why) = why {
+                let answer = refused(order.id, &why);
+                self.note_order(&order, Outcome::Refused, Some(why));
+                // The page may be gone.
+                let _ = to_page.send(Page::text(answer)).await;
+                continue;
+            }
+            self.await_outcome(&order);
+            if to_console.send(Console::text(text)).await.is_err() {
                 break;
             }
         }
@@ -266,7 +329,7 @@ impl<'a> Visit<'a> {
         }
     }
 
-    /// Ends the page when its person's rights change, or the gateway ends.
+    /// Ends the page when its person's rights change, the session ends, or the gateway does.
     async fn watch(&self) -> End {
         let mut look = interval(RIGHTS_EVERY);
         let mut ending = self.gateway.ending.subscribe();
@@ -275,57 +338,19 @@ impl<'a> Visit<'a> {
                 _ = look.tick() => {}
                 _ = ending.wait_for(|ending| *ending) => return (1001, "the gateway ends".to_owned()),
             }
-            let now = self.gateway.people.current().right(&self.person, &self.robot);
-            if now != Some(self.right) {
-                return (1008, "the person's rights have changed".to_owned());
+            self.note_more_stops();
+            let people = self.gateway.people.current();
+            let has_right = people.right(&self.known.person, &self.robot) == Some(self.right);
+            if !has_right || !self.known.lasts(&people, &self.gateway.sessions) {
+                self.is_revoked.store(true, Ordering::Relaxed);
+                return (1008, REVOKED.to_owned());
             }
         }
     }
 
-    fn await_outcome(&self, order: &Order) {
-        let mut awaited = self.awaited.lock().unwrap_or_else(PoisonError::into_inner);
-        if awaited.len() >= AWAITED_MAX {
-            awaited.pop_front();
-        }
-        awaited.push_back((order.id, order.what.clone()));
-    }
-
-    fn outcome(&self, answer: Answered) {
-        match answer {
-            Answered::Heard(text) => self.note("speech", Outcome::Done, None, Some(text)),
-            Answered::Done(id, result) => {
-                let mut awaited = self.awaited.lock().unwrap_or_else(PoisonError::into_inner);
-                let place = awaited.iter().position(|(known, _)| *known == id);
-                let Some((_, what)) = place.and_then(|place| awaited.remove(place)) else { return };
-                drop(awaited);
-                let outcome = if result.is_ok() { Outcome::Done } else { Outcome::Failed };
-                self.note(&what, outcome, Some(id), result.err());
-            }
-        }
-    }
-
-    /// Returns whether the page may give one more order now.
+    /// Returns whether the person may give one more order now.
     fn has_budget(&self) -> bool {
-        let mut budget = self.budget.lock().unwrap_or_else(PoisonError::into_inner);
-        let now = Instant::now();
-        let more = now.duration_since(budget.1).as_secs_f64() * BUDGET.1;
-        *budget = ((budget.0 + more).min(BUDGET.0), now);
-        let has = budget.0 >= 1.0;
-        budget.0 -= f64::from(u8::from(has));
-        has
-    }
-
-    fn note_order(&self, order: &Order, outcome: Outcome, text: Option<String>) {
-        self.note(&order.what, outcome, Some(order.id), text);
-    }
-
-    fn note(&self, what: &str, outcome: Outcome, id: Option<u64>, text: Option<String>) {
-        self.gateway.audit.note(&self.entry(what, outcome, id, text));
-    }
-
-    fn entry(&self, what: &str, outcome: Outcome, id: Option<u64>, text: Option<String>) -> Entry {
-        let order = Some((self.number, id.unwrap_or(0)));
-        Entry { text, order, ..Entry::new(&self.person, Some(&self.robot), what, outcome) }
+        self.gateway.budgets.take(&self.known.person)
     }
 }
 

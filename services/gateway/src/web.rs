@@ -14,10 +14,11 @@ use axum::routing::{get, post};
 use roster::Name;
 use serde_json::json;
 use web_server::connections::{Connection, Of};
-use web_server::login::{pause, secret_of, stepping_stone, token_of};
+use web_server::login::{form_limit, pause, secret_of, stepping_stone, token_of};
 use web_server::request::{bearer, is_own, wants_page};
 use web_server::security::{content_policy, harden};
 
+use crate::access::Known;
 use crate::audit::{Entry, Outcome};
 use crate::people::Right;
 use crate::robots::Unreached;
@@ -35,6 +36,8 @@ const FILES: [(&str, &str, &str); 5] = [
 const LIST: &str = include_str!("../page/fleet.html");
 const LOGIN: &str = include_str!("../page/login.html");
 
+const TOO_OFTEN: &str = "too many logins, pages and orders at a time; help: wait a moment\n";
+
 type Shared = State<Arc<Gateway>>;
 /// The connection of a request.
 type On = ConnectInfo<Of>;
@@ -44,7 +47,7 @@ pub(crate) fn router(gateway: Arc<Gateway>) -> Router {
     Router::new()
         .route("/", get(list))
         .route("/_/robots", get(robots))
-        .route("/_/login", get(login_page).post(login))
+        .route("/_/login", get(login_page).post(login).layer(form_limit()))
         .route("/_/logout", post(logout))
         .route("/_/healthz", get(|| async { "ready\n" }))
         .route("/_/{file}", get(file))
@@ -82,10 +85,10 @@ async fn known(
     gateway: &Gateway,
     connection: &Connection,
     headers: &HeaderMap,
-) -> Result<Name, Response<Body>> {
-    if let Some(person) = access::person(headers, &gateway.people.current(), &gateway.sessions) {
+) -> Result<Known, Response<Body>> {
+    if let Some(known) = Known::of(headers, &gateway.people.current(), &gateway.sessions) {
         connection.prove();
-        return Ok(person);
+        return Ok(known);
     }
     if bearer(headers).is_some() {
         pause().await;
@@ -106,7 +109,7 @@ async fn list(State(gateway): Shared, on: On, headers: HeaderMap) -> Response<Bo
 
 async fn robots(State(gateway): Shared, on: On, headers: HeaderMap) -> Response<Body> {
     let person = match known(&gateway, &on.0.0, &headers).await {
-        Ok(person) => person,
+        Ok(known) => known.person,
         Err(response) => return response,
     };
     let robots = gateway.robots.list(&gateway.people.current(), &person).await;
@@ -128,13 +131,14 @@ async fn robot_page(State(gateway): Shared, on: On, request: Request) -> Respons
     let (mut parts, _) = request.into_parts();
     let (headers, uri) = (parts.headers.clone(), parts.uri.clone());
     let ConnectInfo(Of(connection)) = on;
-    let person = match known(&gateway, &connection, &headers).await {
-        Ok(person) => person,
+    let known = match known(&gateway, &connection, &headers).await {
+        Ok(known) => known,
         Err(response) => return response,
     };
+    let person = &known.person;
     let (first, rest) = split(&uri);
     let right = Name::new(first).ok().and_then(|robot| {
-        let right = gateway.people.current().right(&person, &robot)?;
+        let right = gateway.people.current().right(person, &robot)?;
         Some((robot, right))
     });
     // Whether there is such a robot is not for strangers to know.
@@ -155,7 +159,7 @@ async fn robot_page(State(gateway): Shared, on: On, request: Request) -> Respons
         let upgrade = WebSocketUpgrade::from_request_parts(&mut parts, &()).await;
         return match upgrade {
             Ok(upgrade) => {
-                let visitor = (person, connection);
+                let visitor = (known, connection);
                 open(gateway, &headers, upgrade, visitor, (robot, right), console).await
             }
             Err(rejection) => rejection.into_response(),
@@ -178,7 +182,7 @@ async fn open(
     gateway: Arc<Gateway>,
     headers: &HeaderMap,
     upgrade: WebSocketUpgrade,
-    (person, connection): (Name, Arc<Connection>),
+    (known, connection): (Known, Arc<Connection>),
     (robot, right): (Name, Right),
     console: crate::robots::Console,
 ) -> Response<Body> {
@@ -186,6 +190,13 @@ async fn open(
         let why = "only pages of this gateway may open a robot's socket\n";
         return (StatusCode::FORBIDDEN, why).into_response();
     }
+    if !gateway.budgets.take(&known.person) {
+        return (StatusCode::TOO_MANY_REQUESTS, TOO_OFTEN).into_response();
+    }
+    let Some(place) = gateway.places.take(&known.person) else {
+        let why = format!("{} has too many pages open; help: close some\n", known.person);
+        return (StatusCode::TOO_MANY_REQUESTS, why).into_response();
+    };
     let socket = match socket::open(&console, headers).await {
         Ok(socket) => socket,
         Err(why) => return (StatusCode::BAD_GATEWAY, format!("{why}\n")).into_response(),
@@ -193,8 +204,8 @@ async fn open(
     let upgrade = upgrade.max_message_size(FRAME_BYTES_MAX).max_frame_size(FRAME_BYTES_MAX);
     upgrade.on_upgrade(move |page| async move {
         connection.become_page();
-        let _used = gateway.robots.used(&robot);
-        Visit::new(&gateway, person, robot, right).serve(page, socket).await;
+        let (_used, _place) = (gateway.robots.used(&robot), place);
+        Visit::new(&gateway, known, robot, right).serve(page, socket).await;
     })
 }
 
@@ -271,7 +282,13 @@ async fn logout(State(gateway): Shared, headers: HeaderMap) -> Response<Body> {
 
 /// Exchanges a secret for a session and leads to a page: the secret does not stay in the address.
 async fn enter(gateway: &Gateway, headers: &HeaderMap, secret: &str, page: &str) -> Response<Body> {
-    let begun = access::log_in(&gateway.people.current(), &gateway.sessions, secret);
+    let people = gateway.people.current();
+    if let Some(person) = people.with_secret(secret)
+        && !gateway.budgets.take(person)
+    {
+        return (StatusCode::TOO_MANY_REQUESTS, TOO_OFTEN).into_response();
+    }
+    let begun = access::log_in(&people, &gateway.sessions, secret);
     let Some((person, value)) = begun else {
         pause().await;
         return Redirect::to("/_/login?wrong").into_response();

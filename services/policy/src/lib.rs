@@ -184,6 +184,10 @@ impl Node for PolicyNode {
         self.waiting_since
     }
 
+    fn rejected(&self) -> u64 {
+        self.rejected
+    }
+
     fn take_erasure(&mut self) -> bool {
         std::mem::take(&mut self.erases)
     }

@@ -42,19 +42,20 @@ impl Address {
     /// nothing in ROS 1 asks who connects.
     ///
     /// # Errors
-    /// The master's name or our own is not known yet.
+    /// The master's name or our own is not known yet, or our own is that of another machine.
     pub fn own(&self) -> io::Result<(String, IpAddr)> {
         let Some(host) = &self.host else {
             let ip = self.towards_master()?;
             return Ok((ip.to_string(), ip));
         };
         let found = resolve(&with_port(host, 0))?;
+        // Not at all of them instead: whoever reaches one may command the robot.
         let ours = found.iter().find(|at| TcpListener::bind(at).is_ok());
-        if let Some(at) = ours {
-            return Ok((host.clone(), at.ip()));
-        }
-        tracing::warn!(host, "not an address of this machine; listening on all of them");
-        Ok((host.clone(), Ipv4Addr::UNSPECIFIED.into()))
+        let at = ours.ok_or_else(|| {
+            let what = format!("{host} is no address of this machine; help: correct arm.ros1.host");
+            io::Error::new(io::ErrorKind::AddrNotAvailable, what)
+        })?;
+        Ok((host.clone(), at.ip()))
     }
 
     /// Our address on the way to the master. Nothing is sent for it.
@@ -143,5 +144,16 @@ mod tests {
     fn own_address_is_that_of_the_interface_to_the_master() {
         let own = Address { master: master_uri("127.0.0.1"), host: None }.own().unwrap();
         assert_eq!(own, ("127.0.0.1".to_owned(), Ipv4Addr::LOCALHOST.into()));
+    }
+
+    #[test]
+    fn node_listens_at_no_other_address_than_the_configured_one() {
+        let own = |host: &str| {
+            Address { master: master_uri("127.0.0.1"), host: Some(host.to_owned()) }.own()
+        };
+        assert_eq!(own("127.0.0.2").unwrap().1, IpAddr::from([127, 0, 0, 2]));
+        // Of the range for documentation.
+        let refused = own("192.0.2.7").unwrap_err();
+        assert!(refused.to_string().contains("help: correct arm.ros1.host"), "{refused}");
     }
 }

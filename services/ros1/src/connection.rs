@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
-use std::time::Duration;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
 
 use rustix::net::sockopt;
 
@@ -11,8 +12,14 @@ use ros::wire::Message;
 
 /// Largest header, bytes; that of a publisher contains the whole definition.
 const HEADER_BYTES_MAX: u32 = 64 << 10;
-/// Largest message, bytes. Those of the robot have some hundred, detections may carry point clouds.
-const MESSAGE_BYTES_MAX: u32 = 64 << 20;
+/// Largest message, bytes. Those of the robot have some thousand.
+const MESSAGE_BYTES_MAX: u32 = 64 << 10;
+/// Largest message of detections, which may carry point clouds.
+pub const LARGE_BYTES_MAX: u32 = 16 << 20;
+/// Room for large messages of all connections together, bytes.
+const LARGE_ROOM: u32 = 64 << 20;
+/// What of [`LARGE_ROOM`] is taken.
+static LARGE_TAKEN: AtomicU32 = AtomicU32::new(0);
 /// Time after which a silent peer that has lost its power or its cable is noticed.
 const DEAD_AFTER: Duration = Duration::from_secs(5);
 
@@ -27,6 +34,8 @@ pub struct Topic {
     pub md5: &'static str,
     /// Full definition of the type.
     pub definition: String,
+    /// Largest message, bytes.
+    pub bytes_max: u32,
 }
 
 /// Fields of a header.
@@ -36,7 +45,8 @@ impl Topic {
     /// Describes the topic `name` of messages `M`.
     pub fn of<M: Message>(name: &str) -> Self {
         let name = name.to_owned();
-        Self { name, kind: M::NAME, md5: M::MD5, definition: M::full_definition() }
+        let (definition, bytes_max) = (M::full_definition(), MESSAGE_BYTES_MAX);
+        Self { name, kind: M::NAME, md5: M::MD5, definition, bytes_max }
     }
 
     /// Checks that the header of a peer means the same type.
@@ -90,6 +100,31 @@ pub fn tune(stream: &TcpStream) -> io::Result<()> {
     Ok(())
 }
 
+/// A stream that is read until a time.
+#[derive(Debug)]
+pub struct Until<'a> {
+    stream: &'a TcpStream,
+    until: Instant,
+}
+
+impl<'a> Until<'a> {
+    /// A stream that is read for so long.
+    pub fn new(stream: &'a TcpStream, patience: Duration) -> Self {
+        Self { stream, until: Instant::now() + patience }
+    }
+}
+
+impl Read for Until<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let left = self.until.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(ErrorKind::TimedOut.into());
+        }
+        self.stream.set_read_timeout(Some(left))?;
+        self.stream.read(bytes)
+    }
+}
+
 /// Writes a header.
 ///
 /// # Errors
@@ -112,7 +147,8 @@ pub fn write_header(stream: &mut impl Write, fields: &[(&str, &str)]) -> io::Res
 pub fn read_header(stream: &mut impl Read) -> io::Result<Header> {
     let invalid = || io::Error::new(ErrorKind::InvalidData, "expected a TCPROS header");
     let mut bytes = Vec::new();
-    read_frame(stream, HEADER_BYTES_MAX, &mut bytes)?;
+    let length = read_length(stream, HEADER_BYTES_MAX)?;
+    read_frame(stream, length, &mut bytes)?;
     let (mut rest, mut header) = (bytes.as_slice(), Header::new());
     while !rest.is_empty() {
         let (length, behind) = rest.split_first_chunk::<4>().ok_or_else(invalid)?;
@@ -126,15 +162,47 @@ pub fn read_header(stream: &mut impl Read) -> io::Result<Header> {
     Ok(header)
 }
 
-/// Reads one message into `bytes`.
-///
-/// # Errors
-/// The connection ends, or the message is larger than any of the bridge's.
-pub fn read_message(stream: &mut impl Read, bytes: &mut Vec<u8>) -> io::Result<()> {
-    read_frame(stream, MESSAGE_BYTES_MAX, bytes)
+/// The memory of a connection for its messages. What it has beyond that of a usual message is a part of
+/// [`LARGE_ROOM`] until the connection ends.
+#[derive(Debug, Default)]
+pub struct MessageBuffer {
+    bytes: Vec<u8>,
+    taken: u32,
 }
 
-fn read_frame(stream: &mut impl Read, most: u32, bytes: &mut Vec<u8>) -> io::Result<()> {
+impl MessageBuffer {
+    /// Reads one message of at most `most` bytes.
+    ///
+    /// # Errors
+    /// The connection ends, the message is larger, or large messages of other connections have all the room.
+    pub fn read(&mut self, stream: &mut impl Read, most: u32) -> io::Result<&[u8]> {
+        let length = read_length(stream, most)?;
+        self.take_room(length)?;
+        read_frame(stream, length, &mut self.bytes)?;
+        Ok(&self.bytes)
+    }
+
+    fn take_room(&mut self, length: u32) -> io::Result<()> {
+        if length <= MESSAGE_BYTES_MAX.max(self.taken) {
+            return Ok(());
+        }
+        let more = length - self.taken;
+        let taken = LARGE_TAKEN.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |taken| {
+            taken.checked_add(more).filter(|taken| *taken <= LARGE_ROOM)
+        });
+        taken.map_err(|_| io::Error::other("too many large messages at a time"))?;
+        self.taken = length;
+        Ok(())
+    }
+}
+
+impl Drop for MessageBuffer {
+    fn drop(&mut self) {
+        LARGE_TAKEN.fetch_sub(self.taken, Ordering::Relaxed);
+    }
+}
+
+fn read_length(stream: &mut impl Read, most: u32) -> io::Result<u32> {
     let mut length = [0; 4];
     stream.read_exact(&mut length)?;
     let length = u32::from_le_bytes(length);
@@ -142,8 +210,14 @@ fn read_frame(stream: &mut impl Read, most: u32, bytes: &mut Vec<u8>) -> io::Res
         let what = format!("expected at most {most} bytes, found {length}");
         return Err(io::Error::new(ErrorKind::InvalidData, what));
     }
-    bytes.resize(length as usize, 0);
-    stream.read_exact(bytes)
+    Ok(length)
+}
+
+/// Reads so many bytes. Memory is taken as they arrive: a length alone is a claim.
+fn read_frame(stream: &mut impl Read, length: u32, bytes: &mut Vec<u8>) -> io::Result<()> {
+    bytes.clear();
+    let read = stream.take(length.into()).read_to_end(bytes)?;
+    if read < length as usize { Err(ErrorKind::UnexpectedEof.into()) } else { Ok(()) }
 }
 
 #[cfg(test)]
@@ -151,7 +225,8 @@ mod tests {
     use super::*;
 
     fn topic() -> Topic {
-        Topic { name: "/t".to_owned(), kind: "p/T", md5: "12", definition: "uint8 x\n".to_owned() }
+        let (name, definition) = ("/t".to_owned(), "uint8 x\n".to_owned());
+        Topic { name, kind: "p/T", md5: "12", definition, bytes_max: 9 }
     }
 
     #[test]
@@ -180,6 +255,50 @@ mod tests {
             assert!(read_header(&mut &bytes[..]).is_err(), "{bytes:?}");
         }
         let huge = (MESSAGE_BYTES_MAX + 1).to_le_bytes();
-        assert!(read_message(&mut huge.as_slice(), &mut Vec::new()).is_err());
+        let mut buffer = MessageBuffer::default();
+        assert!(buffer.read(&mut huge.as_slice(), MESSAGE_BYTES_MAX).is_err());
+    }
+
+    #[test]
+    fn memory_is_taken_for_what_arrives_and_bounded_over_all_connections() {
+        let frame =
+            |claimed: u32, sent: usize| [claimed.to_le_bytes().to_vec(), vec![7; sent]].concat();
+        let mut claim = MessageBuffer::default();
+        let short = frame(LARGE_BYTES_MAX, 1_000);
+        assert!(claim.read(&mut short.as_slice(), LARGE_BYTES_MAX).is_err());
+        assert!(claim.bytes.capacity() < 1 << 16, "{}", claim.bytes.capacity());
+        drop(claim);
+        let claims = || {
+            let mut buffer = MessageBuffer::default();
+            let is_room = buffer.take_room(LARGE_BYTES_MAX).is_ok();
+            is_room.then_some(buffer)
+        };
+        let large: Vec<MessageBuffer> = std::iter::repeat_with(claims).map_while(|it| it).collect();
+        assert_eq!(large.len(), (LARGE_ROOM / LARGE_BYTES_MAX) as usize);
+        // The robot's messages need none of it.
+        let mut usual = MessageBuffer::default();
+        for length in [3, 60_000, 5] {
+            let read = usual.read(&mut frame(length, length as usize).as_slice(), 1 << 16).unwrap();
+            assert_eq!(read, vec![7; length as usize]);
+        }
+        drop(large);
+        assert!(claims().is_some());
+    }
+
+    #[test]
+    fn header_that_comes_byte_by_byte_ends_in_time() {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+        let mut peer = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (stream, _) = listener.accept().unwrap();
+        let slow = std::thread::spawn(move || {
+            while peer.write_all(&[1]).is_ok() {
+                std::thread::sleep(Duration::from_millis(20));
+            }
+        });
+        let began = Instant::now();
+        let mut until = Until::new(&stream, Duration::from_millis(200));
+        assert!(read_header(&mut until).is_err() && began.elapsed() < Duration::from_secs(2));
+        drop(stream);
+        slow.join().unwrap();
     }
 }

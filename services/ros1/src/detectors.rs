@@ -152,7 +152,7 @@ fn subscription<M: Detections + 'static>(
             Ok(())
         })
     };
-    Subscription::new::<M>(topic, sink)
+    Subscription::new::<M>(topic, sink).of_large_messages()
 }
 
 fn sighting(detector: &mut Detector, message: &impl Detections, made: Time) -> Sighting {

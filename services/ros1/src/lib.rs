@@ -13,6 +13,7 @@ pub mod detectors;
 pub mod node;
 pub mod publication;
 pub mod settings;
+mod slots;
 pub mod subscription;
 #[cfg(test)]
 mod tests;

@@ -7,11 +7,12 @@
 use crate::address::{Address, with_port};
 use crate::guarded;
 use crate::publication::{self, Publication};
+use crate::slots::{Slot, Slots};
 use crate::subscription::Subscription;
 use crate::xmlrpc::{self, CallError, Value, call};
 use std::io;
 use std::net::{TcpListener, TcpStream};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
@@ -28,8 +29,10 @@ const RENEW_EVERY: u32 = 10;
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Patience with whoever calls us or connects to us.
 const CALLER_PATIENCE: Duration = Duration::from_secs(5);
-/// Calls and connections that are handled at a time.
-const HANDLED_MAX: usize = 64;
+/// Calls that are answered at a time.
+const CALLS_MAX: usize = 16;
+/// Subscribers whose headers are exchanged at a time.
+const HEADERS_MAX: usize = 32;
 
 /// The topics of a node.
 #[derive(Debug, Default)]
@@ -50,7 +53,6 @@ struct Shared {
     /// URI of our API, once there is one; held locked while the registration changes.
     registered: Mutex<Option<String>>,
     has_ended: AtomicBool,
-    handled: AtomicUsize,
     on_shutdown: Box<dyn Fn(&str) + Send + Sync>,
 }
 
@@ -73,7 +75,6 @@ impl Node {
             topics,
             registered: Mutex::default(),
             has_ended: AtomicBool::new(false),
-            handled: AtomicUsize::new(0),
             on_shutdown: Box::new(on_shutdown),
         });
         let own = Arc::clone(&shared);
@@ -114,9 +115,13 @@ impl Shared {
         };
         tracing::info!(uri, master = self.address.master, "node open");
         let port = data.local_addr().map_or(0, |address| address.port());
-        self.accept(api, move |shared, stream| shared.answer(stream, &host, port));
-        self.accept(data, |shared, stream| {
-            publication::accept(stream, NAME, &shared.topics.published)
+        self.accept(api, CALLS_MAX, move |shared, stream, slot| {
+            let answered = shared.answer(stream, &host, port);
+            drop(slot);
+            answered
+        });
+        self.accept(data, HEADERS_MAX, |shared, stream, slot| {
+            publication::accept(stream, NAME, &shared.topics.published, slot)
         });
         let (mut rounds, mut is_away, mut is_complete) = (0, false, false);
         while !self.has_ended.load(Ordering::Acquire) {
@@ -217,13 +222,14 @@ impl Shared {
         call(&self.address.master, method, &parameters, PATIENCE)
     }
 
-    /// Hands each connection to `handle` on a thread of its own.
+    /// Hands each connection to `handle` on a thread of its own, with one of `most` slots.
     fn accept(
         self: &Arc<Self>,
         listener: TcpListener,
-        handle: impl Fn(&Arc<Self>, TcpStream) -> io::Result<()> + Send + Sync + 'static,
+        most: usize,
+        handle: impl Fn(&Arc<Self>, TcpStream, Slot) -> io::Result<()> + Send + Sync + 'static,
     ) {
-        let (shared, handle) = (Arc::clone(self), Arc::new(handle));
+        let (shared, handle, slots) = (Arc::clone(self), Arc::new(handle), Slots::new(most));
         thread::spawn(move || {
             for stream in listener.incoming() {
                 let Ok(stream) = stream else {
@@ -231,18 +237,18 @@ impl Shared {
                     thread::sleep(Duration::from_millis(100));
                     continue;
                 };
-                if shared.handled.load(Ordering::Relaxed) >= HANDLED_MAX {
-                    continue;
-                }
-                shared.handled.fetch_add(1, Ordering::Relaxed);
+                let from = stream.peer_addr().ok().map(|address| address.ip());
+                let Some(slot) = from.and_then(|from| slots.take(from)) else { continue };
                 let (shared, handle) = (Arc::clone(&shared), Arc::clone(&handle));
-                thread::spawn(move || {
+                let work = move || {
                     let timed = stream.set_read_timeout(Some(CALLER_PATIENCE));
-                    if let Err(error) = timed.and_then(|()| handle(&shared, stream)) {
+                    if let Err(error) = timed.and_then(|()| handle(&shared, stream, slot)) {
                         tracing::debug!(%error, "a connection failed");
                     }
-                    shared.handled.fetch_sub(1, Ordering::Relaxed);
-                });
+                };
+                if let Err(error) = thread::Builder::new().spawn(work) {
+                    tracing::warn!(%error, "no thread for a connection");
+                }
             }
         });
     }

@@ -1,7 +1,8 @@
 //! A topic that the bridge publishes.
 
-use crate::connection::{self, Topic};
+use crate::connection::{self, Topic, Until};
 use crate::guarded;
+use crate::slots::Slot;
 use ros::wire::Message;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::net::sockopt;
@@ -18,6 +19,8 @@ const AGE_MAX: Span = Span::from_ms(100);
 const SUBSCRIBERS_MAX: usize = 16;
 /// Smallest buffer that the system gives: a slow subscriber misses messages, and gets no queue of old ones.
 const SEND_BUFFER_BYTES: usize = 4096;
+/// Patience with a subscriber's header.
+const HEADER_PATIENCE: Duration = Duration::from_secs(5);
 /// Interval at which a silent connection is looked at.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
 
@@ -105,7 +108,7 @@ fn is_closed(stream: &TcpStream) -> bool {
     poll(&mut fds, Some(&now)).is_ok() && fds[0].revents().intersects(closed)
 }
 
-/// Answers a subscriber's header and sends it messages until it is gone.
+/// Answers a subscriber's header, for which it has the `slot`, and sends it messages until it is gone.
 ///
 /// # Errors
 /// The connection fails, or the subscriber wants something else.
@@ -113,9 +116,10 @@ pub(crate) fn accept(
     mut stream: TcpStream,
     own: &str,
     publications: &[Arc<Publication>],
+    slot: Slot,
 ) -> std::io::Result<()> {
     connection::tune(&stream)?;
-    let header = connection::read_header(&mut stream)?;
+    let header = connection::read_header(&mut Until::new(&stream, HEADER_PATIENCE))?;
     let wanted = header.get("topic").map_or("", String::as_str);
     let found = publications.iter().find(|publication| publication.topic.name == wanted);
     let checked = found.ok_or_else(|| format!("topic {wanted} is not published by {own}"));
@@ -131,6 +135,8 @@ pub(crate) fn accept(
     let mut fields = publication.topic.fields(own);
     fields.push(("latching", "0"));
     connection::write_header(&mut stream, &fields)?;
+    // From here on it counts among the topic's subscribers.
+    drop(slot);
     publication.serve(stream, header.get("callerid").map_or("?", String::as_str));
     Ok(())
 }

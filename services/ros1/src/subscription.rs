@@ -1,7 +1,7 @@
 //! A topic that the bridge subscribes to.
 
 use crate::address::with_port;
-use crate::connection::{self, Topic};
+use crate::connection::{self, LARGE_BYTES_MAX, MessageBuffer, Topic, Until};
 use crate::guarded;
 use crate::xmlrpc::{Value, call, connect};
 use ros::wire::{Message, Unreadable};
@@ -15,6 +15,8 @@ use std::time::Duration;
 /// First and longest pause before a publisher is tried again.
 const PAUSE_MIN: Duration = Duration::from_millis(50);
 const PAUSE_MAX: Duration = Duration::from_secs(1);
+/// Publishers of a topic that are followed at a time, with a thread each.
+const PUBLISHERS_MAX: usize = 16;
 /// Patience with a publisher that is called.
 const PATIENCE: Duration = Duration::from_secs(2);
 
@@ -53,6 +55,13 @@ impl Subscription {
         Self { topic: Topic::of::<M>(name), sink, publishers: Mutex::default() }
     }
 
+    /// Admits messages as large as those of cameras.
+    #[must_use]
+    pub fn of_large_messages(mut self) -> Self {
+        self.topic.bytes_max = LARGE_BYTES_MAX;
+        self
+    }
+
     /// Connects to the publishers that the master lists.
     pub fn update(self: &Arc<Self>, node: &'static str, uris: &[String]) {
         let mut publishers = guarded(&self.publishers);
@@ -63,9 +72,19 @@ impl Subscription {
             if publishers.contains_key(uri) {
                 continue;
             }
-            publishers.insert(uri.clone(), Publisher { is_listed: true, connected: None });
-            let (own, uri) = (Arc::clone(self), uri.clone());
-            thread::spawn(move || own.follow(node, &uri));
+            if publishers.len() >= PUBLISHERS_MAX {
+                let (topic, listed) = (&self.topic.name, uris.len());
+                tracing::warn!(topic, listed, "more publishers than are followed");
+                break;
+            }
+            let (own, of) = (Arc::clone(self), uri.clone());
+            match thread::Builder::new().spawn(move || own.follow(node, &of)) {
+                Ok(_) => {
+                    let publisher = Publisher { is_listed: true, connected: None };
+                    publishers.insert(uri.clone(), publisher);
+                }
+                Err(error) => tracing::warn!(uri, %error, "no thread for a publisher"),
+            }
         }
     }
 
@@ -113,17 +132,17 @@ impl Subscription {
         // Else the publisher collects small messages, and a stall leaves a delay of 40 ms behind.
         fields.push(("tcp_nodelay", "1"));
         connection::write_header(&mut stream, &fields)?;
-        let header = connection::read_header(&mut stream)?;
+        let header = connection::read_header(&mut Until::new(&stream, PATIENCE))?;
         self.topic.check(&header).map_err(|error| {
             tracing::warn!(uri, error, "publisher refused");
             io::Error::other(error)
         })?;
         stream.set_read_timeout(None)?;
         self.connected(uri, Some(header.get("callerid").map_or(uri, String::as_str)));
-        let (mut sink, mut bytes, mut rejected) = ((self.sink)(), Vec::new(), 0_u64);
+        let (mut sink, mut buffer, mut rejected) = ((self.sink)(), MessageBuffer::default(), 0_u64);
         loop {
-            connection::read_message(&mut stream, &mut bytes)?;
-            if let Err(error) = sink(&bytes, clock::now()) {
+            let message = buffer.read(&mut stream, self.topic.bytes_max)?;
+            if let Err(error) = sink(message, clock::now()) {
                 rejected += 1;
                 // At any rate of messages some lines a day.
                 if rejected.is_power_of_two() {

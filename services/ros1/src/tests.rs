@@ -1,6 +1,7 @@
 //! A node that hears itself, at a small master.
 
 use crate::address::Address;
+use crate::connection;
 use crate::guarded;
 use crate::node::{NAME, Node, Topics};
 use crate::publication::Publication;
@@ -179,4 +180,61 @@ fn calls_of_other_nodes_are_answered() {
     assert!(refused.to_string().contains(&format!("{NAME} does not publish /other")), "{refused}");
     call(&uri, "shutdown", &["/master".into(), "same name".into()], SOON).unwrap();
     assert_eq!(asked.recv_timeout(SOON).as_deref(), Ok("same name"));
+}
+
+/// The number of threads of this process.
+fn threads() -> usize {
+    std::fs::read_dir("/proc/self/task").unwrap().count()
+}
+
+fn uri_of(master: &Master) -> String {
+    wait_for("registration", || guarded(&master.known).first().map(|[.., uri]| uri.clone()))
+}
+
+/// A recorder of every topic connects often and stays.
+#[test]
+fn subscribers_that_stay_and_silent_ones_do_not_shut_the_api() {
+    let master = Master::start(0);
+    let address = Address { master: format!("http://127.0.0.1:{}/", master.port), host: None };
+    let published: Vec<Arc<Publication>> =
+        (0..8).map(|n| Arc::new(Publication::new::<Float64>(&format!("/t{n}")))).collect();
+    let topics = Topics { published: published.clone(), subscribed: Vec::new() };
+    let _node = Node::start(address, topics, |_| {});
+    let uri = uri_of(&master);
+    let request = ["/test".into(), "/t0".into(), Value::List(Vec::new())];
+    let answer = call(&uri, "requestTopic", &request, SOON).unwrap();
+    let Some([_, _, Value::Int(port)]) = answer.as_list() else { panic!("{answer:?}") };
+    let place = ("127.0.0.1", u16::try_from(*port).unwrap());
+    let subscribe = |n: usize| {
+        let mut stream = std::net::TcpStream::connect(place).unwrap();
+        connection::write_header(&mut stream, &published[n % 8].topic.fields("/recorder")).unwrap();
+        connection::read_header(&mut stream).unwrap();
+        stream
+    };
+    let stay: Vec<_> = (0..96).map(subscribe).collect();
+    let silent: Vec<_> = (0..70).map(|_| std::net::TcpStream::connect(place).unwrap()).collect();
+    let pid = call(&uri, "getPid", &["/test".into()], SOON).unwrap();
+    assert_eq!(pid, Value::Int(std::process::id() as i32));
+    let before: usize = published.iter().map(|it| it.subscribers()).sum();
+    assert_eq!(before, stay.len());
+    drop(silent);
+    wait_for("one more subscriber", || {
+        let mut stream = std::net::TcpStream::connect(place).ok()?;
+        connection::write_header(&mut stream, &published[0].topic.fields("/late")).ok()?;
+        connection::read_header(&mut stream).ok()
+    });
+}
+
+#[test]
+fn publishers_that_the_master_lists_are_bounded() {
+    let master = Master::start(0);
+    let (_node, _publication, received) = start(&master);
+    let uri = uri_of(&master);
+    let before = threads();
+    let many: Vec<Value> =
+        (0..3_000).map(|n| Value::from(format!("http://127.0.0.1:1/{n}").as_str())).collect();
+    let update = ["/master".into(), "/t".into(), Value::List(many)];
+    call(&uri, "publisherUpdate", &update, SOON).unwrap();
+    assert!(threads() < before + 40, "{before} before, {} after", threads());
+    drop(received);
 }

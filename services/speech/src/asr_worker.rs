@@ -14,7 +14,7 @@ use std::time::Duration;
 use config::Settings;
 use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
 use messages::EarState;
-use speech_engines::recogniser::{Recogniser, SecondOpinion};
+use speech_engines::recogniser::{Recogniser, RecogniserUnavailable, SecondOpinion};
 use speech_engines::stream::SpeechSegment;
 use speech_engines::vad::SegmenterOptions;
 use speech_engines::worker_thread::{QueueError, WorkerThread, in_background};
@@ -31,6 +31,8 @@ mod worker;
 
 /// Live utterances that may wait, and files.
 pub(crate) const WAITING_MAX: usize = 8;
+/// Interval at which a recogniser is opened again that had no room on the disk.
+const AGAIN_EVERY: Duration = Duration::from_millis(500);
 /// Possible ends of utterances that may wait for early decoding.
 const HINTS_MAX: usize = 4;
 
@@ -73,10 +75,9 @@ impl AsrWorker {
         let score_min = speech.accept_score_min as f32;
         let backend = options::backend(speech, work);
         let model = speech.whisper_model.clone();
-        let open = move || {
+        let open = move |closed: &AtomicBool| {
             let gate = in_background(|| Gate::new(&scene, score_min));
-            let (first, unpronounceable) =
-                backend.open(&scene).map_err(|error| error.to_string())?;
+            let (first, unpronounceable) = with_room(closed, || backend.open(&scene))?;
             let second = model.map(|model| SecondOpinion::start(model, scene));
             Ok(Opened { first, second, unpronounceable, gate })
         };
@@ -84,7 +85,7 @@ impl AsrWorker {
     }
 
     fn with(
-        open: impl FnOnce() -> Result<Opened, String> + Send + 'static,
+        open: impl FnOnce(&AtomicBool) -> Result<Opened, String> + Send + 'static,
         limits: Limits,
     ) -> (Self, Receiver<In<'static>>) {
         let (hints, hinted) = bounded(HINTS_MAX);
@@ -97,7 +98,7 @@ impl AsrWorker {
             // Without a receiver of its events the worker has no more to do.
             let publish = |state| drop(events.send(In::RecogniserState(state)));
             publish(EarState::Loading);
-            let recognisers = open().map(Opened::ready).inspect_err(|reason| {
+            let recognisers = open(&worker_closed).map(Opened::ready).inspect_err(|reason| {
                 tracing::warn!(reason, "speech cannot be recognised; typed text works");
             });
             publish(if recognisers.is_ok() { EarState::Ready } else { EarState::Off });
@@ -139,6 +140,25 @@ impl AsrWorker {
 impl Drop for AsrWorker {
     fn drop(&mut self) {
         self.closed.store(true, Ordering::SeqCst);
+    }
+}
+
+/// Opens a recogniser, again as long as the disk has no room for its files. What is said meanwhile waits.
+fn with_room<T>(
+    closed: &AtomicBool,
+    mut open: impl FnMut() -> Result<T, RecogniserUnavailable>,
+) -> Result<T, String> {
+    let mut has_warned = false;
+    loop {
+        match open() {
+            Err(RecogniserUnavailable::Short(reason)) if !closed.load(Ordering::SeqCst) => {
+                if !std::mem::replace(&mut has_warned, true) {
+                    tracing::warn!(reason, "speech recognition waits for room on the disk");
+                }
+                thread::sleep(AGAIN_EVERY);
+            }
+            opened => return opened.map_err(|error| error.to_string()),
+        }
     }
 }
 

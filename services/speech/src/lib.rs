@@ -97,6 +97,7 @@ impl Node for SpeechNode {
             Event::Tick => {
                 self.intake.stop.tick(now);
                 if now >= self.next_send {
+                    self.intake.accept_waiting(&mut self.player, now, fx);
                     self.send(now, fx);
                 }
             }
@@ -124,7 +125,8 @@ impl Node for SpeechNode {
 
     fn checkpoint(&self) -> Option<Vec<u8>> {
         let Self { intake, player, next_send } = self;
-        postcard::to_stdvec(&(intake.checkpoint()?, player, next_send, player.lines())).ok()
+        let later = (player.lines(), player.newest());
+        postcard::to_stdvec(&(intake.checkpoint()?, player, next_send, later)).ok()
     }
 
     fn resume(config: Config, checkpoint: &[u8]) -> Result<Self, NodeError> {
@@ -132,9 +134,10 @@ impl Node for SpeechNode {
         let parts: Result<((Vec<u8>, PromptPlayer, _), _), _> =
             postcard::take_from_bytes(checkpoint);
         let ((intake, mut player, next_send), rest) = parts.map_err(|_| foreign())?;
-        // Checkpoints of earlier builds end here: they knew no lines.
+        // Checkpoints of earlier builds end here, as they knew no lines, or behind the lines.
         if !rest.is_empty() {
-            player.restore_lines(postcard::from_bytes(rest).map_err(|_| foreign())?);
+            let (lines, rest) = postcard::take_from_bytes(rest).map_err(|_| foreign())?;
+            player.restore_lines(lines, postcard::from_bytes(rest).unwrap_or_default());
         }
         let intake = UtteranceIntake::resume(config, &intake).ok_or_else(foreign)?;
         Ok(Self { intake, player, next_send })
@@ -152,12 +155,12 @@ impl SpeechNode {
         match message {
             In::Injection(injection) => {
                 // A user who presses talk, types or points interrupts the robot.
-                if self.intake.inject(injection, &self.player, now, fx) {
+                if self.intake.inject(injection, &mut self.player, now, fx) {
                     self.player.interrupt(now, fx);
                 }
             }
             In::Recognised(recognised) => {
-                if self.intake.recognised(recognised, &self.player, now, fx) {
+                if self.intake.recognised(recognised, &mut self.player, now, fx) {
                     self.player.repeat();
                 }
                 self.send(now, fx);
@@ -176,11 +179,14 @@ impl SpeechNode {
             In::RecogniserState(state) => self.intake.set_recogniser(state, fx),
             In::Mark(mark) => {
                 if self.intake.accepted.acknowledge(mark) {
-                    self.intake.accept_waiting(&self.player, now, fx);
+                    self.intake.accept_waiting(&mut self.player, now, fx);
                     self.send(now, fx);
                 }
             }
-            In::Act(act) => self.player.on_act(&act, now, fx),
+            In::Act(act) => {
+                self.player.on_act(&act, now, fx);
+                self.intake.accept_waiting(&mut self.player, now, fx);
+            }
             In::Arm(status) => self.player.on_arm_status(&status),
             In::StopSettled(given) => self.intake.stop.settle(given, fx),
             In::Playback(event) => self.player.on_playback(event, now, fx),

@@ -35,6 +35,9 @@ pub(crate) struct PromptPlayer {
     /// Behind the rest of a checkpoint, where earlier builds have nothing.
     #[serde(skip)]
     lines: RecentLines,
+    /// The policy's latest prompt. Behind the lines in a checkpoint.
+    #[serde(skip)]
+    newest: PromptId,
 }
 
 /// The prompt that is being spoken.
@@ -74,16 +77,55 @@ impl PromptPlayer {
         &self.lines
     }
 
-    pub(crate) fn restore_lines(&mut self, lines: RecentLines) {
-        self.lines = lines;
+    pub(crate) fn newest(&self) -> PromptId {
+        self.newest
     }
 
-    /// Returns the questions that a user may have heard at least in part, newest first.
-    pub(crate) fn asked(&self) -> Vec<Presentation> {
+    pub(crate) fn restore_lines(&mut self, lines: RecentLines, newest: PromptId) {
+        (self.lines, self.newest) = (lines, newest);
+    }
+
+    /// Returns the questions that may be answered by words whose user began at `onset` and was shown the prompt
+    /// `seen` before, newest first: that prompt alone if it is a question, whether or not it sounds, otherwise
+    /// those before it; all where `seen` is 0.
+    pub(crate) fn answerable(
+        &mut self,
+        seen: PromptId,
+        onset: Time,
+        now: Time,
+        fx: &mut Fx,
+    ) -> Vec<Presentation> {
+        self.note_shown(seen, now, fx);
+        let mut asked = self.asked();
+        if asked.iter().any(|question| question.prompt == seen) {
+            asked.retain(|question| question.prompt == seen);
+            // It was shown before it was answered, whenever its sound began.
+            asked.iter_mut().for_each(|question| question.began = question.began.min(onset));
+        } else if seen != PromptId(0) {
+            asked.retain(|question| question.prompt < seen);
+        }
+        asked.truncate(ASKED_MAX);
+        asked
+    }
+
+    /// Notes that a user was shown a question that does not sound yet: it can be answered from now on.
+    fn note_shown(&mut self, seen: PromptId, now: Time, fx: &mut Fx) {
+        let silent = self.playing.as_ref().filter(|playing| !playing.has_begun);
+        let playing = silent.map(|playing| playing.presentation);
+        let waiting = self.waiting.as_ref().map(|waiting| waiting.presentation);
+        let is_shown = |it: &Presentation| it.prompt == seen && it.question != Question::None;
+        let shown = playing.into_iter().chain(waiting).find(is_shown);
+        if let Some(shown) = shown.filter(|_| !self.presentations.iter().any(is_shown)) {
+            self.append(Presentation { began: now, ended: Some(now), ..shown }, fx);
+        }
+    }
+
+    /// Returns the questions that a user may have heard or seen at least in part, newest first.
+    fn asked(&self) -> Vec<Presentation> {
         let playing = self.playing.as_ref().and_then(Playing::begun);
         let playing = playing.filter(|playing| playing.question != Question::None);
         let earlier = self.presentations.iter().rev().copied();
-        playing.into_iter().chain(earlier).take(ASKED_MAX).collect()
+        playing.into_iter().chain(earlier).collect()
     }
 
     /// Returns the question that what a user says now answers, if the last prompt is one.
@@ -95,6 +137,7 @@ impl PromptPlayer {
 
     /// Handles the policy's current decision, which is resent periodically.
     pub(crate) fn on_act(&mut self, act: &RobotAct, now: Time, fx: &mut Fx) {
+        self.newest = PromptId(act.prompt);
         let kind = act.kind.get();
         let (question, text) = match act.judge() {
             Ok(judged) => judged,

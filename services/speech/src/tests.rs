@@ -3,6 +3,7 @@
 mod endings;
 mod fair_share;
 mod prompts;
+mod seen;
 mod set_aside;
 mod stop_order;
 

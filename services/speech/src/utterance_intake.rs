@@ -18,7 +18,7 @@ use crate::{Config, Fx, Hypothesis, Out, Recognised, RecognisedSegment, Recognit
 use accepted::{AcceptedUtterances, Receipts};
 use hearing_status::HearingStatus;
 use language::Completeness;
-use messages::{EarState, GateVerdict, Injection, Receipt, ReceiptStatus, Sound, Source};
+use messages::{EarState, GateVerdict, Injection, PromptId, Receipt, ReceiptStatus, Sound, Source};
 use origin::Origin;
 use scene::Question;
 use service::{Span, Time};
@@ -32,6 +32,8 @@ use waiting_requests::{Request, SHARE, WaitingRequests};
 
 /// Longest time that a user's speech delays the robot's prompts.
 const BUSY_MAX: Span = Span::from_ms(10_000);
+/// Longest time that words wait for the prompt that their user was shown.
+const PROMPT_WAIT: Span = Span::from_ms(1_000);
 /// Durations of a request to talk, seconds.
 const TALK_S: RangeInclusive<f64> = 1.0..=60.0;
 
@@ -75,7 +77,7 @@ impl UtteranceIntake {
     pub(crate) fn inject(
         &mut self,
         injection: Injection,
-        player: &PromptPlayer,
+        player: &mut PromptPlayer,
         now: Time,
         fx: &mut Fx,
     ) -> bool {
@@ -122,7 +124,7 @@ impl UtteranceIntake {
         &mut self,
         origin: Origin,
         content: Result<UtteranceContent, String>,
-        player: &PromptPlayer,
+        player: &mut PromptPlayer,
         now: Time,
         fx: &mut Fx,
     ) -> bool {
@@ -134,20 +136,24 @@ impl UtteranceIntake {
             Err(reason) => return self.reject(&origin, &reason, fx),
         };
         self.obey_stop(&origin, &content, now, fx);
-        let is_taken = self.waiting.push(Request { origin, content });
+        let is_taken = self.waiting.push(Request { origin, content, received: now });
         self.accept_waiting(player, now, fx);
         is_taken
     }
 
     /// Accepts the requests whose turn it is.
-    pub(crate) fn accept_waiting(&mut self, player: &PromptPlayer, now: Time, fx: &mut Fx) {
-        while let Some(Request { origin, content }) = self.next_request() {
+    pub(crate) fn accept_waiting(&mut self, player: &mut PromptPlayer, now: Time, fx: &mut Fx) {
+        while let Some(Request { origin, content, .. }) = self.next_request(player.newest(), now) {
             self.accept(origin, content, player, now, fx);
         }
     }
 
-    fn next_request(&mut self) -> Option<Request> {
-        self.waiting.take(|client| self.accepted.of_client(client) < SHARE)
+    /// Takes the next request. One whose user was shown a later prompt than the `newest` waits for it.
+    fn next_request(&mut self, newest: PromptId, now: Time) -> Option<Request> {
+        self.waiting.take(|Request { origin, received, .. }| {
+            let is_known = origin.seen <= newest || now >= *received + PROMPT_WAIT;
+            is_known && self.accepted.of_client(origin.key.client()) < SHARE
+        })
     }
 
     fn talk(&mut self, origin: Origin, longest_s: f64, now: Time, fx: &mut Fx) -> bool {
@@ -280,7 +286,7 @@ impl UtteranceIntake {
     pub(crate) fn recognised(
         &mut self,
         recognised: Recognised,
-        player: &PromptPlayer,
+        player: &mut PromptPlayer,
         now: Time,
         fx: &mut Fx,
     ) -> bool {
@@ -325,7 +331,7 @@ impl UtteranceIntake {
         &mut self,
         origin: Origin,
         hypotheses: Vec<Hypothesis>,
-        player: &PromptPlayer,
+        player: &mut PromptPlayer,
         now: Time,
         fx: &mut Fx,
     ) {
@@ -358,7 +364,7 @@ impl UtteranceIntake {
         &mut self,
         origin: Origin,
         content: UtteranceContent,
-        player: &PromptPlayer,
+        player: &mut PromptPlayer,
         now: Time,
         fx: &mut Fx,
     ) {
@@ -369,7 +375,8 @@ impl UtteranceIntake {
                 return;
             }
         };
-        let accepted = origin.accepted(seq, content, player.asked(), now);
+        let asked = player.answerable(origin.seen, origin.span.0, now, fx);
+        let accepted = origin.accepted(seq, content, asked, now);
         fx.append(Record::Accepted(accepted.clone()));
         self.report(origin.with_views(accepted.receipt()), fx);
         fx.publish(Out::Utterance(Box::new(accepted.utterance())));

@@ -180,8 +180,15 @@ impl Lifecycle {
     }
 
     /// Sends a heartbeat if one is due, or if what the service is short of has changed. Called only by
-    /// the main loop after a full pass, so that a heartbeat proves progress.
-    pub fn beat(&mut self, now: Time, pending_since: Option<Time>, shortage: Option<&str>) {
+    /// the main loop after a full pass, so that a heartbeat proves progress. `rejected` messages count beside
+    /// those that the bus has rejected.
+    pub fn beat(
+        &mut self,
+        now: Time,
+        pending_since: Option<Time>,
+        shortage: Option<&str>,
+        rejected: u64,
+    ) {
         let shortage = shortage.unwrap_or_default();
         let has_changed = self.shortage.is_empty() != shortage.is_empty();
         if !has_changed && self.last_beat.is_some_and(|last| now < last + self.beat_every) {
@@ -190,7 +197,8 @@ impl Lifecycle {
         self.last_beat = Some(now);
         self.shortage = shortage.replace('\n', " ");
         let age_ms = pending_since.map_or(0, |since| now.since(since).0 / 1_000_000);
-        let (shortage, rejected, lost) = (&self.shortage, bus::rejected(), bus::lost());
+        let (shortage, lost) = (&self.shortage, bus::lost());
+        let rejected = bus::rejected().saturating_add(rejected);
         let (syncs, sync_us) = sync_time::total();
         let sync_us = sync_us.as_micros();
         self.notifier.beat(&format!(
@@ -249,6 +257,11 @@ pub trait Cycle {
     fn shortage(&self) -> Option<&str> {
         None
     }
+
+    /// Returns how many messages the service itself has rejected as invalid.
+    fn rejected(&self) -> u64 {
+        0
+    }
 }
 
 /// Health of a service.
@@ -287,7 +300,7 @@ pub fn drive(mut lifecycle: Lifecycle, cycle: &mut impl Cycle) -> Result<(), Fai
         lifecycle.status(cycle.status());
         let now = clock::now();
         if let Health::Working(pending_since) = cycle.health(now) {
-            lifecycle.beat(now, pending_since, cycle.shortage());
+            lifecycle.beat(now, pending_since, cycle.shortage(), cycle.rejected());
         }
         if flow.is_break() {
             tracing::info!("shut down on request");

@@ -79,6 +79,11 @@ pub trait Node: Sized + 'static {
         None
     }
 
+    /// Returns how many messages the node has rejected as invalid, for the operator's status.
+    fn rejected(&self) -> u64 {
+        0
+    }
+
     /// Returns whether the node can do its work. Until then its service is not reported ready.
     fn is_ready(&self) -> bool {
         true

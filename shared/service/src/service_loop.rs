@@ -114,6 +114,10 @@ impl<P: Program> Cycle for Loop<P> {
     fn shortage(&self) -> Option<&str> {
         self.commit.is_short().then_some(SHORT_OF_DISK).or(self.port_failures.shortage())
     }
+
+    fn rejected(&self) -> u64 {
+        self.node.rejected()
+    }
 }
 
 impl<P: Program> Loop<P> {

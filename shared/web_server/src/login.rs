@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use axum::extract::DefaultBodyLimit;
 use axum::http::Uri;
 
 /// Longest form with a secret, bytes.
@@ -18,6 +19,11 @@ pub async fn pause() {
 pub fn secret_of(form: &[u8]) -> String {
     let form = std::str::from_utf8(form).ok().filter(|form| form.len() <= FORM_MAX);
     form.and_then(|form| form_field(form, "token")).unwrap_or_default()
+}
+
+/// The limit of what is read of a login.
+pub fn form_limit() -> DefaultBodyLimit {
+    DefaultBodyLimit::max(FORM_MAX)
 }
 
 /// Returns a page that leads to another one of this server. A redirect of another site's link would not carry a new cookie;

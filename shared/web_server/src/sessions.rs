@@ -35,8 +35,10 @@ pub fn unix_s() -> u64 {
 pub struct Rules {
     /// First part of the cookie's name.
     pub cookie: &'static str,
-    /// Most sessions; the oldest gives way.
+    /// Most sessions; the oldest of whoever has most gives way.
     pub most: usize,
+    /// Most sessions of one person; the oldest gives way.
+    pub each: usize,
     /// Life of a session, seconds.
     pub life_s: u64,
 }
@@ -52,6 +54,10 @@ struct Session<P> {
     began_s: u64,
 }
 
+/// What a server calls a session: the hash of its cookie's value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SessionName(String);
+
 /// All of them, oldest first.
 #[derive(Debug)]
 pub struct Sessions<P> {
@@ -60,7 +66,7 @@ pub struct Sessions<P> {
     open: Mutex<Vec<Session<P>>>,
 }
 
-impl<P: Clone + Serialize + DeserializeOwned> Sessions<P> {
+impl<P: Clone + PartialEq + Serialize + DeserializeOwned> Sessions<P> {
     /// Reads the file; one that cannot be read has none.
     pub fn open(rules: Rules, file: PathBuf) -> Self {
         let text = read_private(&file).unwrap_or_default();
@@ -82,25 +88,55 @@ impl<P: Clone + Serialize + DeserializeOwned> Sessions<P> {
             Session { cookie: hash(&value), person, secret: hash(secret), began_s: now_s };
         let mut open = self.lock();
         open.retain(|known| self.is_alive(known, now_s, &is_valid));
-        let excess = (open.len() + 1).saturating_sub(self.rules.most);
-        open.drain(..excess);
         open.push(session);
+        self.make_room(&mut open);
         self.store(&open);
         Some(value)
     }
 
-    /// Returns the person of a request by its cookie, if the session is valid as in [`Sessions::begin`].
+    /// Ends the oldest sessions of whoever has too many.
+    fn make_room(&self, open: &mut Vec<Session<P>>) {
+        loop {
+            let of = |person: &P| open.iter().filter(|it| it.person == *person).count();
+            let Some((at, count)) = (0..open.len())
+                .map(|at| (at, of(&open[at].person)))
+                .rev()
+                .max_by_key(|(_, count)| *count)
+            else {
+                return;
+            };
+            if open.len() <= self.rules.most && count <= self.rules.each {
+                return;
+            }
+            open.remove(at);
+        }
+    }
+
+    /// Returns the person of a request by its cookie, and the session's name for [`Sessions::lasts`], if the session is
+    /// valid as in [`Sessions::begin`].
     pub fn person(
         &self,
         headers: &HeaderMap,
         now_s: u64,
         is_valid: impl Fn(&P, &str) -> bool,
-    ) -> Option<P> {
+    ) -> Option<(P, SessionName)> {
         let said: Vec<String> = self.said(headers).map(hash).collect();
         let open = self.lock();
         let mut known = open.iter().filter(|known| said.contains(&known.cookie));
         let alive = known.find(|known| self.is_alive(known, now_s, &is_valid));
-        alive.map(|known| known.person.clone())
+        alive.map(|known| (known.person.clone(), SessionName(known.cookie.clone())))
+    }
+
+    /// Returns whether a session has neither ended nor expired, and is valid as in [`Sessions::begin`].
+    pub fn lasts(
+        &self,
+        session: &SessionName,
+        now_s: u64,
+        is_valid: impl Fn(&P, &str) -> bool,
+    ) -> bool {
+        let open = self.lock();
+        let mut known = open.iter().filter(|known| known.cookie == session.0);
+        known.any(|known| self.is_alive(known, now_s, &is_valid))
     }
 
     /// Ends the session of a request.
@@ -166,7 +202,7 @@ impl<P: Clone + Serialize + DeserializeOwned> Sessions<P> {
 mod tests {
     use super::*;
 
-    const RULES: Rules = Rules { cookie: "test", most: 3, life_s: 100 };
+    const RULES: Rules = Rules { cookie: "test", most: 3, each: 2, life_s: 100 };
     const SECRET: &str = "0123456789abcdef";
 
     fn headers(pairs: &[(&'static str, &str)]) -> HeaderMap {
@@ -184,13 +220,37 @@ mod tests {
         let sessions = Sessions::open(RULES, folder.path().join("sessions"));
         let begin = |number: u64| sessions.begin(number, SECRET, number, |_, _| true).unwrap();
         let values = [0, 1, 2, 3].map(begin);
-        let person = |value: &str, now_s| sessions.person(&with(value), now_s, |_, _| true);
+        let person = |value: &str, now_s| {
+            let known = sessions.person(&with(value), now_s, |_, _| true);
+            known.map(|(person, _)| person)
+        };
         assert_eq!([0, 1, 3].map(|n| person(&values[n], 100)), [None, Some(1), Some(3)]);
         assert_eq!([100, 101].map(|now_s| person(&values[1], now_s)), [Some(1), None]);
         assert_eq!(sessions.person(&with(&values[3]), 5, |_, _| false), None, "not valid");
+        let (_, name) = sessions.person(&with(&values[3]), 5, |_, _| true).unwrap();
+        let lasts = |now_s, is_valid| sessions.lasts(&name, now_s, |_, _| is_valid);
+        assert_eq!([lasts(5, true), lasts(5, false), lasts(103, true)], [true, false, false]);
         sessions.end(&with(&values[3]));
-        assert_eq!(person(&values[3], 5), None);
+        assert_eq!((person(&values[3], 5), lasts(5, true)), (None, false));
         assert_eq!(sessions.lock().len(), 2);
+    }
+
+    #[test]
+    fn logins_of_one_person_end_no_other_persons_sessions() {
+        let folder = tempfile::tempdir().unwrap();
+        let sessions = Sessions::open(RULES, folder.path().join("sessions"));
+        let begin =
+            |person: &str| sessions.begin(person.to_owned(), SECRET, 1, |_, _| true).unwrap();
+        let person = |value: &str| sessions.person(&with(value), 2, |_, _| true).map(|it| it.0);
+        let operator = begin("ann");
+        let viewer: Vec<String> = (0..520).map(|_| begin("bob")).collect();
+        assert_eq!(person(&operator).as_deref(), Some("ann"));
+        let alive = viewer.iter().filter(|value| person(value).is_some()).count();
+        assert_eq!((alive, person(&viewer[519]).as_deref()), (2, Some("bob")));
+        // Where there are too many in all, whoever has most gives way.
+        begin("eve");
+        assert_eq!(person(&operator).as_deref(), Some("ann"));
+        assert_eq!(viewer.iter().filter(|value| person(value).is_some()).count(), 1);
     }
 
     #[test]

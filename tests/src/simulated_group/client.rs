@@ -3,7 +3,10 @@
 
 use std::collections::VecDeque;
 
-use messages::{ActKind, Injection, Outcome, PromptId, ReceiptStatus, RequestKey, Sound};
+use messages::{
+    ActKind, Activity, Injection, Outcome, PresentationState, Presented, PromptId, ReceiptStatus,
+    RequestKey, Sound,
+};
 use scene::Scene;
 use service::submission::Submission;
 use service::view::{Arrived, Latest};
@@ -45,6 +48,10 @@ pub struct Client {
     pub(super) calls_off: Option<Span>,
     /// When that fetch was announced.
     announced: Option<Time>,
+    /// How long after a question is shown it is answered, by a client that waits for nothing else.
+    pub(super) hasty: Option<Span>,
+    /// The answers of such a client, each with the prompt that it answers.
+    pub answers: Vec<(RequestKey, PromptId)>,
     /// Fetches that the robot has left for the person's word.
     pub left: u32,
 }
@@ -66,6 +73,8 @@ struct Process {
     user: TruthfulUser,
     waiting: Waiting,
     saying: VecDeque<Submission>,
+    /// The latest prompt, and since when it is shown.
+    shown: (PromptId, Time),
 }
 
 impl Client {
@@ -86,6 +95,8 @@ impl Client {
             put_back: 0,
             calls_off: None,
             announced: None,
+            hasty: None,
+            answers: Vec::new(),
             left: 0,
         }
     }
@@ -93,6 +104,12 @@ impl Client {
     /// Returns whether the person has everything.
     pub(super) fn is_done(&self) -> bool {
         self.wanted.is_empty()
+    }
+
+    /// Returns whether the client has not been shown this prompt.
+    pub(super) fn is_new(&self, prompt: u64) -> bool {
+        let view = self.history.view.as_ref();
+        view.is_none_or(|view| view.prompt != prompt)
     }
 
     pub(super) fn kill(&mut self, restart: Time) {
@@ -158,6 +175,7 @@ impl Client {
             user,
             waiting: Waiting::new(self.reported),
             saying: VecDeque::new(),
+            shown: (PromptId(0), now),
         });
     }
 
@@ -195,8 +213,12 @@ impl Client {
         }
         let process = self.process.as_mut()?;
         self.could_answer |= now.since(process.quiet_since) >= TIME_TO_ANSWER;
-        let answer = process.user.answer(&process.latest)?;
-        process.say(&answer, now);
+        let answer = match self.hasty {
+            Some(after) => process.hasty_answer(after, now)?,
+            None => process.user.answer(&process.latest)?,
+        };
+        let key = process.say(&answer, now);
+        self.answers.push((key, process.latest.prompt()));
         Some(format!("user: {answer} (to {:?})", process.latest.open_question()))
     }
 }
@@ -241,10 +263,29 @@ impl Client {
 }
 
 impl Process {
-    fn say(&mut self, text: &str, now: Time) {
+    /// The answer to a question that was shown so long ago, whether or not the robot's voice has said it.
+    fn hasty_answer(&mut self, after: Span, now: Time) -> Option<String> {
+        let prompt = self.latest.view.as_ref()?.prompt;
+        if self.shown.0.0 != prompt {
+            self.shown = (PromptId(prompt), now);
+        }
+        if now < self.shown.1 + after {
+            return None;
+        }
+        let state = PresentationState::Ended.code();
+        let presented = Presented { prompt, presentation: 1, state, ..Presented::default() };
+        let activity = Some(Activity::default());
+        let shown = Latest { presented, activity, accepted: 0, ..self.latest.clone() };
+        self.user.answer(&shown)
+    }
+
+    fn say(&mut self, text: &str, now: Time) -> RequestKey {
         let sound = Sound::Text(text.to_owned());
         let patience = Span(u64::MAX / 2);
         let submission = Submission::new(sound, (now, Time(0)), now, patience);
-        self.saying.push_back(submission.after(PromptId(self.latest.presented.prompt)));
+        let submission = submission.after(self.latest.prompt());
+        let key = submission.key();
+        self.saying.push_back(submission);
+        key
     }
 }

@@ -61,6 +61,8 @@ const QUICK_SENTENCE_S: (f64, f64) = (0.4, 0.0);
 /// A sentence that the voice is saying.
 struct Saying {
     playback: u64,
+    /// When it is heard, if it is not yet.
+    begins: Option<Time>,
     ends: Time,
 }
 
@@ -106,6 +108,10 @@ pub struct SimulatedGroup {
     /// The faults, and how many there were.
     pub faults: Faults,
     sentence_s: (f64, f64),
+    /// Time until a sentence is synthesised and sounds.
+    synthesis: Span,
+    /// Whether the speech service dies as soon as a question is decided.
+    dies_at_questions: bool,
     rng: Rng,
     now: Time,
     inboxes: Inboxes,
@@ -142,6 +148,8 @@ impl SimulatedGroup {
             premature: Vec::new(),
             faults,
             sentence_s: QUICK_SENTENCE_S,
+            synthesis: Span(0),
+            dies_at_questions: false,
             rng: Rng::new(0),
             now: Time(1),
             inboxes: Inboxes::default(),
@@ -213,6 +221,21 @@ impl SimulatedGroup {
             client.calls_off = Some(after);
         }
         self
+    }
+
+    /// The user at the terminal answers each question so long after it is shown; the robot's voice needs time for
+    /// synthesis, and the speech service may die at each question.
+    #[must_use]
+    pub fn answered_in_haste(
+        mut self,
+        after: Span,
+        synthesis: Span,
+        dies_at_questions: bool,
+    ) -> Self {
+        if let Some(client) = &mut self.client {
+            client.hasty = Some(after);
+        }
+        Self { synthesis, dies_at_questions, ..self }
     }
 
     /// The log of the dialogue.
@@ -392,6 +415,12 @@ impl SimulatedGroup {
 
     fn finish_sentence(&mut self) {
         let now = self.now;
+        if let Some(saying) = &mut self.saying
+            && saying.begins.take_if(|begins| *begins <= now).is_some()
+        {
+            let playback = saying.playback;
+            self.voice(playback, PlaybackState::Started);
+        }
         if let Some(saying) = self.saying.take_if(|saying| saying.ends <= now) {
             self.voice(saying.playback, PlaybackState::Ended);
         }
@@ -406,9 +435,23 @@ impl SimulatedGroup {
         self.stop_speaking();
         let length_s = self.rng.log_normal(self.sentence_s.0, self.sentence_s.1);
         self.log(format_args!("robot: {}", line.text));
-        let ends = self.now + Span::from_s(length_s);
-        self.saying = Some(Saying { playback: line.playback, ends });
-        self.voice(line.playback, PlaybackState::Started);
+        let begins = self.now + self.synthesis;
+        let ends = begins + Span::from_s(length_s);
+        self.saying = Some(Saying { playback: line.playback, begins: Some(begins), ends });
+        if self.synthesis == Span(0) {
+            self.finish_sentence();
+        }
+    }
+
+    /// The speech service dies before it hears of a new question.
+    fn die_at_question(&mut self, prompt: u64) {
+        let is_new = self.client.as_ref().is_some_and(|client| client.is_new(prompt));
+        if self.dies_at_questions && is_new && self.restarts[0].is_none() {
+            self.speech.kill();
+            self.inboxes.speech.clear();
+            self.restarts[0] = Some(self.now + self.faults.downtime());
+            self.log("speech dies");
+        }
     }
 
     fn stop_speaking(&mut self) {

@@ -159,6 +159,7 @@ impl SimulatedGroup {
                         let table = self.table.as_ref();
                         let question = table.map_or(question, |table| table.question(question));
                         self.user.announce(act.prompt, act.scene_key, question);
+                        self.die_at_question(act.prompt);
                     }
                     self.picked = self.picked.or(act.pick().map(|(_, object)| object));
                     let to_speech = speech::In::Act(act.clone().into());

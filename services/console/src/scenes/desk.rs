@@ -20,6 +20,10 @@ const REACH: Duration = Duration::from_millis(700);
 /// Most places of one request about the reach.
 const PLACES_MAX: usize = 256;
 
+/// Most objects, and values of all attributes, of a scene in the editor: a check of it takes seconds.
+const OBJECTS_MAX: usize = 1_024;
+const VALUES_MAX: usize = 4_096;
+
 /// A request that is not carried out.
 #[derive(Debug, Serialize)]
 pub(super) struct Refusal {
@@ -293,6 +297,17 @@ impl Desk {
 
 /// The text of a document.
 fn applied(label: &str, text: &str, document: &Document) -> Result<String, Refusal> {
+    let values = document.attributes.iter().map(|attribute| attribute.values.len()).sum();
+    for (what, found, most) in
+        [("objects", document.objects.len(), OBJECTS_MAX), ("values", values, VALUES_MAX)]
+    {
+        if found > most {
+            let help = "help: edit the file, and use `whichone scene check`";
+            let what =
+                format!("expected at most {most} {what} in the editor, found {found}; {help}");
+            return Err(Refusal::new(StatusCode::UNPROCESSABLE_ENTITY, what));
+        }
+    }
     let mut edit = SceneEdit::parse(label, text)?;
     edit.apply(document)?;
     Ok(edit.text())

@@ -2,22 +2,28 @@
 //! the operator, which names its session.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::Router;
 use axum::body::Bytes;
-use axum::extract::{DefaultBodyLimit, Path, State};
+use axum::extract::{DefaultBodyLimit, FromRequest, Path, Request, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use tokio::sync::OwnedSemaphorePermit;
+use tokio::time::timeout;
 use web_server::request::is_own;
 
-use super::desk::Refusal;
+use super::Rank;
+use super::desk::{Draft, Places, Refusal, Saving};
 use crate::server::App;
 
 /// Largest request: a scene file twice, as its text and as a document.
-const BODY_MAX: usize = 32 << 20;
+const BODY_MAX: usize = 8 << 20;
+/// Time for a request to get a place and to arrive.
+const BODY_PATIENCE: Duration = Duration::from_secs(30);
 
 /// The header with the session of the page.
 const SESSION: &str = "x-whichone-session";
@@ -36,39 +42,35 @@ pub fn routes() -> Router<Arc<App>> {
 
 type Answer = Result<Response, Refusal>;
 
-async fn list(State(app): State<Arc<App>>) -> Answer {
-    json(app.scenes.ask(|desk| desk.list()).await?)
+async fn list(State(app): State<Arc<App>>, headers: HeaderMap) -> Answer {
+    json(app.scenes.ask(rank(&app, &headers), |desk| desk.list()).await?)
 }
 
-async fn open(State(app): State<Arc<App>>, Path(name): Path<String>) -> Answer {
-    json(app.scenes.ask(move |desk| desk.open(&name)).await?)
+async fn open(State(app): State<Arc<App>>, Path(name): Path<String>, headers: HeaderMap) -> Answer {
+    json(app.scenes.ask(rank(&app, &headers), move |desk| desk.open(&name)).await?)
 }
 
-async fn new_scene(State(app): State<Arc<App>>) -> Answer {
-    json(app.scenes.ask(|desk| desk.new_scene()).await?)
+async fn new_scene(State(app): State<Arc<App>>, headers: HeaderMap) -> Answer {
+    json(app.scenes.ask(rank(&app, &headers), |desk| desk.new_scene()).await?)
 }
 
-async fn check(State(app): State<Arc<App>>, headers: HeaderMap, body: Bytes) -> Answer {
-    must_operate(&app, &headers)?;
-    let draft = read(&body)?;
-    json(app.scenes.ask(move |desk| desk.check(&draft)).await?)
+async fn check(State(app): State<Arc<App>>, said: Operated<Draft>) -> Answer {
+    let Operated(draft, _place) = said;
+    json(app.scenes.ask(Rank::Operator, move |desk| desk.check(&draft)).await?)
 }
 
-async fn reach(State(app): State<Arc<App>>, headers: HeaderMap, body: Bytes) -> Answer {
-    must_operate(&app, &headers)?;
-    let places = read(&body)?;
-    json(app.scenes.ask(move |desk| desk.reach(&places)).await?)
+async fn reach(State(app): State<Arc<App>>, said: Operated<Places>) -> Answer {
+    let Operated(places, _place) = said;
+    json(app.scenes.ask(Rank::Operator, move |desk| desk.reach(&places)).await?)
 }
 
 async fn save(
     State(app): State<Arc<App>>,
     Path(name): Path<String>,
-    headers: HeaderMap,
-    body: Bytes,
+    said: Operated<Saving>,
 ) -> Answer {
-    must_operate(&app, &headers)?;
-    let saving = read(&body)?;
-    json(app.scenes.ask(move |desk| desk.save(&name, &saving)).await?)
+    let Operated(saving, _place) = said;
+    json(app.scenes.ask(Rank::Operator, move |desk| desk.save(&name, &saving)).await?)
 }
 
 async fn use_scene(
@@ -77,7 +79,33 @@ async fn use_scene(
     headers: HeaderMap,
 ) -> Answer {
     must_operate(&app, &headers)?;
-    json(app.scenes.ask(move |desk| desk.use_scene(&name)).await?)
+    json(app.scenes.ask(Rank::Operator, move |desk| desk.use_scene(&name)).await?)
+}
+
+/// What the operator's page says, and the place that it takes among such requests. Nothing of a request is read before
+/// it is known to be the operator's and has a place.
+struct Operated<T>(T, OwnedSemaphorePermit);
+
+impl<T: DeserializeOwned> FromRequest<Arc<App>> for Operated<T> {
+    type Rejection = Refusal;
+
+    async fn from_request(request: Request, app: &Arc<App>) -> Result<Self, Refusal> {
+        must_operate(app, request.headers())?;
+        let late =
+            |_| Refusal::new(StatusCode::REQUEST_TIMEOUT, "the request did not arrive in 30 s");
+        timeout(BODY_PATIENCE, async {
+            let place = app.scenes.place().await?;
+            let body = Bytes::from_request(request, app).await;
+            let body = body.map_err(|error| Refusal::new(error.status(), error.body_text()))?;
+            Ok(Self(read(&body)?, place))
+        })
+        .await
+        .map_err(late)?
+    }
+}
+
+fn rank(app: &App, headers: &HeaderMap) -> Rank {
+    if must_operate(app, headers).is_ok() { Rank::Operator } else { Rank::Viewer }
 }
 
 /// The request is of the operator's own page.

@@ -12,7 +12,7 @@ use web_server::request::{bearer, is_for_this_machine, text};
 use web_server::sessions::{Rules, Sessions, hash};
 
 /// The rules of browsers' sessions.
-const SESSIONS: Rules = Rules { cookie: "whichone", most: 64, life_s: 30 * 24 * 3_600 };
+const SESSIONS: Rules = Rules { cookie: "whichone", most: 64, each: 64, life_s: 30 * 24 * 3_600 };
 
 /// Who may use the page.
 #[derive(Debug)]

@@ -22,7 +22,7 @@ use axum::response::{IntoResponse, Redirect};
 use axum::routing::get;
 use page_part::Files;
 use web_server::connections::{Gate, Of};
-use web_server::login::{pause, token_of};
+use web_server::login::{form_limit, pause, token_of};
 use web_server::request::{bearer, text, wants_page};
 use web_server::security::{content_policy, harden};
 use web_server::sessions::unix_s;
@@ -96,7 +96,7 @@ fn router(app: Arc<App>) -> Router {
         // The routes below are open without the token, or check it themselves.
         .route("/foxglove", get(routes::foxglove))
         .route("/healthz", get(routes::health))
-        .route("/login", get(routes::asset).post(routes::login))
+        .route("/login", get(routes::asset).post(routes::login).layer(form_limit()))
         .layer(middleware::from_fn_with_state(Arc::clone(&app), address))
         .with_state(app)
 }

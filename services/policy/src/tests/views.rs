@@ -84,3 +84,24 @@ fn spoken(seq: u64, asked: &[Presentation], onset_ms: u64) -> Cause {
         ..Utterance::default()
     })
 }
+
+/// A grounder that is broken does not look healthy.
+#[test]
+fn invalid_observations_are_counted_for_the_operators_status() {
+    let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();
+    let meant = Interpretation { weight: f64::NAN, answers: None, reading: Reading::default() };
+    let mut invalid = Observation {
+        seq: 1,
+        scene_key: settings().scene.key(),
+        reading_count: 1,
+        ..Observation::default()
+    };
+    invalid.readings[0] = WireReading::new(&meant).0;
+    for count in 1..=2 {
+        let (records, _) = tell(&mut node, In::Observation(invalid.into()), at(count));
+        assert!(records.is_empty(), "the utterance stays pending");
+        assert_eq!(node.rejected(), count);
+    }
+    tell(&mut node, observation(1, 0, &Reading::default()), at(3));
+    assert_eq!((node.rejected(), node.state().applied.0), (2, 1));
+}

@@ -4,7 +4,6 @@ use super::{Node, failure};
 use crate::dds::Call;
 use crate::hear;
 use crate::types::{Text, Triggered};
-use messages::PromptId;
 use service::client::random_key;
 use service::clock;
 
@@ -24,7 +23,7 @@ impl Node {
     /// Takes words, and calls of `cancel`.
     pub(super) fn on_words(&mut self) {
         let now = clock::now();
-        let seen = PromptId(self.latest.presented.prompt);
+        let seen = self.latest.prompt();
         let Self { dds, counters, waiting, .. } = self;
         let (mut unreadable, mut refused) = (0, 0);
         let more = dds.hear.drain(&mut unreadable, |Text { data }, info| {

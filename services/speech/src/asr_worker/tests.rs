@@ -44,7 +44,7 @@ fn worker(
 ) -> (AsrWorker, Receiver<In<'static>>) {
     let segmenter = SegmenterOptions::default();
     let limits = Limits { segmenter, longest_s: 10.0, patience: Duration::from_millis(600) };
-    let (worker, events) = AsrWorker::with(open, limits);
+    let (worker, events) = AsrWorker::with(move |_| open(), limits);
     assert_eq!(next(&events), In::RecogniserState(EarState::Loading));
     (worker, events)
 }
@@ -254,4 +254,20 @@ fn asr_worker_decodes_what_is_said_before_the_rest_of_a_file() {
         let recognised = result(&events);
         assert_eq!((recognised.sound, recognised.segments.unwrap().len()), (sound, 3));
     }
+}
+
+/// A disk that was full as the service started.
+#[test]
+fn recogniser_without_room_is_opened_once_there_is_some() {
+    let (closed, mut tries) = (AtomicBool::new(false), 0);
+    let short = || RecogniserUnavailable::Short("no room".to_owned());
+    let opened = with_room(&closed, || {
+        tries += 1;
+        if tries < 3 { Err(short()) } else { Ok(tries) }
+    });
+    assert_eq!(opened, Ok(3));
+    let missing = || RecogniserUnavailable::Missing("no library".to_owned());
+    assert_eq!(with_room::<u32>(&closed, || Err(missing())), Err("no library".to_owned()));
+    closed.store(true, Ordering::SeqCst);
+    assert_eq!(with_room::<u32>(&closed, || Err(short())), Err("no room".to_owned()));
 }

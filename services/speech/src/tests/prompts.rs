@@ -97,27 +97,6 @@ fn half_duplex_microphone_does_not_interrupt_but_typed_text_does() {
 }
 
 #[test]
-fn words_answer_no_question_that_their_client_had_not_shown() {
-    let mut speech = Speech::new();
-    speech.take(0.0, ask(7));
-    speech.playback(0.1, 1, PlaybackState::Started);
-    speech.take(0.5, ask(8));
-    speech.playback(0.1, 2, PlaybackState::Started);
-    let yes = |seen_prompt: u64| Injection {
-        key: RequestKey([seen_prompt as u8 + 1; 16]),
-        onset_ns: 0,
-        end_ns: 0,
-        seen_prompt,
-        from: String::new(),
-        sound: Sound::Text("yes".to_owned()),
-    };
-    assert_eq!(speech.take(1.0, In::Injection(yes(7))).asked(), [(7, 1, 0)]);
-    assert_eq!(speech.take(1.0, In::Injection(yes(6))).asked(), []);
-    assert_eq!(speech.take(1.0, In::Injection(yes(8))).asked(), [(8, 1, 0), (7, 1, 0)]);
-    assert_eq!(speech.take(1.0, In::Injection(yes(0))).asked(), [(8, 1, 0), (7, 1, 0)], "unknown");
-}
-
-#[test]
 fn superseded_question_may_still_be_answered() {
     let mut speech = Speech::new();
     speech.take(0.0, ask(7));

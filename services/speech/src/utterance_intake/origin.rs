@@ -86,12 +86,11 @@ impl Origin {
         &self,
         seq: UtteranceSeq,
         UtteranceContent { hypotheses, gesture }: UtteranceContent,
-        mut asked: Vec<Presentation>,
+        asked: Vec<Presentation>,
         now: Time,
     ) -> Accepted {
-        let Self { key, segment, source, span: (onset, end), seen, snr_db, .. } = *self;
+        let Self { key, segment, source, span: (onset, end), snr_db, .. } = *self;
         let from = self.from.clone();
-        asked.retain(|question| seen == PromptId(0) || question.prompt <= seen);
         let accepted = now;
         Accepted {
             seq,

@@ -8,6 +8,8 @@ use std::collections::VecDeque;
 
 use messages::{ClientId, RequestKey};
 
+use service::Time;
+
 use super::origin::Origin;
 use crate::utterance_content::UtteranceContent;
 
@@ -24,6 +26,8 @@ const CLIENTS_MAX: usize = 32;
 pub(super) struct Request {
     pub(super) origin: Origin,
     pub(super) content: UtteranceContent,
+    /// When it arrived.
+    pub(super) received: Time,
 }
 
 /// The waiting requests of every client, the client whose turn it is first; none without requests.
@@ -58,10 +62,10 @@ impl WaitingRequests {
         has_room
     }
 
-    /// Takes the oldest request of the next client that `may` have one accepted; afterwards it is the
-    /// others' turn.
-    pub(super) fn take(&mut self, may: impl Fn(ClientId) -> bool) -> Option<Request> {
-        let next = self.clients.iter().position(|(client, _)| may(*client))?;
+    /// Takes the next client's oldest request, if it `may` be accepted; afterwards it is the others' turn.
+    pub(super) fn take(&mut self, may: impl Fn(&Request) -> bool) -> Option<Request> {
+        let mut oldest = self.clients.iter().map(|(_, requests)| requests.front());
+        let next = oldest.position(|request| request.is_some_and(&may))?;
         let (client, mut requests) = self.clients.remove(next)?;
         let request = requests.pop_front();
         if !requests.is_empty() {

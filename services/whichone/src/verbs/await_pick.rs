@@ -50,7 +50,7 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
             user.answer(conversation.latest())
         };
         if let Some(answer) = user.as_mut().and_then(answer) {
-            conversation.say(&answer)?;
+            conversation.say(&answer, conversation.latest().prompt())?;
         }
         if let Some(why) = lookout.news(paths) {
             return Err(Failure::new(Exit::NotReached, why));

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use command_line::Outcome;
 use command_line::interrupt::Interrupt;
 use command_line::output::{Ink, Output, note};
-use messages::{MotionOrder, Receipt, ReceiptStatus};
+use messages::{MotionOrder, PromptId, Receipt, ReceiptStatus};
 use scene::ObjectId;
 use serde_json::json;
 use service::clock;
@@ -125,7 +125,8 @@ impl<'a, 'b> Chat<'a, 'b> {
                     self.guard.on_stop(clock::now());
                     self.orders.give(MotionOrder::Stop);
                 }
-                self.conversation.say(words)?;
+                let seen = self.printed.map_or(0, |(prompt, _)| prompt);
+                self.conversation.say(words, PromptId(seen))?;
             }
         }
         Ok(())

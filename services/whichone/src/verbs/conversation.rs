@@ -110,16 +110,16 @@ impl Conversation {
         self.from = from;
     }
 
-    /// Submits an utterance after those that are pending. It is resent under one key until it is
-    /// answered, so that a restart neither loses nor duplicates it.
-    pub(super) fn say(&mut self, text: &str) -> Result<(), Failure> {
+    /// Submits an utterance of a user who was shown the prompt `seen` last, after those that are pending. It is resent
+    /// under one key until it is answered, so that a restart neither loses nor duplicates it.
+    pub(super) fn say(&mut self, text: &str, seen: PromptId) -> Result<(), Failure> {
         if self.injections.is_none() {
             self.injections = Some(self.client.bus().encoded_writer(&topics::INJECTION)?);
         }
         let sound = Sound::Text(text.to_owned());
         let now = clock::now();
         let submission = Submission::new(sound, (now, Time(0)), now, Span(u64::MAX / 2))
-            .after(PromptId(self.latest.presented.prompt))
+            .after(seen)
             .by(self.from.as_str());
         self.own.insert(submission.key());
         self.saying.push_back(submission);

@@ -125,7 +125,7 @@ class Client:
             time.sleep(every_s)
 
     def say(self, text: str, *, from_: str = "", timeout: float = 10.0) -> int:
-        """Says something to the robot, as if typed; `from_` is the name of the person who speaks, at most 64 bytes.
+        """Says something to the robot, as if typed, in answer to its latest line; `from_` is the name of the person who speaks, at most 64 bytes.
         Returns the utterance's number once it is durable: it will be
         applied once, whatever is killed. Raises `Refused` or `TimeoutError`."""
         return self._deliver(m.SoundText(text), from_, timeout)
@@ -141,7 +141,9 @@ class Client:
 
     def _deliver(self, sound: m.Sound, from_: str, timeout: float) -> int:
         key = self._identity + secrets.token_bytes(8)
-        injection = m.Injection(key=key, onset_ns=0, end_ns=0, seen_prompt=0, from_=from_, sound=sound)
+        now = self.look()
+        seen = max((part.prompt for part in (now.view, now.presented) if part), default=0)
+        injection = m.Injection(key=key, onset_ns=0, end_ns=0, seen_prompt=seen, from_=from_, sound=sound)
         until, due = time.monotonic() + timeout, 0.0
         while (now := time.monotonic()) < until:
             if now >= due:

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use messages::{
-    ArmStatus, Ended, Injection, MotionOrder, PolicyView, Presented, Receipt, ReceiptStatus, Sound,
-    topics,
+    ArmStatus, Ended, Injection, MotionOrder, PolicyView, Presented, PromptId, Receipt,
+    ReceiptStatus, Sound, topics,
 };
 use runtime::bus::{Bus, EncodedReader, EncodedWriter, Reader};
 use runtime::client::{Polling, submit};
@@ -55,6 +55,8 @@ pub struct Client {
     view: Option<PolicyView>,
     status: Option<ArmStatus>,
     presented: Presented,
+    /// Whether a change was taken in that the user has not been handed.
+    is_new: bool,
     /// The latest utterance of this client, 0 for none.
     said: u64,
     /// Who speaks through this client.
@@ -91,6 +93,7 @@ impl Client {
             view: None,
             status: None,
             presented: Presented::default(),
+            is_new: false,
             said: 0,
             from: PersonId::default(),
             client,
@@ -119,8 +122,8 @@ impl Client {
         Ok(())
     }
 
-    /// Says something to the robot, as if typed. Returns the utterance's number once it is durable: it will be
-    /// applied, whatever is killed meanwhile.
+    /// Says something to the robot, as if typed, in answer to its latest line. Returns the utterance's number once it
+    /// is durable: it will be applied, whatever is killed meanwhile.
     ///
     /// # Errors
     /// Refused (the reason is in the message), or no answer within 10 s.
@@ -137,10 +140,14 @@ impl Client {
     }
 
     fn submit(&mut self, sound: Sound) -> Result<u64, Failure> {
+        self.take()?;
         let said = (clock::now(), Time(0));
+        let shown = self.view.as_ref().map_or(0, |view| view.prompt);
+        let seen = PromptId(shown.max(self.presented.prompt));
         let Self { injections, receipts, from, .. } = self;
-        let mut submission =
-            Submission::new(sound, said, clock::now(), ACCEPT_PATIENCE).by(from.as_str());
+        let mut submission = Submission::new(sound, said, clock::now(), ACCEPT_PATIENCE)
+            .after(seen)
+            .by(from.as_str());
         let receipts = submit(injections, receipts, &mut submission, || None)?;
         let receipt = receipts.first();
         let accepted = receipt.filter(|receipt| receipt.status == ReceiptStatus::Accepted);
@@ -158,22 +165,23 @@ impl Client {
     /// The group's shared memory is lost.
     pub fn look(&mut self) -> Result<Option<State>, Failure> {
         self.take()?;
+        self.is_new = false;
         Ok(self.state())
     }
 
-    /// Takes in what is new; returns whether anything is.
-    fn take(&mut self) -> Result<bool, Failure> {
+    /// Takes in what is new.
+    fn take(&mut self) -> Result<(), Failure> {
         let mut view = None;
         self.views.drain_in_turn(|payload| view = Some(payload))?;
         let status = self.arm.latest()?;
         let presented = self.prompts.latest()?.unwrap_or(self.presented);
-        let is_new = view.as_ref().is_some_and(|view| self.view.as_ref() != Some(view))
+        self.is_new |= view.as_ref().is_some_and(|view| self.view.as_ref() != Some(view))
             || status.is_some_and(|status| self.status != Some(status))
             || presented != self.presented;
         self.presented = presented;
         self.view = view.or(self.view.take());
         self.status = status.or(self.status);
-        Ok(is_new)
+        Ok(())
     }
 
     fn state(&self) -> Option<State> {
@@ -188,9 +196,9 @@ impl Client {
     pub fn next_change(&mut self) -> Result<State, Failure> {
         let mut polling = Polling::default();
         loop {
-            if self.take()?
-                && let Some(state) = self.state()
-            {
+            self.take()?;
+            if let Some(state) = self.state().filter(|_| self.is_new) {
+                self.is_new = false;
                 return Ok(state);
             }
             polling.pause();

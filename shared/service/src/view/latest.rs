@@ -156,6 +156,12 @@ impl Latest {
         self.view.as_ref()?.open_question(&self.presented)
     }
 
+    /// Returns the robot's latest prompt, as shown or as said; 0 for none.
+    pub fn prompt(&self) -> messages::PromptId {
+        let shown = self.view.as_ref().map_or(0, |view| view.prompt);
+        messages::PromptId(shown.max(self.presented.prompt))
+    }
+
     /// Returns the line that is being presented or was presented last, if it is still the robot's
     /// latest.
     pub fn presented_line(&self) -> Option<(PromptId, &str)> {

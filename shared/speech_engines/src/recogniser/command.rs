@@ -54,7 +54,7 @@ impl Command {
     /// If no program is named, or it cannot be started.
     pub fn open(options: CommandOptions) -> Result<Self, RecogniserUnavailable> {
         let program = Program::start(&options.command)
-            .map_err(|reason| RecogniserUnavailable(format!("{reason}; {HELP}")))?;
+            .map_err(|reason| RecogniserUnavailable::Missing(format!("{reason}; {HELP}")))?;
         Ok(Self { options, program: Some(program) })
     }
 

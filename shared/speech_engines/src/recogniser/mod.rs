@@ -31,25 +31,35 @@ pub struct RecogniseError(pub String);
 /// Error of opening a recogniser: the reason, for the operator.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
-pub struct RecogniserUnavailable(String);
+pub enum RecogniserUnavailable {
+    /// Something is missing, or does not fit.
+    Missing(String),
+    /// The disk has no room for its files: it can be opened once there is some.
+    Short(String),
+}
 
 impl RecogniserUnavailable {
     /// A file of the model is missing.
     fn unreadable(file: &Path, error: &io::Error) -> Self {
         let file = file.display();
-        Self(format!(
+        Self::Missing(format!(
             "{file} cannot be read: {error}; help: install the package pocketsphinx-en-us"
         ))
     }
 
     /// A work file cannot be written.
     fn unwritable(file: &Path, error: &io::Error) -> Self {
-        Self(format!("{} cannot be written: {error}", file.display()))
+        use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+        let what = format!("{} cannot be written: {error}", file.display());
+        match error.kind() {
+            StorageFull | QuotaExceeded | FileTooLarge => Self::Short(what),
+            _ => Self::Missing(what),
+        }
     }
 
     /// The library rejected its model.
     fn rejected(reason: &str) -> Self {
-        Self(format!("pocketsphinx rejected its model: {reason}"))
+        Self::Missing(format!("pocketsphinx rejected its model: {reason}"))
     }
 }
 

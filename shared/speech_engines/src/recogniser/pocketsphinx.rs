@@ -76,7 +76,7 @@ fn library(file: &Path) -> Result<Library, RecogniserUnavailable> {
     Library::open(file).map_err(|error| {
         // The source is the loader's own message.
         let source = error.source().map(|source| format!(": {source}")).unwrap_or_default();
-        RecogniserUnavailable(format!(
+        RecogniserUnavailable::Missing(format!(
             "{} cannot be loaded: {error}{source}; help: install the package libpocketsphinx3",
             file.display()
         ))

@@ -179,3 +179,17 @@ fn scenes_of_a_study_and_of_another_machine_are_left_alone() {
     let mut mirror = self::lab(None, None);
     assert!(mirror.desk.list().unwrap_err().error.contains("another machine"));
 }
+
+#[test]
+fn draft_of_many_objects_is_refused_before_it_is_checked() {
+    let mut lab = lab(Some(json!([])), None);
+    let Opened { text, mut document, .. } = lab.desk.open("bowls").unwrap();
+    let object = ObjectEntry { from: None, xyz: None, ..document.objects[0].clone() };
+    let many = (0..20_000).map(|n| ObjectEntry { name: format!("o{n}"), ..object.clone() });
+    document.objects = many.collect();
+    let began = Instant::now();
+    let refused = lab.desk.check(&Draft { text, document }).unwrap_err();
+    assert_eq!(refused.status, StatusCode::UNPROCESSABLE_ENTITY);
+    assert!(refused.error.contains("at most 1024 objects"), "{}", refused.error);
+    assert!(began.elapsed() < Duration::from_secs(2), "{:?}", began.elapsed());
+}

@@ -51,7 +51,8 @@ impl WatchModel {
 
     /// Says something to the robot.
     pub(super) fn say(&mut self, text: &str) -> Result<(), Failure> {
-        self.conversation.say(text)
+        let seen = self.conversation.latest().prompt();
+        self.conversation.say(text, seen)
     }
 
     /// Returns true if the receipt is for something that was said here.

@@ -105,7 +105,7 @@ pub trait Network {
 pub fn load(model: &Path, scene: &Scene) -> Result<Box<dyn Network>, RecogniserUnavailable> {
     match engine::Engine::open(model, &rendering::example(scene)) {
         Ok(engine) => Ok(Box::new(engine)),
-        Err(reason) => Err(RecogniserUnavailable(format!(
+        Err(reason) => Err(RecogniserUnavailable::Missing(format!(
             "speech.whisper_model: {} cannot be loaded: {reason}; help: fetch ggml-base-q8_0.bin of \
              whisper.cpp, 81,768,585 bytes (docs/speech.md has its SHA-256)",
             model.display()
@@ -119,7 +119,7 @@ pub fn load(model: &Path, scene: &Scene) -> Result<Box<dyn Network>, RecogniserU
 /// Always.
 #[cfg(not(feature = "whisper"))]
 pub fn load(_: &Path, _: &Scene) -> Result<Box<dyn Network>, RecogniserUnavailable> {
-    Err(RecogniserUnavailable(
+    Err(RecogniserUnavailable::Missing(
         "speech.whisper_model: the second recogniser is not part of this build; help: build with \
          `--features whisper` (WHICHONE_FEATURES=whisper scripts/run), or remove the key"
             .to_owned(),
