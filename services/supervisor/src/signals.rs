@@ -4,8 +4,11 @@ use std::io::{self, Read};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::net::UnixStream;
 
+use service::lifecycle::survive_long_files;
 use signal_hook::consts::{SIGCHLD, SIGHUP, SIGINT, SIGTERM};
 use signal_hook::low_level::pipe;
+
+use crate::procfs;
 
 /// One pipe for shutdown requests, one for exits of children.
 #[derive(Debug)]
@@ -15,14 +18,18 @@ pub(crate) struct Signals {
 }
 
 impl Signals {
-    /// Takes over TERM, INT, HUP (the terminal was closed) and CHLD.
+    /// Takes over TERM, CHLD, and those of the terminal: INT, and HUP when it is closed. One of these that was ignored
+    /// stays so: `nohup` asks for that.
     pub(crate) fn new() -> io::Result<Self> {
         let (end, end_writer) = UnixStream::pair()?;
         let (child, child_writer) = UnixStream::pair()?;
-        for signal in [SIGTERM, SIGINT, SIGHUP] {
+        let ignored = procfs::ignored_signals();
+        let of_terminal = [SIGINT, SIGHUP].into_iter().filter(|it| !ignored.contains(it));
+        for signal in of_terminal.chain([SIGTERM]) {
             pipe::register(signal, end_writer.try_clone()?)?;
         }
         pipe::register(SIGCHLD, child_writer)?;
+        survive_long_files()?;
         for stream in [&end, &child] {
             stream.set_nonblocking(true)?;
         }
