@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
 use service::launch::Options;
@@ -57,6 +58,7 @@ pub fn run() -> ExitCode {
     rustix::process::umask(rustix::fs::Mode::RWXG | rustix::fs::Mode::RWXO);
     let _log = service::logging::init();
     end_on_panic();
+    allow_descriptors();
     if arguments.detached
         && let Err(error) = rustix::process::setsid()
     {
@@ -81,6 +83,14 @@ fn supervise(arguments: Arguments) -> Exit {
             tracing::error!("{error}");
             error.exit()
         }
+    }
+}
+
+/// Raises the limit of descriptors as far as allowed, for the services, which inherit it: shells and desktops set it low.
+fn allow_descriptors() {
+    let Rlimit { maximum, .. } = getrlimit(Resource::Nofile);
+    if let Err(error) = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum }) {
+        tracing::debug!(%error, "the limit of descriptors stays");
     }
 }
 
