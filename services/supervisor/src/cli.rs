@@ -8,6 +8,7 @@ use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
 use service::launch::Options;
+use service::lifecycle::survive_long_files;
 
 use crate::Supervisor;
 use crate::configuration::from_settings;
@@ -59,6 +60,10 @@ pub fn run() -> ExitCode {
     let _log = service::logging::init();
     end_on_panic();
     allow_descriptors();
+    // Before the first segment of shared memory, which is a file too.
+    if let Err(error) = survive_long_files() {
+        tracing::warn!(%error, "SIGXFSZ is not taken over");
+    }
     if arguments.detached
         && let Err(error) = rustix::process::setsid()
     {

@@ -4,7 +4,6 @@ use std::io::{self, Read};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::net::UnixStream;
 
-use service::lifecycle::survive_long_files;
 use signal_hook::consts::{SIGCHLD, SIGHUP, SIGINT, SIGTERM};
 use signal_hook::low_level::pipe;
 
@@ -29,7 +28,6 @@ impl Signals {
             pipe::register(signal, end_writer.try_clone()?)?;
         }
         pipe::register(SIGCHLD, child_writer)?;
-        survive_long_files()?;
         for stream in [&end, &child] {
             stream.set_nonblocking(true)?;
         }

@@ -106,10 +106,12 @@ fn flights_in(source: &Path) -> Result<Vec<PathBuf>, Failure> {
 
 /// Writes the steps of flights, one flight after another: what each service was given and what it stated.
 fn steps(flights: &[PathBuf], to: &Path) -> Result<u64, Failure> {
+    // Before the copy is begun, which would stay.
+    let known = flights.iter().map(|file| Ok((file, flight::head(file)?, service_of(file)?)));
+    let known: Vec<_> = known.collect::<Result<_, Failure>>()?;
     let mut writer = Writer::create(to)?;
     let mut steps = 0;
-    for file in flights {
-        let (head, service) = (flight::head(file)?, service_of(file)?);
+    for (file, head, service) in known {
         let mut program: Command = command(service.name(), "flight");
         program.arg(file).stdout(Stdio::piped()).stderr(Stdio::inherit());
         let mut child = program.spawn().map_err(|error| failed(&program, &error))?;
