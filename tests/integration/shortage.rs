@@ -1,5 +1,9 @@
 //! The motion stop, and recovery, while something is short or hangs.
 
+use std::process::Command;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
 use messages::{Receipt, ReceiptStatus, Sound, topics};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value as Json;
@@ -9,7 +13,7 @@ use whichone_tests::console::http;
 use whichone_tests::shortage::{
     JointWatch, NoDescriptors, SmallDisk, SmallGroup, in_private_mounts,
 };
-use whichone_tests::{Group, wait_for};
+use whichone_tests::{Ended, Group, run, wait_for};
 
 /// Real time, so that there is a motion to be stopped.
 const REAL_TIME: &str = "arm.time_scale=1.0";
@@ -59,6 +63,40 @@ fn arm_stops_with_a_hung_supervisor_a_stopped_policy_and_no_free_descriptor() {
     assert_delivered(&group, &outcome, "clear");
     drop(joints);
     group.down();
+}
+
+/// `whichone WORDS…` for the group, with a limit that no process of it can raise.
+fn limited(group: &Group, limit: &str, words: &[&str]) -> Ended {
+    let plain = group.command(words);
+    let mut limited = Command::new("sh");
+    limited.arg("-c").arg(format!("ulimit {limit}; exec \"$0\" \"$@\"")).arg(plain.get_program());
+    limited.args(plain.get_args());
+    limited.envs(plain.get_envs().filter_map(|(key, value)| Some((key, value?))));
+    run(&mut limited, "", 120.0)
+}
+
+#[test]
+fn want_of_descriptors_or_of_long_files_is_no_failure_of_a_service() {
+    let config = concat!(env!("CARGO_MANIFEST_DIR"), "/../config");
+    // Files of 64 KiB.
+    for limit in ["-n 128", "-f 128"] {
+        let group = Group::new();
+        let up = ["up", "--detach", "--config", config, "--profile", "ci"];
+        let ended = limited(&group, limit, &up);
+        assert_eq!(ended.code, Some(0), "{limit}: {ended:?}");
+        let begun = Instant::now();
+        // Longer than five starts take.
+        while begun.elapsed() < Duration::from_secs(10) {
+            let status = group.status();
+            let failed = |it: &Json| it["state"] == "failed";
+            assert!(
+                !status["services"].as_array().unwrap().iter().any(failed),
+                "{limit}: {status}"
+            );
+            sleep(Duration::from_millis(500));
+        }
+        group.must(&["down"]);
+    }
 }
 
 /// What needs file systems of its own.

@@ -65,11 +65,11 @@ impl Identity {
         let bad = |path: &Path, what: &dyn std::fmt::Display| {
             Failure::new(Exit::Config, format!("{}: {what}; {help}", path.display()))
         };
-        let text = std::fs::read_to_string(&path).map_err(|error| bad(&path, &error))?;
+        let text = safe_files::read_regular(&path).map_err(|error| bad(&path, &error))?;
         let identity = serde_json::from_str(&text).map_err(|error| bad(&path, &error))?;
         for file in [AUTHORITY, CERTIFICATE, KEY] {
             let path = folder.join(file);
-            std::fs::File::open(&path).map_err(|error| bad(&path, &error))?;
+            safe_files::open_regular(&path).map_err(|error| bad(&path, &error))?;
         }
         Ok(identity)
     }

@@ -2,6 +2,7 @@
 //! robot and person, and the router's configuration, which denies everything else.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -83,10 +84,11 @@ pub fn init(folder: &Path, wanted: &Wanted) -> Result<Vec<String>, Failure> {
     make_private(folder).map_err(storage)?;
     let mut done = Vec::new();
     let path = folder.join(RING);
-    let mut ring = match fs::read(&path) {
-        Ok(bytes) => serde_json::from_slice::<Ring>(&bytes)
+    let mut ring = match safe_files::read_regular(&path) {
+        Ok(text) => serde_json::from_str::<Ring>(&text)
             .map_err(|error| Failure::new(Exit::Config, format!("{}: {error}", path.display())))?,
-        Err(_) => Ring::default(),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ring::default(),
+        Err(error) => return Err(Failure::file(&path, &error)),
     };
     let authority = Authority::open(folder, &mut done)?;
     let former = ring.clone();
@@ -210,7 +212,8 @@ impl Authority {
             write_private(&certificate, signed.pem().as_bytes())?;
             done.push(format!("authority: {} (keep its key offline)", certificate.display()));
         }
-        let read = |path: &PathBuf| fs::read_to_string(path).map_err(|e| Failure::file(path, &e));
+        let read =
+            |path: &PathBuf| safe_files::read_regular(path).map_err(|e| Failure::file(path, &e));
         let pem = read(&certificate)?;
         let pair = KeyPair::from_pem(&read(&key)?).map_err(|error| failed(&key, &error))?;
         let issuer = Issuer::from_ca_cert_pem(&pem, pair);

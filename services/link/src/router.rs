@@ -136,7 +136,7 @@ pub fn run(folder: &Path) -> Result<(), Failure> {
         let help = "help: give the folder `router` that `whichone link init` made";
         Failure::new(Exit::Config, format!("{}: {what}; {help}", path.display()))
     };
-    let text = std::fs::read_to_string(&path).map_err(|error| bad(&error))?;
+    let text = safe_files::read_regular(&path).map_err(|error| bad(&error))?;
     let mut config: Value = serde_json::from_str(&text).map_err(|error| bad(&error))?;
     if !folder.join(AUTHORITY).exists() {
         return Err(bad(&format!("{AUTHORITY} is missing beside it")));

@@ -4,6 +4,7 @@ use link::identity::{Identity, Role};
 use link::keyring::{Wanted, init};
 use roster::Name;
 use std::fs;
+use std::os::unix::fs::symlink;
 
 fn name(text: &str) -> Name {
     Name::new(text).expect("a name")
@@ -57,4 +58,34 @@ fn addresses_of_routers_are_checked() {
     for bad in ["", ":5", "a:b", "a b", "a:0", "a?x", "quic/a"] {
         assert!(make(9, bad).is_err(), "{bad}");
     }
+}
+
+/// A list that cannot be read is not an empty one, whose next writing would lose every member.
+#[test]
+fn list_that_cannot_be_read_is_kept() {
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path().join("keys");
+    let wanted = |robot| Wanted {
+        router: Some("localhost".into()),
+        robots: vec![name(robot)],
+        ..Wanted::default()
+    };
+    init(&folder, &wanted("r1")).unwrap();
+    let list = folder.join("keys.json");
+    fs::write(&list, [0xff, 0xfe]).unwrap();
+    assert!(init(&folder, &wanted("r2")).is_err());
+    assert_eq!(fs::read(&list).unwrap(), [0xff, 0xfe]);
+}
+
+#[test]
+fn key_is_written_in_the_place_of_a_link_and_not_through_it() {
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path().join("keys");
+    fs::create_dir(&folder).unwrap();
+    let other = home.path().join("other");
+    fs::write(&other, "of somebody else").unwrap();
+    symlink(&other, folder.join("authority.key")).unwrap();
+    let wanted = Wanted { router: Some("localhost".into()), ..Wanted::default() };
+    let _ = init(&folder, &wanted);
+    assert_eq!(fs::read_to_string(&other).unwrap(), "of somebody else");
 }

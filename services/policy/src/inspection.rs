@@ -13,6 +13,8 @@ use service::inspection::{Part, SharedFacts};
 use service::journal_set::NUMBERS_SKIPPED;
 use vocabulary::{ActKind, Action, Outcome, PickOutcome};
 
+use crate::planner_program;
+
 /// Renders a record as one line. Without the scene that it is about, the robot's words are left out.
 pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
     let Record { cause, state, .. } = record;
@@ -114,24 +116,27 @@ pub(crate) fn verify(
         }
     }
     let mut managers = Managers::new(settings, parts);
-    let mut refolded = 0;
-    let mut skipped = 0;
+    let mut folded = Folded::default();
     for part in parts {
-        let (of_part, left_out) = fold(&mut managers, part)?;
-        (refolded, skipped) = (refolded + of_part, skipped + left_out);
+        fold(&mut managers, part, &mut folded)?;
     }
     let under = match managers.used() {
         0 | 1 => String::new(),
         many => format!(" under {many} settings"),
     };
-    let states = count(refolded, "state");
+    let Folded { reproduced, not_kept, by_program } = folded;
+    let states = count(reproduced, "state");
     let mut facts = vec![
         format!("{} applied once and in order", count(since_set_aside(applied), "utterance")),
         format!("delivered in {}, at most once each", count(delivered.len(), "interaction")),
         format!("{states} reproduced bit for bit from the one before{under}"),
     ];
-    if skipped > 0 {
-        let states = count(skipped, "earlier state");
+    if by_program > 0 {
+        let states = count(by_program, "state");
+        facts.push(format!("{states} not reproduced: a program that was swapped in decided"));
+    }
+    if not_kept > 0 {
+        let states = count(not_kept, "earlier state");
         facts
             .push(format!("{states} not reproduced: the settings of that time are no longer kept"));
     }
@@ -238,12 +243,18 @@ impl<'a> Managers<'a> {
         Self { settings, newest, known: BTreeMap::new() }
     }
 
+    /// Whether a planner decided that is a program (`--planner-program`): only that program can repeat it.
+    fn is_program(&self, key: u64) -> bool {
+        self.settings.iter().any(|settings| settings.manager_key(planner_program::NAME) == key)
+    }
+
     /// Returns the manager that decided under these settings.
     fn of_key(&mut self, key: u64) -> Result<Option<&mut Manager>, Failure> {
         if !self.known.contains_key(&key) {
             let fitting = self.settings.iter().find(|settings| settings.makes_key(key));
             // Where there are none of that key, the newest are taken to be those at the journal's end.
-            let newest = self.settings.first().filter(|_| key == self.newest);
+            let is_newest = key == self.newest && !self.is_program(key);
+            let newest = self.settings.first().filter(|_| is_newest);
             let manager = fitting.or(newest).map(|settings| settings.manager_of_key(key));
             let manager = manager.transpose();
             let manager = manager.map_err(|e| Failure::new(Exit::Config, e.to_string()))?;
@@ -258,26 +269,41 @@ impl<'a> Managers<'a> {
     }
 }
 
-/// Refolds the records of a file under the settings of their time. Returns how many those are, and how
-/// many are left out because their settings are no longer kept.
-fn fold(managers: &mut Managers<'_>, part: &Part<Record>) -> Result<(usize, usize), Failure> {
-    let (mut refolded, mut skipped, mut end) = (0, 0, 0);
+/// Numbers of states.
+#[derive(Default)]
+struct Folded {
+    reproduced: usize,
+    /// Their settings are no longer kept.
+    not_kept: usize,
+    /// A planner decided that is a program.
+    by_program: usize,
+}
+
+/// Refolds the records of a file under the settings of their time.
+fn fold(
+    managers: &mut Managers<'_>,
+    part: &Part<Record>,
+    folded: &mut Folded,
+) -> Result<(), Failure> {
+    let mut end = 0;
     let is_same = |a: &Record, b: &Record| a.state.settings_key == b.state.settings_key;
     for run in part.records().chunk_by(is_same) {
         end += run.len();
         let key = run[0].state.settings_key;
+        let is_program = managers.is_program(key);
         let Some(manager) = managers.of_key(key)? else {
-            skipped += run.len();
+            *(if is_program { &mut folded.by_program } else { &mut folded.not_kept }) += run.len();
             continue;
         };
-        refolded += refold_since(manager, &part.records()[..end], key).map_err(|mismatch| {
-            let seq = part.first_seq() + mismatch.index as u64;
-            let what =
-                format!("the state does not follow from the one before it: {}", mismatch.part);
-            part.broken(seq, format!("{what} differs (with the settings of that time)"))
-        })?;
+        folded.reproduced +=
+            refold_since(manager, &part.records()[..end], key).map_err(|mismatch| {
+                let seq = part.first_seq() + mismatch.index as u64;
+                let what =
+                    format!("the state does not follow from the one before it: {}", mismatch.part);
+                part.broken(seq, format!("{what} differs (with the settings of that time)"))
+            })?;
     }
-    Ok((refolded, skipped))
+    Ok(())
 }
 
 #[cfg(test)]

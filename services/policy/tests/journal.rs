@@ -216,3 +216,16 @@ fn verification_reports_the_place_of_damage() {
     std::fs::write(lab.file(), &flipped).expect("a disk");
     lab.check(&["--verify"], 74, "damaged at byte");
 }
+
+#[test]
+fn verification_does_not_repeat_what_a_swapped_program_decided() {
+    let mut records = dialogue();
+    let key = shipped().manager_key("program");
+    for record in &mut records {
+        // It asks other questions than the planner of the settings.
+        record.state.act.value += 1.0;
+        record.state.settings_key = key;
+    }
+    let lab = Lab::with(&records);
+    lab.check(&["--verify"], 0, "2 states not reproduced: a program that was swapped in decided");
+}

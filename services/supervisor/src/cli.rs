@@ -4,9 +4,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
 use service::launch::Options;
+use service::lifecycle::survive_long_files;
 
 use crate::Supervisor;
 use crate::configuration::from_settings;
@@ -57,6 +59,11 @@ pub fn run() -> ExitCode {
     rustix::process::umask(rustix::fs::Mode::RWXG | rustix::fs::Mode::RWXO);
     let _log = service::logging::init();
     end_on_panic();
+    allow_descriptors();
+    // Before the first segment of shared memory, which is a file too.
+    if let Err(error) = survive_long_files() {
+        tracing::warn!(%error, "SIGXFSZ is not taken over");
+    }
     if arguments.detached
         && let Err(error) = rustix::process::setsid()
     {
@@ -81,6 +88,14 @@ fn supervise(arguments: Arguments) -> Exit {
             tracing::error!("{error}");
             error.exit()
         }
+    }
+}
+
+/// Raises the limit of descriptors as far as allowed, for the services, which inherit it: shells and desktops set it low.
+fn allow_descriptors() {
+    let Rlimit { maximum, .. } = getrlimit(Resource::Nofile);
+    if let Err(error) = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum }) {
+        tracing::debug!(%error, "the limit of descriptors stays");
     }
 }
 

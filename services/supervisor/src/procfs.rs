@@ -64,6 +64,14 @@ pub(crate) fn process(pid: Pid) -> Option<Process> {
     parse_stat(&String::from_utf8_lossy(&line[..length]))
 }
 
+/// Numbers of the signals that this process ignores; none where the kernel does not tell.
+pub(crate) fn ignored_signals() -> Vec<i32> {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    (1..=64).filter(|number| mask >> (number - 1) & 1 == 1).collect()
+}
+
 /// The environment that a process was started with; empty if it may not be read.
 pub(crate) fn environment(pid: Pid) -> Environment {
     Environment(fs::read(format!("/proc/{pid}/environ")).unwrap_or_default())

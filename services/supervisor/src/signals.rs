@@ -7,6 +7,8 @@ use std::os::unix::net::UnixStream;
 use signal_hook::consts::{SIGCHLD, SIGHUP, SIGINT, SIGTERM};
 use signal_hook::low_level::pipe;
 
+use crate::procfs;
+
 /// One pipe for shutdown requests, one for exits of children.
 #[derive(Debug)]
 pub(crate) struct Signals {
@@ -15,11 +17,14 @@ pub(crate) struct Signals {
 }
 
 impl Signals {
-    /// Takes over TERM, INT, HUP (the terminal was closed) and CHLD.
+    /// Takes over TERM, CHLD, and those of the terminal: INT, and HUP when it is closed. One of these that was ignored
+    /// stays so: `nohup` asks for that.
     pub(crate) fn new() -> io::Result<Self> {
         let (end, end_writer) = UnixStream::pair()?;
         let (child, child_writer) = UnixStream::pair()?;
-        for signal in [SIGTERM, SIGINT, SIGHUP] {
+        let ignored = procfs::ignored_signals();
+        let of_terminal = [SIGINT, SIGHUP].into_iter().filter(|it| !ignored.contains(it));
+        for signal in of_terminal.chain([SIGTERM]) {
             pipe::register(signal, end_writer.try_clone()?)?;
         }
         pipe::register(SIGCHLD, child_writer)?;

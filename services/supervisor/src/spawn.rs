@@ -19,7 +19,7 @@ use service::launch;
 
 /// A program could not be started.
 #[derive(Debug, Error)]
-pub(crate) enum SpawnError {
+pub enum SpawnError {
     /// Empty command.
     #[error("the command is empty")]
     Empty,
@@ -84,7 +84,10 @@ pub(crate) fn spawn(
 
 /// The path of a command's program: searched for beside this program and in `PATH` where it has no
 /// slash, else taken as seen from `directory`. One that is absent may be run by the `whichone` beside it.
-pub(crate) fn find_program(command: &[String], directory: &Path) -> Result<PathBuf, SpawnError> {
+///
+/// # Errors
+/// There is none, or it cannot be executed.
+pub fn find_program(command: &[String], directory: &Path) -> Result<PathBuf, SpawnError> {
     let program = command.first().filter(|name| !name.is_empty()).ok_or(SpawnError::Empty)?;
     if program.contains('/') {
         let path = directory.join(program);

@@ -145,3 +145,44 @@ fn completions_are_made_for_the_common_shells() {
         home.check(&format!("completions {shell}"), 0, "stop-motion");
     }
 }
+
+#[test]
+fn every_verb_that_reads_a_file_refuses_a_pipe_at_once() {
+    let home = Home::new();
+    for name in ["pipe", "pipe.toml", "pipe.mcap", "arm-1.flight", "speech.journal"] {
+        let made = Command::new("mkfifo").arg(home.0.path().join(name)).status().unwrap();
+        assert!(made.success());
+    }
+    let flight = format!("pipe.{}", service::flight::EXTENSION);
+    Command::new("mkfifo").arg(home.0.path().join(&flight)).status().unwrap();
+    for line in [
+        &format!("replay {flight}"),
+        "export mcap pipe.mcap --out out.mcap",
+        &format!("export mcap {flight} --out out.mcap"),
+        "export mcap speech.journal --out out.mcap",
+        "scene check pipe.toml",
+        "scene place pipe.toml",
+        "listen pipe",
+        "belief --input pipe",
+        "ground --scene pipe.toml",
+        "ground --scene bowls --input pipe",
+        "plan --scene pipe.toml",
+        "fk --robot pipe --tip x",
+        "ik --robot pipe --tip x",
+        "fk --limb left --input pipe",
+    ] {
+        let mut limited = Command::new("timeout");
+        let plain = home.command(line);
+        limited.args(["-s", "KILL", "60"]).arg(plain.get_program()).args(plain.get_args());
+        limited.current_dir(home.0.path()).stdin(Stdio::null());
+        limited.env("WHICHONE_HOME", home.0.path());
+        let output = limited.output().unwrap();
+        let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        assert!(
+            matches!(output.status.code(), Some(1 | 64 | 74 | 78)),
+            "{line}: {:?} {said}",
+            output.status
+        );
+        assert!(said.contains("expected a regular file"), "{line}: {said}");
+    }
+}

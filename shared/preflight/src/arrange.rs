@@ -1,6 +1,7 @@
 //! Places for objects that the arm cannot fetch where they are: the nearest one, or any on the table.
 
 use std::f64::consts::TAU;
+use std::time::Instant;
 
 use manipulation::{Cuboid, Limb, ObjectPose, PlanError, fetching_limb};
 
@@ -37,13 +38,25 @@ pub struct Arrangement<'a> {
     poses: Vec<ObjectPose>,
     /// Whether the object stands there, so that others must not touch it.
     stands: Vec<bool>,
+    /// When searches are given up.
+    until: Option<Instant>,
 }
 
 impl<'a> Arrangement<'a> {
     /// All of them stand where they are.
     pub fn new(setup: &'a ArmSetup, poses: Vec<ObjectPose>) -> Self {
         let stands = vec![true; poses.len()];
-        Self { setup, poses, stands }
+        Self { setup, poses, stands, until: None }
+    }
+
+    /// Searches find nothing from a moment on.
+    pub fn until(self, moment: Instant) -> Self {
+        Self { until: Some(moment), ..self }
+    }
+
+    /// Whether searches are given up.
+    pub(crate) fn is_late(&self) -> bool {
+        self.until.is_some_and(|until| Instant::now() >= until)
     }
 
     /// Returns the limb that can fetch an object among those that stand.
@@ -63,7 +76,7 @@ impl<'a> Arrangement<'a> {
             .collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut near = near.into_iter().take(NEIGHBOURS_MAX).map(|(_, j)| j);
-        near.find(|&j| self.limb_at(i, &self.poses[i], Some(j)).is_ok())
+        near.find(|&j| !self.is_late() && self.limb_at(i, &self.poses[i], Some(j)).is_ok())
     }
 
     /// Returns the nearest place at the same height where the arm can fetch `i`, and all others that it
@@ -79,6 +92,7 @@ impl<'a> Arrangement<'a> {
             .iter()
             .flat_map(|cm| (0..DIRECTIONS).map(move |n| (cm / 100.0, turned(n))))
             .map(|(m, turn)| [rounded(x + m * turn.cos()), rounded(y + m * turn.sin()), z])
+            .take_while(|_| !self.is_late())
             .find(|&place| self.fits(i, place, GAP_M))
     }
 
@@ -108,6 +122,14 @@ impl<'a> Arrangement<'a> {
             }
         }
         moved
+    }
+
+    /// Returns why there is no place for an object that stands nowhere.
+    pub fn why_unplaced(&self, i: usize) -> String {
+        match self.limb(i) {
+            Err(PlanError::Grasp(error)) => format!("cannot be grasped anywhere: {error}"),
+            _ => "finds no free place on the table that the arm reaches".to_owned(),
+        }
     }
 
     pub(crate) fn setup(&self) -> &'a ArmSetup {

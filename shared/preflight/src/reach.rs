@@ -1,7 +1,9 @@
 //! Reachability of the objects of a scene.
 
 use std::num::NonZero;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
 use std::{iter, panic, thread};
 
 use config::{CostsFrom, Settings};
@@ -17,6 +19,10 @@ const NICENESS: i32 = 10;
 /// Most objects with a place. The plans that are tried grow with the square of their number: this
 /// many take seconds. Objects without a place are not planned, so that their number is not limited.
 const PLACED_MAX: usize = 256;
+
+/// Time for which the other objects are looked at, and better places searched, after the first object that cannot be
+/// fetched: where robot and scene do not fit, each look takes long.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Reports every object with a place that the arm cannot bring, and settings that need the places of
 /// all objects where some have none. `plan` plans every pick, where the durations are needed, and returns whether
@@ -48,16 +54,23 @@ pub(crate) fn check(
         return;
     }
     let found = reachable(setup, &poses, &setup.plan);
-    if found.iter().all(Result::is_ok) {
+    if found.iter().all(|found| matches!(found, Some(Ok(_)))) {
         return;
+    }
+    let until = Instant::now() + PATIENCE;
+    let at_rest = found.iter().flatten().filter_map(|found| found.as_ref().err());
+    if let Some(error) = at_rest.copied().find(PlanError::is_at_rest) {
+        let help = "change its group_state in the SRDF, table_z_m of the arm, or what stands there";
+        return report.add(settings.diagnostic(&["arm", "robot"], error.to_string(), help));
     }
     let mut hand_over = None;
     let elsewhere = reachable_elsewhere(&poses, setup);
     let names: Vec<&str> =
         placed.iter().map(|(n, _)| settings.scene.objects()[*n].name.as_str()).collect();
-    let (arrangement, mut searched) = (Arrangement::new(setup, poses), 0);
+    let (arrangement, mut searched) = (Arrangement::new(setup, poses).until(until), 0);
+    let unknown = found.iter().filter(|found| found.is_none()).count();
     for (i, (((n, _), found), elsewhere)) in placed.iter().zip(found).zip(elsewhere).enumerate() {
-        let Err(error) = found else { continue };
+        let Some(Err(error)) = found else { continue };
         if elsewhere {
             hand_over.get_or_insert(error);
             continue;
@@ -67,7 +80,7 @@ pub(crate) fn check(
             report.add(of_object(settings, *n, key, &reason(&error, setup), help));
             continue;
         }
-        let is_searched = searched < SEARCHED_MAX;
+        let is_searched = searched < SEARCHED_MAX && Instant::now() < until;
         searched += usize::from(is_searched);
         let (what, help) = move_help(i, &error, is_searched, &names, &arrangement);
         report.add(of_object(settings, *n, "xyz", &what, &help));
@@ -75,21 +88,39 @@ pub(crate) fn check(
     if let Some(error) = hand_over {
         report.add(hand_over_problem(settings, &error));
     }
+    if unknown > 0 {
+        let seconds = PATIENCE.as_secs();
+        let what = format!(
+            "whether the arm can fetch {unknown} more of {} objects is not known after another {seconds} s",
+            placed.len()
+        );
+        let help = "mend the others first; fewer collision shapes of the robot are checked faster";
+        report.add(settings.scene_diagnostic("objects", what, help));
+    }
 }
 
-/// Returns for each object the limb that can fetch it among the others. The objects are divided among all processors; all
+/// Returns for each object the limb that can fetch it among the others; none for those that are not looked at within
+/// [`PATIENCE`] after the first that cannot be fetched. The objects are divided among all processors; all
 /// but this thread give way to others, an arm that moves during a reload among them.
 fn reachable(
     setup: &ArmSetup,
     poses: &[ObjectPose],
     plan: &PlanSettings,
-) -> Vec<Result<Limb, PlanError>> {
+) -> Vec<Option<Result<Limb, PlanError>>> {
     let next = AtomicUsize::new(0);
+    let failed = OnceLock::<Instant>::new();
     let look = || -> Vec<_> {
         let mine = iter::from_fn(|| {
-            Some(next.fetch_add(1, Ordering::Relaxed)).filter(|i| *i < poses.len())
+            let is_late = failed.get().is_some_and(|since| since.elapsed() > PATIENCE);
+            Some(next.fetch_add(1, Ordering::Relaxed)).filter(|i| *i < poses.len() && !is_late)
         });
-        let check = |i| (i, check_reachable(&setup.robot, poses, i, setup.limb, plan));
+        let check = |i| {
+            let found = check_reachable(&setup.robot, poses, i, setup.limb, plan);
+            if found.is_err() {
+                failed.get_or_init(Instant::now);
+            }
+            (i, found)
+        };
         mine.map(check).collect()
     };
     let help = || {
@@ -97,7 +128,7 @@ fn reachable(
         look()
     };
     let threads = thread::available_parallelism().map_or(1, NonZero::get).min(poses.len());
-    let mut found: Vec<_> = thread::scope(|scope| {
+    let found: Vec<_> = thread::scope(|scope| {
         // Without a thread it takes longer.
         let start = |_| thread::Builder::new().spawn_scoped(scope, help).ok();
         let helpers: Vec<_> = (1..threads).filter_map(start).collect();
@@ -106,8 +137,11 @@ fn reachable(
         let theirs = joined.flat_map(|it| it.unwrap_or_else(|cause| panic::resume_unwind(cause)));
         own.into_iter().chain(theirs).collect()
     });
-    found.sort_by_key(|(i, _)| *i);
-    found.into_iter().map(|(_, found)| found).collect()
+    let mut all: Vec<_> = poses.iter().map(|_| None).collect();
+    for (i, found) in found {
+        all[i] = Some(found);
+    }
+    all
 }
 
 /// Most objects for which a better place is searched: each takes a second or so.
@@ -131,6 +165,7 @@ fn move_help(
         what += &format!(" (`{}` is in the way)", names[other]);
     }
     let help = match arrangement.nearest(i) {
+        None if arrangement.is_late() => format!("move it, {OTHERWISE}"),
         None => format!("no place at this height helps: {OTHERWISE}"),
         Some(to) => {
             let [x, y, z] = to;
@@ -281,7 +316,8 @@ fn reachable_elsewhere(poses: &[ObjectPose], setup: &ArmSetup) -> Vec<bool> {
         return vec![false; poses.len()];
     }
     let plan = PlanSettings { hand_over_xyz_m, ..setup.plan };
-    reachable(setup, poses, &plan).iter().map(Result::is_ok).collect()
+    let found = reachable(setup, poses, &plan);
+    found.iter().map(|found| matches!(found, Some(Ok(_)))).collect()
 }
 
 fn hand_over_problem(settings: &Settings, error: &PlanError) -> Diagnostic {

@@ -330,3 +330,39 @@ fn preflight_rejects_a_description_without_a_rest_posture() {
     assert!(found[0].starts_with("robots/bare.urdf: "), "{found:?}");
     assert!(found[0].contains("no posture \"neutral\""), "{found:?}");
 }
+
+/// The single arm that is shipped, under another name, with a change of its files.
+fn other_arm(urdf: impl Fn(&str) -> String, srdf: impl Fn(&str) -> String) -> Vec<String> {
+    let read = |file: &str| fs::read_to_string(shipped().join(file)).unwrap();
+    let files = [
+        ("robots/my.urdf", urdf(&read("robots/ur5e.urdf"))),
+        ("robots/my.srdf", srdf(&read("robots/ur5e.srdf"))),
+        ("profiles/ur5e.toml", read("profiles/ur5e.toml")),
+        ("scenes/blocks.toml", read("scenes/blocks.toml")),
+    ];
+    let files: Vec<(&str, &str)> =
+        files.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    let folder = folder(&files);
+    let over = owned(&[("arm.robot", "my")]);
+    let found = load(folder.path(), Some("ur5e"), &over).err();
+    let problems = found.map_or_else(String::new, |found| found.to_string());
+    problems.lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn posture_of_rest_in_the_table_is_reported_once() {
+    let same = |text: &str| text.to_owned();
+    assert_eq!(other_arm(same, same), [""; 0]);
+    let low = |text: &str| {
+        text.replacen(
+            "shoulder_lift_joint\" value=\"-2.0\"",
+            "shoulder_lift_joint\" value=\"0.5\"",
+            1,
+        )
+        .replacen("elbow_joint\" value=\"2.0\"", "elbow_joint\" value=\"0.1\"", 1)
+    };
+    let found = other_arm(same, low);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].contains("arm.robot: at the neutral posture the only arm's"), "{found:?}");
+    assert!(found[0].contains("help: change its group_state in the SRDF"), "{found:?}");
+}

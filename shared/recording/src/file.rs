@@ -18,6 +18,8 @@ use crate::{EXTENSION, RecordingError, UNFINISHED};
 /// Bytes of messages that are compressed together, unless a flush comes first. A writer that is killed
 /// loses those of the open chunk.
 const CHUNK_BYTES: u64 = 256 << 10;
+/// Key of the metadata for the number of a recording in its folder.
+pub(crate) const NUMBER: &str = "number";
 /// Mode of a recording: its owner's alone, as it holds what people said.
 const PRIVATE: u32 = 0o600;
 
@@ -93,12 +95,14 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Begins a recording in `folder`, at a moment in nanoseconds since 1970.
+    /// Begins a recording in `folder`, at a moment in nanoseconds since 1970. Its number is greater than those of the
+    /// files before it.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn begin(
         folder: &Path,
+        number: u64,
         now_ns: u64,
         clock: WallClock,
         attached: &Attached,
@@ -114,14 +118,15 @@ impl Recording {
         let channels = HashMap::new();
         let mut recording =
             Self { writer, bytes, path, clock, began_ns: now_ns, channels, messages: 0 };
-        recording.attach(attached)?;
+        recording.attach(number, attached)?;
         Ok(recording)
     }
 
-    fn attach(&mut self, attached: &Attached) -> Result<(), RecordingError> {
+    fn attach(&mut self, number: u64, attached: &Attached) -> Result<(), RecordingError> {
         let Self { writer, path, clock, began_ns, .. } = self;
         let mut metadata = attached.group.clone();
         metadata.insert("wall_minus_monotonic_ns".to_owned(), clock.offset_ns.to_string());
+        metadata.insert(NUMBER.to_owned(), number.to_string());
         let metadata = Metadata { name: "whichone".to_owned(), metadata };
         writer.write_metadata(&metadata).map_err(RecordingError::mcap(path))?;
         for (name, media_type, text) in &attached.files {

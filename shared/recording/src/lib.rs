@@ -17,6 +17,7 @@ pub mod channels;
 pub mod clock;
 pub mod file;
 pub mod foxglove;
+mod frames;
 pub mod group_reader;
 pub mod journals;
 pub mod list;
@@ -24,9 +25,13 @@ pub mod live;
 mod log_lines;
 pub mod payload;
 pub mod picture;
+mod records;
 pub mod recover;
 pub mod ring;
 pub mod settings;
+mod zstd;
+
+pub use records::LeftOut;
 
 /// End of the name of a complete recording.
 pub const EXTENSION: &str = "mcap";

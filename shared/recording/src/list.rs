@@ -2,17 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
 use mcap::records::{Record, Statistics};
-use mcap::sans_io::summary_reader::{SummaryReadEvent, SummaryReader, SummaryReaderOptions};
 use serde::Serialize;
 use service::wall_time;
 
-use crate::recover::each_record;
-use crate::{EXTENSION, RecordingError, UNFINISHED, file};
+use crate::file::{self, NUMBER};
+use crate::records::{each_record, first_metadata, summary_section};
+use crate::{EXTENSION, RecordingError, UNFINISHED};
 
 /// A recording in a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -117,20 +116,13 @@ impl Entry {
 
 /// The statistics at the end of a complete file.
 fn statistics(path: &Path) -> Option<Statistics> {
-    let mut file = safe_files::open_regular(path).ok()?;
-    let size = file.metadata().ok()?.len();
-    let options = SummaryReaderOptions::default().with_file_size(size);
-    let mut reader = SummaryReader::new_with_options(options);
-    while let Some(event) = reader.next_event() {
-        match event.ok()? {
-            SummaryReadEvent::ReadRequest(wanted) => {
-                let read = file.read(reader.insert(wanted)).ok()?;
-                reader.notify_read(read);
-            }
-            SummaryReadEvent::SeekRequest(to) => reader.notify_seeked(file.seek(to).ok()?),
-        }
-    }
-    reader.finish()?.stats
+    summary_section(path)?.stats
+}
+
+/// The number of a recording in its folder: files that were begun later have greater ones. 0 where it has none.
+pub(crate) fn number(path: &Path) -> u64 {
+    let stated = first_metadata(path).and_then(|mut found| found.remove(NUMBER));
+    stated.and_then(|number| number.parse().ok()).unwrap_or(0)
 }
 
 fn entry(path: &Path) -> Option<Entry> {

@@ -1,16 +1,16 @@
-//! Recordings whose writer was killed: everything up to its last flush is kept.
+//! Recordings whose writer was killed, or that are damaged: everything that can be read is kept.
 
 use std::collections::{HashMap, HashSet};
 use std::fs::{self, File};
-use std::io::{BufReader, BufWriter, ErrorKind, Read, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use mcap::records::{self, Record};
-use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
-use mcap::{Attachment, McapError, Writer, parse_record};
+use mcap::{Attachment, McapError, Writer};
 
-use crate::RecordingError;
 use crate::file::{create_private, finished, options};
+use crate::records::{LeftOut, each_record};
+use crate::{EXTENSION, RecordingError};
 
 /// What was kept of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,8 +19,8 @@ pub struct Recovered {
     pub path: PathBuf,
     /// Its messages.
     pub messages: u64,
-    /// Whether the end of the file was damaged.
-    pub was_torn: bool,
+    /// What could not be read, beside its end.
+    pub left_out: LeftOut,
 }
 
 /// Completes unfinished recordings, and removes those without a message. One that fails is left as it is.
@@ -32,8 +32,12 @@ pub fn recover_all(unfinished: &[PathBuf]) {
                 // One that stays does no harm.
                 let _ = fs::remove_file(path);
             }
-            Ok(Recovered { path, messages, .. }) => {
+            Ok(Recovered { path, messages, left_out }) if left_out.is_nothing() => {
                 tracing::info!(file = %path.display(), messages, "unfinished recording completed");
+            }
+            Ok(Recovered { path, messages, left_out }) => {
+                let file = path.display();
+                tracing::warn!(%file, messages, %left_out, "unfinished recording completed without");
             }
             // Its turn to be deleted has come meanwhile.
             Err(RecordingError::Io(_, error)) if error.kind() == ErrorKind::NotFound => {}
@@ -49,17 +53,17 @@ pub fn recover_all(unfinished: &[PathBuf]) {
 pub fn recover(path: &Path) -> Result<Recovered, RecordingError> {
     let whole = path.with_extension("recovering");
     let _ = fs::remove_file(&whole);
-    let (messages, was_torn) = merge(&[path.to_owned()], &whole)?;
+    let (messages, left_out) = merge(&[path.to_owned()], &whole)?;
     fs::rename(&whole, path).map_err(RecordingError::io(path))?;
-    Ok(Recovered { path: finished(path)?, messages, was_torn })
+    Ok(Recovered { path: finished(path)?, messages, left_out })
 }
 
 /// Writes one complete recording from several, in their order; they may be unfinished or still being
-/// written. Returns the number of messages, and whether the end of one, or one of several as a whole, was damaged.
+/// written. Returns the number of messages, and what is left out; one of several that is no recording is a damaged part.
 ///
 /// # Errors
 /// As [`recover`]; nothing is left of the copy then.
-pub fn merge(from: &[PathBuf], to: &Path) -> Result<(u64, bool), RecordingError> {
+pub fn merge(from: &[PathBuf], to: &Path) -> Result<(u64, LeftOut), RecordingError> {
     let merged = copy(from, to);
     let is_own = !matches!(&merged, Err(RecordingError::Io(_, error)) if error.kind() == ErrorKind::AlreadyExists);
     if merged.is_err() && is_own {
@@ -68,7 +72,7 @@ pub fn merge(from: &[PathBuf], to: &Path) -> Result<(u64, bool), RecordingError>
     merged
 }
 
-fn copy(from: &[PathBuf], to: &Path) -> Result<(u64, bool), RecordingError> {
+fn copy(from: &[PathBuf], to: &Path) -> Result<(u64, LeftOut), RecordingError> {
     let writer = options().create(BufWriter::new(create_private(to)?));
     let writer = writer.map_err(RecordingError::mcap(to))?;
     let mut copier = Copier {
@@ -78,17 +82,21 @@ fn copy(from: &[PathBuf], to: &Path) -> Result<(u64, bool), RecordingError> {
         attached: HashSet::new(),
         messages: 0,
     };
-    let mut was_torn = false;
+    let mut left_out = LeftOut::default();
     for file in from {
         copier.schemas.clear();
         copier.channels.clear();
-        let end = each_record(file, |record| copier.add(record).map_err(RecordingError::mcap(to)));
-        was_torn |= match end {
-            Ok(end) => end == End::Torn,
+        let read = each_record(file, |record| copier.add(record).map_err(RecordingError::mcap(to)));
+        left_out += match read {
+            // A recording that is not finished has no end.
+            Ok(found) if file.extension().is_none_or(|it| it != EXTENSION) => {
+                LeftOut { endless: 0, ..found }
+            }
+            Ok(found) => found,
             // One of many that is no recording hides none of the others.
             Err(RecordingError::Mcap(path, error)) if from.len() > 1 && path != to => {
                 tracing::warn!(file = %path.display(), %error, "not a recording");
-                true
+                LeftOut { parts: 1, ..LeftOut::default() }
             }
             Err(error) => return Err(error),
         };
@@ -96,57 +104,7 @@ fn copy(from: &[PathBuf], to: &Path) -> Result<(u64, bool), RecordingError> {
     let Copier { mut writer, messages, .. } = copier;
     writer.finish().map_err(RecordingError::mcap(to))?;
     writer.into_inner().flush().map_err(RecordingError::io(to))?;
-    Ok((messages, was_torn))
-}
-
-/// Longest record that is read: a longer one is damage. Attachments are far shorter.
-const RECORD_BYTES_MAX: usize = 64 << 20;
-
-/// End of a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum End {
-    /// Whole records, with or without a summary.
-    Whole,
-    /// A part of a record, or damage.
-    Torn,
-}
-
-/// Reads the records of a file, those in chunks too, to the end of its data or the first damage.
-pub(crate) fn each_record(
-    path: &Path,
-    mut take: impl FnMut(Record<'_>) -> Result<(), RecordingError>,
-) -> Result<End, RecordingError> {
-    let file = safe_files::open_regular(path).map_err(RecordingError::io(path))?;
-    let mut file = BufReader::new(file);
-    let read_options = LinearReaderOptions::default()
-        .with_skip_end_magic(true)
-        .with_validate_chunk_crcs(true)
-        .with_record_length_limit(RECORD_BYTES_MAX);
-    let mut reader = LinearReader::new_with_options(read_options);
-    let mut has_begun = false;
-    while let Some(event) = reader.next_event() {
-        match event {
-            Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                let read = file.read(reader.insert(wanted)).map_err(RecordingError::io(path))?;
-                reader.notify_read(read);
-            }
-            Ok(LinearReadEvent::Record { opcode, data }) => {
-                has_begun = true;
-                match parse_record(opcode, data) {
-                    Ok(Record::DataEnd(_)) => return Ok(End::Whole),
-                    Ok(record) => take(record)?,
-                    Err(_) => return Ok(End::Torn),
-                }
-            }
-            Err(error) if has_begun => {
-                // The end of a file whose writer was killed between two chunks.
-                let is_whole = matches!(error, McapError::UnexpectedEof | McapError::BadMagic);
-                return Ok(if is_whole { End::Whole } else { End::Torn });
-            }
-            Err(error) => return Err(RecordingError::Mcap(path.to_owned(), error)),
-        }
-    }
-    Ok(End::Whole)
+    Ok((messages, left_out))
 }
 
 /// Copies records of several files into one.
@@ -209,7 +167,7 @@ mod tests {
         let files = vec![("robot.urdf".to_owned(), "application/xml", "<robot/>".to_owned())];
         let attached = Attached { files, ..Attached::default() };
         let mut recording =
-            Recording::begin(folder, 7_000_000, WallClock::default(), &attached).unwrap();
+            Recording::begin(folder, 1, 7_000_000, WallClock::default(), &attached).unwrap();
         for number in 0..messages {
             let id = ChannelId(number as usize % channels.len());
             let data = number.to_le_bytes();
@@ -282,11 +240,13 @@ mod tests {
         let first = recover(&abandoned(folder.path(), 30)).unwrap().path;
         let second = abandoned(folder.path(), 50);
         let to = folder.path().join("both.mcap");
-        assert_eq!(merge(&[first.clone(), second.clone()], &to).unwrap(), (80, false));
+        let merged = merge(&[first.clone(), second.clone()], &to).unwrap();
+        assert_eq!(merged, (80, LeftOut::default()));
         // What is no recording hides none of the others.
         let (odd, despite) = (folder.path().join("odd.mcap"), folder.path().join("despite.mcap"));
         fs::write(&odd, [7; 300]).unwrap();
-        assert_eq!(merge(&[odd.clone(), first.clone()], &despite).unwrap(), (30, true));
+        let left_out = LeftOut { parts: 1, ..LeftOut::default() };
+        assert_eq!(merge(&[odd.clone(), first.clone()], &despite).unwrap(), (30, left_out));
         assert!(merge(&[odd], &folder.path().join("none.mcap")).is_err());
         let found = summary(&to).unwrap();
         assert_eq!((found.messages, found.span_ns), (80, (0, 49)));
@@ -304,27 +264,25 @@ mod tests {
     }
 
     #[test]
-    fn damage_anywhere_ends_the_recovery_before_it() {
+    fn damage_anywhere_costs_what_is_damaged() {
         let folder = tempfile::tempdir().unwrap();
         let path = abandoned(folder.path(), 50);
         let whole = fs::read(&path).unwrap();
-        let mut torn = 0;
+        let mut damaged = 0;
         for at in (0..whole.len()).step_by(5) {
             let mut bytes = whole.clone();
             bytes[at] ^= 0xff;
             fs::write(&path, &bytes).unwrap();
-            match recover(&path) {
-                Ok(recovered) => {
-                    torn += usize::from(recovered.was_torn);
-                    let found = summary(&recovered.path).unwrap();
-                    assert_eq!(found.messages, recovered.messages, "damage at {at}");
-                    assert!(found.messages <= 50, "damage at {at}");
-                    fs::remove_file(recovered.path).unwrap();
-                }
-                // In the header, or in a record that nothing protects.
-                Err(error) => assert!(matches!(error, RecordingError::Mcap(..)), "{at}: {error}"),
-            }
+            let recovered =
+                recover(&path).unwrap_or_else(|error| panic!("damage at {at}: {error}"));
+            let Recovered { path, messages, left_out } = recovered;
+            assert_eq!(summary(&path).unwrap().messages, messages, "damage at {at}");
+            // Ten in its chunk, and those of the channels that it defines.
+            assert!((30..=50).contains(&messages), "damage at {at}: {messages}, {left_out}");
+            assert!(messages == 50 || !left_out.is_nothing(), "damage at {at}");
+            damaged += usize::from(left_out.parts > 0);
+            fs::remove_file(path).unwrap();
         }
-        assert!(torn > whole.len() / 20, "{torn}");
+        assert!(damaged > whole.len() / 20, "{damaged}");
     }
 }

@@ -1,8 +1,13 @@
 //! A ring of recordings in bounded space: the oldest give way, and the disk is never filled.
+//!
+//! Which are the oldest, and how old they are, is a matter of what was recorded since, and not of the wall clock, which
+//! may be wrong by years until it is set.
 
+use std::collections::HashMap;
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use service::{Span, Time};
 
@@ -11,7 +16,7 @@ use crate::channels::{self, Channel};
 use crate::clock::WallClock;
 use crate::file::{Attached, Recording};
 use crate::group_reader::Sample;
-use crate::list::{Entry, entries};
+use crate::list::{Entry, entries, number};
 use crate::settings::Recorder;
 
 /// Interval of [`Ring::tend`]; a writer that is killed loses as much at most.
@@ -48,6 +53,8 @@ pub struct Ring {
     /// Why nothing is written, and until when nothing is tried.
     paused: Option<(String, Time)>,
     next_deletion: Time,
+    /// Number and recorded nanoseconds of other files.
+    others: HashMap<PathBuf, (u64, u64)>,
 }
 
 impl Ring {
@@ -59,8 +66,18 @@ impl Ring {
         free_space: FreeSpace,
     ) -> Self {
         let channels = channels::all();
-        let (current, paused, next_deletion) = (None, None, Time(0));
-        Self { folder, limits, attached, channels, free_space, current, paused, next_deletion }
+        let (current, paused, next_deletion, others) = (None, None, Time(0), HashMap::new());
+        Self {
+            folder,
+            limits,
+            attached,
+            channels,
+            free_space,
+            current,
+            paused,
+            next_deletion,
+            others,
+        }
     }
 
     /// Why nothing is recorded, if so.
@@ -95,7 +112,7 @@ impl Ring {
             self.on_failure(&error, now);
         }
         if now >= self.next_deletion {
-            self.delete_old(now, clock);
+            self.delete_old(now);
         }
         self.look_at_space(now);
         if self.paused.is_some() {
@@ -114,8 +131,11 @@ impl Ring {
     }
 
     fn begin(&mut self, now: Time, clock: WallClock) -> bool {
-        self.delete_old(now, clock);
-        let begun = Recording::begin(&self.folder, clock.wall_ns(now), clock, &self.attached);
+        self.delete_old(now);
+        let last = self.others.values().map(|(number, _)| *number).max();
+        let number = last.unwrap_or(0).saturating_add(1);
+        let now_ns = clock.wall_ns(now);
+        let begun = Recording::begin(&self.folder, number, now_ns, clock, &self.attached);
         match begun {
             Ok(recording) => {
                 tracing::debug!(file = %recording.path().display(), "recording");
@@ -136,28 +156,46 @@ impl Ring {
         }
     }
 
-    /// Deletes the oldest files until the others are young, and leave room for the one that is written.
-    fn delete_old(&mut self, now: Time, clock: WallClock) {
+    /// Deletes the oldest files until no more than the age is recorded after the others, and they leave room for the one
+    /// that is written.
+    fn delete_old(&mut self, now: Time) {
         self.next_deletion = now + DELETE_EVERY;
         let mut others = entries(&self.folder);
         others.retain(|file| file.is_own() && Some(file.path.as_path()) != self.current());
+        let known = std::mem::take(&mut self.others);
+        for file in &others {
+            let known = known.get(&file.path).copied();
+            let facts = known.unwrap_or_else(|| (number(&file.path), self.recorded_ns(file)));
+            self.others.insert(file.path.clone(), facts);
+        }
+        let facts = |file: &Entry| self.others.get(&file.path).copied().unwrap_or_default();
+        others.sort_by_key(|file| (facts(file).0, file.began_ns));
         let bytes_max = self.limits.bytes_max;
         // The file that is written grows by what is sent until the next look.
         let most = bytes_max - bytes_max / FILES_MIN - bytes_max / 64;
         let mut bytes: u64 = others.iter().map(|file| file.bytes).sum();
-        for Entry { path, began_ns, bytes: own, .. } in others {
-            let age_ns = clock.wall_ns(now).saturating_sub(began_ns);
-            if bytes <= most && u128::from(age_ns) <= self.limits.age_max.as_nanos() {
+        let mut since_ns: u128 = others.iter().map(|file| u128::from(facts(file).1)).sum();
+        for file in others {
+            since_ns -= u128::from(facts(&file).1);
+            if bytes <= most && since_ns <= self.limits.age_max.as_nanos() {
                 break;
             }
+            let Entry { path, bytes: own, .. } = file;
             match fs::remove_file(&path) {
                 Ok(()) => {
-                    tracing::debug!(file = %path.display(), "deleted");
+                    let why = if bytes > most { "space" } else { "age" };
+                    tracing::info!(file = %path.display(), why, "deleted");
                     bytes -= own;
                 }
                 Err(error) => tracing::warn!(file = %path.display(), %error, "not deleted"),
             }
         }
+    }
+
+    /// What is recorded in a file, nanoseconds: never more than the longest file, whatever its clock has done.
+    fn recorded_ns(&self, file: &Entry) -> u64 {
+        let most = self.limits.file_max;
+        file.seconds().map_or(0, |s| Duration::from_secs_f64(s).min(most).as_nanos() as u64)
     }
 
     /// Pauses when the disk is nearly full, and resumes when it is not.

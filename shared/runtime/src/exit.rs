@@ -85,7 +85,10 @@ impl From<BusError> for Failure {
     fn from(error: BusError) -> Self {
         let exit = match error {
             BusError::Schema { .. } => Exit::Config,
-            BusError::Segment { cause: SegmentError::Room { .. }, .. } => Exit::Storage,
+            BusError::Segment {
+                cause: SegmentError::Room { .. } | SegmentError::Descriptors { .. },
+                ..
+            } => Exit::Storage,
             BusError::Segment { .. } | BusError::Ipc { .. } => Exit::NotReached,
         };
         Self::new(exit, error.to_string())

@@ -16,6 +16,7 @@ use std::fs::File;
 use std::ops::ControlFlow;
 use std::os::fd::{AsFd, BorrowedFd, FromRawFd, OwnedFd};
 use std::os::unix::net::UnixStream;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Timeout for the shutdown of a service whose supervisor has died, before it is killed.
@@ -99,6 +100,15 @@ pub struct Lifecycle {
     is_called: bool,
 }
 
+/// Takes over SIGXFSZ, which kills whoever writes a file beyond its limit of size (`ulimit -f`): the write fails then, as
+/// on a full disk.
+///
+/// # Errors
+/// The operating system refuses it.
+pub fn survive_long_files() -> std::io::Result<()> {
+    signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default()).map(drop)
+}
+
 impl Lifecycle {
     /// Takes over SIGTERM and SIGINT, the lifeline, and the alive lock.
     ///
@@ -110,6 +120,7 @@ impl Lifecycle {
         };
         let (signals, writer) = UnixStream::pair().map_err(failed("signal pipe"))?;
         signals.set_nonblocking(true).map_err(failed("signal pipe"))?;
+        survive_long_files().map_err(failed("signal handler"))?;
         for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
             let writer = writer.try_clone().map_err(failed("signal pipe"))?;
             signal_hook::low_level::pipe::register(signal, writer)

@@ -21,6 +21,14 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
+/// Reads the text of a regular file, as [`open_regular`] opens it.
+///
+/// # Errors
+/// As [`open_regular`], or it is not UTF-8.
+pub fn read_regular(path: &Path) -> io::Result<String> {
+    io::read_to_string(open_regular(path)?)
+}
+
 /// Reads a file of this user that no other user can read or change; none otherwise.
 pub fn read_private(path: &Path) -> Option<String> {
     let file = fs::symlink_metadata(path).ok()?;
@@ -75,6 +83,6 @@ mod tests {
         let file = folder.path().join("file");
         assert_eq!(open_regular(&file).unwrap_err().kind(), io::ErrorKind::NotFound);
         fs::write(&file, "x").unwrap();
-        assert_eq!(io::read_to_string(open_regular(&file).unwrap()).unwrap(), "x");
+        assert_eq!(read_regular(&file).unwrap(), "x");
     }
 }

@@ -196,11 +196,15 @@ fn check_lengths(f: &mut Fields<'_>, key: &'static str, lengths_m: &[f64], max_m
         if length_m <= 0.0 && !is_place {
             f.problem(&item, format!("expected a length above 0 m, found {length_m}"), "");
         } else if length_m.abs() > max_m {
-            // Centimetres, unless even these are too long: then millimetres.
-            let guess_m = [100.0, 1000.0].map(|parts| length_m / parts);
-            let guess_m = guess_m.iter().find(|guess_m| guess_m.abs() <= max_m / 2.0);
-            let guess =
-                guess_m.map_or_else(String::new, |guess_m| format!("; did you mean {guess_m}?"));
+            // Centimetres, millimetres, or either, where what is on a table may have that length.
+            let guesses = [100.0, 1000.0].map(|parts| length_m / parts).into_iter();
+            let guesses = guesses.filter(|guess_m| guess_m.abs() <= max_m / 4.0);
+            let guesses =
+                guesses.map(|guess_m| guess_m.to_string()).collect::<Vec<_>>().join(" or ");
+            let guess = match guesses.is_empty() {
+                true => guesses,
+                false => format!("; did you mean {guesses}?"),
+            };
             let what = format!("expected at most {max_m} m, found {length_m}");
             f.problem(&item, what, format!("lengths are in metres{guess}"));
         }

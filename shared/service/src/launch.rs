@@ -3,8 +3,8 @@
 use messages::SUPERVISOR;
 use std::env;
 use std::ffi::OsString;
-use std::fs::File;
-use std::io;
+use std::fs::{File, TryLockError};
+use std::io::{self, Read};
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -63,7 +63,11 @@ pub enum LaunchError {
     #[error("the supervisor ended with {}{}", .0, indented(.1))]
     Ended(ExitStatus, Vec<String>),
     /// It did not listen within the timeout; its log.
-    #[error("the supervisor is not up after {} s; see {}", .0.as_secs_f64(), .1.display())]
+    #[error(
+        "the supervisor is still starting after {} s; see {}; help: `whichone status` shows its state, `whichone down` \
+         stops it",
+        .0.as_secs_f64(), .1.display()
+    )]
     Late(Duration, PathBuf),
     /// The supervisor did not answer, or the group did not become ready.
     #[error(transparent)]
@@ -191,7 +195,21 @@ fn open_log(paths: &GroupPaths) -> io::Result<(File, u64)> {
     Ok((log, from))
 }
 
+/// The process of the supervisor that has a group, also while it starts and does not listen yet.
+pub fn holder(paths: &GroupPaths) -> Option<u32> {
+    let mut file = File::open(paths.supervisor_lock()).ok()?;
+    let is_held = matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock));
+    let mut text = String::new();
+    file.read_to_string(&mut text).ok().filter(|_| is_held)?;
+    text.trim().parse().ok()
+}
+
 impl Launched {
+    /// The supervisor's process.
+    pub fn pid(&self) -> u32 {
+        self.process.id()
+    }
+
     /// Waits until the supervisor listens. It first waits for services of a previous supervisor
     /// that was killed, for as long as the longest stop deadline and 5 s more.
     ///

@@ -1,5 +1,7 @@
 //! The data as tables for statistics programs, and as JSON.
 
+use std::borrow::Cow;
+
 use serde_json::{Map, Value as Json, json};
 
 use crate::Verdict;
@@ -197,11 +199,41 @@ fn cell_of(value: &Json) -> String {
     }
 }
 
-/// Returns a text as a cell (RFC 4180).
+/// Returns a text as a cell (RFC 4180). One that a spreadsheet would calculate has an apostrophe in front, by which it is
+/// text there: participants are strangers. Numbers stay numbers.
 pub(crate) fn cell(text: &str) -> String {
+    let is_formula =
+        text.starts_with(['=', '+', '-', '@', '\t', '\r']) && text.parse::<f64>().is_err();
+    let text = &*if is_formula { Cow::from(format!("'{text}")) } else { Cow::from(text) };
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
         text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cell_is_text_to_a_spreadsheet_whatever_it_begins_with() {
+        for (text, expected) in [
+            (
+                "=HYPERLINK(\"http://x.invalid\",\"a\")",
+                "\"'=HYPERLINK(\"\"http://x.invalid\"\",\"\"a\"\")\"",
+            ),
+            ("+1-234", "'+1-234"),
+            ("-cmd|' /C calc'!A0", "'-cmd|' /C calc'!A0"),
+            ("@SUM(1)", "'@SUM(1)"),
+            ("\t=1", "'\t=1"),
+            ("\r=1", "\"'\r=1\""),
+            ("-3.5", "-3.5"),
+            ("+7", "+7"),
+            ("it's 1=1", "it's 1=1"),
+        ] {
+            assert_eq!(cell(text), expected);
+        }
+        assert_eq!(cell_of(&json!(-2)), "-2");
     }
 }

@@ -78,12 +78,12 @@ pub(super) fn start(
     fresh: bool,
 ) -> Result<Supervisor, StartError> {
     let started = Instant::now();
+    // First: whoever looks for the group finds this process while it checks the configuration, which may take long.
+    make_root(paths.root())?;
+    let taken = previous_run::take_group(&paths)?;
     let configuration = load(None).map_err(StartError::Config)?;
     logging::set_json(configuration.spec.log.json);
     let group = Group::new(&configuration.spec)?;
-    // It holds the lock that the other folders wait for.
-    make_root(paths.root())?;
-    let taken = previous_run::take_group(&paths)?;
     let alive = previous_run::await_end(&paths, longest_stop(&configuration.spec))?;
     let raised = raise(&paths, &configuration, alive, fresh);
     let (admin, signals, server, around) = raised.inspect_err(|_| {

@@ -34,7 +34,7 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
         conversation.look()?;
         if let Some(ended) = waiting.look(conversation.latest()) {
             Reported::now(&conversation, ended.interaction.0).remember(paths)?;
-            return report(&ended, out);
+            return report(&ended, args.answer_as.as_deref(), out);
         }
         if waiting.is_in_vain(conversation.latest(), reported.utterance) {
             Reported::now(&conversation, reported.interaction).remember(paths)?;
@@ -62,14 +62,21 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
     }
 }
 
-fn report(ended: &Ended, out: &mut Output<'_>) -> Outcome {
+/// Reports the outcome, with the object that the simulated user wanted, if there is one: only its delivery is a success.
+fn report(ended: &Ended, wanted: Option<&str>, out: &mut Output<'_>) -> Outcome {
+    let missed = wanted.filter(|wanted| ended.name.as_deref() != Some(*wanted));
     if out.is_json() {
-        out.json(&to_json(ended))?;
+        let mut json = to_json(ended);
+        if let Some(wanted) = wanted {
+            json["wanted"] = json!(wanted);
+        }
+        out.json(&json)?;
     } else {
-        out.line(sentence(ended))?;
+        let wanted = missed.map(|wanted| format!("; wanted {wanted}")).unwrap_or_default();
+        out.line(format_args!("{}{wanted}", sentence(ended)))?;
     }
-    let delivered = ended.outcome == How::Delivered;
-    Ok(if delivered { Exit::Ok } else { Exit::NotReached })
+    let is_reached = ended.outcome == How::Delivered && missed.is_none();
+    Ok(if is_reached { Exit::Ok } else { Exit::NotReached })
 }
 
 /// The outcome for programs.
@@ -183,6 +190,23 @@ mod tests {
         let cancelled =
             Ended { outcome: How::Cancelled, questions: 1, object: None, name: None, ..ended };
         assert_eq!(sentence(&cancelled), "cancelled after 1 question and 12.5 s");
+    }
+
+    #[test]
+    fn delivery_of_another_object_than_the_wanted_one_is_no_success() {
+        let ended = example::ended(3).view.and_then(|view| view.last).unwrap();
+        let reported = |wanted, json| {
+            let mut bytes = Vec::new();
+            let exit = report(&ended, wanted, &mut Output::to(&mut bytes, json)).unwrap();
+            (exit, String::from_utf8(bytes).unwrap())
+        };
+        let said = "delivered clear after 2 questions and 12.5 s";
+        assert_eq!(reported(None, false), (Exit::Ok, format!("{said}\n")));
+        assert_eq!(reported(Some("clear"), false), (Exit::Ok, format!("{said}\n")));
+        let missed = format!("{said}; wanted white_small\n");
+        assert_eq!(reported(Some("white_small"), false), (Exit::NotReached, missed));
+        let (exit, json) = reported(Some("white_small"), true);
+        assert!(exit == Exit::NotReached && json.contains(r#""wanted":"white_small""#), "{json}");
     }
 
     #[test]

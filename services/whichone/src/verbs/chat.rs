@@ -34,10 +34,12 @@ pub(super) fn chat(paths: &GroupPaths, args: &ChatArgs, out: &mut Output<'_>) ->
     if !is_running {
         note(format_args!("no group {} is running; starting one", paths.name()));
     }
-    let is_own = !is_running && up::bring_up(paths, &args.config)?;
+    let own = if is_running { None } else { up::bring_up(paths, &args.config)? };
     let ready = if is_running { Ok(()) } else { up::wait_ready(paths) };
     let talked = ready.and_then(|()| talk(paths, args, &interrupt, out));
-    if is_own && !args.keep {
+    // Another supervisor may have the group by now.
+    let is_own = || operate::status_of(paths).is_ok_and(|now| Some(now.supervisor_pid) == own);
+    if own.is_some() && !args.keep && is_own() {
         note("stopping the group that was started for this chat");
         operate::down(paths, STOP, &mut Output::to(io::sink(), true))?;
     }

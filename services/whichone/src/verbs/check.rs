@@ -5,13 +5,15 @@ use std::path::Path;
 use command_line::Outcome;
 use command_line::configuration;
 use command_line::output::{Ink, Output, note, table};
-use config::{Examined, Settings};
+use config::{Examined, ServiceConfig, Settings};
 use diagnostics::{Diagnostic, Diagnostics};
 use language::word_findings;
+use preflight::ArmSetup;
 use scene::Scene;
 use scene_editing::misunderstood;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
+use supervisor::find_program;
 
 use crate::cli::CheckArgs;
 
@@ -19,7 +21,9 @@ use crate::cli::CheckArgs;
 pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
     let folder = configuration::folder(&args.config)?;
     let profile = args.config.profile.as_deref();
-    let examined = preflight::examine(&folder, profile, &args.config.set, None);
+    let mut examined = preflight::examine(&folder, profile, &args.config.set, None);
+    let missing = examined.settings.iter().flat_map(|settings| missing_programs(settings, &folder));
+    missing.for_each(|problem| examined.report.add(problem));
     verdict(examined, &folder, args.values, out)
 }
 
@@ -50,6 +54,9 @@ pub(super) fn verdict(
             for line in summary(&settings) {
                 out.line(line)?;
             }
+            for assumed in assumptions(&settings) {
+                note(format_args!("warning: robot: {assumed}"));
+            }
             for warning in warnings {
                 note(format_args!("warning: scene {}: {warning}", settings.scene.name()));
             }
@@ -59,6 +66,23 @@ pub(super) fn verdict(
             Ok(Exit::Ok)
         }
     }
+}
+
+/// What is taken for granted of the robot.
+fn assumptions(settings: &Settings) -> Vec<String> {
+    ArmSetup::new(settings).map(|setup| setup.robot.assumptions()).unwrap_or_default()
+}
+
+/// The programs of services that cannot be started.
+fn missing_programs(settings: &Settings, folder: &Path) -> Vec<Diagnostic> {
+    let missing = |service: &ServiceConfig| {
+        let command = service.command.as_ref()?;
+        let error = find_program(command, folder).err()?;
+        let key = ["group", "services", &service.name, "command"];
+        let help = "install the program, or write its whole path";
+        Some(settings.diagnostic(&key, error.to_string(), help))
+    };
+    settings.group.services.iter().filter_map(missing).collect()
 }
 
 fn refused(problems: &Diagnostics, out: &mut Output<'_>) -> Outcome {
@@ -160,6 +184,7 @@ fn as_json(settings: &Settings, warnings: &[String], values: bool) -> Json {
         "scene": { "name": settings.scene.name(), "objects": settings.scene.objects().len(),
                    "placed": settings.scene.placed().count() },
         "warnings": warnings,
+        "assumed": assumptions(settings),
         "planner": settings.dialogue.planner,
         "params": settings.dialogue.params,
         "costs": settings.dialogue.costs,
@@ -173,4 +198,31 @@ fn as_json(settings: &Settings, warnings: &[String], values: bool) -> Json {
         json["values"] = Json::from(values);
     }
     json
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::ConfigArgs;
+
+    fn checked(set: &[(&str, &str)]) -> (Exit, Json) {
+        let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+        let set = set.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+        let config = ConfigArgs { config: Some(config), set, ..ConfigArgs::default() };
+        let mut bytes = Vec::new();
+        let args = CheckArgs { config, values: false };
+        let exit = check(&args, &mut Output::to(&mut bytes, true)).unwrap();
+        (exit, serde_json::from_slice(&bytes).unwrap())
+    }
+
+    #[test]
+    fn program_that_does_not_exist_is_a_problem() {
+        let (exit, found) = checked(&[("group.services.policy.command", "[\"/nope/x\", \"1\"]")]);
+        assert_eq!(exit, Exit::Config, "{found}");
+        let problem = &found["problems"][0];
+        assert_eq!(problem["key"], "group.services.policy.command", "{found}");
+        assert_eq!(problem["what"], "/nope/x: no such program", "{found}");
+        let (exit, found) = checked(&[("group.services.policy.command", "[\"sh\"]")]);
+        assert_eq!((exit, &found["assumed"]), (Exit::Ok, &json!([])), "{found}");
+    }
 }

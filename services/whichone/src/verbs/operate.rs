@@ -6,12 +6,13 @@ use std::time::Duration;
 use command_line::Outcome;
 use command_line::output::Output;
 use rustix::event::{PollFd, PollFlags, poll};
-use rustix::process::{Pid, PidfdFlags, pidfd_open};
+use rustix::process::{Pid, PidfdFlags, Signal, pidfd_open, pidfd_send_signal};
 use rustix::time::Timespec;
 use serde::Serialize;
 use service::control::{CallError, DownReport, Reply, Request, Target, call};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
+use service::launch;
 use service::status::GroupStatus;
 
 use super::{leftovers, words};
@@ -77,7 +78,10 @@ pub(super) fn down(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) 
     let report = match ask(paths, &Request::Down, timeout) {
         Ok(Reply::Down(report)) => report,
         Ok(other) => return Err(unintelligible(paths, &other).into()),
-        Err(CallError::NoGroup(_)) => return not_running(paths, timeout, out),
+        Err(CallError::NoGroup(_)) => match launch::holder(paths) {
+            Some(pid) => return starting(paths, pid, timeout, out),
+            None => return not_running(paths, timeout, out),
+        },
         Err(other) => return Err(other.into()),
     };
     supervisor.iter().for_each(await_end);
@@ -119,6 +123,28 @@ fn print_down_report(
         out.line(format_args!("  {what}: {}", names.join(", ")))?;
     }
     Ok(())
+}
+
+/// Ends a supervisor that does not listen yet: it has started no service.
+fn starting(paths: &GroupPaths, pid: u32, timeout: Duration, out: &mut Output<'_>) -> Outcome {
+    let process = i32::try_from(pid).ok().and_then(Pid::from_raw);
+    let process = process.and_then(|pid| pidfd_open(pid, PidfdFlags::empty()).ok());
+    // Only now the number is surely its own.
+    if let Some(process) = process.filter(|_| launch::holder(paths) == Some(pid)) {
+        // It may have ended meanwhile.
+        let _ = pidfd_send_signal(&process, Signal::TERM);
+        let patience = Timespec { tv_sec: timeout.as_secs().cast_signed(), tv_nsec: 0 };
+        let _ = poll(&mut [PollFd::new(&process, PollFlags::IN)], Some(&patience));
+    }
+    let name = paths.name();
+    if launch::holder(paths) == Some(pid) {
+        let what = format!("group {name}: supervisor {pid}, which was starting, does not end");
+        return Err(Failure::new(Exit::NotReached, what));
+    }
+    if !out.is_json() {
+        out.line(format_args!("group {name} was starting; its supervisor {pid} is ended"))?;
+    }
+    not_running(paths, timeout, out)
 }
 
 fn not_running(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) -> Outcome {

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use command_line::Outcome;
 use command_line::output::{Output, note, table};
 use messages::Service;
-use recording::EXTENSION;
 use recording::list::{Entry, State, entries};
 use recording::recover::merge;
+use recording::{EXTENSION, LeftOut};
 use serde_json::json;
 use service::control::Request;
 use service::exit::{Exit, Failure};
@@ -93,11 +93,11 @@ fn open(paths: &GroupPaths, args: &OpenArgs, out: &mut Output<'_>) -> Outcome {
         (None, State::BeingWritten | State::Incomplete) => Some(place_of_copy(paths, &entry)?),
         (None, _) => None,
     };
-    let path = match copy {
-        None => entry.path,
+    let (path, left_out) = match copy {
+        None => (entry.path, LeftOut::default()),
         Some(path) => {
-            merge(&[entry.path], &path)?;
-            path
+            let (_, left_out) = merge(&[entry.path], &path)?;
+            (path, left_out)
         }
     };
     match out.is_json() {
@@ -105,7 +105,11 @@ fn open(paths: &GroupPaths, args: &OpenArgs, out: &mut Output<'_>) -> Outcome {
         false => out.line(path.display())?,
     }
     note(HOW_TO_OPEN);
-    Ok(Exit::Ok)
+    if left_out.is_nothing() {
+        return Ok(Exit::Ok);
+    }
+    note(format_args!("left out, as it cannot be read: {left_out}"));
+    Ok(Exit::NotReached)
 }
 
 /// Where a recording is copied to that is not complete. Former copies, which have less of it, are removed.

@@ -51,7 +51,7 @@ fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
     let text = scene_editing::new_scene(&name, &schema);
     let label = path.display().to_string();
     let mut edit = SceneEdit::parse(&label, &text)?;
-    let placed = place::places(&mut edit, &label, &args.config)?;
+    let placed = place::places(&mut edit, &label, &args.config)?.placed;
     load(&args.config, TextFile::new(&*label, edit.text()))?.verdict()?;
     safe_files::write_new_output(&path, edit.text().as_bytes()).map_err(|error| {
         match error.kind() {
@@ -185,6 +185,24 @@ mod tests {
     }
 
     #[test]
+    fn place_says_why_it_finds_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("mine.toml");
+        let template = scene_editing::new_scene("mine", "");
+        let (head, _) = template.split_once("\n[[objects]]").unwrap();
+        let text = format!(
+            "{head}\n[[objects]]\nname = 'whisk'\nattributes = {{ kind = 'box' }}\nsize = [0.10, 0.05, 0.05]\n\
+             grasp_width = 0.05\n"
+        );
+        fs::write(&file, text).unwrap();
+        let args = ScenePlaceArgs { file, write: false, config: shipped() };
+        let (found, exit) = json(SceneVerb::Place(args));
+        assert_eq!((exit, &found["unplaced"][0]["object"]), (Exit::Config, &Json::from("whisk")));
+        let why = found["unplaced"][0]["why"].as_str().unwrap();
+        assert!(why.starts_with("cannot be grasped anywhere: ") && why.contains("50"), "{found}");
+    }
+
+    #[test]
     fn words_that_are_misread_are_problems_beside_those_of_the_configuration() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("misread.toml");
@@ -219,7 +237,7 @@ mod tests {
         ];
         assert_eq!(problems, expected, "{found}");
         assert!(
-            found["problems"][0]["cure"].as_str().unwrap().ends_with("did you mean 0.7?"),
+            found["problems"][0]["cure"].as_str().unwrap().ends_with("did you mean 0.7 or 0.07?"),
             "{found}"
         );
     }

@@ -7,6 +7,7 @@ use service::console_link;
 use service::control::CallError;
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
+use service::launch;
 use service::status::{GroupState, GroupStatus, ServiceState, ServiceStatus};
 use service::view::HearingView;
 
@@ -48,7 +49,7 @@ struct Printed<'a> {
     hearing: Option<HearingView<'a>>,
 }
 
-/// A group that is not running, with `--json`.
+/// A group that is not running yet or any more, with `--json`.
 #[derive(Serialize)]
 struct Down<'a> {
     name: &'a GroupName,
@@ -57,9 +58,14 @@ struct Down<'a> {
 }
 
 fn down(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
-    let name = paths.name();
+    let (name, supervisor) = (paths.name(), launch::holder(paths));
     if out.is_json() {
-        out.json(&Down { name, state: "down", services: [] })?;
+        let state = if supervisor.is_some() { "starting" } else { "down" };
+        out.json(&Down { name, state, services: [] })?;
+    } else if let Some(supervisor) = supervisor {
+        out.line(format_args!(
+            "group {name} is starting: supervisor {supervisor} checks the configuration"
+        ))?;
     } else {
         out.line(CallError::NoGroup(name.to_string()))?;
     }

@@ -1,5 +1,6 @@
 //! `up`: start of a group.
 
+use std::thread;
 use std::time::Duration;
 
 use command_line::output::{Output, note};
@@ -17,6 +18,8 @@ use crate::cli::{ConfigArgs, UpArgs, WaitFor};
 
 /// Time for which a new supervisor waits for services of a killed one.
 const EARLIER_SERVICES: Duration = Duration::from_secs(25);
+/// Interval at which a supervisor that is starting is looked for.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 /// A started group with `--json`.
 #[derive(Serialize)]
@@ -38,10 +41,8 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
         out.flush()?;
         return Err(launch::foreground(&launch::program(), &options, paths).into());
     }
-    let ready = match args.wait {
-        None => start(paths, &options, &args.config, None)?,
-        Some(WaitFor::Ready) => start(paths, &options, &args.config, Some(args.timeout))?,
-    };
+    let timeout = args.wait.map(|WaitFor::Ready| args.timeout);
+    let (_, ready) = start(paths, &options, &args.config, timeout)?;
     let status = operate::status_of(paths)?;
     if out.is_json() {
         out.json(&Started { status, console: console_link::address(paths) })?;
@@ -55,14 +56,30 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
     Ok(Exit::Ok)
 }
 
-/// Starts a detached group, for a verb that needs one. Returns false if another start was quicker: that group is not
-/// this verb's to stop.
-pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<bool, Failure> {
+/// Starts a detached group, for a verb that needs one, and returns its supervisor's process; none if another start was
+/// quicker, also one that is not over yet: that group is not this verb's to stop.
+pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<Option<u32>, Failure> {
+    if await_start(paths)? {
+        return Ok(None);
+    }
     let options = options(paths, config, false)?;
     match start(paths, &options, config, None) {
-        Ok(_) => Ok(true),
-        Err(_) if is_running(paths)? => Ok(false),
+        Ok((supervisor, _)) => Ok(Some(supervisor)),
+        Err(_) if await_start(paths)? => Ok(None),
         Err(failure) => Err(failure),
+    }
+}
+
+/// Waits until a supervisor that is starting answers. Returns whether one does.
+fn await_start(paths: &GroupPaths) -> Result<bool, Failure> {
+    loop {
+        if is_running(paths)? {
+            return Ok(true);
+        }
+        if launch::holder(paths).is_none() {
+            return Ok(false);
+        }
+        thread::sleep(LOOK_EVERY);
     }
 }
 
@@ -83,12 +100,10 @@ pub(super) fn is_running(paths: &GroupPaths) -> Result<bool, Failure> {
 }
 
 fn refuse_twice(paths: &GroupPaths) -> Result<(), Failure> {
-    if !is_running(paths)? {
-        return Ok(());
-    }
+    let Some(supervisor) = launch::holder(paths) else { return Ok(()) };
     let name = paths.name();
-    let Ok(status) = operate::status_of(paths) else { return Ok(()) };
-    let what = format!("group {name} is already running (supervisor {})", status.supervisor_pid);
+    let state = if is_running(paths)? { "running" } else { "starting" };
+    let what = format!("group {name} is already {state} (supervisor {supervisor})");
     Err(Failure::new(Exit::NotReached, format!("{what}; another --group may run beside it")))
 }
 
@@ -104,17 +119,22 @@ fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Optio
 }
 
 /// Starts a detached supervisor and waits until it listens, and until every service is ready
-/// if requested. Returns the supervisor's message.
+/// if requested. Returns the supervisor's process and message.
 fn start(
     paths: &GroupPaths,
     options: &Options,
     config: &ConfigArgs,
     wait: Option<Duration>,
-) -> Result<String, Failure> {
+) -> Result<(u32, String), Failure> {
     let mut launched = launch::detached(&launch::program(), options, paths)?;
     launched.wait_listening(EARLIER_SERVICES).map_err(|error| explained(error, config))?;
-    let Some(timeout) = wait else { return Ok("services are starting".to_owned()) };
-    launch::wait_ready(paths, timeout).map_err(|error| not_ready(error, paths))
+    let ready = match wait {
+        None => "services are starting".to_owned(),
+        Some(timeout) => {
+            launch::wait_ready(paths, timeout).map_err(|error| not_ready(error, paths))?
+        }
+    };
+    Ok((launched.pid(), ready))
 }
 
 /// Returns why not everything is ready, and what becomes of the group.

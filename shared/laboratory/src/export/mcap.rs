@@ -10,6 +10,7 @@ use command_line::Outcome;
 use command_line::output::{Output, note};
 use command_line::program::{command, failed};
 use messages::Service;
+use recording::LeftOut;
 use recording::journals::{Entry, Origin, Writer};
 use recording::list::entries;
 use recording::recover::merge;
@@ -45,7 +46,7 @@ pub(super) fn export(
     let (messages, noun) = if !flights.is_empty() {
         (steps(&flights, to)?, "step")
     } else if journals.is_empty() {
-        (recordings(source, to)?, "message")
+        return recordings(source, to, out);
     } else {
         (records(&journals, to)?, "record")
     };
@@ -58,7 +59,7 @@ pub(super) fn export(
     Ok(Exit::Ok)
 }
 
-fn recordings(source: &Path, to: &Path) -> Result<u64, Failure> {
+fn recordings(source: &Path, to: &Path, out: &mut Output<'_>) -> Outcome {
     let files: Vec<PathBuf> = match source.is_dir() {
         true => entries(source).into_iter().map(|entry| entry.path).collect(),
         false => vec![source.to_owned()],
@@ -68,11 +69,21 @@ fn recordings(source: &Path, to: &Path) -> Result<u64, Failure> {
         let help = "help: `whichone record list` prints the folder of a group's recordings";
         return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
     }
-    let (messages, was_torn) = merge(&files, to)?;
-    if was_torn {
-        note("a recording is damaged; what can be read of it is exported");
+    let (messages, left_out) = merge(&files, to)?;
+    let LeftOut { parts, messages: lost, endless } = left_out;
+    match out.is_json() {
+        true => {
+            let left_out =
+                json!({ "parts": parts, "messages": lost, "files_without_end": endless });
+            out.json(&json!({ "file": to, "messages": messages, "left_out": left_out }))?;
+        }
+        false => out.line(format_args!("{}: {}", to.display(), count(messages, "message")))?,
     }
-    Ok(messages)
+    if left_out.is_nothing() {
+        return Ok(Exit::Ok);
+    }
+    note(format_args!("left out, as it cannot be read: {left_out}"));
+    Ok(Exit::NotReached)
 }
 
 fn records(journals: &[(Service, PathBuf)], to: &Path) -> Result<u64, Failure> {
@@ -95,10 +106,12 @@ fn flights_in(source: &Path) -> Result<Vec<PathBuf>, Failure> {
 
 /// Writes the steps of flights, one flight after another: what each service was given and what it stated.
 fn steps(flights: &[PathBuf], to: &Path) -> Result<u64, Failure> {
+    // Before the copy is begun, which would stay.
+    let known = flights.iter().map(|file| Ok((file, flight::head(file)?, service_of(file)?)));
+    let known: Vec<_> = known.collect::<Result<_, Failure>>()?;
     let mut writer = Writer::create(to)?;
     let mut steps = 0;
-    for file in flights {
-        let (head, service) = (flight::head(file)?, service_of(file)?);
+    for (file, head, service) in known {
         let mut program: Command = command(service.name(), "flight");
         program.arg(file).stdout(Stdio::piped()).stderr(Stdio::inherit());
         let mut child = program.spawn().map_err(|error| failed(&program, &error))?;

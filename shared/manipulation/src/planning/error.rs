@@ -3,6 +3,7 @@
 use crate::collision::Gap;
 use crate::kinematics::chain::LineError;
 use crate::kinematics::limb::Limb;
+use crate::planning::fetch::HOME;
 use crate::planning::grasp::GraspError;
 use crate::trajectory::TrajectoryError;
 
@@ -70,6 +71,13 @@ pub enum PlanError {
         /// Obstacle on the straight path.
         gap: Option<Gap>,
     },
+}
+
+impl PlanError {
+    /// Whether the limb touches something in the posture in which it rests, whatever it is to fetch.
+    pub fn is_at_rest(&self) -> bool {
+        matches!(self, Self::Blocked { at: HOME, .. })
+    }
 }
 
 fn in_way(gap: &Option<Gap>) -> String {

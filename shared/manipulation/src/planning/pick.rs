@@ -3,7 +3,7 @@
 use super::choices::{Choice, Choices};
 use super::deliver::{CORNER, deliver, fingers};
 use super::error::{Furthest, PlanError};
-use super::fetch::{ABOVE, Carry, GRASP};
+use super::fetch::{ABOVE, Carry, GRASP, HOME};
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::collision::Cuboid;
 use crate::kinematics::limb::{Joints, Limb};
@@ -11,7 +11,7 @@ use crate::planning::grasp::{Grasp, GraspError, ObjectPose};
 use crate::robot::{Arm, Robot};
 use crate::trajectory::{Phase, Stage, Timeline};
 
-/// Choices that are tried.
+/// Choices that are tried; of one limb, where it is only asked whether it reaches.
 const TRIES: usize = 64;
 
 /// Complete plans among which the best is taken, and how many there may be while all of them
@@ -92,6 +92,9 @@ pub(crate) fn cheapest<'a>(
 /// Progress from which on a longer search may help: the grasp itself and its lift are possible.
 const BEYOND_HOLD: usize = 5;
 
+/// Progress of a limb that touches something where it rests, beyond any other: no object is at fault.
+const AT_REST: usize = 9;
+
 /// The limb that can fetch object `i` from the neutral posture among the others: what a scene is checked for before
 /// anything moves. Ways between are not searched.
 ///
@@ -124,9 +127,15 @@ pub fn fetching_limb(
     let scenes = planning_scenes(robot, object, limb, &robot.neutral(), others, settings)?;
     let mut furthest = Furthest::default();
     for scene in &scenes {
+        if let Some(gap) = scene.blocked(&scene.q) {
+            furthest.add(AT_REST, PlanError::Blocked { at: HOME, limb: scene.limb, gap });
+            continue;
+        }
         let grasps = |arm: &Arm| object.grasps(&arm.gripper);
         let mut choices = Choices::new(grasps, std::slice::from_ref(scene), &mut furthest);
-        while let Some(choice) = choices.next(&mut furthest) {
+        // As many as a plan would try.
+        for _ in 0..TRIES {
+            let Some(choice) = choices.next(&mut furthest) else { break };
             let carrying = choice.carrying(object);
             let fetched = choice.descent(&carrying).and_then(|_| {
                 Carry::find(&carrying, &choice.above, Search::No).map_err(|error| (6, error))

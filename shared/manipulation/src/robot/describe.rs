@@ -29,6 +29,14 @@ const ACCELERATION_RAD_S2: f64 = 2.0;
 /// Jerk of joints for which the description states none, in accelerations per second.
 const JERK_PER_S: f64 = 10.0;
 
+/// Slowest velocity, acceleration and jerk of a joint, rad/s and so on: below, motions take minutes, and checks of their
+/// whole length as well. A joint without a velocity has 0.
+const SLOWEST: f64 = 0.05;
+
+/// Most collision shapes of a limb, and of the body: every check looks at all pairs.
+const LIMB_SHAPES_MAX: usize = 128;
+const BODY_SHAPES_MAX: usize = 512;
+
 impl Robot {
     /// Returns the robot of a description: two limbs that end in the links `left_gripper` and
     /// `right_gripper`, or one that ends in a link `<name>_gripper`, each on six or seven turning
@@ -100,6 +108,7 @@ fn arm(
 ) -> Result<Arm, Unsuitable> {
     let tip = format!("{name}_gripper");
     let joints = joints(description, &tip)?;
+    joints.iter().try_for_each(|joint| fast_enough(joint))?;
     // What does not move may have any limit but zero.
     let of = |f: &dyn Fn(&Limits) -> f64| {
         padded(&joints, 1.0, |joint| joint.limits.as_ref().map_or(0.0, f))
@@ -113,6 +122,7 @@ fn arm(
     );
     let chain = Chain::new(&posture(description, &joints, &tip), limits.position);
     let enclosures = enclosures(description, name, &joints, &chain)?;
+    few_enough(&format!("limb {name:?}"), enclosures.len(), LIMB_SHAPES_MAX)?;
     let touch = Touch::new(&chain, &enclosures, may_touch(description, name));
     let (pairs, loose) = (touch.pairs(), touch.loose(body));
     let mut arm = Arm {
@@ -131,6 +141,33 @@ fn arm(
     };
     arm.via_postures = via_postures(description, &joints, &arm);
     Ok(arm)
+}
+
+fn fast_enough(joint: &Joint) -> Result<(), Unsuitable> {
+    let Some(Limits { velocity, acceleration, jerk, .. }) = joint.limits else { return Ok(()) };
+    let bounds = [("velocity", Some(velocity)), ("acceleration", acceleration), ("jerk", jerk)];
+    let slow =
+        bounds.into_iter().find_map(|(key, bound)| Some((key, bound.filter(|it| *it < SLOWEST)?)));
+    slow.map_or(Ok(()), |(key, bound)| {
+        Err(Unsuitable {
+            what: format!("joint {:?} has {key}={bound}, too slow to fetch anything", joint.name),
+            help: format!(
+                "write what the joint can do in its <limit>, {SLOWEST} or more, in radians"
+            ),
+        })
+    })
+}
+
+/// # Errors
+/// There are more collision shapes than `most`.
+fn few_enough(what: &str, shapes: usize, most: usize) -> Result<(), Unsuitable> {
+    if shapes <= most {
+        return Ok(());
+    }
+    Err(Unsuitable {
+        what: format!("expected at most {most} collision shapes of {what}, found {shapes}"),
+        help: "enclose several in one capsule or box".to_owned(),
+    })
 }
 
 /// Returns the six or seven joints that move `tip`, shoulder first.
@@ -266,6 +303,7 @@ fn body(description: &Description, names: &[String]) -> Result<Body, Unsuitable>
             }
         }
     }
+    few_enough("the body", body.cuboids.len() + body.capsules.len(), BODY_SHAPES_MAX)?;
     Ok(body)
 }
 

@@ -26,14 +26,7 @@ struct Tip {
 /// [`Unsuitable`] for fingers that have no shapes at the tips, or that never open.
 pub(super) fn gripper(description: &Description, limb: &str) -> Result<Gripper, Unsuitable> {
     let name = format!("{limb}_gripper");
-    let Some(frame) = description.link_index(&name) else { return Ok(Gripper::default()) };
-    let base = description.carrier(frame).map_or(frame, |joint| joint.parent);
-    let is_finger = |link: usize| {
-        let joint = description.carrier(link)?;
-        (joint.kind == JointKind::Prismatic && below(description, link, base)).then_some(link)
-    };
-    let fingers: Vec<usize> = (0..description.links().len()).filter_map(is_finger).collect();
-    let [a, b] = fingers[..] else { return Ok(Gripper::default()) };
+    let Some((frame, [a, b])) = of(description, limb) else { return Ok(Gripper::default()) };
     let refuse = |what: &str| Unsuitable {
         what: format!("the fingers of {name:?} {what}"),
         help:
@@ -66,6 +59,18 @@ pub(super) fn gripper(description: &Description, limb: &str) -> Result<Gripper, 
         return Err(refuse("never open"));
     }
     Ok(gripper)
+}
+
+/// Returns the link `<limb>_gripper` and those of the two fingers, if it has two.
+pub(super) fn of(description: &Description, limb: &str) -> Option<(usize, [usize; 2])> {
+    let frame = description.link_index(&format!("{limb}_gripper"))?;
+    let base = description.carrier(frame).map_or(frame, |joint| joint.parent);
+    let is_finger = |link: usize| {
+        let joint = description.carrier(link)?;
+        (joint.kind == JointKind::Prismatic && below(description, link, base)).then_some(link)
+    };
+    let fingers: Vec<usize> = (0..description.links().len()).filter_map(is_finger).collect();
+    Some((frame, fingers.try_into().ok()?))
 }
 
 /// Returns whether `link` hangs on `base`.

@@ -124,6 +124,29 @@ impl Robot {
     }
 }
 
+impl Robot {
+    /// What is taken for granted where the description says nothing.
+    pub fn assumptions(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        for arm in self.limbs().iter().map(|limb| self.arm(*limb)) {
+            let name = &arm.name;
+            if arm.enclosures.is_empty() {
+                all.push(format!(
+                    "limb {name} has no collision shapes: its plans keep it off nothing but by chance"
+                ));
+            }
+            if fingers::of(&self.description, name).is_none() {
+                let (open_mm, force_n) = (arm.gripper.open_m * 1e3, arm.gripper.force_n);
+                all.push(format!(
+                    "limb {name} has no two fingers on prismatic joints: they are taken to open {open_mm:.1} mm and to \
+                     press with {force_n:.0} N"
+                ));
+            }
+        }
+        all
+    }
+}
+
 impl Arm {
     /// Number of the wrist's last joint.
     pub(crate) fn wrist(&self) -> usize {

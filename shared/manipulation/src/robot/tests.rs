@@ -162,3 +162,53 @@ fn a_tool_may_point_anywhere() {
         assert_reaches(&range, &target, &range.inverse(&target, None).unwrap().q);
     }
 }
+
+fn shipped(urdf: &str) -> Result<Robot, String> {
+    let description = Description::parse(urdf, Some(robot_model::BAXTER_SRDF)).unwrap();
+    Robot::from_description(&description).map_err(|error| error.to_string())
+}
+
+#[test]
+fn robot_that_needs_minutes_for_a_motion_is_refused() {
+    for slow in ["0", "0.001", "1e-300"] {
+        let urdf = robot_model::BAXTER_URDF.replacen(
+            "velocity=\"1.5\"",
+            &format!("velocity=\"{slow}\""),
+            1,
+        );
+        let error = shipped(&urdf).unwrap_err();
+        assert!(error.contains("joint \"left_s0\" has velocity=0"), "{error}");
+        assert!(error.contains("0.05 or more, in radians"), "{error}");
+    }
+}
+
+#[test]
+fn robot_of_too_many_shapes_is_refused() {
+    let shape = r#"<collision><geometry><sphere radius="0.01"/></geometry></collision>"#;
+    for (link, of) in [("left_upper_shoulder", "limb \"left\""), ("torso", "the body")] {
+        let head = format!("<link name=\"{link}\">");
+        assert!(robot_model::BAXTER_URDF.contains(&head), "{link}");
+        let many = format!("{head}{}", shape.repeat(600));
+        let error = shipped(&robot_model::BAXTER_URDF.replace(&head, &many)).unwrap_err();
+        assert!(error.contains(&format!("collision shapes of {of}, found")), "{error}");
+    }
+}
+
+#[test]
+fn robot_says_what_it_takes_for_granted() {
+    assert!(robot().assumptions().is_empty(), "{:?}", robot().assumptions());
+    let bare = without_shapes(robot_model::BAXTER_URDF);
+    let assumed = shipped(&bare).unwrap().assumptions().join("\n");
+    for said in ["limb left has no collision shapes", "limb right has no collision shapes"] {
+        assert!(assumed.contains(said), "{assumed}");
+    }
+}
+
+/// The text without its elements `<collision>`.
+fn without_shapes(urdf: &str) -> String {
+    let mut parts = urdf.split("<collision>");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| {
+        text + part.split_once("</collision>").map_or("", |(_, rest)| rest)
+    })
+}

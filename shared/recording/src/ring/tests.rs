@@ -7,7 +7,8 @@ use mcap::records::Record;
 use super::*;
 use crate::channels::{ChannelId, Picture};
 use crate::list::{State, incomplete};
-use crate::recover::{each_record, recover_all};
+use crate::records::each_record;
+use crate::recover::recover_all;
 
 const MIB: u64 = 1 << 20;
 const HOUR: u64 = 3600;
@@ -222,4 +223,48 @@ fn new_file_begins_when_the_wall_clock_is_set() {
     drop(ring);
     recover_all(&incomplete(folder.path()));
     assert_eq!(entries(folder.path()).len(), 2);
+}
+
+/// Writes a message each minute for `minutes`, while the wall clock is `clock`. Returns when it ends.
+fn record(ring: &mut Ring, from_s: u64, minutes: u64, clock: WallClock) -> u64 {
+    for s in (from_s..from_s + minutes * 60).step_by(60) {
+        ring.tend(at(s), clock);
+        write(ring, s);
+    }
+    from_s + minutes * 60
+}
+
+#[test]
+fn clock_that_is_set_deletes_nothing() {
+    const MONTH_NS: u64 = 30 * 86_400 * 1_000_000_000;
+    let folder = tempfile::tempdir().unwrap();
+    let (mut ring, _) = ring(folder.path(), limits());
+    // A computer without a battery: 1970, until the first answer from the network.
+    let now = record(&mut ring, 0, 30, clock());
+    let set = WallClock { offset_ns: 20 * MONTH_NS };
+    let now = record(&mut ring, now, 30, set);
+    // A month ahead, and back.
+    let now = record(&mut ring, now, 30, WallClock { offset_ns: 21 * MONTH_NS });
+    let now = record(&mut ring, now, 30, set);
+    ring.finish(at(now));
+    let mut all = sequences(folder.path()).concat();
+    all.sort_unstable();
+    assert_eq!(all, (0..now as u32).step_by(60).collect::<Vec<_>>());
+}
+
+#[test]
+fn first_recorded_is_the_first_to_go_whatever_the_clock_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut ahead, _) = ring(folder.path(), limits());
+    let wrong = WallClock { offset_ns: clock().offset_ns + 400 * 86_400 * 1_000_000_000 };
+    let now = record(&mut ahead, 0, 20 * 60, wrong);
+    ahead.finish(at(now));
+    // The next start knows the order from the files.
+    let (mut right, _) = ring(folder.path(), limits());
+    let end = record(&mut right, now, 20 * 60, clock());
+    right.finish(at(end));
+    let mut all = sequences(folder.path()).concat();
+    all.sort_unstable();
+    assert!(all[0] > 0 && all[0] < now as u32, "a day is kept: {}", all[0]);
+    assert_eq!(all, (all[0]..end as u32).step_by(60).collect::<Vec<_>>());
 }

@@ -7,6 +7,9 @@ use diagnostics::{Diagnostic, Diagnostics, Report, TextFile};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use roxmltree::{Document as Xml, Node};
 
+/// Longest length in a description, metres: longer ones are mistakes, and ways are divided into steps of millimetres.
+const LENGTH_M_MAX: f64 = 100.0;
+
 /// A document and its problems.
 pub(super) struct Log<'a> {
     file: &'a str,
@@ -162,6 +165,25 @@ impl<'a> Element<'a> {
         }))
     }
 
+    /// A length that may be left out, metres; reports what no robot has.
+    pub(super) fn length_if_any(&self, key: &str) -> Option<f64> {
+        self.number_if_any(key).map(|length_m| self.checked(key, length_m))
+    }
+
+    /// Returns a length, metres; reports one that no robot has.
+    pub(super) fn checked(&self, key: &str, length_m: f64) -> f64 {
+        if length_m.abs() <= LENGTH_M_MAX {
+            return length_m;
+        }
+        let mm = length_m / 1e3;
+        let help = match mm.abs() {
+            ..=LENGTH_M_MAX => format!("lengths are in metres: {mm} if it is {length_m} mm"),
+            _ => format!("lengths are in metres, at most {LENGTH_M_MAX}"),
+        };
+        self.unreadable(key, &help);
+        0.0
+    }
+
     /// A number that must be there and be greater than 0 (or 0, where `zero` allows it).
     pub(super) fn magnitude(&self, key: &str, zero: bool) -> f64 {
         let before = self.log.count();
@@ -186,7 +208,8 @@ impl<'a> Element<'a> {
     /// The `<origin>` of the element; the identity if there is none.
     pub(super) fn origin(&self) -> Isometry3<f64> {
         let Some(origin) = self.child("origin") else { return Isometry3::identity() };
-        let [x, y, z] = origin.numbers_if_any("xyz").unwrap_or_default();
+        let place = origin.numbers_if_any("xyz").unwrap_or_default();
+        let [x, y, z] = place.map(|length_m| origin.checked("xyz", length_m));
         let [roll, pitch, yaw] = origin.numbers_if_any("rpy").unwrap_or_default();
         let rotation = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
         Isometry3::from_parts(Translation3::new(x, y, z), rotation)

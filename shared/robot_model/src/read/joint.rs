@@ -1,5 +1,7 @@
 //! Joints: kind, axis and limits.
 
+use std::f64::consts::TAU;
+
 use diagnostics::suggestion;
 use nalgebra::{Isometry3, Unit, Vector3};
 
@@ -92,7 +94,7 @@ fn limits(joint: &Element<'_>, kind: JointKind) -> Option<Limits> {
     };
     let (lower, upper) = match turns_for_ever {
         true => (f64::NEG_INFINITY, f64::INFINITY),
-        false => range(&limit),
+        false => range(&limit, kind),
     };
     let bound = |key| limit.attribute(key).map(|_| limit.magnitude(key, false));
     Some(Limits {
@@ -105,9 +107,16 @@ fn limits(joint: &Element<'_>, kind: JointKind) -> Option<Limits> {
     })
 }
 
+/// Farthest position of a joint that turns, radians: two turns. Each turn within the limits is a posture of its own.
+const TURN_RAD_MAX: f64 = 2.0 * TAU;
+
 /// Least and greatest position. One of the two may be left out and is then 0, as URDF has it.
-fn range(limit: &Element<'_>) -> (f64, f64) {
-    let [lower, upper] = ["lower", "upper"].map(|key| limit.number_if_any(key));
+fn range(limit: &Element<'_>, kind: JointKind) -> (f64, f64) {
+    let position = |key| match kind {
+        JointKind::Prismatic => limit.length_if_any(key),
+        _ => limit.number_if_any(key).map(|at| turned(limit, key, at)),
+    };
+    let [lower, upper] = ["lower", "upper"].map(position);
     if lower.is_none() && upper.is_none() {
         let help = "write both, or make the joint continuous or fixed";
         limit.problem("<limit> has neither lower nor upper", help);
@@ -117,4 +126,17 @@ fn range(limit: &Element<'_>) -> (f64, f64) {
         limit.problem(format!("<limit> has lower={lower} above upper={upper}"), "exchange them");
     }
     (lower, upper)
+}
+
+/// Returns the position of a joint that turns; reports one beyond [`TURN_RAD_MAX`].
+fn turned(limit: &Element<'_>, key: &str, at: f64) -> f64 {
+    if at.abs() <= TURN_RAD_MAX {
+        return at;
+    }
+    let help = match at.abs() {
+        ..=720.0 => format!("limits are in radians: {:.4} if it is {at} degrees", at.to_radians()),
+        _ => "a joint has two turns at most: write e.g. -6.2832 and 6.2832".to_owned(),
+    };
+    limit.unreadable(key, &help);
+    0.0
 }

@@ -88,8 +88,8 @@ fn body(own: &Element<'_>, colour: Option<Rgba>) -> Option<Body> {
 }
 
 fn read_shape(shape: &Element<'_>) -> Option<Shape> {
-    let radius = || shape.magnitude("radius", false);
-    let length = || shape.magnitude("length", true);
+    let radius = || shape.checked("radius", shape.magnitude("radius", false));
+    let length = || shape.checked("length", shape.magnitude("length", true));
     Some(match shape.tag() {
         "box" => {
             let Some(size) = shape.numbers_if_any::<3>("size") else {
@@ -99,7 +99,7 @@ fn read_shape(shape: &Element<'_>) -> Option<Shape> {
             if size.iter().any(|edge| *edge < 0.0) {
                 shape.unreadable("size", "each edge must be 0 or more");
             }
-            Shape::Box { size: Vector3::from(size) }
+            Shape::Box { size: Vector3::from(size.map(|edge| shape.checked("size", edge))) }
         }
         "cylinder" => Shape::Cylinder { radius: radius(), length: length() },
         "capsule" => Shape::Capsule { radius: radius(), length: length() },

@@ -1,8 +1,15 @@
 //! Reasons for refusing a segment, which iceoryx2's errors have no room for: noted where the segment
 //! is refused, taken where the error is reported, on the same thread.
 
-use crate::group::SHM;
 use std::cell::RefCell;
+use std::fs;
+
+use rustix::process::{Resource, getrlimit};
+
+use crate::group::SHM;
+
+/// Descriptors that one port needs at most: its own files, and those of the peers that it connects to.
+const DESCRIPTORS_OF_PORT: u64 = 64;
 
 /// Room of the smallest file, bytes.
 const PAGE: u64 = 4096;
@@ -20,6 +27,17 @@ pub enum SegmentError {
         needed_kib: u64,
         /// Free memory, KiB.
         free_kib: u64,
+    },
+    /// Nearly all descriptors of this process are in use.
+    #[error(
+        "file descriptors are short: {used} of {allowed} in use; help: raise the limit of the user (`ulimit -n`); \
+         services try again by themselves"
+    )]
+    Descriptors {
+        /// Number in use.
+        used: u64,
+        /// Greatest number.
+        allowed: u64,
     },
     /// A segment of another user has the name.
     #[error(
@@ -68,9 +86,17 @@ pub(super) fn take() -> Option<SegmentError> {
 }
 
 /// Takes the reason of a failure: the one noted, else that there was no room for a small file of
-/// iceoryx2's either.
+/// iceoryx2's either, or no descriptor.
 pub(super) fn of_failure() -> Option<SegmentError> {
     let is_full =
         || rustix::fs::statvfs(SHM).is_ok_and(|stat| stat.f_bavail.min(stat.f_ffree) == 0);
-    take().or_else(|| is_full().then(|| SegmentError::room(PAGE)))
+    take().or_else(|| is_full().then(|| SegmentError::room(PAGE))).or_else(few_descriptors)
+}
+
+/// Want of descriptors, if there may be: those of the port that has failed are closed again.
+fn few_descriptors() -> Option<SegmentError> {
+    let allowed = getrlimit(Resource::Nofile).current?;
+    // Not even one to count them.
+    let used = fs::read_dir("/proc/self/fd").map_or(allowed, |all| all.count() as u64);
+    (used + DESCRIPTORS_OF_PORT > allowed).then_some(SegmentError::Descriptors { used, allowed })
 }

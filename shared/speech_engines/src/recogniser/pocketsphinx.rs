@@ -100,7 +100,7 @@ impl PocketSphinx {
         for file in ["mdef", "means", "variances", "transition_matrices", "sendump", "feat.params"]
         {
             let file = acoustic_model.join(file);
-            fs::File::open(&file)
+            safe_files::open_regular(&file)
                 .map_err(|error| RecogniserUnavailable::unreadable(&file, &error))?;
         }
         let pronouncing = options.model.join("cmudict-en-us.dict");

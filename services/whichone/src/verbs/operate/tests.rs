@@ -108,3 +108,39 @@ fn invalid_answer_is_an_error() {
     let (_, _, ended) = run(reply, false, |paths, out| down(paths, Duration::ZERO, out));
     assert!(ended.unwrap_err().1.contains("invalid answer of the supervisor"));
 }
+
+/// A process that holds the group, as a supervisor does that still checks its configuration.
+fn starting(paths: &GroupPaths) -> std::process::Child {
+    std::fs::create_dir_all(paths.root()).unwrap();
+    let lock = safe_files::open_lock(&paths.supervisor_lock()).unwrap();
+    lock.lock().unwrap();
+    // It inherits the lock.
+    let held = std::process::Stdio::from(lock.try_clone().unwrap());
+    let process = std::process::Command::new("sleep").arg("600").stdin(held).spawn().unwrap();
+    std::fs::write(paths.supervisor_lock(), format!("{}\n", process.id())).unwrap();
+    process
+}
+
+#[test]
+fn supervisor_that_starts_is_found_and_ended() {
+    let (_home, paths) = super::super::lab();
+    let mut process = starting(&paths);
+    let pid = process.id();
+    let printed = |verb: &dyn Fn(&mut Output<'_>) -> Outcome| {
+        let mut bytes = Vec::new();
+        let exit = verb(&mut Output::to(&mut bytes, false)).unwrap();
+        (exit, String::from_utf8(bytes).unwrap())
+    };
+    let (exit, status) = printed(&|out| super::super::status::status(&paths, out));
+    let expected = format!("group lab is starting: supervisor {pid} checks the configuration\n");
+    assert_eq!((exit, status), (Exit::NotReached, expected));
+    let reaper = std::thread::spawn(move || process.wait().unwrap());
+    let (exit, down) = printed(&|out| super::down(&paths, Duration::from_secs(20), out));
+    let expected = format!(
+        "group lab was starting; its supervisor {pid} is ended\ngroup lab is not running\n"
+    );
+    assert_eq!((exit, down), (Exit::Ok, expected));
+    assert!(!reaper.join().unwrap().success(), "it was asked to end");
+    let (_, down) = printed(&|out| super::down(&paths, Duration::ZERO, out));
+    assert_eq!(down, "group lab is not running\n");
+}

@@ -5,6 +5,7 @@ use command_line::output::{Output, note};
 use diagnostics::TextFile;
 use preflight::{ArmSetup, Arrangement};
 use scene_editing::SceneEdit;
+use serde::Serialize;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
@@ -20,11 +21,24 @@ pub(super) struct Placed {
     to: [f64; 3],
 }
 
+/// An object for which there is no place.
+#[derive(Serialize)]
+pub(super) struct Unplaced {
+    object: String,
+    why: String,
+}
+
+/// What has come of a search for places.
+pub(super) struct Places {
+    pub(super) placed: Vec<Placed>,
+    unplaced: Vec<Unplaced>,
+}
+
 /// Proposes places or writes them.
 pub(super) fn place(args: &ScenePlaceArgs, out: &mut Output<'_>) -> Outcome {
     let (path, file) = read(&args.file, &args.config)?;
     let mut edit = SceneEdit::parse(&file.label, &file.text)?;
-    let placed = places(&mut edit, &file.label, &args.config)?;
+    let Places { placed, unplaced } = places(&mut edit, &file.label, &args.config)?;
     let text = edit.text();
     let checked = load(&args.config, TextFile::new(&*file.label, &*text))?.verdict();
     if args.write && !placed.is_empty() {
@@ -38,7 +52,7 @@ pub(super) fn place(args: &ScenePlaceArgs, out: &mut Output<'_>) -> Outcome {
         let problems = checked.as_ref().err().map(check::problems);
         out.json(&json!({
             "ok": checked.is_ok(), "file": path, "written": args.write && !placed.is_empty(),
-            "moved": moved, "problems": problems.unwrap_or_default(),
+            "moved": moved, "unplaced": unplaced, "problems": problems.unwrap_or_default(),
         }))?;
     } else {
         if !args.write && !placed.is_empty() {
@@ -46,6 +60,9 @@ pub(super) fn place(args: &ScenePlaceArgs, out: &mut Output<'_>) -> Outcome {
             lines.into_iter().try_for_each(|line| out.line(line))?;
         }
         note(summary(&placed, args.write));
+        for Unplaced { object, why } in &unplaced {
+            note(format_args!("`{object}` {why}"));
+        }
     }
     match checked {
         Ok(_) => Ok(Exit::Ok),
@@ -72,7 +89,7 @@ pub(super) fn places(
     edit: &mut SceneEdit,
     label: &str,
     config: &ConfigArgs,
-) -> Result<Vec<Placed>, Failure> {
+) -> Result<Places, Failure> {
     let mut with_all = SceneEdit::parse(label, &edit.text())?;
     let added = with_all.add_places();
     let settings = examine(config, Some(TextFile::new(label, with_all.text())))?;
@@ -86,12 +103,18 @@ pub(super) fn places(
     let new: Vec<usize> = (0..numbers.len()).filter(|&i| added.contains(&numbers[i])).collect();
     let mut arrangement = Arrangement::new(&setup, poses.clone());
     let changed = arrangement.arrange(&new);
-    let placed = changed.into_iter().map(|i| {
+    let unplaced = new.iter().filter(|i| !changed.contains(i)).map(|&i| {
+        let object = objects[numbers[i]].name.clone();
+        Unplaced { object, why: arrangement.why_unplaced(i) }
+    });
+    let unplaced = unplaced.collect();
+    let placed = changed.iter().map(|&i| {
         let n = numbers[i];
         let (to, from) = (arrangement.place(i), poses[i].xyz_m);
         edit.set_place(n, to);
         let from = (!added.contains(&n)).then_some(from);
         Placed { object: objects[n].name.clone(), from, to }
     });
-    Ok(placed.collect())
+    let placed = placed.collect();
+    Ok(Places { placed, unplaced })
 }

@@ -46,7 +46,7 @@ pub(super) struct Engine {
 impl Engine {
     /// Loads the model; `prompt` is an example of what people say. The error is for the operator.
     pub(super) fn open(model: &Path, prompt: &str) -> Result<Self, String> {
-        std::fs::File::open(model).map_err(|error| error.to_string())?;
+        safe_files::open_regular(model).map_err(|error| error.to_string())?;
         // Otherwise the library writes dozens of lines to standard error.
         install_logging_hooks();
         let refused = |error| format!("whisper.cpp rejects it: {error}");
