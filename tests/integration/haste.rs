@@ -126,7 +126,6 @@ fn all_answers_are_credited(settings: &[&str], kills: bool) {
                 break;
             }
         }
-        println!("{after_ms} ms, kills: {kills}: {} answers", tally.answers);
         let (wrong, all) = (tally.wrong.len(), tally.answers);
         assert!(wrong == 0, "{after_ms} ms: {wrong} of {all}: {:#?}", tally.wrong);
     }

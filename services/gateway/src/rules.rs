@@ -148,7 +148,7 @@ fn order(frame: Value) -> Option<Order> {
     for key in ["t", "began_ms", "ended_ms"] {
         said.remove(key);
     }
-    said.retain(|key, value| !value.is_null() && !(key == "source" && value == "typed"));
+    said.retain(|key, value| !value.is_null() && (key != "source" || *value != "typed"));
     let with = (!said.is_empty()).then_some(Value::Object(said));
     Some(Order { id, what, text, with })
 }
