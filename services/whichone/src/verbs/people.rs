@@ -50,7 +50,9 @@ pub(super) fn people(paths: &GroupPaths, args: &PeopleArgs, out: &mut Output<'_>
             let name = one_line(person.as_str());
             out.line(format_args!("{name} is forgotten"))?;
             if !is_known {
-                note(format_args!("nothing was learned about {name}; help: `whichone people` lists names"));
+                note(format_args!(
+                    "nothing was learned about {name}; help: `whichone people` lists names"
+                ));
             }
             note(
                 "what was said stays for a while in the speech service's journal, in recordings and in flights",
