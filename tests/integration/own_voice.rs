@@ -15,7 +15,7 @@ use speech_engines::recogniser::{PocketSphinx, PocketSphinxOptions, Recogniser};
 use speech_engines::voice::Synthesiser;
 use whichone_tests::console::Page;
 use whichone_tests::spoken::{Pink, Room, SPEAKERS, SPEECH_RMS, Speaker, levelled};
-use whichone_tests::{Group, wait_for, wait_for_or_none};
+use whichone_tests::{Group, YES_NO, wait_for, wait_for_or_none};
 
 use crate::console_voice::{ALOUD, ECHO_FREE, Stream, listening, receipt, said};
 use crate::speech::spoken;
@@ -224,7 +224,7 @@ fn answer_in_the_echo_of_the_question_is_heard_from_its_beginning() {
 #[test]
 #[ignore = "needs espeak-ng, flite and pocketsphinx"]
 fn words_whose_beginning_the_robot_covers_are_asked_for_again() {
-    let mut kitchen = Kitchen::new(&[ALOUD[0]]);
+    let mut kitchen = Kitchen::new(&[ALOUD[0], YES_NO]);
     let words = kitchen.words("no it is not the small white plastic bowl");
     let no = kitchen.words("no");
     kitchen.group.say("get me the bowl");

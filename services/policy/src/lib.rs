@@ -7,7 +7,6 @@
 mod checkpoint;
 mod inspection;
 mod journal_record;
-pub mod people;
 mod perceived;
 pub mod planner;
 mod planner_program;

@@ -1,11 +1,13 @@
 //! `people`: lists, exports and forgets what was learned about people who gave their name.
 
+mod known;
+
 use std::time::{Duration, Instant};
 
 use command_line::Outcome;
 use command_line::output::{Output, note};
+use known::{Errors, PersonRecord, known};
 use messages::{FixedText, Forget, PolicyView, Service, topics};
-use policy::people::{Errors, PersonRecord, known};
 use serde_json::json;
 use service::bus::{EncodedReader, Writer};
 use service::client::{Client, Polling, random_number};

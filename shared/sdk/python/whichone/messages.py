@@ -1842,8 +1842,8 @@ class Injection:
     end_ns: int
     """When the person had ended, monotonic clock; 0: when it arrives. Of a recording it is found out."""
     seen_prompt: int
-    """The latest prompt that the user was shown before; 0: not known. What is said answers no later one,
-    however long that has been said already: the client may not have heard of it."""
+    """The latest prompt that the user was shown before, as text or sound; 0: not known. If it is a question,
+    an answer is to this one, whether or not the robot's own voice has begun it; otherwise to no later one."""
     from_: str
     """Name of the person who types or points, printable and of at most 64 bytes; empty or `guest`: nobody in
     particular, of whom nothing is learned. Of sound nobody is known."""

@@ -10,26 +10,26 @@ use serde::Serialize;
 
 /// What was learned about a person.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PersonRecord {
+pub(super) struct PersonRecord {
     /// The name that they gave.
-    pub name: String,
+    pub(super) name: String,
     /// Deliveries that they did not refuse.
-    pub deliveries: u64,
+    pub(super) deliveries: u64,
     /// Errors by channel: `yes_no`, `open`, `choice`, `words`, `heard`; only those that were used.
-    pub errors: BTreeMap<&'static str, Errors>,
+    pub(super) errors: BTreeMap<&'static str, Errors>,
     /// Values taken for another one, by attribute.
-    pub misperceived: BTreeMap<String, Errors>,
+    pub(super) misperceived: BTreeMap<String, Errors>,
     /// Deliveries by object.
-    pub fetched: BTreeMap<String, u64>,
+    pub(super) fetched: BTreeMap<String, u64>,
 }
 
 /// Expected number of errors: what a person has said is right or wrong with a probability.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Errors {
+pub(super) struct Errors {
     /// Expected number of wrong ones.
-    pub wrong: f64,
+    pub(super) wrong: f64,
     /// Number of all.
-    pub of: f64,
+    pub(super) of: f64,
 }
 
 impl From<&Count> for Errors {
@@ -69,7 +69,7 @@ fn name(channel: Channel) -> &'static str {
 ///
 /// # Errors
 /// No journal, or one that cannot be read.
-pub fn known(journal: &Path) -> Result<Vec<PersonRecord>, JournalOpenError> {
+pub(super) fn known(journal: &Path) -> Result<Vec<PersonRecord>, JournalOpenError> {
     let reading = journal::read::<Record>(journal)?;
     let latest = reading.records.last();
     Ok(latest.iter().flat_map(|record| record.state.people().iter()).map(Into::into).collect())
