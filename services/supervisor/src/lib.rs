@@ -33,7 +33,7 @@ mod supervisor;
 
 pub use epoch::EpochError;
 pub use previous_run::PreviousRunError;
-pub use spawn::{SpawnError, find_program};
+pub use spawn::SpawnError;
 pub use supervisor::{StartError, Supervisor};
 
 /// Time since the supervisor's start, on the monotonic clock.

@@ -65,6 +65,7 @@ pub mod log_file;
 pub mod log_tail;
 pub mod logging;
 pub mod printable;
+pub mod program;
 mod reducer;
 pub mod robot_topics;
 pub mod service_loop;

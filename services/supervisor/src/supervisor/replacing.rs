@@ -8,9 +8,9 @@ use crate::Time;
 use crate::machine::Event;
 use crate::server::Client;
 use crate::service::Command;
-use crate::spawn::find_program;
 use crate::swap::{Move, Swap};
 use service::control::{Refusal, RefusalKind, Reply};
+use service::program::find_program;
 
 /// A replacement under way.
 #[derive(Debug)]

@@ -13,7 +13,7 @@ use scene::Scene;
 use scene_editing::misunderstood;
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
-use supervisor::find_program;
+use service::program::find_program;
 
 use crate::cli::CheckArgs;
 
