@@ -9,8 +9,6 @@ import { nextDecision, question, stopByKey, type } from "../lib/talk.mjs";
 import { test as base, expect } from "../lib/test.mjs";
 import { until } from "../lib/until.mjs";
 
-test.use(WITH_PICTURE);
-
 const test = base.extend({
   gateway: async ({ group }, use) => {
     const gateway = await Gateway.up(group);
@@ -18,6 +16,7 @@ const test = base.extend({
     await gateway.down();
   },
 });
+test.use(WITH_PICTURE);
 
 test("an operator finds the robot in the list, and its page works in its folder", async ({
   page,
