@@ -17,14 +17,13 @@ pub(crate) struct Signals {
 }
 
 impl Signals {
-    /// Takes over TERM, CHLD, and those of the terminal: INT, and HUP when it is closed. One of these that was ignored
-    /// stays so: `nohup` asks for that.
+    /// Takes over TERM, INT, CHLD, and HUP, which a closed terminal sends, unless it was ignored: `nohup` asks for that.
     pub(crate) fn new() -> io::Result<Self> {
         let (end, end_writer) = UnixStream::pair()?;
         let (child, child_writer) = UnixStream::pair()?;
         let ignored = procfs::ignored_signals();
-        let of_terminal = [SIGINT, SIGHUP].into_iter().filter(|it| !ignored.contains(it));
-        for signal in of_terminal.chain([SIGTERM]) {
+        let hang_up = (!ignored.contains(&SIGHUP)).then_some(SIGHUP);
+        for signal in [SIGTERM, SIGINT].into_iter().chain(hang_up) {
             pipe::register(signal, end_writer.try_clone()?)?;
         }
         pipe::register(SIGCHLD, child_writer)?;

@@ -1,7 +1,7 @@
 //! `up`: start of a group.
 
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use command_line::output::{Output, note};
 use command_line::{Outcome, configuration};
@@ -18,6 +18,8 @@ use crate::cli::{ConfigArgs, UpArgs, WaitFor};
 
 /// Time for which a new supervisor waits for services of a killed one.
 const EARLIER_SERVICES: Duration = Duration::from_secs(25);
+/// Time that a killed supervisor may take to end.
+const DYING: Duration = Duration::from_secs(1);
 /// Interval at which a supervisor that is starting is looked for.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 
@@ -99,12 +101,20 @@ pub(super) fn is_running(paths: &GroupPaths) -> Result<bool, Failure> {
     }
 }
 
+/// Refuses a second start. A supervisor that was killed may hold the group for another moment.
 fn refuse_twice(paths: &GroupPaths) -> Result<(), Failure> {
-    let Some(supervisor) = launch::holder(paths) else { return Ok(()) };
-    let name = paths.name();
-    let state = if is_running(paths)? { "running" } else { "starting" };
-    let what = format!("group {name} is already {state} (supervisor {supervisor})");
-    Err(Failure::new(Exit::NotReached, format!("{what}; another --group may run beside it")))
+    let until = Instant::now() + DYING;
+    while let Some(supervisor) = launch::holder(paths) {
+        let runs = is_running(paths)?;
+        if runs || Instant::now() > until {
+            let (name, state) = (paths.name(), if runs { "running" } else { "starting" });
+            let what = format!("group {name} is already {state} (supervisor {supervisor})");
+            let help = "another --group may run beside it";
+            return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
+        }
+        thread::sleep(LOOK_EVERY);
+    }
+    Ok(())
 }
 
 /// Returns the supervisor's options.
