@@ -2,7 +2,6 @@
 
 mod prepared;
 
-use rustix::fs::Mode;
 use rustix::process::Signal;
 use service::folders::make_private;
 use service::group::{GroupPaths, SHM};
@@ -11,9 +10,10 @@ use std::collections::BTreeSet;
 use std::fs::{self, File, Permissions};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
 use std::path::{Path, PathBuf};
-use whichone_tests::Group;
+use std::process::Command;
 use whichone_tests::isolated::{OTHER_USER, as_other_user};
 use whichone_tests::second_user::{assert_closed, everything};
+use whichone_tests::{Group, run};
 
 /// Lets others as far as the group's folder, as they are let in a home folder.
 fn open_home(paths: &GroupPaths) {
@@ -35,7 +35,7 @@ fn nothing_of_a_running_group_is_open_to_another_user() {
 #[test]
 #[ignore = "needs root: acts as another user"]
 fn generous_umask_and_folders_of_an_earlier_version_open_nothing() {
-    let mut group = Group::new();
+    let group = Group::new();
     open_home(group.paths());
     let log = group.paths().log();
     fs::create_dir_all(&log).unwrap();
@@ -43,10 +43,22 @@ fn generous_umask_and_folders_of_an_earlier_version_open_nothing() {
     for (path, mode) in [(group.paths().root(), 0o777), (&log, 0o777)] {
         fs::set_permissions(path, Permissions::from_mode(mode)).unwrap();
     }
-    // Of this process and those that it starts; other tests of it make files for themselves only.
-    let before = rustix::process::umask(Mode::empty());
-    let started = group.start(&[]);
-    rustix::process::umask(before);
+    // The mask of this process holds for other tests, too.
+    let config = concat!(env!("CARGO_MANIFEST_DIR"), "/../config");
+    let up = group.command(&[
+        "up",
+        "--detach",
+        "--wait",
+        "ready",
+        "--config",
+        config,
+        "--profile",
+        "ci",
+    ]);
+    let mut unmasked = Command::new("sh");
+    unmasked.args(["-c", "umask 0; exec \"$0\" \"$@\""]).arg(up.get_program()).args(up.get_args());
+    unmasked.envs(up.get_envs().filter_map(|(key, value)| Some((key, value?))));
+    let started = run(&mut unmasked, "", 120.0);
     assert_eq!(started.code, Some(0), "{started:?}\n{}", group.logs());
     assert_closed(&group);
     for path in everything(&group).iter().filter(|path| path.is_dir()) {
