@@ -10,10 +10,9 @@ use std::collections::BTreeSet;
 use std::fs::{self, File, Permissions};
 use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use whichone_tests::isolated::{OTHER_USER, as_other_user};
 use whichone_tests::second_user::{assert_closed, everything};
-use whichone_tests::{Group, run};
+use whichone_tests::{Group, after, run};
 
 /// Lets others as far as the group's folder, as they are let in a home folder.
 fn open_home(paths: &GroupPaths) {
@@ -55,10 +54,7 @@ fn generous_umask_and_folders_of_an_earlier_version_open_nothing() {
         "--profile",
         "ci",
     ]);
-    let mut unmasked = Command::new("sh");
-    unmasked.args(["-c", "umask 0; exec \"$0\" \"$@\""]).arg(up.get_program()).args(up.get_args());
-    unmasked.envs(up.get_envs().filter_map(|(key, value)| Some((key, value?))));
-    let started = run(&mut unmasked, "", 120.0);
+    let started = run(&mut after("umask 0", &up), "", 120.0);
     assert_eq!(started.code, Some(0), "{started:?}\n{}", group.logs());
     assert_closed(&group);
     for path in everything(&group).iter().filter(|path| path.is_dir()) {

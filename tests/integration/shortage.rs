@@ -1,6 +1,5 @@
 //! The motion stop, and recovery, while something is short or hangs.
 
-use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -13,7 +12,7 @@ use whichone_tests::console::http;
 use whichone_tests::shortage::{
     JointWatch, NoDescriptors, SmallDisk, SmallGroup, in_private_mounts,
 };
-use whichone_tests::{Ended, Group, run, wait_for};
+use whichone_tests::{Ended, Group, after, run, wait_for};
 
 /// Real time, so that there is a motion to be stopped.
 const REAL_TIME: &str = "arm.time_scale=1.0";
@@ -65,19 +64,11 @@ fn arm_stops_with_a_hung_supervisor_a_stopped_policy_and_no_free_descriptor() {
     group.down();
 }
 
-/// `whichone WORDS…` for the group, with a limit that no process of it can raise.
-fn limited(group: &Group, limit: &str, words: &[&str]) -> Ended {
-    let plain = group.command(words);
-    let mut limited = Command::new("sh");
-    limited.arg("-c").arg(format!("ulimit {limit}; exec \"$0\" \"$@\"")).arg(plain.get_program());
-    limited.args(plain.get_args());
-    limited.envs(plain.get_envs().filter_map(|(key, value)| Some((key, value?))));
-    run(&mut limited, "", 120.0)
-}
-
+/// Starts the group with a limit that no process of it can raise.
 fn up_within(group: &Group, limit: &str) -> Ended {
     let config = concat!(env!("CARGO_MANIFEST_DIR"), "/../config");
-    limited(group, limit, &["up", "--detach", "--config", config, "--profile", "ci"])
+    let up = group.command(&["up", "--detach", "--config", config, "--profile", "ci"]);
+    run(&mut after(&format!("ulimit {limit}"), &up), "", 120.0)
 }
 
 #[test]

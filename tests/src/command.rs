@@ -41,6 +41,15 @@ pub(crate) fn find_program(name: &str) -> Option<PathBuf> {
     folder.map(|folder| folder.join(name))
 }
 
+/// Returns `command`, run by a shell that does `first` before: a limit or a mask of that process alone.
+pub fn after(first: &str, command: &Command) -> Command {
+    let mut shell = Command::new("sh");
+    shell.arg("-c").arg(format!("{first}; exec \"$0\" \"$@\""));
+    shell.arg(command.get_program()).args(command.get_args());
+    shell.envs(command.get_envs().filter_map(|(key, value)| Some((key, value?))));
+    shell
+}
+
 /// Runs `command` to its end, giving it `input`.
 ///
 /// # Panics

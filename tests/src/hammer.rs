@@ -38,14 +38,7 @@ impl Hammer {
             let id = ClientId(0x4841_4d4d_4552);
             while !own.is_ending.load(Ordering::Relaxed) {
                 let (key, sound) = (request_key(id), Sound::Text(text.clone()));
-                let injection = Injection {
-                    key,
-                    onset_ns: 0,
-                    end_ns: 0,
-                    seen_prompt: 0,
-                    from: String::new(),
-                    sound,
-                };
+                let injection = Injection::new(key, sound);
                 writer.send(&injection).expect("shared memory");
                 own.sent.fetch_add(1, Ordering::Relaxed);
                 std::thread::sleep(PAUSE);

@@ -20,7 +20,7 @@ pub mod simulated_group;
 pub mod slow_network;
 pub mod spoken;
 
-pub use command::{Ended, program, run};
+pub use command::{Ended, after, program, run};
 pub use group::Group;
 pub use interrupt::end_with_groups;
 

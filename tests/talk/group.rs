@@ -136,14 +136,7 @@ impl Group {
                 let mut key = [0; 16];
                 key[..8].copy_from_slice(&self.texts.to_le_bytes());
                 let (key, sound) = (RequestKey(key), Sound::Text(text));
-                let injection = Injection {
-                    key,
-                    onset_ns: 0,
-                    end_ns: 0,
-                    seen_prompt: 0,
-                    from: String::new(),
-                    sound,
-                };
+                let injection = Injection::new(key, sound);
                 self.inboxes.speech.push(speech::In::Injection(injection));
             }
             Input::Motion(order) => {

@@ -67,17 +67,7 @@ impl Speech {
 
     fn inject(&mut self, after_s: f64, key: u8, sound: Sound) -> Outputs {
         let key = RequestKey([key; 16]);
-        self.take(
-            after_s,
-            In::Injection(Injection {
-                key,
-                onset_ns: 0,
-                end_ns: 0,
-                seen_prompt: 0,
-                from: String::new(),
-                sound,
-            }),
-        )
+        self.take(after_s, In::Injection(Injection::new(key, sound)))
     }
 
     fn type_in(&mut self, after_s: f64, text: &str) -> Outputs {

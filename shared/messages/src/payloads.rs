@@ -37,6 +37,13 @@ pub struct Injection {
     pub sound: Sound,
 }
 
+impl Injection {
+    /// Something to hear now, of a person, a time and a shown prompt that are not known.
+    pub fn new(key: RequestKey, sound: Sound) -> Self {
+        Self { key, onset_ns: 0, end_ns: 0, seen_prompt: 0, from: String::new(), sound }
+    }
+}
+
 /// A client's input.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Sound {

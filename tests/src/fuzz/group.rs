@@ -149,8 +149,7 @@ impl Group {
         self.said = self.said.wrapping_add(1);
         let key = RequestKey([self.said; 16]);
         let sound = Sound::Text(text.to_owned());
-        let injection =
-            Injection { key, onset_ns: 0, end_ns: 0, seen_prompt: 0, from: String::new(), sound };
+        let injection = Injection::new(key, sound);
         self.to_speech.push(speech::In::Injection(injection));
     }
 

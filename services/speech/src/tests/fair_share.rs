@@ -11,17 +11,7 @@ impl Speech {
     /// Types request `number` of a client.
     fn request(&mut self, client: ClientId, number: u64, text: &str) -> Outputs {
         let (key, sound) = (RequestKey::new(client, number), Sound::Text(text.to_owned()));
-        self.take(
-            0.001,
-            In::Injection(Injection {
-                key,
-                onset_ns: 0,
-                end_ns: 0,
-                seen_prompt: 0,
-                from: String::new(),
-                sound,
-            }),
-        )
+        self.take(0.001, In::Injection(Injection::new(key, sound)))
     }
 
     /// Applies utterances up to `seq`; returns the clients whose requests are accepted then.

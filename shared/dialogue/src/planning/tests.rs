@@ -262,3 +262,28 @@ fn entropy(mass: &[f64]) -> f64 {
 fn upper(reduced: &Reduced, bound: &Bound, mass: &[f64]) -> f64 {
     OneStepEvaluator::new(reduced, bound).look_ahead(mass).value.upper
 }
+
+/// A belief of a reduced problem; the higher the power, the nearer to certainty.
+fn random_mass(rng: &mut Rng, reduced: &Reduced, power: i32) -> Vec<f64> {
+    let mut mass: Vec<f64> =
+        reduced.mass.iter().map(|_| rng.uniform().powi(power) + 1e-15).collect();
+    let sum: f64 = mass.iter().sum();
+    mass.iter_mut().for_each(|m| *m /= sum);
+    mass
+}
+
+fn expect_no_better_question(
+    reduced: &Reduced,
+    bound: &Bound,
+    mass: &[f64],
+    here: f64,
+    label: &str,
+) {
+    for query in reduced.all_queries() {
+        let after: f64 = (outcomes(reduced, query, mass).iter())
+            .map(|(p, mass)| p * upper(reduced, bound, mass))
+            .sum();
+        let asked = reduced.channel(query).price.pay(after);
+        assert!(asked <= here + 1e-6, "{label} {query:?}: {asked} above {here}");
+    }
+}

@@ -60,10 +60,7 @@ fn no_announced_pick_beats_the_upper_bound() {
         let mut rng = Rng::new(81);
         for _ in 0..6 {
             let power = 1 + rng.below(16) as i32;
-            let mut mass: Vec<f64> =
-                reduced.mass.iter().map(|_| rng.uniform().powi(power) + 1e-15).collect();
-            let sum: f64 = mass.iter().sum();
-            mass.iter_mut().for_each(|m| *m /= sum);
+            let mass = random_mass(&mut rng, reduced, power);
             let here = upper(reduced, &bound, &mass);
             assert!(problem.costs.wait_value() <= here + 1e-9, "{label} wait");
             for class in 0..reduced.classes() {
@@ -73,13 +70,7 @@ fn no_announced_pick_beats_the_upper_bound() {
                 };
                 assert!(value <= here + 1e-6, "{label} pick {class}: {value} above {here}");
             }
-            for query in reduced.all_queries() {
-                let after: f64 = (outcomes(reduced, query, &mass).iter())
-                    .map(|(p, mass)| p * upper(reduced, &bound, mass))
-                    .sum();
-                let asked = reduced.channel(query).price.pay(after);
-                assert!(asked <= here + 1e-6, "{label} {query:?}: {asked} above {here}");
-            }
+            expect_no_better_question(reduced, &bound, &mass, here, label);
         }
     });
 }

@@ -11,21 +11,12 @@ fn no_action_beats_the_upper_bound() {
         let mut rng = Rng::new(75);
         for _ in 0..8 {
             let power = 1 + rng.below(12) as i32;
-            let mut mass: Vec<f64> =
-                reduced.mass.iter().map(|_| rng.uniform().powi(power) + 1e-15).collect();
-            let sum: f64 = mass.iter().sum();
-            mass.iter_mut().for_each(|m| *m /= sum);
+            let mass = random_mass(&mut rng, reduced, power);
             let here = upper(reduced, &bound, &mass);
             let top = mass.iter().zip(&reduced.share).map(|(m, s)| m * s).fold(0.0, f64::max);
             assert!(problem.costs.pick_value(top) <= here + 1e-9, "{label} pick");
             assert!(problem.costs.wait_value() <= here + 1e-9, "{label} wait");
-            for query in reduced.all_queries() {
-                let after: f64 = (outcomes(reduced, query, &mass).iter())
-                    .map(|(p, mass)| p * upper(reduced, &bound, mass))
-                    .sum();
-                let asked = reduced.channel(query).price.pay(after);
-                assert!(asked <= here + 1e-6, "{label} {query:?}: {asked} above {here}");
-            }
+            expect_no_better_question(reduced, &bound, &mass, here, label);
         }
     });
 }
