@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use serde_json::{Value as Json, json};
 use speech_engines::audio::read_wav;
 use tungstenite::Message;
-use whichone_tests::Group;
 use whichone_tests::console::{Page, Visitor};
+use whichone_tests::{EARS, Group};
 
 use crate::speech::spoken;
 
@@ -90,7 +90,7 @@ pub(crate) fn said(text: &str, behind_s: f64) -> Vec<i16> {
 
 /// A group that hears, and a page that is in control of it.
 pub(crate) fn listening(settings: &[&str]) -> (Group, Page) {
-    let group = Group::up(settings);
+    let group = Group::up(&[settings, &[EARS]].concat());
     let mut page = group.page(&Visitor::operator(1));
     page.until_part("hearing", |hearing| hearing["recogniser"] == "ready");
     page.until_part("turn", |turn| turn["state"] != "down");

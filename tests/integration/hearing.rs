@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 use speech_engines::audio::read_wav;
-use whichone_tests::{Group, wait_for};
+use whichone_tests::{EARS, Group, wait_for};
 
 use crate::speech::{answer_by_voice, spoken};
 
@@ -127,7 +127,7 @@ fn microphone_is_muted_while_the_robot_speaks() {
 #[ignore = "needs espeak-ng and pocketsphinx"]
 fn listen_streams_standard_input_and_live_files() {
     let folder = tempfile::tempdir().unwrap();
-    let group = Group::up(&[]);
+    let group = Group::up(&[EARS]);
     let file = spoken("get me the small white bowl", folder.path());
     let live = group.must(&["listen", &file, "--live", "--json"]).stdout;
     let raw = folder.path().join("raw");

@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
-use whichone_tests::{Group, run, wait_for};
+use whichone_tests::{EARS, Group, run, wait_for};
 
 /// Synthesises `text` into a WAV file in `folder` and returns its path.
 pub(crate) fn spoken(text: &str, folder: &Path) -> String {
@@ -43,7 +43,7 @@ pub(crate) fn answer_by_voice(group: &Group, mut say: impl FnMut(&str)) {
 #[ignore = "needs espeak-ng and pocketsphinx"]
 fn listen_conducts_a_dialogue_by_files() {
     let folder = tempfile::tempdir().unwrap();
-    let group = Group::up(&[]);
+    let group = Group::up(&[EARS]);
     group.must(&["listen", &spoken("get me the small white bowl", folder.path())]);
     answer_by_voice(&group, |answer| {
         group.must(&["listen", &spoken(answer, folder.path())]);
@@ -58,7 +58,7 @@ fn listen_conducts_a_dialogue_by_files() {
 #[ignore = "needs espeak-ng and pocketsphinx"]
 fn unreadable_sound_is_refused_with_a_reason() {
     let folder = tempfile::tempdir().unwrap();
-    let group = Group::up(&[]);
+    let group = Group::up(&[EARS]);
     let noise = folder.path().join("noise.wav");
     std::fs::write(&noise, b"this is not a WAV file").unwrap();
     for path in [noise.display().to_string(), "/no/such/file.wav".to_owned()] {

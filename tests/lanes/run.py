@@ -207,7 +207,7 @@ class Runner:
             thread.join()
 
     def run_alone(self, selected):
-        options = ["--test-threads=1", *self.lanes["alone"], *self.options]
+        options = [f"--test-threads={os.cpu_count() or 2}", *self.lanes["alone"], *self.options]
         for program in selected:
             if not program.is_unit and self.has_any(program):
                 self.record(self.run(program, options))

@@ -19,6 +19,10 @@ const DOWN_S: f64 = 10.0;
 /// Timeout of a pick, seconds: on a busy machine the arm of a physics engine may have to halt and begin again.
 const PICK_S: f64 = 180.0;
 
+/// The setting of a group to which a test speaks. Groups for which a test sets nothing of speech have no recogniser: to
+/// load its model takes most of the processor time of a start.
+pub const EARS: &str = "speech.recogniser=auto";
+
 static NUMBER: AtomicU32 = AtomicU32::new(0);
 
 /// A running group. Dropping it stops it; [`Group::down`] also checks that nothing is left.
@@ -113,6 +117,9 @@ impl Group {
         let config = self.config.display().to_string();
         let mut words = vec!["up", "--detach", "--wait", "ready", "--timeout", "90", "--config"];
         words.extend([config.as_str(), "--profile", "ci"]);
+        if !options.iter().any(|option| option.starts_with("speech.")) {
+            words.extend(["--set", "speech.recogniser=none"]);
+        }
         words.extend(options);
         self.call(&words)
     }

@@ -21,7 +21,7 @@ pub mod slow_network;
 pub mod spoken;
 
 pub use command::{Ended, after, program, run};
-pub use group::Group;
+pub use group::{EARS, Group};
 pub use interrupt::end_with_groups;
 
 use config::Settings;

@@ -14,7 +14,7 @@ use whichone_tests::console::{Console, Page, Visitor};
 use whichone_tests::gateway::Gateway;
 use whichone_tests::link::{Mirror, Relay, is_built};
 use whichone_tests::ros2::{CYCLONE, Ros2Peer};
-use whichone_tests::{Ended, Group, run};
+use whichone_tests::{EARS, Ended, Group, run};
 
 /// Time for a way that repeats its order.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -131,6 +131,7 @@ impl Givers {
             let path = spoken("stop", folder.path());
             (folder, path)
         });
+        settings.extend(recording.iter().map(|_| EARS.to_owned()));
         let ros2 = ros2.map(Mutex::new);
         Self { settings, ros2, gateway: None, mirror: None, relay, recording }
     }

@@ -13,11 +13,11 @@ use vocabulary::{ActKind, PickOutcome, Rng};
 #[test]
 fn journals_fold_again_bit_for_bit() {
     let cases: [(Change, u64); 5] = [
-        (|_| {}, 40),
-        (pointing::with_gestures, 8),
-        (prior::by_history, 8),
-        (person::learning, 3),
-        (seconds::pointing, 3),
+        (|_| {}, 16),
+        (pointing::with_gestures, 4),
+        (prior::by_history, 4),
+        (person::learning, 2),
+        (seconds::pointing, 2),
     ];
     for (n, (change, seeds)) in cases.into_iter().enumerate() {
         let settings = settings_with(change);

@@ -4,6 +4,7 @@ use super::fixture::{Settings, answer, first, reply, settings, settings_of};
 use crate::manager::{Manager, State};
 use crate::rendering;
 use scene::{AttributeId, ObjectId, Question, Reading, Response, ValueId};
+use std::sync::LazyLock;
 use vocabulary::ActKind;
 
 const TOOLS: &str = include_str!("../../../../../config/scenes/tools.toml");
@@ -56,15 +57,31 @@ fn talk(manager: &mut Manager, user: &User) -> State {
     state
 }
 
+/// The dialogues of a scene's users, whom a single misbelief leads.
+struct Talks {
+    settings: Settings,
+    ends: Vec<(User, State)>,
+}
+
+/// Of the bowls and of the tools.
+static TALKS: LazyLock<[Talks; 2]> = LazyLock::new(|| {
+    [settings(), settings_of(TOOLS)].map(|settings| {
+        let mut manager = settings.manager();
+        let users = misbeliefs(&settings).into_iter();
+        let ends = users.map(|user| {
+            let end = talk(&mut manager, &user);
+            (user, end)
+        });
+        Talks { ends: ends.collect(), settings }
+    })
+});
+
 #[test]
 fn no_misbelief_leads_round_in_circles() {
-    for settings in [settings(), settings_of(TOOLS)] {
-        let mut manager = settings.manager();
-        let all = misbeliefs(&settings);
-        assert!(all.len() >= 36);
-        for user in all {
-            let state = talk(&mut manager, &user);
-            let asked = asked(&state);
+    for Talks { settings, ends } in &*TALKS {
+        assert!(ends.len() >= 36);
+        for (user, end) in ends {
+            let asked = asked(end);
             let named = || settings.scene.object(user.wanted).name.clone();
             assert!(asked.len() <= 15, "{} {:?}: {asked:?}", named(), user.mistaken);
             for question in &asked {
@@ -78,9 +95,9 @@ fn no_misbelief_leads_round_in_circles() {
 /// Where what is said fits no object, none is fetched without a word.
 #[test]
 fn what_fits_nothing_is_offered_before_it_is_fetched() {
-    for settings in [settings(), settings_of(TOOLS)] {
-        let mut manager = settings.manager();
-        let model = manager.model().clone();
+    for Talks { settings, ends } in &*TALKS {
+        let manager = settings.manager();
+        let model = manager.model();
         let perceived = |user: &User, k: AttributeId| {
             if k == user.mistaken.0 { Some(user.mistaken.1) } else { model.value(user.wanted, k) }
         };
@@ -89,21 +106,20 @@ fn what_fits_nothing_is_offered_before_it_is_fetched() {
             attributes.all(|k| model.value(i, k) == perceived(user, k))
         };
         let mut wrong = 0;
-        for user in misbeliefs(&settings) {
-            if (0..model.objects()).any(|i| fits(&user, i.into())) {
+        for (user, end) in ends {
+            if (0..model.objects()).any(|i| fits(user, i.into())) {
                 continue;
             }
-            let state = talk(&mut manager, &user);
-            let picked = state.act.pick.expect("a pick").1;
+            let picked = end.act.pick.expect("a pick").1;
             // An attribute that was not asked about is no misfit.
-            let denies = asked(&state).iter().any(|question| match question {
+            let denies = asked(end).iter().any(|question| match question {
                 Question::Attribute(k, v) => {
-                    (perceived(&user, *k) == Some(*v)) != model.has(picked, *k, *v)
+                    (perceived(user, *k) == Some(*v)) != model.has(picked, *k, *v)
                 }
                 _ => false,
             });
-            let is_offered = asked(&state).contains(&Question::Point(picked));
-            assert!(!denies || is_offered, "{:?}: {:?}", user.mistaken, asked(&state));
+            let is_offered = asked(end).contains(&Question::Point(picked));
+            assert!(!denies || is_offered, "{:?}: {:?}", user.mistaken, asked(end));
             wrong += usize::from(denies && picked != user.wanted);
         }
         assert_eq!(wrong, 0, "what is offered can be declined");
