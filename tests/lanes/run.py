@@ -189,7 +189,8 @@ class Runner:
 
     def run_all(self, selected):
         """Runs the programs side by side, the longest first, and then what needs the machine for itself."""
-        longest = lambda program: -self.seconds.get(program.name, 0)
+        rank = {name: n for n, name in enumerate(self.lanes["slowest"])}
+        longest = lambda program: (-self.seconds.get(program.name, 0), rank.get(program.name, len(rank)))
         processes = [p for p in selected if p.name in self.lanes["processes"]]
         pure = sorted((p for p in selected if p not in processes), key=longest)
         processes.sort(key=longest)
