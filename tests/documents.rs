@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+use std::collections::HashSet;
 use std::path::{Component, Path, PathBuf};
 
 use clap::Command;
@@ -238,4 +239,26 @@ fn constants_are_read() {
     assert_eq!(constant(text, "A"), Some(65_536.0));
     assert_eq!(constant(text, "B"), Some(3_072.0));
     assert_eq!((constant(text, "AB"), constant(text, "C")), (None, None));
+}
+
+/// Names of the tests in a table's third column.
+fn named_tests(text: &str) -> Vec<&str> {
+    let cells = text.lines().filter_map(|line| line.strip_prefix("| ")?.split(" | ").nth(2));
+    let words = cells.flat_map(|cell| cell.split('`').skip(1).step_by(2));
+    words.filter(|word| word.contains('_') && !word.contains([' ', '.'])).collect()
+}
+
+#[test]
+fn tests_of_the_hazards_exist() {
+    let text = page(Path::new("docs/safety.md")).text;
+    let grep = ["-rhoE", "--include=*.rs", r"fn [a-z0-9_]+\(\)", "services", "shared", "tests"];
+    let found = std::process::Command::new("grep").args(grep).current_dir(TOP).output().unwrap();
+    let functions = String::from_utf8(found.stdout).unwrap();
+    let functions: HashSet<&str> = functions.lines().collect();
+    let named = named_tests(&text);
+    assert!(named.len() > 20, "{named:?}");
+    for test in named {
+        let is_there = functions.contains(format!("fn {test}()").as_str());
+        assert!(is_there, "docs/safety.md: expected the name of a test, found {test}");
+    }
 }
