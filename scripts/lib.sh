@@ -26,6 +26,10 @@ install() {
     printf '%s\n' "${missing[@]}"
 }
 
+# Settings of builds that are used once, as by continuous integration: nothing is kept for a later build, no debugger
+# runs, and few large units of code take a tenth less processor time than many small ones.
+build_once() { export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG=0 CARGO_PROFILE_DEV_CODEGEN_UNITS=4; }
+
 # A ROS 1 master, robot and recorder, for the tests and benchmarks of the bridge.
 ros1_packages=(python3-rosmaster python3-rospy python3-rosbag python3-sensor-msgs python3-trajectory-msgs
     python3-genmsg python3-genpy ros-std-msgs ros-geometry-msgs ros-sensor-msgs)

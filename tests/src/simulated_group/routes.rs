@@ -2,6 +2,7 @@
 
 use std::iter::repeat_n;
 
+use dialogue::Model;
 use evaluation::simulation::users::TimedUtterance;
 use messages::{ActKind, PresentationState, Presented, Source};
 use service::{Span, Time};
@@ -130,7 +131,22 @@ impl SimulatedGroup {
         };
         let presentation = (presented.prompt, presented.presentation);
         let times = (Time(presented.started_ns), ends);
-        self.user.hear((&self.settings.scene, &self.model), presentation, times, ended);
+        let question = self.user.asked(presented.prompt);
+        let wanted = self.user.wanted();
+        let table = self.table.as_ref();
+        match question.and_then(|it| table.and_then(|table| table.by_place(it, wanted))) {
+            // Where they stand is what perception says; what they are like, the user knows better.
+            Some((scene, seen)) => {
+                let model = Model::new(&scene, self.settings.dialogue.params);
+                self.user.want(seen);
+                self.user.hear((&scene, &model), presentation, times, ended);
+                self.user.want(wanted);
+            }
+            None => {
+                let domain = (&self.settings.scene, &self.model);
+                self.user.hear(domain, presentation, times, ended);
+            }
+        }
     }
 
     pub(super) fn route_grounding(&mut self, outputs: Vec<grounding::Out>) {

@@ -152,11 +152,35 @@ impl TableTop {
 
     /// Returns whether the wanted object fits best once all values of it are known.
     pub(super) fn fits_best(&self, wanted: ObjectId) -> bool {
-        let known: Vec<_> = self.table.objects.iter().map(|object| object.known.clone()).collect();
-        fits_best(&self.file, &known, wanted)
+        fits_best(&self.file, &self.known(), wanted)
     }
 
-    fn nearest(&self, xyz: &[f64; 3]) -> Option<(usize, f64)> {
+    /// Returns the scene that a question about places is about, which the scene file does not have, and in it the
+    /// wanted object, if it was perceived where it stands.
+    pub(super) fn by_place(
+        &self,
+        question: Question,
+        wanted: Option<ObjectId>,
+    ) -> Option<(Scene, Option<ObjectId>)> {
+        let scene = self.file.with_objects(&self.known());
+        let k = question.attribute()?;
+        if !scene.attributes().get(k.index())?.by_place {
+            return None;
+        }
+        let here = wanted.and_then(|wanted| self.places[wanted.index()]);
+        let stands = |here: [f64; 3]| {
+            let perceived = self.table.objects.iter().map(|it| off(&it.place, &here)).enumerate();
+            let nearest = perceived.min_by(|a, b| a.1.total_cmp(&b.1));
+            nearest.filter(|(_, far)| *far < GRASPED_M).map(|(i, _)| ObjectId::from(i))
+        };
+        Some((scene, here.and_then(stands)))
+    }
+
+    fn known(&self) -> Vec<Perceived> {
+        self.table.objects.iter().map(|object| object.known.clone()).collect()
+    }
+
+    fn nearest(&self, xyz: &[f64]) -> Option<(usize, f64)> {
         let standing = self.places.iter().enumerate();
         let far = standing.filter_map(|(i, place)| Some((i, off(&(*place)?, xyz))));
         far.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, far)| *far < GRASPED_M)
@@ -166,8 +190,7 @@ impl TableTop {
     pub(super) fn question(&self, question: Question) -> Question {
         let Question::Point(number) = question else { return question };
         let object = self.table.objects.iter().find(|object| object.known.number == number);
-        let place = object.map(|object| [object.place[0], object.place[1], object.place[2]]);
-        let there = place.and_then(|place| self.nearest(&place));
+        let there = object.and_then(|object| self.nearest(&object.place));
         there.map_or(Question::None, |(object, _)| Question::Point(object.into()))
     }
 }
@@ -190,6 +213,6 @@ pub(super) fn fits_best(file: &Scene, known: &[Perceived], wanted: ObjectId) -> 
 }
 
 /// Horizontal distance, metres.
-fn off(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+fn off(a: &[f64], b: &[f64]) -> f64 {
     (0..2).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
 }

@@ -131,6 +131,11 @@ impl GroupUser {
         self.questions.insert(prompt, (scene_key, question));
     }
 
+    /// The question of that prompt.
+    pub(super) fn asked(&self, prompt: u64) -> Option<Question> {
+        self.questions.get(&prompt).map(|(_, question)| *question)
+    }
+
     /// The robot has begun to say a question that will end at `ends`, or has said it to its `end`.
     pub(super) fn hear(
         &mut self,
