@@ -14,6 +14,17 @@ use crate::token_class::classes;
 
 /// All that can be said of a phrase.
 const POLARITIES: [Polarity; 3] = [Polarity::Wanted, Polarity::Denied, Polarity::Neither];
+/// Intents beside which a wish may stand: "is there a brass screw? I'd like it".
+const OPEN: [Intent; 8] = [
+    Intent::Inform,
+    Intent::None,
+    Intent::AskWhich,
+    Intent::AskWhere,
+    Intent::AskCount,
+    Intent::AskWhether,
+    Intent::PutBack,
+    Intent::Chore,
+];
 /// Most phrases whose fate is open; that of the others, the surest, is their most probable one.
 const OPEN_MAX: usize = 3;
 
@@ -31,12 +42,10 @@ impl Phrase {
 
 /// Returns the readings of an utterance whose values the rules read as `best`, each with its weight, best first.
 pub(crate) fn weighed(parsed: &ParsedUtterance<'_>, best: Reading) -> Vec<(f64, Reading)> {
-    let is_description = matches!(best.intent, Intent::Inform | Intent::None);
     // Orders to a machine and foreign words are nobody's wishes, whatever stands beside them.
     let is_foreign = |tag: &Tag<'_>| tag.is_any(classes![Injection OtherLanguage]);
     let is_elsewhere = parsed.code || parsed.tags.iter().any(is_foreign);
-    // "the other one" says more than the words beside it.
-    let is_open = is_description && best.refers == Reference::None && !parsed.content.alternatives;
+    let is_open = OPEN.contains(&best.intent) && !parsed.content.alternatives;
     if !is_open || is_elsewhere {
         return vec![(1.0, best)];
     }
@@ -118,8 +127,12 @@ fn reading(
     phrases: &[Phrase],
     fate: &[usize],
 ) -> Reading {
-    let differs =
-        |(phrase, fate): &(&Phrase, &usize)| phrase.examples[0].proposal as usize != **fate;
+    // What another intent describes is no wish.
+    let proposed = |phrase: &Phrase| match best.intent {
+        Intent::Inform => phrase.examples[0].proposal as usize,
+        _ => Polarity::Neither as usize,
+    };
+    let differs = |(phrase, fate): &(&Phrase, &usize)| proposed(phrase) != **fate;
     let changed: Vec<WordId> = phrases
         .iter()
         .zip(fate)
@@ -129,6 +142,9 @@ fn reading(
     let mut reading = best.clone();
     if changed.is_empty() {
         return reading;
+    }
+    if best.intent != Intent::Inform {
+        reading = Reading { refers: best.refers, ..Reading::default() };
     }
     take_out(&mut reading, &changed);
     let concerned = |phrase: &Phrase| phrase.examples.iter().any(|it| changed.contains(&it.word));
@@ -179,6 +195,9 @@ fn take_out(reading: &mut Reading, words: &[WordId]) {
         }
     }
     reading.doubt.response = doubt.response;
+    if matches!(reading.refers, Reference::Relation(_)) {
+        return;
+    }
     reading.further.iter_mut().for_each(|group| group.retain(|word| !words.contains(word)));
     reading.further.retain(|group| !group.is_empty());
     if reading.base.is_empty() && !reading.further.is_empty() {

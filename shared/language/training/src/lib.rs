@@ -28,7 +28,7 @@ pub use cross::{Unseen, without_author, without_fifths};
 pub use inputs::trained_on;
 pub use line::{Line, Marked, lines};
 pub use linear::{Lesson, Linear};
-pub use model::{Model, fitted};
+pub use model::{Model, Sums, fitted};
 pub use scenes::{Scenes, files, question};
 pub use score::{Score, Scored, as_read, labels};
 pub use slips::with_typo;

@@ -3,7 +3,7 @@
 use language::recurrent::{PARTS, Recurrent};
 use language::{Judge, ROWS};
 
-use crate::linear::Linear;
+use crate::linear::{Linear, softmax};
 use crate::recurrent;
 use crate::sources::{Sources, Taught};
 
@@ -12,7 +12,9 @@ const EPOCHS: usize = 4;
 /// Rate of the first step of a weight.
 const RATE: f64 = 0.0125;
 /// Factors of the sums of both parts, as they were fitted to authors who were not seen.
-const SHARES: [f64; 2] = [0.45, 0.55];
+const SHARES: [f64; 2] = [0.35, 0.35];
+/// Further factor of both where the parts and the rules' proposal agree, fitted likewise.
+const AGREED: f64 = 1.0;
 
 /// Both parts.
 #[derive(Clone, Debug)]
@@ -21,8 +23,16 @@ pub struct Model {
     recurrent: Recurrent,
 }
 
-/// Sums of both parts for a value word, with its label.
-pub type Sums = ([[f64; 3]; 2], usize);
+/// What was found for a value word.
+#[derive(Clone, Copy, Debug)]
+pub struct Sums {
+    /// Sums of both parts.
+    pub parts: [[f64; 3]; 2],
+    /// Number of what the rules propose.
+    pub proposal: usize,
+    /// Number of the label.
+    pub label: usize,
+}
 
 impl Model {
     /// Trains on the lines that are chosen by the name of their source and their number.
@@ -38,7 +48,8 @@ impl Model {
         let labels = &taught.utterance.labels;
         let labelled = recurrent.iter().zip(labels).filter_map(|(sums, it)| Some((sums, (*it)?)));
         let both = |(lesson, (recurrent, label)): (&crate::Lesson, (&[f32; 3], usize))| {
-            ([self.linear.sums(&lesson.rows), recurrent.map(f64::from)], label)
+            let parts = [self.linear.sums(&lesson.rows), recurrent.map(f64::from)];
+            Sums { parts, proposal: lesson.proposal, label }
         };
         taught.lessons.iter().zip(labelled).map(both).collect()
     }
@@ -56,7 +67,7 @@ impl Model {
         let linear = || (0..ROWS).flat_map(|row| self.linear.row(row));
         let step = linear().fold(1e-9, |most: f64, it| most.max(it.abs())) / f64::from(i16::MAX);
         let mut bytes = hash.to_le_bytes().to_vec();
-        bytes.extend(((step * SHARES[0]) as f32).to_le_bytes());
+        bytes.extend([step * SHARES[0], AGREED].map(|it| (it as f32).to_le_bytes()).concat());
         for weight in linear() {
             bytes.extend(((weight / step).round() as i16).to_le_bytes());
         }
@@ -74,17 +85,33 @@ impl Model {
     }
 }
 
-/// Returns the factors of both parts' sums under which the labels are most probable.
-pub fn fitted(sums: &[Sums]) -> [f64; 2] {
-    let loss = |shares: &[f64; 2]| -> f64 {
-        let stated = |parts: &[[f64; 3]; 2]| {
-            crate::linear::softmax(
-                [0, 1, 2].map(|n| shares[0] * parts[0][n] + shares[1] * parts[1][n]),
-            )
+/// Returns the factors of both parts' sums under which the labels are most probable, and the further one where they agree
+/// with each other and with the rules.
+pub fn fitted(sums: &[Sums]) -> [f64; 3] {
+    let loss = |[linear, recurrent, agreed]: [f64; 3], all: &[&Sums]| -> f64 {
+        let loss = |it: &&Sums| {
+            let [a, b] = it.parts;
+            let stated = softmax([0, 1, 2].map(|n| agreed * (linear * a[n] + recurrent * b[n])));
+            -stated[it.label].max(1e-9).ln()
         };
-        sums.iter().map(|(parts, label)| -stated(parts)[*label].max(1e-9).ln()).sum()
+        all.iter().map(loss).sum()
     };
-    let grid = || (0..=24).map(|n| 0.05 * f64::from(n));
-    let candidates = grid().flat_map(|linear| grid().map(move |recurrent| [linear, recurrent]));
-    candidates.min_by(|a, b| loss(a).total_cmp(&loss(b))).unwrap_or(SHARES)
+    let best = |candidates: Vec<[f64; 3]>, all: &[&Sums]| {
+        let best = candidates.into_iter().min_by(|a, b| loss(*a, all).total_cmp(&loss(*b, all)));
+        best.unwrap_or([1.0; 3])
+    };
+    let (agreed, others): (Vec<&Sums>, Vec<&Sums>) = sums.iter().partition(|it| it.agree());
+    let grid = || (0..=16).map(|n| 0.05 * f64::from(n));
+    let shares = grid().flat_map(|linear| grid().map(move |other| [linear, other, 1.0]));
+    let [linear, recurrent, _] = best(shares.collect(), &others);
+    let further = (2..=60).map(|n| [linear, recurrent, 0.1 * f64::from(n)]).collect();
+    best(further, &agreed)
+}
+
+impl Sums {
+    /// Returns whether both parts find most what the rules propose.
+    pub fn agree(&self) -> bool {
+        let best = |sums: &[f64; 3]| (0..3).max_by(|a, b| sums[*a].total_cmp(&sums[*b]));
+        self.parts.iter().all(|sums| best(sums) == Some(self.proposal))
+    }
 }

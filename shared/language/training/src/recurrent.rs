@@ -22,6 +22,10 @@ const UNSEEN: f64 = 0.15;
 /// Numbers of units of a step.
 const GATES: usize = 3 * UNITS;
 
+fn env(name: &str, default: f64) -> f64 {
+    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
+}
+
 /// An utterance with the label of each of its value words that has one, and how much they count.
 #[derive(Clone, Debug)]
 pub struct Utterance {
@@ -38,16 +42,17 @@ pub fn train(utterances: &[&Utterance], seed: u64) -> Recurrent {
     let mut random = Rng::new(seed);
     let mut trained = Training::new(&mut random);
     let mut order: Vec<usize> = (0..utterances.len()).collect();
-    let steps = EPOCHS * utterances.len().div_ceil(BATCH);
+    let epochs = env("EPOCHS", EPOCHS as f64) as usize;
+    let steps = epochs * utterances.len().div_ceil(BATCH);
     let mut done = 0;
-    for _ in 0..EPOCHS {
+    for _ in 0..epochs {
         crate::linear::shuffle(&mut order, &mut random);
         for batch in order.chunks(BATCH) {
             for n in batch {
                 trained.learn(utterances[*n], &mut random);
             }
             let progress = f64::from(done as u32) / steps as f64;
-            trained.step(RATES.0 * (RATES.1 / RATES.0).powf(progress));
+            trained.step(env("RATE", RATES.0) * (RATES.1 / RATES.0).powf(progress));
             done += 1;
         }
     }
@@ -61,6 +66,8 @@ struct Training {
     square: Vec<f32>,
     /// Rows of embeddings with a gradient.
     touched: Vec<u32>,
+    unseen: f64,
+    shrink: f32,
 }
 
 impl Training {
@@ -73,7 +80,15 @@ impl Training {
         let zeros = vec![0.0; weights.len()];
         let model = Recurrent { weights };
         let (mean, square) = (zeros.clone(), zeros.clone());
-        Self { model, gradient: zeros, mean, square, touched: Vec::new() }
+        Self {
+            model,
+            gradient: zeros,
+            mean,
+            square,
+            touched: Vec::new(),
+            unseen: env("UNSEEN", UNSEEN),
+            shrink: env("SHRINK", SHRINK as f64) as f32,
+        }
     }
 
     /// Adds the gradient of an utterance.
@@ -84,7 +99,7 @@ impl Training {
         }
         let seen = |rows: &Vec<u32>, random: &mut Rng| -> Vec<u32> {
             // The first row, what kind of element it is, is always seen.
-            let is_hidden = random.uniform() < UNSEEN;
+            let is_hidden = random.uniform() < self.unseen;
             rows.iter().take(if is_hidden { 1 } else { rows.len() }).copied().collect()
         };
         let elements: Vec<Vec<u32>> =
@@ -199,7 +214,8 @@ impl Training {
             self.mean[n] += (1.0 - STAYS.0) * (gradient - self.mean[n]);
             self.square[n] += (1.0 - STAYS.1) * (gradient * gradient - self.square[n]);
             let weight = &mut self.model.weights[n];
-            *weight -= rate * (self.mean[n] / (self.square[n].sqrt() + 1e-6) + SHRINK * *weight);
+            *weight -=
+                rate * (self.mean[n] / (self.square[n].sqrt() + 1e-6) + self.shrink * *weight);
         }
     }
 }

@@ -158,10 +158,15 @@ fn is_same(marked: &Marked, surface: &str) -> bool {
 }
 
 /// What the weighted readings of an utterance say of its value words, as the policy takes them: wanted are also those of
-/// further objects, and what asks, or cancels, describes no wish.
+/// further objects, and what asks describes no wish.
 pub fn as_read(readings: &[(f64, Reading)], mentions: &[Mention]) -> Vec<Mention> {
     let weight = |holds: &dyn Fn(&Reading) -> bool| -> f64 {
-        let wishes = readings.iter().filter(|(_, reading)| reading.intent == Intent::Inform);
+        let is_wish = |reading: &Reading| match reading.intent {
+            Intent::Inform | Intent::Stop | Intent::GoOn => true,
+            Intent::Cancel => !reading.excluded.is_empty(),
+            _ => false,
+        };
+        let wishes = readings.iter().filter(|(_, reading)| is_wish(reading));
         wishes.filter(|(_, reading)| holds(reading)).map(|(weight, _)| weight).sum()
     };
     let has = |groups: &[Vec<WordId>], word| groups.iter().any(|group| group.contains(&word));

@@ -73,7 +73,10 @@ impl Sources {
             let taught = of_table(scenes, &here.join("../../..").join(file))?;
             all.entry(OWN_TABLES.into()).or_default().extend(taught);
         }
-        for (file, times, weight) in TEMPLATES {
+        let env =
+            |name: &str, d: f64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
+        for (n, (file, times, weight)) in TEMPLATES.into_iter().enumerate() {
+            let weight = if n == 1 { env("HARD", weight) } else { env("EASY", weight) };
             all.insert(file.into(), of_templates(scenes, &here.join(file), times, weight)?);
         }
         Ok(Self { all, authors })
@@ -121,7 +124,10 @@ impl Taught {
             labels.into_iter().map(|label| label.map(|label| label as usize)).collect();
         let lessons = features.examples.into_iter().zip(&labels);
         let lessons = lessons
-            .filter_map(|(it, label)| Some(Lesson { rows: it.rows, label: (*label)?, weight }))
+            .filter_map(|(it, label)| {
+                let (label, proposal) = ((*label)?, it.proposal as usize);
+                Some(Lesson { rows: it.rows, label, proposal, weight })
+            })
             .collect();
         let utterance = Utterance { sequence: features.sequence, labels, weight };
         Self { line, asked, lessons, utterance, slips: Vec::new() }
