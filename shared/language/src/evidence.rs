@@ -42,11 +42,13 @@ impl Phrase {
 
 /// Returns the readings of an utterance whose values the rules read as `best`, each with its weight, best first.
 pub(crate) fn weighed(parsed: &ParsedUtterance<'_>, best: Reading) -> Vec<(f64, Reading)> {
-    // Orders to a machine and foreign words are nobody's wishes, whatever stands beside them.
-    let is_foreign = |tag: &Tag<'_>| tag.is_any(classes![Injection OtherLanguage]);
+    // Orders to a machine are nobody's wishes, whatever stands beside them, nor are foreign words that the rules leave.
+    let is_left = best.intent == Intent::None;
+    let is_foreign = |tag: &Tag<'_>| {
+        tag.is_any(classes![Injection]) || is_left && tag.is_any(classes![OtherLanguage])
+    };
     let is_elsewhere = parsed.code || parsed.tags.iter().any(is_foreign);
-    let is_open = OPEN.contains(&best.intent) && !parsed.content.alternatives;
-    if !is_open || is_elsewhere {
+    if !OPEN.contains(&best.intent) || is_elsewhere {
         return vec![(1.0, best)];
     }
     let features = features(parsed, &best);

@@ -9,8 +9,8 @@ use std::sync::LazyLock;
 use crate::features::{Example, Features, ROWS};
 use crate::recurrent::{PARTS, Recurrent};
 
-/// The weights, as `reader_training` writes them: a hash of what they were trained on; a scale and the factor
-/// of agreement, and the linear weights of the three polarities by row; then each part of the recurrent ones, a scale and weights of 8 bits.
+/// The weights, as `reader_training` writes them: a hash of what they were trained on; a scale, and the linear weights of the
+/// three polarities by row; then each part of the recurrent ones, a scale and weights of 8 bits.
 const FILE: &[u8] = include_bytes!("vocabulary/judge.bin");
 /// Length of the hash, bytes.
 const HASH: usize = 8;
@@ -24,8 +24,6 @@ static BUILT_IN: LazyLock<Judge> =
 #[derive(Clone, Debug)]
 pub struct Judge {
     scale: f64,
-    /// Factor of all sums where both parts and the rules agree.
-    agreed: f64,
     weights: Vec<[i16; 3]>,
     recurrent: Recurrent,
 }
@@ -33,8 +31,7 @@ pub struct Judge {
 impl Judge {
     /// Reads the weights as `reader_training` writes them; none if there are fewer than the judge has.
     pub fn from_bytes(file: &[u8]) -> Option<Self> {
-        let (scale, rest) = number(file.get(HASH..)?)?;
-        let (agreed, mut rest) = number(rest)?;
+        let (scale, mut rest) = number(file.get(HASH..)?)?;
         let word = |bytes: &[u8]| i16::from_le_bytes([bytes[0], bytes[1]]);
         let row = |row: &[u8]| [word(row), word(&row[2..]), word(&row[4..])];
         let weights = rest.get(..6 * ROWS)?.chunks_exact(6).map(row).collect();
@@ -46,8 +43,7 @@ impl Judge {
             recurrent.weights.extend(part);
             rest = &bytes[size..];
         }
-        let (scale, agreed) = (f64::from(scale), f64::from(agreed));
-        Some(Self { scale, agreed, weights, recurrent })
+        Some(Self { scale: f64::from(scale), weights, recurrent })
     }
 
     /// The judge whose weights are part of the program.
@@ -59,11 +55,8 @@ impl Judge {
     pub(crate) fn stated(&self, features: &Features) -> Vec<[f64; 3]> {
         let recurrent = self.recurrent.sums(&features.sequence);
         let stated = |(example, recurrent): (&Example, [f32; 3])| {
-            let linear = self.linear(&example.rows).map(|sum| sum as f64 * self.scale);
-            let recurrent = recurrent.map(f64::from);
-            let agree = [linear, recurrent].iter().all(|it| best(it) == example.proposal as usize);
-            let factor = if agree { self.agreed } else { 1.0 };
-            let sums = [0, 1, 2].map(|n| factor * (linear[n] + recurrent[n]));
+            let linear = self.linear(&example.rows);
+            let sums = [0, 1, 2].map(|n| linear[n] as f64 * self.scale + f64::from(recurrent[n]));
             let most = sums.into_iter().fold(f64::MIN, f64::max);
             let powers = sums.map(|sum| (sum - most).exp());
             let all: f64 = powers.iter().sum();
@@ -82,10 +75,6 @@ impl Judge {
         }
         sums
     }
-}
-
-fn best(sums: &[f64; 3]) -> usize {
-    (0..3).max_by(|a, b| sums[*a].total_cmp(&sums[*b])).unwrap_or(0)
 }
 
 /// A number of 32 bits, and what follows it.

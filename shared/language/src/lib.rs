@@ -16,7 +16,7 @@
 //! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`, `errands.rs`, `statements.rs`) | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
 //! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
-//! | judge | `features.rs`, `judge.rs` (`vocabulary/judge.bin`), `mentions.rs` | how probable each value word is wanted, denied, neither |
+//! | judge | `features.rs`, `sequence.rs` (`word_groups.rs`), `judge.rs`, `recurrent.rs` (`vocabulary/judge.bin`), `mentions.rs` | how probable each value word is wanted, denied, neither |
 //! | readings | `parsed.rs` (`hedges.rs`), `evidence.rs` | alternative readings with weights and doubts |
 //!
 //! [`CompletenessJudge`] judges whether a speaker will go on after a pause.

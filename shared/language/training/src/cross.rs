@@ -75,52 +75,11 @@ fn score<'a>(
     let mut unseen = Unseen::default();
     for taught in left_out {
         unseen.sums.extend(model.sums(taught));
-        if std::env::var("FAST").is_ok() {
-            continue;
-        }
         for (n, taught) in std::iter::once(taught).chain(&taught.slips).enumerate() {
             let Taught { line, asked, .. } = taught;
             let reader = &scenes.get(&line.scene)?.1;
             let mentions = reader.mentions(&line.text, *asked);
             let read = as_read(&reader.readings(&line.text, &[], *asked), &mentions);
-            if n == 0 && std::env::var("WHY").is_ok() {
-                let ls = crate::score::labels(line, mentions.iter().map(|m| &*m.surface));
-                for ((m, r), l) in mentions.iter().zip(&read).zip(ls) {
-                    let Some(l) = l else { continue };
-                    let best = |m: &language::Mention| {
-                        let v = [m.wanted, m.denied, m.neither];
-                        (0..3).max_by(|a, b| v[*a].total_cmp(&v[*b])).unwrap()
-                    };
-                    let tag = if best(m) != l as usize {
-                        "JUDGE"
-                    } else if best(r) != l as usize {
-                        "READ"
-                    } else {
-                        continue;
-                    };
-                    println!(
-                        "{tag} {} | {} | {} [{} {l:?}] judge {:.2} {:.2} {:.2} read {:.2} {:.2} {:.2}  {:?}",
-                        line.scene,
-                        line.question,
-                        line.text,
-                        m.surface,
-                        m.wanted,
-                        m.denied,
-                        m.neither,
-                        r.wanted,
-                        r.denied,
-                        r.neither,
-                        reader
-                            .readings(&line.text, &[], *asked)
-                            .iter()
-                            .map(|(w, r)| format!(
-                                "{w:.2} {:?} {:?} b{:?} x{:?} f{:?} {:?}",
-                                r.intent, r.refers, r.base, r.excluded, r.further, r.response
-                            ))
-                            .next()
-                    );
-                }
-            }
             if n == 0 {
                 unseen.judged.add(line, &mentions);
                 unseen.read.add(line, &read);

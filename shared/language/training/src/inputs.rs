@@ -19,6 +19,8 @@ pub fn trained_on() -> Result<u64, String> {
         .collect();
     let sources = [
         "features.rs",
+        "recurrent.rs",
+        "sequence.rs",
         "token_class.rs",
         "vocabulary/word_groups.txt",
         "tests/cases.txt",

@@ -15,8 +15,6 @@ pub struct Lesson {
     pub rows: Vec<u32>,
     /// Number of the label.
     pub label: usize,
-    /// Number of what the rules propose.
-    pub proposal: usize,
     /// How much it counts.
     pub weight: f64,
 }

@@ -12,9 +12,7 @@ const EPOCHS: usize = 4;
 /// Rate of the first step of a weight.
 const RATE: f64 = 0.0125;
 /// Factors of the sums of both parts, as they were fitted to authors who were not seen.
-const SHARES: [f64; 2] = [0.35, 0.35];
-/// Further factor of both where the parts and the rules' proposal agree, fitted likewise.
-const AGREED: f64 = 1.0;
+const SHARES: [f64; 2] = [0.4, 0.35];
 
 /// Both parts.
 #[derive(Clone, Debug)]
@@ -23,16 +21,8 @@ pub struct Model {
     recurrent: Recurrent,
 }
 
-/// What was found for a value word.
-#[derive(Clone, Copy, Debug)]
-pub struct Sums {
-    /// Sums of both parts.
-    pub parts: [[f64; 3]; 2],
-    /// Number of what the rules propose.
-    pub proposal: usize,
-    /// Number of the label.
-    pub label: usize,
-}
+/// Sums of both parts for a value word, and its label.
+pub type Sums = ([[f64; 3]; 2], usize);
 
 impl Model {
     /// Trains on the lines that are chosen by the name of their source and their number.
@@ -48,8 +38,7 @@ impl Model {
         let labels = &taught.utterance.labels;
         let labelled = recurrent.iter().zip(labels).filter_map(|(sums, it)| Some((sums, (*it)?)));
         let both = |(lesson, (recurrent, label)): (&crate::Lesson, (&[f32; 3], usize))| {
-            let parts = [self.linear.sums(&lesson.rows), recurrent.map(f64::from)];
-            Sums { parts, proposal: lesson.proposal, label }
+            ([self.linear.sums(&lesson.rows), recurrent.map(f64::from)], label)
         };
         taught.lessons.iter().zip(labelled).map(both).collect()
     }
@@ -67,7 +56,7 @@ impl Model {
         let linear = || (0..ROWS).flat_map(|row| self.linear.row(row));
         let step = linear().fold(1e-9, |most: f64, it| most.max(it.abs())) / f64::from(i16::MAX);
         let mut bytes = hash.to_le_bytes().to_vec();
-        bytes.extend([step * SHARES[0], AGREED].map(|it| (it as f32).to_le_bytes()).concat());
+        bytes.extend(((step * SHARES[0]) as f32).to_le_bytes());
         for weight in linear() {
             bytes.extend(((weight / step).round() as i16).to_le_bytes());
         }
@@ -85,33 +74,16 @@ impl Model {
     }
 }
 
-/// Returns the factors of both parts' sums under which the labels are most probable, and the further one where they agree
-/// with each other and with the rules.
-pub fn fitted(sums: &[Sums]) -> [f64; 3] {
-    let loss = |[linear, recurrent, agreed]: [f64; 3], all: &[&Sums]| -> f64 {
-        let loss = |it: &&Sums| {
-            let [a, b] = it.parts;
-            let stated = softmax([0, 1, 2].map(|n| agreed * (linear * a[n] + recurrent * b[n])));
-            -stated[it.label].max(1e-9).ln()
+/// Returns the factors of both parts' sums under which the labels are most probable.
+pub fn fitted(sums: &[Sums]) -> [f64; 2] {
+    let loss = |[linear, recurrent]: &[f64; 2]| -> f64 {
+        let loss = |([a, b], label): &Sums| {
+            let stated = softmax([0, 1, 2].map(|n| linear * a[n] + recurrent * b[n]));
+            -stated[*label].max(1e-9).ln()
         };
-        all.iter().map(loss).sum()
+        sums.iter().map(loss).sum()
     };
-    let best = |candidates: Vec<[f64; 3]>, all: &[&Sums]| {
-        let best = candidates.into_iter().min_by(|a, b| loss(*a, all).total_cmp(&loss(*b, all)));
-        best.unwrap_or([1.0; 3])
-    };
-    let (agreed, others): (Vec<&Sums>, Vec<&Sums>) = sums.iter().partition(|it| it.agree());
     let grid = || (0..=16).map(|n| 0.05 * f64::from(n));
-    let shares = grid().flat_map(|linear| grid().map(move |other| [linear, other, 1.0]));
-    let [linear, recurrent, _] = best(shares.collect(), &others);
-    let further = (2..=60).map(|n| [linear, recurrent, 0.1 * f64::from(n)]).collect();
-    best(further, &agreed)
-}
-
-impl Sums {
-    /// Returns whether both parts find most what the rules propose.
-    pub fn agree(&self) -> bool {
-        let best = |sums: &[f64; 3]| (0..3).max_by(|a, b| sums[*a].total_cmp(&sums[*b]));
-        self.parts.iter().all(|sums| best(sums) == Some(self.proposal))
-    }
+    let all = grid().flat_map(|linear| grid().map(move |recurrent| [linear, recurrent]));
+    all.min_by(|a, b| loss(a).total_cmp(&loss(b))).unwrap_or(SHARES)
 }

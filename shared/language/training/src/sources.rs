@@ -31,7 +31,7 @@ const TABLES: [&str; 4] = [
     "tests/fixtures/utterances/fresh_2.txt",
 ];
 /// Name of what the tables teach, among the sources.
-pub const OWN_TABLES: &str = "own tables";
+const OWN_TABLES: &str = "own tables";
 /// How much a lesson of a line with a slip counts.
 const SLIP: f64 = 0.5;
 
@@ -73,10 +73,7 @@ impl Sources {
             let taught = of_table(scenes, &here.join("../../..").join(file))?;
             all.entry(OWN_TABLES.into()).or_default().extend(taught);
         }
-        let env =
-            |name: &str, d: f64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(d);
-        for (n, (file, times, weight)) in TEMPLATES.into_iter().enumerate() {
-            let weight = if n == 1 { env("HARD", weight) } else { env("EASY", weight) };
+        for (file, times, weight) in TEMPLATES {
             all.insert(file.into(), of_templates(scenes, &here.join(file), times, weight)?);
         }
         Ok(Self { all, authors })
@@ -124,10 +121,7 @@ impl Taught {
             labels.into_iter().map(|label| label.map(|label| label as usize)).collect();
         let lessons = features.examples.into_iter().zip(&labels);
         let lessons = lessons
-            .filter_map(|(it, label)| {
-                let (label, proposal) = ((*label)?, it.proposal as usize);
-                Some(Lesson { rows: it.rows, label, proposal, weight })
-            })
+            .filter_map(|(it, label)| Some(Lesson { rows: it.rows, label: (*label)?, weight }))
             .collect();
         let utterance = Utterance { sequence: features.sequence, labels, weight };
         Self { line, asked, lessons, utterance, slips: Vec::new() }
