@@ -1,7 +1,7 @@
 //! What an utterance says of each value word in it.
 
 use ::vocabulary::Language;
-use scene::{Question, Reading, WordId};
+use scene::{Intent, Question, Reading, WordId};
 use words::{Tokens, normalise};
 
 use crate::features::{Example, Features, features};
@@ -79,10 +79,13 @@ pub(crate) fn values(parsed: &ParsedUtterance<'_>) -> impl Iterator<Item = (usiz
 pub(crate) fn proposal(parsed: &ParsedUtterance<'_>, reading: &Reading, word: WordId) -> Polarity {
     // A word that is repeated is said of the object wherever it stands.
     let is_asserted = parsed.content.base.iter().any(|value| value.word == word);
-    let is_described = !matches!(reading.intent, scene::Intent::None);
+    // What a question or an errand names is no wish.
+    let is_wish = matches!(reading.intent, Intent::Inform | Intent::Cancel | Intent::Stop);
     match () {
-        () if is_asserted && is_described => Polarity::Wanted,
-        () if reading.excluded.iter().any(|group| group.contains(&word)) => Polarity::Denied,
+        () if is_asserted && is_wish => Polarity::Wanted,
+        () if is_wish && reading.excluded.iter().any(|group| group.contains(&word)) => {
+            Polarity::Denied
+        }
         () => Polarity::Neither,
     }
 }

@@ -181,7 +181,10 @@ fn of_table(scenes: &Scenes, path: &Path) -> Result<Vec<Taught>, String> {
         let label = |(surface, polarity)| Marked { surface, polarity };
         let proposals = examples.iter().map(|it| (it.surface.clone(), it.proposal));
         let marked = proposals.clone().map(label).collect();
-        let labels = proposals.map(|it| Some(it.1)).collect();
+        // A value beside one that is wanted may be taken back: the rules leave it out, authors deny it.
+        let is_wish = examples.iter().any(|it| it.proposal == Polarity::Wanted);
+        let is_plain = |polarity| !is_wish || polarity != Polarity::Neither;
+        let labels = proposals.map(|it| Some(it.1).filter(|it| is_plain(*it))).collect();
         let line = Line { scene, text, marked, ..Line::default() };
         taught.push(Taught::new(line, asked, features, labels, OWN));
     }
