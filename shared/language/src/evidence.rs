@@ -129,12 +129,8 @@ fn reading(
     phrases: &[Phrase],
     fate: &[usize],
 ) -> Reading {
-    // What another intent describes is no wish.
-    let proposed = |phrase: &Phrase| match best.intent {
-        Intent::Inform => phrase.examples[0].proposal as usize,
-        _ => Polarity::Neither as usize,
-    };
-    let differs = |(phrase, fate): &(&Phrase, &usize)| proposed(phrase) != **fate;
+    let differs =
+        |(phrase, fate): &(&Phrase, &usize)| phrase.examples[0].proposal as usize != **fate;
     let changed: Vec<WordId> = phrases
         .iter()
         .zip(fate)
