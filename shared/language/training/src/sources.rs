@@ -174,16 +174,15 @@ fn of_templates(
 
 fn of_table(scenes: &Scenes, path: &Path) -> Result<Vec<Taught>, String> {
     let mut taught = Vec::new();
-    for Row { scene, question: asked, text } in table(scenes, path)? {
+    for Row { scene, question: asked, text, is_repair } in table(scenes, path)? {
         let (_, reader) = scenes.get(&scene)?;
         let features = reader.features(&text, asked);
         let examples = &features.examples;
         let label = |(surface, polarity)| Marked { surface, polarity };
         let proposals = examples.iter().map(|it| (it.surface.clone(), it.proposal));
         let marked = proposals.clone().map(label).collect();
-        // A value beside one that is wanted may be taken back: the rules leave it out, authors deny it.
-        let is_wish = examples.iter().any(|it| it.proposal == Polarity::Wanted);
-        let is_plain = |polarity| !is_wish || polarity != Polarity::Neither;
+        // What is taken back the rules leave out, and authors deny it.
+        let is_plain = |polarity| !is_repair || polarity != Polarity::Neither;
         let labels = proposals.map(|it| Some(it.1).filter(|it| is_plain(*it))).collect();
         let line = Line { scene, text, marked, ..Line::default() };
         taught.push(Taught::new(line, asked, features, labels, OWN));
