@@ -5,8 +5,8 @@
 
 use scene::{Intent, Reading, Reference, Response, WordId};
 
-use crate::features::{Example, MENTIONS_MAX, examples};
-use crate::judge::judge;
+use crate::features::{Example, Features, MENTIONS_MAX, features};
+use crate::judge::{FLOOR, Judge};
 use crate::mentions::Polarity;
 use crate::parsed::{ParsedUtterance, READINGS_MAX};
 use crate::tagger::Tag;
@@ -14,9 +14,17 @@ use crate::token_class::classes;
 
 /// All that can be said of a phrase.
 const POLARITIES: [Polarity; 3] = [Polarity::Wanted, Polarity::Denied, Polarity::Neither];
-/// Probability from which on what the rules propose stands as they read it, judged: a lower one costs wrong fetches, a
-/// higher one questions that ordinary requests do not need (`tests/talk`).
-const SURE: f64 = 0.9;
+/// Intents beside which a wish may stand: "is there a brass screw? I'd like it".
+const OPEN: [Intent; 8] = [
+    Intent::Inform,
+    Intent::None,
+    Intent::AskWhich,
+    Intent::AskWhere,
+    Intent::AskCount,
+    Intent::AskWhether,
+    Intent::PutBack,
+    Intent::Chore,
+];
 /// Most phrases whose fate is open; that of the others, the surest, is their most probable one.
 const OPEN_MAX: usize = 3;
 
@@ -34,20 +42,21 @@ impl Phrase {
 
 /// Returns the readings of an utterance whose values the rules read as `best`, each with its weight, best first.
 pub(crate) fn weighed(parsed: &ParsedUtterance<'_>, best: Reading) -> Vec<(f64, Reading)> {
-    let is_description = matches!(best.intent, Intent::Inform | Intent::None);
-    // Orders to a machine and foreign words are nobody's wishes, whatever stands beside them.
-    let is_foreign = |tag: &Tag<'_>| tag.is_any(classes![Injection OtherLanguage]);
+    // Orders to a machine are nobody's wishes, whatever stands beside them, nor are foreign words that the rules leave.
+    let is_left = best.intent == Intent::None;
+    let is_foreign = |tag: &Tag<'_>| {
+        tag.is_any(classes![Injection]) || is_left && tag.is_any(classes![OtherLanguage])
+    };
     let is_elsewhere = parsed.code || parsed.tags.iter().any(is_foreign);
-    // "the other one" says more than the words beside it.
-    let is_open = is_description && best.refers == Reference::None && !parsed.content.alternatives;
-    if !is_open || is_elsewhere {
+    if !OPEN.contains(&best.intent) || is_elsewhere {
         return vec![(1.0, best)];
     }
-    let examples = examples(parsed, &best);
-    if examples.is_empty() || examples.len() >= MENTIONS_MAX {
+    let features = features(parsed, &best);
+    if features.examples.is_empty() || features.examples.len() >= MENTIONS_MAX {
         return vec![(1.0, best)];
     }
-    let phrases = phrases(examples);
+    let phrases =
+        phrases(&parsed.judge.unwrap_or_else(|| Judge::built_in()).stated(&features), features);
     let mut readings: Vec<(f64, Reading)> = Vec::new();
     for (weight, fate) in fates(&phrases).into_iter().filter(|(weight, _)| *weight > 0.0) {
         let reading = reading(parsed, &best, &phrases, &fate);
@@ -66,32 +75,25 @@ pub(crate) fn weighed(parsed: &ParsedUtterance<'_>, best: Reading) -> Vec<(f64, 
 
 /// The phrases, each with what the judge states of its values together. A phrase of which the rules take a part back
 /// ("the red wrench, I mean the black one") is two.
-fn phrases(examples: Vec<Example>) -> Vec<Phrase> {
+fn phrases(stated: &[[f64; 3]], features: Features) -> Vec<Phrase> {
     let mut phrases: Vec<Phrase> = Vec::new();
-    for example in examples {
+    for (example, stated) in features.examples.into_iter().zip(stated) {
         let is_its = |it: &&mut Phrase| {
             let first = &it.examples[0];
             (first.phrase, first.proposal) == (example.phrase, example.proposal)
         };
         match phrases.iter_mut().find(is_its) {
-            Some(phrase) => phrase.examples.push(example),
-            None => phrases.push(Phrase { examples: vec![example], stated: [0.0; 3] }),
+            Some(phrase) => {
+                phrase.examples.push(example);
+                phrase.stated.iter_mut().zip(stated).for_each(|(sum, stated)| *sum += stated);
+            }
+            None => phrases.push(Phrase { examples: vec![example], stated: *stated }),
         }
     }
     for phrase in &mut phrases {
-        let mut logs = [0.0; 3];
-        for example in &phrase.examples {
-            let stated = judge(&example.rows);
-            logs.iter_mut().zip(stated).for_each(|(log, stated)| *log += stated.max(1e-6).ln());
-        }
-        let means = logs.map(|log| (log / phrase.examples.len() as f64).exp());
-        let all: f64 = means.iter().sum();
-        phrase.stated = means.map(|mean| mean / all);
-        let proposed = phrase.examples[0].proposal as usize;
-        if phrase.stated[proposed] >= SURE {
-            phrase.stated = [0.0; 3];
-            phrase.stated[proposed] = 1.0;
-        }
+        let count = phrase.examples.len() as f64;
+        let [wanted, denied, neither] = phrase.stated.map(|sum| sum / count * (1.0 - FLOOR));
+        phrase.stated = [wanted, denied, neither + FLOOR];
     }
     phrases
 }
@@ -120,51 +122,93 @@ fn fates(phrases: &[Phrase]) -> Vec<(f64, Vec<usize>)> {
     fates
 }
 
-/// The reading in which the phrases have that fate: that of the rules where they propose it.
+/// The reading in which the phrases have that fate: that of the rules, changed in the words of which they propose another.
 fn reading(
     parsed: &ParsedUtterance<'_>,
     best: &Reading,
     phrases: &[Phrase],
     fate: &[usize],
 ) -> Reading {
-    let of = |n: usize| POLARITIES[fate[n]];
-    let mut examples = phrases
+    let differs =
+        |(phrase, fate): &(&Phrase, &usize)| phrase.examples[0].proposal as usize != **fate;
+    let changed: Vec<WordId> = phrases
         .iter()
-        .enumerate()
-        .flat_map(|(n, it)| it.examples.iter().map(move |example| (of(n), example)));
-    if examples.all(|(fate, example)| fate == example.proposal) {
-        return best.clone();
+        .zip(fate)
+        .filter(differs)
+        .flat_map(|(phrase, _)| phrase.examples.iter().map(|example| example.word))
+        .collect();
+    let mut reading = best.clone();
+    if changed.is_empty() {
+        return reading;
     }
-    let fated = |polarity: Polarity| {
-        phrases.iter().enumerate().filter(move |(n, _)| of(*n) == polarity).map(|(_, it)| it)
-    };
+    if best.intent != Intent::Inform {
+        reading = Reading { refers: best.refers, ..Reading::default() };
+    }
+    take_out(&mut reading, &changed);
+    let concerned = |phrase: &Phrase| phrase.examples.iter().any(|it| changed.contains(&it.word));
     let doubt = |example: &Example| parsed.tags[example.at].word_doubt();
-    let base: Vec<&Example> = fated(Polarity::Wanted).flat_map(|it| &it.examples).collect();
-    let excluded: Vec<&Phrase> = fated(Polarity::Denied).collect();
-    let mut reading = Reading {
-        base: base.iter().map(|example| example.word).collect(),
-        excluded: excluded.iter().map(|phrase| words(phrase)).collect(),
-        refers: best.refers,
-        intent: best.intent,
-        ..Reading::default()
-    };
+    for (phrase, fate) in phrases.iter().zip(fate).filter(|(phrase, _)| concerned(phrase)) {
+        match POLARITIES[*fate] {
+            Polarity::Wanted => {
+                for example in &phrase.examples {
+                    add(&mut reading.doubt.base, reading.base.len(), doubt(example));
+                    reading.base.push(example.word);
+                }
+            }
+            Polarity::Denied => {
+                let doubt = phrase.examples.iter().map(doubt).fold(0.0, f64::max);
+                add(&mut reading.doubt.excluded, reading.excluded.len(), doubt);
+                reading.excluded.push(words(phrase));
+            }
+            Polarity::Neither => {}
+        }
+    }
     // An answer that stands in no value word stays.
-    if !parsed.content.answers.is_empty() {
-        (reading.response, reading.doubt.response) = (best.response, best.doubt.response);
+    if parsed.content.answers.is_empty() {
+        (reading.response, reading.doubt.response) = (Response::None, 0.0);
     }
     let says_something = !reading.base.is_empty()
         || !reading.excluded.is_empty()
         || reading.response != Response::None;
-    reading.intent = if says_something { Intent::Inform } else { best.intent };
-    reading.doubt.base = base.iter().map(|example| doubt(example)).collect();
-    let group = |phrase: &&Phrase| phrase.examples.iter().map(doubt).fold(0.0, f64::max);
-    reading.doubt.excluded = excluded.iter().map(group).collect();
-    for doubts in [&mut reading.doubt.base, &mut reading.doubt.excluded] {
-        while doubts.last() == Some(&0.0) {
-            doubts.pop();
-        }
+    if says_something {
+        reading.intent = Intent::Inform;
     }
     reading
+}
+
+/// Takes words out of a reading, wherever they stand.
+fn take_out(reading: &mut Reading, words: &[WordId]) {
+    let (base, excluded) =
+        (std::mem::take(&mut reading.base), std::mem::take(&mut reading.excluded));
+    let doubt = std::mem::take(&mut reading.doubt);
+    for (n, word) in base.into_iter().enumerate().filter(|(_, word)| !words.contains(word)) {
+        add(&mut reading.doubt.base, reading.base.len(), doubt.of_word(n));
+        reading.base.push(word);
+    }
+    for (n, mut group) in excluded.into_iter().enumerate() {
+        group.retain(|word| !words.contains(word));
+        if !group.is_empty() {
+            add(&mut reading.doubt.excluded, reading.excluded.len(), doubt.of_group(n));
+            reading.excluded.push(group);
+        }
+    }
+    reading.doubt.response = doubt.response;
+    if matches!(reading.refers, Reference::Relation(_)) {
+        return;
+    }
+    reading.further.iter_mut().for_each(|group| group.retain(|word| !words.contains(word)));
+    reading.further.retain(|group| !group.is_empty());
+    if reading.base.is_empty() && !reading.further.is_empty() {
+        reading.base = reading.further.remove(0);
+    }
+}
+
+/// Notes the doubt of entry `at`; those at the end that are certain are left out.
+fn add(doubts: &mut Vec<f64>, at: usize, doubt: f64) {
+    if doubt > 0.0 {
+        doubts.resize(at, 0.0);
+        doubts.push(doubt);
+    }
 }
 
 /// The words of a phrase, each once.

@@ -7,8 +7,11 @@ use scene::{Intent, Reading, StableHash, WordId};
 use crate::mentions::{Polarity, proposal, values};
 use crate::parsed::ParsedUtterance;
 use crate::question_words::QuestionWords;
+use crate::recurrent::Sequence;
+use crate::sequence::sequence;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
+use crate::word_groups::group_of;
 
 /// Number of rows.
 pub const ROWS: usize = 1 << 16;
@@ -29,6 +32,8 @@ pub struct Example {
     pub(crate) at: usize,
     /// The scene's word.
     pub word: WordId,
+    /// The words as they were said, in plain lower case; empty unless they are asked for.
+    pub surface: String,
     /// Number of its noun phrase in the utterance: the values of one phrase share their fate.
     pub phrase: usize,
     /// What the rules make of it.
@@ -37,30 +42,44 @@ pub struct Example {
     pub rows: Vec<u32>,
 }
 
+/// What the judge looks at in an utterance.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Features {
+    /// The value words, each with the rows of the linear part.
+    pub examples: Vec<Example>,
+    /// What the recurrent part reads.
+    pub sequence: Sequence,
+}
+
 /// One element of an utterance as the judge sees it.
 #[derive(Clone, Copy)]
-enum Element<'a> {
+pub(crate) enum Element<'a> {
     Pause,
     /// A noun phrase with a value, by its number.
     Phrase(usize),
     Word(&'a Tag<'a>),
 }
 
-/// Returns the value words of an utterance with their features; `reading` is what the rules make of it.
-pub(crate) fn examples(parsed: &ParsedUtterance<'_>, reading: &Reading) -> Vec<Example> {
+/// Returns what the judge looks at; `reading` is what the rules make of the utterance.
+pub(crate) fn features(parsed: &ParsedUtterance<'_>, reading: &Reading) -> Features {
     let found: Vec<(usize, WordId, Polarity)> = values(parsed)
         .take(MENTIONS_MAX)
         .map(|(at, word)| (at, word, proposal(parsed, reading, word)))
         .collect();
     let spans = phrases(parsed, &found);
     let elements = elements(parsed, &spans);
-    let context = Context { parsed, found: &found, elements: &elements, intent: reading.intent };
+    let intent = reading.intent;
+    let context = Context { parsed, found: &found, spans: &spans, elements: &elements, intent };
     let example = |(number, (at, word, proposal)): (usize, &(usize, WordId, Polarity))| {
         let phrase = spans.iter().position(|span| span.contains(at)).unwrap_or(0);
         let rows = context.features(number, phrase, &spans[phrase]);
-        Example { at: *at, word: *word, phrase, proposal: *proposal, rows }
+        let (at, word, proposal) = (*at, *word, *proposal);
+        Example { at, word, surface: String::new(), phrase, proposal, rows }
     };
-    found.iter().enumerate().map(example).collect()
+    let examples: Vec<Example> = found.iter().enumerate().map(example).collect();
+    let phrases: Vec<usize> = examples.iter().map(|example| example.phrase).collect();
+    let sequence = sequence(&context, &phrases);
+    Features { examples, sequence }
 }
 
 /// The noun phrases that hold values, as ranges of tags.
@@ -118,11 +137,14 @@ fn elements<'a>(
     elements
 }
 
-struct Context<'a> {
-    parsed: &'a ParsedUtterance<'a>,
-    found: &'a [(usize, WordId, Polarity)],
-    elements: &'a [Element<'a>],
-    intent: Intent,
+/// An utterance with its value words, their noun phrases, and its elements.
+pub(crate) struct Context<'a> {
+    pub(crate) parsed: &'a ParsedUtterance<'a>,
+    /// Tag, word and proposal of each value word.
+    pub(crate) found: &'a [(usize, WordId, Polarity)],
+    pub(crate) spans: &'a [std::ops::Range<usize>],
+    pub(crate) elements: &'a [Element<'a>],
+    pub(crate) intent: Intent,
 }
 
 impl Context<'_> {
@@ -142,7 +164,7 @@ impl Context<'_> {
         Self::both(&mut rows, &before, after);
         self.phrase(&mut rows, span, at);
         self.others(&mut rows, number);
-        self.question(&mut rows, word);
+        self.answers(&mut rows, word);
         rows.rows
     }
 
@@ -150,7 +172,9 @@ impl Context<'_> {
     fn side(rows: &mut Rows, side: u8, elements: &[Element<'_>]) {
         let kind = |n: usize| kind(elements.get(n));
         let text = |n: usize| text(elements.get(n));
+        let sort = |n: usize| sort(elements.get(n));
         for n in 0..NEAR {
+            rows.add(b"sort", &[u64::from(side), n as u64, sort(n)]);
             rows.add(b"kind", &[u64::from(side), n as u64, kind(n)]);
             rows.add(b"text", &[u64::from(side), n as u64, text(n)]);
             rows.add(b"letters", &[u64::from(side), n as u64, letters(elements.get(n))]);
@@ -158,6 +182,10 @@ impl Context<'_> {
         let side = u64::from(side);
         rows.add(b"kinds2", &[side, kind(0), kind(1)]);
         rows.add(b"kinds3", &[side, kind(0), kind(1), kind(2)]);
+        rows.add(b"sorts2", &[side, sort(0), sort(1)]);
+        rows.add(b"sorts3", &[side, sort(0), sort(1), sort(2)]);
+        rows.add(b"text sort", &[side, text(0), sort(1)]);
+        rows.add(b"sort text", &[side, sort(0), text(1)]);
         rows.add(b"texts2", &[side, text(0), text(1)]);
         rows.add(b"texts3", &[side, text(0), text(1), text(2)]);
         rows.add(b"text1+2", &[side, text(1), text(2)]);
@@ -169,6 +197,10 @@ impl Context<'_> {
             let (kind, text) = (self::kind(Some(element)), self::text(Some(element)));
             rows.add(b"bag kind", &[side, is_near, kind]);
             rows.add(b"bag text", &[side, is_near, text]);
+            let sort = self::sort(Some(element));
+            if sort != kind {
+                rows.add(b"bag sort", &[side, is_near, sort]);
+            }
             rows.add(b"anywhere", &[text]);
             let next = elements.get(n + 1);
             rows.add(b"bag two", &[side, is_near, text, self::text(next)]);
@@ -178,7 +210,11 @@ impl Context<'_> {
     fn both(rows: &mut Rows, before: &[Element<'_>], after: &[Element<'_>]) {
         let kinds = |side: &[Element<'_>], n: usize| kind(side.get(n));
         let texts = |side: &[Element<'_>], n: usize| text(side.get(n));
+        let sorts = |side: &[Element<'_>], n: usize| sort(side.get(n));
         rows.add(b"kind kind", &[kinds(before, 0), kinds(after, 0)]);
+        rows.add(b"sort sort", &[sorts(before, 0), sorts(after, 0)]);
+        let four = [sorts(before, 1), sorts(before, 0), sorts(after, 0), sorts(after, 1)];
+        rows.add(b"four sorts", &four);
         rows.add(b"text text", &[texts(before, 0), texts(after, 0)]);
         rows.add(b"text kind", &[texts(before, 0), kinds(after, 0)]);
         rows.add(b"kind text", &[kinds(before, 0), texts(after, 0)]);
@@ -204,35 +240,44 @@ impl Context<'_> {
         rows.add(b"exact", &[u64::from(own.exact)]);
         let count = tags.iter().filter(|tag| tag.is_value()).count();
         rows.add(b"values", &[count as u64]);
-        rows.add(b"begins", &[tags.first().map_or(0, text_of)]);
+        rows.add(b"begins", &[tags.first().map_or(0, begins)]);
     }
 
     /// The other value words, and what the rules make of them.
     fn others(&self, rows: &mut Rows, number: usize) {
-        let own = self.parsed.tags[self.found[number].0].value();
-        for (n, (at, word, proposal)) in self.found.iter().enumerate() {
-            if n == number {
-                continue;
-            }
-            let value = self.parsed.tags[*at].value();
-            let rivals = own.zip(value).is_some_and(|(own, other)| own.rivals(other));
-            let is_same = *word == self.found[number].1;
-            let side = u64::from(n > number);
-            let relation = u64::from(rivals) + 2 * u64::from(is_same);
-            rows.add(b"other", &[side, relation, *proposal as u64]);
+        for (relation, side, proposal) in self.relations(number) {
+            rows.add(b"other", &[side, relation, proposal as u64]);
         }
         rows.add(b"mentions", &[self.found.len().min(5) as u64, number.min(5) as u64]);
         rows.add(b"intent", &[self.intent as u64]);
     }
 
-    fn question(&self, rows: &mut Rows, word: WordId) {
-        let (kind, is_asked) = match self.parsed.asked {
+    /// How each other value word is related to one, on which side it stands, and what the rules make of it.
+    pub(crate) fn relations(&self, number: usize) -> impl Iterator<Item = (u64, u64, Polarity)> {
+        let own = self.parsed.tags[self.found[number].0].value();
+        let others = self.found.iter().enumerate().filter(move |(n, _)| *n != number);
+        others.map(move |(n, (at, word, proposal))| {
+            let value = self.parsed.tags[*at].value();
+            let rivals = own.zip(value).is_some_and(|(own, other)| own.rivals(other));
+            let is_same = *word == self.found[number].1;
+            let relation = u64::from(rivals) + 2 * u64::from(is_same);
+            (relation, u64::from(n > number), *proposal)
+        })
+    }
+
+    /// The kind of the question, and whether it names a word.
+    pub(crate) fn question(&self, word: Option<WordId>) -> (u64, bool) {
+        match self.parsed.asked {
             QuestionWords::Nothing => (0, false),
-            QuestionWords::Object(words) => (1, words.contains(&word)),
+            QuestionWords::Object(words) => (1, word.is_some_and(|word| words.contains(&word))),
             QuestionWords::PerceivedObject => (2, false),
-            QuestionWords::Value(_, asked) => (3, asked == word),
+            QuestionWords::Value(_, asked) => (3, word == Some(asked)),
             QuestionWords::Attribute | QuestionWords::Choice(_) => (4, false),
-        };
+        }
+    }
+
+    fn answers(&self, rows: &mut Rows, word: WordId) {
+        let (kind, is_asked) = self.question(Some(word));
         let asked = [kind, u64::from(is_asked)];
         rows.add(b"question", &asked);
         for answer in
@@ -243,7 +288,7 @@ impl Context<'_> {
     }
 }
 
-fn kind(element: Option<&Element<'_>>) -> u64 {
+pub(crate) fn kind(element: Option<&Element<'_>>) -> u64 {
     match element {
         None => 1,
         Some(Element::Pause) => 2,
@@ -252,7 +297,7 @@ fn kind(element: Option<&Element<'_>>) -> u64 {
     }
 }
 
-fn kind_of(tag: &Tag<'_>) -> u64 {
+pub(crate) fn kind_of(tag: &Tag<'_>) -> u64 {
     match tag.class() {
         Some(class) => 16 + class as u64,
         None if tag.is_value() => 4,
@@ -260,14 +305,28 @@ fn kind_of(tag: &Tag<'_>) -> u64 {
     }
 }
 
-fn text(element: Option<&Element<'_>>) -> u64 {
+/// The word that begins a phrase.
+pub(crate) fn begins(tag: &Tag<'_>) -> u64 {
+    if tag.is_value() { 4 } else { text_of(tag) }
+}
+
+/// Its group of like words, else its kind.
+pub(crate) fn sort(element: Option<&Element<'_>>) -> u64 {
+    let group = match element {
+        Some(Element::Word(tag)) if tag.word == tag.last => group_of(tag.word),
+        _ => None,
+    };
+    group.map_or_else(|| kind(element), |group| 256 + group as u64)
+}
+
+pub(crate) fn text(element: Option<&Element<'_>>) -> u64 {
     match element {
         Some(Element::Word(tag)) => text_of(tag),
         other => kind(other),
     }
 }
 
-fn text_of(tag: &Tag<'_>) -> u64 {
+pub(crate) fn text_of(tag: &Tag<'_>) -> u64 {
     let mut hash = hash(tag.word.bytes());
     if tag.last != tag.word {
         hash = mix(hash, self::hash(tag.last.bytes()));
@@ -276,20 +335,20 @@ fn text_of(tag: &Tag<'_>) -> u64 {
 }
 
 /// A word without the order of its letters: two of them change places in a slip of the finger.
-fn letters(element: Option<&Element<'_>>) -> u64 {
+pub(crate) fn letters(element: Option<&Element<'_>>) -> u64 {
     let Some(Element::Word(tag)) = element else { return kind(element) };
     let mut letters: Vec<u8> = tag.word.bytes().filter(|byte| *byte != b'\'').collect();
     letters.sort_unstable();
     hash(letters.into_iter())
 }
 
-fn hash(bytes: impl Iterator<Item = u8>) -> u64 {
+pub(crate) fn hash(bytes: impl Iterator<Item = u8>) -> u64 {
     let mut hash = StableHash::default();
     bytes.for_each(|byte| hash.bytes(&[byte]));
     hash.value()
 }
 
-fn mix(one: u64, other: u64) -> u64 {
+pub(crate) fn mix(one: u64, other: u64) -> u64 {
     let mixed = (one.rotate_left(25) ^ other).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     mixed ^ (mixed >> 29)
 }

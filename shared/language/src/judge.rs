@@ -1,53 +1,89 @@
 //! The judge: how probable it is that a value word is wanted, denied, or neither, by the words around it.
 //!
-//! A linear model over hashed features ([`crate::features`]), trained by `reader_training` on labelled lines. It corrects
-//! what the rules propose and says how sure that is: what they do not cover is in doubt.
+//! A linear model over hashed features ([`crate::features`]) and a small recurrent one ([`crate::recurrent`]), trained by
+//! `reader_training` on labelled lines; their sums are added. It corrects what the rules propose and says how sure that is:
+//! what they do not cover is in doubt.
 
 use std::sync::LazyLock;
 
-use crate::features::ROWS;
+use crate::features::{Example, Features, ROWS};
+use crate::recurrent::{PARTS, Recurrent};
 
-/// The weights, as `reader_training` writes them: a hash of what they were trained on, a scale, and the weights of the
-/// three polarities by row.
+/// The weights, as `reader_training` writes them: a hash of what they were trained on; a scale, and the linear weights of the
+/// three polarities by row; then each part of the recurrent ones, a scale and weights of 8 bits.
 const FILE: &[u8] = include_bytes!("vocabulary/judge.bin");
-/// Length of the hash and the scale, bytes.
-const HEAD: usize = 12;
+/// Length of the hash, bytes.
+const HASH: usize = 8;
 /// Probability that a value word says nothing, whatever the judge states: it has not seen all that people say.
 pub const FLOOR: f64 = 0.01;
 
-static JUDGE: LazyLock<Judge> = LazyLock::new(Judge::load);
+static BUILT_IN: LazyLock<Judge> =
+    LazyLock::new(|| Judge::from_bytes(FILE).expect("vocabulary/judge.bin has all weights"));
 
-struct Judge {
+/// Weights of the features.
+#[derive(Clone, Debug)]
+pub struct Judge {
     scale: f64,
     weights: Vec<[i16; 3]>,
+    recurrent: Recurrent,
 }
 
 impl Judge {
-    fn load() -> Self {
-        let scale = FILE[8..HEAD].try_into().map_or(0.0, f32::from_le_bytes);
-        let number = |bytes: &[u8]| i16::from_le_bytes([bytes[0], bytes[1]]);
-        let row = |row: &[u8]| [number(row), number(&row[2..]), number(&row[4..])];
-        let weights: Vec<[i16; 3]> = FILE[HEAD..].chunks_exact(6).map(row).collect();
-        assert_eq!(weights.len(), ROWS, "vocabulary/judge.bin");
-        Self { scale: f64::from(scale), weights }
+    /// Reads the weights as `reader_training` writes them; none if there are fewer than the judge has.
+    pub fn from_bytes(file: &[u8]) -> Option<Self> {
+        let (scale, mut rest) = number(file.get(HASH..)?)?;
+        let word = |bytes: &[u8]| i16::from_le_bytes([bytes[0], bytes[1]]);
+        let row = |row: &[u8]| [word(row), word(&row[2..]), word(&row[4..])];
+        let weights = rest.get(..6 * ROWS)?.chunks_exact(6).map(row).collect();
+        rest = &rest[6 * ROWS..];
+        let mut recurrent = Recurrent { weights: Vec::new() };
+        for size in PARTS {
+            let (scale, bytes) = number(rest)?;
+            let part = bytes.get(..size)?.iter().map(|byte| f32::from(*byte as i8) * scale);
+            recurrent.weights.extend(part);
+            rest = &bytes[size..];
+        }
+        Some(Self { scale: f64::from(scale), weights, recurrent })
     }
+
+    /// The judge whose weights are part of the program.
+    pub(crate) fn built_in() -> &'static Self {
+        &BUILT_IN
+    }
+
+    /// Returns the probabilities of wanted, denied and neither for each value word.
+    pub(crate) fn stated(&self, features: &Features) -> Vec<[f64; 3]> {
+        let recurrent = self.recurrent.sums(&features.sequence);
+        let stated = |(example, recurrent): (&Example, [f32; 3])| {
+            let linear = self.linear(&example.rows);
+            let sums = [0, 1, 2].map(|n| linear[n] as f64 * self.scale + f64::from(recurrent[n]));
+            let most = sums.into_iter().fold(f64::MIN, f64::max);
+            let powers = sums.map(|sum| (sum - most).exp());
+            let all: f64 = powers.iter().sum();
+            powers.map(|power| power / all)
+        };
+        features.examples.iter().zip(recurrent).map(stated).collect()
+    }
+
+    /// Sums of whole numbers: they do not depend on the order.
+    fn linear(&self, rows: &[u32]) -> [i64; 3] {
+        let mut sums = [0; 3];
+        for row in rows {
+            for (sum, weight) in sums.iter_mut().zip(self.weights[*row as usize]) {
+                *sum += i64::from(weight);
+            }
+        }
+        sums
+    }
+}
+
+/// A number of 32 bits, and what follows it.
+fn number(bytes: &[u8]) -> Option<(f32, &[u8])> {
+    let (number, rest) = bytes.split_first_chunk()?;
+    Some((f32::from_le_bytes(*number), rest))
 }
 
 /// Returns the hash of what the weights were trained on.
 pub fn trained_on() -> u64 {
-    FILE[..8].try_into().map_or(0, u64::from_le_bytes)
-}
-
-/// Returns the probabilities of wanted, denied and neither. Sums are of whole numbers: they do not depend on the order.
-pub(crate) fn judge(rows: &[u32]) -> [f64; 3] {
-    let mut sums = [0_i64; 3];
-    for row in rows {
-        for (sum, weight) in sums.iter_mut().zip(JUDGE.weights[*row as usize]) {
-            *sum += i64::from(weight);
-        }
-    }
-    let most = sums.into_iter().max().unwrap_or(0);
-    let powers = sums.map(|sum| ((sum - most) as f64 * JUDGE.scale).exp());
-    let all: f64 = powers.iter().sum();
-    powers.map(|power| power / all)
+    FILE[..HASH].try_into().map_or(0, u64::from_le_bytes)
 }

@@ -16,7 +16,7 @@
 //! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`, `errands.rs`, `statements.rs`) | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
 //! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
-//! | judge | `features.rs`, `judge.rs` (`vocabulary/judge.bin`), `mentions.rs` | how probable each value word is wanted, denied, neither |
+//! | judge | `features.rs`, `sequence.rs` (`word_groups.rs`), `judge.rs`, `recurrent.rs` (`vocabulary/judge.bin`), `mentions.rs` | how probable each value word is wanted, denied, neither |
 //! | readings | `parsed.rs` (`hedges.rs`), `evidence.rs` | alternative readings with weights and doubts |
 //!
 //! [`CompletenessJudge`] judges whether a speaker will go on after a pause.
@@ -86,11 +86,13 @@ mod question_words;
 mod questions;
 mod read_back;
 mod reader;
+pub mod recurrent;
 mod references;
 mod related;
 mod relation_words;
 mod relations;
 mod repair;
+mod sequence;
 mod spelling;
 mod statements;
 mod tagger;
@@ -98,16 +100,18 @@ mod token_class;
 mod topic;
 mod unknown;
 mod vocabulary;
+mod word_groups;
 
 #[cfg(test)]
 mod tests;
 
 pub use completeness::{Completeness, CompletenessJudge};
 pub use echo::is_echo;
-pub use features::{Example, ROWS};
+pub use features::{Example, Features, ROWS};
 pub use halting::is_stop;
-pub use judge::{FLOOR, trained_on};
+pub use judge::{FLOOR, Judge, trained_on};
 pub use mentions::{Mention, Polarity};
 pub use parsed::READINGS_MAX;
 pub use read_back::word_findings;
 pub use reader::Reader;
+pub use word_groups::words_of_group;

@@ -1,11 +1,11 @@
 //! What an utterance says of each value word in it.
 
 use ::vocabulary::Language;
-use scene::{Question, Reading, WordId};
+use scene::{Intent, Question, Reading, WordId};
 use words::{Tokens, normalise};
 
-use crate::features::{Example, examples};
-use crate::judge::{FLOOR, judge};
+use crate::features::{Example, Features, features};
+use crate::judge::FLOOR;
 use crate::parsed::ParsedUtterance;
 
 use crate::reader::Reader;
@@ -43,27 +43,29 @@ impl Reader {
         if self.language() == Language::Paper {
             return Vec::new();
         }
+        let features = self.features(text, last_question);
+        let stated = self.judge().stated(&features);
+        let mention = |(example, stated): (Example, [f64; 3])| {
+            let [wanted, denied, neither] = stated.map(|it| it * (1.0 - FLOOR));
+            let Example { word, surface, .. } = example;
+            Mention { word, surface, wanted, denied, neither: neither + FLOOR }
+        };
+        features.examples.into_iter().zip(stated).map(mention).collect()
+    }
+
+    /// Returns what the judge looks at in an utterance that followed `last_question`.
+    pub fn features(&self, text: &str, last_question: Question) -> Features {
         let text = normalise(text);
         let tokens = Tokens::of(&text);
         let parsed = self.parse(&tokens, last_question);
-        let mention = |example: Example| {
+        let mut features = features(&parsed, &parsed.reading());
+        for example in &mut features.examples {
             let (tag, next) = (&parsed.tags[example.at], parsed.tags.get(example.at + 1));
             let end = next.map_or(tokens.words.len(), |next| next.at);
             let words = tokens.words[tag.at..end].iter().map(|token| token.word);
-            let [wanted, denied, neither] = judge(&example.rows).map(|it| it * (1.0 - FLOOR));
-            let surface = words.collect::<Vec<_>>().join(" ");
-            Mention { word: example.word, surface, wanted, denied, neither: neither + FLOOR }
-        };
-        examples(&parsed, &parsed.reading()).into_iter().map(mention).collect()
-    }
-
-    /// Returns the value words of an utterance that followed `last_question`, with what the judge looks at; for its
-    /// training.
-    pub fn examples(&self, text: &str, last_question: Question) -> Vec<Example> {
-        let text = normalise(text);
-        let tokens = Tokens::of(&text);
-        let parsed = self.parse(&tokens, last_question);
-        examples(&parsed, &parsed.reading())
+            example.surface = words.collect::<Vec<_>>().join(" ");
+        }
+        features
     }
 }
 
@@ -77,10 +79,13 @@ pub(crate) fn values(parsed: &ParsedUtterance<'_>) -> impl Iterator<Item = (usiz
 pub(crate) fn proposal(parsed: &ParsedUtterance<'_>, reading: &Reading, word: WordId) -> Polarity {
     // A word that is repeated is said of the object wherever it stands.
     let is_asserted = parsed.content.base.iter().any(|value| value.word == word);
-    let is_described = !matches!(reading.intent, scene::Intent::None);
+    // What a question or an errand names is no wish.
+    let is_wish = matches!(reading.intent, Intent::Inform | Intent::Cancel | Intent::Stop);
     match () {
-        () if is_asserted && is_described => Polarity::Wanted,
-        () if reading.excluded.iter().any(|group| group.contains(&word)) => Polarity::Denied,
+        () if is_asserted && is_wish => Polarity::Wanted,
+        () if is_wish && reading.excluded.iter().any(|group| group.contains(&word)) => {
+            Polarity::Denied
+        }
         () => Polarity::Neither,
     }
 }

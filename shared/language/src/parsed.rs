@@ -6,6 +6,7 @@ use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
 use crate::evidence::weighed;
 use crate::hedges::MAYBE;
+use crate::judge::Judge;
 use crate::objects::objects;
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
@@ -32,6 +33,8 @@ pub(crate) struct ParsedUtterance<'a> {
     pub(crate) tags: Vec<Tag<'a>>,
     pub(crate) clauses: Vec<Clause>,
     pub(crate) questions: &'a SceneQuestions,
+    /// Another judge than the built-in one.
+    pub(crate) judge: Option<&'a Judge>,
     /// Braces, tags or shell characters, which do not occur in speech.
     pub(crate) code: bool,
 }

@@ -1,5 +1,7 @@
 //! The reader: runs the pipeline on an utterance.
 
+use std::sync::Arc;
+
 use ::vocabulary::Language;
 use scene::{Intent, Question, Reading, Reference, Response, Scene, UnknownWord, WordId};
 use words::{Tokens, normalise};
@@ -12,6 +14,7 @@ use crate::halting::asks_to_go_on;
 use crate::hedges::hedge;
 use crate::indifference::{indifference, is_of_attribute};
 use crate::intent::{intent, is_side_talk, is_statement};
+use crate::judge::Judge;
 use crate::lexicon::Lexicon;
 use crate::ordinals::name_options;
 use crate::paper::WordSpotter;
@@ -30,6 +33,8 @@ pub struct Reader {
     spotter: WordSpotter,
     lexicon: Lexicon,
     questions: SceneQuestions,
+    /// Another judge than the built-in one.
+    judge: Option<Arc<Judge>>,
     /// The scene knows where objects are.
     placed: bool,
 }
@@ -42,8 +47,18 @@ impl Reader {
             spotter: WordSpotter::new(scene),
             lexicon: Lexicon::new(scene),
             questions: SceneQuestions::new(scene),
+            judge: None,
             placed: scene.objects().iter().filter(|it| it.placement.is_some()).count() > 1,
         }
+    }
+
+    /// Replaces the judge; for its training.
+    pub fn with_judge(self, judge: Arc<Judge>) -> Self {
+        Self { judge: Some(judge), ..self }
+    }
+
+    pub(crate) fn judge(&self) -> &Judge {
+        self.judge.as_deref().unwrap_or_else(|| Judge::built_in())
     }
 
     /// The language that it reads.
@@ -162,7 +177,7 @@ impl Reader {
                 intent = Intent::Inform;
             }
         }
-        let (questions, code) = (&self.questions, tokens.code);
+        let (questions, judge, code) = (&self.questions, self.judge.as_deref(), tokens.code);
         ParsedUtterance {
             content,
             response,
@@ -173,6 +188,7 @@ impl Reader {
             tags,
             clauses,
             questions,
+            judge,
             code,
         }
     }

@@ -17,9 +17,17 @@ pub fn trained_on() -> Result<u64, String> {
         .iter()
         .flat_map(|folder| files(&here.join(folder)))
         .collect();
-    let sources = ["features.rs", "token_class.rs", "tests/cases.txt", "tests/conversation.txt"];
+    let sources = [
+        "features.rs",
+        "recurrent.rs",
+        "sequence.rs",
+        "token_class.rs",
+        "vocabulary/word_groups.txt",
+        "tests/cases.txt",
+        "tests/conversation.txt",
+    ];
     paths.extend(sources.map(|source| here.join("../src").join(source)));
-    paths.push(here.join("templates.txt"));
+    paths.extend(["templates.txt", "hard_templates.txt"].map(|templates| here.join(templates)));
     let mut hash = StableHash::default();
     for path in paths {
         let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;

@@ -9,22 +9,30 @@
 //! | `held_out/` | by two more authors: scored three times at most, and read by nobody (`scores.txt`) |
 //! | `scenes/` | scenes that were made for the lines |
 //! | `templates.txt` | ordinary requests, made into lines in several scenes |
+//! | `hard_templates.txt` | reasons, exceptions, corrections, landmarks and talk, made into lines likewise |
 
+mod cross;
 mod inputs;
 mod line;
 mod linear;
+mod model;
+mod recurrent;
 mod scenes;
 mod score;
 mod slips;
+mod sources;
 mod table;
 mod templates;
 
+pub use cross::{Unseen, without_author, without_fifths};
 pub use inputs::trained_on;
 pub use line::{Line, Marked, lines};
 pub use linear::{Lesson, Linear};
+pub use model::{Model, Sums, fitted};
 pub use scenes::{Scenes, files, question};
-pub use score::{Score, Scored, pairs};
+pub use score::{Score, Scored, as_read, labels};
 pub use slips::with_typo;
+pub use sources::{Sources, Taught};
 pub use table::{Row, table};
 pub use templates::templates;
 

@@ -3,7 +3,7 @@
 use language::Polarity;
 
 /// A labelled line.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Line {
     /// Name of its scene.
     pub scene: String,

@@ -42,7 +42,7 @@ impl Linear {
     }
 
     fn step(&mut self, lesson: &Lesson, rate: f64, seen: &mut [[f64; 3]]) {
-        let stated = self.stated(&lesson.rows, 1.0);
+        let stated = softmax(self.sums(&lesson.rows));
         for (label, stated) in stated.into_iter().enumerate() {
             let error = (stated - f64::from(u8::from(label == lesson.label))) * lesson.weight;
             // Each row takes its part of the step.
@@ -67,21 +67,6 @@ impl Linear {
         sums
     }
 
-    /// Returns the probabilities of the labels.
-    pub fn stated(&self, rows: &[u32], temperature: f64) -> [f64; 3] {
-        softmax(self.sums(rows).map(|sum| sum / temperature))
-    }
-
-    /// Returns the temperature that fits sums of lines which the weights had not seen, each with its label.
-    pub fn temperature_for(unseen: &[([f64; 3], usize)]) -> f64 {
-        let loss = |temperature: f64| -> f64 {
-            let stated = |sums: &[f64; 3]| softmax(sums.map(|sum| sum / temperature));
-            unseen.iter().map(|(sums, label)| -stated(sums)[*label].max(1e-9).ln()).sum()
-        };
-        let candidates = (0..60).map(|n| 0.5 * 1.05_f64.powi(n));
-        candidates.min_by(|a, b| loss(*a).total_cmp(&loss(*b))).unwrap_or(1.0)
-    }
-
     /// The weights of a row.
     pub fn row(&self, row: usize) -> [f64; 3] {
         self.weights[row]
@@ -89,14 +74,14 @@ impl Linear {
 }
 
 /// Returns probabilities for sums.
-fn softmax(sums: [f64; 3]) -> [f64; 3] {
+pub(crate) fn softmax(sums: [f64; 3]) -> [f64; 3] {
     let most = sums.into_iter().fold(f64::MIN, f64::max);
     let powers = sums.map(|sum| (sum - most).exp());
     let all: f64 = powers.iter().sum();
     powers.map(|power| power / all)
 }
 
-fn shuffle(order: &mut [usize], random: &mut Rng) {
+pub(crate) fn shuffle(order: &mut [usize], random: &mut Rng) {
     for last in (1..order.len()).rev() {
         order.swap(last, (random.next_u64() % (last as u64 + 1)) as usize);
     }

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use language::Reader;
+use language::{Judge, Reader};
 
 use scene::{AttributeId, Question, Scene, ValueId};
 use vocabulary::Language;
@@ -39,6 +40,14 @@ impl Scenes {
             scenes.insert(name, (scene, reader));
         }
         Ok(Self(scenes))
+    }
+
+    /// Returns the same scenes, read with another judge.
+    pub fn with_judge(&self, judge: &Arc<Judge>) -> Self {
+        let with_judge = |(name, (scene, reader)): (&String, &(Scene, Reader))| {
+            (name.clone(), (scene.clone(), reader.clone().with_judge(judge.clone())))
+        };
+        Self(self.0.iter().map(with_judge).collect())
     }
 
     /// The names of the scenes.

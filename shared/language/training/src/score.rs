@@ -3,6 +3,7 @@
 use std::fmt;
 
 use language::{Mention, Polarity};
+use scene::{Intent, Reading, Reference, WordId};
 
 use crate::line::{Line, Marked};
 
@@ -44,11 +45,11 @@ pub struct Score {
 impl Score {
     /// Adds what the reader states of a line.
     pub fn add(&mut self, line: &Line, mentions: &[Mention]) {
-        let pairs = pairs(line, mentions);
-        self.extra += pairs.iter().filter(|pair| pair.is_none()).count();
-        let found = pairs.iter().flatten().count();
+        let labels = labels(line, mentions.iter().map(|mention| &*mention.surface));
+        self.extra += labels.iter().filter(|label| label.is_none()).count();
+        let found = labels.iter().flatten().count();
         self.missed += line.marked.len() - found;
-        for (mention, truth) in mentions.iter().zip(&pairs) {
+        for (mention, truth) in mentions.iter().zip(&labels) {
             let stated = [mention.wanted, mention.denied, mention.neither];
             self.scored.extend(truth.map(|truth| Scored { truth, stated }));
         }
@@ -132,16 +133,20 @@ impl fmt::Display for Score {
     }
 }
 
-/// The label of each mention; none where the author has marked nothing there.
-pub fn pairs(line: &Line, mentions: &[Mention]) -> Vec<Option<Polarity>> {
+/// The label of each value word that the reader has found, by the words that it has found; none where the author has
+/// marked nothing there.
+pub fn labels<'a>(
+    line: &Line,
+    surfaces: impl IntoIterator<Item = &'a str>,
+) -> Vec<Option<Polarity>> {
     let mut left = line.marked.iter();
-    let pair = |mention: &Mention| {
+    let label = |surface: &str| {
         let mut ahead = left.clone();
-        let found = ahead.find(|marked| is_same(marked, &mention.surface))?;
+        let found = ahead.find(|marked| is_same(marked, surface))?;
         left = ahead;
         Some(found.polarity)
     };
-    mentions.iter().map(pair).collect()
+    surfaces.into_iter().map(label).collect()
 }
 
 fn is_same(marked: &Marked, surface: &str) -> bool {
@@ -150,4 +155,30 @@ fn is_same(marked: &Marked, surface: &str) -> bool {
     };
     let (marked, surface) = (plain(&marked.surface), plain(surface));
     marked.contains(&surface) || surface.contains(&marked)
+}
+
+/// What the weighted readings of an utterance say of its value words, as the policy takes them: wanted are also those of
+/// further objects, and what asks describes no wish.
+pub fn as_read(readings: &[(f64, Reading)], mentions: &[Mention]) -> Vec<Mention> {
+    let weight = |holds: &dyn Fn(&Reading) -> bool| -> f64 {
+        let is_wish = |reading: &Reading| match reading.intent {
+            Intent::Inform | Intent::Stop | Intent::GoOn => true,
+            Intent::Cancel => !reading.excluded.is_empty(),
+            _ => false,
+        };
+        let wishes = readings.iter().filter(|(_, reading)| is_wish(reading));
+        wishes.filter(|(_, reading)| holds(reading)).map(|(weight, _)| weight).sum()
+    };
+    let has = |groups: &[Vec<WordId>], word| groups.iter().any(|group| group.contains(&word));
+    let as_read = |mention: &Mention| {
+        let is_wanted = |reading: &Reading| {
+            let is_further = !matches!(reading.refers, Reference::Relation(_))
+                && has(&reading.further, mention.word);
+            reading.base.contains(&mention.word) || is_further
+        };
+        let wanted = weight(&is_wanted);
+        let denied = weight(&|reading| has(&reading.excluded, mention.word) && !is_wanted(reading));
+        Mention { wanted, denied, neither: (1.0 - wanted - denied).max(0.0), ..mention.clone() }
+    };
+    mentions.iter().map(as_read).collect()
 }

@@ -18,6 +18,8 @@ pub struct Row {
     pub question: Question,
     /// The words.
     pub text: String,
+    /// Something in it is taken back.
+    pub is_repair: bool,
 }
 
 /// Reads a table.
@@ -26,11 +28,18 @@ pub struct Row {
 /// The file cannot be read, or is no table.
 pub fn table(scenes: &Scenes, path: &Path) -> Result<Vec<Row>, String> {
     let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let is_row = |line: &&str| !line.is_empty() && !line.starts_with(['#', '~']);
-    let row = |line: &str| {
-        row(scenes, line).ok_or_else(|| format!("{}: expected a row, found {line}", path.display()))
-    };
-    text.lines().filter(is_row).map(row).collect()
+    let (mut rows, mut is_repair) = (Vec::new(), false);
+    for line in text.lines().filter(|line| !line.is_empty()) {
+        if let Some(heading) = line.strip_prefix("## ") {
+            is_repair = heading == "self-repair";
+        }
+        if !line.starts_with(['#', '~']) {
+            let row = row(scenes, line)
+                .ok_or_else(|| format!("{}: expected a row, found {line}", path.display()))?;
+            rows.push(Row { is_repair, ..row });
+        }
+    }
+    Ok(rows)
 }
 
 fn row(scenes: &Scenes, line: &str) -> Option<Row> {
@@ -43,7 +52,8 @@ fn row(scenes: &Scenes, line: &str) -> Option<Row> {
         name => name.trim_start_matches("talk_").to_owned(),
     };
     let (scene, _) = scenes.get(&name).ok()?;
-    Some(Row { question: question(scene, asked)?, scene: name, text: text.trim().to_owned() })
+    let (question, text) = (question(scene, asked)?, text.trim().to_owned());
+    Some(Row { scene: name, question, text, is_repair: false })
 }
 
 fn question(scene: &Scene, text: &str) -> Option<Question> {

@@ -1,24 +1,22 @@
 //! Lines made of templates: the ordinary requests, which authors of hard lines do not write.
 
-use language::Polarity;
+use language::{Polarity, words_of_group};
 use scene::{Role, Scene, Value};
 use vocabulary::Rng;
 
 use crate::line::{Line, Marked};
 
-/// Lines of each template in each scene.
-const TIMES: usize = 3;
 /// Attempts to fill the slots of a template with values that do not contradict each other.
 const ATTEMPTS: usize = 8;
 /// Slots, without the sign of their polarity: those of any question, then of one about an attribute, then of one about a
 /// value.
-const SLOTS: [&str; 6] = ["", "q", "k", "p", "rival", "asked"];
+const SLOTS: [&str; 8] = ["", "q", "k", "p", "b", "other", "rival", "asked"];
 
-/// Returns lines made of the templates in a file's text, about one scene; the same ones every time.
+/// Returns lines made of the templates in a file's text about one scene, `times` of each; the same ones every time.
 ///
 /// # Errors
 /// The first template that is not of this form, in a sentence.
-pub fn templates(text: &str, name: &str, scene: &Scene) -> Result<Vec<Line>, String> {
+pub fn templates(text: &str, times: usize, name: &str, scene: &Scene) -> Result<Vec<Line>, String> {
     let mut random = Rng::new(scene.key());
     let mut lines = Vec::new();
     let is_template = |line: &&str| !line.is_empty() && !line.starts_with('#');
@@ -26,7 +24,7 @@ pub fn templates(text: &str, name: &str, scene: &Scene) -> Result<Vec<Line>, Str
         let (question, template) =
             line.split_once(" | ").ok_or_else(|| format!("expected 2 fields, found {line}"))?;
         check(question, template).map_err(|why| format!("{why} in {line}"))?;
-        for _ in 0..TIMES {
+        for _ in 0..times {
             let made = (0..ATTEMPTS).find_map(|_| {
                 let chosen = choose(template, &mut random);
                 Filling::new(scene, &mut random, question).fill(name, &chosen)
@@ -40,8 +38,8 @@ pub fn templates(text: &str, name: &str, scene: &Scene) -> Result<Vec<Line>, Str
 /// Checks the question and the slots of a template.
 fn check(question: &str, template: &str) -> Result<(), String> {
     let slots = match question {
-        "-" => &SLOTS[..4],
-        "which" => &SLOTS[..5],
+        "-" => &SLOTS[..6],
+        "which" => &SLOTS[..7],
         "is" => &SLOTS,
         _ => return Err(format!("expected `-`, `is` or `which`, found `{question}`")),
     };
@@ -52,21 +50,30 @@ fn check(question: &str, template: &str) -> Result<(), String> {
             return Err(format!("expected a slot of {slots:?} with a sign, found <{slot}>"));
         }
     }
+    for group in template.split('{').skip(1) {
+        let (group, _) = group.split_once('}').ok_or("expected \"}\", found none")?;
+        if words_of_group(group).is_empty() {
+            return Err(format!("expected a group of words, found {{{group}}}"));
+        }
+    }
     Ok(())
 }
 
-/// Replaces each `(a|b)` by one of its parts.
+/// Replaces each `(a|b)` by one of its parts, the innermost first, and each `{group}` by a word of the group.
 fn choose(template: &str, random: &mut Rng) -> String {
-    let mut chosen = String::new();
-    let mut rest = template;
-    while let Some((before, group)) = rest.split_once('(') {
-        let (group, after) = group.split_once(')').unwrap_or((group, ""));
-        let parts: Vec<&str> = group.split('|').collect();
-        chosen += before;
-        chosen += parts[random.below(parts.len())];
-        rest = after;
+    let mut chosen = template.to_owned();
+    while let Some(end) = chosen.find(')')
+        && let Some(start) = chosen[..end].rfind('(')
+    {
+        let parts: Vec<&str> = chosen[start + 1..end].split('|').collect();
+        let part = parts[random.below(parts.len())].to_owned();
+        chosen.replace_range(start..=end, &part);
     }
-    chosen + rest
+    while let (Some(start), Some(end)) = (chosen.find('{'), chosen.find('}')) {
+        let words = words_of_group(&chosen[start + 1..end]);
+        chosen.replace_range(start..=end, words[random.below(words.len())]);
+    }
+    chosen
 }
 
 /// A template on the way to a line.
@@ -104,6 +111,8 @@ impl<'a> Filling<'a> {
             rest = after;
         }
         text += rest;
+        // A description may end in "one" itself.
+        let text = text.replace(" one one", " one");
         let scene = name.to_owned();
         Some(Line { scene, question: self.question, act: "want".into(), text, marked: self.marked })
     }
@@ -116,6 +125,15 @@ impl<'a> Filling<'a> {
             "q" => self.one(Role::Quality, polarity),
             "k" => self.one(Role::Kind, polarity),
             "p" => self.one(Role::Place, polarity),
+            "b" => {
+                let (k, v) = self.of_role(Role::Place)?;
+                self.say_as(k, v, polarity, &self.value(k, v).name)
+            }
+            "other" => {
+                let (k, _) = *self.said.last()?;
+                let v = self.random.below(self.scene.attributes()[k].values.len());
+                self.say(k, v, polarity)
+            }
             "asked" => {
                 let (k, v) = self.asked?;
                 self.say(k, v?, polarity)
@@ -135,28 +153,36 @@ impl<'a> Filling<'a> {
 
     /// Says a value, if nothing was said of it.
     fn say(&mut self, k: usize, v: usize, polarity: Polarity) -> Option<String> {
-        if self.said.contains(&(k, v)) {
-            return None;
-        }
-        self.said.push((k, v));
         let value = self.value(k, v);
         let surface = match value.role() {
             Role::Place | Role::Part => &value.spoken,
             Role::Quality | Role::Kind => &value.name,
         };
-        self.marked.push(Marked { surface: surface.clone(), polarity });
-        Some(surface.clone())
+        self.say_as(k, v, polarity, surface)
+    }
+
+    fn say_as(&mut self, k: usize, v: usize, polarity: Polarity, surface: &str) -> Option<String> {
+        if self.said.contains(&(k, v)) {
+            return None;
+        }
+        self.said.push((k, v));
+        self.marked.push(Marked { surface: surface.to_owned(), polarity });
+        Some(surface.to_owned())
     }
 
     /// Says one value of that role.
     fn one(&mut self, role: Role, polarity: Polarity) -> Option<String> {
+        let (k, v) = self.of_role(role)?;
+        self.say(k, v, polarity)
+    }
+
+    fn of_role(&mut self, role: Role) -> Option<(usize, usize)> {
         let all = self.scene.attributes().iter().enumerate().flat_map(|(k, attribute)| {
             let of_role = attribute.values.iter().enumerate().filter(|it| it.1.role() == role);
             of_role.map(move |(v, _)| (k, v))
         });
         let all: Vec<(usize, usize)> = all.collect();
-        let (k, v) = *all.get(self.random.below(all.len().max(1)))?;
-        self.say(k, v, polarity)
+        all.get(self.random.below(all.len().max(1))).copied()
     }
 
     /// Describes an object: "small red mug in the cabinet", "red one".
@@ -205,8 +231,10 @@ mod tests {
     fn wrong_template_is_an_error() {
         let text = include_str!("../../../../config/scenes/bowls.toml");
         let scene = Scene::from_toml("bowls.toml", text).unwrap();
-        let made = |text: &str| templates(text, "bowls", &scene);
-        assert!(!made(include_str!("../templates.txt")).unwrap().is_empty());
+        let made = |text: &str| templates(text, 1, "bowls", &scene);
+        for file in [include_str!("../templates.txt"), include_str!("../hard_templates.txt")] {
+            assert!(!made(file).unwrap().is_empty());
+        }
         for (wrong, why) in [
             ("the <+>", "expected 2 fields"),
             ("why | the <+>", "found `why`"),
