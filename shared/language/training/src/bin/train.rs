@@ -17,8 +17,9 @@ fn main() -> ExitCode {
 fn run() -> Result<(), String> {
     let scenes = Scenes::load()?;
     let sources = Sources::load(&scenes)?;
-    if !std::env::args().any(|argument| argument == "--write") {
-        return validate(&scenes, &sources);
+    let named: Vec<String> = std::env::args().skip(1).collect();
+    if named != ["--write"] {
+        return validate(&scenes, &sources, &named);
     }
     let bytes = Model::train(&sources, |_, _| true).bytes(trained_on()?);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/vocabulary/judge.bin");
@@ -26,15 +27,16 @@ fn run() -> Result<(), String> {
 }
 
 /// Prints how each source is read when it was not seen, and which temperature fits the authors.
-fn validate(scenes: &Scenes, sources: &Sources) -> Result<(), String> {
+fn validate(scenes: &Scenes, sources: &Sources, named: &[String]) -> Result<(), String> {
+    let is_chosen = |name: &&str| named.is_empty() || named.iter().any(|it| it == name);
     let mut all = Unseen::default();
-    for author in &sources.authors {
+    for author in sources.authors.iter().map(String::as_str).filter(is_chosen) {
         let unseen = without_author(scenes, sources, author)?;
         println!("{author}, not seen:\n{unseen}");
         all.extend(unseen);
     }
     println!("all, not seen (factors {:.2?} fit):\n{all}", fitted(&all.sums));
-    for part in sources.others() {
+    for part in sources.others().filter(is_chosen) {
         let unseen = without_fifths(scenes, sources, part)?;
         println!("{part}, each fifth not seen:\n{unseen}");
     }
