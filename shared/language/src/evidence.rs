@@ -13,6 +13,8 @@ use crate::tagger::Tag;
 use crate::token_class::classes;
 
 /// All that can be said of a phrase.
+/// Probability from which on what the judge states stands alone.
+const SURE: f64 = 0.9;
 const POLARITIES: [Polarity; 3] = [Polarity::Wanted, Polarity::Denied, Polarity::Neither];
 /// Intents beside which a wish may stand: "is there a brass screw? I'd like it".
 const OPEN: [Intent; 8] = [
@@ -94,6 +96,11 @@ fn phrases(stated: &[[f64; 3]], features: Features) -> Vec<Phrase> {
         let count = phrase.examples.len() as f64;
         let [wanted, denied, neither] = phrase.stated.map(|sum| sum / count * (1.0 - FLOOR));
         phrase.stated = [wanted, denied, neither + FLOOR];
+        let best = phrase.best();
+        if phrase.stated[best] >= SURE {
+            phrase.stated = [0.0; 3];
+            phrase.stated[best] = 1.0;
+        }
     }
     phrases
 }
