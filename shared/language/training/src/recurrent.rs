@@ -34,7 +34,7 @@ pub struct Utterance {
 }
 
 /// Trains on the utterances.
-pub fn train(utterances: &[&Utterance], seed: u64) -> Recurrent {
+pub(crate) fn train(utterances: &[&Utterance], seed: u64) -> Recurrent {
     let mut random = Rng::new(seed);
     let mut trained = Training::new(&mut random);
     let mut order: Vec<usize> = (0..utterances.len()).collect();
