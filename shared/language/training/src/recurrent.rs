@@ -263,9 +263,9 @@ mod tests {
         let mut random = Rng::new(5);
         let mut training = Training::new(&mut random);
         training.learn(&utterance, &mut random);
-        for part in 0..PARTS.len() {
+        for (part, size) in PARTS.into_iter().enumerate() {
             let row = if part == 0 { 70 * WIDTH } else { 0 };
-            let at = Recurrent::offset(part) + row + PARTS[part].min(WIDTH) / 2;
+            let at = Recurrent::offset(part) + row + size.min(WIDTH) / 2;
             let mut moved = training.model.clone();
             let mut at_distance = |distance: f32| {
                 moved.weights[at] = training.model.weights[at] + distance;
