@@ -145,7 +145,9 @@ fn reading(
         .flat_map(|(phrase, _)| phrase.examples.iter().map(|example| example.word))
         .collect();
     let mut reading = best.clone();
-    if changed.is_empty() {
+    // A question, an errand or talk is as the rules read it, if nothing in it is a wish.
+    let is_wish = fate.iter().any(|fate| POLARITIES[*fate] != Polarity::Neither);
+    if changed.is_empty() || best.intent != Intent::Inform && !is_wish {
         return reading;
     }
     if best.intent != Intent::Inform {
