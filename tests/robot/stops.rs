@@ -76,7 +76,7 @@ fn assert_nothing_is_commanded_since(world: &World, since: Time) {
 }
 
 #[test]
-fn arm_halts_on_disabled_motors_and_faults_and_resumes_the_pick() {
+fn arm_halts_on_disabled_motors_and_faults_and_goes_on_only_after_a_release() {
     for (fault, repairs) in [
         (DrillKind::Disable, vec![DrillKind::Enable]),
         (DrillKind::Fail, vec![DrillKind::Reset, DrillKind::Enable]),
@@ -90,9 +90,12 @@ fn arm_halts_on_disabled_motors_and_faults_and_resumes_the_pick() {
             world.run(0.1);
             let off = world.now;
             world.run(1.5);
-            assert_eq!((world.status().stopped, world.status().moving), (0, 0));
+            assert_eq!((world.status().stopped, world.status().moving), (1, 0));
             assert_nothing_is_commanded_since(&world, off);
             repairs.iter().for_each(|repair| world.drill(*repair, 0.0));
+            world.run(1.0);
+            assert_eq!((world.hindrance(), world.status().moving), (MotionInhibit::None, 0));
+            world.motion(MotionOrder::Resume);
             world.run_until("over", |w| w.phase() == PickPhase::Done);
             world.assert_delivered_once();
         }

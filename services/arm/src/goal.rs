@@ -75,9 +75,12 @@ impl ArmNode {
 
     /// Returns the present goal; `None` means standing.
     fn wanted(&self, now: Time) -> Option<Purpose> {
-        if self.state.stopped || self.ending || self.driver.inhibit() != MotionInhibit::None {
-            return None;
-        }
+        let may_move = !self.state.stopped && self.driver.inhibit() == MotionInhibit::None;
+        if may_move && !self.ending { self.intended(now) } else { None }
+    }
+
+    /// Returns the goal of an arm that may move.
+    pub(crate) fn intended(&self, now: Time) -> Option<Purpose> {
         let returning = self.executor.purpose() == Some(Purpose::Return);
         let away = returning || self.limb_away().is_some() && self.plan_failures.way_to_rest(now);
         match self.goal() {

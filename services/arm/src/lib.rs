@@ -39,8 +39,8 @@ use goal::PlanFailures;
 use messages::pick::Pick;
 use messages::robot::{Order, Report};
 use messages::{
-    ArmStatus, JointStates, MessageRef, MotionInhibit, MotionOrder, PickOutcome, PickPhase,
-    RobotAct, TableView, TrajectoryView, WorldView,
+    ArmStatus, JointStates, MessageRef, MotionInhibit, PickOutcome, PickPhase, RobotAct, TableView,
+    TrajectoryView, WorldView,
 };
 use orders::StandingAct;
 use plan::Planning;
@@ -299,8 +299,7 @@ impl ArmNode {
     fn set_aside(&mut self, SetAside { over, is_own }: SetAside, now: Time, fx: &mut Fx) {
         if is_own {
             tracing::warn!("the arm's journal is new: look, then `whichone resume-motion`");
-            (self.state.stopped, self.state.obeyed) = (true, now);
-            self.record(Cause::Motion(MotionOrder::Stop), now, fx);
+            self.latch_stop(now, fx);
         }
         let is_over = |pick: &&Pick| pick.id.interaction.0 <= over;
         let phase = self.state.open_pick().filter(is_over).map(|pick| pick.phase);
@@ -331,13 +330,18 @@ impl ArmNode {
         self.publish(now, fx);
     }
 
+    /// Returns whether no motion is commanded and joints and fingers are measured to stand still.
+    fn is_at_rest(&self) -> bool {
+        self.executor.is_standing() && self.driver.is_still()
+    }
+
     fn answer_callers(&mut self, fx: &mut Fx) {
         for (caller, given_ns) in std::mem::take(&mut self.callers) {
             let state = StopState {
                 given_ns,
                 in_force_ns: self.state.obeyed.ns(),
                 stopped: self.state.stopped,
-                at_rest: self.executor.is_standing(),
+                at_rest: self.is_at_rest(),
                 durable: !self.unsynced,
                 inhibit: self.driver.inhibit(),
             };
@@ -359,6 +363,7 @@ impl ArmNode {
             state: &self.state,
             measured: &measured,
             executor: &self.executor,
+            is_at_rest: self.is_at_rest(),
             world: &self.world,
             aimed: aims.then_some(self.act.id),
             inhibit: self.driver.inhibit(),

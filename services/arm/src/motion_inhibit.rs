@@ -15,15 +15,13 @@ impl ArmNode {
             self.inhibit = inhibit;
             log(inhibit);
         }
-        match inhibit {
-            MotionInhibit::Stopped | MotionInhibit::Error | MotionInhibit::Disabled => {
-                self.stand_still(now, fx);
+        use MotionInhibit::{Disabled, Error, Stopped};
+        if matches!(inhibit, Stopped | Error | Disabled) {
+            self.stand_still(now, fx);
+            // Nothing begins to move because somebody enables the robot.
+            if inhibit == Stopped || self.intended(now).is_some() {
+                self.latch_stop(now, fx);
             }
-            _ => {}
-        }
-        if inhibit == MotionInhibit::Stopped && !self.state.stopped {
-            self.state.stopped = true;
-            self.record(Cause::Motion(MotionOrder::Stop), now, fx);
         }
         if let Some(fault) = self.driver.fault() {
             self.block(&fault, now, fx);
@@ -36,6 +34,16 @@ impl ArmNode {
             self.executor.stand();
             self.record(Cause::Moved, now, fx);
         }
+    }
+
+    /// Latches the motion stop as an order that is given now would.
+    pub(crate) fn latch_stop(&mut self, now: Time, fx: &mut Fx) {
+        if self.state.stopped {
+            return;
+        }
+        (self.state.stopped, self.state.obeyed) = (true, now);
+        self.urgent = true;
+        self.record(Cause::Motion(MotionOrder::Stop), now, fx);
     }
 
     /// Returns the grippers, left first, that hold nothing a calibration would drop.
@@ -61,12 +69,14 @@ fn log(inhibit: MotionInhibit) {
             "the robot's emergency stop holds; the motion stop is latched",
             "release the button, reset and enable the robot, then: whichone resume-motion",
         ),
-        MotionInhibit::Error => {
-            ("the robot has a fault", "check the robot, then reset and enable it")
-        }
-        MotionInhibit::Disabled => {
-            ("the robot is disabled", "enable the robot; the arm then resumes")
-        }
+        MotionInhibit::Error => (
+            "the robot has a fault; a motion under way is stopped",
+            "check the robot, reset and enable it, then: whichone resume-motion",
+        ),
+        MotionInhibit::Disabled => (
+            "the robot is disabled; a motion under way is stopped",
+            "enable the robot, then: whichone resume-motion",
+        ),
         MotionInhibit::Unheard => (
             "no messages from the robot, or from a part of it",
             "start the robot's bridge or whichone-baxter; with one gripper only, set arm.limb",

@@ -50,6 +50,8 @@ pub(crate) struct Facts<'a> {
     pub(crate) state: &'a ArmState,
     pub(crate) measured: &'a Measured,
     pub(crate) executor: &'a Executor,
+    /// Nothing is commanded, and joints and fingers are measured to stand still.
+    pub(crate) is_at_rest: bool,
     pub(crate) world: &'a World,
     pub(crate) aimed: Option<ActId>,
     pub(crate) inhibit: MotionInhibit,
@@ -178,7 +180,7 @@ impl Publisher {
         let status = ArmStatus {
             aimed_act: facts.aimed.map_or(0, |act| act.0),
             stopped: state.stopped.into(),
-            moving: (!executor.is_standing()).into(),
+            moving: (!facts.is_at_rest).into(),
             hindrance: facts.inhibit.code(),
             remaining_s: seconds / self.time_scale,
             ..ArmStatus::default()

@@ -106,15 +106,15 @@ impl Fingers {
     /// Returns the gripper's reported state.
     pub fn state(&self, timestamp_ns: u64, enabled: bool, gripper: &Gripper) -> EndEffectorState {
         let is = |fact: bool| if fact { Tristate::True } else { Tristate::False }.code();
-        let moving = !self.goals.is_empty();
+        let waits = !self.goals.is_empty();
         let (command, sender, sequence) = &self.handled;
         EndEffectorState {
             timestamp_ns,
             id: 65_664,
             enabled: is(enabled),
             calibrated: is(self.calibrated),
-            ready: is(self.calibrated && !moving),
-            moving: is(moving),
+            ready: is(self.calibrated && !waits),
+            moving: is(enabled && waits),
             gripping: is(self.gripping),
             missed: is(self.missed),
             error: is(false),

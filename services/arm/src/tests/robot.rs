@@ -26,6 +26,8 @@ struct Body {
     only_picks: bool,
     /// True if the gripper can feel.
     feels: bool,
+    /// True if the joints are measured to move.
+    coasts: bool,
     /// True if what was held is lost.
     dropped: bool,
     /// Number of coming grasps that fail.
@@ -48,6 +50,7 @@ impl Robot {
             durable: state.pick,
             only_picks: false,
             feels: true,
+            coasts: false,
             dropped: false,
             misses: 0,
             closing: false,
@@ -63,6 +66,11 @@ impl Robot {
     /// From here on nothing may move but for a pick that is durably moving.
     pub(super) fn expect_only_picks(&self) {
         self.0.borrow_mut().only_picks = true;
+    }
+
+    /// From here on its joints are measured to move, whatever is commanded; or no longer.
+    pub(super) fn coast(&self, coasts: bool) {
+        self.0.borrow_mut().coasts = coasts;
     }
 
     pub(super) fn lose_feeling(&self) {
@@ -129,6 +137,10 @@ impl ArmDriver for Robot {
             *holding = holding.filter(|_| body.feels).map(|holds| holds && !body.dropped);
         }
         measured
+    }
+
+    fn is_still(&self) -> bool {
+        !self.0.borrow().coasts
     }
 
     fn command(&mut self, command: &Command, seconds: f64) {

@@ -24,6 +24,21 @@ fn motion_stop_halts_within_100_ms_and_the_pick_resumes() {
     }
 }
 
+/// Whether set points have ended is not what people beside the arm see.
+#[test]
+fn arm_that_is_measured_to_move_is_not_at_rest() {
+    let mut machine = Machine::new(config());
+    machine.act(pick(1, 1));
+    machine.run(2.0);
+    machine.robot.coast(true);
+    machine.motion(MotionOrder::Stop);
+    machine.run(3.0);
+    assert_eq!((machine.status().stopped, machine.status().moving), (1, 1));
+    machine.robot.coast(false);
+    machine.run(0.1);
+    assert_eq!((machine.status().stopped, machine.status().moving), (1, 0));
+}
+
 #[test]
 fn from_beside_an_object_the_gripper_goes_straight_up_first() {
     for object in 0..OBJECTS {
