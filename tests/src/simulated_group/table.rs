@@ -162,8 +162,8 @@ impl TableTop {
         question: Question,
         wanted: Option<ObjectId>,
     ) -> Option<(Scene, Option<ObjectId>)> {
-        let scene = self.file.with_objects(&self.known());
         let k = question.attribute()?;
+        let scene = self.file.with_objects(&self.known());
         if !scene.attributes().get(k.index())?.by_place {
             return None;
         }
