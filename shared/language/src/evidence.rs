@@ -12,9 +12,9 @@ use crate::parsed::{ParsedUtterance, READINGS_MAX};
 use crate::tagger::Tag;
 use crate::token_class::classes;
 
-/// All that can be said of a phrase.
 /// Probability from which on what the judge states stands alone.
 const SURE: f64 = 0.9;
+/// All that can be said of a phrase.
 const POLARITIES: [Polarity; 3] = [Polarity::Wanted, Polarity::Denied, Polarity::Neither];
 /// Intents beside which a wish may stand: "is there a brass screw? I'd like it".
 const OPEN: [Intent; 8] = [

@@ -116,23 +116,19 @@ fn elements<'a>(
     spans: &[std::ops::Range<usize>],
 ) -> Vec<Element<'a>> {
     let mut elements = Vec::new();
-    let mut at = 0;
+    let (mut at, mut pauses) = (0, false);
     while let Some(tag) = parsed.tags.get(at) {
-        if at > 0 && tag.pauses() {
+        pauses |= tag.pauses();
+        let phrase = spans.iter().position(|span| span.start == at);
+        at = phrase.map_or(at + 1, |number| spans[number].end);
+        if phrase.is_none() && tag.is_any(classes![Filler Courtesy]) {
+            continue;
+        }
+        // A pause stands between two elements: that before a last "please" is none.
+        if std::mem::take(&mut pauses) && !elements.is_empty() {
             elements.push(Element::Pause);
         }
-        match spans.iter().position(|span| span.start == at) {
-            Some(number) => {
-                elements.push(Element::Phrase(number));
-                at = spans[number].end;
-            }
-            None => {
-                if !tag.is_any(classes![Filler Courtesy]) {
-                    elements.push(Element::Word(tag));
-                }
-                at += 1;
-            }
-        }
+        elements.push(phrase.map_or(Element::Word(tag), Element::Phrase));
     }
     elements
 }
