@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io;
 use std::os::unix::fs::FileExt;
 
+use mcap::MAGIC;
 use mcap::records::op;
 
 /// A record that claims more has a damaged length; one that claims less and does not fit is cut off.
@@ -86,10 +87,19 @@ impl Frames<'_> {
         Ok(None)
     }
 
+    /// Whether what closes a file stands there. Few bytes look like a footer: those in a damaged length may.
+    fn is_last(self, at: u64) -> io::Result<bool> {
+        let mut magic = [0; MAGIC.len()];
+        let read = self.file.read_at(&mut magic, at)?;
+        Ok(magic[..read] == *MAGIC)
+    }
+
     pub(crate) fn is_chain(self, mut at: u64) -> io::Result<bool> {
         for _ in 0..CHAIN {
             match self.at(at)? {
-                Found::Record(frame) if frame.kind == op::FOOTER => return Ok(true),
+                Found::Record(frame) if frame.kind == op::FOOTER => {
+                    return self.is_last(frame.end());
+                }
                 Found::Record(frame) => at = frame.end(),
                 Found::End => return Ok(at == self.size),
                 Found::Damage => return Ok(false),

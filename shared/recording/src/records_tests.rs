@@ -165,6 +165,16 @@ fn unknown_compression_is_left_out() {
     assert_eq!(read(&bytes).unwrap(), (expected(&[2]), lost(1)));
 }
 
+#[test]
+fn damaged_length_that_looks_like_a_footer_ends_nothing() {
+    let mut bytes = file(Some(Compression::Lz4));
+    let second = frames(&bytes, op::CHUNK)[1].start;
+    // The last byte of the chunk's length, before its first time, 20.
+    assert_eq!(bytes[second + 8..second + 17], [0, 20, 0, 0, 0, 0, 0, 0, 0]);
+    bytes[second + 8] = op::FOOTER;
+    assert_eq!(read(&bytes).unwrap(), (expected(&[1]), lost(1)));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
