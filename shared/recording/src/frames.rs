@@ -137,14 +137,17 @@ pub(crate) fn frame(head: &[u8], at: u64) -> Option<Frame> {
     (least..=FRAME_BYTES_MAX).contains(&bytes).then_some(Frame { at, kind, bytes })
 }
 
-/// The length of a chunk or an attachment by the lengths in it; none if it has no room for what they state, which
-/// [`parse_record`] takes for granted.
+/// The length of a chunk, an attachment or an index by the lengths in it; none if it has no room for what they state,
+/// which [`parse_record`] takes for granted.
 pub(crate) fn own_length(kind: u8, content: &[u8]) -> Option<usize> {
     let number = |at: usize| content.get(at..at + 8)?.try_into().ok().map(u64::from_le_bytes);
     let text = |at: usize| {
         let length = content.get(at..at + 4)?.try_into().ok().map(u32::from_le_bytes)?;
         Some(at + 4 + length as usize)
     };
+    if kind == op::MESSAGE_INDEX {
+        return text(2).filter(|end| *end <= content.len());
+    }
     let (size, sum) = match kind {
         // Two times, size and sum of what is in it; compression.
         op::CHUNK => (text(28)?, 0),

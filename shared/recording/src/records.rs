@@ -245,18 +245,21 @@ impl Reading<'_> {
                 };
                 return Ok(is_sound.then_some(frame.at + HEAD_BYTES + own as u64));
             }
-            op::MESSAGE_INDEX => is_length_right && self.index(&content),
+            // It has no sum: of two lengths, the right one leads to a record.
+            op::MESSAGE_INDEX => {
+                let Some(own) = own_length(frame.kind, &content) else { return Ok(None) };
+                let end = frame.at + HEAD_BYTES + own as u64;
+                let is_one = own == content.len() && is_length_right;
+                if !is_one && !self.io(self.frames.is_chain(end))? {
+                    return Ok(None);
+                }
+                // A channel, and 16 bytes for each message.
+                self.indexed += (own as u64 - 6) / 16;
+                return Ok(Some(end));
+            }
             kind => is_length_right && self.parsed(kind, &content)?,
         };
         Ok(end.filter(|_| is_sound))
-    }
-
-    /// Counts the messages of an index: a channel, and 16 bytes for each.
-    fn index(&mut self, content: &[u8]) -> bool {
-        let stated = content.get(2..6).and_then(|it| it.try_into().ok()).map(u32::from_le_bytes);
-        let is_sound = stated.is_some_and(|it| it as usize == content.len() - 6);
-        self.indexed += stated.filter(|_| is_sound).map_or(0, |it| u64::from(it / 16));
-        is_sound
     }
 
     fn parsed(&mut self, kind: u8, content: &[u8]) -> Result<bool, RecordingError> {

@@ -175,6 +175,15 @@ fn damaged_length_that_looks_like_a_footer_ends_nothing() {
     assert_eq!(read(&bytes).unwrap(), (expected(&[1]), lost(1)));
 }
 
+#[test]
+fn index_with_a_damaged_length_that_leads_to_a_chunk_hides_none() {
+    let mut bytes = file(Some(Compression::Lz4));
+    let index = frames(&bytes, op::MESSAGE_INDEX)[1].start;
+    let later = frames(&bytes, op::CHUNK)[7].start;
+    bytes[index + 1..index + 9].copy_from_slice(&(later as u64 - index as u64 - 9).to_le_bytes());
+    assert_eq!(read(&bytes).unwrap(), (expected(&[]), LeftOut::default()));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
