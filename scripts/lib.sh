@@ -30,6 +30,12 @@ install() {
 # runs, and few large units of code take a tenth less processor time than many small ones.
 build_once() { export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG=0 CARGO_PROFILE_DEV_CODEGEN_UNITS=4; }
 
+# Builds check the lints as well: clippy's compiler does both, and nothing is compiled a second time for them.
+lint_while_building() {
+    export RUSTC_WORKSPACE_WRAPPER=clippy-driver
+    export CLIPPY_ARGS=-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__
+}
+
 # A ROS 1 master, robot and recorder, for the tests and benchmarks of the bridge.
 ros1_packages=(python3-rosmaster python3-rospy python3-rosbag python3-sensor-msgs python3-trajectory-msgs
     python3-genmsg python3-genpy ros-std-msgs ros-geometry-msgs ros-sensor-msgs)

@@ -33,7 +33,7 @@ fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().to_str().unwrap();
         let words = ["--interactions", "1100", "--users", "model,human", "--turns", "naive"];
-        let more = ["--threads", threads, "--seed", seed, "--out", out];
+        let more = ["--policies", "lookahead", "--threads", threads, "--seed", seed, "--out", out];
         let out = study(&[&BOWLS[..], &words, &more].concat()).succeeded();
         (out, files(folder.path()))
     };
@@ -71,6 +71,7 @@ fn every_policy_is_simulated_with_every_kind_of_user() {
 fn study_prints_durations_that_can_be_the_costs() {
     let run = |more: &[&str]| -> Value {
         let words = ["--interactions", "40", "--mode", "present", "--users", "model", "--json"];
+        let words = [&words[..], &["--policies", "lookahead"]].concat();
         let out = study(&[&BOWLS[..], &words, more].concat()).succeeded();
         serde_json::from_slice(&out).unwrap()
     };
