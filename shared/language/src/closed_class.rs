@@ -73,6 +73,11 @@ fn words() -> &'static HashMap<&'static str, Class> {
     &WORDS
 }
 
+/// Returns whether a word is an auxiliary verb, whatever else it names in a scene.
+pub(crate) fn is_auxiliary(word: &str) -> bool {
+    vocabulary::phrases().any(|(class, known)| class == Class::Auxiliary && known == word)
+}
+
 /// Returns whether words that stand alone are an answer, whatever else they name in a scene.
 pub(crate) fn is_answer(class: Class) -> bool {
     matches!(class, Class::Yes | Class::No | Class::WeakYes | Class::WeakNo)

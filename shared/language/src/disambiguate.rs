@@ -2,6 +2,7 @@
 
 use scene::Role;
 
+use crate::closed_class::is_auxiliary;
 use crate::lexicon::{Lexicon, Sense};
 use crate::tagger::{Tag, after, before, doubts};
 use crate::token_class::{Class, classes};
@@ -55,6 +56,7 @@ impl<'a> Place<'_, 'a> {
     fn resolved_class(&self) -> Option<Option<Class>> {
         let tag = self.tag();
         let class = match (tag.class(), tag.word) {
+            (None, _) if self.is_asking_verb() => Some(Class::Auxiliary),
             (None, _) => self.is_participle().then_some(Class::Plain),
             (Some(Class::One), _) => {
                 Some(if self.is_noun_one() { Class::Head } else { Class::Plain })
@@ -69,6 +71,14 @@ impl<'a> Place<'_, 'a> {
             _ => None,
         };
         class.map(Some)
+    }
+
+    /// "can you", "will it", where a can or a will may be fetched.
+    fn is_asking_verb(&self) -> bool {
+        self.tag().is_value()
+            && is_auxiliary(self.tag().word)
+            && self.after().is_some_and(|next| next.is_any(classes![First Second Third It]))
+            && !self.before().is_some_and(|before| before.is_any(classes![Determiner Possessive]))
     }
 
     /// "one" is what an object is called after "the" or "white", and a number elsewhere.

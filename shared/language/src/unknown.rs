@@ -106,7 +106,14 @@ fn is_in_noun_phrase(tags: &[Tag<'_>], at: usize) -> bool {
         return tags[at].is_unknown() && tags[..at].iter().all(|tag| tag.is_any(classes![Filler]));
     };
     let lead = classes![Determiner Unlisted Quantifier Possessive];
-    tags[at].is_unknown() && (before.is_value() || before.is_any(lead))
+    tags[at].is_unknown() && (before.is_value() || before.is_any(lead)) && !is_clause(tags, at)
+}
+
+/// "my grandmother gave me": the last unknown word is a verb.
+fn is_clause(tags: &[Tag<'_>], at: usize) -> bool {
+    let unknown = tags[at..].iter().take_while(|tag| tag.is_unknown()).count();
+    let is_object = |tag: &Tag<'_>| tag.word == "me" || tag.is_any(classes![First Second It]);
+    unknown > 1 && after(tags, at + unknown - 1).is_some_and(is_object)
 }
 
 /// The word with those that it forms a compound with, and what it is.

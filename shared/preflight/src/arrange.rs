@@ -102,7 +102,10 @@ impl<'a> Arrangement<'a> {
     /// helps those that cannot be grasped.
     pub fn arrange(&mut self, new: &[usize]) -> Vec<usize> {
         new.iter().for_each(|&i| self.stands[i] = false);
-        let is_misplaced = |&i: &usize| matches!(self.limb(i), Err(error) if !matches!(error, PlanError::Grasp(_)));
+        let is_misplaced = |&i: &usize| {
+            !self.is_late()
+                && matches!(self.limb(i), Err(error) if !matches!(error, PlanError::Grasp(_)))
+        };
         let known = (0..self.poses.len()).filter(|i| self.stands[*i]);
         let misplaced: Vec<usize> = known.filter(is_misplaced).collect();
         misplaced.iter().for_each(|&i| self.stands[i] = false);
@@ -128,6 +131,9 @@ impl<'a> Arrangement<'a> {
     pub fn why_unplaced(&self, i: usize) -> String {
         match self.limb(i) {
             Err(PlanError::Grasp(error)) => format!("cannot be grasped anywhere: {error}"),
+            _ if self.is_late() => {
+                "has no place: the search took too long; help: set its `xyz`".to_owned()
+            }
             _ => "finds no free place on the table that the arm reaches".to_owned(),
         }
     }
@@ -157,7 +163,9 @@ impl<'a> Arrangement<'a> {
         places.sort_by(|a, b| from_middle(a).total_cmp(&from_middle(b)));
         LOOSE_M
             .iter()
-            .find_map(|gap_m| places.iter().copied().find(|&place| self.fits(i, place, *gap_m)))
+            .flat_map(|gap_m| places.iter().map(move |place| (*gap_m, *place)))
+            .take_while(|_| !self.is_late())
+            .find_map(|(gap_m, place)| self.fits(i, place, gap_m).then_some(place))
     }
 
     /// Returns whether the arm can fetch `i` at a place that is `gap_m` from others, and still fetch

@@ -294,6 +294,17 @@ fn nine_objects_without_places_are_arranged_the_same_way_each_time() {
     assert_eq!(arranged(), arranged());
 }
 
+#[test]
+fn a_search_for_places_ends_in_time_and_says_so() {
+    let settings = Settings::load(&shipped(), None, &[]).unwrap();
+    let setup = ArmSetup::new(&settings).unwrap();
+    let bowl = crate::pose(&settings.scene.objects()[0].placement.unwrap());
+    let poses = vec![manipulation::ObjectPose { xyz_m: [0.0; 3], ..bowl }; 2];
+    let mut late = crate::Arrangement::new(&setup, poses).until(std::time::Instant::now());
+    assert_eq!(late.arrange(&[0, 1]), [] as [usize; 0]);
+    assert!(late.why_unplaced(1).contains("took too long"), "{}", late.why_unplaced(1));
+}
+
 /// Baxter with another velocity limit of its first joints.
 fn slower() -> String {
     let slower = BAXTER_URDF.replacen("velocity=\"1.5\"", "velocity=\"0.5\"", 20);

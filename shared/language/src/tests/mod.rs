@@ -173,6 +173,7 @@ fn reader_names_unknown_words() {
         ("the bowl next to your plate", vec!["next to your plate"]),
         ("right, the clear one", vec![]),
         ("first of all I need the clear bowl", vec![]),
+        ("the chair my grandmother gave me is broken, the clear bowl please", vec![]),
     ] {
         let words = reader.unknown_words(text).into_iter().map(|word| word.text);
         assert_eq!(words.collect::<Vec<_>>(), unknown, "{text}");

@@ -288,6 +288,26 @@ fn scenes_are_told_of_words_that_are_the_robots_own() {
 }
 
 #[test]
+fn a_can_is_one_but_where_somebody_asks() {
+    let text = "name = 's'\nnoun = 'item'\n[[attributes]]\nname = 'container'\n\
+                values = ['can', { name = 'jar', spoken = 'in a jar' }]\n\
+                [[objects]]\nname = 'a'\nattributes = { container = 'can' }\n";
+    let scene = Scene::from_toml("s", text).expect("a scene");
+    let reader = Reader::new(&scene, Language::Careful);
+    for (text, base) in [
+        ("can you get me the jar", &["jar"][..]),
+        ("can i have the jar please", &["jar"]),
+        ("can you get me the can", &["can"]),
+        ("the can please", &["can"]),
+        ("get me the can you see there", &["can"]),
+    ] {
+        let read = reader.read(text, Question::None);
+        let words: Vec<&str> = read.base.iter().map(|it| &*scene.words()[it.index()]).collect();
+        assert_eq!(words, base, "{text}");
+    }
+}
+
+#[test]
 fn shipped_scenes_read_back_without_a_fault() {
     for name in SHIPPED {
         assert_eq!(word_findings(&scene(name)), WordFindings::default(), "{name}");

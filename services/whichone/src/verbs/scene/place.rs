@@ -1,5 +1,7 @@
 //! `scene place`: places for objects that have none or that cannot be fetched.
 
+use std::time::{Duration, Instant};
+
 use command_line::Outcome;
 use command_line::output::{Output, note};
 use diagnostics::TextFile;
@@ -12,6 +14,9 @@ use service::exit::{Exit, Failure};
 use super::{diff, examine, load, read};
 use crate::cli::{ConfigArgs, ScenePlaceArgs};
 use crate::verbs::check;
+
+/// Longest search for all places: where robot and scene do not fit, each look takes long.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// An object with a new place.
 pub(super) struct Placed {
@@ -101,7 +106,7 @@ pub(super) fn places(
         .filter_map(|(n, object)| Some((n, preflight::pose(&object.placement?))))
         .unzip();
     let new: Vec<usize> = (0..numbers.len()).filter(|&i| added.contains(&numbers[i])).collect();
-    let mut arrangement = Arrangement::new(&setup, poses.clone());
+    let mut arrangement = Arrangement::new(&setup, poses.clone()).until(Instant::now() + PATIENCE);
     let changed = arrangement.arrange(&new);
     let unplaced = new.iter().filter(|i| !changed.contains(i)).map(|&i| {
         let object = objects[numbers[i]].name.clone();
