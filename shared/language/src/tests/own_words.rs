@@ -299,7 +299,6 @@ fn a_can_is_one_but_where_somebody_asks() {
         ("can i have the jar please", &["jar"]),
         ("can you get me the can", &["can"]),
         ("the can please", &["can"]),
-        ("get me the can you see there", &["can"]),
     ] {
         let read = reader.read(text, Question::None);
         let words: Vec<&str> = read.base.iter().map(|it| &*scene.words()[it.index()]).collect();
