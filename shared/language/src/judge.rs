@@ -1,21 +1,24 @@
 //! The judge: how probable it is that a value word is wanted, denied, or neither, by the words around it.
 //!
-//! A linear model over hashed features ([`crate::features`]) and a small recurrent one ([`crate::recurrent`]), trained by
+//! A linear model over hashed features ([`crate::features`]) and two small recurrent ones ([`crate::recurrent`]), trained by
 //! `reader_training` on labelled lines; their sums are added. It corrects what the rules propose and says how sure that is:
 //! what they do not cover is in doubt.
 
 use std::sync::LazyLock;
 
 use crate::features::{Example, Features, ROWS};
-use crate::recurrent::{PARTS, Recurrent};
+use crate::recurrent::{PARTS, Recurrent, Sequence};
 
 /// The weights, as `reader_training` writes them: a hash of what they were trained on; a scale, and the linear weights of the
-/// three polarities by row; then each part of the recurrent ones, a scale and weights of 8 bits.
+/// three polarities by row; then each part of each recurrent one, a scale and weights of 8 bits.
 const FILE: &[u8] = include_bytes!("vocabulary/judge.bin");
 /// Length of the hash, bytes.
 const HASH: usize = 8;
 /// Probability that a value word says nothing, whatever the judge states: it has not seen all that people say.
 pub const FLOOR: f64 = 0.01;
+
+/// Recurrent networks, each trained from another start: where one errs by chance, the others seldom do.
+pub const NETWORKS: usize = 2;
 
 static BUILT_IN: LazyLock<Judge> =
     LazyLock::new(|| Judge::from_bytes(FILE).expect("vocabulary/judge.bin has all weights"));
@@ -25,7 +28,7 @@ static BUILT_IN: LazyLock<Judge> =
 pub struct Judge {
     scale: f64,
     weights: Vec<[i16; 3]>,
-    recurrent: Recurrent,
+    recurrent: Vec<Recurrent>,
 }
 
 impl Judge {
@@ -36,12 +39,14 @@ impl Judge {
         let row = |row: &[u8]| [word(row), word(&row[2..]), word(&row[4..])];
         let weights = rest.get(..6 * ROWS)?.chunks_exact(6).map(row).collect();
         rest = &rest[6 * ROWS..];
-        let mut recurrent = Recurrent { weights: Vec::new() };
-        for size in PARTS {
-            let (scale, bytes) = number(rest)?;
-            let part = bytes.get(..size)?.iter().map(|byte| f32::from(*byte as i8) * scale);
-            recurrent.weights.extend(part);
-            rest = &bytes[size..];
+        let mut recurrent = vec![Recurrent { weights: Vec::new() }; NETWORKS];
+        for network in &mut recurrent {
+            for size in PARTS {
+                let (scale, bytes) = number(rest)?;
+                let part = bytes.get(..size)?.iter().map(|byte| f32::from(*byte as i8) * scale);
+                network.weights.extend(part);
+                rest = &bytes[size..];
+            }
         }
         Some(Self { scale: f64::from(scale), weights, recurrent })
     }
@@ -53,7 +58,7 @@ impl Judge {
 
     /// Returns the probabilities of wanted, denied and neither for each value word.
     pub(crate) fn stated(&self, features: &Features) -> Vec<[f64; 3]> {
-        let recurrent = self.recurrent.sums(&features.sequence);
+        let recurrent = sums(&self.recurrent, &features.sequence);
         let stated = |(example, recurrent): (&Example, [f32; 3])| {
             let linear = self.linear(&example.rows);
             let sums = [0, 1, 2].map(|n| linear[n] as f64 * self.scale + f64::from(recurrent[n]));
@@ -75,6 +80,17 @@ impl Judge {
         }
         sums
     }
+}
+
+/// The sums of all networks together, for each value word.
+pub fn sums(networks: &[Recurrent], sequence: &Sequence) -> Vec<[f32; 3]> {
+    let mut all = vec![[0.0; 3]; sequence.values.len()];
+    for network in networks {
+        for (sums, more) in all.iter_mut().zip(network.sums(sequence)) {
+            sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        }
+    }
+    all
 }
 
 /// A number of 32 bits, and what follows it.

@@ -1,7 +1,7 @@
-//! The judge's model, a linear and a recurrent one, and the file of its weights.
+//! The judge's model, a linear and recurrent ones, and the file of its weights.
 
 use language::recurrent::{PARTS, Recurrent};
-use language::{Judge, ROWS};
+use language::{Judge, NETWORKS, ROWS, sums};
 
 use crate::linear::{Linear, softmax};
 use crate::recurrent;
@@ -12,13 +12,13 @@ const EPOCHS: usize = 4;
 /// Rate of the first step of a weight.
 const RATE: f64 = 0.0125;
 /// Factors of the sums of both parts, as they were fitted to authors who were not seen.
-const SHARES: [f64; 2] = [0.4, 0.35];
+const SHARES: [f64; 2] = [0.4, 0.175];
 
 /// Both parts.
 #[derive(Clone, Debug)]
 pub struct Model {
     linear: Linear,
-    recurrent: Recurrent,
+    recurrent: Vec<Recurrent>,
 }
 
 /// Sums of both parts for a value word, and its label.
@@ -29,12 +29,14 @@ impl Model {
     pub fn train(sources: &Sources, is_chosen: impl Fn(&str, usize) -> bool) -> Self {
         let lessons = sources.lessons(&is_chosen);
         let linear = Linear::train(&lessons, EPOCHS, RATE, 1);
-        Self { linear, recurrent: recurrent::train(&sources.utterances(&is_chosen), 1) }
+        let utterances = sources.utterances(&is_chosen);
+        let networks = (1..=NETWORKS as u64).map(|seed| recurrent::train(&utterances, seed));
+        Self { linear, recurrent: networks.collect() }
     }
 
     /// Returns the sums for each value word with a label.
     pub fn sums(&self, taught: &Taught) -> Vec<Sums> {
-        let recurrent = self.recurrent.sums(&taught.utterance.sequence);
+        let recurrent = sums(&self.recurrent, &taught.utterance.sequence);
         let labels = &taught.utterance.labels;
         let labelled = recurrent.iter().zip(labels).filter_map(|(sums, it)| Some((sums, (*it)?)));
         let both = |(lesson, (recurrent, label)): (&crate::Lesson, (&[f32; 3], usize))| {
@@ -60,15 +62,17 @@ impl Model {
         for weight in linear() {
             bytes.extend(((weight / step).round() as i16).to_le_bytes());
         }
-        for (part, size) in PARTS.into_iter().enumerate() {
-            let from = Recurrent::offset(part);
-            let weights = &self.recurrent.weights[from..from + size];
-            let most = weights.iter().fold(1e-9, |most: f32, it| most.max(it.abs()));
-            let step = most / f32::from(i8::MAX);
-            // The last two parts make the sums.
-            let share = if part + 2 < PARTS.len() { 1.0 } else { SHARES[1] as f32 };
-            bytes.extend((step * share).to_le_bytes());
-            bytes.extend(weights.iter().map(|it| (it / step).round() as i8 as u8));
+        for network in &self.recurrent {
+            for (part, size) in PARTS.into_iter().enumerate() {
+                let from = Recurrent::offset(part);
+                let weights = &network.weights[from..from + size];
+                let most = weights.iter().fold(1e-9, |most: f32, it| most.max(it.abs()));
+                let step = most / f32::from(i8::MAX);
+                // The last two parts make the sums.
+                let share = if part + 2 < PARTS.len() { 1.0 } else { SHARES[1] as f32 };
+                bytes.extend((step * share).to_le_bytes());
+                bytes.extend(weights.iter().map(|it| (it / step).round() as i8 as u8));
+            }
         }
         bytes
     }
@@ -84,6 +88,6 @@ pub fn fitted(sums: &[Sums]) -> [f64; 2] {
         sums.iter().map(loss).sum()
     };
     let grid = || (0..=16).map(|n| 0.05 * f64::from(n));
-    let all = grid().flat_map(|linear| grid().map(move |recurrent| [linear, recurrent]));
+    let all = grid().flat_map(|linear| grid().map(move |recurrent| [linear, 0.5 * recurrent]));
     all.min_by(|a, b| loss(a).total_cmp(&loss(b))).unwrap_or(SHARES)
 }
