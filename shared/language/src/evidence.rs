@@ -60,13 +60,18 @@ pub(crate) fn weighed(parsed: &ParsedUtterance<'_>, best: Reading) -> Vec<(f64, 
     let phrases =
         phrases(&parsed.judge.unwrap_or_else(|| Judge::built_in()).stated(&features), features);
     let mut readings: Vec<(f64, Reading)> = Vec::new();
-    for (weight, fate) in fates(&phrases).into_iter().filter(|(weight, _)| *weight > 0.0) {
+    let is_possible =
+        |(weight, fate): &(f64, Vec<usize>)| *weight > 0.0 && !contradicts(&phrases, fate);
+    for (weight, fate) in fates(&phrases).into_iter().filter(is_possible) {
         let reading = reading(parsed, &best, &phrases, &fate);
         // Doubts say how well words were heard: they tell no readings apart.
         match readings.iter_mut().find(|(_, known)| known.says_the_same(&reading)) {
             Some((known, _)) => *known += weight,
             None => readings.push((weight, reading)),
         }
+    }
+    if readings.is_empty() {
+        return vec![(1.0, best)];
     }
     readings.sort_by(|a, b| b.0.total_cmp(&a.0));
     readings.truncate(READINGS_MAX);
@@ -127,6 +132,18 @@ fn fates(phrases: &[Phrase]) -> Vec<(f64, Vec<usize>)> {
         fates = fates.iter().flat_map(extended).collect();
     }
     fates
+}
+
+/// Whether a phrase is denied all of whose words are wanted elsewhere: "the red mug, no wait, the red cup".
+fn contradicts(phrases: &[Phrase], fate: &[usize]) -> bool {
+    let of = |polarity: Polarity| {
+        let has = move |it: &(&Phrase, &usize)| POLARITIES[*it.1] == polarity;
+        phrases.iter().zip(fate).filter(has).map(|(phrase, _)| phrase)
+    };
+    let is_wanted = |word: WordId| {
+        of(Polarity::Wanted).any(|phrase| phrase.examples.iter().any(|it| it.word == word))
+    };
+    of(Polarity::Denied).any(|phrase| phrase.examples.iter().all(|it| is_wanted(it.word)))
 }
 
 /// The reading in which the phrases have that fate: that of the rules, changed in the words of which they propose another.
