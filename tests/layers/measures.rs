@@ -19,7 +19,7 @@ const BOUNDS: [Bound; 3] = [
         first: 135_525.0,
         // Choice questions, relations from geometry, users who take a value for another one, what is learned about each,
         // budgets of whatever others send, and the recurrent part of the reader's judge.
-        at_most: 125_000.0,
+        at_most: 126_500.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {
@@ -39,13 +39,12 @@ const BOUNDS: [Bound; 3] = [
 
 /// Folders of what a robot needs that asks and fetches. `shared/speech_engines` was counted until it became a crate, 8,000
 /// lines that moved and were not deleted: its adapters of recognisers, voices and recorders decide nothing, and each can
-/// be replaced without a change of the core. So was Baxter's driver, of 1,100 lines, now one of a list of drivers. `shared/language/training`, 1,600 lines, trains the judge
-/// on a developer's machine; nothing of the robot depends on it.
+/// be replaced without a change of the core. So was Baxter's driver, of 1,100 lines, now one of a list of drivers.
 const CORE: [&str; 28] = [
     "shared/vocabulary",
     "shared/scene",
     "shared/words",
-    "shared/language/src",
+    "shared/language",
     "shared/dialogue",
     "shared/setup",
     "shared/messages",

@@ -88,8 +88,10 @@ impl Ros {
     }
 
     /// Settings of a group behind the bridge.
-    pub fn settings(&self) -> [String; 5] {
+    pub fn settings(&self) -> [String; 6] {
         [
+            // The robot is a program in Python, which is late on a busy machine.
+            "arm.baxter.path_tolerance_rad=0.8".to_owned(),
             format!("group.services.baxter.command=[\"{}\"]", program("whichone-ros1").display()),
             "arm.driver=baxter".to_owned(),
             "arm.time_scale=1.0".to_owned(),
