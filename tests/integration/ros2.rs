@@ -142,7 +142,10 @@ fn ros2_cyclone_joints_of_a_single_arm_are_seen() {
 /// The program says this, and the robot delivers the object.
 fn deliver(peer: &mut Ros2Peer, group: &Group, words: &str, object: &str) {
     peer.tell(&format!("say {words}"));
-    let outcome = group.await_pick(None);
+    assert_delivered(group, &group.await_pick(None), object);
+}
+
+fn assert_delivered(group: &Group, outcome: &Value, object: &str) {
     let facts = (&outcome["outcome"], &outcome["object"]);
     assert_eq!(facts, (&"delivered".into(), &object.into()), "{outcome}\n{}", group.logs());
 }
@@ -308,11 +311,12 @@ fn flood_of_words_is_refused_and_harms_nothing(implementation: Implementation) {
         (answer["success"] == false && answer["message"] == "no request is open").then_some(())
     });
     peer.tell("say the clear bowl");
-    // The end of what was cancelled may still come.
-    let mut ends = std::iter::repeat_with(|| group.await_pick(None));
-    let outcome = ends.find(|outcome| outcome["outcome"] != "cancelled").expect("an end");
-    let facts = (&outcome["outcome"], &outcome["object"]);
-    assert_eq!(facts, (&"delivered".into(), &"clear".into()), "{outcome}\n{}", group.logs());
+    let mut outcome = group.await_pick(None);
+    if outcome["outcome"] == "cancelled" {
+        // The end of what the flood had opened.
+        outcome = group.await_pick(None);
+    }
+    assert_delivered(&group, &outcome, "clear");
     group.verify_journals();
     group.down();
 }

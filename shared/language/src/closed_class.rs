@@ -73,15 +73,6 @@ fn words() -> &'static HashMap<&'static str, Class> {
     &WORDS
 }
 
-/// Returns whether a word is an auxiliary verb, whatever else it names in a scene.
-pub(crate) fn is_auxiliary(word: &str) -> bool {
-    static WORDS: LazyLock<HashSet<&str>> = LazyLock::new(|| {
-        let verbs = vocabulary::phrases().filter(|(class, _)| *class == Class::Auxiliary);
-        verbs.map(|(_, word)| word).collect()
-    });
-    WORDS.contains(word)
-}
-
 /// Returns whether words that stand alone are an answer, whatever else they name in a scene.
 pub(crate) fn is_answer(class: Class) -> bool {
     matches!(class, Class::Yes | Class::No | Class::WeakYes | Class::WeakNo)

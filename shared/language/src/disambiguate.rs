@@ -2,7 +2,6 @@
 
 use scene::Role;
 
-use crate::closed_class::is_auxiliary;
 use crate::lexicon::{Lexicon, Sense};
 use crate::tagger::{Tag, after, before, doubts};
 use crate::token_class::{Class, classes};
@@ -75,8 +74,9 @@ impl<'a> Place<'_, 'a> {
 
     /// "can you", "will it", where a can or a will may be fetched.
     fn is_asking_verb(&self) -> bool {
+        let own = Lexicon::own().word(self.tag().word);
         self.tag().is_value()
-            && is_auxiliary(self.tag().word)
+            && matches!(own, Some(Sense::Class(Class::Auxiliary)))
             && self.after().is_some_and(|next| next.is_any(classes![First Second Third It]))
             && !self.before().is_some_and(|before| before.is_any(classes![Determiner Possessive]))
     }

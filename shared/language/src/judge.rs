@@ -58,7 +58,7 @@ impl Judge {
 
     /// Returns the probabilities of wanted, denied and neither for each value word.
     pub(crate) fn stated(&self, features: &Features) -> Vec<[f64; 3]> {
-        let recurrent = sums(&self.recurrent, &features.sequence);
+        let recurrent = recurrent_sums(&self.recurrent, &features.sequence);
         let stated = |(example, recurrent): (&Example, [f32; 3])| {
             let linear = self.linear(&example.rows);
             let sums = [0, 1, 2].map(|n| linear[n] as f64 * self.scale + f64::from(recurrent[n]));
@@ -83,7 +83,7 @@ impl Judge {
 }
 
 /// The sums of all networks together, for each value word.
-pub fn sums(networks: &[Recurrent], sequence: &Sequence) -> Vec<[f32; 3]> {
+pub fn recurrent_sums(networks: &[Recurrent], sequence: &Sequence) -> Vec<[f32; 3]> {
     let mut all = vec![[0.0; 3]; sequence.values.len()];
     for network in networks {
         for (sums, more) in all.iter_mut().zip(network.sums(sequence)) {

@@ -109,7 +109,7 @@ pub use completeness::{Completeness, CompletenessJudge};
 pub use echo::is_echo;
 pub use features::{Example, Features, ROWS};
 pub use halting::is_stop;
-pub use judge::{FLOOR, Judge, NETWORKS, sums, trained_on};
+pub use judge::{FLOOR, Judge, NETWORKS, recurrent_sums, trained_on};
 pub use mentions::{Mention, Polarity};
 pub use parsed::READINGS_MAX;
 pub use read_back::word_findings;

@@ -278,12 +278,17 @@ fn places_are_checked_in_the_same_round_as_everything_else() {
     assert!(found.contains("hover_m") && !found.contains("out of reach"), "{found}");
 }
 
-#[test]
-fn nine_objects_without_places_are_arranged_the_same_way_each_time() {
+/// The shipped arm, and bowls that stand nowhere yet.
+fn unplaced(count: usize) -> (ArmSetup, Vec<manipulation::ObjectPose>) {
     let settings = Settings::load(&shipped(), None, &[]).unwrap();
     let setup = ArmSetup::new(&settings).unwrap();
     let bowl = crate::pose(&settings.scene.objects()[0].placement.unwrap());
-    let poses = vec![manipulation::ObjectPose { xyz_m: [0.0; 3], ..bowl }; 9];
+    (setup, vec![manipulation::ObjectPose { xyz_m: [0.0; 3], ..bowl }; count])
+}
+
+#[test]
+fn nine_objects_without_places_are_arranged_the_same_way_each_time() {
+    let (setup, poses) = unplaced(9);
     let all: Vec<usize> = (0..9).collect();
     let arranged = || {
         let mut arrangement = crate::Arrangement::new(&setup, poses.clone());
@@ -296,10 +301,7 @@ fn nine_objects_without_places_are_arranged_the_same_way_each_time() {
 
 #[test]
 fn a_search_for_places_ends_in_time_and_says_so() {
-    let settings = Settings::load(&shipped(), None, &[]).unwrap();
-    let setup = ArmSetup::new(&settings).unwrap();
-    let bowl = crate::pose(&settings.scene.objects()[0].placement.unwrap());
-    let poses = vec![manipulation::ObjectPose { xyz_m: [0.0; 3], ..bowl }; 2];
+    let (setup, poses) = unplaced(2);
     let mut late = crate::Arrangement::new(&setup, poses).until(std::time::Instant::now());
     assert_eq!(late.arrange(&[0, 1]), [] as [usize; 0]);
     assert!(late.why_unplaced(1).contains("took too long"), "{}", late.why_unplaced(1));

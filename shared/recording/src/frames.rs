@@ -87,7 +87,7 @@ impl Frames<'_> {
         Ok(None)
     }
 
-    /// Whether what closes a file stands there. Few bytes look like a footer: those in a damaged length may.
+    /// Whether what closes a file stands there: a footer is nine bytes, and those of a damaged length may look like one.
     fn is_last(self, at: u64) -> io::Result<bool> {
         let mut magic = [0; MAGIC.len()];
         let read = self.file.read_at(&mut magic, at)?;

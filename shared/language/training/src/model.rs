@@ -1,7 +1,7 @@
 //! The judge's model, a linear and recurrent ones, and the file of its weights.
 
 use language::recurrent::{PARTS, Recurrent};
-use language::{Judge, NETWORKS, ROWS, sums};
+use language::{Judge, NETWORKS, ROWS, recurrent_sums};
 
 use crate::linear::{Linear, softmax};
 use crate::recurrent;
@@ -36,7 +36,7 @@ impl Model {
 
     /// Returns the sums for each value word with a label.
     pub fn sums(&self, taught: &Taught) -> Vec<Sums> {
-        let recurrent = sums(&self.recurrent, &taught.utterance.sequence);
+        let recurrent = recurrent_sums(&self.recurrent, &taught.utterance.sequence);
         let labels = &taught.utterance.labels;
         let labelled = recurrent.iter().zip(labels).filter_map(|(sums, it)| Some((sums, (*it)?)));
         let both = |(lesson, (recurrent, label)): (&crate::Lesson, (&[f32; 3], usize))| {
