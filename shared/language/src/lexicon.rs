@@ -5,7 +5,7 @@
 use std::borrow::Cow;
 use std::cell::LazyCell;
 use std::cmp::Reverse;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::LazyLock;
 
 use scene::{AttributeId, Role, Scene, Value, WordId};
@@ -18,7 +18,7 @@ use crate::morphology::{inflected, singulars};
 use crate::relation_words::by_quality;
 use crate::relations::{Form, forms, words};
 use crate::token_class::Class;
-use crate::vocabulary;
+use crate::vocabulary::{self, Synonyms};
 
 /// What a word or phrase is taken for.
 #[derive(Clone, Copy, Debug)]
@@ -421,22 +421,27 @@ fn names_answer(words: &[String]) -> bool {
 /// What is said for one of the scene's values without a list in the scene: "crimson" for red. Values
 /// are given with their places.
 fn common_synonyms(all: &[(usize, &Value)]) -> Vec<(usize, &'static str)> {
-    let names = |value: &Value| -> Vec<String> {
-        let names = std::iter::once(&value.name).chain(&value.synonyms);
-        names.map(|name| words(name).join(" ")).collect()
-    };
-    let named: Vec<(usize, Role, Vec<String>)> =
-        all.iter().map(|(place, value)| (*place, value.role(), names(value))).collect();
-    let mut synonyms = Vec::new();
-    for (role, group) in vocabulary::synonyms() {
-        let mut known = named.iter().filter(|(_, other, names)| {
-            *other == role && names.iter().any(|name| group.contains(&&**name))
-        });
-        let Some((place, ..)) = known.next() else { continue };
-        // Of two values either may be meant.
-        if known.all(|(other, ..)| other == place) {
-            synonyms.extend(group.iter().map(|synonym| (*place, *synonym)));
+    let known = Synonyms::known();
+    // The value that a group names; none for several, as either may be meant.
+    let mut named: BTreeMap<usize, Option<usize>> = BTreeMap::new();
+    for (place, value) in all {
+        for name in std::iter::once(&value.name).chain(&value.synonyms) {
+            for group in known.with(&words(name).join(" "), value.role()) {
+                let only = named.entry(group).or_insert(Some(*place));
+                *only = only.filter(|other| other == place);
+            }
         }
     }
-    synonyms
+    let mut synonyms: Vec<(usize, Role, &str)> = Vec::new();
+    for (group, place) in named {
+        let (role, words) = known.group(group);
+        synonyms.extend(place.iter().flat_map(|it| words.iter().map(|word| (*it, *role, *word))));
+    }
+    // A bag may be the rucksack or the purse. Of qualities the first group is the closest: navy is dark blue before blue.
+    let is_either = |(place, role, word): &(usize, Role, &str)| {
+        let other = |it: &(usize, Role, &str)| it.0 != *place && it.2 == *word;
+        *role == Role::Kind && synonyms.iter().any(other)
+    };
+    let only = synonyms.iter().filter(|it| !is_either(it));
+    only.map(|(place, _, word)| (*place, *word)).collect()
 }
