@@ -209,7 +209,8 @@ impl Lexicon {
                 self.add_value(name, place);
             }
         }
-        let common = common_synonyms(&all);
+        let mut common = common_synonyms(&all);
+        common.retain(|(place, synonym)| self.may_stand_for(scene, &words(synonym), *place));
         let forms = |(place, value): &(usize, &Value)| {
             let place = *place;
             let also = common.iter().filter(|(other, _)| *other == place);
@@ -232,6 +233,27 @@ impl Lexicon {
             self.add_value(synonym, place);
             self.add_value_forms(synonym, place);
         }
+    }
+
+    /// Returns whether words that the scene does not list may stand for a value: they name nothing else here, and are no
+    /// phrase of the dialogue. "Wooden spoon" is two values where "wooden" is one.
+    fn may_stand_for(&self, scene: &Scene, synonym: &[String], place: usize) -> bool {
+        let attributes = scene.attributes().iter().map(|attribute| attribute.name.as_str());
+        let is_name = attributes.chain([scene.noun()]).any(|name| words(name) == synonym);
+        let own = Lexicon::own().meaning(synonym);
+        let is_dialogue = own.is_some_and(|own| !matches!(own, Meaning::Class(Class::Unlisted)));
+        let is_other = |word: &String| {
+            matches!(self.meaning(std::slice::from_ref(word)), Some(Meaning::Value(other)) if other != place)
+        };
+        let lead = &synonym[..synonym.len().saturating_sub(1)];
+        !is_name && !is_dialogue && !lead.iter().any(is_other)
+    }
+
+    /// What a whole phrase means.
+    fn meaning(&self, words: &[String]) -> Option<Meaning> {
+        let (first, rest) = words.split_first()?;
+        let is_it = |phrase: &&Phrase| phrase.rest.iter().map(|it| &**it).eq(rest);
+        self.phrases.get(first)?.iter().find(is_it).map(|phrase| phrase.meaning)
     }
 
     /// "number one", "one" being what any of the things is called.
