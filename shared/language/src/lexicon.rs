@@ -242,9 +242,7 @@ impl Lexicon {
         let is_name = attributes.chain([scene.noun()]).any(|name| words(name) == synonym);
         let own = Lexicon::own().meaning(synonym);
         let is_dialogue = own.is_some_and(|own| !matches!(own, Meaning::Class(Class::Unlisted)));
-        let is_other = |word: &String| {
-            matches!(self.meaning(std::slice::from_ref(word)), Some(Meaning::Value(other)) if other != place)
-        };
+        let is_other = |word: &String| matches!(self.meaning(std::slice::from_ref(word)), Some(Meaning::Value(other)) if other != place);
         let lead = &synonym[..synonym.len().saturating_sub(1)];
         !is_name && !is_dialogue && !lead.iter().any(is_other)
     }
@@ -460,10 +458,12 @@ fn common_synonyms(all: &[(usize, &Value)]) -> Vec<(usize, &'static str)> {
         synonyms.extend(place.iter().flat_map(|it| words.iter().map(|word| (*it, *role, *word))));
     }
     // A bag may be the rucksack or the purse. Of qualities the first group is the closest: navy is dark blue before blue.
-    let is_either = |(place, role, word): &(usize, Role, &str)| {
-        let other = |it: &(usize, Role, &str)| it.0 != *place && it.2 == *word;
-        *role == Role::Kind && synonyms.iter().any(other)
-    };
-    let only = synonyms.iter().filter(|it| !is_either(it));
-    only.map(|(place, _, word)| (*place, *word)).collect()
+    let mut things: HashMap<&str, Option<usize>> = HashMap::new();
+    for (place, _, word) in synonyms.iter().filter(|it| it.1 == Role::Kind) {
+        let only = things.entry(word).or_insert(Some(*place));
+        *only = only.filter(|other| other == place);
+    }
+    let is_one =
+        |(_, role, word): &&(usize, Role, &str)| *role != Role::Kind || things[word].is_some();
+    synonyms.iter().filter(is_one).map(|(place, _, word)| (*place, *word)).collect()
 }
