@@ -1,9 +1,8 @@
 //! "I don't care", "any cup will do": the user leaves the choice to the robot.
 
 use crate::clauses::{Clause, Topic};
-use crate::extractor::wonders_after;
 use crate::question_words::QuestionWords;
-use crate::tagger::Tag;
+use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
 
 /// Returns the tag that says so.
@@ -59,4 +58,16 @@ pub(crate) fn is_of_attribute(tags: &[Tag<'_>], at: usize) -> bool {
     let said = tags[at + 1..].iter().position(Tag::pauses).map_or(tags.len(), |end| at + 1 + end);
     WORDS.contains(&tags[at].last)
         || tags[at..said].iter().any(|tag| tag.is(Class::Attribute) || tag.word == "be")
+}
+
+/// "I don't care what colour", "it doesn't have to be white".
+fn wonders_after(tags: &[Tag<'_>], at: usize) -> bool {
+    let open = matches!(tags[at].word, "does" | "do" | "need" | "it" | "i" | "at");
+    let ends = after(tags, at + 1).is_none_or(|tag| tag.is_any(classes![Courtesy Filler]));
+    after(tags, at).is_some_and(|next| {
+        // "I don't care which"
+        next.is_any(classes![Join Preposition])
+            || next.is(Class::Question) && !ends
+            || open && (next.is_value() || next.is(Class::Determiner))
+    })
 }

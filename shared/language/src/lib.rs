@@ -13,7 +13,7 @@
 //! | tokenise | `words` | words and the pauses between them |
 //! | halting words | `halting.rs` (`vocabulary/halting.txt`) | what halts the arm, whatever the scene |
 //! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `relations.rs`, `spelling.rs`, `vocabulary/`) | value or class of each word or phrase |
-//! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`, `errands.rs`, `statements.rs`) | the parts that are about the objects |
+//! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `errands.rs`) | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
 //! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
 //! | judge | `features.rs`, `sequence.rs` (`word_groups.rs`), `judge.rs`, `recurrent.rs` (`vocabulary/judge.bin`), `mentions.rs` | how probable each value word is wanted, denied, neither |
@@ -60,7 +60,6 @@ mod closed_class;
 mod completeness;
 mod content;
 mod disambiguate;
-mod distractors;
 mod echo;
 mod errands;
 mod evidence;
@@ -91,10 +90,8 @@ mod references;
 mod related;
 mod relation_words;
 mod relations;
-mod repair;
 mod sequence;
 mod spelling;
-mod statements;
 mod tagger;
 mod token_class;
 mod topic;

@@ -4,9 +4,7 @@ use scene::{Doubt, Intent, Reading, Reference, Response, WordId};
 
 use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
-use crate::evidence::weighed;
 use crate::hedges::MAYBE;
-use crate::judge::Judge;
 use crate::objects::objects;
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
@@ -33,10 +31,6 @@ pub(crate) struct ParsedUtterance<'a> {
     pub(crate) tags: Vec<Tag<'a>>,
     pub(crate) clauses: Vec<Clause>,
     pub(crate) questions: &'a SceneQuestions,
-    /// Another judge than the built-in one.
-    pub(crate) judge: Option<&'a Judge>,
-    /// Braces, tags or shell characters, which do not occur in speech.
-    pub(crate) code: bool,
 }
 
 impl ParsedUtterance<'_> {
@@ -162,7 +156,7 @@ impl ParsedUtterance<'_> {
             let yes = Reading { response: Response::Yes, doubt, ..best.clone() };
             return vec![(1.0 - MAYBE_WEIGHT, best), (MAYBE_WEIGHT, yes)];
         }
-        weighed(self, best)
+        vec![(1.0, best)]
     }
 
     /// "red or blue": each with what is said of both; none if nothing is to be chosen from.

@@ -6,6 +6,7 @@ use scene::Role;
 use words::Gap;
 
 use crate::clauses::{Clause, Topic};
+use crate::evidence::Fates;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 
@@ -30,6 +31,7 @@ pub(crate) const SCENE_NAMES: &[Class] = classes![Head Attribute];
 /// machine.
 pub(crate) fn classify(
     tags: &[Tag<'_>],
+    fates: &Fates,
     span: Range<usize>,
     previous: Option<&Clause>,
     injected: bool,
@@ -45,12 +47,11 @@ pub(crate) fn classify(
         unknown: clause.iter().filter(|tag| tag.is_unknown()).count(),
         values: clause.iter().filter(|tag| tag.is_value()).count(),
     };
-    let distractors = analysis.distractors();
+    let distractors: Vec<usize> = span.clone().filter(|at| fates.is_neither(*at)).collect();
     let topic = analysis.topic(injected, distractors.len());
     let requests = topic == Topic::On && analysis.requests();
-    let (chore, states) = (!injected && analysis.is_chore(&distractors), analysis.states());
-    let distractors = distractors.iter().map(|at| span.start + at).collect();
-    Clause { span, topic, requests, chore, states, distractors }
+    let chore = !injected && analysis.is_chore();
+    Clause { span, topic, requests, chore, distractors }
 }
 
 impl<'a> ClauseAnalysis<'a> {
