@@ -3,7 +3,7 @@
 //! The values of one noun phrase share their fate: wanted, denied or neither. Each choice of a fate for every phrase is one
 //! way to read the utterance, weighed by the judge's probabilities.
 
-use scene::WordId;
+use scene::{Role, WordId};
 
 use crate::features::{Example, Features, MENTIONS_MAX, features};
 use crate::judge::{FLOOR, Judge};
@@ -43,6 +43,18 @@ impl Fates {
             })
         };
         Self(tags.iter().map(fate).collect())
+    }
+
+    /// The same without places, if there are things: "put the clear bowl on the table", "put it on the table".
+    pub(crate) fn named_things(tags: &[Tag<'_>]) -> Self {
+        let mut fates = Self::named(tags);
+        if !tags.iter().any(|tag| tag.is_value() && !tag.is_role(Role::Place)) {
+            return fates;
+        }
+        for (fate, _) in fates.0.iter_mut().zip(tags).filter(|(_, tag)| tag.is_role(Role::Place)) {
+            *fate = Some(Polarity::Neither);
+        }
+        fates
     }
 
     /// What is said of the value of a tag.
@@ -91,6 +103,7 @@ pub(crate) fn fates(
     }
     let phrases = phrases(&judge.stated(&features), features);
     let mut ways = ways(&phrases);
+    ways.retain(|(weight, _)| *weight > 0.0);
     if ways.iter().any(|(_, way)| !contradicts(&phrases, way)) {
         ways.retain(|(_, way)| !contradicts(&phrases, way));
     }
@@ -102,7 +115,7 @@ pub(crate) fn fates(
         }
         (weight, fates)
     };
-    ways.into_iter().filter(|(weight, _)| *weight > 0.0).map(fates).collect()
+    ways.into_iter().map(fates).collect()
 }
 
 /// The phrases, each with what the judge states of its values together. A phrase of whose values it states different

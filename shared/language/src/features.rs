@@ -4,6 +4,7 @@
 
 use scene::{StableHash, WordId};
 
+use crate::intent::asks_politely;
 use crate::question_words::QuestionWords;
 use crate::recurrent::Sequence;
 use crate::sequence::sequence;
@@ -229,6 +230,7 @@ impl Context<'_> {
         for (relation, side) in self.relations(number) {
             rows.add(b"other", &[side, relation]);
         }
+        rows.add(b"polite", &[u64::from(asks_politely(self.tags))]);
         rows.add(b"mentions", &[self.found.len().min(5) as u64, number.min(5) as u64]);
     }
 

@@ -218,7 +218,7 @@ impl Reader {
                 }
             }
             Intent::PutBack | Intent::Chore => {
-                content = extract(&tags, &all_on(&clauses), &Fates::named(&tags), asked);
+                content = extract(&tags, &all_on(&clauses), &Fates::named_things(&tags), asked);
             }
             _ => {}
         }

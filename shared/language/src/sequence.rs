@@ -3,6 +3,7 @@
 use crate::features::{
     Context, Element, begins, hash, kind, kind_of, letters, mix, sort, text, text_of,
 };
+use crate::intent::asks_politely;
 use crate::recurrent::{EMBEDDINGS, Sequence};
 
 /// Most elements; a longer utterance is cut off around its value words.
@@ -23,6 +24,7 @@ impl Rows {
 pub(crate) fn sequence(context: &Context<'_>, phrases: &[usize]) -> Sequence {
     let mut question = Rows::default();
     question.add(b"question", &[context.question(None).0]);
+    question.add(b"polite", &[u64::from(asks_politely(context.tags))]);
     let mut sequence = Sequence { elements: vec![question.0], values: Vec::new() };
     let mut places = Vec::new();
     for element in context.elements.iter().take(ELEMENTS_MAX) {

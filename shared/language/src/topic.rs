@@ -5,8 +5,10 @@ use std::ops::Range;
 use scene::Role;
 use words::Gap;
 
+use crate::answer::is_wrong_thing;
 use crate::clauses::{Clause, Topic};
 use crate::evidence::Fates;
+use crate::related::too_much;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 
@@ -165,8 +167,13 @@ impl<'a> ClauseAnalysis<'a> {
 
     /// "my shirt is white": every value is that of something else, and nothing is asked for.
     fn describes_something_else(&self, distractors: usize) -> bool {
-        let wished =
-            self.has(classes![Fetch]) || self.has(classes![Unlisted]) && !self.owns_unlisted();
+        // "wrong spoon", "too big"
+        let is_refused =
+            |at| is_wrong_thing(self.clause, at) || too_much(self.clause, at).is_some();
+        let refuses = (0..self.clause.len()).any(is_refused);
+        let wished = self.has(classes![Fetch])
+            || self.has(classes![Unlisted]) && !self.owns_unlisted()
+            || refuses;
         distractors > 0 && distractors == self.values && !self.has(SCENE_NAMES) && !wished
     }
 
