@@ -10,7 +10,7 @@ use crate::judge::{FLOOR, Judge};
 use crate::mentions::Polarity;
 use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
-use crate::token_class::classes;
+use crate::token_class::{Class, classes};
 
 /// Probability from which on what the judge states stands alone.
 const SURE: f64 = 0.9;
@@ -31,16 +31,11 @@ impl Fates {
 
     /// The values are those that are named, whatever is said of them: "which ones are not white".
     pub(crate) fn named(tags: &[Tag<'_>]) -> Self {
-        let (mut denies, mut compares) = (false, false);
+        let mut denies = false;
         let fate = |tag: &Tag<'_>| {
             let is_new = tag.pauses() || tag.is_any(classes![And But Join Fetch Want]);
             denies = !is_new && denies || tag.is_any(classes![Not No Except]);
-            compares = !is_new && compares || tag.is_any(classes![Landmark Than]);
-            tag.value().map(|_| match (compares, denies) {
-                (true, _) => Polarity::Neither,
-                (false, true) => Polarity::Denied,
-                (false, false) => Polarity::Wanted,
-            })
+            tag.value().map(|_| if denies { Polarity::Denied } else { Polarity::Wanted })
         };
         Self(tags.iter().map(fate).collect())
     }
@@ -101,7 +96,7 @@ pub(crate) fn fates(
     if features.examples.is_empty() || features.examples.len() >= MENTIONS_MAX {
         return vec![(1.0, Fates::none(tags))];
     }
-    let phrases = phrases(&judge.stated(&features), features);
+    let phrases = phrases(tags, &judge.stated(&features), features);
     let mut ways = ways(&phrases);
     ways.retain(|(weight, _)| *weight > 0.0);
     if ways.iter().any(|(_, way)| !contradicts(&phrases, way)) {
@@ -119,12 +114,15 @@ pub(crate) fn fates(
 }
 
 /// The phrases, each with what the judge states of its values together. A phrase of whose values it states different
-/// things ("not white clear") is two.
-fn phrases(stated: &[[f64; 3]], features: Features) -> Vec<Phrase> {
+/// things ("not white clear") is two; "white or clear" is one.
+fn phrases(tags: &[Tag<'_>], stated: &[[f64; 3]], features: Features) -> Vec<Phrase> {
     let mut phrases: Vec<Phrase> = Vec::new();
     for (example, stated) in features.examples.into_iter().zip(stated) {
-        let is_its =
-            |it: &&mut Phrase| it.examples[0].phrase == example.phrase && it.best() == best(stated);
+        let is_its = |it: &&mut Phrase| {
+            let last = &it.examples[it.examples.len() - 1];
+            let is_one = last.phrase == example.phrase || are_joined(tags, last.at, example.at);
+            is_one && it.best() == best(stated)
+        };
         match phrases.iter_mut().find(is_its) {
             Some(phrase) => {
                 phrase.examples.push(example);
@@ -144,6 +142,13 @@ fn phrases(stated: &[[f64; 3]], features: Features) -> Vec<Phrase> {
         }
     }
     phrases
+}
+
+/// Only "or" stands between two values: "the white or the clear one".
+fn are_joined(tags: &[Tag<'_>], one: usize, other: usize) -> bool {
+    let between = tags.get(one + 1..other).unwrap_or_default();
+    between.iter().any(|tag| tag.is(Class::Or))
+        && between.iter().all(|tag| tag.is_any(classes![Or Determiner Preposition]))
 }
 
 /// Every choice of a polarity for each phrase, with its probability.

@@ -24,6 +24,8 @@ struct Extractor<'a, 't> {
     content: Content<'a>,
     /// The noun phrases that are being ruled out.
     scope: Option<NegationScope<'a>>,
+    /// Inside a phrase that names another object: "next to the clear one".
+    landmark: bool,
     /// Words before have been taken back, and what replaces them is still to come.
     corrects: bool,
     /// Number of "or" so far.
@@ -38,9 +40,11 @@ pub(crate) fn extract<'a>(
     asked: QuestionWords<'a>,
 ) -> Content<'a> {
     let content = Content::default();
+    let (scope, landmark, corrects, choices) = (None, false, false, 0);
     let mut extractor =
-        Extractor { tags, fates, asked, content, scope: None, corrects: false, choices: 0 };
+        Extractor { tags, fates, asked, content, scope, landmark, corrects, choices };
     for clause in clauses {
+        extractor.landmark = false;
         if clause.topic == Topic::On {
             clause.span.clone().for_each(|at| extractor.hear(clause, at));
         } else {
@@ -68,6 +72,7 @@ impl<'a> Extractor<'a, '_> {
             Class::Pointer | Class::Question => self.pointer(at),
             Class::Head => self.in_scope(NegationScope::head),
             Class::Preposition => self.in_scope(NegationScope::join),
+            Class::Landmark | Class::Than => self.landmark = true,
             Class::Or => {
                 self.content.alternatives = true;
                 self.choices += usize::from(self.scope.is_none());
@@ -95,6 +100,7 @@ impl<'a> Extractor<'a, '_> {
     }
 
     fn pause(&mut self, tag: &Tag<'_>, at: usize) {
+        self.landmark &= !tag.pauses();
         let goes_on = tag.is_any(classes![Or And])
             || at
                 .checked_sub(1)
@@ -111,6 +117,7 @@ impl<'a> Extractor<'a, '_> {
             return;
         }
         match self.fates.of(at) {
+            _ if self.landmark => {}
             Polarity::Neither => self.end_scope(),
             Polarity::Denied => self.deny(at, value),
             Polarity::Wanted => {
@@ -195,6 +202,7 @@ impl<'a> Extractor<'a, '_> {
 
     fn correct(&mut self) {
         self.end_scope();
+        self.landmark = false;
         self.corrects = !self.content.answers.is_empty();
     }
 

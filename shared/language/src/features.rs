@@ -105,7 +105,8 @@ fn elements<'a>(tags: &'a [Tag<'a>], spans: &[std::ops::Range<usize>]) -> Vec<El
     let mut elements = Vec::new();
     let (mut at, mut pauses) = (0, false);
     while let Some(tag) = tags.get(at) {
-        pauses |= tag.pauses();
+        // "the blue uh the black pen"
+        pauses |= tag.pauses() || tag.is(Class::Filler);
         let phrase = spans.iter().position(|span| span.start == at);
         at = phrase.map_or(at + 1, |number| spans[number].end);
         if phrase.is_none() && tag.is_any(classes![Filler Courtesy]) {

@@ -40,6 +40,7 @@ impl ParsedUtterance<'_> {
             Intent::Inform if !self.is_relation() => objects(&self.tags, &self.content, self.asked),
             _ => vec![self.content.base.clone()],
         };
+        let objects: Vec<_> = objects.into_iter().map(each_once).collect();
         let words = |object: &Vec<Asserted<'_>>| -> Vec<WordId> {
             object.iter().map(|value| value.word).collect()
         };
@@ -189,6 +190,18 @@ impl ParsedUtterance<'_> {
             && self.content.answers.is_empty()
             && self.tags.iter().any(|tag| tag.is(Class::Hedge))
     }
+}
+
+/// The values of an object, each once: "the red mug, no wait, the red cup".
+fn each_once(values: Vec<Asserted<'_>>) -> Vec<Asserted<'_>> {
+    let mut once: Vec<Asserted<'_>> = Vec::new();
+    for value in values {
+        match once.iter_mut().find(|known| known.word == value.word) {
+            Some(known) => known.doubt = known.doubt.min(value.doubt),
+            None => once.push(value),
+        }
+    }
+    once
 }
 
 /// The doubts up to the last that is one.

@@ -17,6 +17,7 @@ use crate::indifference::{indifference, is_of_attribute};
 use crate::intent::{intent, is_side_talk};
 use crate::judge::Judge;
 use crate::lexicon::Lexicon;
+use crate::mentions::Polarity;
 use crate::ordinals::name_options;
 use crate::paper::WordSpotter;
 use crate::parsed::{ParsedUtterance, READINGS_MAX};
@@ -177,9 +178,9 @@ impl Reader {
         let (mut tags, asked) = (heard.tags.clone(), heard.asked);
         let clauses = clauses(&tags, fates, tokens.code);
         hedge(&mut tags, &clauses);
-        let mut content = extract(&tags, &clauses, fates, asked);
         let new = matches!(asked, QuestionWords::Nothing);
         let relations = related(tokens, &tags, &clauses, self.placed);
+        let mut content = extract(&tags, &clauses, fates, asked);
         let (refers, to) = reference(&tags, &clauses, asked, relations);
         let says_nothing = content.base.is_empty() && content.excluded.is_empty();
         let is_statement = new
@@ -190,7 +191,13 @@ impl Reader {
         if is_aside {
             content = Content::default();
         }
-        let careless = indifference(&tags, &clauses, asked);
+        // "anything spotted is out of the question"
+        let is_denied = |at: &usize| {
+            let ends = |tag: &Tag<'_>| tag.pauses() || tag.is_any(classes![Except But Not]);
+            let mut more = (*at + 1..tags.len()).take_while(|at| !ends(&tags[*at]));
+            more.any(|at| fates.of(at) == Polarity::Denied)
+        };
+        let careless = indifference(&tags, &clauses, asked).filter(|at| !is_denied(at));
         let response = response(&content, &tags, asked, careless);
         let refers = match (refers, response.0, careless) {
             (Reference::None, Response::DoesNotMatter, Some(at))
