@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use crate::evidence::Fates;
+use crate::fates::Fates;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 use crate::topic::classify;

@@ -5,7 +5,7 @@ use words::Gap;
 use crate::answer::{self, Answer};
 use crate::clauses::{Clause, Topic};
 use crate::content::{Asserted, Content};
-use crate::evidence::Fates;
+use crate::fates::Fates;
 use crate::intent::commands;
 use crate::lexicon::{Sense, ValueSense};
 use crate::mentions::Polarity;
@@ -114,7 +114,6 @@ impl<'a> Extractor<'a, '_> {
         let tag = &self.tags[at];
         if too_much(self.tags, at).is_some() {
             self.content.answers.push(Answer::No, self.tags, at);
-            return;
         }
         match self.fates.of(at) {
             _ if self.landmark => {}

@@ -4,8 +4,8 @@ use scene::{Intent, WordId};
 
 use crate::clauses::{Clause, Topic};
 use crate::content::{Asserted, Content};
-use crate::evidence::Fates;
 use crate::extractor::extract;
+use crate::fates::Fates;
 use crate::lexicon::{Lexicon, Sense};
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;

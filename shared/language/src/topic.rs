@@ -6,7 +6,7 @@ use scene::Role;
 
 use crate::answer::is_wrong_thing;
 use crate::clauses::{Clause, Topic};
-use crate::evidence::Fates;
+use crate::fates::Fates;
 use crate::related::too_much;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
