@@ -72,15 +72,18 @@ impl<'a> Extractor<'a, '_> {
             Class::Pointer | Class::Question => self.pointer(at),
             Class::Head => self.in_scope(NegationScope::head),
             Class::Preposition => self.in_scope(NegationScope::join),
-            Class::Landmark | Class::Than => self.landmark = true,
+            Class::Landmark => self.landmark = true,
             Class::Or => {
                 self.content.alternatives = true;
                 self.choices += usize::from(self.scope.is_none());
                 self.in_scope(NegationScope::or);
             }
             Class::And => self.and(at),
-            Class::But | Class::Join | Class::First | Class::It | Class::Be => self.end_scope(),
-            Class::Fetch | Class::Want => self.end_scope(),
+            Class::But | Class::Join => self.end_scope(),
+            Class::First | Class::It | Class::Be | Class::Fetch | Class::Want => {
+                self.landmark = false;
+                self.end_scope();
+            }
             Class::Not => self.not(clause, at),
             Class::No => self.no(at),
             Class::Repair | Class::Withdraw => self.correct(),
@@ -116,7 +119,7 @@ impl<'a> Extractor<'a, '_> {
             self.content.answers.push(Answer::No, self.tags, at);
         }
         match self.fates.of(at) {
-            _ if self.landmark => {}
+            Polarity::Wanted if self.landmark => {}
             Polarity::Neither => self.end_scope(),
             Polarity::Denied => self.deny(at, value),
             Polarity::Wanted => {

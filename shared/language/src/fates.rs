@@ -64,8 +64,12 @@ impl Fates {
 
     /// Returns whether there are values, and nothing is said of any.
     pub(crate) fn are_neither(&self) -> bool {
-        let mut values = self.0.iter().flatten().peekable();
-        values.peek().is_some() && values.all(|fate| *fate == Polarity::Neither)
+        self.0.iter().any(Option::is_some) && !self.are_wishes()
+    }
+
+    /// Returns whether a value is wanted or denied.
+    pub(crate) fn are_wishes(&self) -> bool {
+        self.0.iter().flatten().any(|fate| *fate != Polarity::Neither)
     }
 }
 

@@ -224,6 +224,8 @@ impl Reader {
                     intent = Intent::Inform;
                 }
             }
+            // "put that vitamin back, mummy wants her cream"
+            Intent::PutBack | Intent::Chore if fates.are_wishes() => intent = Intent::Inform,
             Intent::PutBack | Intent::Chore => {
                 content = extract(&tags, &all_on(&clauses), &Fates::named_things(&tags), asked);
             }
