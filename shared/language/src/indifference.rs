@@ -1,6 +1,8 @@
 //! "I don't care", "any cup will do": the user leaves the choice to the robot.
 
 use crate::clauses::{Clause, Topic};
+use crate::fates::Fates;
+use crate::mentions::Polarity;
 use crate::question_words::QuestionWords;
 use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
@@ -9,6 +11,7 @@ use crate::token_class::{Class, classes};
 pub(crate) fn indifference(
     tags: &[Tag<'_>],
     clauses: &[Clause],
+    fates: &Fates,
     asked: QuestionWords<'_>,
 ) -> Option<usize> {
     let answers = !matches!(asked, QuestionWords::Nothing);
@@ -17,10 +20,17 @@ pub(crate) fn indifference(
         |(clause, at)| {
             // "I don't care what colour" is about what is asked, if anything is.
             let said = tags[at].is(Class::Indifferent) && (answers || !wonders_after(tags, at));
-            (said || is_any(&tags[clause.span.clone()], at - clause.span.start, answers))
-                .then_some(at)
+            let is_any = is_any(&tags[clause.span.clone()], at - clause.span.start, answers);
+            (said || is_any && !is_denied(tags, fates, at)).then_some(at)
         },
     )
+}
+
+/// "anything spotted is out of the question"
+fn is_denied(tags: &[Tag<'_>], fates: &Fates, at: usize) -> bool {
+    let ends = |tag: &Tag<'_>| tag.pauses() || tag.is_any(classes![Except But Not]);
+    let mut phrase = (at + 1..tags.len()).take_while(|at| !ends(&tags[*at]));
+    phrase.any(|at| fates.of(at) == Polarity::Denied)
 }
 
 /// "any", "any white one will do", "whichever", "give me either".

@@ -4,6 +4,7 @@ use scene::{Intent, Role};
 
 use crate::clauses::{Clause, Topic};
 use crate::content::Content;
+use crate::fates::Fates;
 use crate::question_words::QuestionWords;
 use crate::questions::fetches_it;
 use crate::tagger::Tag;
@@ -154,6 +155,11 @@ fn is_chore(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     clauses.iter().any(|clause| clause.chore)
         && !clauses.iter().any(fetches)
         && !fetches_it(tags, clauses)
+}
+
+/// "the clear bowl is in the cabinet": of none of our things that are named anything is wished.
+pub(crate) fn is_remark(tags: &[Tag<'_>], fates: &Fates) -> bool {
+    fates.are_neither() && !tags.iter().any(|tag| tag.is_any(classes![Fetch Want]))
 }
 
 /// "please", or thanks at the end: what stands beside it is asked for. Thanks at the beginning are for

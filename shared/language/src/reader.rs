@@ -14,10 +14,9 @@ use crate::fates::{Fates, fates};
 use crate::halting::asks_to_go_on;
 use crate::hedges::hedge;
 use crate::indifference::{indifference, is_of_attribute};
-use crate::intent::{intent, is_side_talk};
+use crate::intent::{intent, is_remark, is_side_talk};
 use crate::judge::Judge;
 use crate::lexicon::Lexicon;
-use crate::mentions::Polarity;
 use crate::ordinals::name_options;
 use crate::paper::WordSpotter;
 use crate::parsed::{ParsedUtterance, READINGS_MAX};
@@ -26,7 +25,6 @@ use crate::questions::{fetches_it, question};
 use crate::references::reference;
 use crate::related::related;
 use crate::tagger::{Tag, answers_alone, tag};
-use crate::token_class::classes;
 use crate::unknown::unknown_words;
 
 /// Reads utterances about one scene. Holds all that it needs of the scene.
@@ -183,21 +181,12 @@ impl Reader {
         let mut content = extract(&tags, &clauses, fates, asked);
         let (refers, to) = reference(&tags, &clauses, asked, relations);
         let says_nothing = content.base.is_empty() && content.excluded.is_empty();
-        let is_statement = new
-            && refers == Reference::None
-            && fates.are_neither()
-            && !tags.iter().any(|tag| tag.is_any(classes![Fetch Want]));
-        let is_aside = is_statement || says_nothing && is_side_talk(&tags, &clauses);
+        let is_remark = new && refers == Reference::None && is_remark(&tags, fates);
+        let is_aside = is_remark || says_nothing && is_side_talk(&tags, &clauses);
         if is_aside {
             content = Content::default();
         }
-        // "anything spotted is out of the question"
-        let is_denied = |at: &usize| {
-            let ends = |tag: &Tag<'_>| tag.pauses() || tag.is_any(classes![Except But Not]);
-            let mut more = (*at + 1..tags.len()).take_while(|at| !ends(&tags[*at]));
-            more.any(|at| fates.of(at) == Polarity::Denied)
-        };
-        let careless = indifference(&tags, &clauses, asked).filter(|at| !is_denied(at));
+        let careless = indifference(&tags, &clauses, fates, asked);
         let response = response(&content, &tags, asked, careless);
         let refers = match (refers, response.0, careless) {
             (Reference::None, Response::DoesNotMatter, Some(at))
