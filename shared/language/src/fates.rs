@@ -7,7 +7,6 @@ use scene::{Role, WordId};
 
 use crate::features::{Example, Features, MENTIONS_MAX, features};
 use crate::judge::{FLOOR, Judge};
-use crate::mentions::Polarity;
 use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
@@ -18,6 +17,17 @@ const SURE: f64 = 0.9;
 const POLARITIES: [Polarity; 3] = [Polarity::Wanted, Polarity::Denied, Polarity::Neither];
 /// Most phrases whose fate is open; that of the others, the surest, is their most probable one.
 const OPEN_MAX: usize = 3;
+
+/// What is said of a value word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Polarity {
+    /// The wanted object has the value.
+    Wanted,
+    /// The wanted object does not have it.
+    Denied,
+    /// Nothing about the wanted object.
+    Neither,
+}
 
 /// What is said of the value of each tag.
 #[derive(Clone, Debug)]

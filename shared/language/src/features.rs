@@ -4,7 +4,6 @@
 
 use scene::{StableHash, WordId};
 
-use crate::intent::asks_politely;
 use crate::question_words::QuestionWords;
 use crate::recurrent::Sequence;
 use crate::sequence::sequence;
@@ -265,6 +264,18 @@ impl Context<'_> {
             rows.add(b"answer", &[asked[0], asked[1], kind_of(answer)]);
         }
     }
+}
+
+/// "please", or thanks at the end: what stands beside it is asked for. Thanks at the beginning are for
+/// what was done before.
+pub(crate) fn asks_politely(tags: &[Tag<'_>]) -> bool {
+    const ASKING: [&str; 15] = [
+        "please", "pls", "plz", "pleez", "pleeze", "pleaze", "plees", "pliz", "kindly", "if",
+        "when", "would", "could", "will", "be",
+    ];
+    const THANKS: [&str; 8] = ["thanks", "thank", "thx", "ty", "cheers", "ta", "many", "much"];
+    let says = |tag: &Tag<'_>, words: &[&str]| tag.is(Class::Courtesy) && words.contains(&tag.word);
+    tags.iter().any(|tag| says(tag, &ASKING)) || tags.last().is_some_and(|tag| says(tag, &THANKS))
 }
 
 pub(crate) fn kind(element: Option<&Element<'_>>) -> u64 {

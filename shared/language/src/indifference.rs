@@ -1,8 +1,7 @@
 //! "I don't care", "any cup will do": the user leaves the choice to the robot.
 
 use crate::clauses::{Clause, Topic};
-use crate::fates::Fates;
-use crate::mentions::Polarity;
+use crate::fates::{Fates, Polarity};
 use crate::question_words::QuestionWords;
 use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};

@@ -162,18 +162,6 @@ pub(crate) fn is_remark(tags: &[Tag<'_>], fates: &Fates) -> bool {
     fates.are_neither() && !tags.iter().any(|tag| tag.is_any(classes![Fetch Want]))
 }
 
-/// "please", or thanks at the end: what stands beside it is asked for. Thanks at the beginning are for
-/// what was done before.
-pub(crate) fn asks_politely(tags: &[Tag<'_>]) -> bool {
-    const ASKING: [&str; 15] = [
-        "please", "pls", "plz", "pleez", "pleeze", "pleaze", "plees", "pliz", "kindly", "if",
-        "when", "would", "could", "will", "be",
-    ];
-    const THANKS: [&str; 8] = ["thanks", "thank", "thx", "ty", "cheers", "ta", "many", "much"];
-    let says = |tag: &Tag<'_>, words: &[&str]| tag.is(Class::Courtesy) && words.contains(&tag.word);
-    tags.iter().any(|tag| says(tag, &ASKING)) || tags.last().is_some_and(|tag| says(tag, &THANKS))
-}
-
 /// "don't get me the clear bowl", "I don't want the white ones": nothing is asked for.
 fn refuses(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     let is_denied = |clause: &Clause| {

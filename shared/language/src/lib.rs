@@ -105,10 +105,11 @@ mod tests;
 
 pub use completeness::{Completeness, CompletenessJudge};
 pub use echo::is_echo;
+pub use fates::Polarity;
 pub use features::{Example, Features, ROWS};
 pub use halting::is_stop;
 pub use judge::{FLOOR, Judge, NETWORKS, recurrent_sums, trained_on};
-pub use mentions::{Mention, Polarity};
+pub use mentions::Mention;
 pub use parsed::READINGS_MAX;
 pub use read_back::word_findings;
 pub use reader::Reader;

@@ -23,17 +23,6 @@ pub struct Mention {
     pub neither: f64,
 }
 
-/// What is said of a value word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Polarity {
-    /// The wanted object has the value.
-    Wanted,
-    /// The wanted object does not have it.
-    Denied,
-    /// Nothing about the wanted object.
-    Neither,
-}
-
 impl Reader {
     /// Returns the value words of an utterance that followed `last_question`, in their order, with what is said of them;
     /// none in the paper's language.

@@ -1,9 +1,8 @@
 //! What the recurrent judge reads of an utterance: the question, then its elements, each as rows of embeddings.
 
 use crate::features::{
-    Context, Element, begins, hash, kind, kind_of, letters, mix, sort, text, text_of,
+    Context, Element, asks_politely, begins, hash, kind, kind_of, letters, mix, sort, text, text_of,
 };
-use crate::intent::asks_politely;
 use crate::recurrent::{EMBEDDINGS, Sequence};
 
 /// Most elements; a longer utterance is cut off around its value words.
