@@ -235,10 +235,18 @@ impl Model {
         if is_certain { self.tables.certain.alpha } else { self.tables.smoothing.alpha }
     }
 
-    /// Multiplies the probabilities of values in doubt by their likelihoods.
+    /// What the user takes an object for that lacks attribute `k`: each value, and last that it lacks it. Empty if
+    /// the user knows, or each has a value.
+    pub(crate) fn lacking(&self, k: AttributeId) -> &[f64] {
+        &self.tables.columns[k.index()].lacking
+    }
+
+    /// Multiplies the probabilities of values in doubt by their likelihoods; that of lacking the attribute comes last.
     pub(crate) fn weigh_doubts(&mut self, k: AttributeId, likelihood: &[f64]) {
         self.is_of_interaction = true;
-        for chances in &mut Arc::make_mut(&mut self.tables).columns[k.index()].doubtful {
+        let column = &mut Arc::make_mut(&mut self.tables).columns[k.index()];
+        let lacking = Some(&mut column.lacking).filter(|it| !it.is_empty());
+        for chances in column.doubtful.iter_mut().chain(lacking) {
             chances.iter_mut().zip(likelihood).for_each(|(chance, p)| *chance *= p);
             let sum: f64 = chances.iter().sum();
             chances.iter_mut().for_each(|chance| *chance /= sum);

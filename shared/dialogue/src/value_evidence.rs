@@ -138,6 +138,13 @@ impl ValueEvidence {
         chances.iter().zip(&self.by_value).map(|(p, it)| p * it).sum()
     }
 
+    /// Of an object that lacks the attribute, which the user takes for one of a value with these probabilities.
+    fn of_lacking(&self, chances: &[f64]) -> f64 {
+        chances
+            .split_last()
+            .map_or(self.lacking, |(lacks, of)| self.mean(of) + lacks * self.lacking)
+    }
+
     /// Adds the logarithm of the likelihood to every entry, but for a constant that is returned. No
     /// entry rises.
     pub(crate) fn weigh(&self, model: &Model, k: AttributeId, log: &mut [f64]) -> f64 {
@@ -146,7 +153,7 @@ impl ValueEvidence {
             model.all_chances(k).iter().map(|chances| self.mean(chances).ln()).collect();
         let known: Vec<f64> = self.by_value.iter().map(|it| it.ln()).collect();
         let factor = |entry: u16| match entry {
-            Model::LACKS => self.lacking.ln(),
+            Model::LACKS => self.of_lacking(model.lacking(k)).ln(),
             Model::UNKNOWN => self.unknown.ln(),
             entry if entry >= Model::DOUBTFUL => in_doubt[usize::from(entry - Model::DOUBTFUL)],
             entry => known[usize::from(entry)],
@@ -161,7 +168,8 @@ impl ValueEvidence {
 const KEY_UNITS: f64 = 1e9;
 
 /// What was said so far in an interaction of the attributes with values in doubt: logarithms of its
-/// likelihood by value, up to a constant.
+/// likelihood by value, up to a constant; that of an object that lacks the attribute, if there is one, comes
+/// last.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ValueLikelihoods(Vec<(AttributeId, Vec<f64>)>);
 
@@ -254,21 +262,26 @@ impl Model {
         }
     }
 
-    /// Likelihood by value of all readings about attribute `k`, if one says anything of it. A reading that says nothing of it counts as likely as one that does is on average.
+    /// Likelihood by value of all readings about attribute `k`, if one says anything of it; that of an object that
+    /// lacks the attribute comes last, if there is one. A reading that says nothing of it counts as likely as one that does is on
+    /// average.
     fn said_of(&self, k: AttributeId, heard: &[(f64, Question, Reading)]) -> Option<Vec<f64>> {
         if !self.is_doubtful(k) {
             return None;
         }
         let mut says = false;
-        let mut likelihood = vec![0.0; self.values(k)];
+        let values = self.values(k);
+        let mut likelihood = vec![0.0; values];
+        likelihood.extend(self.lacking(k).last().map(|_| 0.0));
         for (weight, question, reading) in heard {
             let evidence = ValueEvidence::of(self, k, *question, reading);
             says |= evidence.is_some();
-            let by_value = evidence.map_or_else(|| vec![1.0; likelihood.len()], |it| it.by_value);
-            let mean = by_value.iter().sum::<f64>() / by_value.len() as f64;
-            likelihood.iter_mut().zip(by_value).for_each(|(sum, p)| *sum += weight * p / mean);
+            let evidence = evidence.unwrap_or_else(|| ValueEvidence::none(values));
+            let mean = evidence.by_value.iter().sum::<f64>() / values as f64;
+            let all = evidence.by_value.iter().chain([&evidence.lacking]);
+            likelihood.iter_mut().zip(all).for_each(|(sum, p)| *sum += weight * p / mean);
         }
-        (says && likelihood.iter().any(|p| *p > 0.0)).then_some(likelihood)
+        (says && likelihood[..values].iter().any(|p| *p > 0.0)).then_some(likelihood)
     }
 }
 
@@ -278,7 +291,7 @@ mod tests {
     use vocabulary::{Params, Rng};
 
     use super::*;
-    use crate::testing::{bowls, heard, markers, random_scene, tools};
+    use crate::testing::{bowls, heard, markers, random_scene, scene, tools};
     use crate::{Belief, Posterior};
 
     /// Two objects of which one may be red: asking the same again tells no more than a person's error.
@@ -348,6 +361,29 @@ mod tests {
         }
     }
 
+    /// "Tomato ketchup", where the scene gives the ketchup no flavour: it and the tomato soup stay possible, however
+    /// often it is said.
+    #[test]
+    fn an_object_may_be_described_by_what_its_scene_does_not_state() {
+        let scene = scene(
+            r#"{"objects":[
+                {"name":"soup","attributes":{"kind":"soup","flavour":"tomato"}},
+                {"name":"jam","attributes":{"kind":"jam","flavour":"strawberry"}},
+                {"name":"ketchup","attributes":{"kind":"ketchup"}}],
+                "values":{"kind":["soup","jam","ketchup"],"flavour":["tomato","strawberry"]}}"#,
+        );
+        let model = Model::new(&scene, Params::default()).with_certain_words(1e-4);
+        let model = model.with_misperceptions(&[0.004, 0.004]);
+        let mut posterior = Posterior::new(Belief::uniform(3), None).of_perceived();
+        let said = [(1.0, Question::None, heard(&scene, &["tomato", "ketchup"], Response::None))];
+        for _ in 0..3 {
+            posterior.update_mixture(&model, &said);
+            let [soup, jam, ketchup] =
+                [0, 1, 2].map(|i: usize| posterior.belief().probability(i.into()));
+            assert!(soup > 0.01 && ketchup > 0.1 && jam < 0.01, "{soup} {jam} {ketchup}");
+        }
+    }
+
     /// An answer, some with a word beside it, a request, or a denial.
     fn random_reading(rng: &mut Rng, scene: &Scene, model: &Model) -> (f64, Question, Reading) {
         let k = AttributeId::from(rng.below(scene.attributes().len()));
@@ -410,14 +446,16 @@ mod tests {
             };
             let attribute = |k: usize| -> f64 {
                 let n = model.values(k.into());
-                let Some(own) = model.value(object, k.into()) else { return one(k, None) };
+                let own = model.value(object, k.into()).map(ValueId::index);
                 if n < 2 {
-                    return one(k, Some(0));
+                    return one(k, own);
                 }
-                let chance = |m: usize| {
-                    if m == own.index() { 1.0 - rates[k] } else { rates[k] / (n - 1) as f64 }
+                let others = if own.is_some() { n - 1 } else { n };
+                let chance = |m: Option<usize>| {
+                    if m == own { 1.0 - rates[k] } else { rates[k] / others as f64 }
                 };
-                (0..n).map(|m| chance(m) * one(k, Some(m))).sum()
+                let lacks = own.map_or_else(|| chance(None) * one(k, None), |_| 0.0);
+                (0..n).map(|m| chance(Some(m)) * one(k, Some(m))).sum::<f64>() + lacks
             };
             (0..model.attributes()).map(attribute).product()
         };

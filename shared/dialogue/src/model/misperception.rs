@@ -10,8 +10,9 @@ use super::Model;
 impl Model {
     /// The model of a user who takes the object's value of attribute `k` for another one with
     /// probability `rates[k]`, each other value alike, and sticks to it: every word and answer about
-    /// the attribute is about the value that the user takes it for. An object that lacks the
-    /// attribute is known to lack it. Without a rate above 0 the model stays as it is.
+    /// the attribute is about the value that the user takes it for. As often the user describes by a
+    /// value, each alike, what the scene gives none ("the tomato ketchup"): scenes do not state all. Without a rate
+    /// above 0 the model stays as it is.
     ///
     /// # Panics
     /// If there is not a rate from 0 to below 1 for each attribute, or the model has a hypothesis

@@ -42,6 +42,9 @@ pub(super) struct Column {
     pub(super) doubtful: Vec<Vec<f64>>,
     /// The value of each of these where it is known, and only the user may take it for another.
     pub(super) known: Vec<Option<ValueId>>,
+    /// What a user takes a hypothesis for that lacks the attribute: each value, and last that it lacks it. Empty if
+    /// the user knows, or each has a value.
+    pub(super) lacking: Vec<f64>,
     pub(super) words: Vec<WordId>,
     /// Probability that a user takes a value for another one.
     pub(super) misperceived: f64,
@@ -127,13 +130,18 @@ impl Tables {
 }
 
 impl Column {
-    /// Lets a user take each value for another one with that probability, any other alike.
+    /// Lets a user take each value for another one with that probability, any other alike, and describe by any value
+    /// what the scene gives none.
     pub(super) fn misperceive(&mut self, rate: f64) {
         let values = self.words.len();
         if values < 2 || rate <= 0.0 {
             return;
         }
         self.misperceived = rate;
+        if self.values.contains(&Model::LACKS) {
+            self.lacking = vec![rate / values as f64; values];
+            self.lacking.push(1.0 - rate);
+        }
         let other = rate / (values - 1) as f64;
         let blur = |chance: f64| chance * (1.0 - rate) + (1.0 - chance) * other;
         for chances in &mut self.doubtful {
@@ -186,6 +194,7 @@ impl Column {
         let values = scene.objects().iter().map(&mut entry).collect();
         let words = scene.attributes()[k.index()].values.iter().map(|value| value.word).collect();
         let known = vec![None; doubtful.len()];
-        Self { values, doubtful, known, words, misperceived: 0.0, splits: Vec::new() }
+        let lacking = Vec::new();
+        Self { values, doubtful, known, lacking, words, misperceived: 0.0, splits: Vec::new() }
     }
 }
