@@ -3,9 +3,9 @@
 use scene::Role;
 
 use crate::lexicon::{Lexicon, Sense};
+use crate::synonyms::is_thing;
 use crate::tagger::{Tag, after, before, doubts};
 use crate::token_class::{Class, classes};
-use crate::vocabulary::is_thing;
 
 /// Resolves the tags that depend on their neighbours.
 pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {

@@ -5,7 +5,7 @@
 use std::borrow::Cow;
 use std::cell::LazyCell;
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 use std::sync::LazyLock;
 
 use scene::{AttributeId, Role, Scene, Value, WordId};
@@ -17,8 +17,12 @@ use crate::lookalikes::Lookalikes;
 use crate::morphology::{inflected, singulars};
 use crate::relation_words::by_quality;
 use crate::relations::{Form, forms, words};
+use crate::synonyms::{common_synonyms, is_thing};
 use crate::token_class::Class;
-use crate::vocabulary::{self, Synonyms};
+use crate::vocabulary;
+
+/// Letters of the shortest head of a compound, and of what stands before it.
+const HEAD_LENGTH_MIN: usize = 3;
 
 /// What a word or phrase is taken for.
 #[derive(Clone, Copy, Debug)]
@@ -99,6 +103,7 @@ impl Lexicon {
         lexicon.add_values(scene);
         lexicon.add_names(scene);
         lexicon.add_parts(scene);
+        lexicon.add_heads(scene);
         lexicon.add_language();
         lexicon
     }
@@ -351,6 +356,24 @@ impl Lexicon {
         }
     }
 
+    /// "light" for a flashlight: the thing at the end of a compound, if no other value ends with it.
+    fn add_heads(&mut self, scene: &Scene) {
+        let values = || scene.attributes().iter().flat_map(|attribute| &attribute.values);
+        let compounds: Vec<String> =
+            values().filter_map(|value| words(&value.name).pop()).collect();
+        for value in values().filter(|value| value.role() == Role::Kind) {
+            let name = words(&value.name).pop().unwrap_or_default();
+            let place = self.values.iter().position(|it| it.word == value.word);
+            let heads = (HEAD_LENGTH_MIN..).take_while(|at| at + HEAD_LENGTH_MIN <= name.len());
+            for head in heads.filter_map(|at| name.get(at..)).filter(|head| is_thing(head)) {
+                let is_own = compounds.iter().filter(|it| it.ends_with(head)).count() == 1;
+                if let Some(place) = place.filter(|_| is_own) {
+                    self.add_inflected(vec![head.to_owned()], false, Meaning::Value(place));
+                }
+            }
+        }
+    }
+
     fn add_names(&mut self, scene: &Scene) {
         let attributes = scene.attributes().iter().filter(|it| !it.by_place);
         let attributes = attributes.flat_map(|a| std::iter::once(&a.name).chain(&a.synonyms));
@@ -436,34 +459,4 @@ fn matched(rest: &[Box<str>], after: &[Token<'_>]) -> Option<usize> {
 fn names_answer(words: &[String]) -> bool {
     let [word] = words else { return false };
     matches!(Lexicon::own().word(word), Some(Sense::Class(class)) if is_answer(class))
-}
-
-/// What is said for one of the scene's values without a list in the scene: "crimson" for red. Values
-/// are given with their places.
-fn common_synonyms(all: &[(usize, &Value)]) -> Vec<(usize, &'static str)> {
-    let known = Synonyms::known();
-    // The value that a group names; none for several, as either may be meant.
-    let mut named: BTreeMap<usize, Option<usize>> = BTreeMap::new();
-    for (place, value) in all {
-        for name in std::iter::once(&value.name).chain(&value.synonyms) {
-            for group in known.with(&words(name).join(" "), value.role()) {
-                let only = named.entry(group).or_insert(Some(*place));
-                *only = only.filter(|other| other == place);
-            }
-        }
-    }
-    let mut synonyms: Vec<(usize, Role, &str)> = Vec::new();
-    for (group, place) in named {
-        let (role, words) = known.group(group);
-        synonyms.extend(place.iter().flat_map(|it| words.iter().map(|word| (*it, *role, *word))));
-    }
-    // A bag may be the rucksack or the purse. Of qualities the first group is the closest: navy is dark blue before blue.
-    let mut things: HashMap<&str, Option<usize>> = HashMap::new();
-    for (place, _, word) in synonyms.iter().filter(|it| it.1 == Role::Kind) {
-        let only = things.entry(word).or_insert(Some(*place));
-        *only = only.filter(|other| other == place);
-    }
-    let is_one =
-        |(_, role, word): &&(usize, Role, &str)| *role != Role::Kind || things[word].is_some();
-    synonyms.iter().filter(is_one).map(|(place, _, word)| (*place, *word)).collect()
 }

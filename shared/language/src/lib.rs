@@ -93,6 +93,7 @@ mod relation_words;
 mod relations;
 mod sequence;
 mod spelling;
+mod synonyms;
 mod tagger;
 mod token_class;
 mod topic;

@@ -6,7 +6,8 @@ use std::collections::{HashMap, HashSet};
 use words::{normalise, skeleton};
 
 use crate::spelling::SpellingIndex;
-use crate::vocabulary::{self, is_thing};
+use crate::synonyms::is_thing;
+use crate::vocabulary;
 
 /// A scene's values by spelling and sound.
 #[derive(Clone, Debug)]

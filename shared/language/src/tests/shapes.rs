@@ -6,7 +6,7 @@ use scene::{Question, Response, Scene};
 use crate::Reader;
 
 /// Attribute, values and their `spoken` forms.
-const SCENES: [(&str, &str); 4] = [
+const SCENES: [(&str, &str); 5] = [
     (
         "caddy",
         "[[attributes]]\nname = 'filling'\nvalues = [{ name = 'lentils', spoken = 'with lentils' }, \
@@ -28,6 +28,10 @@ const SCENES: [(&str, &str); 4] = [
         "[[attributes]]\nname = 'hook'\nvalues = ['left', 'right', 'other']\n[[attributes]]\nname = 'number'\n\
          values = ['one', 'two']\n[[attributes]]\nname = 'spare'\nvalues = ['yes', 'no']\n[[attributes]]\n\
          name = 'tag'\nvalues = ['stop', 'go']\n",
+    ),
+    (
+        "tool",
+        "[[attributes]]\nname = 'type'\nrole = 'kind'\nvalues = ['flashlight', 'screwdriver', 'hammer', 'claw hammer']\n",
     ),
 ];
 
@@ -54,6 +58,8 @@ const SAID: &[(&str, &str, &[&str], &[&str])] = &[
     ("key", "number one", &["one"], &[]),
     ("key", "spare yes", &["yes"], &[]),
     ("key", "the stop key", &["stop"], &[]),
+    ("tool", "not the light", &[], &["flashlight"]),
+    ("tool", "hand me the driver", &["screwdriver"], &[]),
 ];
 
 fn scene(noun: &str) -> Scene {
