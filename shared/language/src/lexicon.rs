@@ -369,6 +369,7 @@ impl Lexicon {
                 let is_own = compounds.iter().filter(|it| it.ends_with(head)).count() == 1;
                 if let Some(place) = place.filter(|_| is_own) {
                     self.add_inflected(vec![head.to_owned()], false, Meaning::Value(place));
+                    self.add(&[head.to_owned()], Meaning::Value(place));
                 }
             }
         }
