@@ -4,6 +4,7 @@ use scene::Response;
 
 use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
+use crate::lexicon::{Lexicon, Sense};
 use crate::question_words::QuestionWords;
 use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
@@ -211,6 +212,16 @@ fn is_the_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     plain && the_one
 }
 
+/// "the bowl, yes", "okay, get it"
+fn names_thing(tags: &[Tag<'_>]) -> bool {
+    let names = |word: &str| match Lexicon::own().word(word) {
+        Some(Sense::Class(class)) => matches!(class, Class::It | Class::Pointer | Class::Head),
+        _ => false,
+    };
+    tags.iter()
+        .any(|tag| tag.is(Class::Head) || [tag.word, tag.second, tag.last].into_iter().any(names))
+}
+
 /// The response to the question: the answer that stands, or what the values said imply; and the
 /// probability that it was not given. `indifferent`: where it was said that the answer does not
 /// matter.
@@ -221,12 +232,12 @@ pub(crate) fn response(
     indifferent: Option<usize>,
 ) -> (Response, f64) {
     let careless = indifferent.map(|at| (Response::DoesNotMatter, tags[at].doubt));
-    if matches!(asked, QuestionWords::Nothing) {
-        return careless.unwrap_or((Response::None, 0.0));
-    }
     let certain = !content.hedged && !content.alternatives;
     let described = !content.base.is_empty() || !content.excluded.is_empty();
-    let answer = content.answers.standing(tags);
+    let is_asked = !matches!(asked, QuestionWords::Nothing);
+    // A mere answer to nothing is known as one, so that it opens no dialogue.
+    let answer =
+        content.answers.standing(tags).filter(|_| is_asked || !described && !names_thing(tags));
     match (answer, careless) {
         (Some((Answer::Yes, doubt)), _) => (Response::Yes, doubt),
         // "no, I don't mind" denies nothing.

@@ -126,7 +126,11 @@ impl ParsedUtterance<'_> {
 
     fn reading_of(&self, base: &[Asserted<'_>]) -> Reading {
         let (response, doubt) = self.response;
-        let answered = self.intent != Intent::None;
+        let is_asked = !matches!(self.asked, QuestionWords::Nothing);
+        let may_answer = is_asked || response == Response::DoesNotMatter;
+        let requests = self.clauses.iter().any(|clause| clause.requests);
+        let is_mere = self.intent == Intent::Inform && self.refers == Reference::None && !requests;
+        let answered = if may_answer { self.intent != Intent::None } else { is_mere };
         let excluded = &self.content.excluded;
         Reading {
             base: base.iter().map(|value| value.word).collect(),

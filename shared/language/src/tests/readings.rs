@@ -200,9 +200,10 @@ proptest! {
         prop_assert!((readings.iter().map(|(weight, _)| weight).sum::<f64>() - 1.0).abs() < 1e-12);
         prop_assert!(readings.iter().all(|(weight, _)| *weight <= readings[0].0));
         for (_, Reading { doubt, base, excluded, response, .. }) in &readings {
-            // Without a question there is no answer; but "any of them" is said of all that is asked for.
+            // Without a question an answer is all that was said; but "any of them" is said of what is asked for.
             let unasked = matches!(response, Response::None | Response::DoesNotMatter);
-            prop_assert!(question != Question::None || unasked);
+            let is_alone = base.is_empty() && excluded.is_empty();
+            prop_assert!(question != Question::None || unasked || is_alone);
             prop_assert!(base.iter().all(|word| word.index() < scene.words().len()));
             prop_assert!(excluded.iter().all(|group| !group.is_empty()));
             let doubts = doubt.base.iter().chain(&doubt.excluded).chain([&doubt.response]);
