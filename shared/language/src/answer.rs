@@ -234,10 +234,11 @@ pub(crate) fn response(
     let careless = indifferent.map(|at| (Response::DoesNotMatter, tags[at].doubt));
     let certain = !content.hedged && !content.alternatives;
     let described = !content.base.is_empty() || !content.excluded.is_empty();
-    let is_asked = !matches!(asked, QuestionWords::Nothing);
     // A mere answer to nothing is known as one, so that it opens no dialogue.
-    let answer =
-        content.answers.standing(tags).filter(|_| is_asked || !described && !names_thing(tags));
+    let opens = matches!(asked, QuestionWords::Nothing);
+    let is_mere = || !described && !names_thing(tags);
+    let counts = |answer| !opens || matches!(answer, Answer::Yes | Answer::No) && is_mere();
+    let answer = content.answers.standing(tags).filter(|(answer, _)| counts(*answer));
     match (answer, careless) {
         (Some((Answer::Yes, doubt)), _) => (Response::Yes, doubt),
         // "no, I don't mind" denies nothing.

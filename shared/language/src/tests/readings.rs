@@ -41,6 +41,21 @@ fn reader_does_not_doubt_clear_typed_words() {
 }
 
 #[test]
+fn answer_to_nothing_is_known_as_one() {
+    let (_, reader) = bowls();
+    for (text, response) in [
+        ("no", Response::No),
+        ("yep", Response::Yes),
+        ("neither", Response::No),
+        ("okay, get it", Response::None),
+        ("yes, the bowl", Response::None),
+        ("no, the white one", Response::None),
+    ] {
+        assert_eq!(reader.readings(text, &[], Question::None)[0].1.response, response, "{text}");
+    }
+}
+
+#[test]
 fn reader_turns_word_confidences_into_doubts() {
     let close = |a: f64, b: f64| (a - b).abs() < 1e-6;
     let doubt = best("the white bowl", &[1.0, 0.7, 1.0]).doubt;
