@@ -22,7 +22,13 @@ const services = (states) =>
   }));
 const group = (states) => ({ services: services(states) });
 
-const rests = { ...GOLDEN.arm, interaction: 1, object: "metal2", phase: "done", outcome: "delivered" };
+const rests = {
+  ...GOLDEN.arm,
+  interaction: 1,
+  object: "metal2",
+  phase: "done",
+  outcome: "delivered",
+};
 const moves = { ...rests, interaction: 2, object: "clear", phase: "moving", outcome: "pending" };
 const last = { interaction: 1, object: "metal2", outcome: "delivered", questions: 0, seconds: 7.1 };
 const idle = { ...GOLDEN.dialogue, interaction: 0, decision: "wait", belief: EVEN, last };

@@ -57,7 +57,7 @@ export class Overlay {
   #build() {
     const make = (object, n) => {
       const share = h("span", { class: "arm-share" });
-      const name = object.label ?? object.name;
+      const name = h("span", { class: "arm-words", text: apart(object, this.#scene.noun) });
       const onclick = () => this.#choose?.(n);
       const words = this.#choose
         ? h("button", { type: "button", class: "arm-name", onclick }, name, share)
@@ -184,6 +184,17 @@ export class Overlay {
     }
     setAttribute(this.list, "data-placed", true);
   }
+}
+
+/**
+ * What tells an object from the others: its label without the noun that all of them share.
+ * @param {{label?: string, name: string}} object
+ * @param {string} noun
+ */
+export function apart({ label, name }, noun) {
+  const whole = label ?? name;
+  const words = whole.split(" ").filter((word) => word !== noun);
+  return words.length > 0 ? words.join(" ") : whole;
 }
 
 /** @param {HTMLElement} node @returns {import("./placement.js").Rect} */

@@ -37,20 +37,13 @@ function spokenValue({ attribute, value }, scene) {
 /**
  * The decision in force as an action.
  * @param {any} dialogue
- * @param {string|null|undefined} aim name of the object that the arm fetches
+ * @param {string|null} aim name of the object that is fetched
  * @returns {Action}
  */
 export function decidedAction(dialogue, aim) {
   if (dialogue.decision === "ask" && dialogue.question) return dialogue.question;
-  if (dialogue.decision === "pick") {
-    return { type: "pick", object: aim ?? mostLikely(dialogue.belief) };
-  }
+  if (dialogue.decision === "pick" && aim) return { type: "pick", object: aim };
   return { type: dialogue.decision === "wait" ? "wait" : "say" };
-}
-
-function mostLikely(belief) {
-  const [first = ["", 0], ...others] = Object.entries(belief ?? {});
-  return others.reduce((best, one) => (one[1] > best[1] ? one : best), first)[0];
 }
 
 /** Least loss that a whole bar stands for, seconds: one that is shown as none has no bar. */
@@ -59,7 +52,7 @@ const BAR_MIN_S = 1;
 /**
  * The decision and the best others, best first, each with what it loses against the best.
  * @param {any} dialogue
- * @param {string|null|undefined} aim
+ * @param {string|null} aim
  * @param {number} most
  * @returns {{action: Action, value: number, loss: number, length: number, chosen: boolean}[]} `loss` in
  *   seconds of the person's time; `length`: of its bar, a share of the longest or of one second

@@ -43,7 +43,7 @@ export function reasonsView(t) {
 
   /**
    * @param {any} dialogue the decision with its alternatives
-   * @param {string|null|undefined} aim name of the object that is fetched
+   * @param {string|null} aim name of the object that is fetched
    * @param {any} scene for the names
    */
   function draw(dialogue, aim, scene) {
