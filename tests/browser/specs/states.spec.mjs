@@ -1,6 +1,7 @@
 // What every view says in each state, and what it must not say: a table, over sections that the test sends.
 
 import { expectAccessible } from "../lib/axe.mjs";
+import { WITH_PICTURE } from "../lib/chromium.mjs";
 import { Fed } from "../lib/fed.mjs";
 import { NEW, OLD, STATES } from "../lib/states.mjs";
 import { t } from "../lib/strings.mjs";
@@ -138,3 +139,85 @@ for (const [state, views] of Object.entries(SAYS)) {
     }
   });
 }
+
+/** A phone, the same on its side, a tablet, a desk, a desk at 200 %. */
+const SIZES = [
+  [360, 740],
+  [740, 360],
+  [820, 1180],
+  [1280, 800],
+  [640, 400],
+];
+
+/** What is wider than the window, outside of it, or under STOP. */
+const misplaced = () => {
+  const of = (selector) => document.querySelector(selector)?.getBoundingClientRect();
+  const [stop, words] = [of("#stop"), of(".question-words")];
+  const isOut = ({ left, top, right, bottom }) =>
+    left < 0 || top < 0 || right > innerWidth || bottom > innerHeight;
+  const covers = words.bottom > stop.top && words.right > stop.left;
+  const isWide = document.documentElement.scrollWidth > innerWidth;
+  return { isWide, stop: isOut(stop), question: isOut(words), covers };
+};
+
+for (const state of ["asking", "stopped", "disconnected"]) {
+  test(`${state}: question and STOP are seen at every size without scrolling`, async ({ page }) => {
+    await show(page, state);
+    await expect(page.locator("#question .question-words")).not.toBeEmpty();
+    const right = { isWide: false, stop: false, question: false, covers: false };
+    for (const [width, height] of SIZES) {
+      await page.setViewportSize({ width, height });
+      await expect.poll(() => page.evaluate(misplaced), `${width}×${height}`).toEqual(right);
+    }
+  });
+}
+
+test("STOP is the second stop of Tab; the question and a stop are announced", async ({ page }) => {
+  const fed = await show(page, "idle");
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Tab");
+  await expect(page.locator("#stop")).toBeFocused();
+  fed.lines([{ id: 1, who: "person", text: "get me the bowl" }]);
+  await expect(page.getByRole("log")).toContainText("get me the bowl");
+  fed.lines([{ id: 2, who: "robot", text: "Is it white?", said: [5, 1] }]);
+  await expect(page.locator("#polite[aria-live=polite]")).toHaveText("Is it white?");
+  fed.state(STATES.stopped);
+  const alert = page.getByRole("alert").filter({ hasText: t("alarm.stopped") });
+  await expect(alert).toBeAttached();
+});
+
+test("a note ends with the state that it is about", async ({ page }) => {
+  const fed = await show(page, "held");
+  fed.answers.say = { waits_for: "policy is held by the operator" };
+  await page.locator("#say-text").fill("the clear bowl");
+  await page.keyboard.press("Enter");
+  await expect(page.locator("#say-note")).toContainText("policy is held");
+  fed.state(STATES.idle);
+  await expect(page.locator("#say-note")).toBeEmpty();
+});
+
+test("who is in control has a name, and is there", async ({ page }) => {
+  const fed = await show(page, "idle");
+  const { control } = STATES.idle;
+  const cases = [
+    [{ name: "Ann" }, t("control.theirs", { name: "Ann" })],
+    [{ name: "" }, t("control.theirs", { name: t("control.someone") })],
+    [{ name: null, away: true }, t("control.away", { name: t("control.someone") })],
+  ];
+  for (const [other, words] of cases) {
+    fed.state({ control: { ...control, operator: "v2", ...other } });
+    await expect(page.locator(".control-who")).toHaveText(words);
+  }
+});
+
+test.describe("the picture", () => {
+  test.use(WITH_PICTURE);
+
+  test("shows the list's probabilities, and what tells objects apart", async ({ page }) => {
+    await show(page, "fetching").then((fed) => fed.state(STATES.delivered));
+    const label = page.locator(".arm-label").filter({ hasText: /^clear/ });
+    const card = page.locator(".card").filter({ hasText: NEW }).locator(".percent");
+    await expect(label).toHaveCount(1);
+    await expect(label).toHaveText(`clear ${await card.textContent()}`);
+  });
+});

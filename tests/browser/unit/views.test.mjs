@@ -18,12 +18,8 @@ import {
   ranked,
   toCome,
 } from "../../../services/console/page/js/model/reasons.js";
+import { banner, mayResume, whoControls } from "../../../services/console/page/js/model/turn.js";
 import { nowOf } from "../../../services/console/page/js/now.js";
-import {
-  banner,
-  mayResume,
-  whoControls,
-} from "../../../services/console/page/js/model/turn.js";
 import { escapeStops, stopper } from "../../../services/console/page/js/stop.js";
 import { Store } from "../../../services/console/page/js/store.js";
 

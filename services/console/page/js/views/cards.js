@@ -17,7 +17,7 @@ const MOST = 12;
 const ALL_MOST = 150;
 /** Matches pages that fill the window and do not scroll. */
 const FIXED =
-  "(min-width: 1101px) and (min-height: 640px), (max-width: 640px) and (min-height: 700px), (min-width: 641px) and (max-width: 1100px)";
+  "(min-width: 1101px) and (min-height: 640px), (max-width: 640px) and (min-height: 780px), (min-width: 641px) and (max-width: 1100px)";
 
 /**
  * The objects with what the robot believes, the likely ones first. The operator says one by a press.

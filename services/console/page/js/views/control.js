@@ -43,7 +43,12 @@ export function mountControl(element, context) {
     const name = control?.name || t("control.someone");
     setAttribute(element, "data-who", is);
     const key = elsewhere ? "elsewhere" : isStale ? "offline" : is;
-    setText(who, asked ? t("control.asks", { viewer: control.asked_name || t("control.someone") }) : t(`control.${key}`, { name }));
+    setText(
+      who,
+      asked
+        ? t("control.asks", { viewer: control.asked_name || t("control.someone") })
+        : t(`control.${key}`, { name }),
+    );
     const left = control?.expires_ms
       ? Math.ceil((control.expires_ms - link.serverNow()) / 1000)
       : 0;
