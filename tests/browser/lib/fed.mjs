@@ -1,11 +1,12 @@
 // The page without a group: its files from this tree, and what a test says over its socket. For states that
 // a group would take long to reach, or would leave too soon.
 
+import { once } from "node:events";
 import { readFile } from "node:fs/promises";
+import { createServer } from "node:http";
 import { extname, join } from "node:path";
 import { ROOT } from "./program.mjs";
 
-const ORIGIN = "http://127.0.0.1:1";
 const PAGE = join(ROOT, "services/console/page");
 const TYPES = {
   ".html": "text/html",
@@ -34,9 +35,11 @@ export class Fed {
   /** Opens the page. @param {import("@playwright/test").Page} page @param {string} [path] */
   static async open(page, path = "/") {
     const fed = new Fed();
-    await page.route(`${ORIGIN}/**`, (route) => fed.#serve(route));
+    const server = createServer(serve).listen(0, "127.0.0.1");
+    await once(server, "listening");
+    page.once("close", () => server.close());
     await page.routeWebSocket(/\/ws$/, (socket) => fed.#greet(socket));
-    await page.goto(ORIGIN + path);
+    await page.goto(`http://127.0.0.1:${server.address().port}${path}`);
     return fed;
   }
 
@@ -66,15 +69,6 @@ export class Fed {
     this.#socket?.send(JSON.stringify(message));
   }
 
-  async #serve(route) {
-    const { pathname } = new URL(route.request().url());
-    const name = pathname === "/" ? "/index.html" : pathname;
-    const path = extname(name) ? name : `${name}.html`;
-    const body = await readFile(join(PAGE, path)).catch(() => null);
-    if (!body) return route.fulfill({ status: 404 });
-    return route.fulfill({ body, contentType: TYPES[extname(path)] ?? "text/plain" });
-  }
-
   #greet(socket) {
     if (!this.#isUp) return socket.close({ code: 1001 });
     this.#socket = socket;
@@ -89,4 +83,14 @@ export class Fed {
     if (t === "ping") this.#say({ t: "pong", at, ...now });
     if (t === "do") this.#say({ t: "done", id, ok: true, ...this.answers[verb] });
   }
+}
+
+/** Answers with a file of the page. */
+async function serve({ url }, response) {
+  const { pathname } = new URL(url, "http://page");
+  const name = pathname === "/" ? "/index.html" : pathname;
+  const path = extname(name) ? name : `${name}.html`;
+  const body = await readFile(join(PAGE, path)).catch(() => null);
+  response.writeHead(body ? 200 : 404, { "content-type": TYPES[extname(path)] ?? "text/plain" });
+  response.end(body);
 }
