@@ -1,5 +1,7 @@
 //! The ROS 2 node and programs of other implementations, on the loopback network.
 
+mod hostile;
+
 use rustix::process::Signal;
 use serde_json::Value;
 use std::time::Duration;

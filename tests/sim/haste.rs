@@ -9,7 +9,7 @@ use whichone_tests::simulated_group::{Faults, SimulatedGroup};
 use crate::checkers;
 
 /// Dialogues of each combination.
-const DIALOGUES: u64 = 4;
+const DIALOGUES: u64 = 2;
 
 /// Returns how many answers there were, and those that were not credited to the question that they answer alone.
 fn credited(group: &SimulatedGroup) -> (usize, Vec<String>) {
@@ -61,6 +61,6 @@ fn answers_are_credited_to_the_question_that_was_shown_however_fast_they_are() {
                 checkers::check(&group, &wanted).unwrap_or_else(|e| panic!("{e} {}", story()));
             }
         }
-        assert!(answers >= 30, "only {answers} answers");
+        assert!(answers >= 15, "only {answers} answers");
     }
 }

@@ -23,7 +23,7 @@ use whichone_tests::settings;
 use whichone_tests::simulated_group::{Faults, GroupUser, SimulatedGroup};
 
 /// Dialogues with faults, each with its own seed; WHICHONE_SEEDS asks for more.
-const SEEDS: u64 = 60;
+const SEEDS: u64 = 40;
 
 fn number(variable: &str) -> Option<u64> {
     let text = std::env::var(variable).ok()?;

@@ -3,7 +3,7 @@
 
 use whichone_tests::simulated_group::{Faults, Tally, at_best, perceive};
 
-const DIALOGUES: u64 = 40;
+const DIALOGUES: u64 = 20;
 
 /// `right_min` is the least share of dialogues with the wanted object.
 fn check(mode: &str, right_min: f64) -> Tally {

@@ -50,6 +50,11 @@ impl Drop for Ros2Peer {
     }
 }
 
+/// A domain that no other test of this process has.
+pub fn own_domain() -> u16 {
+    (std::process::id() as u16 % 50 * 2 + DOMAIN.fetch_add(1, Ordering::Relaxed)) % 100
+}
+
 impl Implementation {
     /// Starts a program and a group in a domain of their own, and waits until they have found each
     /// other.
@@ -64,8 +69,7 @@ impl Implementation {
 
     /// Starts a program in a domain of its own; a group finds it by [`Ros2Peer::settings`].
     pub fn start_alone(self) -> Ros2Peer {
-        let number = std::process::id() as u16 % 50 * 2 + DOMAIN.fetch_add(1, Ordering::Relaxed);
-        self.peer(number % 100)
+        self.peer(own_domain())
     }
 
     /// Starts a program in a domain.

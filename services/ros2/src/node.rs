@@ -10,6 +10,7 @@ use crate::{hear, orders, threads};
 use config::Settings;
 use messages::{Injection, JointStates, Service, Sighting, WorldView, topics};
 use motion::MotionCall;
+use rustix::process::{Resource, Rlimit, setrlimit};
 use scene::Scene;
 use service::bus::{EncodedReader, EncodedWriter, Reader, WakeListener};
 use service::client::Client;
@@ -40,8 +41,16 @@ pub fn run() -> ExitCode {
     service_loop::program(NAME, about, serve)
 }
 
+/// Most memory of the process, bytes. The DDS implementation believes what a peer says of the length of its message, and
+/// of the number of peers; beyond this the process ends, and the supervisor starts it again.
+const MEMORY_MAX: u64 = 512 << 20;
+
 fn serve(arguments: Vec<String>) -> Result<(), Failure> {
     let environment = Environment::read(arguments)?;
+    let most = Rlimit { current: Some(MEMORY_MAX), maximum: Some(MEMORY_MAX) };
+    setrlimit(Resource::Data, most).map_err(|error| {
+        Failure::new(Exit::NotReached, format!("limit of the process's memory: {error}"))
+    })?;
     // A signal would end the threads of the DDS implementation: the kernel gives those that are handled, which
     // end the process anyway, to the main thread.
     let lifecycle = Lifecycle::begin(&environment.paths)?;

@@ -88,7 +88,10 @@ pub fn from_settings(options: Options) -> Load {
             paths.as_ref().is_ok_and(|paths| kept_settings::are_checked(paths, settings))
         };
         match preflight::load_known(&options.config, options.profile.as_deref(), &set, is_known) {
-            Ok(settings) => Ok(configuration(settings, &options, set)),
+            Ok(settings) => {
+                settings.warnings().iter().for_each(|warning| tracing::warn!("{warning}"));
+                Ok(configuration(settings, &options, set))
+            }
             Err(problems) => Err(problems.iter().map(ToString::to_string).collect()),
         }
     })

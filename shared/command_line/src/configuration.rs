@@ -8,6 +8,7 @@ use service::exit::{Exit, Failure};
 use service::group::{GroupName, GroupPaths};
 
 use crate::args::ConfigArgs;
+use crate::output::note;
 use crate::shipped;
 
 /// A file that marks a configuration folder.
@@ -16,7 +17,9 @@ const MARK: &str = "group.toml";
 /// Loads the settings that the command line names.
 pub fn settings(args: &ConfigArgs) -> Result<Settings, Failure> {
     let folder = folder(args)?;
-    Ok(preflight::load(&folder, args.profile.as_deref(), &args.set)?)
+    let settings = preflight::load(&folder, args.profile.as_deref(), &args.set)?;
+    settings.warnings().iter().for_each(|warning| note(format!("warning: {warning}")));
+    Ok(settings)
 }
 
 /// Loads the settings of a running group, else those that the command line names.

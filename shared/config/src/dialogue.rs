@@ -1,6 +1,8 @@
 //! `dialogue.toml`: understanding, belief and decisions.
 
-use diagnostics::{Fields, Report, Table};
+use std::ops::RangeInclusive;
+
+use diagnostics::{Diagnostic, Fields, Node, Report, Scalar, Table};
 use scene::{Scene, View};
 use serde_json::json;
 use vocabulary::gesture::{Direction, Gestures};
@@ -17,8 +19,8 @@ pub struct Dialogue {
     pub language: Language,
     /// Parameters of the observation model (section 3.6 of the paper).
     pub params: Params,
-    /// Smoothing of words that are certain; [`Language::Paper`] has `params.alpha` for all words.
-    pub alpha_typed: f64,
+    /// Smoothing of words that are certain beside misperception, in snapshots of earlier versions.
+    pub alpha_typed: Option<f64>,
     /// Probability that a user takes a value for another one, and sticks to it; 0 with
     /// [`Language::Paper`].
     pub misperception: f64,
@@ -96,7 +98,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
             choice: Some(f.table("choice", reliability)),
             ..params(f)
         },
-        alpha_typed: f.number("alpha_typed", 1e-6..=100.0),
+        alpha_typed: f.former_number(ALPHA_TYPED, ALPHA_TYPED_RANGE),
         misperception: f.number("misperception", 0.0..=MISPERCEPTION_MAX),
         misperceptions: f.table("misperceptions", misperceptions),
         planner,
@@ -121,6 +123,37 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
 
 /// Largest rate of misperception: beyond it a word says next to nothing.
 const MISPERCEPTION_MAX: f64 = 0.5;
+
+/// The key that `misperception` replaces, and its values.
+const ALPHA_TYPED: &str = "alpha_typed";
+const ALPHA_TYPED_RANGE: RangeInclusive<f64> = 1e-6..=100.0;
+
+/// Replaces `alpha_typed` in a layer, and returns a warning of it.
+///
+/// `alpha_typed = A` doubted typed words by `A : 1`. It becomes the misperception `A / (1 + A)`, which gives the
+/// same odds for an attribute of two values, unless the layer states a rate itself or `below` has a higher one.
+pub(crate) fn replace_former_key(layer: &mut Table, below: &Table) -> Option<Diagnostic> {
+    const RATE: &str = "misperception";
+    let rate_of = |dialogue: &Table| dialogue.get(RATE).and_then(Node::as_number);
+    let usual = below.get("dialogue").and_then(Node::as_table).and_then(rate_of);
+    let dialogue = layer.entries.iter_mut().find(|(section, _)| section == "dialogue");
+    let Some((_, Node::Table(dialogue))) = dialogue else { return None };
+    let alpha = dialogue.get(ALPHA_TYPED).and_then(Node::as_number);
+    let alpha = alpha.filter(|alpha| ALPHA_TYPED_RANGE.contains(alpha))?;
+    let source = dialogue.take(ALPHA_TYPED)?.source().clone();
+    let rate = (alpha / (1.0 + alpha)).min(MISPERCEPTION_MAX);
+    let is_enough = dialogue.get(RATE).is_some() || usual.is_some_and(|usual| usual >= rate);
+    let help = match is_enough {
+        true => "remove it".to_owned(),
+        false => format!("write `{RATE} = {rate}`, which is taken"),
+    };
+    if !is_enough {
+        let rate = Node::Scalar(Scalar::Float(rate), source.clone());
+        dialogue.entries.push((RATE.to_owned(), rate));
+    }
+    let path = ["dialogue", ALPHA_TYPED].map(str::to_owned);
+    Some(source.diagnostic(&path, "replaced by dialogue.misperception", help))
+}
 
 fn misperceptions(f: &mut Fields<'_>) -> Vec<(String, f64)> {
     let names = f.names().into_iter();

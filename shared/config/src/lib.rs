@@ -178,6 +178,11 @@ impl Settings {
         self.speech.voice_dir.clone().or(own)
     }
 
+    /// Keys of earlier versions in the configuration folder, with what replaces them.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.resolved.warnings
+    }
+
     /// Every value with the file that it came from, in the order of the files.
     pub fn origins(&self) -> Vec<Origin> {
         self.resolved.origins()

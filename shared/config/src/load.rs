@@ -56,11 +56,17 @@ pub(crate) fn examine(
         layers.extend(override_layer("--set", (key, value), &mut report));
     }
     let mut tree = part::defaults();
-    for layer in layers {
+    let mut warnings = Vec::new();
+    for mut layer in layers {
+        warnings.extend(dialogue::replace_former_key(&mut layer, &tree));
         tree.merge(layer, &mut Vec::new(), &mut report);
     }
     let files = Files::find(dir, &tree, scene, &mut report);
-    check(tree, report, files, None)
+    let mut examined = check(tree, report, files, None);
+    if let Some(settings) = &mut examined.settings {
+        settings.resolved.warnings = warnings;
+    }
+    examined
 }
 
 /// Durations as a snapshot holds them, and the snapshot.
@@ -112,7 +118,7 @@ pub(crate) fn check(
         let durations = measured.filter(|_| report.count() == 0).and_then(|(node, source)| {
             snapshot::read_durations(node, &dialogue, &scene, &source, &mut report)
         });
-        let resolved = Resolved { tree, scene: file, robot, snapshot: None };
+        let resolved = Resolved { tree, scene: file, robot, snapshot: None, warnings: Vec::new() };
         Settings { group, dialogue, speech, arm, study, console, scene, durations, resolved }
     });
     Examined { settings, report, arm_is_right }

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use diagnostics::{Node, Report, Source, Table, TextFile};
+use diagnostics::{Diagnostic, Node, Report, Source, Table, TextFile};
 
 use crate::files::RobotFiles;
 
@@ -40,6 +40,8 @@ pub(crate) struct Resolved {
     pub(crate) robot: RobotFiles,
     /// The text of the snapshot in force that they were read from; only `load_snapshot` sets it.
     pub(crate) snapshot: Option<String>,
+    /// Keys of earlier versions in the layers.
+    pub(crate) warnings: Vec<Diagnostic>,
 }
 
 impl Resolved {

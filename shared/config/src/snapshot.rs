@@ -36,7 +36,7 @@ const SRDF: &str = "robot_srdf";
 const DURATIONS: &str = "durations";
 
 /// Settings that snapshots of earlier versions do not state, with the values that they had then: answers
-/// of all kinds came through alike.
+/// of all kinds came through alike, and typed words were doubted by a smoothing alone.
 fn unstated(layer: &Table) -> String {
     let dialogue = layer.get("dialogue").and_then(Node::as_table);
     let number = |key| dialogue.and_then(|it| it.get(key)).and_then(Node::as_number);
@@ -46,14 +46,15 @@ fn unstated(layer: &Table) -> String {
         ["open", "choice"].map(table)
     });
     let kinds: String = kinds.collect();
-    format!("[dialogue]\nmisperception = 0.0\nchoice_questions = false\n{kinds}")
+    let words = if number("misperception").is_none() { "alpha_typed = 0.001\n" } else { "" };
+    format!("[dialogue]\nmisperception = 0.0\nchoice_questions = false\n{words}{kinds}")
 }
 
 impl Settings {
     /// The snapshot's text: every value of every section, the scene's and the robot's files as
     /// they were read, and how long the robot takes for what it does.
     pub fn snapshot(&self) -> String {
-        let Resolved { tree, scene, robot, snapshot } = &self.resolved;
+        let Resolved { tree, scene, robot, snapshot, warnings: _ } = &self.resolved;
         if let Some(text) = snapshot {
             return text.clone();
         }

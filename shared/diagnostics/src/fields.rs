@@ -51,6 +51,12 @@ impl<'a> Fields<'a> {
         self.typed(key, number, "a finite number", "write digits, e.g. `1.5`")
     }
 
+    /// Reads a number within the range that earlier versions had; schemas do not know its key.
+    pub fn former_number(&mut self, key: &'a str, range: RangeInclusive<f64>) -> Option<f64> {
+        self.table.get(key)?;
+        Some(self.number(key, range))
+    }
+
     /// Reads a length of time in seconds within the range.
     pub fn seconds(&mut self, key: &'a str, range: RangeInclusive<f64>) -> Duration {
         Duration::try_from_secs_f64(self.number(key, range)).unwrap_or_default()

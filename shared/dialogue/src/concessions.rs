@@ -162,7 +162,7 @@ mod tests {
     fn no_planner_asks_about_what_was_conceded() {
         let seed = 142;
         let mut rng = Rng::new(seed);
-        for draw in 0..6 {
+        for draw in 0..4 {
             let scene = random_scene(&mut rng, 8, &[3, 2, 2, 2], 4);
             let model = Model::new(&scene, Params::default());
             let model = if draw % 2 == 1 { model.with_absent() } else { model };

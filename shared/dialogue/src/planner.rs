@@ -64,12 +64,17 @@ impl DecisionProblem<'_> {
             Action::Ask(Question::Which(_)) => costs.which_s,
             Action::Ask(question @ Question::Choice(..)) => {
                 let answers = Naming::of(self.model, question).map_or(2, |law| law.answers);
-                costs.choice_s + costs.option_s * answers.saturating_sub(2) as f64
+                self.choice_cost(answers)
             }
             Action::Ask(Question::Point(_)) => costs.point_s,
             Action::Pick(_) => 0.0,
         };
         self.durations.and_then(|durations| durations.of(action)).unwrap_or(alike)
+    }
+
+    /// Cost of a choice with that many answers, which is not measured ([`Durations::question_s`]).
+    pub(crate) fn choice_cost(&self, answers: usize) -> f64 {
+        self.costs.choice_s + self.costs.option_s * answers.saturating_sub(2) as f64
     }
 }
 

@@ -54,11 +54,6 @@ impl Answers {
         self.given.clear();
     }
 
-    /// Returns whether the last answer is a no.
-    pub(crate) fn denies(&self) -> bool {
-        self.given.last().is_some_and(|given| given.answer == Answer::No)
-    }
-
     pub(crate) fn is_empty(&self) -> bool {
         self.given.is_empty()
     }

@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use crate::fates::Fates;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 use crate::topic::classify;
@@ -27,9 +28,7 @@ pub(crate) struct Clause {
     pub(crate) requests: bool,
     /// Orders something else than to fetch.
     pub(crate) chore: bool,
-    /// States something of a thing, and asks for none.
-    pub(crate) states: bool,
-    /// Values that describe something else.
+    /// Values of which nothing is said.
     pub(crate) distractors: Vec<usize>,
 }
 
@@ -44,13 +43,13 @@ impl Clause {
 const CLAUSE_MARKS_MAX: usize = 64;
 
 /// Splits an utterance and finds the topic of each part. `code` tags a text that no person says.
-pub(crate) fn clauses(tags: &[Tag<'_>], code: bool) -> Vec<Clause> {
+pub(crate) fn clauses(tags: &[Tag<'_>], fates: &Fates, code: bool) -> Vec<Clause> {
     let injected = code || tags.iter().any(|tag| tag.is(Class::Injection));
     let mut clauses: Vec<Clause> = Vec::new();
     let mut start = 0;
     for at in 1..=tags.len() {
         if at == tags.len() || at - start == CLAUSE_MARKS_MAX || starts_clause(tags, at) {
-            clauses.push(classify(tags, start..at, clauses.last(), injected));
+            clauses.push(classify(tags, fates, start..at, clauses.last(), injected));
             start = at;
         }
     }

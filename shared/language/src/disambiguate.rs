@@ -5,6 +5,7 @@ use scene::Role;
 use crate::lexicon::{Lexicon, Sense};
 use crate::tagger::{Tag, after, before, doubts};
 use crate::token_class::{Class, classes};
+use crate::vocabulary::is_thing;
 
 /// Resolves the tags that depend on their neighbours.
 pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
@@ -156,6 +157,9 @@ impl<'a> Place<'_, 'a> {
     fn misheard(&self, lexicon: &'a Lexicon) -> Option<(Sense<'a>, f64)> {
         if lexicon.lookalikes().is_like_noun(self.tag().word) && self.ends_noun_phrase() {
             return Some((Sense::Class(Class::Head), 0.0));
+        }
+        if is_thing(self.tag().word) {
+            return None;
         }
         self.misheard_description(lexicon).or_else(|| self.misheard_place(lexicon))
     }

@@ -46,10 +46,6 @@ impl ClauseAnalysis<'_> {
     }
 
     /// "put the clear bowl in front of me": to put a thing where the speaker is, is to bring it.
-    pub(crate) fn brings(&self) -> bool {
-        (0..self.clause.len()).any(|at| self.brings_at(at))
-    }
-
     fn brings_at(&self, at: usize) -> bool {
         const CARRYING: [&str; 8] =
             ["put", "place", "set", "move", "drop", "lay", "return", "putting"];
@@ -86,9 +82,8 @@ impl ClauseAnalysis<'_> {
             && self.clause[at..].iter().any(|tag| tag.word == "away")
     }
 
-    /// "wash the clear bowl", "I want you to fill the mug", "wash it": an errand with one of our things,
-    /// which are told from `distractors`.
-    pub(crate) fn is_chore(&self, distractors: &[usize]) -> bool {
+    /// "wash the clear bowl", "I want you to fill the mug", "wash it": an errand with one of our things.
+    pub(crate) fn is_chore(&self) -> bool {
         const LEADS: &[Class] = classes![
             Filler Courtesy And But Join Yes WeakYes Repair Plain Auxiliary First Second Want Destination
         ];
@@ -98,7 +93,7 @@ impl ClauseAnalysis<'_> {
         let is_ours = |(at, tag): (usize, &Tag<'_>)| {
             let is_thing = tag.is_value() && !tag.is_role(Role::Place);
             let is_it = at == 1 && tag.is(Class::It);
-            is_it || tag.is(Class::Head) || is_thing && !distractors.contains(&(verb + at))
+            is_it || tag.is(Class::Head) || is_thing
         };
         // "I put it in the cabinet" is told, "I want you to put it there" is ordered.
         lead.iter().all(|tag| tag.is_any(LEADS))

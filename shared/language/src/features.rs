@@ -1,11 +1,9 @@
-//! What the judge looks at around a value word: words and classes near it, the rules' proposals, and the question.
+//! What the judge looks at around a value word: words and classes near it, the rules' and the question.
 //!
 //! A feature is the number of a row of weights; which one, a hash decides.
 
-use scene::{Intent, Reading, StableHash, WordId};
+use scene::{StableHash, WordId};
 
-use crate::mentions::{Polarity, proposal, values};
-use crate::parsed::ParsedUtterance;
 use crate::question_words::QuestionWords;
 use crate::recurrent::Sequence;
 use crate::sequence::sequence;
@@ -36,8 +34,6 @@ pub struct Example {
     pub surface: String,
     /// Number of its noun phrase in the utterance: the values of one phrase share their fate.
     pub phrase: usize,
-    /// What the rules make of it.
-    pub proposal: Polarity,
     /// Its features, each a row of weights.
     pub rows: Vec<u32>,
 }
@@ -60,21 +56,18 @@ pub(crate) enum Element<'a> {
     Word(&'a Tag<'a>),
 }
 
-/// Returns what the judge looks at; `reading` is what the rules make of the utterance.
-pub(crate) fn features(parsed: &ParsedUtterance<'_>, reading: &Reading) -> Features {
-    let found: Vec<(usize, WordId, Polarity)> = values(parsed)
-        .take(MENTIONS_MAX)
-        .map(|(at, word)| (at, word, proposal(parsed, reading, word)))
-        .collect();
-    let spans = phrases(parsed, &found);
-    let elements = elements(parsed, &spans);
-    let intent = reading.intent;
-    let context = Context { parsed, found: &found, spans: &spans, elements: &elements, intent };
-    let example = |(number, (at, word, proposal)): (usize, &(usize, WordId, Polarity))| {
+/// Returns what the judge looks at in an utterance that follows a question.
+pub(crate) fn features(tags: &[Tag<'_>], asked: QuestionWords<'_>) -> Features {
+    let value = |(at, tag): (usize, &Tag<'_>)| Some((at, tag.value()?.word));
+    let found: Vec<(usize, WordId)> =
+        tags.iter().enumerate().filter_map(value).take(MENTIONS_MAX).collect();
+    let spans = phrases(tags, &found);
+    let elements = elements(tags, &spans);
+    let context = Context { tags, asked, found: &found, spans: &spans, elements: &elements };
+    let example = |(number, (at, word)): (usize, &(usize, WordId))| {
         let phrase = spans.iter().position(|span| span.contains(at)).unwrap_or(0);
         let rows = context.features(number, phrase, &spans[phrase]);
-        let (at, word, proposal) = (*at, *word, *proposal);
-        Example { at, word, surface: String::new(), phrase, proposal, rows }
+        Example { at: *at, word: *word, surface: String::new(), phrase, rows }
     };
     let examples: Vec<Example> = found.iter().enumerate().map(example).collect();
     let phrases: Vec<usize> = examples.iter().map(|example| example.phrase).collect();
@@ -83,11 +76,7 @@ pub(crate) fn features(parsed: &ParsedUtterance<'_>, reading: &Reading) -> Featu
 }
 
 /// The noun phrases that hold values, as ranges of tags.
-fn phrases(
-    parsed: &ParsedUtterance<'_>,
-    found: &[(usize, WordId, Polarity)],
-) -> Vec<std::ops::Range<usize>> {
-    let tags = &parsed.tags;
+fn phrases(tags: &[Tag<'_>], found: &[(usize, WordId)]) -> Vec<std::ops::Range<usize>> {
     let belongs = |at: usize| tags[at].is_value() || tags[at].is_any(NOUN_PHRASE);
     let mut spans: Vec<std::ops::Range<usize>> = Vec::new();
     for (at, ..) in found {
@@ -111,14 +100,12 @@ fn phrases(
     spans
 }
 
-fn elements<'a>(
-    parsed: &'a ParsedUtterance<'a>,
-    spans: &[std::ops::Range<usize>],
-) -> Vec<Element<'a>> {
+fn elements<'a>(tags: &'a [Tag<'a>], spans: &[std::ops::Range<usize>]) -> Vec<Element<'a>> {
     let mut elements = Vec::new();
     let (mut at, mut pauses) = (0, false);
-    while let Some(tag) = parsed.tags.get(at) {
-        pauses |= tag.pauses();
+    while let Some(tag) = tags.get(at) {
+        // "the blue uh the black pen"
+        pauses |= tag.pauses() || tag.is(Class::Filler);
         let phrase = spans.iter().position(|span| span.start == at);
         at = phrase.map_or(at + 1, |number| spans[number].end);
         if phrase.is_none() && tag.is_any(classes![Filler Courtesy]) {
@@ -135,18 +122,18 @@ fn elements<'a>(
 
 /// An utterance with its value words, their noun phrases, and its elements.
 pub(crate) struct Context<'a> {
-    pub(crate) parsed: &'a ParsedUtterance<'a>,
-    /// Tag, word and proposal of each value word.
-    pub(crate) found: &'a [(usize, WordId, Polarity)],
+    pub(crate) tags: &'a [Tag<'a>],
+    pub(crate) asked: QuestionWords<'a>,
+    /// Tag and word of each value word.
+    pub(crate) found: &'a [(usize, WordId)],
     pub(crate) spans: &'a [std::ops::Range<usize>],
     pub(crate) elements: &'a [Element<'a>],
-    pub(crate) intent: Intent,
 }
 
 impl Context<'_> {
     fn features(&self, number: usize, phrase: usize, span: &std::ops::Range<usize>) -> Vec<u32> {
-        let (at, word, proposal) = self.found[number];
-        let mut rows = Rows { rows: Vec::with_capacity(400), proposal };
+        let (at, word) = self.found[number];
+        let mut rows = Rows(Vec::with_capacity(200));
         let place =
             self.elements.iter().position(|it| matches!(it, Element::Phrase(n) if *n == phrase));
         let place = place.unwrap_or(0);
@@ -161,7 +148,7 @@ impl Context<'_> {
         self.phrase(&mut rows, span, at);
         self.others(&mut rows, number);
         self.answers(&mut rows, word);
-        rows.rows
+        rows.0
     }
 
     /// One side of the phrase, nearest first.
@@ -225,12 +212,12 @@ impl Context<'_> {
     }
 
     fn phrase(&self, rows: &mut Rows, span: &std::ops::Range<usize>, at: usize) {
-        let tags = &self.parsed.tags[span.clone()];
+        let tags = &self.tags[span.clone()];
         for tag in tags.iter().filter(|tag| !tag.is_value()) {
             rows.add(b"in kind", &[kind_of(tag)]);
             rows.add(b"in text", &[text_of(tag)]);
         }
-        let own = &self.parsed.tags[at];
+        let own = &self.tags[at];
         let role = own.value().map_or(9, |value| value.role as u64);
         rows.add(b"role", &[role]);
         rows.add(b"exact", &[u64::from(own.exact)]);
@@ -239,31 +226,28 @@ impl Context<'_> {
         rows.add(b"begins", &[tags.first().map_or(0, begins)]);
     }
 
-    /// The other value words, and what the rules make of them.
     fn others(&self, rows: &mut Rows, number: usize) {
-        for (relation, side, proposal) in self.relations(number) {
-            rows.add(b"other", &[side, relation, proposal as u64]);
+        for (relation, side) in self.relations(number) {
+            rows.add(b"other", &[side, relation]);
         }
+        rows.add(b"polite", &[u64::from(asks_politely(self.tags))]);
         rows.add(b"mentions", &[self.found.len().min(5) as u64, number.min(5) as u64]);
-        rows.add(b"intent", &[self.intent as u64]);
     }
 
-    /// How each other value word is related to one, on which side it stands, and what the rules make of it.
-    pub(crate) fn relations(&self, number: usize) -> impl Iterator<Item = (u64, u64, Polarity)> {
-        let own = self.parsed.tags[self.found[number].0].value();
+    /// How each other value word is related to one, and on which side it stands.
+    pub(crate) fn relations(&self, number: usize) -> impl Iterator<Item = (u64, u64)> {
+        let own = self.tags[self.found[number].0].value();
         let others = self.found.iter().enumerate().filter(move |(n, _)| *n != number);
-        others.map(move |(n, (at, word, proposal))| {
-            let value = self.parsed.tags[*at].value();
-            let rivals = own.zip(value).is_some_and(|(own, other)| own.rivals(other));
+        others.map(move |(n, (at, word))| {
+            let rivals = own.zip(self.tags[*at].value()).is_some_and(|(own, it)| own.rivals(it));
             let is_same = *word == self.found[number].1;
-            let relation = u64::from(rivals) + 2 * u64::from(is_same);
-            (relation, u64::from(n > number), *proposal)
+            (u64::from(rivals) + 2 * u64::from(is_same), u64::from(n > number))
         })
     }
 
     /// The kind of the question, and whether it names a word.
     pub(crate) fn question(&self, word: Option<WordId>) -> (u64, bool) {
-        match self.parsed.asked {
+        match self.asked {
             QuestionWords::Nothing => (0, false),
             QuestionWords::Object(words) => (1, word.is_some_and(|word| words.contains(&word))),
             QuestionWords::PerceivedObject => (2, false),
@@ -276,12 +260,22 @@ impl Context<'_> {
         let (kind, is_asked) = self.question(Some(word));
         let asked = [kind, u64::from(is_asked)];
         rows.add(b"question", &asked);
-        for answer in
-            self.parsed.tags.iter().filter(|tag| tag.is_any(classes![Yes No WeakYes WeakNo]))
-        {
+        for answer in self.tags.iter().filter(|tag| tag.is_any(classes![Yes No WeakYes WeakNo])) {
             rows.add(b"answer", &[asked[0], asked[1], kind_of(answer)]);
         }
     }
+}
+
+/// "please", or thanks at the end: what stands beside it is asked for. Thanks at the beginning are for
+/// what was done before.
+pub(crate) fn asks_politely(tags: &[Tag<'_>]) -> bool {
+    const ASKING: [&str; 15] = [
+        "please", "pls", "plz", "pleez", "pleeze", "pleaze", "plees", "pliz", "kindly", "if",
+        "when", "would", "could", "will", "be",
+    ];
+    const THANKS: [&str; 8] = ["thanks", "thank", "thx", "ty", "cheers", "ta", "many", "much"];
+    let says = |tag: &Tag<'_>, words: &[&str]| tag.is(Class::Courtesy) && words.contains(&tag.word);
+    tags.iter().any(|tag| says(tag, &ASKING)) || tags.last().is_some_and(|tag| says(tag, &THANKS))
 }
 
 pub(crate) fn kind(element: Option<&Element<'_>>) -> u64 {
@@ -349,16 +343,12 @@ pub(crate) fn mix(one: u64, other: u64) -> u64 {
     mixed ^ (mixed >> 29)
 }
 
-struct Rows {
-    rows: Vec<u32>,
-    proposal: Polarity,
-}
+/// Rows of weights.
+struct Rows(Vec<u32>);
 
 impl Rows {
-    /// Adds a feature alone, and together with what the rules propose.
     fn add(&mut self, name: &[u8], parts: &[u64]) {
-        let alone = parts.iter().fold(hash(name.iter().copied()), |hash, part| mix(hash, *part));
-        let proposed = mix(alone, 1 + self.proposal as u64);
-        self.rows.extend([alone, proposed].map(|hash| (hash >> 16) as u32 % ROWS as u32));
+        let hash = parts.iter().fold(hash(name.iter().copied()), |hash, part| mix(hash, *part));
+        self.0.push((hash >> 16) as u32 % ROWS as u32);
     }
 }

@@ -1,15 +1,16 @@
 //! "I don't care", "any cup will do": the user leaves the choice to the robot.
 
 use crate::clauses::{Clause, Topic};
-use crate::extractor::wonders_after;
+use crate::fates::{Fates, Polarity};
 use crate::question_words::QuestionWords;
-use crate::tagger::Tag;
+use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
 
 /// Returns the tag that says so.
 pub(crate) fn indifference(
     tags: &[Tag<'_>],
     clauses: &[Clause],
+    fates: &Fates,
     asked: QuestionWords<'_>,
 ) -> Option<usize> {
     let answers = !matches!(asked, QuestionWords::Nothing);
@@ -18,10 +19,17 @@ pub(crate) fn indifference(
         |(clause, at)| {
             // "I don't care what colour" is about what is asked, if anything is.
             let said = tags[at].is(Class::Indifferent) && (answers || !wonders_after(tags, at));
-            (said || is_any(&tags[clause.span.clone()], at - clause.span.start, answers))
-                .then_some(at)
+            let is_any = is_any(&tags[clause.span.clone()], at - clause.span.start, answers);
+            (said || is_any && !is_denied(tags, fates, at)).then_some(at)
         },
     )
+}
+
+/// "anything spotted is out of the question"
+fn is_denied(tags: &[Tag<'_>], fates: &Fates, at: usize) -> bool {
+    let ends = |tag: &Tag<'_>| tag.pauses() || tag.is_any(classes![Except But Not]);
+    let mut phrase = (at + 1..tags.len()).take_while(|at| !ends(&tags[*at]));
+    phrase.any(|at| fates.of(at) == Polarity::Denied)
 }
 
 /// "any", "any white one will do", "whichever", "give me either".
@@ -59,4 +67,16 @@ pub(crate) fn is_of_attribute(tags: &[Tag<'_>], at: usize) -> bool {
     let said = tags[at + 1..].iter().position(Tag::pauses).map_or(tags.len(), |end| at + 1 + end);
     WORDS.contains(&tags[at].last)
         || tags[at..said].iter().any(|tag| tag.is(Class::Attribute) || tag.word == "be")
+}
+
+/// "I don't care what colour", "it doesn't have to be white".
+fn wonders_after(tags: &[Tag<'_>], at: usize) -> bool {
+    let open = matches!(tags[at].word, "does" | "do" | "need" | "it" | "i" | "at");
+    let ends = after(tags, at + 1).is_none_or(|tag| tag.is_any(classes![Courtesy Filler]));
+    after(tags, at).is_some_and(|next| {
+        // "I don't care which"
+        next.is_any(classes![Join Preposition])
+            || next.is(Class::Question) && !ends
+            || open && (next.is_value() || next.is(Class::Determiner))
+    })
 }

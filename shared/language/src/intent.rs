@@ -4,6 +4,7 @@ use scene::{Intent, Role};
 
 use crate::clauses::{Clause, Topic};
 use crate::content::Content;
+use crate::fates::Fates;
 use crate::question_words::QuestionWords;
 use crate::questions::fetches_it;
 use crate::tagger::Tag;
@@ -156,27 +157,9 @@ fn is_chore(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
         && !fetches_it(tags, clauses)
 }
 
-/// "the clear bowl is in the cabinet", and nothing else of our things, nor a "please".
-pub(crate) fn is_statement(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
-    let is_beside = |clause: &Clause| {
-        let tags = &tags[clause.span.clone()];
-        clause.topic == Topic::Off || tags.iter().all(|tag| tag.is_any(classes![Filler Courtesy]))
-    };
-    clauses.iter().any(|clause| clause.states)
-        && clauses.iter().all(|clause| clause.states || is_beside(clause))
-        && !asks_politely(tags)
-}
-
-/// "please", or thanks at the end: what stands beside it is asked for. Thanks at the beginning are for
-/// what was done before.
-fn asks_politely(tags: &[Tag<'_>]) -> bool {
-    const ASKING: [&str; 15] = [
-        "please", "pls", "plz", "pleez", "pleeze", "pleaze", "plees", "pliz", "kindly", "if",
-        "when", "would", "could", "will", "be",
-    ];
-    const THANKS: [&str; 8] = ["thanks", "thank", "thx", "ty", "cheers", "ta", "many", "much"];
-    let says = |tag: &Tag<'_>, words: &[&str]| tag.is(Class::Courtesy) && words.contains(&tag.word);
-    tags.iter().any(|tag| says(tag, &ASKING)) || tags.last().is_some_and(|tag| says(tag, &THANKS))
+/// "the clear bowl is in the cabinet": of none of our things that are named anything is wished.
+pub(crate) fn is_remark(tags: &[Tag<'_>], fates: &Fates) -> bool {
+    fates.are_neither() && !tags.iter().any(|tag| tag.is_any(classes![Fetch Want]))
 }
 
 /// "don't get me the clear bowl", "I don't want the white ones": nothing is asked for.

@@ -1,8 +1,7 @@
 //! The judge: how probable it is that a value word is wanted, denied, or neither, by the words around it.
 //!
 //! A linear model over hashed features ([`crate::features`]) and two small recurrent ones ([`crate::recurrent`]), trained by
-//! `reader_training` on labelled lines; their sums are added. It corrects what the rules propose and says how sure that is:
-//! what they do not cover is in doubt.
+//! `reader_training` on labelled lines; their sums are added. It says how sure it is: what the lines do not cover is in doubt.
 
 use std::sync::LazyLock;
 

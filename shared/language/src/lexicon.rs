@@ -5,7 +5,7 @@
 use std::borrow::Cow;
 use std::cell::LazyCell;
 use std::cmp::Reverse;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::LazyLock;
 
 use scene::{AttributeId, Role, Scene, Value, WordId};
@@ -18,7 +18,7 @@ use crate::morphology::{inflected, singulars};
 use crate::relation_words::by_quality;
 use crate::relations::{Form, forms, words};
 use crate::token_class::Class;
-use crate::vocabulary;
+use crate::vocabulary::{self, Synonyms};
 
 /// What a word or phrase is taken for.
 #[derive(Clone, Copy, Debug)]
@@ -209,7 +209,8 @@ impl Lexicon {
                 self.add_value(name, place);
             }
         }
-        let common = common_synonyms(&all);
+        let mut common = common_synonyms(&all);
+        common.retain(|(place, synonym)| self.may_stand_for(scene, &words(synonym), *place));
         let forms = |(place, value): &(usize, &Value)| {
             let place = *place;
             let also = common.iter().filter(|(other, _)| *other == place);
@@ -232,6 +233,25 @@ impl Lexicon {
             self.add_value(synonym, place);
             self.add_value_forms(synonym, place);
         }
+    }
+
+    /// Returns whether words that the scene does not list may stand for a value: they name nothing else here, and are no
+    /// phrase of the dialogue. "Wooden spoon" is two values where "wooden" is one.
+    fn may_stand_for(&self, scene: &Scene, synonym: &[String], place: usize) -> bool {
+        let attributes = scene.attributes().iter().map(|attribute| attribute.name.as_str());
+        let is_name = attributes.chain([scene.noun()]).any(|name| words(name) == synonym);
+        let own = Lexicon::own().meaning(synonym);
+        let is_dialogue = own.is_some_and(|own| !matches!(own, Meaning::Class(Class::Unlisted)));
+        let is_other = |word: &String| matches!(self.meaning(std::slice::from_ref(word)), Some(Meaning::Value(other)) if other != place);
+        let lead = &synonym[..synonym.len().saturating_sub(1)];
+        !is_name && !is_dialogue && !lead.iter().any(is_other)
+    }
+
+    /// What a whole phrase means.
+    fn meaning(&self, words: &[String]) -> Option<Meaning> {
+        let (first, rest) = words.split_first()?;
+        let is_it = |phrase: &&Phrase| phrase.rest.iter().map(|it| &**it).eq(rest);
+        self.phrases.get(first)?.iter().find(is_it).map(|phrase| phrase.meaning)
     }
 
     /// "number one", "one" being what any of the things is called.
@@ -421,22 +441,29 @@ fn names_answer(words: &[String]) -> bool {
 /// What is said for one of the scene's values without a list in the scene: "crimson" for red. Values
 /// are given with their places.
 fn common_synonyms(all: &[(usize, &Value)]) -> Vec<(usize, &'static str)> {
-    let names = |value: &Value| -> Vec<String> {
-        let names = std::iter::once(&value.name).chain(&value.synonyms);
-        names.map(|name| words(name).join(" ")).collect()
-    };
-    let named: Vec<(usize, Role, Vec<String>)> =
-        all.iter().map(|(place, value)| (*place, value.role(), names(value))).collect();
-    let mut synonyms = Vec::new();
-    for (role, group) in vocabulary::synonyms() {
-        let mut known = named.iter().filter(|(_, other, names)| {
-            *other == role && names.iter().any(|name| group.contains(&&**name))
-        });
-        let Some((place, ..)) = known.next() else { continue };
-        // Of two values either may be meant.
-        if known.all(|(other, ..)| other == place) {
-            synonyms.extend(group.iter().map(|synonym| (*place, *synonym)));
+    let known = Synonyms::known();
+    // The value that a group names; none for several, as either may be meant.
+    let mut named: BTreeMap<usize, Option<usize>> = BTreeMap::new();
+    for (place, value) in all {
+        for name in std::iter::once(&value.name).chain(&value.synonyms) {
+            for group in known.with(&words(name).join(" "), value.role()) {
+                let only = named.entry(group).or_insert(Some(*place));
+                *only = only.filter(|other| other == place);
+            }
         }
     }
-    synonyms
+    let mut synonyms: Vec<(usize, Role, &str)> = Vec::new();
+    for (group, place) in named {
+        let (role, words) = known.group(group);
+        synonyms.extend(place.iter().flat_map(|it| words.iter().map(|word| (*it, *role, *word))));
+    }
+    // A bag may be the rucksack or the purse. Of qualities the first group is the closest: navy is dark blue before blue.
+    let mut things: HashMap<&str, Option<usize>> = HashMap::new();
+    for (place, _, word) in synonyms.iter().filter(|it| it.1 == Role::Kind) {
+        let only = things.entry(word).or_insert(Some(*place));
+        *only = only.filter(|other| other == place);
+    }
+    let is_one =
+        |(_, role, word): &&(usize, Role, &str)| *role != Role::Kind || things[word].is_some();
+    synonyms.iter().filter(is_one).map(|(place, _, word)| (*place, *word)).collect()
 }

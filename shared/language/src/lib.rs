@@ -13,11 +13,12 @@
 //! | tokenise | `words` | words and the pauses between them |
 //! | halting words | `halting.rs` (`vocabulary/halting.txt`) | what halts the arm, whatever the scene |
 //! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `relations.rs`, `spelling.rs`, `vocabulary/`) | value or class of each word or phrase |
-//! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`, `errands.rs`, `statements.rs`) | the parts that are about the objects |
-//! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
-//! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
 //! | judge | `features.rs`, `sequence.rs` (`word_groups.rs`), `judge.rs`, `recurrent.rs` (`vocabulary/judge.bin`), `mentions.rs` | how probable each value word is wanted, denied, neither |
-//! | readings | `parsed.rs` (`hedges.rs`), `evidence.rs` | alternative readings with weights and doubts |
+//! | fates | `fates.rs` | ways to read the values, each with its probability; the rest is done for each way |
+//! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `errands.rs`), `hedges.rs` | the parts that are about the objects |
+//! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`) | values asserted, groups excluded, answers |
+//! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
+//! | readings | `parsed.rs`, `reader.rs` | alternative readings with weights and doubts |
 //!
 //! [`CompletenessJudge`] judges whether a speaker will go on after a pause.
 //! [`words::confusion`] gives the probabilities of mishearing one of a scene's words for another.
@@ -60,11 +61,10 @@ mod closed_class;
 mod completeness;
 mod content;
 mod disambiguate;
-mod distractors;
 mod echo;
 mod errands;
-mod evidence;
 mod extractor;
+mod fates;
 mod features;
 mod halting;
 mod hedges;
@@ -91,10 +91,8 @@ mod references;
 mod related;
 mod relation_words;
 mod relations;
-mod repair;
 mod sequence;
 mod spelling;
-mod statements;
 mod tagger;
 mod token_class;
 mod topic;
@@ -107,10 +105,11 @@ mod tests;
 
 pub use completeness::{Completeness, CompletenessJudge};
 pub use echo::is_echo;
+pub use fates::Polarity;
 pub use features::{Example, Features, ROWS};
 pub use halting::is_stop;
 pub use judge::{FLOOR, Judge, NETWORKS, recurrent_sums, trained_on};
-pub use mentions::{Mention, Polarity};
+pub use mentions::Mention;
 pub use parsed::READINGS_MAX;
 pub use read_back::word_findings;
 pub use reader::Reader;

@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use words::{normalise, skeleton};
 
 use crate::spelling::SpellingIndex;
-use crate::vocabulary;
+use crate::vocabulary::{self, is_thing};
 
 /// A scene's values by spelling and sound.
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ impl Lookalikes {
 
     /// The value that the misspelt word must be.
     pub(crate) fn misspelt(&self, word: &str) -> Option<usize> {
-        if self.is_common(word) { None } else { self.looks_like(word) }
+        if self.is_common(word) || is_thing(word) { None } else { self.looks_like(word) }
     }
 
     /// The value of several words that is one slip away from words written as one.

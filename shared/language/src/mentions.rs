@@ -1,13 +1,11 @@
 //! What an utterance says of each value word in it.
 
 use ::vocabulary::Language;
-use scene::{Intent, Question, Reading, WordId};
+use scene::{Question, WordId};
 use words::{Tokens, normalise};
 
 use crate::features::{Example, Features, features};
 use crate::judge::FLOOR;
-use crate::parsed::ParsedUtterance;
-
 use crate::reader::Reader;
 
 /// A value word of an utterance, and the probabilities of what is said of it; they sum to 1.
@@ -23,17 +21,6 @@ pub struct Mention {
     pub denied: f64,
     /// Nothing about the wanted object.
     pub neither: f64,
-}
-
-/// What is said of a value word.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Polarity {
-    /// The wanted object has the value.
-    Wanted,
-    /// The wanted object does not have it.
-    Denied,
-    /// Nothing about the wanted object.
-    Neither,
 }
 
 impl Reader {
@@ -57,35 +44,14 @@ impl Reader {
     pub fn features(&self, text: &str, last_question: Question) -> Features {
         let text = normalise(text);
         let tokens = Tokens::of(&text);
-        let parsed = self.parse(&tokens, last_question);
-        let mut features = features(&parsed, &parsed.reading());
+        let heard = self.hear(&tokens, last_question);
+        let mut features = features(&heard.tags, heard.asked);
         for example in &mut features.examples {
-            let (tag, next) = (&parsed.tags[example.at], parsed.tags.get(example.at + 1));
+            let (tag, next) = (&heard.tags[example.at], heard.tags.get(example.at + 1));
             let end = next.map_or(tokens.words.len(), |next| next.at);
             let words = tokens.words[tag.at..end].iter().map(|token| token.word);
             example.surface = words.collect::<Vec<_>>().join(" ");
         }
         features
-    }
-}
-
-/// The places of the value words among the tags, and what they stand for.
-pub(crate) fn values(parsed: &ParsedUtterance<'_>) -> impl Iterator<Item = (usize, WordId)> {
-    let word = |(at, tag): (usize, &crate::tagger::Tag<'_>)| Some((at, tag.value()?.word));
-    parsed.tags.iter().enumerate().filter_map(word)
-}
-
-/// What the rules read of a value word.
-pub(crate) fn proposal(parsed: &ParsedUtterance<'_>, reading: &Reading, word: WordId) -> Polarity {
-    // A word that is repeated is said of the object wherever it stands.
-    let is_asserted = parsed.content.base.iter().any(|value| value.word == word);
-    // What a question or an errand names is no wish.
-    let is_wish = matches!(reading.intent, Intent::Inform | Intent::Cancel | Intent::Stop);
-    match () {
-        () if is_asserted && is_wish => Polarity::Wanted,
-        () if is_wish && reading.excluded.iter().any(|group| group.contains(&word)) => {
-            Polarity::Denied
-        }
-        () => Polarity::Neither,
     }
 }

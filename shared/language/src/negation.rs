@@ -1,68 +1,8 @@
-//! Function of a "no" or "not": an answer, a repair, a determiner, or none.
-
-use words::Gap;
+//! Whether a "not" is an answer, and nothing else.
 
 use crate::clauses::Clause;
-use crate::content::Asserted;
-use crate::question_words::QuestionWords;
-use crate::tagger::{Tag, after, before};
+use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
-
-/// Function of a "no".
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum NoUse {
-    /// "no, the clear one".
-    Answer,
-    /// "the red, no, the blue one".
-    Repair,
-    /// "with no metal".
-    Determiner,
-}
-
-/// Distinguishes the uses of "no" by what has been said and what follows.
-pub(crate) fn use_of_no(
-    tags: &[Tag<'_>],
-    at: usize,
-    base: &[Asserted<'_>],
-    asked: QuestionWords<'_>,
-) -> NoUse {
-    const GOVERNORS: &[Class] = classes![Preposition Be Want Fetch Auxiliary];
-    let value = after(tags, at).and_then(Tag::value);
-    if let Some(value) = value.filter(|_| tags[at].word == "no") {
-        if before(tags, at).is_some_and(|before| before.is_any(GOVERNORS)) {
-            return NoUse::Determiner;
-        }
-        if base.is_empty() {
-            let asked_about = match asked {
-                QuestionWords::Value(_, word) => word == value.word,
-                QuestionWords::Object(words) => words.contains(&value.word),
-                QuestionWords::Choice(options) => options.contains(&Some(value.word)),
-                QuestionWords::Nothing
-                | QuestionWords::PerceivedObject
-                | QuestionWords::Attribute => true,
-            };
-            return if asked_about { NoUse::Determiner } else { NoUse::Answer };
-        }
-        if !base.iter().any(|before| before.rivals(value)) {
-            return NoUse::Determiner;
-        }
-    }
-    if !base.is_empty() && leads_to_value(&tags[at + 1..]) { NoUse::Repair } else { NoUse::Answer }
-}
-
-/// Returns whether a value is asserted soon, before the sentence ends or turns.
-fn leads_to_value(tags: &[Tag<'_>]) -> bool {
-    const REACH: usize = 10;
-    for (n, tag) in tags.iter().take(REACH).enumerate() {
-        if tag.is_value() {
-            return true;
-        }
-        if tag.is_any(classes![Not Except]) || n > 0 && tag.gap == Gap::Stop {
-            return false;
-        }
-    }
-    false
-}
 
 /// "isn't it the white one", "can't you get me …": a negation in form only.
 pub(crate) fn is_rhetorical(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {

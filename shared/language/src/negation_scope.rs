@@ -13,8 +13,6 @@ pub(crate) struct NegationScope<'a> {
     joined: bool,
     /// An "and" has been heard inside the current group.
     coordinated: bool,
-    /// Words that were not expected between the negation and a noun phrase.
-    strayed: usize,
     /// Probability that the negation was not said.
     doubt: f64,
 }
@@ -24,15 +22,13 @@ pub(crate) struct NegationScope<'a> {
 struct Group<'a> {
     values: Vec<&'a ValueSense>,
     headed: bool,
-    /// Names something that the scene lacks: "not the purple pen" rules out no pen.
-    elsewhere: bool,
     /// Probability that one of the values was not said.
     doubt: f64,
 }
 
 impl<'a> Group<'a> {
     fn is_open(&self) -> bool {
-        self.values.is_empty() && !self.headed && !self.elsewhere
+        self.values.is_empty() && !self.headed
     }
 
     fn add(&mut self, value: &'a ValueSense, doubt: f64) {
@@ -45,12 +41,7 @@ impl<'a> NegationScope<'a> {
     /// A negation that was said but for this doubt.
     pub(crate) fn new(doubt: f64) -> Self {
         let groups = vec![Group::default()];
-        Self { groups, joined: false, coordinated: false, strayed: 0, doubt }
-    }
-
-    /// Returns whether nothing has been ruled out yet.
-    pub(crate) fn is_pending(&self) -> bool {
-        self.groups.iter().all(Group::is_open)
+        Self { groups, joined: false, coordinated: false, doubt }
     }
 
     /// Returns whether the current noun phrase is complete, so that what follows is another.
@@ -103,11 +94,6 @@ impl<'a> NegationScope<'a> {
         self.joined = false;
     }
 
-    /// A word for what the scene does not have.
-    pub(crate) fn elsewhere(&mut self) {
-        self.last_mut().elsewhere = true;
-    }
-
     /// A determiner: `false` if it starts a noun phrase beyond the scope.
     pub(crate) fn determiner(&mut self) -> bool {
         self.joined || self.last().is_open()
@@ -135,18 +121,6 @@ impl<'a> NegationScope<'a> {
         self.coordinated = true;
     }
 
-    /// A word that is neither value nor noun; `false` once there are too many.
-    pub(crate) fn stray(&mut self) -> bool {
-        const STRAYS_MAX: usize = 2;
-        self.strayed += 1;
-        !self.is_pending() || self.strayed <= STRAYS_MAX
-    }
-
-    /// Returns whether a verb may still come between the negation and its object.
-    pub(crate) fn reaches_verb(&self) -> bool {
-        self.is_pending() && self.strayed == 0
-    }
-
     /// The groups that were ruled out.
     pub(crate) fn into_groups(self) -> impl Iterator<Item = Excluded> + use<'a> {
         let doubt = self.doubt;
@@ -154,9 +128,6 @@ impl<'a> NegationScope<'a> {
             words: group.values.iter().map(|value| value.word).collect(),
             doubt: 1.0 - (1.0 - group.doubt) * (1.0 - doubt),
         };
-        self.groups
-            .into_iter()
-            .filter(|group| !group.values.is_empty() && !group.elsewhere)
-            .map(denied)
+        self.groups.into_iter().filter(|group| !group.values.is_empty()).map(denied)
     }
 }

@@ -4,9 +4,7 @@ use scene::{Doubt, Intent, Reading, Reference, Response, WordId};
 
 use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
-use crate::evidence::weighed;
 use crate::hedges::MAYBE;
-use crate::judge::Judge;
 use crate::objects::objects;
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
@@ -33,10 +31,6 @@ pub(crate) struct ParsedUtterance<'a> {
     pub(crate) tags: Vec<Tag<'a>>,
     pub(crate) clauses: Vec<Clause>,
     pub(crate) questions: &'a SceneQuestions,
-    /// Another judge than the built-in one.
-    pub(crate) judge: Option<&'a Judge>,
-    /// Braces, tags or shell characters, which do not occur in speech.
-    pub(crate) code: bool,
 }
 
 impl ParsedUtterance<'_> {
@@ -46,6 +40,7 @@ impl ParsedUtterance<'_> {
             Intent::Inform if !self.is_relation() => objects(&self.tags, &self.content, self.asked),
             _ => vec![self.content.base.clone()],
         };
+        let objects: Vec<_> = objects.into_iter().map(each_once).collect();
         let words = |object: &Vec<Asserted<'_>>| -> Vec<WordId> {
             object.iter().map(|value| value.word).collect()
         };
@@ -162,7 +157,7 @@ impl ParsedUtterance<'_> {
             let yes = Reading { response: Response::Yes, doubt, ..best.clone() };
             return vec![(1.0 - MAYBE_WEIGHT, best), (MAYBE_WEIGHT, yes)];
         }
-        weighed(self, best)
+        vec![(1.0, best)]
     }
 
     /// "red or blue": each with what is said of both; none if nothing is to be chosen from.
@@ -195,6 +190,18 @@ impl ParsedUtterance<'_> {
             && self.content.answers.is_empty()
             && self.tags.iter().any(|tag| tag.is(Class::Hedge))
     }
+}
+
+/// The values of an object, each once: "the red mug, no wait, the red cup".
+fn each_once(values: Vec<Asserted<'_>>) -> Vec<Asserted<'_>> {
+    let mut once: Vec<Asserted<'_>> = Vec::new();
+    for value in values {
+        match once.iter_mut().find(|known| known.word == value.word) {
+            Some(known) => known.doubt = known.doubt.min(value.doubt),
+            None => once.push(value),
+        }
+    }
+    once
 }
 
 /// The doubts up to the last that is one.

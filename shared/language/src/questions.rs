@@ -5,6 +5,7 @@ use scene::{Intent, WordId};
 use crate::clauses::{Clause, Topic};
 use crate::content::{Asserted, Content};
 use crate::extractor::extract;
+use crate::fates::Fates;
 use crate::lexicon::{Lexicon, Sense};
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
@@ -19,7 +20,7 @@ pub(crate) fn question<'a>(
     scene: &SceneQuestions,
 ) -> (Intent, Content<'a>) {
     let asking: Vec<Clause> = clauses.iter().map(of_question).collect();
-    let mut content = extract(tags, &asking, QuestionWords::Nothing);
+    let mut content = extract(tags, &asking, &Fates::named(tags), QuestionWords::Nothing);
     let first = clauses.iter().find(|clause| clause.topic == Topic::AskBack);
     let intent = first.map_or(Intent::AskBack, |clause| {
         kind(&tags[clause.span.clone()], !content.base.is_empty())

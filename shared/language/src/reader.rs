@@ -7,23 +7,24 @@ use scene::{Intent, Question, Reading, Reference, Response, Scene, UnknownWord, 
 use words::{Tokens, normalise};
 
 use crate::answer::response;
-use crate::clauses::clauses;
+use crate::clauses::{Clause, Topic, clauses};
 use crate::content::Content;
 use crate::extractor::extract;
+use crate::fates::{Fates, fates};
 use crate::halting::asks_to_go_on;
 use crate::hedges::hedge;
 use crate::indifference::{indifference, is_of_attribute};
-use crate::intent::{intent, is_side_talk, is_statement};
+use crate::intent::{intent, is_remark, is_side_talk};
 use crate::judge::Judge;
 use crate::lexicon::Lexicon;
 use crate::ordinals::name_options;
 use crate::paper::WordSpotter;
-use crate::parsed::ParsedUtterance;
+use crate::parsed::{ParsedUtterance, READINGS_MAX};
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::questions::{fetches_it, question};
 use crate::references::reference;
 use crate::related::related;
-use crate::tagger::{answers_alone, tag};
+use crate::tagger::{Tag, answers_alone, tag};
 use crate::unknown::unknown_words;
 
 /// Reads utterances about one scene. Holds all that it needs of the scene.
@@ -78,8 +79,7 @@ impl Reader {
             Language::Paper => self.spotter.read(text),
             Language::Careful => {
                 let text = normalise(text);
-                let mut readings = self.parse(&Tokens::of(&text), last_question).readings();
-                readings.swap_remove(0).1
+                self.weighed(&Tokens::of(&text), last_question).swap_remove(0).1
             }
         }
     }
@@ -92,7 +92,7 @@ impl Reader {
             Language::Careful => {
                 let text = normalise(text);
                 let tokens = Tokens::of(&text);
-                let parsed = self.parse(&tokens, Question::None);
+                let parsed = self.best_parse(&tokens, &self.hear(&tokens, Question::None));
                 let (tags, clauses) = (&parsed.tags, &parsed.clauses);
                 let related = related(&tokens, tags, clauses, self.placed);
                 unknown_words(&tokens, tags, clauses, &related)
@@ -119,16 +119,12 @@ impl Reader {
             Language::Careful => {
                 let text = normalise(text);
                 let tokens = Tokens::heard(&text, confidence);
-                self.parse(&tokens, last_question).readings()
+                self.weighed(&tokens, last_question)
             }
         }
     }
 
-    pub(crate) fn parse<'a>(
-        &'a self,
-        tokens: &Tokens<'a>,
-        last_question: Question,
-    ) -> ParsedUtterance<'a> {
+    pub(crate) fn hear<'a>(&'a self, tokens: &Tokens<'a>, last_question: Question) -> Heard<'a> {
         let asked = self.questions.asked(last_question);
         let mut tags = tag(&self.lexicon, tokens);
         let is_yes_no = matches!(last_question, Question::Attribute(..) | Question::Point(_));
@@ -139,19 +135,58 @@ impl Reader {
             let options: Vec<WordId> = options.into_iter().flatten().collect();
             name_options(&mut tags, &options, &self.lexicon);
         }
-        let clauses = clauses(&tags, tokens.code);
+        Heard { tags, asked }
+    }
+
+    /// Every reading of an utterance with its weight, best first.
+    fn weighed(&self, tokens: &Tokens<'_>, last_question: Question) -> Vec<(f64, Reading)> {
+        let heard = self.hear(tokens, last_question);
+        let mut readings: Vec<(f64, Reading)> = Vec::new();
+        for (weight, fates) in fates(self.judge(), &heard.tags, heard.asked) {
+            for (share, reading) in self.parse(tokens, &heard, &fates).readings() {
+                // Doubts say how well words were heard: they tell no readings apart.
+                match readings.iter_mut().find(|(_, known)| known.says_the_same(&reading)) {
+                    Some((known, _)) => *known += weight * share,
+                    None => readings.push((weight * share, reading)),
+                }
+            }
+        }
+        readings.sort_by(|a, b| b.0.total_cmp(&a.0));
+        readings.truncate(READINGS_MAX);
+        let all: f64 = readings.iter().map(|(weight, _)| weight).sum();
+        readings.iter_mut().for_each(|(weight, _)| *weight /= all);
+        readings
+    }
+
+    /// The most probable parse.
+    fn best_parse<'a>(&'a self, tokens: &Tokens<'a>, heard: &Heard<'a>) -> ParsedUtterance<'a> {
+        let fates = fates(self.judge(), &heard.tags, heard.asked);
+        let best = fates.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        let (_, fates) = best.expect("there is a way to read anything");
+        self.parse(tokens, heard, &fates)
+    }
+
+    /// What the utterance says if its values have these fates.
+    fn parse<'a>(
+        &'a self,
+        tokens: &Tokens<'a>,
+        heard: &Heard<'a>,
+        fates: &Fates,
+    ) -> ParsedUtterance<'a> {
+        let (mut tags, asked) = (heard.tags.clone(), heard.asked);
+        let clauses = clauses(&tags, fates, tokens.code);
         hedge(&mut tags, &clauses);
-        let mut content = extract(&tags, &clauses, asked);
         let new = matches!(asked, QuestionWords::Nothing);
         let relations = related(tokens, &tags, &clauses, self.placed);
+        let mut content = extract(&tags, &clauses, fates, asked);
         let (refers, to) = reference(&tags, &clauses, asked, relations);
         let says_nothing = content.base.is_empty() && content.excluded.is_empty();
-        let is_statement = new && refers == Reference::None && is_statement(&tags, &clauses);
-        let is_aside = is_statement || says_nothing && is_side_talk(&tags, &clauses);
+        let is_remark = new && refers == Reference::None && is_remark(&tags, fates);
+        let is_aside = is_remark || says_nothing && is_side_talk(&tags, &clauses);
         if is_aside {
             content = Content::default();
         }
-        let careless = indifference(&tags, &clauses, asked);
+        let careless = indifference(&tags, &clauses, fates, asked);
         let response = response(&content, &tags, asked, careless);
         let refers = match (refers, response.0, careless) {
             (Reference::None, Response::DoesNotMatter, Some(at))
@@ -171,25 +206,33 @@ impl Reader {
             Intent::Repeat if refers == Reference::Same => Intent::Inform,
             intent => intent,
         };
-        if intent == Intent::AskBack {
-            (intent, content) = question(&tags, &clauses, &self.lexicon, &self.questions);
-            if intent != Intent::AskHelp && fetches_it(&tags, &clauses) {
-                intent = Intent::Inform;
+        match intent {
+            Intent::AskBack => {
+                (intent, content) = question(&tags, &clauses, &self.lexicon, &self.questions);
+                if intent != Intent::AskHelp && fetches_it(&tags, &clauses) {
+                    intent = Intent::Inform;
+                }
             }
+            // "put that vitamin back, mummy wants her cream"
+            Intent::PutBack | Intent::Chore if fates.are_wishes() => intent = Intent::Inform,
+            Intent::PutBack | Intent::Chore => {
+                content = extract(&tags, &all_on(&clauses), &Fates::named_things(&tags), asked);
+            }
+            _ => {}
         }
-        let (questions, judge, code) = (&self.questions, self.judge.as_deref(), tokens.code);
-        ParsedUtterance {
-            content,
-            response,
-            intent,
-            refers,
-            to,
-            asked,
-            tags,
-            clauses,
-            questions,
-            judge,
-            code,
-        }
+        let questions = &self.questions;
+        ParsedUtterance { content, response, intent, refers, to, asked, tags, clauses, questions }
     }
+}
+
+/// An utterance with what its words are taken for.
+pub(crate) struct Heard<'a> {
+    pub(crate) tags: Vec<Tag<'a>>,
+    /// The question that it follows.
+    pub(crate) asked: QuestionWords<'a>,
+}
+
+/// The clauses as those of an order, whose things are no wishes.
+fn all_on(clauses: &[Clause]) -> Vec<Clause> {
+    clauses.iter().map(|clause| Clause { topic: Topic::On, ..clause.clone() }).collect()
 }

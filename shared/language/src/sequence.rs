@@ -1,7 +1,7 @@
 //! What the recurrent judge reads of an utterance: the question, then its elements, each as rows of embeddings.
 
 use crate::features::{
-    Context, Element, begins, hash, kind, kind_of, letters, mix, sort, text, text_of,
+    Context, Element, asks_politely, begins, hash, kind, kind_of, letters, mix, sort, text, text_of,
 };
 use crate::recurrent::{EMBEDDINGS, Sequence};
 
@@ -23,7 +23,7 @@ impl Rows {
 pub(crate) fn sequence(context: &Context<'_>, phrases: &[usize]) -> Sequence {
     let mut question = Rows::default();
     question.add(b"question", &[context.question(None).0]);
-    question.add(b"intent", &[context.intent as u64]);
+    question.add(b"polite", &[u64::from(asks_politely(context.tags))]);
     let mut sequence = Sequence { elements: vec![question.0], values: Vec::new() };
     let mut places = Vec::new();
     for element in context.elements.iter().take(ELEMENTS_MAX) {
@@ -61,18 +61,17 @@ impl Context<'_> {
 
     fn noun_phrase(&self, rows: &mut Rows, number: usize) {
         let span = &self.spans[number];
-        let tags = &self.parsed.tags[span.clone()];
+        let tags = &self.tags[span.clone()];
         rows.add(b"begins", &[tags.first().map_or(0, begins)]);
         for tag in tags.iter().filter(|tag| !tag.is_value()) {
             rows.add(b"in", &[text_of(tag)]);
             rows.add(b"in kind", &[kind_of(tag)]);
         }
         let values = self.found.iter().enumerate().filter(|(_, found)| span.contains(&found.0));
-        for (n, (at, word, proposal)) in values {
-            rows.add(b"proposal", &[*proposal as u64]);
+        for (n, (at, word)) in values {
             rows.add(b"role", &[self.role(*at)]);
             rows.add(b"asked", &[u64::from(self.question(Some(*word)).1)]);
-            for (relation, side, _) in self.relations(n) {
+            for (relation, side) in self.relations(n) {
                 rows.add(b"relation", &[relation, side]);
             }
         }
@@ -81,24 +80,21 @@ impl Context<'_> {
     /// What is known of a value word besides its place.
     fn value(&self, number: usize) -> Vec<u32> {
         let mut rows = Rows::default();
-        let (at, word, proposal) = self.found[number];
-        let own = &self.parsed.tags[at];
+        let (at, word) = self.found[number];
+        let own = &self.tags[at];
         let (kind, is_asked) = self.question(Some(word));
-        rows.add(b"own proposal", &[proposal as u64]);
-        rows.add(b"own role", &[self.role(at), proposal as u64]);
+        rows.add(b"own role", &[self.role(at)]);
         rows.add(b"own exact", &[u64::from(own.exact)]);
         rows.add(b"own asked", &[kind, u64::from(is_asked)]);
-        rows.add(b"own asked", &[kind, u64::from(is_asked), proposal as u64]);
-        rows.add(b"own intent", &[self.intent as u64, proposal as u64]);
-        let before = at.checked_sub(1).map(|at| &self.parsed.tags[at]);
+        let before = at.checked_sub(1).map(|at| &self.tags[at]);
         rows.add(b"own before", &[before.filter(|_| !own.pauses()).map_or(0, begins)]);
-        for (relation, side, other) in self.relations(number) {
-            rows.add(b"own relation", &[relation, side, other as u64, proposal as u64]);
+        for (relation, side) in self.relations(number) {
+            rows.add(b"own relation", &[relation, side]);
         }
         rows.0
     }
 
     fn role(&self, at: usize) -> u64 {
-        self.parsed.tags[at].value().map_or(9, |value| value.role as u64)
+        self.tags[at].value().map_or(9, |value| value.role as u64)
     }
 }

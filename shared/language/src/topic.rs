@@ -3,9 +3,11 @@
 use std::ops::Range;
 
 use scene::Role;
-use words::Gap;
 
+use crate::answer::is_wrong_thing;
 use crate::clauses::{Clause, Topic};
+use crate::fates::Fates;
+use crate::related::too_much;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 
@@ -15,8 +17,6 @@ pub(crate) struct ClauseAnalysis<'a> {
     /// Whether the clause is all that was said.
     pub(crate) is_everything: bool,
     pub(crate) previous_tags: &'a [Tag<'a>],
-    /// Whether the clause before it describes something else.
-    follows_distractors: bool,
     /// Number of unknown words.
     pub(crate) unknown: usize,
     /// Number of values.
@@ -30,6 +30,7 @@ pub(crate) const SCENE_NAMES: &[Class] = classes![Head Attribute];
 /// machine.
 pub(crate) fn classify(
     tags: &[Tag<'_>],
+    fates: &Fates,
     span: Range<usize>,
     previous: Option<&Clause>,
     injected: bool,
@@ -39,18 +40,15 @@ pub(crate) fn classify(
         clause,
         is_everything: clause.len() == tags.len(),
         previous_tags: previous.map_or(&[], |previous| &tags[previous.span.clone()]),
-        follows_distractors: previous.is_some_and(|previous| {
-            previous.topic == Topic::Off && !previous.distractors.is_empty()
-        }),
         unknown: clause.iter().filter(|tag| tag.is_unknown()).count(),
         values: clause.iter().filter(|tag| tag.is_value()).count(),
     };
-    let distractors = analysis.distractors();
-    let topic = analysis.topic(injected, distractors.len());
+    let distractors: Vec<usize> = span.clone().filter(|at| fates.is_neither(*at)).collect();
+    let wishes = distractors.len() < analysis.values;
+    let topic = analysis.topic(injected, wishes);
     let requests = topic == Topic::On && analysis.requests();
-    let (chore, states) = (!injected && analysis.is_chore(&distractors), analysis.states());
-    let distractors = distractors.iter().map(|at| span.start + at).collect();
-    Clause { span, topic, requests, chore, states, distractors }
+    let chore = !injected && analysis.is_chore();
+    Clause { span, topic, requests, chore, distractors }
 }
 
 impl<'a> ClauseAnalysis<'a> {
@@ -69,13 +67,15 @@ impl<'a> ClauseAnalysis<'a> {
         Some((at, self.clause[at].class()?))
     }
 
-    fn topic(&self, injected: bool, distractors: usize) -> Topic {
-        let is_other_talk = injected && !self.is_plain_request()
-            || self.is_unrelated_errand()
-            || self.has(classes![SideTalk])
-            || self.is_other_language()
-            || self.is_story();
-        if is_other_talk {
+    /// `wishes`: a value of it is wanted or denied.
+    fn topic(&self, injected: bool, wishes: bool) -> Topic {
+        if injected && !self.is_plain_request() || self.is_other_language() {
+            return Topic::Off;
+        }
+        if wishes {
+            return Topic::On;
+        }
+        if self.is_unrelated_errand() || self.has(classes![SideTalk]) || self.is_story() {
             return Topic::Off;
         }
         if self.asks_about_robot() {
@@ -84,10 +84,7 @@ impl<'a> ClauseAnalysis<'a> {
         if self.asks_back() {
             return if self.asks_about_something_else() { Topic::Off } else { Topic::AskBack };
         }
-        let is_unrelated = self.describes_something_else(distractors)
-            || self.continues_list_of_distractors()
-            || self.is_strange(distractors);
-        if is_unrelated { Topic::Off } else { Topic::On }
+        if self.describes_something_else() || self.is_strange() { Topic::Off } else { Topic::On }
     }
 
     /// "get me the white one": a person asks for a thing, whatever else the text says.
@@ -162,27 +159,21 @@ impl<'a> ClauseAnalysis<'a> {
         pairs.any(|pair| pair[0].is(Class::Possessive) && pair[1].is(Class::Unlisted))
     }
 
-    /// "my shirt is white": every value is that of something else, and nothing is asked for.
-    fn describes_something_else(&self, distractors: usize) -> bool {
-        let wished =
-            self.has(classes![Fetch]) || self.has(classes![Unlisted]) && !self.owns_unlisted();
-        distractors > 0 && distractors == self.values && !self.has(SCENE_NAMES) && !wished
-    }
-
-    /// "I painted it white, blue and green": a continued list keeps its topic.
-    fn continues_list_of_distractors(&self) -> bool {
-        self.clause[0].gap < Gap::Stop
-            && self.is_fragment()
-            && self.follows_distractors
-            && self.values > 0
+    /// "my shirt is white": nothing is said of our things, and nothing is asked for.
+    fn describes_something_else(&self) -> bool {
+        // "wrong spoon", "too big"
+        let is_refused =
+            |at| is_wrong_thing(self.clause, at) || too_much(self.clause, at).is_some();
+        let wished = self.has(classes![Fetch])
+            || self.has(classes![Unlisted]) && !self.owns_unlisted()
+            || (0..self.clause.len()).any(is_refused);
+        self.values > 0 && !self.has(SCENE_NAMES) && !wished
     }
 
     /// Strange words, and nothing that ties them to the wanted object.
-    fn is_strange(&self, distractors: usize) -> bool {
+    fn is_strange(&self) -> bool {
         let elsewhere = self.unknown > 0 && self.has(classes![Unlisted]) && self.has(classes![Be]);
-        let wanted = self.has(classes![Want]) && self.values > distractors;
-        let tied = wanted
-            || self.has(SCENE_NAMES)
+        let tied = self.has(SCENE_NAMES)
             || self.has(classes![Fetch It])
             || self.points()
             || self.is_bare_noun()

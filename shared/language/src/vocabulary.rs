@@ -1,6 +1,6 @@
 //! English words and phrases of a dialogue about things to fetch, from the folder `vocabulary`.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::sync::LazyLock;
 
 use scene::Role;
@@ -35,18 +35,53 @@ pub(crate) fn halting() -> impl Iterator<Item = (&'static str, &'static str)> {
     })
 }
 
-/// Returns the groups of words that mean nearly the same, with the role of the values that they name.
-pub(crate) fn synonyms() -> impl Iterator<Item = (Role, Vec<&'static str>)> {
-    let mut role = Role::Quality;
-    let lines = include_str!("vocabulary/synonyms.txt").lines();
-    lines.filter(|line| !line.starts_with('#') && !line.is_empty()).filter_map(move |line| {
-        match line {
-            "[quality]" => role = Role::Quality,
-            "[place]" => role = Role::Place,
-            group => return Some((role, group.split(", ").collect())),
+/// Words that mean nearly the same, in groups.
+pub(crate) struct Synonyms {
+    /// Each with the role of the values that it names.
+    groups: Vec<(Role, Vec<&'static str>)>,
+    /// The groups that have a word, by their numbers.
+    of: HashMap<&'static str, Vec<usize>>,
+}
+
+impl Synonyms {
+    pub(crate) fn known() -> &'static Self {
+        static KNOWN: LazyLock<Synonyms> = LazyLock::new(Synonyms::read);
+        &KNOWN
+    }
+
+    fn read() -> Self {
+        let mut synonyms = Self { groups: Vec::new(), of: HashMap::new() };
+        let mut role = Role::Quality;
+        let lines = include_str!("vocabulary/synonyms.txt").lines();
+        for line in lines.filter(|line| !line.starts_with('#') && !line.is_empty()) {
+            match line {
+                "[quality]" => role = Role::Quality,
+                "[place]" => role = Role::Place,
+                "[kind]" => role = Role::Kind,
+                group => synonyms.groups.push((role, group.split(", ").collect())),
+            }
         }
-        None
-    })
+        for (number, (_, group)) in synonyms.groups.iter().enumerate() {
+            group.iter().for_each(|word| synonyms.of.entry(*word).or_default().push(number));
+        }
+        synonyms
+    }
+
+    /// The numbers of the groups that have a word, for values of a role.
+    pub(crate) fn with(&self, word: &str, role: Role) -> impl Iterator<Item = usize> {
+        let numbers = self.of.get(word).into_iter().flatten();
+        numbers.copied().filter(move |number| self.groups[*number].0 == role)
+    }
+
+    /// A group, with the role of the values that it names.
+    pub(crate) fn group(&self, number: usize) -> &(Role, Vec<&'static str>) {
+        &self.groups[number]
+    }
+}
+
+/// Returns whether a word names a thing, in this scene or not: it is no slip for another one.
+pub(crate) fn is_thing(word: &str) -> bool {
+    Synonyms::known().with(word, Role::Kind).next().is_some()
 }
 
 /// The class of a heading; what follows its name parts the class.
@@ -72,9 +107,7 @@ pub(crate) fn common_words() -> impl Iterator<Item = &'static str> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::HashMap;
-
-    use super::{Class, phrases};
+    use super::{Class, HashMap, phrases};
     use words::Tokens;
     use words::normalise;
 

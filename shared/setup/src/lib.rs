@@ -9,6 +9,10 @@ use dialogue::{Confusion, Model, NotAConfusion};
 use scene::Scene;
 use vocabulary::Language;
 
+/// Smoothing of words that are certain. Their values are doubted by the rates of misperception, and once
+/// is enough; above 0, so that words that contradict one another leave a belief.
+const CERTAIN_SMOOTHING: f64 = 1e-6;
+
 /// Error of building a dialogue manager from settings.
 #[derive(Debug, thiserror::Error)]
 pub enum ManagerError {
@@ -101,7 +105,8 @@ impl DialogueSettings for Settings {
             Language::Careful => {
                 let rate = |it: &scene::Attribute| self.dialogue.misperception_of(&it.name);
                 let rates: Vec<f64> = scene.attributes().iter().map(rate).collect();
-                model.with_certain_words(self.dialogue.alpha_typed).with_misperceptions(&rates)
+                let smoothing = self.dialogue.alpha_typed.unwrap_or(CERTAIN_SMOOTHING);
+                model.with_certain_words(smoothing).with_misperceptions(&rates)
             }
         }
     }
@@ -137,6 +142,31 @@ mod tests {
         let start =
             "dialogue.planner: there is no planner \"oracle\"; the planners are lookahead, ";
         assert!(text.starts_with(start), "{text}");
+    }
+
+    /// A typed word is doubted as often as a value is taken for another one, and by nothing else.
+    #[test]
+    fn no_doubt_is_counted_twice() {
+        use dialogue::{Belief, Posterior};
+        use scene::{Question, Reading};
+
+        let settings = settings(&[]);
+        let (scene, model) = (&settings.scene, settings.model_of(&settings.scene));
+        let rate = settings.dialogue.misperception;
+        for (k, attribute) in scene.attributes().iter().enumerate() {
+            let value = &attribute.values[0];
+            let has = |i: &scene::ObjectId| scene.has(*i, k.into(), 0.into());
+            let other = scene.ids().find(|i| !has(i));
+            let Some((with, without)) = scene.ids().find(has).zip(other) else { continue };
+            let prior = Belief::uniform(model.objects());
+            let mut posterior = Posterior::new(prior, None).of_perceived();
+            let reading = Reading { base: vec![value.word], ..Reading::default() };
+            posterior.update_mixture(&model, &[(1.0, Question::None, reading)]);
+            let belief = posterior.belief();
+            let odds = belief.probability(without) / belief.probability(with);
+            let misperceived = rate / (attribute.values.len() - 1) as f64 / (1.0 - rate);
+            assert!((odds / misperceived - 1.0).abs() < 2e-3, "{}: {odds}", attribute.name);
+        }
     }
 
     #[test]

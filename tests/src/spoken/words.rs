@@ -11,7 +11,6 @@ const WORDINGS: u64 = 4;
 pub(super) fn understand(scene: &Scene, reader: &Reader, words: &str) -> Question {
     let mut parts = words.split_inclusive(['.', '?', '!']).map(str::trim);
     let question = parts.rfind(|part| part.ends_with('?')).unwrap_or(words);
-    let reading = reader.read(question, Question::None);
     let value = |word: &String| {
         let mut attributes = scene.attributes().iter().enumerate();
         attributes.find_map(|(k, attribute)| {
@@ -19,7 +18,8 @@ pub(super) fn understand(scene: &Scene, reader: &Reader, words: &str) -> Questio
             Some((AttributeId::from(k), ValueId::from(v)))
         })
     };
-    let words = reading.base.iter().map(|word| &scene.words()[word.index()]);
+    let named = reader.mentions(question, Question::None);
+    let words = named.iter().map(|mention| &scene.words()[mention.word.index()]);
     let values: Vec<_> = words.filter_map(value).collect();
     match values.as_slice() {
         [(k, v)] => Question::Attribute(*k, *v),

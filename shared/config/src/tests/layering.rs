@@ -141,3 +141,27 @@ fn a_scene_may_be_a_path() {
     let absolute = folder.path().join("mine/lab.toml").display().to_string();
     assert_eq!(folder.load(None, &[("group.scene", &absolute)]).unwrap().scene, scene);
 }
+
+/// The key of earlier versions becomes the rate that replaces it, with a warning, unless that rate is
+/// stated beside it or as high by default.
+#[test]
+fn former_keys_are_replaced_with_a_warning() {
+    let read = |text: &str| {
+        let folder = Folder::new(&[("dialogue.toml", text)]);
+        let settings = folder.load(None, &[]).unwrap();
+        let warnings: Vec<String> = settings.warnings().iter().map(ToString::to_string).collect();
+        let warnings = warnings.join("\n").replace(&format!("{}/", folder.path().display()), "");
+        assert_eq!(settings.dialogue.alpha_typed, None);
+        (settings.dialogue.misperception, warnings)
+    };
+    const REPLACED: &str = "alpha_typed: replaced by dialogue.misperception; help:";
+    let (rate, warning) = read("alpha_typed = 0.25");
+    let help = "write `misperception = 0.2`, which is taken";
+    assert_eq!((rate, warning), (0.2, format!("dialogue.toml:1:1: {REPLACED} {help}")));
+    let removed = format!("dialogue.toml:1:1: {REPLACED} remove it");
+    assert_eq!(read("alpha_typed = 0.001"), (0.004, removed.clone()));
+    assert_eq!(read("alpha_typed = 0.25\nmisperception = 0.01"), (0.01, removed));
+    assert_eq!(read("alpha = 0.2"), (0.004, String::new()));
+    let wrong = Folder::new(&[("dialogue.toml", "alpha_typed = 0")]).complaints(None, &[]);
+    assert!(wrong[0].contains("alpha_typed: expected a value from 0.000001 to 100"), "{wrong:?}");
+}

@@ -106,5 +106,9 @@ fn settings_of_an_earlier_version_keep_their_meaning() {
         assert_eq!(own.map(|own| (own.p_l, own.epsilon)), Some((0.95, 0.02)));
     }
     assert_eq!(read.dialogue.misperception_of("color"), 0.0);
+    assert_eq!((read.dialogue.alpha_typed, settings.dialogue.alpha_typed), (Some(0.001), None));
+    let set = [("dialogue.alpha_typed".to_owned(), "0.002".to_owned())];
+    let both = Settings::from_snapshot("old", &settings.snapshot(), ("--set", &set)).unwrap();
+    assert_eq!((both.dialogue.alpha_typed, both.dialogue.misperception), (Some(0.002), 0.004));
     assert!(!read.dialogue.actions.choice);
 }

@@ -80,9 +80,13 @@ impl Manager {
         };
         let value = decision.value;
         let reasons = reasons(decision, basis.utterance, at);
+        let alike = match action {
+            Action::Pick(object) => self.left_over(state, object),
+            Action::Ask(_) | Action::Wait => Preface::None,
+        };
         let offered = match action {
             Action::Ask(_) | Action::Wait => self.offer_instead(state, value),
-            Action::Pick(object) if !exhausted => self.offer_first(state, object),
+            Action::Pick(object) if !exhausted => self.offer_first(state, object, &alike),
             Action::Pick(_) => None,
         };
         if let Some(offered) = offered {
@@ -97,7 +101,7 @@ impl Manager {
             }
             Action::Pick(object) => {
                 let preface = match basis.preface {
-                    Preface::None => self.left_over(state, object),
+                    Preface::None => alike,
                     preface => preface,
                 };
                 self.pick(state, object, preface, reasons);
@@ -106,7 +110,7 @@ impl Manager {
     }
 
     /// Names the objects that the user cannot tell apart before one of them is picked.
-    pub(super) fn left_over(&mut self, state: &State, object: ObjectId) -> Preface {
+    fn left_over(&mut self, state: &State, object: ObjectId) -> Preface {
         let Some(open) = &state.open else { return Preface::None };
         let left = self.left(&open.belief());
         let is_told = open.conceded.unknown.is_empty();

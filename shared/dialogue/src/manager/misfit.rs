@@ -24,17 +24,21 @@ pub(super) type Offered = (ObjectId, Line);
 
 impl Manager {
     /// Returns the offer of the object that would be fetched now, if what was said does not fit it, or
-    /// if the user cannot tell it from others. It is offered once, and only to a user who may take a
-    /// value for another one.
-    pub(super) fn offer_first(&mut self, state: &State, object: ObjectId) -> Option<Offered> {
+    /// if the user cannot tell it from others, which `alike` names. It is offered once, and only to a
+    /// user who may take a value for another one.
+    pub(super) fn offer_first(
+        &mut self,
+        state: &State,
+        object: ObjectId,
+        alike: &Preface,
+    ) -> Option<Offered> {
         let open = state.open.as_ref().filter(|open| !is_offered(open, object))?;
         // What is not here is concluded, and cannot be offered.
         let is_here = Some(object) != self.setup.model.absent();
         let fit = self.fit(open, |i| f64::from(u8::from(i == object))).filter(|_| is_here)?;
-        let alike = self.left_over(state, object);
-        if alike != Preface::None {
+        if *alike != Preface::None {
             let content = Content::Offered(vec![self.description(object)]);
-            return Some((object, Line { preface: alike, content }));
+            return Some((object, Line { preface: alike.clone(), content }));
         }
         (fit < FITS_MIN).then(|| (object, self.offering(open, object)))
     }

@@ -141,7 +141,10 @@ impl Channel {
         (named, absent): (usize, usize),
         lacking: bool,
     ) -> Self {
-        let cost = problem.cost(Action::Ask(question));
+        let cost = match question {
+            Question::Choice(..) => problem.choice_cost(answer.answers),
+            question => problem.cost(Action::Ask(question)),
+        };
         let absent_other = absent as f64 * answer.other;
         let known = if lacking { 1.0 } else { 1.0 - absent_other };
         let unheard = 1.0 - problem.model.params().of(question).p_l * known;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use language::{Features, Polarity};
+use language::{Example, Features, Polarity};
 use scene::Question;
 use vocabulary::Rng;
 
@@ -18,11 +18,11 @@ use crate::table::{Row, table};
 use crate::templates::templates;
 
 /// How much a lesson of the reader's own tables counts.
-const OWN: f64 = 1.0;
+const OWN: f64 = 2.0;
 /// Files of templates, lines of each template in each scene, and how much a lesson of them counts.
 const TEMPLATES: [(&str, usize, f64); 2] =
     [("templates.txt", 3, 1.0), ("hard_templates.txt", 1, 0.5)];
-/// The reader's own tables, whose labels are what the rules propose.
+/// The reader's own tables.
 const TABLES: [&str; 4] = [
     "shared/language/src/tests/conversation.txt",
     "shared/language/src/tests/cases.txt",
@@ -37,7 +37,7 @@ const SLIP: f64 = 0.5;
 /// An utterance with what it teaches.
 #[derive(Clone, Debug)]
 pub struct Taught {
-    /// The line; of the reader's own tables with what the rules propose as labels.
+    /// The line.
     pub line: Line,
     /// The question before it.
     pub asked: Question,
@@ -173,16 +173,20 @@ fn of_templates(
 
 fn of_table(scenes: &Scenes, path: &Path) -> Result<Vec<Taught>, String> {
     let mut taught = Vec::new();
-    for Row { scene, question: asked, text, is_repair } in table(scenes, path)? {
+    for Row { scene, question: asked, text, said, is_repair } in table(scenes, path)? {
         let (_, reader) = scenes.get(&scene)?;
         let features = reader.features(&text, asked);
-        let examples = &features.examples;
-        let label = |(surface, polarity)| Marked { surface, polarity };
-        let proposals = examples.iter().map(|it| (it.surface.clone(), it.proposal));
-        let marked = proposals.clone().map(label).collect();
-        // What is taken back the rules leave out, and authors deny it.
-        let is_plain = |polarity| !is_repair || polarity != Polarity::Neither;
-        let labels = proposals.map(|it| Some(it.1).filter(|it| is_plain(*it))).collect();
+        let polarity =
+            |example: &Example| match said.each_ref().map(|it| it.contains(&example.word)) {
+                [true, _] => Polarity::Wanted,
+                [_, true] => Polarity::Denied,
+                _ => Polarity::Neither,
+            };
+        let marked = |it: &Example| Marked { surface: it.surface.clone(), polarity: polarity(it) };
+        let marked: Vec<Marked> = features.examples.iter().map(marked).collect();
+        // What is taken back the tables leave out, and authors deny it.
+        let is_plain = |polarity: &Polarity| !is_repair || *polarity != Polarity::Neither;
+        let labels = marked.iter().map(|it| Some(it.polarity).filter(is_plain)).collect();
         let line = Line { scene, text, marked, ..Line::default() };
         taught.push(Taught::new(line, asked, features, labels, OWN));
     }

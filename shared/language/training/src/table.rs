@@ -1,10 +1,10 @@
-//! The reader's own tables, `scene ? question : text => meaning`, all of whose lines the rules read right: what the rules
-//! propose there is the label.
+//! The reader's own tables, `scene ? question : text => meaning`: a value word that the meaning has is wanted or denied, any
+//! other neither.
 
 use std::fs;
 use std::path::Path;
 
-use scene::{Question, Scene, question_from_json};
+use scene::{Question, Scene, WordId, question_from_json};
 use serde_json::json;
 
 use crate::scenes::Scenes;
@@ -18,6 +18,8 @@ pub struct Row {
     pub question: Question,
     /// The words.
     pub text: String,
+    /// The words that are wanted, and those that are denied.
+    pub said: [Vec<WordId>; 2],
     /// Something in it is taken back.
     pub is_repair: bool,
 }
@@ -43,7 +45,7 @@ pub fn table(scenes: &Scenes, path: &Path) -> Result<Vec<Row>, String> {
 }
 
 fn row(scenes: &Scenes, line: &str) -> Option<Row> {
-    let (input, _) = line.rsplit_once("=>")?;
+    let (input, meaning) = line.rsplit_once("=>")?;
     let (context, text) = input.split_once(':')?;
     let (name, asked) = context.split_once('?')?;
     let (name, asked) = (name.trim(), asked.trim());
@@ -53,7 +55,25 @@ fn row(scenes: &Scenes, line: &str) -> Option<Row> {
     };
     let (scene, _) = scenes.get(&name).ok()?;
     let (question, text) = (question(scene, asked)?, text.trim().to_owned());
-    Some(Row { scene: name, question, text, is_repair: false })
+    let said = said(scene, meaning);
+    Some(Row { scene: name, question, text, said, is_repair: false })
+}
+
+/// The words that a meaning wants and denies. What is put back, or asked for, is no wish.
+fn said(scene: &Scene, meaning: &str) -> [Vec<WordId>; 2] {
+    const WISHES: [&str; 4] = ["!inform", "!cancel", "!stop", "!stop_and_cancel"];
+    let mut said = [Vec::new(), Vec::new()];
+    // Of several meanings the first.
+    let parts = || meaning.split('|').next().unwrap_or("").split_whitespace();
+    if parts().any(|part| part.starts_with('!') && !WISHES.contains(&part)) {
+        return said;
+    }
+    for part in parts().filter(|part| !part.starts_with(['!', '@'])) {
+        let (denied, words) = part.strip_prefix('-').map_or((0, part), |rest| (1, rest));
+        let words = words.split('+').map(|word| word.replace('_', " "));
+        said[denied].extend(words.filter_map(|word| scene.word_named(&word)));
+    }
+    said
 }
 
 fn question(scene: &Scene, text: &str) -> Option<Question> {

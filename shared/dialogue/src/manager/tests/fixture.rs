@@ -21,7 +21,7 @@ pub(super) struct Settings {
     pub(super) planner: &'static str,
     pub(super) params: Params,
     /// Smoothing of words that are certain; none in the paper's language.
-    pub(super) alpha_typed: Option<f64>,
+    pub(super) certain_alpha: Option<f64>,
     /// Rate of misperception of every attribute.
     pub(super) misperception: f64,
     pub(super) durations: Option<Durations>,
@@ -46,7 +46,7 @@ impl Settings {
 
     fn setup(&self) -> Setup {
         let model = Model::new(&self.scene, self.params);
-        let model = match self.alpha_typed {
+        let model = match self.certain_alpha {
             Some(alpha) => model.with_certain_words(alpha),
             None => model,
         };
@@ -74,7 +74,7 @@ pub(super) fn settings() -> Settings {
         scene: scene_of(BOWLS),
         planner: "lookahead",
         params: Params { p_l: 0.95, epsilon: 0.01, alpha: 0.2, ..Params::default() },
-        alpha_typed: Some(0.001),
+        certain_alpha: Some(1e-6),
         misperception: 0.0125,
         durations: None,
         mode: Mode::Remote,

@@ -53,6 +53,6 @@ fn words_that_may_have_been_others_ask() {
     };
     assert_eq!(first(&mut manager(), doubted(0.1)).act.kind, ActKind::Ask);
     assert_eq!(first(&mut manager(), doubted(0.005)).act.kind, ActKind::Pick);
-    let mut paper = settings_with(|it| it.alpha_typed = None).manager();
+    let mut paper = settings_with(|it| it.certain_alpha = None).manager();
     assert_eq!(first(&mut paper, words(&["clear"])).act.kind, ActKind::Ask);
 }
