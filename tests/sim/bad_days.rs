@@ -68,7 +68,7 @@ fn what_is_called_off_on_a_bad_day_stays_unless_the_gripper_had_opened() {
     // A fetch of about two seconds.
     let settings = settings(&[("arm.time_scale", "5.0")]);
     let (mut left, mut returned, mut delivered) = (0, 0, 0);
-    // Each of 20 moments twice.
+    // Each of 20 moments, some of them twice.
     for seed in crate::seeds(28) {
         let wanted = wanted(seed);
         let after = Span::from_ms(100 * (seed % 20));

@@ -286,9 +286,6 @@ impl Page {
     pub fn begin(&mut self, verb: &str, more: &Json) -> u64 {
         self.next += 1;
         let mut message = json!({ "t": "do", "id": self.next, "do": verb });
-        if verb == "resume" {
-            message["given_ms"] = Json::from(service::clock::now().ns() as f64 / 1e6);
-        }
         if let (Some(message), Some(more)) = (message.as_object_mut(), more.as_object()) {
             message.extend(more.clone());
         }

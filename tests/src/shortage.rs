@@ -130,12 +130,19 @@ pub fn in_private_mounts(test: &str, body: impl FnOnce()) {
          --include-ignored --nocapture"
     );
     let own = std::env::current_exe().expect("the test's own path");
-    let status = Command::new("unshare")
+    let output = Command::new("unshare")
         .args(["--mount", "--propagation", "private", "sh", "-c", &script])
         .arg(own)
         .env(PRIVATE, "1")
-        .status();
-    assert!(status.is_ok_and(|status| status.success()), "{test} failed in mounts of its own");
+        .output()
+        .expect("unshare");
+    // Not among the results of this process, which whoever counts tests would take for another test.
+    let printed = [output.stdout, output.stderr].concat();
+    assert!(
+        output.status.success(),
+        "{test} failed in mounts of its own:\n{}",
+        String::from_utf8_lossy(&printed)
+    );
 }
 
 /// Another process's load on a disk: writes large files and syncs them, until dropped.

@@ -145,7 +145,7 @@ fn order(frame: Value) -> Option<Order> {
         other => other.map(|other| other.to_string()),
     };
     // What a page adds by itself orders nothing.
-    for key in ["t", "began_ms", "ended_ms", "given_ms"] {
+    for key in ["t", "began_ms", "ended_ms"] {
         said.remove(key);
     }
     said.retain(|key, value| !value.is_null() && (key != "source" || *value != "typed"));

@@ -32,23 +32,6 @@ pub struct Seen {
     pub stopped: bool,
 }
 
-/// The newest state that a mirror knows, and since when it knows of the order in force.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Known {
-    /// The state.
-    pub seen: Seen,
-    /// Time of the mirror at which it first heard of that order.
-    pub since: Time,
-}
-
-impl Known {
-    /// Takes in a newer state.
-    pub fn renewed(before: Option<Self>, seen: Seen, now: Time) -> Self {
-        let same = before.filter(|known| known.seen.in_force_ns == seen.in_force_ns);
-        Self { seen, since: same.map_or(now, |known| known.since) }
-    }
-}
-
 /// What a person orders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Order {
@@ -252,11 +235,11 @@ impl Orders {
     /// one already.
     ///
     /// # Errors
-    /// A release of a robot whose state is not known, or that was given before this mirror knew of the stop in force.
+    /// A release of a robot whose state is not known.
     pub fn take(
         &mut self,
         (order, given_ns): (MotionOrder, u64),
-        known: Option<Known>,
+        seen: Option<Seen>,
         key: [u8; 16],
         now: Time,
     ) -> Result<Option<StopState>, &'static str> {
@@ -271,13 +254,7 @@ impl Orders {
         }
         let order = match order {
             MotionOrder::Stop => Order::Stop,
-            MotionOrder::Resume => {
-                let Known { seen, since } = known.ok_or("the robot's state is not known")?;
-                if Time(given_ns) < since {
-                    return Err("another order was given after the release");
-                }
-                Order::Release(seen)
-            }
+            MotionOrder::Resume => Order::Release(seen.ok_or("the robot's state is not known")?),
         };
         let request = Request { key, order };
         self.current = Some(Current {

@@ -1,4 +1,4 @@
-//! What the judge looks at around a value word: words and classes near it, the rules' and the question.
+//! What the judge looks at around a value word: words and classes near it, the other values, and the question.
 //!
 //! A feature is the number of a row of weights; which one, a hash decides.
 

@@ -93,7 +93,7 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
         r#"{"t":"do","id":1,"do":"not_that"}"#,
         r#"{"t":"do","id":1,"do":"start_over"}"#,
         r#"{"t":"do","id":1,"do":"stop"}"#,
-        r#"{"t":"do","id":2,"do":"resume","given_ms":1.5}"#,
+        r#"{"t":"do","id":2,"do":"resume"}"#,
         r#"{"t":"do","id":4,"do":"take_control"}"#,
         r#"{"t":"do","id":5,"do":"give_control","viewer":"v3"}"#,
         r#"{"t":"do","id":6,"do":"restart_service","service":"policy"}"#,

@@ -176,11 +176,6 @@ class Link {
     return this.toServer(this.#now());
   }
 
-  /** Server time now, at the earliest: an answer of the server may have taken all of its round trip. */
-  earliestServerNow() {
-    return this.serverNow() - this.#clock.tripMs / 2;
-  }
-
   /** @param {number} pageMs of `performance.now()` */
   toServer(pageMs) {
     return pageMs + this.#clock.offset;

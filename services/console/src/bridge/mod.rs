@@ -170,7 +170,7 @@ impl Bridge {
     fn orders(&mut self, inbox: &Inbox) {
         inbox.motions.clear();
         while let Some(motion) = inbox.motions.take() {
-            tracing::info!(viewer = %motion.viewer, stop = motion.is_stop(), "motion stop");
+            tracing::info!(viewer = %motion.viewer, stop = motion.stop, "motion stop");
             self.motions.order(motion, &self.app.hub, clock::now());
         }
     }

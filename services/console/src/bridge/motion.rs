@@ -68,8 +68,8 @@ impl Motions {
 
     fn accept(&mut self, motion: Motion, hub: &Hub, now: Time) {
         // The latest order overrules contrary ones.
-        for old in self.waiting.extract_if(.., |waiting| waiting.is_stop() != motion.is_stop()) {
-            let outcome = match old.is_stop() {
+        for old in self.waiting.extract_if(.., |waiting| waiting.stop != motion.stop) {
+            let outcome = match old.stop {
                 true => Ok(false),
                 false => Err(StopError::Overruled.to_string()),
             };
@@ -78,15 +78,12 @@ impl Motions {
         if self.waiting.len() < ORDERS_MAX {
             self.waiting.push(motion);
         }
-        let order = if motion.is_stop() { MotionOrder::Stop } else { MotionOrder::Resume };
-        let given = motion.release.unwrap_or(now);
+        let order = if motion.stop { MotionOrder::Stop } else { MotionOrder::Resume };
         match &mut self.latest {
             // A stop that its user repeats is as late as before.
-            Some(Latest { progress, .. }) if progress.order() == order => {
-                progress.renew(given.max(progress.given()));
-            }
+            Some(latest) if latest.progress.order() == order => latest.progress.renew(now),
             latest => {
-                let progress = Progress::new(order, given, default_patience(order));
+                let progress = Progress::new(order, now, default_patience(order));
                 *latest = Some(Latest { progress, late: None });
             }
         }
@@ -206,8 +203,7 @@ mod tests {
     }
 
     fn stops(hub: &Hub, viewer: ViewerId, motions: &mut Motions, stop: bool, ms: u64) {
-        let release = (!stop).then_some(at(ms));
-        motions.accept(Motion { viewer, id: Some(ms), release }, hub, at(ms));
+        motions.accept(Motion { viewer, id: Some(ms), stop }, hub, at(ms));
     }
 
     /// Takes in an answer of the arm.
@@ -289,21 +285,6 @@ mod tests {
         confirm(&mut motions, moving, &hub, at(1_500));
         confirm(&mut motions, answer(1, true), &hub, at(1_550));
         assert_eq!(section(&motions, &ready)["unconfirmed"], Json::Null);
-        assert!(!motions.is_waiting());
-    }
-
-    #[test]
-    fn release_that_was_long_on_its_way_lifts_no_newer_stop() {
-        let Page { hub, .. } = hub();
-        let (viewer, mut frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
-        let (_home, mut motions) = motions();
-        // Given at 1 s; somebody else stops at 1.1 s; it arrives at 4 s.
-        let release = Motion { viewer, id: Some(1), release: Some(at(1_000)) };
-        motions.accept(release, &hub, at(4_000));
-        assert_eq!(motions.latest.as_ref().unwrap().progress.given(), at(1_000));
-        let newer = StopState { in_force_ns: at(1_100).ns(), ..answer(1_000, true) };
-        confirm(&mut motions, newer, &hub, at(4_001));
-        assert!(received(&mut frames)["error"].as_str().unwrap().contains("overruled"));
         assert!(!motions.is_waiting());
     }
 

@@ -69,12 +69,6 @@ pub struct Motion {
     pub viewer: ViewerId,
     /// The command's number; none where the order comes with words, which are answered.
     pub id: Option<u64>,
-    /// When a release was given; none for a stop, which counts from its arrival.
-    pub release: Option<Time>,
-}
-
-impl Motion {
-    pub fn is_stop(&self) -> bool {
-        self.release.is_none()
-    }
+    /// `true` latches the stop, `false` releases it.
+    pub stop: bool,
 }

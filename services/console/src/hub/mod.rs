@@ -208,7 +208,7 @@ impl Hub {
     pub fn ask(&self, viewer: ViewerId, id: u64, verb: Verb) -> Result<(), String> {
         let stops = matches!(&verb, Verb::Say(words) if language::is_stop(&words.text));
         if stops {
-            self.order(Motion { viewer, id: None, release: None })?;
+            self.order(Motion { viewer, id: None, stop: true })?;
         }
         let asked = self.ask_verb(viewer, id, verb);
         asked.map_err(
@@ -232,13 +232,12 @@ impl Hub {
         }
     }
 
-    /// Latches the motion stop for every viewer, or releases it, as of the time `release`, for those who may; the bridge
-    /// answers.
-    pub fn motion(&self, viewer: ViewerId, id: u64, release: Option<Time>) -> Result<(), String> {
-        if release.is_some() {
+    /// Latches the motion stop for every viewer, releases it for those who may; the bridge answers.
+    pub fn motion(&self, viewer: ViewerId, id: u64, stop: bool) -> Result<(), String> {
+        if !stop {
             self.must_release(viewer)?;
         }
-        self.order(Motion { viewer, id: Some(id), release })
+        self.order(Motion { viewer, id: Some(id), stop })
     }
 
     fn order(&self, motion: Motion) -> Result<(), String> {

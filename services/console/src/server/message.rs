@@ -3,7 +3,6 @@
 use messages::PromptId;
 use serde_json::Value as Json;
 use service::Time;
-use service::stop_socket::RELEASE_PATIENCE;
 use vocabulary::PersonId;
 
 use crate::hub::command::{Verb, Words};
@@ -43,8 +42,8 @@ pub enum Message {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Do {
     Ask(Verb),
-    /// Stop the arm; with a time, release the stop as of then.
-    Motion(Option<Time>),
+    /// Stop the arm, or release the stop.
+    Motion(bool),
     Take,
     Give(ViewerId),
     Keep,
@@ -110,8 +109,8 @@ fn what(json: &Json, now: Time) -> Result<Do, String> {
         "say" => Do::Ask(Verb::Say(words(json, now)?)),
         "not_that" => Do::Ask(Verb::NotThat),
         "start_over" => Do::Ask(Verb::StartOver),
-        "stop" => Do::Motion(None),
-        "resume" => Do::Motion(Some(given(json, now)?)),
+        "stop" => Do::Motion(true),
+        "resume" => Do::Motion(false),
         "take_control" => Do::Take,
         "keep_control" => Do::Keep,
         "give_control" => {
@@ -126,20 +125,6 @@ fn what(json: &Json, now: Time) -> Result<Do, String> {
             Some(verb) => Do::Ask(Verb::Study(verb.to_owned(), json.clone())),
             None => return Err(format!("do: unknown command `{verb}`")),
         },
-    })
-}
-
-/// Returns when a release was given. What was long on its way does not know of the stops that came meanwhile.
-fn given(json: &Json, now: Time) -> Result<Time, String> {
-    let given = moment(json, "given_ms", now)?;
-    let recent = given.filter(|given| now.since(*given) <= RELEASE_PATIENCE);
-    recent.ok_or_else(|| {
-        let most_s = RELEASE_PATIENCE.s();
-        let found = given.map_or("none".to_owned(), |at| format!("{:.1} s ago", now.since(at).s()));
-        format!(
-            "given_ms: expected the time of the release, at most {most_s} s ago by the server's clock, found {found}; \
-             help: give it again"
-        )
     })
 }
 
@@ -272,15 +257,6 @@ mod tests {
     }
 
     #[test]
-    fn release_says_when_it_was_given() {
-        let resume = |given: Json| json!({"t": "do", "id": 3, "do": "resume", "given_ms": given});
-        let given = Some(Time(999_000_000_000));
-        assert_eq!(read(resume(json!(999_000))), Ok(Message::Do(3, Do::Motion(given))));
-        assert!(wrong(resume(json!(994_000))).contains("found 6.0 s ago; help: give it again"));
-        assert!(wrong(resume(Json::Null)).contains("given_ms: expected the time of the release"));
-    }
-
-    #[test]
     fn message_errors_name_the_key() {
         let say = |key: &str, value: Json| {
             let mut json = json!({"t": "do", "id": 3, "do": "say", "text": "a"});
@@ -307,7 +283,7 @@ mod tests {
 
     /// Any JSON, mostly of the keys and values that mean something.
     fn any_json() -> impl Strategy<Value = Json> {
-        let keys = "t|id|do|text|alternatives|weight|began_ms|ended_ms|given_ms|source|from|viewer|service|at|\
+        let keys = "t|id|do|text|alternatives|weight|began_ms|ended_ms|source|from|viewer|service|at|\
                     session|protocol|role|name|last_line|page";
         let words = "do|say|ping|hello|stop|resume|study[.]begin|give_control|restart_service|browser|\
                      v[0-9]{1,20}|\\PC{0,8}|[\u{0}-\u{1f}\u{7f}-\u{9f}]{1,4}";

@@ -280,7 +280,7 @@ fn text_frame(text: &str, viewer: ViewerId, hub: &Hub) {
             // Others than control are answered by those who carry them out.
             let passed_on = match what {
                 Do::Ask(verb) => hub.ask(viewer, id, verb),
-                Do::Motion(release) => hub.motion(viewer, id, release),
+                Do::Motion(stop) => hub.motion(viewer, id, stop),
                 Do::Restart(service) => hub.restart(viewer, id, service),
                 Do::Take => return hub.answer(viewer, id, hub.take_control(viewer, now)),
                 Do::Give(to) => return hub.answer(viewer, id, hub.give_control(viewer, to)),

@@ -14,7 +14,7 @@ use service::{Span, clock};
 use zenoh::Session;
 use zenoh::qos::Priority;
 
-use crate::motion::{Answer, Known, Orders, Request, Seen, Way};
+use crate::motion::{Answer, Orders, Request, Seen, Way};
 use crate::names::{Call, Keys};
 use crate::session::request_at;
 
@@ -57,7 +57,7 @@ impl Motion {
             inbox,
             orders: Orders::default(),
             caller: None,
-            known: None,
+            seen: None,
         };
         let ending = Arc::clone(&is_ending);
         let thread =
@@ -82,7 +82,7 @@ struct Worker {
     orders: Orders,
     /// Who gave the order under way.
     caller: Option<(u64, Caller)>,
-    known: Option<Known>,
+    seen: Option<Seen>,
 }
 
 impl Worker {
@@ -97,9 +97,7 @@ impl Worker {
             let mut arrived = Vec::new();
             self.listener.drain(|command, caller| arrived.push((command, caller)));
             arrived.into_iter().for_each(|(command, caller)| self.on_order(&command, caller));
-            if let Some((request, way)) =
-                self.orders.due(self.known.map(|known| known.seen), clock::now())
-            {
+            if let Some((request, way)) = self.orders.due(self.seen, clock::now()) {
                 self.ask(&request, way);
             }
         }
@@ -117,9 +115,7 @@ impl Worker {
 
     fn on_event(&mut self, event: Event) {
         match event {
-            Event::Seen(seen) => {
-                self.known = Some(Known::renewed(self.known, seen, clock::now()));
-            }
+            Event::Seen(seen) => self.seen = Some(seen),
             Event::Answer(key, answer) => {
                 if let Answer::Refused(why) = &answer {
                     tracing::warn!(why, "the robot refuses the release");
@@ -137,7 +133,7 @@ impl Worker {
     fn on_order(&mut self, order: &StopOrder, caller: Caller) {
         let StopOrder { order, given_ns } = *order;
         let now = clock::now();
-        match self.orders.take((order, given_ns), self.known, random_key().0, now) {
+        match self.orders.take((order, given_ns), self.seen, random_key().0, now) {
             Ok(Some(state)) => self.listener.answer(&caller, &state),
             Ok(None) => {
                 if self.caller.as_ref().is_none_or(|(given, _)| *given != given_ns) {

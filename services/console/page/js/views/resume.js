@@ -49,7 +49,7 @@ export function mountResume(element, context) {
   };
   const cancel = () => end(holder);
   const step = () => {
-    if (hold.step(performance.now())) attempt(link.do("resume", { given_ms: link.earliestServerNow() }), context);
+    if (hold.step(performance.now())) attempt(link.do("resume"), context);
     show();
   };
   // The clock runs only while a hold does, or has to wait.
