@@ -216,7 +216,14 @@ class Link {
   #hello() {
     const { session, role, name, lastLine } = this.#options;
     this.#helloAt = this.#now();
-    this.#send({ t: "hello", protocol: PROTOCOL, session, name: name(), role, last_line: lastLine() });
+    this.#send({
+      t: "hello",
+      protocol: PROTOCOL,
+      session,
+      name: name(),
+      role,
+      last_line: lastLine(),
+    });
   }
 
   #hear(socket, data) {
