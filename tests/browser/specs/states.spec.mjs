@@ -155,19 +155,24 @@ const SIZES = [
 /** What is wider than the window, outside of it, or under STOP. */
 const misplaced = () => {
   const of = (selector) => document.querySelector(selector)?.getBoundingClientRect();
-  const [stop, words] = [of("#stop"), of(".question-words")];
+  const [stop, question] = [of("#stop"), of(".question-words")];
   const isOut = ({ left, top, right, bottom }) =>
     left < 0 || top < 0 || right > innerWidth || bottom > innerHeight;
-  const covers = words.bottom > stop.top && words.right > stop.left;
+  const covers = question.bottom > stop.top && question.right > stop.left;
   const isWide = document.documentElement.scrollWidth > innerWidth;
-  return { isWide, stop: isOut(stop), question: isOut(words), covers };
+  const [sign, control] = [of(".turn"), of(".control-text")];
+  const words = of(".turn-words");
+  // The sign holds its words, and nothing lies on it.
+  const isTight =
+    words.right > sign.right || (sign.right > control.left && sign.bottom > control.top);
+  return { isWide, isTight, stop: isOut(stop), question: isOut(question), covers };
 };
 
 for (const state of ["asking", "stopped", "disconnected"]) {
   test(`${state}: question and STOP are seen at every size without scrolling`, async ({ page }) => {
     await show(page, state);
     await expect(page.locator("#question .question-words")).not.toBeEmpty();
-    const right = { isWide: false, stop: false, question: false, covers: false };
+    const right = { isWide: false, isTight: false, stop: false, question: false, covers: false };
     for (const [width, height] of SIZES) {
       await page.setViewportSize({ width, height });
       await expect.poll(() => page.evaluate(misplaced), `${width}×${height}`).toEqual(right);

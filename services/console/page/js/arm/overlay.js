@@ -180,7 +180,8 @@ export class Overlay {
         setAttribute(leader, name, ends[k].toFixed(1));
       }
       setAttribute(leader, "data-mark", node.dataset.mark ?? "");
-      setAttribute(leader, "visibility", line ? "visible" : "hidden");
+      // With a line it is as visible as all of them.
+      setAttribute(leader, "visibility", line ? null : "hidden");
     }
     setAttribute(this.list, "data-placed", true);
   }
