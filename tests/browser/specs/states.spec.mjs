@@ -161,10 +161,10 @@ const misplaced = () => {
   const covers = question.bottom > stop.top && question.right > stop.left;
   const isWide = document.documentElement.scrollWidth > innerWidth;
   const [sign, control] = [of(".turn"), of(".control-text")];
-  const words = of(".turn-words");
+  const words = document.querySelector(".turn-words");
   // The sign holds its words, and nothing lies on it.
-  const isTight =
-    words.right > sign.right || (sign.right > control.left && sign.bottom > control.top);
+  const isCut = words.scrollWidth > words.clientWidth;
+  const isTight = isCut || (sign.right > control.left && sign.bottom > control.top);
   return { isWide, isTight, stop: isOut(stop), question: isOut(question), covers };
 };
 
