@@ -41,7 +41,7 @@ const SAYS = {
   asking: {
     sign: [t("turn.asked")],
     headline: ["Is it white?"],
-    why: [t("why.question")],
+    why: [/Why this question[\s\S]*Of the 6 objects that it may be, yes speaks for 3, no for 3\./],
     list: ["17%", PROMISE],
     picture: [t("arm.resting"), OLD_ORDER],
     health: ["ready"],
@@ -55,7 +55,7 @@ const SAYS = {
   fetching: {
     sign: [t("turn.moving")],
     headline: [`I will get the ${NEW}`],
-    why: [t("action.pick", { object: NEW }), OLD_ORDER],
+    why: [t("why.sure", { object: NEW, share: "96%" }), OLD_ORDER],
     list: [t("mark.picking")],
     picture: [`On the way to the ${NEW}`, OLD_ORDER],
   },

@@ -14,6 +14,7 @@ import {
 } from "../../../services/console/page/js/model/ranking.js";
 import {
   actionWords,
+  gist,
   proof,
   ranked,
   toCome,
@@ -214,6 +215,25 @@ describe("reasons", () => {
       key: "why.bounded",
       args: { low: 28, high: 33.1 },
     });
+  });
+
+  it("begin with what an answer tells, or how sure a pick is", () => {
+    const even = { ...dialogue, belief: { white: 0.5, clear: 0.5, metal: 0.001 } };
+    const colored = ({ name }) => ({ ...SCENE.objects[0], name, attributes: { color: name } });
+    const scene = { ...SCENE, objects: SCENE.objects.map(colored) };
+    const split = (all, yes) => ({ key: "why.split", args: { all, yes, no: all - yes } });
+    const about = (question) => gist({ ...even, question }, null, scene);
+    const color = { type: "attr", attribute: "color", value: "clear" };
+    assert.deepEqual(about(color), split(2, 1), "of those that are likely");
+    assert.deepEqual(about({ type: "point", object: "white" }), split(2, 1));
+    const open = { type: "which", attribute: "color" };
+    assert.deepEqual(about(open), { key: "why.open", args: { most: 1, all: 2 } });
+    const one = { ...even, belief: { white: 1, clear: 0, metal: 0 } };
+    assert.equal(gist(one, null, SCENE), null, "nothing to tell apart");
+    const picks = { ...dialogue, decision: "pick" };
+    assert.deepEqual(gist(picks, "clear", SCENE).args, { object: "clear bowl", p: 0.8 });
+    assert.equal(gist(picks, "gone", SCENE), null);
+    assert.equal(gist({ ...dialogue, belief: undefined }, null, SCENE), null, "as in the history");
   });
 
   it("say how many questions are to come", () => {

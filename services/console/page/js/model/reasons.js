@@ -71,6 +71,39 @@ export function ranked(dialogue, aim, most) {
   });
 }
 
+/** Objects of that probability are what an answer tells apart. */
+const LIKELY = 0.01;
+
+/**
+ * What an answer to the question would tell, or how sure a pick is: a key of the strings with its figures.
+ * @param {any} dialogue
+ * @param {string|null} aim
+ * @param {any} scene
+ * @returns {{key: string, args: Record<string, any>}|null} null: nothing is known
+ */
+export function gist(dialogue, aim, scene) {
+  const { decision, question, belief } = dialogue;
+  const object = scene?.objects.find(({ name }) => name === aim);
+  if (decision === "pick" && object && belief?.[object.name] !== undefined) {
+    return { key: "why.sure", args: { object: object.label, p: belief[object.name] } };
+  }
+  if (decision !== "ask" || !question || !belief) return null;
+  const likely = (scene?.objects ?? []).filter(({ name }) => belief[name] >= LIKELY);
+  if (likely.length < 2) return null;
+  const n = likely.length;
+  if (question.type === "which" || question.type === "choice") {
+    const values = likely.map(({ attributes }) => attributes?.[question.attribute]);
+    const most = Math.max(...values.map((one) => values.filter((other) => other === one).length));
+    return { key: "why.open", args: { most, all: n } };
+  }
+  const isMeant = ({ name, attributes }) =>
+    question.type === "point"
+      ? name === question.object
+      : attributes?.[question.attribute] === question.value;
+  const yes = likely.filter(isMeant).length;
+  return { key: "why.split", args: { yes, no: n - yes, all: n } };
+}
+
 /** Bounds closer than this are shown as one figure. */
 const NEAR = 0.05;
 
