@@ -1,6 +1,6 @@
 // @ts-check
 import { eachFrame, h, s, setAttribute } from "../dom.js";
-import { readable } from "../model/ranking.js";
+import { shareWords } from "../model/ranking.js";
 import { placeLabels } from "./placement.js";
 import { objectAt } from "./pointing.js";
 
@@ -119,7 +119,7 @@ export class Overlay {
     for (const [n, label] of this.#labels.entries()) {
       const { belief = null, best = false, asked = false } = this.#thoughts[n] ?? {};
       const isHeld = n === this.#held;
-      const percent = belief === null ? "" : ` ${this.#percent(belief)}`;
+      const percent = belief === null ? "" : ` ${shareWords(belief, this.t)}`;
       const mark = isHeld ? "held" : asked ? "asked" : best ? "best" : "";
       label.weight = (isHeld ? 4 : 0) + (asked ? 2 : 0) + (best ? 1 : 0) + (belief ?? 0);
       label.node.dataset.faint = String(belief !== null && belief < 0.02 && !isHeld);
@@ -130,11 +130,6 @@ export class Overlay {
     }
     if (isOther) this.#measure();
     else this.#placeSoon();
-  }
-
-  #percent(belief) {
-    const { sign, share } = readable(belief);
-    return sign + this.t.percent(share);
   }
 
   /** Measures all labels again; small ones where the picture has no room for large ones. */

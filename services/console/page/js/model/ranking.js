@@ -99,6 +99,17 @@ export function readable(p) {
 }
 
 /**
+ * A probability in words: "17%", ">99%".
+ * @param {number} p
+ * @param {any} t
+ * @returns {string}
+ */
+export function shareWords(p, t) {
+  const { sign, share } = readable(p);
+  return sign + t.percent(share);
+}
+
+/**
  * The objects that something happens to. Without a connection nothing is known of them.
  * @param {any} scene
  * @param {import("../now.js").Now} now

@@ -6,7 +6,7 @@ import {
   likely,
   marks,
   rankListed,
-  readable,
+  shareWords,
   unlistedOf,
 } from "../model/ranking.js";
 import { makeCard, updateCard } from "./card.js";
@@ -101,8 +101,7 @@ export function mountCards(element, context) {
     const args = { n: left, share: t.percent(rest + unlisted.share, 1) };
     setText(more, all && others === 0 ? t("objects.fewer") : t("objects.more", args));
     absent.hidden = !(dialogue?.absent > 0);
-    const { sign, share } = readable(dialogue?.absent ?? 0);
-    setText(absent, t("objects.absent", { share: sign + t.percent(share) }));
+    setText(absent, t("objects.absent", { share: shareWords(dialogue?.absent ?? 0, t) }));
   });
   store.subscribe(["scene", "dialogue", "world", "belief", "now"], draw);
   draw();

@@ -1,6 +1,6 @@
 // @ts-check
 import { h, keyed, setAttribute, setText } from "../dom.js";
-import { readable } from "../model/ranking.js";
+import { shareWords } from "../model/ranking.js";
 import { actionWords, gist, proof, ranked, toCome } from "../model/reasons.js";
 
 const ONE_DIGIT = { maximumFractionDigits: 1, minimumFractionDigits: 1 };
@@ -35,8 +35,7 @@ export function reasonsView(t) {
   const gistWords = (known) => {
     if (!known) return "";
     const { p = 0, ...args } = known.args;
-    const { sign, share } = readable(p);
-    return t(known.key, { ...args, share: sign + t.percent(share) });
+    return t(known.key, { ...args, share: shareWords(p, t) });
   };
   const make = () => {
     const bar = h("span", { class: "why-bar", "aria-hidden": "true" }, h("i", {}));
