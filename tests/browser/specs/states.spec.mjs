@@ -109,9 +109,10 @@ const SAYS = {
 /** Views that are not shown in any other state. */
 const HIDDEN_UNLESS = { resume: /stopped/, alert: /stopped|disconnected/ };
 
-async function show(page, state) {
+async function show(page, state, lines = []) {
   const fed = await Fed.open(page);
   fed.state(STATES[state]);
+  fed.lines(lines);
   await expect(page.locator(":root[data-ready]")).toBeAttached();
   await expect(page.locator(".voice-talk")).toBeAttached();
   await expect(page.locator("#arm .arm-caption")).not.toBeEmpty();
@@ -119,9 +120,13 @@ async function show(page, state) {
   return fed;
 }
 
+/** A line of everybody who has any. */
+const LINES = ["person", "robot", "unmeant"].map((who, n) => ({ id: n + 1, who, text: "a bowl" }));
+
 for (const [state, views] of Object.entries(SAYS)) {
   test(`${state}: every view says so`, async ({ page }) => {
-    await show(page, state);
+    await show(page, state, LINES);
+    await expect(page.locator(".lines .clock")).toHaveCount(LINES.length);
     for (const [view, [says, never]] of Object.entries(views)) {
       const node = page.locator(VIEWS[view]);
       await expect.soft(node, view).toContainText(says, { timeout: 8_000, useInnerText: true });
