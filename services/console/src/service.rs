@@ -166,6 +166,7 @@ fn page_settings(settings: &Settings, study: bool) -> PageSettings {
             voice: settings.speech.voice != Voice::Print,
         },
         study,
+        simulated: settings.arm.driver == config::KINEMATIC.name,
         camera: settings.console.camera.as_ref().map(|camera| CameraSettings {
             url: camera.url.clone(),
             every_ms: camera.every.map(|every| every.as_secs_f64() * 1e3),

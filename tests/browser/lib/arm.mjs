@@ -30,3 +30,10 @@ export async function drawn(page) {
 /** Waits until the picture stands and is drawn finely. @param {import("@playwright/test").Page} page */
 export const drawnFinely = (page) =>
   expect(arm(page)).toHaveAttribute("data-picture", "fine", { timeout: 60_000 });
+
+/** What an object is called in the picture: its label without the noun, which all of them share. */
+export const nameInPicture = ({ label }, { noun }) =>
+  label
+    .split(" ")
+    .filter((word) => word !== noun)
+    .join(" ");

@@ -38,8 +38,9 @@ for (const [size, viewport] of Object.entries(SIZES)) {
     });
 
     test("help, and the pages around it", async ({ console: page, group }) => {
-      await page.getByRole("button", { name: t("help.open") }).click();
-      await expect(page.getByRole("dialog", { name: t("help.title") })).toBeVisible();
+      await page.getByRole("button", { name: t("help.open"), exact: true }).click();
+      const help = page.getByRole("dialog", { name: t("help.title") });
+      await expect(help).toContainText(t("help.say.correct.words"));
       await expectAccessibleInThemes(page);
       for (const path of ["/nowhere", "/login"]) {
         await page.goto(group.link(path));

@@ -1,6 +1,14 @@
 // Who draws the arm's picture: a worker or, where workers cannot, the page itself.
 
-import { arm, BROWSERS_BY_THREAD, distance, drawn, drawnFinely, shown } from "../lib/arm.mjs";
+import {
+  arm,
+  BROWSERS_BY_THREAD,
+  distance,
+  drawn,
+  drawnFinely,
+  nameInPicture,
+  shown,
+} from "../lib/arm.mjs";
 import { WITH_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";
@@ -42,7 +50,7 @@ for (const [thread, make] of Object.entries(BROWSERS_BY_THREAD)) {
       await page.setViewportSize({ width: 1900, height: 1000 });
       const { scene } = await group.state();
       const label = page.locator(".arm-label");
-      await expect(label.first()).toContainText(scene.objects[0].label ?? scene.objects[0].name);
+      await expect(label.first()).toContainText(nameInPicture(scene.objects[0], scene));
 
       const { eye } = await shown(page);
       const isFrom = (from, expected) =>

@@ -1,6 +1,6 @@
 // The names in the arm's picture, and a click on an object.
 
-import { drawn, drawnFinely } from "../lib/arm.mjs";
+import { drawn, drawnFinely, nameInPicture } from "../lib/arm.mjs";
 import { WITH_PICTURE } from "../lib/chromium.mjs";
 import { t } from "../lib/strings.mjs";
 import { transcript } from "../lib/talk.mjs";
@@ -72,8 +72,9 @@ test("the operator says an object by a click on it; a pointer over it shows its 
   await expect(page.getByText(t("control.mine"))).toBeVisible();
   await drawnFinely(page);
   const { scene } = await group.state();
-  const { label, description } = scene.objects[1];
-  const name = page.locator(".arm-label").filter({ hasText: label });
+  const { description } = scene.objects[1];
+  const words = nameInPicture(scene.objects[1], scene);
+  const name = page.locator(".arm-label").filter({ hasText: words });
   const { x, y, width, height } = await name.boundingBox();
   await page.mouse.move(x + width / 2, y + height / 2);
   await expect(name).toHaveAttribute("data-hover", "");
@@ -86,8 +87,9 @@ test("an object is said by keyboard, too", async ({ console: page, group }) => {
   await expect(page.getByText(t("control.mine"))).toBeVisible();
   await drawn(page);
   const { scene } = await group.state();
-  const { label, description } = scene.objects[0];
-  await page.locator(".arm-label").getByRole("button", { name: label }).focus();
+  const { description } = scene.objects[0];
+  const name = nameInPicture(scene.objects[0], scene);
+  await page.locator(".arm-label").getByRole("button", { name }).focus();
   await page.keyboard.press("Enter");
   await expect(transcript(page)).toContainText(`the ${description}`);
 });

@@ -2,6 +2,7 @@
 
 import assert from "node:assert/strict";
 import { describe, it } from "node:test";
+import { apart } from "../../../services/console/page/js/arm/overlay.js";
 import { meet, placeLabels } from "../../../services/console/page/js/arm/placement.js";
 import { objectAt } from "../../../services/console/page/js/arm/pointing.js";
 
@@ -106,6 +107,17 @@ describe("labels", () => {
     const before = placeLabels([wish(180, 150)], frame);
     const kept = placeLabels([wish(181, 149.5)], frame, [], before);
     assert.ok(Math.hypot(kept[0].x - before[0].x, kept[0].y - before[0].y) < 3);
+  });
+});
+
+describe("the words of a label", () => {
+  it("are what tells an object from the others", () => {
+    assert.equal(
+      apart({ label: "bowl in the dishwasher", name: "white1" }, "bowl"),
+      "in the dishwasher",
+    );
+    assert.equal(apart({ label: "bowl", name: "white1" }, "bowl"), "bowl");
+    assert.equal(apart({ name: "white1" }, "bowl"), "white1");
   });
 });
 

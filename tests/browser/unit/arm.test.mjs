@@ -226,17 +226,13 @@ describe("words and thoughts", () => {
       ]) {
         states.push({ ...idle, hindrance });
       }
-      const said = states.map((arm) => armWords(arm, scene, null, t));
+      const said = states.map((arm) => armWords({ why: null, order: arm }, arm, scene, null, t));
       assert.ok(
         said.every((words) => words && !words.includes("arm.") && !words.includes("{")),
         said.join("|"),
       );
-      const way = armWords(
-        { ...idle, phase: "moving", object: "a", remaining_s: 4.2 },
-        scene,
-        null,
-        t,
-      );
+      const moves = { ...idle, phase: "moving", object: "a", remaining_s: 4.2 };
+      const way = armWords({ why: null, order: moves }, moves, scene, null, t);
       assert.ok(way.includes("small white bowl") && way.includes("4"), way);
     });
   }
@@ -250,13 +246,11 @@ describe("words and thoughts", () => {
   });
 
   it("marks the likeliest object and those that are asked about", () => {
-    const dialogue = {
-      belief: { a: 0.8, b: 0.2 },
-      question: { type: "attr", attribute: "color", value: "clear" },
-    };
-    const [a, b] = thoughtsOf(dialogue, scene);
+    const belief = { a: 0.8, b: 0.2 };
+    const color = { type: "attr", attribute: "color", value: "clear" };
+    const [a, b] = thoughtsOf(belief, color, scene);
     assert.deepEqual([a.best, a.asked, b.best, b.asked], [true, false, false, true]);
-    const pointed = thoughtsOf({ ...dialogue, question: { type: "point", object: "a" } }, scene);
+    const pointed = thoughtsOf(belief, { type: "point", object: "a" }, scene);
     assert.deepEqual(
       pointed.map(({ asked }) => asked),
       [true, false],
@@ -264,9 +258,9 @@ describe("words and thoughts", () => {
   });
 
   it("marks none while all are equally likely, or nothing is asked", () => {
-    const even = thoughtsOf({ belief: { a: 0.5, b: 0.5 }, question: { type: "none" } }, scene);
+    const even = thoughtsOf({ a: 0.5, b: 0.5 }, null, scene);
     assert.ok(even.every(({ best, asked }) => !best && !asked));
-    assert.deepEqual(thoughtsOf(undefined, undefined), []);
+    assert.deepEqual(thoughtsOf(undefined, null, undefined), []);
   });
 });
 

@@ -14,28 +14,25 @@ const t = translator("en", [english]);
 
 describe("the audience's sentence", () => {
   const scene = { noun: "bowl", objects: [{ name: "white2", label: "white bowl" }] };
-  const up = { link: { state: "up" }, turn: { state: "asked" }, arm: { stopped: false }, scene };
+  const up = { now: { is: "asking", turn: "asked", why: null }, scene, delivery: null };
   const asks = { interaction: 4, text: "Is it on the counter?", last: null };
-  const ended = (outcome) => ({ interaction: 0, text: "", last: { outcome, object: "white2" } });
+  const rests = { interaction: 0, text: "", last: { outcome: "cancelled", object: null } };
 
   it("is the robot's question or announcement", () => {
     assert.equal(sentence({ ...up, dialogue: asks }, t), "Is it on the counter?");
   });
 
-  it("is the end of the last interaction, else an invitation", () => {
-    assert.equal(sentence({ ...up, dialogue: ended("delivered") }, t), "Handed over: white bowl");
-    for (const outcome of ["refused", "failed", "cancelled", "abandoned", "not_here"]) {
-      const words = sentence({ ...up, dialogue: ended(outcome) }, t);
-      assert.ok(!words.includes("history.") && !words.includes("{"), words);
-    }
-    const fresh = { interaction: 0, text: "", last: null };
-    assert.equal(sentence({ ...up, dialogue: fresh }, t), t("question.idle", { noun: "bowl" }));
+  it("is what was handed over, while it can be refused, else an invitation", () => {
+    const delivery = { object: scene.objects[0] };
+    const handed = sentence({ ...up, dialogue: rests, delivery }, t);
+    assert.equal(handed, "Handed over: white bowl");
+    assert.equal(sentence({ ...up, dialogue: rests }, t), t("question.idle", { noun: "bowl" }));
   });
 
   it("is what is the matter, where something is", () => {
-    const stopped = { ...up, arm: { stopped: true }, dialogue: asks };
+    const stopped = { ...up, now: { is: "stopped", atRest: true, why: null }, dialogue: asks };
     assert.equal(sentence(stopped, t), t("turn.stopped"));
-    const offline = { ...up, link: { state: "waiting" }, dialogue: asks };
+    const offline = { ...up, now: { is: "disconnected", why: "offline" }, dialogue: asks };
     assert.equal(sentence(offline, t), t("turn.offline"));
     assert.equal(sentence({ ...up, dialogue: undefined }, t), t("question.none"));
   });

@@ -6,6 +6,7 @@ import { describe, it } from "node:test";
 import { linked, linkTo } from "../../../services/console/page/js/history/address.js";
 import { dayOf } from "../../../services/console/page/js/history/list.js";
 import {
+  actorOf,
   endWords,
   eventWords,
   fileOf,
@@ -88,6 +89,25 @@ describe("an interaction", () => {
     assert.deepEqual(steps[3].thought.belief, [0, 1], "what it believed last");
     assert.equal(stepsOf({ ...past, end: null }).length, 6);
     assert.deepEqual(stepsOf({ ...past, moments: [], end: null }), []);
+  });
+
+  it("has one line for a stop and one for its release", () => {
+    const motion = (order) => ({ ...arm("moving"), cause: { type: "motion", order } });
+    const at = (event, thought = null) => ({ after_ms: 1, event, thought });
+    const known = thought([0, 1], "pick", "I will get it.");
+    const moments = [
+      at(motion("stop")),
+      at({ type: "stopped" }, known),
+      at(motion("resume")),
+      at({ type: "released" }, known),
+      at(motion("stop")),
+    ];
+    const steps = stepsOf({ ...past, moments, end: null });
+    const keys = steps.map(({ event }) => eventWords(event, past).key);
+    const told = ["history.event.stopped", "history.event.released", "history.arm.stop"];
+    assert.deepEqual(keys, told, "the last one was not written down by the dialogue");
+    const actors = steps.map(({ event }) => actorOf(event));
+    assert.deepEqual(actors, ["stop", "release", "stop"]);
   });
 
   it("is walked to its ends and no further", () => {

@@ -14,16 +14,13 @@ import {
 } from "../../../services/console/page/js/model/ranking.js";
 import {
   actionWords,
+  gist,
   proof,
   ranked,
   toCome,
 } from "../../../services/console/page/js/model/reasons.js";
-import {
-  banner,
-  isStopped,
-  mayResume,
-  whoControls,
-} from "../../../services/console/page/js/model/turn.js";
+import { banner, mayResume, whoControls } from "../../../services/console/page/js/model/turn.js";
+import { nowOf } from "../../../services/console/page/js/now.js";
 import { escapeStops, stopper } from "../../../services/console/page/js/stop.js";
 import { Store } from "../../../services/console/page/js/store.js";
 
@@ -128,19 +125,22 @@ describe("objects that are not listed", () => {
 });
 
 describe("marks on objects", () => {
-  const of = (now) => [...marks(SCENE, { dialogue: null, arm: null, world: null, ...now })];
+  const of = ({ world = null, ...now }) => [...marks(SCENE, { is: "idle", ...now }, world)];
 
   it("mark the objects pointed at, fetched, held and handed over", () => {
-    const dialogue = { question: { type: "point", object: "metal" } };
-    assert.deepEqual(of({ dialogue }), [[2, "pointed"]]);
-    assert.deepEqual(of({ arm: { object: "clear", phase: "moving" } }), [[1, "picking"]]);
-    assert.deepEqual(of({ arm: { object: "clear", phase: "holding" } }), [[1, "held"]]);
-    assert.deepEqual(of({ arm: { object: "clear", phase: "done" } }), []);
+    const question = { type: "point", object: "metal" };
+    assert.deepEqual(of({ question }), [[2, "pointed"]]);
+    assert.deepEqual(of({ order: { object: "clear", phase: "moving" } }), [[1, "picking"]]);
+    assert.deepEqual(of({ order: { object: "clear", phase: "holding" } }), [[1, "held"]]);
+    assert.deepEqual(of({ order: { object: "clear", phase: "done" } }), []);
     assert.deepEqual(of({ world: { objects: [[0], null, [0]], held: 0 } }), [
       [1, "delivered"],
       [0, "held"],
     ]);
-    assert.deepEqual(of({ arm: { object: "gone", phase: "moving" } }), []);
+    assert.deepEqual(of({ order: { object: "gone", phase: "moving" } }), []);
+    const order = { object: "clear", phase: "moving" };
+    assert.deepEqual(of({ is: "stopped", order }), [[1, "halted"]]);
+    assert.deepEqual(of({ is: "disconnected", order, question }), []);
   });
 });
 
@@ -203,9 +203,9 @@ describe("reasons", () => {
 
   it("of a pick name what is picked", () => {
     const picks = { ...dialogue, decision: "pick", alternatives: [] };
-    assert.deepEqual(ranked(picks, null, 4)[0].action, { type: "pick", object: "clear" });
+    assert.deepEqual(ranked(picks, "clear", 4)[0].action, { type: "pick", object: "clear" });
     assert.deepEqual(ranked(picks, "metal", 4)[0].action, { type: "pick", object: "metal" });
-    assert.equal(ranked(picks, null, 4)[0].length, 0);
+    assert.equal(ranked(picks, "clear", 4)[0].length, 0);
   });
 
   it("say what is proven", () => {
@@ -217,6 +217,25 @@ describe("reasons", () => {
     });
   });
 
+  it("begin with what an answer tells, or how sure a pick is", () => {
+    const even = { ...dialogue, belief: { white: 0.5, clear: 0.5, metal: 0.001 } };
+    const colored = ({ name }) => ({ ...SCENE.objects[0], name, attributes: { color: name } });
+    const scene = { ...SCENE, objects: SCENE.objects.map(colored) };
+    const split = (all, yes) => ({ key: "why.split", args: { all, yes, no: all - yes } });
+    const about = (question) => gist({ ...even, question }, null, scene);
+    const color = { type: "attr", attribute: "color", value: "clear" };
+    assert.deepEqual(about(color), split(2, 1), "of those that are likely");
+    assert.deepEqual(about({ type: "point", object: "white" }), split(2, 1));
+    const open = { type: "which", attribute: "color" };
+    assert.deepEqual(about(open), { key: "why.open", args: { most: 1, all: 2 } });
+    const one = { ...even, belief: { white: 1, clear: 0, metal: 0 } };
+    assert.equal(gist(one, null, SCENE), null, "nothing to tell apart");
+    const picks = { ...dialogue, decision: "pick" };
+    assert.deepEqual(gist(picks, "clear", SCENE).args, { object: "clear bowl", p: 0.8 });
+    assert.equal(gist(picks, "gone", SCENE), null);
+    assert.equal(gist({ ...dialogue, belief: undefined }, null, SCENE), null, "as in the history");
+  });
+
   it("say how many questions are to come", () => {
     assert.equal(toCome(0).key, "why.none");
     assert.equal(toCome(Number.NaN).key, "why.none");
@@ -224,36 +243,88 @@ describe("reasons", () => {
   });
 });
 
+/** What the page knows, as the views' one state. */
+const nowWith = (sections, isLost = false) => nowOf({ get: (name) => sections[name] }, isLost);
+
+describe("the one state", () => {
+  const up = { link: { state: "up" }, turn: { state: "idle" }, arm: { phase: "idle" } };
+  const old = { interaction: 1, object: "metal", phase: "done", outcome: "delivered" };
+  const picks = { interaction: 2, decision: "pick", belief: { white: 0.1, clear: 0.9 } };
+  const asks = { interaction: 2, decision: "ask", question: { type: "which", attribute: "color" } };
+
+  it("is the gravest that holds", () => {
+    const all = { ...up, dialogue: asks, arm: { ...old, object: "clear", phase: "moving" } };
+    const down = { ...all, turn: { state: "down" } };
+    const stopped = { ...down, arm: { ...all.arm, stopped: true } };
+    const cases = [
+      [nowWith(stopped, true), "disconnected"],
+      [nowWith(stopped), "stopped"],
+      [nowWith(down), "held"],
+      [nowWith(all), "fetching"],
+      [nowWith({ ...up, dialogue: asks }), "asking"],
+      [nowWith(up), "idle"],
+    ];
+    for (const [{ is }, expected] of cases) assert.equal(is, expected);
+  });
+
+  it("names what this dialogue fetches, not what the arm fetched before", () => {
+    const now = nowWith({ ...up, dialogue: picks, arm: old });
+    assert.deepEqual([now.aim, now.order], ["clear", null]);
+    const taken = { ...old, interaction: 2, object: "white", phase: "moving" };
+    assert.equal(nowWith({ ...up, dialogue: picks, arm: taken }).aim, "white");
+    const ended = { interaction: 0, last: { interaction: 1 } };
+    assert.deepEqual(nowWith({ ...up, dialogue: ended, arm: old }).order, old);
+  });
+
+  it("names the service that is missing", () => {
+    const services = [
+      { name: "recorder", state: "failed" },
+      { name: "policy", state: "held" },
+    ];
+    const held = { ...up, turn: { state: "down" }, group: { services } };
+    assert.deepEqual(nowWith(held).service, { name: "policy", state: "held" });
+    assert.equal(nowWith({ ...held, group: undefined }).service?.name, "arm");
+    assert.equal(nowWith(up).service, null);
+  });
+
+  it("knows nobody in control without a connection", () => {
+    const mine = { ...up, control: { operator: "v1" }, welcome: { viewer: "v1" } };
+    assert.equal(nowWith(mine).who, "mine");
+    assert.equal(nowWith(mine, true).who, "unknown");
+  });
+});
+
 describe("the sign of the turn", () => {
   const up = { state: "up" };
+  const of = (link, turn, arm, control, isLost = false) =>
+    banner(nowWith({ link, turn, arm, control, welcome: { viewer: "v1" } }, isLost)).key;
 
   it("knows nothing without a connection", () => {
-    assert.equal(banner({ state: "down" }, { state: "asked" }, undefined).key, "offline");
-    assert.equal(banner({ state: "connecting" }, undefined, undefined).key, "connecting");
-    assert.equal(banner({ state: "connecting" }, { state: "asked" }, undefined).key, "offline");
-    assert.equal(banner({ state: "replaced" }, { state: "asked" }, undefined).key, "replaced");
-    assert.equal(banner(up, undefined, undefined).key, "connecting");
+    assert.equal(of({ state: "down" }, { state: "asked" }, {}, null, true), "offline");
+    assert.equal(of({ state: "connecting" }, undefined), "connecting");
+    assert.equal(of({ state: "replaced" }, { state: "asked" }), "replaced");
+    assert.equal(of(up, undefined), "connecting");
   });
 
   it("shows each state, and a stop before any of them", () => {
-    for (const state of ["idle", "listening", "hearing", "asked", "understanding", "speaking"]) {
-      assert.equal(banner(up, { state }, {}).key, state);
-      assert.equal(banner(up, { state }, { stopped: true }).key, "stopped");
-      assert.equal(banner(up, { state }, { stopped: true, moving: true }).key, "stopping");
+    for (const state of ["idle", "listening", "hearing", "asked", "understanding", "down"]) {
+      assert.equal(of(up, { state }, {}), state);
+      assert.equal(of(up, { state }, { stopped: true }), "stopped");
+      assert.equal(of(up, { state }, { stopped: true, moving: true }), "stopping");
     }
-    assert.equal(banner(up, { state: "down" }, { stopped: true }).key, "down");
-    assert.equal(banner(up, { state: "unheard of" }, {}).key, "idle");
+    assert.equal(of(up, { state: "unheard of" }, {}), "idle");
   });
 
   it("is the operator's turn for viewers", () => {
     for (const state of ["idle", "listening", "hearing", "asked", "speaking"]) {
-      assert.equal(banner(up, { state }, {}, "theirs").key, `theirs_${state}`);
-      assert.equal(banner(up, { state }, {}, "asked").key, `theirs_${state}`);
-      assert.equal(banner(up, { state }, {}, "mine").key, state);
-      assert.equal(banner(up, { state }, {}, "free").key, state);
+      for (const other of [{ asked_by: "v1" }, { away: true }, {}]) {
+        assert.equal(of(up, { state }, {}, { operator: "v2", ...other }), `theirs_${state}`);
+      }
+      assert.equal(of(up, { state }, {}, { operator: "v1" }), state);
+      assert.equal(of(up, { state }, {}, { operator: null }), state);
     }
-    assert.equal(banner(up, { state: "moving" }, {}, "theirs").key, "moving");
-    assert.equal(banner(up, { state: "asked" }, { stopped: true }, "theirs").key, "stopped");
+    assert.equal(of(up, { state: "moving" }, {}, { operator: "v2" }), "moving");
+    assert.equal(of(up, { state: "asked" }, { stopped: true }, { operator: "v2" }), "stopped");
   });
 
   it("shows the operator", () => {
@@ -263,6 +334,7 @@ describe("the sign of the turn", () => {
     assert.equal(whoControls({ operator: null }, me), "free");
     assert.equal(whoControls({ operator: "v2" }, me), "theirs");
     assert.equal(whoControls({ operator: "v2", asked_by: "v1" }, me), "asked");
+    assert.equal(whoControls({ operator: "v2", away: true }, me), "away");
   });
 });
 
@@ -492,13 +564,6 @@ describe("stop", () => {
 });
 
 describe("an arm that is stopped", () => {
-  it("is at rest", () => {
-    assert.equal(isStopped({ stopped: true, moving: false }), true);
-    for (const arm of [null, undefined, {}, { stopped: true, moving: true }, { moving: true }]) {
-      assert.equal(isStopped(arm), false);
-    }
-  });
-
   it("is released by the operator, and in a study by every page but the participant's", () => {
     const welcome = { viewer: "v1" };
     assert.equal(mayResume({ operator: "v1" }, welcome), true);

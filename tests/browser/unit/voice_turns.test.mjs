@@ -37,7 +37,7 @@ test("a screen reader's click does the same, and leaving the page ends it", () =
 });
 
 test("the button agrees with whose turn it is", () => {
-  const known = { up: true, turn: "listening", talks: false, latched: false, handsFree: false };
+  const known = { is: "idle", turn: "listening", talks: false, latched: false, handsFree: false };
   const of = (change) =>
     sign({ ...known, isOpening: false, isOpen: false, standing: null, ...change });
   assert.equal(of({}).key, "idle");
@@ -49,7 +49,13 @@ test("the button agrees with whose turn it is", () => {
   assert.equal(of({ handsFree: true, isOpen: true }).key, "open");
   assert.equal(of({ isOpening: true }).key, "opening");
   assert.equal(of({ standing: "voice.fault.recogniser" }).key, "unable");
-  assert.ok(of({ up: false }).disabled && of({ turn: "down" }).disabled);
+  assert.deepEqual(
+    ["disconnected", "held"].map((is) => of({ is })).map(({ key, disabled }) => [key, disabled]),
+    [
+      ["off", true],
+      ["held", true],
+    ],
+  );
 });
 
 const line = { prompt: 4, presentation: 1, url: "/voice/line-4-1.wav", began_ms: 0 };

@@ -42,7 +42,7 @@ const ATTEMPTS = 2;
  * @param {string} [options.url] the socket's address; by default `/ws` where the page is served
  * @param {string} options.session 32 hexadecimal digits, see `sessionId`
  * @param {"operator"|"viewer"|"screen"} [options.role] what this page wishes to be
- * @param {string} [options.name] what it is called towards the other viewers
+ * @param {() => string} [options.name] what it is called towards the other viewers
  * @param {() => number} [options.lastLine] the newest transcript line that the page has
  * @param {(parts: object) => void} [options.onState] the same as `on("state", …)`
  * @param {() => void} [options.refused] when it cannot connect: by default looks for the login page
@@ -74,7 +74,7 @@ class Link {
   constructor(options) {
     this.#options = {
       role: "operator",
-      name: "",
+      name: () => "",
       lastLine: () => 0,
       refused: askForToken,
       ...options,
@@ -216,7 +216,14 @@ class Link {
   #hello() {
     const { session, role, name, lastLine } = this.#options;
     this.#helloAt = this.#now();
-    this.#send({ t: "hello", protocol: PROTOCOL, session, name, role, last_line: lastLine() });
+    this.#send({
+      t: "hello",
+      protocol: PROTOCOL,
+      session,
+      name: name(),
+      role,
+      last_line: lastLine(),
+    });
   }
 
   #hear(socket, data) {

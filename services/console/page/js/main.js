@@ -6,6 +6,8 @@ import { keptLanguage, tabStorage } from "./kept.js";
 import { sessionId } from "./link/session.js";
 import { connect } from "./link.js";
 import { Hold } from "./model/hold.js";
+import { keepNow } from "./now.js";
+import { whoSpeaks } from "./settings/person.js";
 import { stopper } from "./stop.js";
 import { keep, Store } from "./store.js";
 import { chooseLanguage, loadStrings, t, translate } from "./strings.js";
@@ -19,7 +21,6 @@ import { mountPart } from "./views/part.js";
 import { mountQuestion } from "./views/question.js";
 import { mountResume } from "./views/resume.js";
 import { mountSay } from "./views/say.js";
-import { mountStale } from "./views/stale.js";
 import { mountStrip } from "./views/strip.js";
 import { mountTabs } from "./views/tabs.js";
 import { mountTools, toolButton } from "./views/tools.js";
@@ -40,6 +41,7 @@ const session = sessionId(tabStorage());
 const link = connect({
   session,
   role,
+  name: whoSpeaks,
   lastLine: () => store.resumeAfter,
 });
 // Before everything else, so that a stop that waits is sent first.
@@ -52,7 +54,7 @@ await loadStrings(chooseLanguage(location.search, keptLanguage(), wished));
 translate(document);
 
 const context = { link, store, t, session, stop, hold: new Hold() };
-mountStale(context);
+keepNow(context);
 mountActions(at("actions"), context);
 mountResume(at("resume"), context);
 mountAlarm(at("alarm"), at("polite"), context);

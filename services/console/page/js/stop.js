@@ -82,6 +82,19 @@ export function stopper({ link, store, now = () => performance.now() }) {
   };
 }
 
+/**
+ * What became of the stop that was pressed here or elsewhere; null where nothing is left to say.
+ * @param {{get: (section: string) => any}} store
+ * @returns {"unsent"|"unconfirmed"|"sending"|null}
+ */
+export function deliveryOf(store) {
+  const own = store.get("stop")?.state;
+  const isUp = store.get("link")?.state === "up";
+  if (own === "undelivered" && !isUp) return "unsent";
+  if (own === "undelivered" || (isUp && store.get("motion")?.unconfirmed)) return "unconfirmed";
+  return own === "sent" ? "sending" : null;
+}
+
 /** Two presses of Escape within this time stop the robot, milliseconds. */
 const TWICE_MS = 900;
 

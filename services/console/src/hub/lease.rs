@@ -50,6 +50,11 @@ impl Lease {
         self.holder.as_ref().map(|holder| holder.viewer)
     }
 
+    /// Returns whether the operator's page is gone; it may be reloading.
+    pub fn is_away(&self) -> bool {
+        self.holder.as_ref().is_some_and(|holder| holder.away.is_some())
+    }
+
     /// Returns the viewer who has requested control, and when it gets it.
     pub fn asked(&self) -> Option<(ViewerId, Time)> {
         self.asked.map(|asked| (asked.by, asked.until))
@@ -174,9 +179,9 @@ mod tests {
     fn lease_survives_a_reload() {
         let mut lease = lease();
         lease.left(A, at(1));
-        assert!(!pass(&mut lease, 15));
+        assert!(!pass(&mut lease, 15) && lease.is_away());
         lease.joined(C, "a", false);
-        assert!(lease.holds(C) && !pass(&mut lease, 60));
+        assert!(lease.holds(C) && !lease.is_away() && !pass(&mut lease, 60));
         // The old connection is noticed to be dead only after the new one has come.
         lease.left(A, at(61));
         assert!(lease.holds(C) && lease.deadline().is_none());

@@ -59,8 +59,11 @@ pub struct Channels {
 struct ControlSection<'a> {
     operator: Option<String>,
     name: Option<&'a String>,
+    /// Whether the operator's page is gone: nobody is in control, until it is back or the lease ends.
+    away: bool,
     viewers: usize,
     asked_by: Option<String>,
+    asked_name: Option<&'a String>,
     expires_ms: Option<f64>,
     /// Whether the operator's page is that of a study's participant.
     participant: bool,
@@ -354,8 +357,10 @@ impl Hub {
         let section = ControlSection {
             operator: operator.map(|operator| operator.to_string()),
             name,
+            away: lease.is_away(),
             viewers: viewers.len(),
             asked_by: asked.map(|(by, _)| by.to_string()),
+            asked_name: asked.and_then(|(by, _)| viewers.get(by)).map(|there| &there.name),
             expires_ms: asked.map(|(_, until)| ms(until)),
             participant: operator
                 .and_then(|operator| viewers.get(operator))

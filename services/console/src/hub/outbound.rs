@@ -38,6 +38,8 @@ pub struct PageSettings {
     pub language: String,
     pub voice: VoiceSettings,
     pub study: bool,
+    /// The arm is the kinematic model: no robot moves.
+    pub simulated: bool,
     pub camera: Option<CameraSettings>,
 }
 

@@ -38,7 +38,9 @@ function show(camera, element, stage, t) {
   stage.before(sources(element, t));
   stage.after(figure);
   watchSeen(figure, (isSeen) => {
-    if (isSeen && figure.isConnected) feed.start();
+    // Before its style is loaded, it is seen where only the model was chosen.
+    const isChosen = element.dataset.source !== SOURCES[0];
+    if (isSeen && isChosen && figure.isConnected) feed.start();
     else feed.stop();
   });
 }

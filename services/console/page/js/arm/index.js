@@ -1,6 +1,5 @@
 // @ts-check
 import { calm } from "../dom.js";
-import { whoControls } from "../model/turn.js";
 import { pressObject } from "../views/press.js";
 import { mountCamera } from "./camera.js";
 import { VIEWS } from "./cameras.js";
@@ -45,16 +44,19 @@ export async function mountArm(element, { link, store, t }) {
 /** The arm's state, in words and as an icon. */
 function sayInWords(element, parts, store, t) {
   const say = () => {
-    const words = armWords(store.get("arm"), store.get("scene"), store.get("trajectory"), t);
+    const [now, arm, scene, way] = ["now", "arm", "scene", "trajectory"].map((n) => store.get(n));
+    const words = armWords(now, arm, scene, way, t);
     if (parts.caption.textContent === words) return;
     parts.caption.textContent = words;
     parts.canvas.setAttribute("aria-label", words);
   };
-  store.subscribe(["arm", "scene", "trajectory"], say);
-  say();
-  store.subscribe("arm", (arm) => {
-    element.dataset.stopped = String(Boolean(arm?.stopped));
-    parts.badge.hidden = !arm?.stopped;
+  store.subscribe(["now", "arm", "scene", "trajectory"], say);
+  store.subscribe("now", ({ is }) => {
+    element.dataset.stopped = String(is === "stopped");
+    parts.badge.hidden = is !== "stopped";
+  });
+  store.subscribe("welcome", ({ settings }) => {
+    parts.simulated.hidden = !settings?.simulated;
   });
 }
 
@@ -83,7 +85,8 @@ function standingOf(scene) {
 function follow(picture, overlay, store, link) {
   let key = null;
   const think = () => {
-    const thoughts = thoughtsOf(store.get("dialogue"), standingOf(store.get("scene")));
+    const { question } = store.get("now");
+    const thoughts = thoughtsOf(store.get("belief"), question, standingOf(store.get("scene")));
     overlay.setThoughts(thoughts);
     picture.call("setThoughts", thoughts);
   };
@@ -95,7 +98,7 @@ function follow(picture, overlay, store, link) {
     }
     think();
   });
-  store.subscribe("dialogue", think);
+  store.subscribe(["belief", "now"], think);
   store.subscribe("world", (world) => picture.call("setWorld", world));
   store.subscribe("trajectory", (trajectory) => picture.call("setTrajectory", trajectory));
   store.subscribe("arm", (arm) => picture.call("setArm", arm));
@@ -109,9 +112,9 @@ function follow(picture, overlay, store, link) {
 /** Names what the pointer is over; the operator chooses an object by a click, as in the list. */
 function letChoose(overlay, canvas, page) {
   const { store } = page;
-  const isMine = () => whoControls(store.get("control"), store.get("welcome")) === "mine";
+  const isMine = () => store.get("now").who === "mine";
   const choose = (n) => isMine() && pressObject(store.get("scene")?.objects[n], page);
-  store.subscribe(["control", "welcome"], () => overlay.setChooser(isMine() ? choose : null));
+  store.subscribe("now", () => overlay.setChooser(isMine() ? choose : null));
   watchPointing(canvas, {
     find: (point) => overlay.at(point),
     hover: (n) => {

@@ -1,6 +1,6 @@
 // @ts-check
 import { eachFrame, h, s, setAttribute } from "../dom.js";
-import { readable } from "../model/ranking.js";
+import { shareWords } from "../model/ranking.js";
 import { placeLabels } from "./placement.js";
 import { objectAt } from "./pointing.js";
 
@@ -57,7 +57,7 @@ export class Overlay {
   #build() {
     const make = (object, n) => {
       const share = h("span", { class: "arm-share" });
-      const name = object.label ?? object.name;
+      const name = h("span", { class: "arm-words", text: apart(object, this.#scene.noun) });
       const onclick = () => this.#choose?.(n);
       const words = this.#choose
         ? h("button", { type: "button", class: "arm-name", onclick }, name, share)
@@ -119,7 +119,7 @@ export class Overlay {
     for (const [n, label] of this.#labels.entries()) {
       const { belief = null, best = false, asked = false } = this.#thoughts[n] ?? {};
       const isHeld = n === this.#held;
-      const percent = belief === null ? "" : ` ${this.#percent(belief)}`;
+      const percent = belief === null ? "" : ` ${shareWords(belief, this.t)}`;
       const mark = isHeld ? "held" : asked ? "asked" : best ? "best" : "";
       label.weight = (isHeld ? 4 : 0) + (asked ? 2 : 0) + (best ? 1 : 0) + (belief ?? 0);
       label.node.dataset.faint = String(belief !== null && belief < 0.02 && !isHeld);
@@ -130,11 +130,6 @@ export class Overlay {
     }
     if (isOther) this.#measure();
     else this.#placeSoon();
-  }
-
-  #percent(belief) {
-    const { sign, share } = readable(belief);
-    return sign + this.t.percent(share);
   }
 
   /** Measures all labels again; small ones where the picture has no room for large ones. */
@@ -180,10 +175,22 @@ export class Overlay {
         setAttribute(leader, name, ends[k].toFixed(1));
       }
       setAttribute(leader, "data-mark", node.dataset.mark ?? "");
-      setAttribute(leader, "visibility", line ? "visible" : "hidden");
+      // With a line it is as visible as all of them.
+      setAttribute(leader, "visibility", line ? null : "hidden");
     }
     setAttribute(this.list, "data-placed", true);
   }
+}
+
+/**
+ * What tells an object from the others: its label without the noun that all of them share.
+ * @param {{label?: string, name: string}} object
+ * @param {string} noun
+ */
+export function apart({ label, name }, noun) {
+  const whole = label ?? name;
+  const words = whole.split(" ").filter((word) => word !== noun);
+  return words.length > 0 ? words.join(" ") : whole;
 }
 
 /** @param {HTMLElement} node @returns {import("./placement.js").Rect} */

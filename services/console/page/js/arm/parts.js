@@ -17,10 +17,12 @@ export function build(element, t) {
   const notice = make("p", "arm-notice", t("arm.loading"));
   const badge = make("p", "arm-badge", t("arm.badge"));
   badge.hidden = true;
+  const simulated = make("p", "arm-simulated", t("arm.simulated"));
+  simulated.hidden = true;
   const caption = make("p", "arm-caption");
   caption.id = "arm-caption";
   const leaders = s("svg", { class: "arm-leaders", "aria-hidden": "true" });
-  const stage = make("div", "arm-stage", canvas, leaders, labels, badge, notice);
+  const stage = make("div", "arm-stage", canvas, leaders, labels, badge, simulated, notice);
   stage.tabIndex = 0;
   stage.setAttribute("role", "group");
   stage.setAttribute("aria-label", t("arm.stage"));
@@ -38,8 +40,8 @@ export function build(element, t) {
   element.replaceChildren(stage, caption);
   element.classList.add("arm-view");
   element.dataset.state = "loading";
-  const notices = [badge, tools];
-  return { canvas, labels, leaders, notice, notices, badge, caption, stage, buttons };
+  const notices = [badge, simulated, tools];
+  return { canvas, labels, leaders, notice, notices, badge, simulated, caption, stage, buttons };
 }
 
 /**

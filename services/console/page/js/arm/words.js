@@ -18,13 +18,15 @@ const OUTCOMES_OF_PUT_BACK = ["unreachable", "cancelled", "missed"];
 
 /**
  * Describes the arm's state in one sentence.
+ * @param {import("../now.js").Now} now
  * @param {any} arm section `arm`
  * @param {any} scene section `scene`
  * @param {any} trajectory section `trajectory`
  * @param {(key: string, args?: object) => string} t
  * @returns {string}
  */
-export function armWords(arm, scene, trajectory, t) {
+export function armWords(now, arm, scene, trajectory, t) {
+  if (now.why) return t("arm.disconnected");
   if (!arm) return t("arm.unknown");
   const object = labelOf(arm.object, scene) ?? t("arm.object");
   if (arm.stopped) return t("arm.stopped");
@@ -38,7 +40,8 @@ export function armWords(arm, scene, trajectory, t) {
   }
   if (arm.aimed) return t("arm.aimed");
   if (arm.moving) return t(trajectory && !trajectory.pick ? "arm.moving" : "arm.returning");
-  if (arm.phase === "done" && OUTCOMES.includes(arm.outcome)) {
+  // How an earlier dialogue ended is no news in this one.
+  if (now.order && arm.phase === "done" && OUTCOMES.includes(arm.outcome)) {
     const own = arm.task === "put_back" && OUTCOMES_OF_PUT_BACK.includes(arm.outcome);
     return t(own ? `arm.put_back.${arm.outcome}` : `arm.outcome.${arm.outcome}`, { object });
   }
@@ -70,20 +73,19 @@ export function indexOf(object, scene) {
 
 /**
  * Describes the robot's belief in each object and whether it asks about it.
- * @param {any} dialogue section `dialogue`
+ * @param {Record<string, number>|null|undefined} belief section `belief`, as the list shows it
+ * @param {any} question that stands
  * @param {any} scene section `scene`
  * @returns {{belief: number|null, best: boolean, asked: boolean}[]} in the scene's order
  */
-export function thoughtsOf(dialogue, scene) {
-  const belief = dialogue?.belief ?? {};
-  const probabilities = Object.values(belief);
+export function thoughtsOf(belief, question, scene) {
+  const probabilities = Object.values(belief ?? {});
   const most = Math.max(...probabilities, 0);
   const even = probabilities.length ? 1.02 / countOf(scene) : 1;
-  const question = dialogue?.question;
   return (scene?.objects ?? []).map((object) => ({
-    belief: belief[object.name] ?? null,
+    belief: belief?.[object.name] ?? null,
     // While all are equally likely, none is the most likely.
-    best: belief[object.name] === most && most > even,
+    best: belief?.[object.name] === most && most > even,
     asked: question?.object === object.name || isAsked(object, question),
   }));
 }

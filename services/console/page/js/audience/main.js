@@ -1,18 +1,21 @@
 // @ts-check
+import { keepDelivery } from "../delivery.js";
 import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { keptLanguage, tabStorage } from "../kept.js";
 import { sessionId } from "../link/session.js";
 import { connect } from "../link.js";
 import { countOf, rankListed, readable } from "../model/ranking.js";
+import { keepNow } from "../now.js";
 import { keep, Store } from "../store.js";
 import { chooseLanguage, loadStrings, t, translate } from "../strings.js";
 import { mountPart } from "../views/part.js";
-import { mountStale } from "../views/stale.js";
 import { mountTurn } from "../views/turn.js";
 import { lastHeard, sentence, sizeOf } from "./model.js";
 
 /** Most bars: they are large. */
 const BARS_MAX = 6;
+/** Sections that the sentence is made of. */
+const SHOWN = ["now", "dialogue", "scene", "delivery"];
 
 /** @param {string} id @returns {HTMLElement} */
 const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
@@ -25,6 +28,7 @@ const link = connect({
   lastLine: () => store.resumeAfter,
 });
 keep(store, link);
+keepDelivery({ link, store });
 await loadStrings(chooseLanguage(location.search, keptLanguage(), navigator.languages));
 translate(document);
 store.subscribe("welcome", ({ group }) => {
@@ -32,28 +36,26 @@ store.subscribe("welcome", ({ group }) => {
 });
 
 const context = { link, store, t };
-mountStale(context);
+keepNow(context);
 mountTurn(at("turn"), context);
 mountPart(at("arm"), () => import("../arm/index.js"), "mountArm", context);
 
 const drawWords = eachFrame(() => {
-  const sections = ["link", "turn", "arm", "dialogue", "scene"];
-  const now = Object.fromEntries(sections.map((name) => [name, store.get(name)]));
-  const words = sentence(/** @type {any} */ (now), t);
+  const shown = Object.fromEntries(SHOWN.map((name) => [name, store.get(name)]));
+  const words = sentence(/** @type {any} */ (shown), t);
   setText(at("sentence"), words);
   at("sentence").style.setProperty("--size", String(sizeOf(words)));
   const heard = lastHeard(store.get("lines"));
   setText(at("heard"), heard ? t("audience.heard", { text: heard }) : "");
 });
-store.subscribe(["link", "turn", "arm", "dialogue", "scene", "lines"], drawWords);
+store.subscribe([...SHOWN, "lines"], drawWords);
 
 /** Names in the order that is shown. @type {string[]} */
 let order = [];
 const drawBars = eachFrame(() => {
   const scene = store.get("scene");
-  const dialogue = store.get("dialogue");
   if (!scene) return;
-  const belief = scene.objects.map(({ name }) => dialogue?.belief?.[name] ?? 0);
+  const belief = scene.objects.map(({ name }) => store.get("belief")?.[name] ?? 0);
   const ranked = rankListed(order, scene.objects, belief);
   order = ranked.map((n) => scene.objects[n].name);
   const item = (n) => ({ id: `${scene.key}.${scene.objects[n].name}`, n, p: belief[n] });
@@ -82,5 +84,5 @@ const drawBars = eachFrame(() => {
     },
   );
 });
-store.subscribe(["scene", "dialogue"], drawBars);
+store.subscribe(["scene", "belief"], drawBars);
 document.documentElement.dataset.ready = "";

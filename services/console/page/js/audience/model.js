@@ -1,26 +1,21 @@
 // @ts-check
 import { banner } from "../model/turn.js";
 
-/** Signs that outrank the robot's words: nothing else is true while they hold. */
-const OUTRANKING = ["connecting", "offline", "replaced", "gave_way", "stopped", "down"];
-/** Outcomes that the page has words for. */
-const OUTCOMES = "delivered refused failed cancelled abandoned scene_changed not_here".split(" ");
+/** States that outrank the robot's words: nothing else is true while they hold. */
+const OUTRANKING = ["disconnected", "stopped", "held"];
 
 /**
  * The sentence that the audience reads: the robot's question or announcement, else what is the matter.
- * @param {{link: any, turn: any, arm: any, dialogue: any, scene: any}} now
+ * @param {{now: import("../now.js").Now, dialogue: any, scene: any, delivery: any}} shown
  * @param {(key: string, args?: object) => string} t
  * @returns {string}
  */
-export function sentence({ link, turn, arm, dialogue, scene }, t) {
-  const { key } = banner(link, turn, arm);
-  if (OUTRANKING.includes(key)) return t(`turn.${key}`);
+export function sentence({ now, dialogue, scene, delivery }, t) {
+  if (OUTRANKING.includes(now.is)) return t(`turn.${banner(now).key}`);
   if (!dialogue || !scene) return t("question.none");
   if (dialogue.interaction > 0) return dialogue.text || t("question.say.words");
-  const { last } = dialogue;
-  if (!last || !OUTCOMES.includes(last.outcome)) return t("question.idle", { noun: scene.noun });
-  const object = scene.objects.find(({ name }) => name === last.object)?.label ?? last.object;
-  return t(`history.${last.outcome}`, { object: object ?? "" });
+  if (delivery) return t("history.delivered", { object: delivery.object.label });
+  return t("question.idle", { noun: scene.noun });
 }
 
 /**

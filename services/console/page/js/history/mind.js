@@ -1,6 +1,6 @@
 // @ts-check
 import { h, keyed, setAttribute, setText } from "../dom.js";
-import { readable } from "../model/ranking.js";
+import { shareWords } from "../model/ranking.js";
 import { reasonsView } from "../views/reasons.js";
 import { reasonsOf } from "./model.js";
 
@@ -32,7 +32,7 @@ export function mindView(t) {
     drawBars(bars, past, step, t);
     const share = step.thought?.absent ?? 0;
     absent.hidden = !(share > MOVED);
-    setText(absent, t("history.absent", { share: t.percent(readable(share).share) }));
+    setText(absent, t("history.absent", { share: shareWords(share, t) }));
     const decision = step.thought?.decision;
     const isWeighed = (decision?.alternatives.length ?? 0) > 0;
     why.hidden = !isWeighed;
@@ -62,10 +62,9 @@ function drawBars(bars, past, { thought, before }, t) {
     },
     (node, { n, label, p }) => {
       const [name, bar, share] = node.children;
-      const { sign, share: part } = readable(p);
       setText(name, label);
       setAttribute(name, "title", label);
-      setText(share, sign + t.percent(part));
+      setText(share, shareWords(p, t));
       bar.firstElementChild.style.setProperty("inline-size", `${100 * p}%`);
       // Where it was a moment before.
       const was = before?.[n] ?? p;

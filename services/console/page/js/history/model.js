@@ -48,7 +48,7 @@ export function stepsOf(past) {
   const steps = [];
   let thought = null;
   let said = "";
-  for (const moment of past.moments) {
+  for (const moment of past.moments.filter(isNews)) {
     const before = thought?.belief ?? null;
     thought = moment.thought ?? thought;
     const { prompt, presentation, text } = moment.thought?.decision ?? {};
@@ -66,6 +66,16 @@ export function stepsOf(past) {
     steps.splice(place, 0, { after_ms, event, thought, before: thought?.belief ?? null, line: "" });
   }
   return steps;
+}
+
+/** What the dialogue writes down of an order of the motion stop, by the order. */
+const MOTION = { stop: ["stopped", "stop_confirmed"], resume: ["released"] };
+
+/** Whether a moment says something new: of a stop and a release the arm's own record says the same again. */
+function isNews({ event, thought }, k, moments) {
+  const same = event.cause?.type === "motion" ? (MOTION[event.cause.order] ?? []) : [];
+  const isTold = (other) => same.includes(other?.event.type);
+  return thought !== null || !(isTold(moments[k - 1]) || isTold(moments[k + 1]));
 }
 
 /**
@@ -112,6 +122,9 @@ export function endWords(end) {
 /** Who acted: its drawing and its colour. @param {any} event */
 export function actorOf(event) {
   if (event.type === "heard") return "person";
+  if (event.cause?.type === "motion") return event.cause.order === "stop" ? "stop" : "release";
+  if (event.type.startsWith("stop")) return "stop";
+  if (event.type === "released") return "release";
   if (event.type === "arm" || event.type === "pick_ended") return "arm";
   return event.type === "end" ? "end" : "system";
 }

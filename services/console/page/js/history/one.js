@@ -1,6 +1,7 @@
 // @ts-check
 import { h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
+import { shareWords } from "../model/ranking.js";
 import { dayOf, effortOf, timeOf } from "./list.js";
 import { mindView } from "./mind.js";
 import { endWords, eventWords, move, stepsOf } from "./model.js";
@@ -124,5 +125,8 @@ function spokenWords(past, { event, line, thought }, at, of, t) {
 function bestOf({ objects }, thought, t) {
   if (!thought?.belief.length) return "";
   const n = thought.belief.indexOf(Math.max(...thought.belief));
-  return t("history.likeliest", { object: objects[n].label, share: t.percent(thought.belief[n]) });
+  return t("history.likeliest", {
+    object: objects[n].label,
+    share: shareWords(thought.belief[n], t),
+  });
 }

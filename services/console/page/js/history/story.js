@@ -1,9 +1,17 @@
 // @ts-check
 import { h, keyed, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
+import { shareWords } from "../model/ranking.js";
 import { actorOf, eventWords } from "./model.js";
 
-const DRAWINGS = { person: "person", arm: "arm", end: "check", system: "history" };
+const DRAWINGS = {
+  person: "person",
+  arm: "arm",
+  stop: "stop",
+  release: "play",
+  end: "check",
+  system: "history",
+};
 const ONE_DIGIT = { minimumFractionDigits: 1, maximumFractionDigits: 1 };
 
 /**
@@ -99,7 +107,7 @@ function share(text, part, t) {
     "span",
     { class: "story-share" },
     text,
-    h("span", { class: "story-part", text: ` ${t.percent(part)}` }),
+    h("span", { class: "story-part", text: ` ${shareWords(part, t)}` }),
     " ",
   );
 }

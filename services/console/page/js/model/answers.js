@@ -45,7 +45,7 @@ export function answers(dialogue, scene) {
   const values = valuesOf(question, dialogue, scene);
   if (question.type === "attr") {
     const others = values.length > 2 ? values.filter(({ name }) => name !== question.value) : [];
-    return [...YES_NO, ...others.map(spoken), ...ASIDES];
+    return [...YES_NO, ...ASIDES, ...others.map(spoken)];
   }
   if (question.type === "choice") {
     const known = scene?.attributes.find(({ name }) => name === question.attribute);

@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * What is shown of the conversation: words and ends of requests. Presentations of one prompt that follow
+ * What is shown of the conversation: words, ends of requests, and stops. Presentations of one prompt that follow
  * each other are one item, with the fullest of their texts. Other notes are events.
  * @template {{who: string, text: string, said?: [number, number], outcome?: string}} L
  * @param {L[]} lines oldest first
@@ -33,7 +33,10 @@ export function events(lines, own, most) {
   return all.sort((a, b) => b.unix_ms - a.unix_ms).slice(0, most);
 }
 
-/** @param {{who: string, outcome?: string}} line */
-function isEvent({ who, outcome }) {
-  return who === "system" && outcome === undefined;
+/** Notes that are part of the conversation: whoever reads it must know why nothing follows. */
+const SAID = ["ended", "stopped", "released"];
+
+/** @param {{who: string, outcome?: string, note?: {type: string}}} line */
+function isEvent({ who, outcome, note }) {
+  return who === "system" && outcome === undefined && !SAID.includes(note?.type ?? "");
 }

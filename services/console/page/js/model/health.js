@@ -37,9 +37,21 @@ const STATES = {
  * @param {Service} service
  * @param {(key: string, args?: object) => string} t
  */
-export function noteOf({ why, says, last_exit }, t) {
+export function noteOf({ state, why, says, last_exit }, t) {
   const exit = last_exit ? t("services.ended", { how: last_exit.text }) : null;
-  return [why, says, exit].filter(Boolean).join("; ");
+  // Of what is held or switched off the state says the same.
+  const reason = tone(state) === "off" ? null : why;
+  return [reason, says, exit].filter(Boolean).join("; ");
+}
+
+/**
+ * What keeps a robot that is held: a service and its state.
+ * @param {import("../now.js").Now} now
+ * @param {(key: string, args?: object) => string} t
+ */
+export function serviceWords({ service }, t) {
+  const { name, state } = service ?? { name: "", state: "unknown" };
+  return t("question.held.words", { service: name, state: t(`service.${state}`) });
 }
 
 /**

@@ -22,5 +22,6 @@ export function noteWords({ text, outcome, note }, t) {
 export function endWords({ outcome, object, questions, seconds }, t) {
   const digit = { maximumFractionDigits: 1 };
   const args = { object: object ?? "", n: questions, seconds: t.number(seconds, digit) };
-  return t(`last.${outcome}`, args);
+  const key = `last.${outcome}`;
+  return questions === 0 && t.has(`${key}.none`) ? t(`${key}.none`, args) : t(key, args);
 }

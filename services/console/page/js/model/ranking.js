@@ -99,23 +99,37 @@ export function readable(p) {
 }
 
 /**
- * Returns an object's current mark.
- * @param {any} scene
- * @param {{dialogue: any, arm: any, world: any}} now
- * @returns {Map<number, "held"|"picking"|"pointed"|"delivered">}
+ * A probability in words: "17%", ">99%".
+ * @param {number} p
+ * @param {any} t
+ * @returns {string}
  */
-export function marks(scene, { dialogue, arm, world }) {
+export function shareWords(p, t) {
+  const { sign, share } = readable(p);
+  return sign + t.percent(share);
+}
+
+/**
+ * The objects that something happens to. Without a connection nothing is known of them.
+ * @param {any} scene
+ * @param {import("../now.js").Now} now
+ * @param {any} world
+ * @returns {Map<number, "held"|"picking"|"halted"|"pointed"|"delivered">}
+ */
+export function marks(scene, now, world) {
   const found = new Map();
+  if (now.is === "disconnected") return found;
   const place = (name) => scene.objects.findIndex((object) => object.name === name);
   world?.objects?.forEach((pose, object) => {
     if (pose === null) found.set(object, "delivered");
   });
-  const pointed = dialogue?.question?.type === "point" ? place(dialogue.question.object) : -1;
-  if (pointed >= 0) found.set(pointed, "pointed");
-  const underWay = arm?.object && !["idle", "done"].includes(arm.phase);
-  const picked = underWay ? place(arm.object) : -1;
-  const holds = ["holding", "returning"].includes(arm?.phase);
-  if (picked >= 0) found.set(picked, holds ? "held" : "picking");
+  const mark = (name, as) => place(name) >= 0 && found.set(place(name), as);
+  if (now.question?.type === "point") mark(now.question.object, "pointed");
+  const { phase, object } = now.order ?? { phase: "idle" };
+  if (["holding", "returning"].includes(phase)) mark(object, "held");
+  else if (!["idle", "done"].includes(phase)) {
+    mark(object, now.is === "stopped" ? "halted" : "picking");
+  }
   const held = typeof world?.held === "string" ? place(world.held) : world?.held;
   if (Number.isInteger(held) && held >= 0) found.set(held, "held");
   return found;

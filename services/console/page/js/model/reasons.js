@@ -37,20 +37,13 @@ function spokenValue({ attribute, value }, scene) {
 /**
  * The decision in force as an action.
  * @param {any} dialogue
- * @param {string|null|undefined} aim name of the object that the arm fetches
+ * @param {string|null} aim name of the object that is fetched
  * @returns {Action}
  */
 export function decidedAction(dialogue, aim) {
   if (dialogue.decision === "ask" && dialogue.question) return dialogue.question;
-  if (dialogue.decision === "pick") {
-    return { type: "pick", object: aim ?? mostLikely(dialogue.belief) };
-  }
+  if (dialogue.decision === "pick" && aim) return { type: "pick", object: aim };
   return { type: dialogue.decision === "wait" ? "wait" : "say" };
-}
-
-function mostLikely(belief) {
-  const [first = ["", 0], ...others] = Object.entries(belief ?? {});
-  return others.reduce((best, one) => (one[1] > best[1] ? one : best), first)[0];
 }
 
 /** Least loss that a whole bar stands for, seconds: one that is shown as none has no bar. */
@@ -59,7 +52,7 @@ const BAR_MIN_S = 1;
 /**
  * The decision and the best others, best first, each with what it loses against the best.
  * @param {any} dialogue
- * @param {string|null|undefined} aim
+ * @param {string|null} aim
  * @param {number} most
  * @returns {{action: Action, value: number, loss: number, length: number, chosen: boolean}[]} `loss` in
  *   seconds of the person's time; `length`: of its bar, a share of the longest or of one second
@@ -76,6 +69,39 @@ export function ranked(dialogue, aim, most) {
     const loss = top - one.value;
     return { ...one, loss, length: loss / widest };
   });
+}
+
+/** Objects of that probability are what an answer tells apart. */
+const LIKELY = 0.01;
+
+/**
+ * What an answer to the question would tell, or how sure a pick is: a key of the strings with its figures.
+ * @param {any} dialogue
+ * @param {string|null} aim
+ * @param {any} scene
+ * @returns {{key: string, args: Record<string, any>}|null} null: nothing is known
+ */
+export function gist(dialogue, aim, scene) {
+  const { decision, question, belief } = dialogue;
+  const object = scene?.objects.find(({ name }) => name === aim);
+  if (decision === "pick" && object && belief?.[object.name] !== undefined) {
+    return { key: "why.sure", args: { object: object.label, p: belief[object.name] } };
+  }
+  if (decision !== "ask" || !question || !belief) return null;
+  const likely = (scene?.objects ?? []).filter(({ name }) => belief[name] >= LIKELY);
+  if (likely.length < 2) return null;
+  const n = likely.length;
+  if (question.type === "which" || question.type === "choice") {
+    const values = likely.map(({ attributes }) => attributes?.[question.attribute]);
+    const most = Math.max(...values.map((one) => values.filter((other) => other === one).length));
+    return { key: "why.open", args: { most, all: n } };
+  }
+  const isMeant = ({ name, attributes }) =>
+    question.type === "point"
+      ? name === question.object
+      : attributes?.[question.attribute] === question.value;
+  const yes = likely.filter(isMeant).length;
+  return { key: "why.split", args: { yes, no: n - yes, all: n } };
 }
 
 /** Bounds closer than this are shown as one figure. */

@@ -8,10 +8,10 @@
 
 /** Looks of each state of the turn. @type {Record<string, [string, Banner["tone"], string]>} */
 const STATES = {
-  idle: ["idle", "person", "ear"],
+  idle: ["idle", "person", "person"],
   listening: ["listening", "person", "ear"],
   hearing: ["hearing", "person", "ear"],
-  asked: ["asked", "person", "ear"],
+  asked: ["asked", "person", "person"],
   understanding: ["understanding", "robot", "think"],
   speaking: ["speaking", "robot", "speak"],
   moving: ["moving", "arm", "arm"],
@@ -20,38 +20,21 @@ const STATES = {
   down: ["down", "down", "down"],
 };
 
-/**
- * Returns whether the arm stands: its stop is latched, and no joint moves.
- * @param {{stopped?: boolean, moving?: boolean}|null|undefined} arm
- */
-export function isStopped(arm) {
-  return arm?.stopped === true && arm.moving !== true;
-}
-
 /** States in which the sign speaks to the operator. */
 const TO_OPERATOR = ["idle", "listening", "hearing", "asked", "speaking"];
 
 /**
- * Summarises whose turn it is in one sign. Without a connection nothing else is known.
- * @param {{state: string}|undefined} link
- * @param {{state: string}|undefined} turn
- * @param {{stopped?: boolean, moving?: boolean}|undefined} arm a stop outranks whose turn it is
- * @param {ReturnType<typeof whoControls>} [who] for viewers it is the operator's turn
+ * Summarises whose turn it is in one sign: what the state says, else who acts.
+ * @param {import("../now.js").Now} now for viewers it is the operator's turn
  * @returns {Banner}
  */
-export function banner(link, turn, arm, who) {
-  if (link?.state === "replaced" || link?.state === "gave_way") {
-    return { key: link.state, tone: "down", icon: "down" };
-  }
-  if (link?.state !== "up") {
-    const key = link?.state === "connecting" && !turn ? "connecting" : "offline";
-    return { key, tone: "down", icon: "down" };
-  }
-  if (!turn) return { key: "connecting", tone: "idle", icon: "think" };
-  const latched = arm?.stopped === true && turn.state !== "down";
-  const state = latched ? (isStopped(arm) ? "stopped" : "stopping") : turn.state;
+export function banner(now) {
+  if (now.why === "connecting") return { key: now.why, tone: "idle", icon: "think" };
+  if (now.why) return { key: now.why, tone: "down", icon: "down" };
+  const latched = now.is === "stopped";
+  const state = latched ? (now.atRest ? "stopped" : "stopping") : now.turn;
   const [key, tone, icon] = STATES[state] ?? STATES.idle;
-  const theirs = (who === "theirs" || who === "asked") && TO_OPERATOR.includes(key);
+  const theirs = ["theirs", "asked", "away"].includes(now.who) && TO_OPERATOR.includes(key);
   return { key: theirs ? `theirs_${key}` : key, tone, icon };
 }
 
@@ -68,13 +51,15 @@ export function mayResume(control, welcome) {
 
 /**
  * Returns whether this page may act, and who is the operator.
- * @param {{operator: string|null, name?: string, asked_by?: string|null}|undefined} control
+ * @param {{operator: string|null, away?: boolean, asked_by?: string|null}|undefined} control
  * @param {{viewer: string}|undefined} welcome
- * @returns {"mine"|"asked"|"free"|"theirs"|"unknown"} `asked`: I asked for it and wait
+ * @returns {"mine"|"asked"|"free"|"theirs"|"away"|"unknown"} `asked`: I asked for it and wait; `away`: the
+ *   operator's page is gone, and may come back
  */
 export function whoControls(control, welcome) {
   if (!control || !welcome) return "unknown";
   if (control.operator === welcome.viewer) return "mine";
   if (control.operator === null) return "free";
+  if (control.away) return control.asked_by === welcome.viewer ? "asked" : "away";
   return control.asked_by === welcome.viewer ? "asked" : "theirs";
 }

@@ -23,8 +23,9 @@ export const whoSpeaks = () => nameOf(recall("from") ?? "");
 /**
  * The field for the name, with what becomes of it.
  * @param {any} t
+ * @param {() => void} renamed the other viewers are to see the new name
  */
-export function personField(t) {
+export function personField(t, renamed) {
   const hint = h("p", {
     class: "settings-hint",
     id: "settings-from-hint",
@@ -41,6 +42,7 @@ export function personField(t) {
     onchange: () => {
       input.value = nameOf(input.value);
       keep("from", input.value || null);
+      renamed();
     },
   });
   return [input, hint];

@@ -11,11 +11,11 @@ const LANGUAGE_NAMES = { en: "English", de: "Deutsch" };
 
 /**
  * The one sheet with everything that a person can set on this browser.
- * @param {{store: any, t: (key: string, args?: object) => string}} context
+ * @param {{link: any, store: any, t: (key: string, args?: object) => string}} context
  * @returns {{open: () => void, add: (title: string, ...nodes: Node[]) => HTMLElement}} `add` adds a
  *   section, for a part of the page that is loaded later
  */
-export function makeSettings({ store, t }) {
+export function makeSettings({ link, store, t }) {
   const body = h("div", { class: "settings-body" });
   const close = { type: "button", class: "tool", "aria-label": t("settings.close") };
   const dialog = h(
@@ -39,7 +39,7 @@ export function makeSettings({ store, t }) {
     add(t(`settings.${name}`), looks(name, t));
   }
   add(t("settings.keys"), keys(t));
-  add(t("settings.from"), ...personField(t));
+  add(t("settings.from"), ...personField(t, () => link.reconnect()));
   document.body.append(dialog);
   return { open: () => openSheet(dialog, store), add };
 }

@@ -4,6 +4,7 @@ import { keptLanguage, tabStorage } from "../kept.js";
 import { sessionId } from "../link/session.js";
 import { connect } from "../link.js";
 import { whoControls } from "../model/turn.js";
+import { keepNow } from "../now.js";
 import { openSheet } from "../sheet.js";
 import { stopper } from "../stop.js";
 import { keep, Store } from "../store.js";
@@ -13,7 +14,6 @@ import { mountAlarm } from "../views/alarm.js";
 import { attempt } from "../views/attempt.js";
 import { mountPart } from "../views/part.js";
 import { mountSay } from "../views/say.js";
-import { mountStale } from "../views/stale.js";
 import { mountTools } from "../views/tools.js";
 import { mountTurn } from "../views/turn.js";
 import { desired } from "./desired.js";
@@ -44,7 +44,7 @@ await loadStrings(chooseLanguage(location.search, keptLanguage(), navigator.lang
 translate(document);
 
 const context = { link, store, t, stop };
-mountStale(context);
+keepNow(context);
 mountActions(at("actions"), context);
 mountAlarm(at("alarm"), at("polite"), { ...context, isParticipant: true });
 mountTurn(at("turn"), context);

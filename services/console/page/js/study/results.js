@@ -4,6 +4,7 @@ import { keptLanguage, tabStorage } from "../kept.js";
 import { sessionId } from "../link/session.js";
 import { connect } from "../link.js";
 import { Hold } from "../model/hold.js";
+import { keepNow } from "../now.js";
 import { addressOf } from "../place.js";
 import { stopper } from "../stop.js";
 import { keep, Store } from "../store.js";
@@ -12,7 +13,6 @@ import { mountActions } from "../views/actions.js";
 import { mountAlarm } from "../views/alarm.js";
 import { attempt } from "../views/attempt.js";
 import { mountResume } from "../views/resume.js";
-import { mountStale } from "../views/stale.js";
 import { mountTools } from "../views/tools.js";
 import { inControl } from "./control.js";
 import { picturesOf } from "./numbers.js";
@@ -41,7 +41,7 @@ await loadStrings(chooseLanguage(location.search, keptLanguage(), navigator.lang
 translate(document);
 
 const context = { link, store, t, stop, hold: new Hold() };
-mountStale(context);
+keepNow(context);
 const secret = new Secret(null);
 mountActions(at("actions"), context);
 mountResume(at("resume"), context);

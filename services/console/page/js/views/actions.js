@@ -1,8 +1,7 @@
 // @ts-check
 import { eachFrame, h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
-import { isStopped } from "../model/turn.js";
-import { escapeStops } from "../stop.js";
+import { deliveryOf, escapeStops } from "../stop.js";
 import { notify } from "./attempt.js";
 
 /** A press and the click that follows it are one, milliseconds. */
@@ -69,7 +68,7 @@ export function mountActions(element, { store, t, stop: send, hold }) {
   addEventListener("pointerdown", onBackdrop, { capture: true });
   const countEscape = (now) => {
     notice();
-    if (escapeStops(escapedAt, now, store.get("arm")?.moving === true)) stop();
+    if (escapeStops(escapedAt, now, store.get("now").moves)) stop();
     escapedAt = now;
   };
   const onKey = (event) => {
@@ -109,16 +108,15 @@ export function mountActions(element, { store, t, stop: send, hold }) {
   const show = () => {
     const state = stateOf(store);
     setAttribute(button, "data-state", state);
-    const moving = store.get("arm")?.moving === true;
-    const idle = touch.matches ? "touch" : moving ? "key_moving" : "key";
+    const idle = touch.matches ? "touch" : store.get("now").moves ? "key_moving" : "key";
     setText(hint, t(`stop.${state === "idle" ? idle : state}`));
   };
   store.subscribe("stop", ({ ageMs }) => {
     if (ageMs) notify(t("stop.late", { s: Math.round(ageMs / 1_000) }));
   });
   const draw = eachFrame(show);
-  store.subscribe(["arm", "stop", "link", "motion"], draw);
-  draw();
+  store.subscribe(["now", "stop", "link", "motion"], draw);
+  show();
 }
 
 /**
@@ -127,11 +125,12 @@ export function mountActions(element, { store, t, stop: send, hold }) {
  * @returns {"unsent"|"down"|"unconfirmed"|"sending"|"stopped"|"idle"}
  */
 function stateOf(store) {
-  const own = store.get("stop")?.state;
-  if (store.get("link")?.state !== "up") return own === "undelivered" ? "unsent" : "down";
-  if (store.get("motion")?.unconfirmed || own === "undelivered") return "unconfirmed";
-  if (isStopped(store.get("arm"))) return "stopped";
-  return own === "sent" ? "sending" : "idle";
+  const delivery = deliveryOf(store);
+  if (delivery === "unsent" || delivery === "unconfirmed") return delivery;
+  const { is, atRest, why } = store.get("now");
+  if (is === "disconnected" && why !== "connecting") return "down";
+  if (atRest) return "stopped";
+  return delivery ?? "idle";
 }
 
 /** Returns whether a pointer is on an element, regardless of anything in between. */

@@ -1,10 +1,8 @@
 // @ts-check
 import { h, setText } from "../dom.js";
 import { icon } from "../icons.js";
-import { banner, isStopped, whoControls } from "../model/turn.js";
-
-/** A connection that is back sooner is not worth a word, milliseconds. */
-const GRACE_MS = 1_200;
+import { banner } from "../model/turn.js";
+import { deliveryOf } from "../stop.js";
 
 /**
  * Alerts: no connection, a stop, an undelivered stop; and, as polite announcements, the robot's
@@ -19,7 +17,6 @@ export function mountAlarm(element, polite, { link, store, t, isParticipant = fa
   const act = h("button", { type: "button", class: "alarm-act", onclick: () => link.reconnect() });
   const bar = h("div", { class: "alarm-bar", hidden: true }, icon("down", 22), text, act);
   element.append(bar);
-  let timer = 0;
   let shown = "";
 
   const show = (key, args = {}) => {
@@ -34,31 +31,22 @@ export function mountAlarm(element, polite, { link, store, t, isParticipant = fa
     act.hidden = !here && !["offline", "undelivered"].includes(key);
   };
   const look = () => {
-    const state = store.get("link")?.state;
-    const stop = store.get("stop")?.state;
-    if (state === "replaced" || state === "gave_way") return show(state);
-    if (state !== "up") {
-      if (stop === "undelivered") return show("undelivered");
-      timer ||= setTimeout(() => show("offline"), GRACE_MS);
-      return;
+    const { is, why, atRest } = store.get("now");
+    const delivery = deliveryOf(store);
+    if (delivery === "unsent") return show("undelivered");
+    if (why && why !== "connecting") return show(why);
+    if (delivery === "unconfirmed") {
+      const late = store.get("motion")?.unconfirmed?.why ?? "silent";
+      return show("unconfirmed", { why: t(`alarm.why.${late}`) });
     }
-    clearTimeout(timer);
-    timer = 0;
-    const arm = store.get("arm");
-    const late = store.get("motion")?.unconfirmed;
-    if (late || stop === "undelivered") {
-      return show("unconfirmed", { why: t(`alarm.why.${late?.why ?? "silent"}`) });
-    }
-    const key = isStopped(arm) ? (isParticipant ? "participant" : "stopped") : "";
+    const key = is === "stopped" && atRest ? (isParticipant ? "participant" : "stopped") : "";
     if (key !== shown) show(key);
   };
-  store.subscribe(["link", "stop", "arm", "motion"], look);
-  look();
+  store.subscribe(["now", "link", "stop", "motion"], look);
 
   let turn = "";
-  store.subscribe(["turn", "link"], () => {
-    const who = whoControls(store.get("control"), store.get("welcome"));
-    const { key, tone } = banner(store.get("link"), store.get("turn"), store.get("arm"), who);
+  store.subscribe("now", (now) => {
+    const { key, tone } = banner(now);
     if (key === turn || tone === "down") return;
     turn = key;
     if (tone === "arm" || key.endsWith("idle")) setText(polite, t(`turn.${key}`));

@@ -7,7 +7,7 @@ import { objectWords } from "../speak.js";
 import { drawObject } from "./drawing.js";
 import { pressObject } from "./press.js";
 
-const MARKS = { held: "hand", picking: "arm", pointed: "arm", delivered: "check" };
+const MARKS = { held: "hand", picking: "arm", halted: "stop", pointed: "arm", delivered: "check" };
 
 /**
  * A card: drawing, label, attributes, bar, percentage, mark. A button that

@@ -6,10 +6,9 @@ import {
   likely,
   marks,
   rankListed,
-  readable,
+  shareWords,
   unlistedOf,
 } from "../model/ranking.js";
-import { whoControls } from "../model/turn.js";
 import { makeCard, updateCard } from "./card.js";
 
 /** Most cards that are shown until all are requested. */
@@ -18,7 +17,7 @@ const MOST = 12;
 const ALL_MOST = 150;
 /** Matches pages that fill the window and do not scroll. */
 const FIXED =
-  "(min-width: 1101px) and (min-height: 640px), (max-width: 640px) and (min-height: 700px), (min-width: 641px) and (max-width: 1100px)";
+  "(min-width: 1101px) and (min-height: 640px), (max-width: 640px) and (min-height: 780px), (min-width: 641px) and (max-width: 1100px)";
 
 /**
  * The objects with what the robot believes, the likely ones first. The operator says one by a press.
@@ -69,16 +68,15 @@ export function mountCards(element, context) {
     }
     const believed = store.get("belief") ?? dialogue?.belief;
     const belief = scene.objects.map(({ name }) => believed?.[name] ?? 0);
-    const now = { dialogue, arm: store.get("arm"), world: store.get("world") };
-    const marked = store.get("stale") ? new Map() : marks(scene, now);
+    const now = store.get("now");
+    const marked = marks(scene, now, store.get("world"));
     const ranked = rankListed(order, scene.objects, belief);
     order = ranked.map((i) => scene.objects[i].name);
     const pinned = new Set([...marked].filter(([, mark]) => mark !== "delivered").map(([i]) => i));
     const { shown, others, rest } = likely(ranked, belief, all ? ALL_MOST : MOST, pinned);
     const unlisted = unlistedOf(scene, dialogue);
     const best = belief.reduce((top, p) => Math.max(top, p), 0);
-    const who = whoControls(store.get("control"), store.get("welcome"));
-    const mine = !context.readOnly && who === "mine";
+    const mine = !context.readOnly && now.who === "mine";
     const items = shown.map((i) => ({
       index: i,
       object: scene.objects[i],
@@ -88,7 +86,7 @@ export function mountCards(element, context) {
       leads: best > 1.5 / countOf(scene) && belief[i] >= best - 1e-9,
     }));
     setAttribute(list, "data-density", density(items.length, height));
-    const asked = askedValue(dialogue);
+    const asked = askedValue(now);
     const make = (item) => makeCard(item, scene, context);
     const update = (node, item) => updateCard(node, item, asked, t);
     const change = () => keyed(list, items, (item) => item.object.name, make, update);
@@ -103,19 +101,14 @@ export function mountCards(element, context) {
     const args = { n: left, share: t.percent(rest + unlisted.share, 1) };
     setText(more, all && others === 0 ? t("objects.fewer") : t("objects.more", args));
     absent.hidden = !(dialogue?.absent > 0);
-    const { sign, share } = readable(dialogue?.absent ?? 0);
-    setText(absent, t("objects.absent", { share: sign + t.percent(share) }));
+    setText(absent, t("objects.absent", { share: shareWords(dialogue?.absent ?? 0, t) }));
   });
-  store.subscribe(
-    ["scene", "dialogue", "arm", "world", "belief", "control", "welcome", "stale"],
-    draw,
-  );
+  store.subscribe(["scene", "dialogue", "world", "belief", "now"], draw);
   draw();
 }
 
 /** The value that the standing question is about. */
-function askedValue(dialogue) {
-  const question = dialogue?.decision === "ask" ? dialogue.question : null;
+function askedValue({ question }) {
   if (question?.type === "attr") return { attribute: question.attribute, value: question.value };
   return ["which", "choice"].includes(question?.type)
     ? { attribute: question.attribute, value: null }

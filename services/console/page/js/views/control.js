@@ -1,7 +1,6 @@
 // @ts-check
 import { eachFrame, h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
-import { whoControls } from "../model/turn.js";
 import { myPages } from "../mypages.js";
 import { attempt } from "./attempt.js";
 
@@ -36,14 +35,20 @@ export function mountControl(element, context) {
   const draw = eachFrame(() => {
     clearTimeout(tick);
     const control = store.get("control");
-    const isStale = store.get("stale") === true;
-    const is = isStale ? "unknown" : whoControls(control, store.get("welcome"));
+    const now = store.get("now");
+    const isStale = now.is === "disconnected" && now.why !== "connecting";
+    const is = now.who;
     const elsewhere = is === "theirs" && pages.isMine(control.operator);
     const asked = is === "mine" && control.asked_by ? control.asked_by : null;
-    const name = control?.name || control?.operator || "";
+    const name = control?.name || t("control.someone");
     setAttribute(element, "data-who", is);
     const key = elsewhere ? "elsewhere" : isStale ? "offline" : is;
-    setText(who, asked ? t("control.asks", { viewer: asked }) : t(`control.${key}`, { name }));
+    setText(
+      who,
+      asked
+        ? t("control.asks", { viewer: control.asked_name || t("control.someone") })
+        : t(`control.${key}`, { name }),
+    );
     const left = control?.expires_ms
       ? Math.ceil((control.expires_ms - link.serverNow()) / 1000)
       : 0;
@@ -52,10 +57,9 @@ export function mountControl(element, context) {
     if (soon) tick = setTimeout(draw, 500);
     const below = soon ? t("control.in", { s: left }) : t("control.viewers", { n });
     setText(viewers, control && !isStale ? below : "");
-    take.hidden = is !== "free" && is !== "theirs";
-    setText(take, t(elsewhere ? "control.here" : is === "theirs" ? "control.ask" : "control.take"));
+    take.hidden = !["free", "theirs", "away"].includes(is);
+    setText(take, t(elsewhere ? "control.here" : is !== "free" ? "control.ask" : "control.take"));
     give.hidden = keep.hidden = !asked;
   });
-  store.subscribe(["control", "welcome", "link", "stale"], draw);
-  draw();
+  store.subscribe(["control", "now"], draw);
 }

@@ -5,8 +5,6 @@ import { noteWords } from "../model/notes.js";
 
 /** Most events that are listed. */
 const MOST = 30;
-/** An outage that is over sooner is not worth a word, milliseconds. */
-const GRACE_MS = 1_200;
 
 /**
  * What happened besides the conversation: services, stops, and this page's connection.
@@ -39,23 +37,16 @@ export function mountEvents(element, { store, t }) {
 /** The outages of this page's connection, as notes; the list grows. */
 function outages(store, changed) {
   const notes = [];
-  let timer = 0;
   let lost = false;
   const add = (type) => {
     notes.push({ who: "system", text: "", unix_ms: Date.now(), note: { type } });
     notes.splice(0, notes.length - MOST);
     changed();
   };
-  store.subscribe("link", ({ state }) => {
-    clearTimeout(timer);
-    if (state === "up" && lost) add("link_back");
-    if (state === "up") lost = false;
-    else if (!lost) {
-      timer = setTimeout(() => {
-        lost = true;
-        add("link_lost");
-      }, GRACE_MS);
-    }
+  store.subscribe("now", ({ is, why }) => {
+    if (why === "connecting" || lost === (is === "disconnected")) return;
+    lost = !lost;
+    add(lost ? "link_lost" : "link_back");
   });
   return notes;
 }

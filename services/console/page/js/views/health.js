@@ -33,14 +33,14 @@ export function mountHealth(element, context) {
   mountEvents(events, context);
 
   const draw = eachFrame(() => {
-    const now = health(store.get("group")?.services, store.get("stale"));
+    const isStale = store.get("now").is === "disconnected";
+    const now = health(store.get("group")?.services, isStale);
     setAttribute(summary, "data-state", now.tone);
     setText(words, t(now.key, now.args));
     const total = store.get("latency")?.p50?.total_ms;
-    const known =
-      !store.get("stale") && typeof total === "number" && store.get("latency").count > 0;
+    const known = !isStale && typeof total === "number" && store.get("latency").count > 0;
     setText(answer, known ? t("health.answers", { time: duration(total, t) }) : "");
   });
-  store.subscribe(["group", "latency", "stale"], draw);
+  store.subscribe(["group", "latency", "now"], draw);
   draw();
 }

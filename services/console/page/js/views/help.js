@@ -7,7 +7,7 @@ import { openSheet } from "../sheet.js";
 import { press } from "./press.js";
 
 /**
- * The dialog that explains the keys, and the keys themselves.
+ * The dialog that explains what can be said and the keys, and the keys themselves.
  * @param {{store: any, link: any, t: any}} context
  * @returns {() => void} opens the dialog
  */
@@ -23,6 +23,9 @@ export function mountHelp(context) {
       h("h2", { id: "help-title", text: t("help.title") }),
       h("button", { ...close, onclick: () => dialog.close() }, icon("close", 22)),
     ),
+    h("h3", { text: t("help.say") }),
+    h("ul", { class: "help-say" }, ...SAY.map((what) => sayable(what, t))),
+    h("h3", { text: t("help.keys") }),
     h("p", { text: t("help.stop") }),
     keys(t),
   );
@@ -35,6 +38,18 @@ export function mountHelp(context) {
     act(event, context, open);
   });
   return open;
+}
+
+/** What a person can do by words, each with phrases that do it. */
+const SAY = ["ask", "answer", "correct", "back", "end", "why"];
+
+function sayable(what, t) {
+  const phrases = h("span", {
+    class: "help-phrases",
+    lang: "en",
+    text: t(`help.say.${what}.words`),
+  });
+  return h("li", {}, `${t(`help.say.${what}`)}: `, phrases);
 }
 
 function keys(t) {

@@ -16,14 +16,14 @@ const SURE = 0.995;
 export function makeLine({ line, lines }, t) {
   const speaker = h("span", { class: "hidden", text: `${t(`who.${line.who}`)}: ` });
   const text = noteWords(line, t) || t("talk.nothing");
-  const words = h("p", { class: "words" }, speaker, text);
+  const time = clockOf(lines.at(-1), t.language());
+  const clock = time ? h("time", { class: "clock", text: time }) : null;
+  const words = h("p", { class: "words" }, speaker, text, clock && " ", clock);
   const notes = [...understood(line, t), ...circumstances(line, t)];
   if (lines.length > 1) {
     notes.push(h("span", { class: "note", text: t("line.times", { n: lines.length }) }));
   }
-  const time = clockOf(lines.at(-1), t.language());
-  const clock = time ? h("time", { class: "clock", text: time }) : null;
-  const below = notes.length || clock ? h("p", { class: "notes" }, ...notes, clock) : null;
+  const below = notes.length ? h("p", { class: "notes" }, ...notes) : null;
   return h("div", { class: "line", "data-who": line.who }, words, below);
 }
 
@@ -44,7 +44,8 @@ function circumstances(line, t) {
     notes.push(h("span", { class: "note strong", text: why }));
   }
   for (const { question, share } of line.answers ?? []) {
-    if (share < SMALL) continue;
+    // What the robot announced is no question: to say that it was answered would confuse.
+    if (share < SMALL || !question.endsWith("?")) continue;
     const percent = share < SURE ? ` ${t.percent(share)}` : "";
     notes.push(h("span", { class: "note", text: t("line.answers", { question }) + percent }));
   }

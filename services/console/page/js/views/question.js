@@ -3,8 +3,7 @@ import { calm, eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
 import { offers } from "../model/answers.js";
 import { drawingOf } from "../model/drawing.js";
-import { endWords } from "../model/notes.js";
-import { whoControls } from "../model/turn.js";
+import { serviceWords } from "../model/health.js";
 import { attempt } from "./attempt.js";
 import { drawObject } from "./drawing.js";
 import { press } from "./press.js";
@@ -25,12 +24,13 @@ export function mountQuestion(element, context) {
   const { link, store, t } = context;
   const kicker = h("p", { class: "question-kicker" });
   const words = h("p", { class: "question-words" });
+  const more = h("p", { class: "question-more" });
   const drawn = h("div", { class: "question-drawing", hidden: true });
   const quick = h("div", { class: "quick" });
   const notThat = correction("not_that", "undo");
   const startOver = correction("start_over", "again");
   const correct = h("div", { class: "correct" }, notThat, startOver);
-  const said = h("div", { class: "question-said" }, kicker, words);
+  const said = h("div", { class: "question-said" }, kicker, words, more);
   const row = h("div", { class: "question-row" }, quick, correct);
   element.append(h("div", { class: "question-head" }, drawn, said), row);
 
@@ -67,16 +67,21 @@ export function mountQuestion(element, context) {
     const dialogue = store.get("dialogue");
     const scene = store.get("scene");
     const delivery = store.get("delivery") ?? null;
-    const now = present(dialogue, scene, delivery, t);
+    const state = store.get("now");
+    const now = present(state, dialogue, scene, delivery, t);
     const fresh = words.textContent !== now.words;
     setText(kicker, now.kicker);
     setText(words, now.words);
+    setText(more, now.more ?? "");
+    setAttribute(more, "lang", now.moreLang ?? null);
     setAttribute(words, "lang", now.lang ?? null);
     setAttribute(words, "data-length", now.words.length > LONG ? "long" : null);
     setAttribute(element, "data-kind", now.kind);
-    picture(delivery?.object ?? null, scene);
-    const mine = whoControls(store.get("control"), store.get("welcome")) === "mine";
-    const offered = mine ? offers(dialogue, scene, delivery) : [];
+    picture(now.kind === "delivered" ? delivery.object : null, scene);
+    const mine = state.who === "mine" && state.is !== "held";
+    const all = mine ? offers(dialogue, scene, delivery) : [];
+    // A robot that is stopped is not invited to fetch.
+    const offered = state.is === "stopped" ? all.filter(({ kind }) => kind !== "example") : all;
     keyed(quick, offered, ({ text, kind }) => `${kind} ${text}`, makeOffer);
     correct.hidden = !mine || !(dialogue?.interaction > 0);
     // To a question "no" is beside it already.
@@ -110,30 +115,45 @@ export function mountQuestion(element, context) {
     words.animate([from, { opacity: 1, transform: "none" }], { duration: 350, easing: "ease-out" });
   }
 
-  const sections = ["dialogue", "scene", "delivery", "speaking", "control", "welcome"];
-  store.subscribe(sections, draw);
-  draw();
+  store.subscribe(["dialogue", "scene", "delivery", "speaking", "now"], draw);
 }
 
 /**
+ * @typedef {object} Headline
+ * @property {string} kind
+ * @property {string} kicker
+ * @property {string} words
+ * @property {string} [more] a second line
+ * @property {string} [lang] of words that are not the page's own
+ * @property {string} [moreLang] of the second line
+ */
+
+/**
+ * What stands in large type.
+ * @param {import("../now.js").Now} now
  * @param {any} dialogue
  * @param {any} scene
  * @param {import("../delivery.js").Delivery|null} delivery
  * @param {any} t
- * @returns {{kind: string, kicker: string, words: string, lang?: string}} `lang`: of words that are not
- *   the page's own
+ * @returns {Headline}
  */
-function present(dialogue, scene, delivery, t) {
+function present(now, dialogue, scene, delivery, t) {
+  if (now.why && now.why !== "connecting") {
+    const kicker = t("question.disconnected");
+    return { kind: "disconnected", kicker, words: t(`turn.${now.why}`) };
+  }
   if (!dialogue || !scene) return { kind: "none", kicker: "", words: t("question.none") };
-  const end = dialogue.last;
+  if (now.is === "stopped") return stopped(now, dialogue, scene, t);
+  if (now.is === "held") {
+    return { kind: "held", kicker: t("question.held"), words: serviceWords(now, t) };
+  }
   if (delivery) {
     const { label } = delivery.object;
     const words = label.charAt(0).toUpperCase() + label.slice(1);
     return { kind: "delivered", kicker: t("delivery.kicker"), words, lang: "en" };
   }
-  if (dialogue.interaction === 0 && !waits(dialogue)) {
-    const label = scene.objects.find((one) => one.name === end?.object)?.label ?? end?.object;
-    const kicker = end ? endWords({ ...end, object: label }, t) : t("question.idle.kicker");
+  if (dialogue.interaction === 0 && !now.question) {
+    const kicker = t("question.idle.kicker");
     return { kind: "idle", kicker, words: t("question.idle", { noun: scene.noun }) };
   }
   const kind = ["ask", "pick", "wait", "say", "cancel"].includes(dialogue.decision)
@@ -143,7 +163,11 @@ function present(dialogue, scene, delivery, t) {
   return { kind, kicker: t(`question.${kind}`), words: t(`question.${kind}.words`), ...own };
 }
 
-/** Returns whether a question stands although no request is open. */
-function waits({ question }) {
-  return question !== null && question !== undefined && question.type !== "none";
+/** A stop comes first; the question that stands, or what comes after, is below it. @returns {Headline} */
+function stopped(now, dialogue, scene, t) {
+  const key = now.atRest ? "turn.stopped" : "turn.stopping";
+  const head = { kind: "stopped", kicker: "", words: t(key), more: t(`${key}.more`) };
+  if (now.question && dialogue.text) return { ...head, more: dialogue.text, moreLang: "en" };
+  const object = scene.objects.find(({ name }) => name === now.aim)?.label;
+  return object ? { ...head, more: t("question.stopped.aim", { object }) } : head;
 }

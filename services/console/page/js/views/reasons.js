@@ -1,6 +1,7 @@
 // @ts-check
 import { h, keyed, setAttribute, setText } from "../dom.js";
-import { actionWords, proof, ranked, toCome } from "../model/reasons.js";
+import { shareWords } from "../model/ranking.js";
+import { actionWords, gist, proof, ranked, toCome } from "../model/reasons.js";
 
 const ONE_DIGIT = { maximumFractionDigits: 1, minimumFractionDigits: 1 };
 const NO_DIGIT = { maximumFractionDigits: 0 };
@@ -17,12 +18,24 @@ const ACTIONS_MAX = 4;
 export function reasonsView(t) {
   const sentence = h("p", { class: "why-sentence" });
   const list = h("ol", { class: "why-list" });
-  const proven = h("p", { class: "why-proof" });
+  const figures = h("p", { class: "why-proof" });
+  // For those who want it: the sentence above says what matters.
+  const proven = h(
+    "details",
+    { class: "why-more" },
+    h("summary", { text: t("why.more") }),
+    figures,
+  );
 
   const lossWords = (loss, isBest) => {
     if (isBest) return t("why.best");
     if (loss < SMALL_S) return t("why.equal");
     return t("why.worse", { s: t.number(loss, loss < MANY_S ? ONE_DIGIT : NO_DIGIT) });
+  };
+  const gistWords = (known) => {
+    if (!known) return "";
+    const { p = 0, ...args } = known.args;
+    return t(known.key, { ...args, share: shareWords(p, t) });
   };
   const make = () => {
     const bar = h("span", { class: "why-bar", "aria-hidden": "true" }, h("i", {}));
@@ -43,12 +56,13 @@ export function reasonsView(t) {
 
   /**
    * @param {any} dialogue the decision with its alternatives
-   * @param {string|null|undefined} aim name of the object that is fetched
+   * @param {string|null} aim name of the object that is fetched
    * @param {any} scene for the names
    */
   function draw(dialogue, aim, scene) {
     const { key, args } = toCome(dialogue.expected_questions);
-    setText(sentence, t(key, args));
+    const first = gistWords(gist(dialogue, aim, scene));
+    setText(sentence, [first, t(key, args)].filter(Boolean).join(" "));
     const ordered = ranked(dialogue, aim, ACTIONS_MAX);
     const items = ordered.map((item, i) => ({ ...item, best: i === 0 }));
     keyed(
@@ -60,7 +74,7 @@ export function reasonsView(t) {
     );
     const known = proof(dialogue.value, dialogue.bounds);
     const sure = known ? `${t(known.key, known.args)} ` : "";
-    setText(proven, sure + t("why.points"));
+    setText(figures, sure + t("why.points"));
   }
   return { sentence, list, proven, draw };
 }

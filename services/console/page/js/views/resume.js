@@ -1,6 +1,6 @@
 // @ts-check
 import { h, setAttribute, setText } from "../dom.js";
-import { isStopped, mayResume } from "../model/turn.js";
+import { mayResume } from "../model/turn.js";
 import { attempt } from "./attempt.js";
 
 /** Between two steps of a hold, milliseconds. */
@@ -35,8 +35,7 @@ export function mountResume(element, context) {
 
   const isShown = () =>
     document.documentElement.dataset.role !== "screen" &&
-    store.get("link")?.state === "up" &&
-    isStopped(store.get("arm")) &&
+    store.get("now").atRest &&
     mayResume(store.get("control"), store.get("welcome"));
   const begin = (by, bySpace = false) => {
     if (hold.begin(performance.now(), bySpace)) holder = by;
@@ -97,7 +96,7 @@ export function mountResume(element, context) {
   document.addEventListener("visibilitychange", cancel);
 
   const draw = () => {
-    const stopped = store.get("arm")?.stopped === true;
+    const stopped = store.get("now").is === "stopped";
     // Whoever has stopped it: a moment passes before it can be released here.
     if (stopped && !wasStopped) hold.press(performance.now());
     wasStopped = stopped;
@@ -105,7 +104,6 @@ export function mountResume(element, context) {
     element.hidden = !isShown();
     if (!element.hidden) watch();
   };
-  store.subscribe(["arm", "link", "control", "welcome"], draw);
+  store.subscribe(["now", "control"], draw);
   store.subscribe("stop", watch);
-  draw();
 }

@@ -1,7 +1,6 @@
 // @ts-check
 import { eachFrame, h, setAttribute } from "../dom.js";
 import { icon } from "../icons.js";
-import { whoControls } from "../model/turn.js";
 import { shownPrompt, speak } from "../speak.js";
 import { reason, waiting } from "./attempt.js";
 
@@ -68,14 +67,20 @@ export function mountSay(element, context) {
   }
 
   const draw = eachFrame(() => {
-    const who = whoControls(store.get("control"), store.get("welcome"));
-    const watching = who === "theirs" || who === "asked";
+    const { who } = store.get("now");
+    const watching = ["theirs", "asked", "away"].includes(who);
     input.disabled = watching;
-    send.disabled = watching || who === "unknown" || store.get("link")?.state !== "up";
+    send.disabled = watching || who === "unknown";
     const noun = store.get("scene")?.noun ?? t("say.thing");
     const words = watching ? t("say.watching") : t("say.placeholder", { noun });
     setAttribute(input, "placeholder", words);
   });
-  store.subscribe(["control", "welcome", "link", "scene"], draw);
-  draw();
+  store.subscribe(["now", "scene"], draw);
+  // A note is about the state in which it was written.
+  let noted = "";
+  store.subscribe("now", ({ is, who, service }) => {
+    const state = `${is} ${who} ${service?.name}`;
+    if (state !== noted) note.textContent = "";
+    noted = state;
+  });
 }

@@ -2,7 +2,6 @@
 import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
 import { actOf, noteOf, tone } from "../model/health.js";
-import { whoControls } from "../model/turn.js";
 import { attempt } from "./attempt.js";
 
 /** Pictures of what a button does. */
@@ -34,7 +33,8 @@ export function mountServices(element, context) {
   };
   const update = (node, service) => {
     const [, , state, note, button] = node.children;
-    const isStale = store.get("stale") === true;
+    const now = store.get("now");
+    const isStale = now.is === "disconnected";
     setAttribute(node, "data-state", isStale ? "unknown" : tone(service.state));
     setText(state, t(`service.${isStale ? "unknown" : service.state}`));
     const act = actOf(service.state);
@@ -45,13 +45,13 @@ export function mountServices(element, context) {
     button.dataset.act = act;
     const restarts = service.restarts > 0 ? t("services.restarts", { n: service.restarts }) : "";
     setText(note, [noteOf(service, t), restarts].filter(Boolean).join(" · "));
-    button.disabled = isStale || whoControls(store.get("control"), store.get("welcome")) !== "mine";
+    button.disabled = now.who !== "mine";
   };
   const draw = eachFrame(() => {
     const services = store.get("group")?.services ?? [];
     empty.hidden = services.length > 0;
     keyed(list, services, (service) => service.name, make, update);
   });
-  store.subscribe(["group", "control", "welcome", "stale"], draw);
+  store.subscribe(["group", "now"], draw);
   draw();
 }

@@ -1,7 +1,8 @@
 // @ts-check
 import { eachFrame, h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
-import { banner, whoControls } from "../model/turn.js";
+import { serviceWords } from "../model/health.js";
+import { banner } from "../model/turn.js";
 
 /**
  * The sign that says whose turn it is.
@@ -16,15 +17,14 @@ export function mountTurn(element, { store, t }) {
   let drawn = "";
 
   const draw = eachFrame(() => {
-    const who = whoControls(store.get("control"), store.get("welcome"));
-    const now = banner(store.get("link"), store.get("turn"), store.get("arm"), who);
-    setAttribute(element, "data-tone", now.tone);
-    setAttribute(element, "data-state", now.key);
-    setText(words, t(`turn.${now.key}`));
-    setText(more, t(`turn.${now.key}.more`));
-    if (drawn !== now.icon) lamp.replaceChildren(icon(/** @type {any} */ (now.icon), 26));
-    drawn = now.icon;
+    const now = store.get("now");
+    const sign = banner(now);
+    setAttribute(element, "data-tone", sign.tone);
+    setAttribute(element, "data-state", sign.key);
+    setText(words, t(`turn.${sign.key}`));
+    setText(more, now.service ? serviceWords(now, t) : t(`turn.${sign.key}.more`));
+    if (drawn !== sign.icon) lamp.replaceChildren(icon(/** @type {any} */ (sign.icon), 26));
+    drawn = sign.icon;
   });
-  store.subscribe(["link", "turn", "arm", "control", "welcome"], draw);
-  draw();
+  store.subscribe("now", draw);
 }

@@ -1,5 +1,6 @@
 // @ts-check
 import { eachFrame, h, setText } from "../dom.js";
+import { serviceWords } from "../model/health.js";
 import { reasonsView } from "./reasons.js";
 
 /**
@@ -14,16 +15,24 @@ export function mountWhy(element, { store, t }) {
 
   const draw = eachFrame(() => {
     const dialogue = store.get("dialogue");
-    const shown = dialogue?.interaction > 0 && (dialogue.alternatives?.length ?? 0) > 0;
+    const now = store.get("now");
+    const decided = dialogue?.interaction > 0 && (dialogue.alternatives?.length ?? 0) > 0;
+    const shown = decided && !["disconnected", "held"].includes(now.is);
     list.hidden = proven.hidden = !shown;
     if (!shown) {
       setText(title, t("why.idle"));
-      setText(sentence, t("why.idle.more"));
+      setText(sentence, unknown(now, t) ?? t("why.idle.more"));
       return;
     }
     setText(title, t(dialogue.decision === "ask" ? "why.question" : "why.action"));
-    drawReasons(dialogue, store.get("arm")?.object, store.get("scene"));
+    drawReasons(dialogue, now.aim, store.get("scene"));
+    if (now.is === "stopped") setText(sentence, t("why.stopped"));
   });
-  store.subscribe(["dialogue", "scene"], draw);
-  draw();
+  store.subscribe(["dialogue", "scene", "now"], draw);
+}
+
+/** Why there is no decision to explain, if there is none for a reason. */
+function unknown(now, t) {
+  if (now.is === "disconnected") return t("question.disconnected");
+  return now.is === "held" ? serviceWords(now, t) : null;
 }

@@ -41,14 +41,13 @@ export function mountVoice(element, { link, store, t, settings }) {
   bindPress(view.talk, (event) => talk.press(event));
   const drawNow = () => {
     const { talks, latched, handsFree, isOpening, isOpen } = talk;
-    const up = store.get("link")?.state === "up";
-    const turn = store.get("turn")?.state;
+    const { is, turn } = store.get("now");
     const standing = talk.standing();
-    const known = { up, turn, talks, latched, handsFree, isOpening, isOpen, standing };
+    const known = { is, turn, talks, latched, handsFree, isOpening, isOpen, standing };
     show(view, { sign: sign(known), talk, playback, t });
   };
   draw = eachFrame(drawNow);
-  store.subscribe(["link", "turn", "hearing", "welcome"], notify);
+  store.subscribe(["now", "hearing", "welcome"], notify);
   // A hidden page does not listen.
   addEventListener("pagehide", () => talk.close());
   // At once: no button is without its words for as long as a frame.

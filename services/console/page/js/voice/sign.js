@@ -1,7 +1,7 @@
 // @ts-check
 /**
  * @typedef {object} Known
- * @property {boolean} up whether there is a connection
+ * @property {string} is the robot's state, of section `now`
  * @property {string|undefined} turn state of section `turn`
  * @property {boolean} talks
  * @property {boolean} latched
@@ -17,8 +17,9 @@
  * @returns {{key: string, state: "off"|"idle"|"opening"|"talking"|"hearing"|"understanding",
  *   disabled: boolean}} `key` of the words: `voice.talk.KEY`, with `voice.talk.KEY.more` below
  */
-export function sign({ up, turn, talks, latched, handsFree, isOpening, isOpen, standing }) {
-  if (!up || turn === "down") return { key: "off", state: "off", disabled: true };
+export function sign({ is, turn, talks, latched, handsFree, isOpening, isOpen, standing }) {
+  if (is === "disconnected") return { key: "off", state: "off", disabled: true };
+  if (is === "held") return { key: "held", state: "off", disabled: true };
   if (standing) return { key: "unable", state: "off", disabled: false };
   if (isOpening) return { key: "opening", state: "opening", disabled: false };
   const open = talks || (handsFree && isOpen);

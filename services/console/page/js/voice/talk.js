@@ -216,6 +216,10 @@ export class Talk {
     if (!this.#link.isUp) {
       this.#recording.lose();
       if (this.talks) this.#fail("voice.fault.link");
+    } else if (this.fault?.key === "voice.fault.link") {
+      this.fault = null;
+    } else if (this.fault?.key === "voice.fault.watching" && (who === "mine" || who === "free")) {
+      this.fault = null;
     } else if (this.#recording.isSending && who === "theirs") {
       this.close();
       this.#fail("voice.fault.watching");
