@@ -9,10 +9,10 @@ const AXES: usize = 160;
 const TURNS: [f64; 4] = [0.12, 0.05, 0.02, 0.008];
 
 /// A hull is cut where its parts have capsules of less than this share of its own capsule's volume.
-const WORTH_CUTTING: f64 = 0.85;
+const WORTH_CUTTING: f64 = 0.93;
 
 /// Places of a cut, as shares of the length.
-const CUTS: [f64; 3] = [0.35, 0.5, 0.65];
+const CUTS: [f64; 5] = [0.2, 0.35, 0.5, 0.65, 0.8];
 
 /// A cylinder with half balls at its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,8 @@ impl Capsule {
     pub(crate) fn distance(&self, point: &Vector3<f64>) -> f64 {
         let axis = self.b - self.a;
         let along = axis.norm_squared();
-        let t = if along > 0.0 { ((point - self.a).dot(&axis) / along).clamp(0.0, 1.0) } else { 0.0 };
+        let t =
+            if along > 0.0 { ((point - self.a).dot(&axis) / along).clamp(0.0, 1.0) } else { 0.0 };
         (point - self.a - axis * t).norm() - self.radius
     }
 
@@ -144,26 +145,30 @@ fn along(hull: &Hull, axis: &Vector3<f64>) -> Capsule {
 }
 
 /// Steps towards the smallest circle.
-const CIRCLE_STEPS: usize = 60;
+const CIRCLE_STEPS: usize = 40;
 
 /// Returns a circle round points that is hardly larger than the smallest one (Bădoiu and Clarkson, 2003).
 fn circle(points: &[(f64, f64)]) -> (f64, f64, f64) {
-    let distance = |x: f64, y: f64, at: &(f64, f64)| (at.0 - x).hypot(at.1 - y);
     let count = points.len().max(1) as f64;
     let mut x = points.iter().map(|at| at.0).sum::<f64>() / count;
     let mut y = points.iter().map(|at| at.1).sum::<f64>() / count;
     let mut best = (x, y, f64::INFINITY);
     for step in 0..CIRCLE_STEPS {
-        let far = points.iter().max_by(|a, b| distance(x, y, a).total_cmp(&distance(x, y, b)));
-        let Some(far) = far else { break };
-        let radius = distance(x, y, far);
-        if radius < best.2 {
-            best = (x, y, radius);
+        let (mut far, mut most) = ((x, y), 0.0);
+        for at in points {
+            let (dx, dy) = (at.0 - x, at.1 - y);
+            let squared = dx * dx + dy * dy;
+            if squared > most {
+                (far, most) = (*at, squared);
+            }
+        }
+        if most < best.2 {
+            best = (x, y, most);
         }
         let share = 1.0 / (step as f64 + 2.0);
         (x, y) = (x + (far.0 - x) * share, y + (far.1 - y) * share);
     }
-    (best.0, best.1, best.2)
+    (best.0, best.1, best.2.sqrt())
 }
 
 #[cfg(test)]

@@ -106,27 +106,39 @@ fn fingers(
         (gap(source, arm, &q, &tips, hulls, (&y, &z)), q)
     });
     let [(one, q_one), (other, q_other)] = ends;
-    let travel: f64 = arm.fingers.iter().filter(|_| slides).map(|joint| {
-        let joint = &source.joints[*joint];
-        let (low, high) = match joint.follows {
-            Some(rule) => {
-                let (low, high) = source.joints[rule.joint].span();
-                (rule.factor * low, rule.factor * high)
-            }
-            None => joint.span(),
-        };
-        (high - low).abs()
-    }).sum();
+    let travel: f64 = arm
+        .fingers
+        .iter()
+        .filter(|_| slides)
+        .map(|joint| {
+            let joint = &source.joints[*joint];
+            let (low, high) = match joint.follows {
+                Some(rule) => {
+                    let (low, high) = source.joints[rule.joint].span();
+                    (rule.factor * low, rule.factor * high)
+                }
+                None => joint.span(),
+            };
+            (high - low).abs()
+        })
+        .sum();
     let measured = one.zip(other).map(|(a, b)| (a.min(b), a.max(b)));
-    let believable = measured.filter(|(low, high)| high - low.max(0.0) >= OPENING_MIN_M && *high < 0.4);
+    let believable =
+        measured.filter(|(low, high)| high - low.max(0.0) >= OPENING_MIN_M && *high < 0.4);
     let (closed_m, open_m) = match (believable, slides && travel >= OPENING_MIN_M) {
         (Some(ends), _) => ends,
         (None, true) => {
-            findings.assumed(format!("the fingers close entirely: they open by their travel, {:.0} mm", travel * 1e3));
+            findings.assumed(format!(
+                "the fingers close entirely: they open by their travel, {:.0} mm",
+                travel * 1e3
+            ));
             (0.0, travel)
         }
         (None, false) => {
-            findings.assumed(format!("the gripper opens {:.0} mm: its shapes do not say; --opening-mm N", OPEN_M * 1e3));
+            findings.assumed(format!(
+                "the gripper opens {:.0} mm: its shapes do not say; --opening-mm N",
+                OPEN_M * 1e3
+            ));
             (0.0, OPEN_M)
         }
     };
@@ -144,7 +156,10 @@ fn fingers(
     }
     let tip = tip(source, arm, &source.poses(&open), &tips, hulls, (&y, &z));
     if tip.1 {
-        findings.assumed(format!("the fingers are {:.0} mm long: their meshes are missing", FINGER_M * 1e3));
+        findings.assumed(format!(
+            "the fingers are {:.0} mm long: their meshes are missing",
+            FINGER_M * 1e3
+        ));
     }
     Gripper {
         frame: frame(tip.0, &y, &z),
@@ -226,7 +241,11 @@ fn reach(
         let shapes: Vec<Hull> = solid(source, hulls, &to_last, poses, *link).collect();
         let origin = (to_last * poses[*link]).translation.vector;
         let count = shapes.len() as f64;
-        if shapes.is_empty() { origin } else { shapes.iter().map(|it| it.centre).sum::<Vector3<f64>>() / count }
+        if shapes.is_empty() {
+            origin
+        } else {
+            shapes.iter().map(|it| it.centre).sum::<Vector3<f64>>() / count
+        }
     });
     middles.sum::<Vector3<f64>>() / tips.len().max(1) as f64
 }
@@ -324,12 +343,7 @@ fn frame(origin: Vector3<f64>, y: &Vector3<f64>, z: &Vector3<f64>) -> Isometry3<
 }
 
 /// Returns a gripper for an arm without fingers: on its flange, or at the end of a hand that does not move.
-fn without_fingers(
-    source: &Source,
-    arm: &Arm,
-    hulls: &Hulls,
-    findings: &mut Findings,
-) -> Gripper {
+fn without_fingers(source: &Source, arm: &Arm, hulls: &Hulls, findings: &mut Findings) -> Gripper {
     let open = source.zeros();
     let poses = source.poses(&open);
     let z = outwards(source, arm, &poses);
@@ -354,7 +368,9 @@ fn without_fingers(
         OPEN_M * 1e3,
         if is_hand { "at the end of the hand" } else { "120 mm ahead of the flange" }
     ));
-    findings.missing("the gripper: describe it in the file, or state its opening with --opening-mm N".to_owned());
+    findings.missing(
+        "the gripper: describe it in the file, or state its opening with --opening-mm N".to_owned(),
+    );
     Gripper {
         frame: frame(z * end, &y, &z),
         closed_m: 0.0,

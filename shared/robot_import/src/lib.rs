@@ -234,6 +234,9 @@ fn published_pairs(
     all.into_iter().filter(|(a, b)| !hulls[*a].is_empty() && !hulls[*b].is_empty()).collect()
 }
 
+/// Distance that plans keep between the shapes of an arm, and a little more, metres.
+const KEPT_M: f64 = 0.012;
+
 /// Postures in which shapes are compared with hulls.
 const COMPARED: usize = 300;
 
@@ -262,7 +265,12 @@ impl Import<'_> {
                 shapes::of_body(own, &self.rest[link])
             };
             if !own.is_empty() {
-                findings.fits.push(shapes::fit(&source.links[link].name, own, &shapes, is_guessed[link]));
+                findings.fits.push(shapes::fit(
+                    &source.links[link].name,
+                    own,
+                    &shapes,
+                    is_guessed[link],
+                ));
             }
             all.push(shapes);
         }
@@ -285,10 +293,14 @@ impl Import<'_> {
     /// Returns the pairs whose shapes overlap in most postures in which the links themselves are apart.
     fn overlapping(&self, hulls: &[Vec<Hull>], still: &[f64]) -> Vec<Pair> {
         let excused: BTreeSet<Pair> = self.pairs.excused().map(|(pair, _)| pair).collect();
-        let solid: Vec<usize> = (0..hulls.len()).filter(|link| !self.shapes[*link].is_empty()).collect();
-        let all = solid.iter().enumerate().flat_map(|(at, a)| solid[at + 1..].iter().map(|b| (*a, *b)));
+        let solid: Vec<usize> =
+            (0..hulls.len()).filter(|link| !self.shapes[*link].is_empty()).collect();
+        let all =
+            solid.iter().enumerate().flat_map(|(at, a)| solid[at + 1..].iter().map(|b| (*a, *b)));
         let all: Vec<Pair> = all
-            .filter(|pair| !excused.contains(pair) && self.is_of_arm(pair.0) && self.is_of_arm(pair.1))
+            .filter(|pair| {
+                !excused.contains(pair) && (self.is_of_arm(pair.0) || self.is_of_arm(pair.1))
+            })
             .collect();
         let mut random = Random::new(SEED + 1);
         let mut counts = vec![(0usize, 0usize); all.len()];
@@ -324,7 +336,7 @@ impl Import<'_> {
             })
         };
         let theirs: Vec<Capsule> = placed(b).collect();
-        placed(a).any(|own| theirs.iter().any(|it| own.to(it) < 0.0))
+        placed(a).any(|own| theirs.iter().any(|it| own.to(it) < KEPT_M))
     }
 
     fn postures(&self, postures: &[(&'static str, manipulation::Joints)]) -> Vec<write::Posture> {
@@ -357,13 +369,19 @@ impl Import<'_> {
         findings: &mut Findings,
     ) -> Result<Placed, Diagnostics> {
         let base = self.mount;
-        let middle = self.bounds.iter().map(|bounds| 0.5 * (bounds.range.0 + bounds.range.1)).collect();
+        let middle =
+            self.bounds.iter().map(|bounds| 0.5 * (bounds.range.0 + bounds.range.1)).collect();
         let placeholder = [("neutral", middle)];
         let mut best = Progress::default();
         for behind_m in BEHIND_M {
             self.mount = base * Translation3::new(-behind_m, 0.0, 0.0);
             let robot = self.robot(&placeholder).map_err(|what| {
-                Diagnostic::new(label, "robot", what, "report it: the files that import writes must be readable")
+                Diagnostic::new(
+                    label,
+                    "robot",
+                    what,
+                    "report it: the files that import writes must be readable",
+                )
             })?;
             for table_z_m in self.tables(hulls) {
                 let with_rest = |postures: &[(&'static str, manipulation::Joints)]| {
@@ -389,7 +407,8 @@ impl Import<'_> {
             let placed = hulls[link].iter().map(|hull| hull.at(&self.rest[link]));
             placed.map(|hull| hull.extent(&nalgebra::Vector3::z()).0).fold(origin, f64::min)
         };
-        let floor = body.map(lowest).fold(self.mount.translation.z, f64::min) - self.mount.translation.z;
+        let floor =
+            body.map(lowest).fold(self.mount.translation.z, f64::min) - self.mount.translation.z;
         let round = |m: f64| (m * 1e3).round() / 1e3 + 0.0;
         if floor > -ON_TABLE_M {
             STANDING_M.iter().map(|step| round(floor + step)).collect()
@@ -406,16 +425,22 @@ impl Import<'_> {
         };
         findings.chosen(format!("frame base: at {base}, upright, x as in the file{behind}"));
         let table = placed.table_z_m * 1e3;
-        findings.assumed(format!("table: {table:.0} mm from frame base in height, from 400 mm ahead of it"));
+        findings.assumed(format!(
+            "table: {table:.0} mm from frame base in height, from 400 mm ahead of it"
+        ));
         let [x, y, z] = placed.hand_over_m;
         findings.chosen(format!("hand-over: at {x} {y} {z} m"));
         let (asked, kept) = (CLEARANCES_M[0] * 1e3, placed.clearance_m * 1e3);
         if kept < asked {
-            findings.assumed(format!("posture of rest: {kept:.0} mm of clearance, {asked:.0} mm were not found"));
+            findings.assumed(format!(
+                "posture of rest: {kept:.0} mm of clearance, {asked:.0} mm were not found"
+            ));
         } else {
             findings.chosen(format!("posture of rest: the gripper points down above the table, {kept:.0} mm clear of everything"));
         }
-        findings.missing("acceleration and jerk of the joints: 2 rad/s² and 20 rad/s³ are assumed".to_owned());
+        findings.missing(
+            "acceleration and jerk of the joints: 2 rad/s² and 20 rad/s³ are assumed".to_owned(),
+        );
         findings.missing("a driver of the real arm: arm.driver is the kinematic model".to_owned());
     }
 }
@@ -428,9 +453,12 @@ fn unplaced(label: &str, best: &Progress) -> Diagnostic {
             best.places
         )
     } else if !best.rests {
-        "no posture above the table is clear of the arm itself and its body".to_owned()
+        format!("no posture above the table is clear of the arm itself and its body: {}", best.why)
     } else {
-        format!("{} of {BLOCKS} blocks can be fetched and handed over, wherever they stand", best.blocks)
+        let (count, why) = (best.blocks, &best.why);
+        format!(
+            "{count} of {BLOCKS} blocks can be fetched and handed over, wherever they stand: {why}"
+        )
     };
     let help = "check --tip and --gripper, or the size of the shapes that import lists";
     Diagnostic::new(label, "robot", what, help)

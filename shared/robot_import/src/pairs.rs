@@ -81,18 +81,27 @@ impl Sampler<'_> {
 }
 
 fn distance(placed: &[Vec<Hull>], (a, b): Pair, within: f64) -> f64 {
-    let all = placed[a].iter().flat_map(|own| placed[b].iter().map(move |it| own.distance(it, within)));
+    let all =
+        placed[a].iter().flat_map(|own| placed[b].iter().map(move |it| own.distance(it, within)));
     all.fold(f64::INFINITY, f64::min)
 }
 
 /// Sorts the pairs; `still` has the positions of joints that belong to neither arm nor gripper.
-pub(crate) fn sample(source: &Source, arm: &Arm, hulls: &[Vec<Hull>], still: &[f64], seed: u64) -> Pairs {
+pub(crate) fn sample(
+    source: &Source,
+    arm: &Arm,
+    hulls: &[Vec<Hull>],
+    still: &[f64],
+    seed: u64,
+) -> Pairs {
     let first = source.joints[arm.joints[0]].child;
-    let solid: Vec<usize> = (0..source.links.len()).filter(|link| !hulls[*link].is_empty()).collect();
+    let solid: Vec<usize> =
+        (0..source.links.len()).filter(|link| !hulls[*link].is_empty()).collect();
     let is_own = |link: usize| source.is_below(link, first);
-    let pairs = solid.iter().enumerate().flat_map(|(at, a)| {
-        solid[at + 1..].iter().map(move |b| (*a.min(b), *a.max(b)))
-    });
+    let pairs = solid
+        .iter()
+        .enumerate()
+        .flat_map(|(at, a)| solid[at + 1..].iter().map(move |b| (*a.min(b), *a.max(b))));
     let all: Vec<Pair> = pairs.filter(|(a, b)| is_own(*a) || is_own(*b)).collect();
     let moving = arm.joints.iter().chain(&arm.fingers).copied();
     let moving = moving.filter(|joint| source.joints[*joint].follows.is_none()).collect();

@@ -1,7 +1,9 @@
 //! Where the arm stands and works: height of the table, posture of rest, place of the hand-over, and blocks within reach.
 
+use std::f64::consts::TAU;
+
 use manipulation::{
-    ArmShape, Cuboid, Joints, Limb, ObjectPose, PlanSettings, Robot, fetching_limb,
+    ArmShape, Chain, Cuboid, Gap, Joints, Limb, ObjectPose, PlanSettings, Robot, fetching_limb,
 };
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
@@ -52,7 +54,7 @@ pub(crate) struct Placed {
 }
 
 /// How far a search came, for the message of one that failed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Progress {
     /// Blocks that were placed.
     pub(crate) blocks: usize,
@@ -60,6 +62,8 @@ pub(crate) struct Progress {
     pub(crate) rests: bool,
     /// Places on the table that the gripper reaches from above.
     pub(crate) places: usize,
+    /// What was in the way then; empty where nothing is known.
+    pub(crate) why: String,
 }
 
 /// Returns the table at a height.
@@ -88,9 +92,14 @@ fn yaws(count: u32) -> impl Iterator<Item = f64> {
 
 /// Returns the least distance of the arm from itself, the body and the table, metres, at most 0.1.
 fn clearance(robot: &Robot, q: &Joints, table: &Cuboid) -> f64 {
+    gap(robot, q, table).distance_m
+}
+
+/// Returns what is least far apart of the arm, the body and the table, within 0.1 m.
+fn gap(robot: &Robot, q: &Joints, table: &Cuboid) -> Gap {
     let shape = ArmShape::at(robot.arm(Limb::Only), q);
     let gap = shape.to_itself(0.1).min(shape.to_trunk(0.1));
-    gap.min(shape.to_cuboid("table", table, gap.distance_m)).distance_m
+    gap.min(shape.to_cuboid("table", table, gap.distance_m))
 }
 
 /// A place on the table, and the posture above it.
@@ -122,7 +131,8 @@ impl Places<'_> {
             found.push((cell(at), posture));
             for (dx, dy) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
                 let next = (at.0 + dx, at.1 + dy);
-                let is_on_grid = (0..GRID_X).contains(&next.0) && (-GRID_Y..=GRID_Y).contains(&next.1);
+                let is_on_grid =
+                    (0..GRID_X).contains(&next.0) && (-GRID_Y..=GRID_Y).contains(&next.1);
                 if !is_on_grid || seen.contains(&next) {
                     continue;
                 }
@@ -150,9 +160,8 @@ impl Places<'_> {
     fn searched(&self, [x, y]: [f64; 2], yaw: f64) -> Option<Joints> {
         let chain = &self.robot.arm(Limb::Only).chain;
         let hover = down([x, y, self.hover_m()], yaw);
-        let first = chain.inverse(&hover, None).ok()?.q;
-        let all = chain.solutions(&hover);
-        [first].iter().chain(&all).take(LOOKED_AT).find(|q| self.descends(q)).copied()
+        chain.inverse(&hover, None).ok()?;
+        distinct(chain, &hover).into_iter().take(LOOKED_AT).find(|q| self.descends(q))
     }
 
     /// Does the same in a posture near one that is given.
@@ -173,6 +182,28 @@ impl Places<'_> {
     }
 }
 
+/// Returns the postures that reach a pose, each joint turned as near to zero as its limits let it: whole turns make no
+/// other posture.
+fn distinct(chain: &Chain, target: &Isometry3<f64>) -> Vec<Joints> {
+    let mut all: Vec<Joints> = Vec::new();
+    for mut q in chain.solutions(target) {
+        for (at, (low, high)) in q.iter_mut().zip(chain.limits().0) {
+            let near = *at - (*at / TAU).round() * TAU;
+            if (low..=high).contains(&near) {
+                *at = near;
+            }
+        }
+        let is_same = |other: &Joints| other.iter().zip(&q).all(|(a, b)| (a - b).abs() < SAME_RAD);
+        if !all.iter().any(is_same) {
+            all.push(q);
+        }
+    }
+    all
+}
+
+/// Postures that differ by less in each joint are the same, radians.
+const SAME_RAD: f64 = 1e-3;
+
 /// Steps of the grid at which the search begins.
 const STARTS: [(i32, i32); 6] = [(2, 0), (4, 0), (0, 0), (2, 3), (2, -3), (6, 0)];
 
@@ -184,12 +215,15 @@ const COMFORTABLE: f64 = 0.1;
 
 /// Returns the best posture above the table, and its clearance: the gripper points down, and the joints are far from
 /// their limits.
-fn rest(robot: &Robot, at: [f64; 2], table_z_m: f64) -> Option<(Joints, f64)> {
+///
+/// # Errors
+/// What is in the way in the posture with the greatest clearance.
+fn rest(robot: &Robot, at: [f64; 2], table_z_m: f64) -> Result<(Joints, f64), String> {
     let (chain, table) = (&robot.arm(Limb::Only).chain, table(table_z_m));
     let ranges = &chain.limits().0[..chain.joints()];
     let comfort = |q: &Joints| {
         let shares = ranges.iter().zip(q).map(|((low, high), at)| {
-            let half = 0.5 * (high - low).min(std::f64::consts::TAU);
+            let half = 0.5 * (high - low).min(TAU);
             ((at - low).min(high - at) / half.max(1e-6)).min(1.0)
         });
         let turned: f64 = q.iter().take(chain.joints()).map(|at| at.abs()).sum();
@@ -197,11 +231,15 @@ fn rest(robot: &Robot, at: [f64; 2], table_z_m: f64) -> Option<(Joints, f64)> {
     };
     // The best of each clearance, the greatest first.
     let mut best: [Option<(f64, Joints)>; CLEARANCES_M.len()] = [None; CLEARANCES_M.len()];
+    let mut widest = Gap::none(f64::NEG_INFINITY);
     for height_m in REST_M {
         let targets = yaws(4).map(|yaw| down([at[0], at[1], table_z_m + height_m], yaw));
-        for q in targets.flat_map(|target| chain.solutions(&target)) {
-            let (comfort, clearance_m) = (comfort(&q), clearance(robot, &q, &table));
-            let level = CLEARANCES_M.iter().position(|least_m| clearance_m >= *least_m);
+        for q in targets.flat_map(|target| distinct(chain, &target)) {
+            let (comfort, gap) = (comfort(&q), gap(robot, &q, &table));
+            if gap.distance_m > widest.distance_m {
+                widest = gap;
+            }
+            let level = CLEARANCES_M.iter().position(|least_m| gap.distance_m >= *least_m);
             let Some(level) = level else { continue };
             if best[level].is_none_or(|(most, _)| comfort > most) {
                 best[level] = Some((comfort, q));
@@ -211,7 +249,15 @@ fn rest(robot: &Robot, at: [f64; 2], table_z_m: f64) -> Option<(Joints, f64)> {
             break;
         }
     }
-    best.iter().zip(CLEARANCES_M).find_map(|(it, least_m)| Some(((*it)?.1, least_m)))
+    let found = best.iter().zip(CLEARANCES_M).find_map(|(it, least_m)| Some(((*it)?.1, least_m)));
+    found.ok_or_else(|| {
+        let (link, other, mm) = (widest.link, widest.other, widest.distance_m * 1e3);
+        if widest.is_some() {
+            format!("its {link} is {mm:.0} mm from {other} at best")
+        } else {
+            "the gripper does not come high enough".to_owned()
+        }
+    })
 }
 
 /// Returns the posture of rest and others to either side of it that are within the limits.
@@ -239,7 +285,8 @@ fn widths(gripper: &Gripper) -> [f64; 2] {
 
 fn block(number: usize, [x, y]: [f64; 2], table_z_m: f64, widths: &[f64; 2]) -> ObjectPose {
     let width = widths[number % 2];
-    let size_m = if number.is_multiple_of(2) { [width; 3] } else { [1.5 * width, width, 1.5 * width] };
+    let size_m =
+        if number.is_multiple_of(2) { [width; 3] } else { [1.5 * width, width, 1.5 * width] };
     let size_m = size_m.map(|edge| (edge * 1e3).round() / 1e3);
     ObjectPose {
         xyz_m: [x, y, table_z_m + 0.5 * size_m[2]].map(|m| (m * 1e4).round() / 1e4),
@@ -280,26 +327,33 @@ pub(crate) fn on_table(
         return Err(progress);
     };
     let nearer = [middle[0] - 0.06, middle[0], middle[0] - 0.12, middle[0] + 0.06];
-    let mut rests = nearer.iter().filter_map(|x| rest(robot, [*x, 0.0], table_z_m));
     let mut found: Option<(Joints, f64)> = None;
-    while found.is_none_or(|(_, clearance_m)| clearance_m < CLEARANCES_M[0]) {
-        let Some(next) = rests.next() else { break };
-        if found.is_none_or(|(_, clearance_m)| next.1 > clearance_m) {
-            found = Some(next);
+    for x in nearer {
+        match rest(robot, [x, 0.0], table_z_m) {
+            Ok(next) if found.is_none_or(|(_, clearance_m)| next.1 > clearance_m) => {
+                found = Some(next);
+            }
+            Ok(_) => {}
+            Err(why) => progress.why = why,
+        }
+        if found.is_some_and(|(_, clearance_m)| clearance_m >= CLEARANCES_M[0]) {
+            break;
         }
     }
-    let (neutral, clearance_m) = found.ok_or(progress)?;
+    let Some((neutral, clearance_m)) = found else { return Err(progress) };
     progress.rests = true;
     let postures = around(robot, neutral);
-    let robot = with_rest(&postures).ok_or(progress)?;
+    let Some(robot) = with_rest(&postures) else { return Err(progress) };
     let widths = widths(gripper);
     for hand_over_m in hand_overs(&places, middle, table_z_m) {
         let plan = settings(table_z_m, hand_over_m);
-        let blocks = blocks(&robot, &places, hand_over_m, &widths, &plan);
+        let (blocks, why) = blocks(&robot, &places, hand_over_m, &widths, &plan);
         if blocks.len() == BLOCKS {
             return Ok(Placed { table_z_m, hand_over_m, postures, clearance_m, blocks });
         }
-        progress.blocks = progress.blocks.max(blocks.len());
+        if blocks.len() > progress.blocks || progress.blocks == 0 {
+            (progress.blocks, progress.why) = (blocks.len(), why);
+        }
     }
     Err(progress)
 }
@@ -320,20 +374,20 @@ fn hand_overs(places: &[[f64; 2]], middle: [f64; 2], table_z_m: f64) -> Vec<[f64
     all
 }
 
-/// Returns as many blocks as can be fetched, each with all others in place.
+/// Returns as many blocks as can be fetched, each with all others in place, and why the last one that was tried cannot.
 fn blocks(
     robot: &Robot,
     places: &[[f64; 2]],
     hand_over_m: [f64; 3],
     widths: &[f64; 2],
     plan: &PlanSettings,
-) -> Vec<ObjectPose> {
-    let mut placed: Vec<ObjectPose> = Vec::new();
+) -> (Vec<ObjectPose>, String) {
+    let (mut placed, mut why) = (Vec::<ObjectPose>::new(), String::new());
     let is_far = |at: &[f64; 2], x: f64, y: f64| (at[0] - x).hypot(at[1] - y) >= APART_M;
     let fetches = |placed: &[ObjectPose], i: usize| {
         let others = placed.iter().enumerate().filter(|(j, _)| *j != i);
         let others: Vec<Cuboid> = others.map(|(_, it)| it.cuboid()).collect();
-        fetching_limb(robot, &placed[i], None, &others, plan).is_ok()
+        fetching_limb(robot, &placed[i], None, &others, plan)
     };
     for at in places.iter().take(LOOKS_MAX) {
         if !is_far(at, hand_over_m[0], hand_over_m[1])
@@ -343,7 +397,9 @@ fn blocks(
         }
         placed.push(block(placed.len(), *at, plan.table_z_m, widths));
         let last = placed.len() - 1;
-        if !fetches(&placed, last) || !(0..last).all(|i| fetches(&placed, i)) {
+        let mut all = (0..=last).rev().map(|i| fetches(&placed, i));
+        if let Some(error) = all.find_map(Result::err) {
+            why = error.to_string();
             placed.pop();
             // The first place is the best one: where it fails, so does the hand-over.
             if placed.is_empty() {
@@ -354,5 +410,5 @@ fn blocks(
             break;
         }
     }
-    placed
+    (placed, why)
 }

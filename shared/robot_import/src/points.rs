@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 
 /// Directions in which extreme points are kept. What is left out of the hull so is below a millimetre or two for the
 /// links of an arm, and is measured.
-const DIRECTIONS: usize = 512;
+const DIRECTIONS: usize = 320;
 
 /// Steps of a distance before its last lower bound is taken.
 const STEPS_MAX: usize = 40;

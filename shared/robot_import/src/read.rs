@@ -175,9 +175,8 @@ fn link(node: Node<'_, '_>, findings: &mut Findings) -> Link {
 
 fn form(shape: Node<'_, '_>) -> Option<Form> {
     let size = |key: &str| number(shape, key).filter(|size| *size > 0.0);
-    let round = |length, is_capsule| {
-        Some(Form::Round { radius: size("radius")?, length, is_capsule })
-    };
+    let round =
+        |length, is_capsule| Some(Form::Round { radius: size("radius")?, length, is_capsule });
     match shape.tag_name().name() {
         "box" => Some(Form::Box(vector(shape, "size")?.abs())),
         "cylinder" => round(size("length")?, false),

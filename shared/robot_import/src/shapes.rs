@@ -16,7 +16,7 @@ use crate::structure::Arm;
 const PIECES_MAX: usize = 4;
 
 /// Times that a link's hull may be cut for a closer fit.
-const CUTS: usize = 1;
+const CUTS: usize = 2;
 
 /// Radius of a link whose meshes are missing, as a share of the arm's length, and its bounds, metres.
 const GUESS: f64 = 0.05;
@@ -89,7 +89,9 @@ fn corners(size: &Vector3<f64>) -> Vec<Vector3<f64>> {
 
 fn rim(radius: f64, half: f64) -> Vec<Vector3<f64>> {
     let around = (0..48).map(|k| (f64::from(k) * std::f64::consts::TAU / 48.0).sin_cos());
-    around.flat_map(|(s, c)| [-half, half].map(|z| Vector3::new(radius * c, radius * s, z))).collect()
+    around
+        .flat_map(|(s, c)| [-half, half].map(|z| Vector3::new(radius * c, radius * s, z)))
+        .collect()
 }
 
 /// Gives links of the arm whose meshes are missing the size that the spacing of their joints suggests.
@@ -100,7 +102,11 @@ pub(crate) fn guess(
     is_missing: &[bool],
     findings: &mut Findings,
 ) -> Vec<bool> {
-    let spacing = arm.joints.iter().skip(1).map(|joint| source.joints[*joint].origin.translation.vector.norm());
+    let spacing = arm
+        .joints
+        .iter()
+        .skip(1)
+        .map(|joint| source.joints[*joint].origin.translation.vector.norm());
     let radius = (GUESS * spacing.sum::<f64>()).clamp(GUESS_M.0, GUESS_M.1);
     let mut is_guessed = vec![false; source.links.len()];
     let fingers: Vec<usize> = arm.fingers.iter().map(|joint| source.joints[*joint].child).collect();
@@ -112,12 +118,19 @@ pub(crate) fn guess(
         }
         is_guessed[link] = true;
         let ends = source.children(link).map(|joint| &source.joints[joint]);
-        let ends = ends.filter(|joint| source.is_below(arm.last, joint.child) || source.is_below(arm.hand, joint.child));
+        let ends = ends.filter(|joint| {
+            source.is_below(arm.last, joint.child) || source.is_below(arm.hand, joint.child)
+        });
         let mut ends: Vec<_> = ends.map(|joint| joint.origin.translation.vector).collect();
         if ends.is_empty() {
             ends.push(Vector3::zeros());
         }
-        let pieces = ends.into_iter().map(|b| Capsule { a: Vector3::zeros(), b, radius });
+        // The base stands on something, and reaches no lower than its frame.
+        let start = |b: &Vector3<f64>| match link == arm.base && b.norm() > 2.0 * radius {
+            true => b.normalize() * radius,
+            false => Vector3::zeros(),
+        };
+        let pieces = ends.into_iter().map(|b| Capsule { a: start(&b), b, radius });
         hulls[link] =
             pieces.filter_map(|own| Hull::new(&own.surface(128).collect::<Vec<_>>())).collect();
     }
@@ -152,19 +165,20 @@ fn ended(capsule: Capsule, tips: &Isometry3<f64>) -> Capsule {
     own.at(tips)
 }
 
-/// Returns the shape of a part of the body at `pose` in the root's frame: the smaller one of an upright box and capsules.
+/// Returns the shape of a part of the body at `pose` in the root's frame: an upright box or capsules, whichever stands out
+/// less.
 pub(crate) fn of_body(hulls: &[Hull], pose: &Isometry3<f64>) -> Vec<Shape> {
     let shape = |hull: &Hull| {
         let placed = hull.at(pose);
         let ends = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| placed.extent(&axis));
         let size = Vector3::from(ends.map(|(low, high)| (high - low).max(1e-3)));
         let centre = Vector3::from(ends.map(|(low, high)| 0.5 * (low + high)));
-        let capsules = enclosing(hull, CUTS);
-        if capsules.iter().map(Capsule::volume).sum::<f64>() < size.product() {
-            return capsules.into_iter().map(Shape::Capsule).collect();
-        }
         let pose = pose.inverse() * Translation3::from(centre);
-        vec![Shape::Box { pose, size }]
+        let boxed = vec![Shape::Box { pose, size }];
+        let round: Vec<Shape> = enclosing(hull, CUTS).into_iter().map(Shape::Capsule).collect();
+        let out =
+            |shapes: &[Shape]| fit("", std::slice::from_ref(hull), shapes, false).stands_out_mm;
+        if out(&round) < out(&boxed) { round } else { boxed }
     };
     hulls.iter().flat_map(shape).collect()
 }
@@ -199,7 +213,8 @@ pub(crate) fn fit(name: &str, hulls: &[Hull], shapes: &[Shape], is_guessed: bool
             beyond.map(|part| part.max(0.0)).norm() + beyond.max().min(0.0)
         }
     };
-    let out = |at: &Vector3<f64>| shapes.iter().map(|own| distance(own, at)).fold(f64::MAX, f64::min);
+    let out =
+        |at: &Vector3<f64>| shapes.iter().map(|own| distance(own, at)).fold(f64::MAX, f64::min);
     let left = hulls.iter().flat_map(|hull| &hull.points).map(out).fold(0.0, f64::max);
     let surface = shapes.iter().flat_map(|shape| match shape {
         Shape::Capsule(capsule) => capsule.surface(SURFACE).collect::<Vec<_>>(),

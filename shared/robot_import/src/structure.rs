@@ -56,7 +56,8 @@ pub(crate) fn find(
         let found = source.link(name).map(Some);
         found.ok_or_else(|| {
             let known = source.links.iter().map(|link| link.name.as_str());
-            let help = diagnostics::suggestion(name, known, || "name a link of the file".to_owned());
+            let help =
+                diagnostics::suggestion(name, known, || "name a link of the file".to_owned());
             Diagnostic::new("", option, format!("the robot has no link {name:?}"), help)
         })
     };
@@ -220,11 +221,25 @@ fn arm(
         name(&joints[0]),
         name(&joints[count - 1])
     ));
-    findings.chosen(format!("base: {}, the link that the first of them hangs on", source.links[base].name));
+    findings.chosen(format!(
+        "base: {}, the link that the first of them hangs on",
+        source.links[base].name
+    ));
     for joint in lift {
-        findings.assumed(format!("lift {} below the base stands still at {:.3} m", name(joint), middle(source, *joint)));
+        findings.assumed(format!(
+            "lift {} below the base stands still at {:.3} m",
+            name(joint),
+            middle(source, *joint)
+        ));
     }
-    Ok(Arm { base, lift: lift.to_vec(), joints: joints.to_vec(), last, hand, fingers: limb.fingers })
+    Ok(Arm {
+        base,
+        lift: lift.to_vec(),
+        joints: joints.to_vec(),
+        last,
+        hand,
+        fingers: limb.fingers,
+    })
 }
 
 /// Position at which a lift stands: the middle of its range.
@@ -245,7 +260,9 @@ fn common(source: &Source, joints: &[usize]) -> Option<usize> {
 fn refusal(source: &Source, joints: &[usize], fingers: &[usize]) -> Diagnostic {
     let list: Vec<String> = joints
         .iter()
-        .map(|joint| format!("{} ({})", source.joints[*joint].name, source.joints[*joint].kind.name()))
+        .map(|joint| {
+            format!("{} ({})", source.joints[*joint].name, source.joints[*joint].kind.name())
+        })
         .collect();
     let gripper = match fingers.len() {
         0 => "no gripper behind them".to_owned(),

@@ -33,9 +33,8 @@ impl Names {
     /// Keeps every name that means nothing else here.
     pub(crate) fn new(import: &Import<'_>, findings: &mut Findings) -> Self {
         let source = import.source;
-        let mut taken: HashSet<String> = ["base", "arm_gripper", "arm_finger_1", "arm_finger_2"]
-            .map(str::to_owned)
-            .into();
+        let mut taken: HashSet<String> =
+            ["base", "arm_gripper", "arm_finger_1", "arm_finger_2"].map(str::to_owned).into();
         let mut links = Vec::new();
         for link in &source.links {
             let mut name = link.name.clone();
@@ -47,7 +46,10 @@ impl Names {
                 name += "_1";
             }
             if name != link.name {
-                findings.chosen(format!("link {} is called {name}, since its name has a meaning here", link.name));
+                findings.chosen(format!(
+                    "link {} is called {name}, since its name has a meaning here",
+                    link.name
+                ));
             }
             taken.insert(name.clone());
             links.push(name);
@@ -93,7 +95,9 @@ pub(crate) fn bounds(joint: &crate::source::Joint, findings: &mut Findings) -> B
     let name = &joint.name;
     let range = match (joint.kind, joint.range) {
         (JointKind::Continuous, _) => {
-            findings.assumed(format!("joint {name} turns without end: it is limited to one turn to either side"));
+            findings.assumed(format!(
+                "joint {name} turns without end: it is limited to one turn to either side"
+            ));
             (-TAU, TAU)
         }
         (_, Some((low, high))) if high - low > 1e-3 => {
@@ -106,7 +110,9 @@ pub(crate) fn bounds(joint: &crate::source::Joint, findings: &mut Findings) -> B
             }
         }
         _ => {
-            findings.assumed(format!("joint {name} has no limits of its position: half a turn to either side"));
+            findings.assumed(format!(
+                "joint {name} has no limits of its position: half a turn to either side"
+            ));
             findings.missing(format!("lower and upper of joint {name}"));
             (-PI, PI)
         }
@@ -126,16 +132,34 @@ pub(crate) fn bounds(joint: &crate::source::Joint, findings: &mut Findings) -> B
 /// Returns the URDF.
 pub(crate) fn urdf(import: &Import<'_>) -> String {
     let mut out = String::from("<?xml version=\"1.0\"?>\n");
-    line(&mut out, format_args!("<!-- Written by `whichone robot import` from {}.", comment(import.file)));
-    line(&mut out, format_args!("     Frame base: x ahead, z up; metres, radians, newtons. Shapes enclose the links' convex hulls. -->"));
+    line(
+        &mut out,
+        format_args!("<!-- Written by `whichone robot import` from {}.", comment(import.file)),
+    );
+    line(
+        &mut out,
+        format_args!(
+            "     Frame base: x ahead, z up; metres, radians, newtons. Shapes enclose the links' convex hulls. -->"
+        ),
+    );
     line(&mut out, format_args!("<robot name=\"{}\">", import.name));
-    line(&mut out, format_args!("  <material name=\"arm\"><color rgba=\"0.72 0.73 0.75 1\"/></material>"));
+    line(
+        &mut out,
+        format_args!("  <material name=\"arm\"><color rgba=\"0.72 0.73 0.75 1\"/></material>"),
+    );
     line(&mut out, format_args!("  <link name=\"base\"/>"));
     let source = import.source;
     for (index, link) in source.links.iter().enumerate() {
         match link.carrier {
             None => {
-                joint(&mut out, "base_mount", "fixed", "base", &import.names.links[index], &import.mount.inverse());
+                joint(
+                    &mut out,
+                    "base_mount",
+                    "fixed",
+                    "base",
+                    &import.names.links[index],
+                    &import.mount.inverse(),
+                );
                 line(&mut out, format_args!("  </joint>"));
             }
             Some(carrier) => carried(&mut out, import, carrier),
@@ -194,9 +218,12 @@ fn carried(out: &mut String, import: &Import<'_>, carrier: usize) {
     let Bounds { range: (low, high), velocity, effort } = &import.bounds[at];
     joint(out, name, "revolute", parent, child, &own.origin);
     line(out, format_args!("    <axis xyz=\"{}\"/>", numbers(&own.axis)));
-    line(out, format_args!(
-        "    <limit lower=\"{low}\" upper=\"{high}\" velocity=\"{velocity}\" effort=\"{effort}\"/>"
-    ));
+    line(
+        out,
+        format_args!(
+            "    <limit lower=\"{low}\" upper=\"{high}\" velocity=\"{velocity}\" effort=\"{effort}\"/>"
+        ),
+    );
     line(out, format_args!("  </joint>"));
 }
 
@@ -222,9 +249,7 @@ fn up(m: f64) -> f64 {
 
 fn geometry(shape: &Shape) -> (Isometry3<f64>, String) {
     match shape {
-        Shape::Box { pose, size } => {
-            (*pose, format!("<box size=\"{}\"/>", numbers(&size.map(up))))
-        }
+        Shape::Box { pose, size } => (*pose, format!("<box size=\"{}\"/>", numbers(&size.map(up)))),
         Shape::Capsule(capsule) => {
             let (pose, length) = capsule.frame();
             let radius = up(capsule.radius);
@@ -237,7 +262,12 @@ fn geometry(shape: &Shape) -> (Isometry3<f64>, String) {
 fn gripper(out: &mut String, import: &Import<'_>) {
     let gripper = import.gripper;
     let last = &import.names.links[import.arm.last];
-    line(out, format_args!("  <!-- z out of the fingers, y along their travel; the shapes above enclose the open fingers. -->"));
+    line(
+        out,
+        format_args!(
+            "  <!-- z out of the fingers, y along their travel; the shapes above enclose the open fingers. -->"
+        ),
+    );
     joint(out, "arm_gripper_mount", "fixed", last, "arm_gripper", &gripper.frame);
     line(out, format_args!("  </joint>"));
     line(out, format_args!("  <link name=\"arm_gripper\"/>"));
@@ -246,16 +276,24 @@ fn gripper(out: &mut String, import: &Import<'_>) {
         let (name, link) = (&import.names.fingers[at], format!("arm_finger_{}", at + 1));
         joint(out, name, "prismatic", last, &link, &gripper.frame);
         line(out, format_args!("    <axis xyz=\"0 {side} 0\"/>"));
-        line(out, format_args!(
-            "    <limit lower=\"0\" upper=\"{travel}\" velocity=\"{FINGER_M_S}\" effort=\"{}\"/>",
-            gripper.force_n
-        ));
+        line(
+            out,
+            format_args!(
+                "    <limit lower=\"0\" upper=\"{travel}\" velocity=\"{FINGER_M_S}\" effort=\"{}\"/>",
+                gripper.force_n
+            ),
+        );
         if at == 1 {
             line(out, format_args!("    <mimic joint=\"{}\"/>", escaped(&import.names.fingers[0])));
         }
         line(out, format_args!("  </joint>"));
         let y = side * (0.5 * gripper.closed_m + 0.005);
-        line(out, format_args!("  <link name=\"{link}\"><visual><origin xyz=\"0 {y} -0.02\"/><geometry><box size=\"0.02 0.01 0.04\"/></geometry></visual></link>"));
+        line(
+            out,
+            format_args!(
+                "  <link name=\"{link}\"><visual><origin xyz=\"0 {y} -0.02\"/><geometry><box size=\"0.02 0.01 0.04\"/></geometry></visual></link>"
+            ),
+        );
     }
 }
 
@@ -265,7 +303,12 @@ pub(crate) type Posture = (&'static str, Vec<f64>);
 /// Returns the SRDF.
 pub(crate) fn srdf(import: &Import<'_>, postures: &[Posture]) -> String {
     let mut out = String::from("<?xml version=\"1.0\"?>\n");
-    line(&mut out, format_args!("<!-- Written by `whichone robot import`: postures, and links that may touch. -->"));
+    line(
+        &mut out,
+        format_args!(
+            "<!-- Written by `whichone robot import`: postures, and links that may touch. -->"
+        ),
+    );
     line(&mut out, format_args!("<robot name=\"{}\">", import.name));
     for (name, positions) in postures {
         line(&mut out, format_args!("  <group_state name=\"{name}\" group=\"{LIMB}_arm\">"));
@@ -277,7 +320,10 @@ pub(crate) fn srdf(import: &Import<'_>, postures: &[Posture]) -> String {
     }
     let pair = |out: &mut String, (a, b): (usize, usize), reason: &str| {
         let [a, b] = [a, b].map(|link| escaped(&import.names.links[link]));
-        line(out, format_args!("  <disable_collisions link1=\"{a}\" link2=\"{b}\" reason=\"{reason}\"/>"));
+        line(
+            out,
+            format_args!("  <disable_collisions link1=\"{a}\" link2=\"{b}\" reason=\"{reason}\"/>"),
+        );
     };
     for (own, reason) in import.pairs.excused() {
         pair(&mut out, own, reason);

@@ -45,7 +45,12 @@ pub(crate) fn expanded(file: &Path) -> Result<String, Diagnostic> {
         }
         None => {
             let help = "pip install xacro, or expand it elsewhere: xacro FILE > robot.urdf";
-            Diagnostic::new(label, "", "expected a URDF, found xacro, and no program that expands it", help)
+            Diagnostic::new(
+                label,
+                "",
+                "expected a URDF, found xacro, and no program that expands it",
+                help,
+            )
         }
     })
 }

@@ -42,10 +42,7 @@ fn is(node: Node<'_, '_>, name: &str) -> bool {
     node.is_element() && node.tag_name().name() == name
 }
 
-fn named<'a, 'i: 'a>(
-    node: Node<'a, 'i>,
-    name: &'a str,
-) -> impl Iterator<Item = Node<'a, 'i>> + 'a {
+fn named<'a, 'i: 'a>(node: Node<'a, 'i>, name: &'a str) -> impl Iterator<Item = Node<'a, 'i>> + 'a {
     node.descendants().filter(move |node| is(*node, name))
 }
 
@@ -63,9 +60,7 @@ fn positions(geometry: Node<'_, '_>) -> Vec<Vector3<f64>> {
     let sources = named(geometry, "source")
         .filter(|source| source.attribute("id").is_some_and(|id| names.contains(&id)));
     let arrays = sources.flat_map(|source| named(source, "float_array"));
-    arrays
-        .flat_map(numbers_by_three)
-        .collect()
+    arrays.flat_map(numbers_by_three).collect()
 }
 
 fn numbers_by_three(array: Node<'_, '_>) -> Vec<Vector3<f64>> {

@@ -61,19 +61,21 @@ fn read(path: &Path) -> Result<Vec<Vector3<f64>>, String> {
     Ok(vertices.into_iter().filter(|at| at.iter().all(|part| part.is_finite())).collect())
 }
 
-/// Returns the file of a mesh: an absolute path, one beside the robot's file, or, for `package://NAME/REST`, REST or
-/// NAME/REST in a folder above it. The folder of a package may have another name than the package.
+/// Returns the file of a mesh: an absolute path, one beside the robot's file, or, for `package://NAME/REST`, one that ends
+/// like it in a folder above the robot's: the folder of a package may have another name than the package.
 fn locate(written: &str, robot: &Path) -> Option<PathBuf> {
     let plain = written.strip_prefix("file://").unwrap_or(written);
-    let folders: Vec<&Path> = robot.ancestors().skip(1).collect();
     let Some(whole) = plain.strip_prefix("package://").or_else(|| plain.strip_prefix("model://"))
     else {
         let direct = [PathBuf::from(plain), robot.with_file_name("").join(plain)];
         return direct.into_iter().find(|path| path.is_file());
     };
-    let rest = whole.split_once('/').map_or(whole, |(_, rest)| rest);
-    let candidates = folders.iter().flat_map(|folder| [folder.join(whole), folder.join(rest)]);
-    candidates.into_iter().find(|path| path.is_file())
+    let parts: Vec<&str> = whole.split('/').collect();
+    // The name of a file alone says too little.
+    let ends = (0..parts.len().saturating_sub(1)).map(|from| parts[from..].join("/"));
+    let folders = robot.ancestors().skip(1);
+    let mut all = ends.flat_map(|end| folders.clone().map(move |folder| folder.join(&end)));
+    all.find(|path| path.is_file())
 }
 
 /// Guesses the unit by the extent.

@@ -12,7 +12,9 @@ const TRIANGLE: usize = 50;
 /// The file is cut short.
 pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<Vector3<f64>>, String> {
     // Binary files may begin with the word "solid" as well: their length tells.
-    let count = bytes.get(80..HEAD).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]));
+    let count = bytes
+        .get(80..HEAD)
+        .map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]));
     let length = count.map(|count| HEAD + count as usize * TRIANGLE);
     if length.is_some_and(|length| bytes.len() >= length && bytes.len() - length < TRIANGLE) {
         return Ok(binary(&bytes[HEAD..]));
@@ -26,12 +28,13 @@ pub(super) fn vertices(bytes: &[u8]) -> Result<Vec<Vector3<f64>>, String> {
 }
 
 fn binary(triangles: &[u8]) -> Vec<Vector3<f64>> {
-    let number = |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
+    let number =
+        |bytes: &[u8]| f64::from(f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
     let corners = triangles.chunks_exact(TRIANGLE).flat_map(|triangle| {
         // The normal comes first.
-        triangle[12..48].chunks_exact(12).map(|at| {
-            Vector3::new(number(&at[..4]), number(&at[4..8]), number(&at[8..]))
-        })
+        triangle[12..48]
+            .chunks_exact(12)
+            .map(|at| Vector3::new(number(&at[..4]), number(&at[4..8]), number(&at[8..])))
     });
     corners.collect()
 }
