@@ -5,6 +5,7 @@ mod batch;
 mod conform;
 mod export;
 mod replay;
+mod robot;
 mod study;
 
 pub use arm::{ArmPlotArgs, ArmVerb};
@@ -12,4 +13,5 @@ pub use batch::{ArmArgs, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm}
 pub use conform::ConformArgs;
 pub use export::{ExportVerb, McapArgs, PomdpArgs};
 pub use replay::ReplayArgs;
+pub use robot::{ImportArgs, RobotVerb};
 pub use study::{ALL, Preset, ReportArgs, StudyArgs, StudyVerb};

@@ -8,7 +8,9 @@ use command_line::output::Output;
 use service::exit::Failure;
 use service::group::{GroupError, GroupPaths};
 
-use args::{ArmArgs, ArmVerb, ExportVerb, GroundArgs, InputArgs, PlanArgs, StudyArgs, StudyVerb};
+use args::{
+    ArmArgs, ArmVerb, ExportVerb, GroundArgs, InputArgs, PlanArgs, RobotVerb, StudyArgs, StudyVerb,
+};
 use described_arm::DescribedArm;
 
 pub mod args;
@@ -19,6 +21,7 @@ pub mod described_arm;
 mod export;
 mod planning;
 mod replay;
+mod robot;
 mod study;
 
 pub use conform::conform;
@@ -55,6 +58,12 @@ pub enum Verb {
         #[command(subcommand)]
         what: ArmVerb,
     },
+    /// Bring in a robot that others have described.
+    Robot {
+        /// Action.
+        #[command(subcommand)]
+        what: RobotVerb,
+    },
     /// Read joint positions, one JSON object per line, and print the pose of every link.
     Fk(ArmArgs),
     /// Read poses of an arm's last link, one JSON object per line, and print joint positions.
@@ -88,6 +97,7 @@ pub fn run(
             None => study::study(&args, out),
         },
         Verb::Arm { what: ArmVerb::Plot(args) } => arm::plot(&args, out),
+        Verb::Robot { what: RobotVerb::Import(args) } => robot::import(&args, out),
         Verb::Fk(args) => batch::fk(&described_arm(&args)?, batch::open(&args.input)?, out),
         Verb::Ik(args) => {
             let chain = described_arm(&args)?.chain()?;

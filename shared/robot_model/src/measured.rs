@@ -67,11 +67,21 @@ impl MeasuredJoints {
     }
 }
 
+impl Robot {
+    /// The limbs: what stands before `_gripper` in the names of links. A finger slides, and is the end of no limb,
+    /// whatever its name.
+    pub fn limb_ends(&self) -> impl Iterator<Item = &str> {
+        let links = self.links().iter().enumerate();
+        let slides = |link| self.carrier(link).is_some_and(|it| it.kind == JointKind::Prismatic);
+        links.filter_map(move |(i, link)| link.name.strip_suffix(GRIPPER).filter(|_| !slides(i)))
+    }
+}
+
 /// Returns the links at the ends of the limbs: of both, or of the only one.
 fn grippers(robot: &Robot) -> [Option<String>; 2] {
-    let all: Vec<_> = robot.links().iter().filter(|link| link.name.ends_with(GRIPPER)).collect();
+    let all: Vec<_> = robot.limb_ends().collect();
     match all.as_slice() {
-        [only] => [Some(only.name.clone()), None],
+        [only] => [Some(format!("{only}{GRIPPER}")), None],
         _ => LIMBS.map(|limb| Some(format!("{limb}{GRIPPER}"))),
     }
 }

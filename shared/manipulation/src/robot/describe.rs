@@ -70,8 +70,7 @@ impl Robot {
 
 /// Returns the names of the limbs: what stands before `_gripper` in the links at their ends.
 fn limb_names(description: &Description) -> Result<Vec<String>, Unsuitable> {
-    let links = description.links().iter();
-    let names: Vec<&str> = links.filter_map(|link| link.name.strip_suffix("_gripper")).collect();
+    let names: Vec<&str> = description.limb_ends().collect();
     let both = Limb::BOTH.map(Limb::name);
     if both.iter().any(|name| names.contains(name)) {
         return Ok(both.map(str::to_owned).to_vec());

@@ -1,0 +1,382 @@
+//! The gripper: its frame, its opening, and how its fingers move.
+
+use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use robot_model::JointKind;
+
+use crate::points::Hull;
+use crate::report::Findings;
+use crate::source::Source;
+use crate::structure::Arm;
+
+/// Opening and force where the description has none: of a common two-finger gripper.
+const OPEN_M: f64 = 0.05;
+const FORCE_N: f64 = 20.0;
+
+/// Length of a gripper that is assumed on a flange, and of fingers without meshes, metres.
+pub(crate) const LENGTH_M: f64 = 0.12;
+const FINGER_M: f64 = 0.05;
+
+/// Shapes within this of the fingertips face each other, metres.
+const TIP_M: f64 = 0.015;
+
+/// Least opening that makes a gripper, metres.
+const OPENING_MIN_M: f64 = 0.012;
+
+/// Length from which on links that are fixed to the last one are a hand, metres.
+const HAND_M: f64 = 0.06;
+
+/// A gripper at the end of an arm.
+#[derive(Clone, Debug)]
+pub(crate) struct Gripper {
+    /// Its frame in the last link's: origin between the fingertips, z out of the fingers, y along their travel.
+    pub(crate) frame: Isometry3<f64>,
+    /// Distance of the fingertips, closed and open, metres.
+    pub(crate) closed_m: f64,
+    pub(crate) open_m: f64,
+    /// Force of each finger, newtons.
+    pub(crate) force_n: f64,
+    /// Position of each joint of the description with the gripper open.
+    pub(crate) open: Vec<f64>,
+    /// Whether a gripper of [`LENGTH_M`] is drawn on the flange.
+    pub(crate) is_drawn: bool,
+}
+
+/// What the parts of the robot look like.
+pub(crate) type Hulls = [Vec<Hull>];
+
+/// Finds the gripper of an arm; `open_m` overrides its opening.
+pub(crate) fn find(
+    source: &Source,
+    arm: &Arm,
+    hulls: &Hulls,
+    open_m: Option<f64>,
+    findings: &mut Findings,
+) -> Gripper {
+    let mut gripper = match leading(source, arm) {
+        Some(leader) => fingers(source, arm, leader, hulls, findings),
+        None => without_fingers(source, arm, hulls, findings),
+    };
+    if let Some(open_m) = open_m {
+        findings.chosen(format!("opening of the gripper: {:.0} mm, as asked", open_m * 1e3));
+        (gripper.closed_m, gripper.open_m) = (gripper.closed_m.min(0.2 * open_m), open_m);
+    }
+    gripper
+}
+
+/// The joint that drives the fingers: the first that follows no other.
+fn leading(source: &Source, arm: &Arm) -> Option<usize> {
+    arm.fingers.iter().copied().find(|joint| source.joints[*joint].follows.is_none())
+}
+
+/// Positions of all joints with the gripper at one end of its range: every joint of it that follows none moves by the same
+/// share of its range.
+fn at_end(source: &Source, arm: &Arm, upper: bool) -> Vec<f64> {
+    let mut q = source.zeros();
+    for joint in &arm.fingers {
+        let (low, high) = source.joints[*joint].span();
+        q[*joint] = if upper { high } else { low };
+    }
+    q
+}
+
+fn fingers(
+    source: &Source,
+    arm: &Arm,
+    leader: usize,
+    hulls: &Hulls,
+    findings: &mut Findings,
+) -> Gripper {
+    let joint = &source.joints[leader];
+    let slides = joint.kind == JointKind::Prismatic;
+    let tips = tips(source, arm);
+    let q = at_end(source, arm, true);
+    let poses = source.poses(&q);
+    let to_last = poses[arm.last].inverse();
+    let axis = to_last.rotation * poses[joint.child].rotation * joint.axis.into_inner();
+    let reach = reach(source, arm, &poses, &tips, hulls);
+    // The fingers reach away from the hand, at right angles to the axis of their joints.
+    let hand = to_last * poses[arm.hand].translation.vector.into_point();
+    let out = (reach - hand.coords) - axis * (reach - hand.coords).dot(&axis);
+    let z = out.try_normalize(1e-4).unwrap_or_else(|| outwards(source, arm, &poses));
+    let z = snapped(z, &axis);
+    let y = if slides { axis } else { axis.cross(&z) };
+    let y = (y - z * y.dot(&z)).normalize();
+    let ends = [false, true].map(|upper| {
+        let q = at_end(source, arm, upper);
+        (gap(source, arm, &q, &tips, hulls, (&y, &z)), q)
+    });
+    let [(one, q_one), (other, q_other)] = ends;
+    let travel: f64 = arm
+        .fingers
+        .iter()
+        .filter(|_| slides)
+        .map(|joint| {
+            let joint = &source.joints[*joint];
+            let (low, high) = match joint.follows {
+                Some(rule) => {
+                    let (low, high) = source.joints[rule.joint].span();
+                    (rule.factor * low, rule.factor * high)
+                }
+                None => joint.span(),
+            };
+            (high - low).abs()
+        })
+        .sum();
+    let measured = one.zip(other).map(|(a, b)| (a.min(b), a.max(b)));
+    let believable =
+        measured.filter(|(low, high)| high - low.max(0.0) >= OPENING_MIN_M && *high < 0.4);
+    let (closed_m, open_m) = match (believable, slides && travel >= OPENING_MIN_M) {
+        (Some(ends), _) => ends,
+        (None, true) => {
+            findings.assumed(format!(
+                "the fingers close entirely: they open by their travel, {:.0} mm",
+                travel * 1e3
+            ));
+            (0.0, travel)
+        }
+        (None, false) => {
+            findings.assumed(format!(
+                "the gripper opens {:.0} mm: its shapes do not say; --opening-mm N",
+                OPEN_M * 1e3
+            ));
+            (0.0, OPEN_M)
+        }
+    };
+    let open = if one.unwrap_or(0.0) > other.unwrap_or(1.0) { q_one } else { q_other };
+    let kind = kind(source, arm);
+    findings.chosen(format!(
+        "gripper: {kind} on {}, which opens {:.0} to {:.0} mm",
+        source.links[arm.hand].name,
+        closed_m.max(0.0) * 1e3,
+        open_m * 1e3
+    ));
+    let force = joint.effort.filter(|effort| slides && (1.0..500.0).contains(effort));
+    if force.is_none() {
+        findings.assumed(format!("each finger presses with {FORCE_N:.0} N: the file does not say"));
+    }
+    let tip = tip(source, arm, &source.poses(&open), &tips, hulls, (&y, &z));
+    if tip.1 {
+        findings.assumed(format!(
+            "the fingers are {:.0} mm long: their meshes are missing",
+            FINGER_M * 1e3
+        ));
+    }
+    Gripper {
+        frame: frame(tip.0, &y, &z),
+        closed_m: closed_m.max(0.0),
+        open_m,
+        force_n: force.unwrap_or(FORCE_N),
+        open,
+        is_drawn: false,
+    }
+}
+
+trait IntoPoint {
+    fn into_point(self) -> nalgebra::Point3<f64>;
+}
+
+impl IntoPoint for Vector3<f64> {
+    fn into_point(self) -> nalgebra::Point3<f64> {
+        nalgebra::Point3::from(self)
+    }
+}
+
+fn kind(source: &Source, arm: &Arm) -> String {
+    let count = arm.fingers.len();
+    let coupled = arm.fingers.iter().filter(|it| source.joints[**it].follows.is_some()).count();
+    let sliding =
+        arm.fingers.iter().filter(|it| source.joints[**it].kind == JointKind::Prismatic).count();
+    match (count, sliding) {
+        (1, 0) => "one turning jaw".to_owned(),
+        (1, _) => "one sliding finger".to_owned(),
+        (_, sliding) if sliding == count => format!("{count} sliding fingers, {coupled} coupled"),
+        _ => format!("a linkage of {count} joints, {coupled} coupled"),
+    }
+}
+
+/// Links at the ends of the fingers.
+fn tips(source: &Source, arm: &Arm) -> Vec<usize> {
+    let links = arm.fingers.iter().map(|joint| source.joints[*joint].child);
+    let has_more = |link: usize| {
+        arm.fingers.iter().any(|joint| {
+            let parent = source.joints[*joint].parent;
+            parent != arm.hand && source.is_below(parent, link)
+        })
+    };
+    links.filter(|link| !has_more(*link)).collect()
+}
+
+/// Hulls of a link and of what is fixed to it, in the last link's frame.
+fn solid<'a>(
+    source: &'a Source,
+    hulls: &'a Hulls,
+    to_last: &'a Isometry3<f64>,
+    poses: &'a [Isometry3<f64>],
+    link: usize,
+) -> impl Iterator<Item = Hull> + 'a {
+    let own = (0..source.links.len()).filter(move |other| is_fixed_to(source, *other, link));
+    own.flat_map(move |own| hulls[own].iter().map(move |hull| hull.at(&(to_last * poses[own]))))
+}
+
+fn is_fixed_to(source: &Source, mut link: usize, top: usize) -> bool {
+    while link != top {
+        match source.links[link].carrier.map(|carrier| &source.joints[carrier]) {
+            Some(joint) if joint.kind == JointKind::Fixed => link = joint.parent,
+            _ => return false,
+        }
+    }
+    true
+}
+
+/// Returns the middle of the fingers.
+fn reach(
+    source: &Source,
+    arm: &Arm,
+    poses: &[Isometry3<f64>],
+    tips: &[usize],
+    hulls: &Hulls,
+) -> Vector3<f64> {
+    let to_last = poses[arm.last].inverse();
+    let middles = tips.iter().map(|link| {
+        let shapes: Vec<Hull> = solid(source, hulls, &to_last, poses, *link).collect();
+        let origin = (to_last * poses[*link]).translation.vector;
+        let count = shapes.len() as f64;
+        if shapes.is_empty() {
+            origin
+        } else {
+            shapes.iter().map(|it| it.centre).sum::<Vector3<f64>>() / count
+        }
+    });
+    middles.sum::<Vector3<f64>>() / tips.len().max(1) as f64
+}
+
+/// Returns the axis of the last link's frame that a direction all but has, or else the direction.
+fn snapped(z: Vector3<f64>, across: &Vector3<f64>) -> Vector3<f64> {
+    let axes = (0..3).flat_map(|i| [Vector3::ith(i, 1.0), Vector3::ith(i, -1.0)]);
+    let near = axes.into_iter().find(|axis| axis.dot(&z) > 0.9 && axis.dot(across).abs() < 1e-3);
+    near.unwrap_or(z)
+}
+
+/// The direction in which the last joint's axis leads away from the arm, in the last link's frame.
+fn outwards(source: &Source, arm: &Arm, poses: &[Isometry3<f64>]) -> Vector3<f64> {
+    let joint = &source.joints[arm.joints[arm.joints.len() - 1]];
+    let axis = joint.axis.into_inner();
+    let to_last = poses[arm.last].inverse();
+    let ends = (0..source.links.len()).filter(|link| is_fixed_to(source, *link, arm.last));
+    let ahead: f64 = ends.map(|link| (to_last * poses[link]).translation.vector.dot(&axis)).sum();
+    // A flange is ahead of the joint, or the joint is ahead of the one before it.
+    let before = arm.joints.len().checked_sub(3).map(|at| source.joints[arm.joints[at]].child);
+    let behind = before.map_or(0.0, |link| -(to_last * poses[link]).translation.vector.dot(&axis));
+    let sense = if ahead.abs() > 1e-3 { ahead } else { behind };
+    if sense < -1e-6 { -axis } else { axis }
+}
+
+/// Returns the free distance between the fingers at their tips.
+fn gap(
+    source: &Source,
+    arm: &Arm,
+    q: &[f64],
+    tips: &[usize],
+    hulls: &Hulls,
+    (y, z): (&Vector3<f64>, &Vector3<f64>),
+) -> Option<f64> {
+    let poses = source.poses(q);
+    let to_last = poses[arm.last].inverse();
+    let mut sides: Vec<Vec<Hull>> =
+        tips.iter().map(|link| solid(source, hulls, &to_last, &poses, *link).collect()).collect();
+    if sides.len() == 1 {
+        // One jaw closes on what does not move.
+        sides.push(solid(source, hulls, &to_last, &poses, arm.hand).collect());
+    }
+    let end = |side: &Vec<Hull>| side.iter().map(|it| it.extent(z).1).fold(f64::MIN, f64::max);
+    let top = sides.iter().filter(|side| !side.is_empty()).map(end).fold(f64::MAX, f64::min);
+    let extents = sides.iter().filter_map(|side| {
+        let near = side.iter().flat_map(|it| &it.points).filter(|at| at.dot(z) > top - TIP_M);
+        let along = near.map(|at| at.dot(y));
+        let ends = along.fold((f64::MAX, f64::MIN), |(a, b), at| (a.min(at), b.max(at)));
+        (ends.0 <= ends.1).then_some(ends)
+    });
+    let mut extents: Vec<(f64, f64)> = extents.collect();
+    extents.sort_by(|a, b| (a.0 + a.1).total_cmp(&(b.0 + b.1)));
+    match &extents[..] {
+        [low, .., high] => Some(high.0 - low.1),
+        _ => None,
+    }
+}
+
+/// Returns the point between the fingertips, and whether their length is assumed.
+fn tip(
+    source: &Source,
+    arm: &Arm,
+    poses: &[Isometry3<f64>],
+    tips: &[usize],
+    hulls: &Hulls,
+    (y, z): (&Vector3<f64>, &Vector3<f64>),
+) -> (Vector3<f64>, bool) {
+    let to_last = poses[arm.last].inverse();
+    let mut shapes: Vec<Hull> =
+        tips.iter().flat_map(|link| solid(source, hulls, &to_last, poses, *link)).collect();
+    if tips.len() == 1 {
+        shapes.extend(solid(source, hulls, &to_last, poses, arm.hand));
+    }
+    let middle = reach(source, arm, poses, tips, hulls);
+    let x = y.cross(z);
+    if shapes.is_empty() {
+        let base = (to_last * poses[arm.hand]).translation.vector;
+        let end = middle.dot(z).max(base.dot(z)) + FINGER_M;
+        return (x * middle.dot(&x) + y * base.dot(y) + z * end, true);
+    }
+    let end = shapes.iter().map(|it| it.extent(z).1).fold(f64::MIN, f64::max);
+    let near: Vec<&Vector3<f64>> =
+        shapes.iter().flat_map(|it| &it.points).filter(|at| at.dot(z) > end - TIP_M).collect();
+    let middle_of = |axis: &Vector3<f64>| {
+        let ends = near.iter().map(|at| at.dot(axis));
+        let ends = ends.fold((f64::MAX, f64::MIN), |(a, b), at| (a.min(at), b.max(at)));
+        0.5 * (ends.0 + ends.1)
+    };
+    (x * middle_of(&x) + y * middle_of(y) + z * end, false)
+}
+
+fn frame(origin: Vector3<f64>, y: &Vector3<f64>, z: &Vector3<f64>) -> Isometry3<f64> {
+    let turn = Rotation3::from_basis_unchecked(&[y.cross(z), *y, *z]);
+    Isometry3::from_parts(Translation3::from(origin), UnitQuaternion::from_rotation_matrix(&turn))
+}
+
+/// Returns a gripper for an arm without fingers: on its flange, or at the end of a hand that does not move.
+fn without_fingers(source: &Source, arm: &Arm, hulls: &Hulls, findings: &mut Findings) -> Gripper {
+    let open = source.zeros();
+    let poses = source.poses(&open);
+    let z = outwards(source, arm, &poses);
+    let to_last = poses[arm.last].inverse();
+    let fixed = (0..source.links.len()).filter(|link| is_fixed_to(source, *link, arm.last));
+    let fixed: Vec<usize> = fixed.collect();
+    let ends = fixed.iter().map(|link| (to_last * poses[*link]).translation.vector);
+    let flange = ends.map(|at| at.dot(&z)).fold(0.0, f64::max);
+    let shapes: Vec<Hull> = solid(source, hulls, &to_last, &poses, arm.last).collect();
+    let solid_end = shapes.iter().map(|it| it.extent(&z).1).fold(flange, f64::max);
+    // Parts behind the last link that are as long as a hand are one.
+    let parts = fixed.iter().filter(|link| **link != arm.last).flat_map(|link| {
+        hulls[*link].iter().map(|hull| hull.at(&(to_last * poses[*link])).extent(&z))
+    });
+    let ends = parts.fold((f64::MAX, f64::MIN), |(a, b), (low, high)| (a.min(low), b.max(high)));
+    let is_hand = ends.1 - ends.0 > HAND_M;
+    let end = if is_hand { solid_end } else { solid_end + LENGTH_M };
+    let across = Vector3::ith(z.iamin(), 1.0);
+    let y = (across - z * across.dot(&z)).normalize();
+    findings.assumed(format!(
+        "gripper: no joint moves a finger, so two fingers that open {:.0} mm and press with {FORCE_N:.0} N are assumed {}",
+        OPEN_M * 1e3,
+        if is_hand { "at the end of the hand" } else { "120 mm ahead of the flange" }
+    ));
+    findings.missing(
+        "the gripper: describe it in the file, or state its opening with --opening-mm N".to_owned(),
+    );
+    Gripper {
+        frame: frame(z * end, &y, &z),
+        closed_m: 0.0,
+        open_m: OPEN_M,
+        force_n: FORCE_N,
+        open,
+        is_drawn: !is_hand,
+    }
+}
