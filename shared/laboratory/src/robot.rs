@@ -87,8 +87,11 @@ fn folder(args: &ImportArgs) -> Result<PathBuf, Failure> {
     configuration::own_folder(&ConfigArgs { config: args.config.clone(), ..ConfigArgs::default() })
 }
 
+/// Text of a file.
+type Text = fn(&Imported) -> &str;
+
 /// The files that are written, and which text each holds.
-struct Files([(PathBuf, fn(&Imported) -> &str); 4]);
+struct Files([(PathBuf, Text); 4]);
 
 impl Files {
     fn new(name: &str, folder: &Path) -> Self {

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use manipulation::{
     ArmShape, Chain, Cuboid, Gap, Joints, Limb, ObjectPose, PlanSettings, Robot, fetching_limb,
+    plan_pick,
 };
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
@@ -347,8 +348,10 @@ pub(crate) fn on_table(
     let widths = widths(gripper);
     for hand_over_m in hand_overs(&places, middle, table_z_m) {
         let plan = settings(table_z_m, hand_over_m);
-        let (blocks, why) = blocks(&robot, &places, hand_over_m, &widths, &plan);
-        if blocks.len() == BLOCKS {
+        let (blocks, mut why) = blocks(&robot, &places, hand_over_m, &widths, &plan);
+        if let Some(error) = unplanned(&robot, &blocks, &plan) {
+            why = error;
+        } else if blocks.len() == BLOCKS {
             return Ok(Placed { table_z_m, hand_over_m, postures, clearance_m, blocks });
         }
         if blocks.len() > progress.blocks || progress.blocks == 0 {
@@ -356,6 +359,17 @@ pub(crate) fn on_table(
         }
     }
     Err(progress)
+}
+
+/// Returns why the whole motion for one of the blocks cannot be planned; none where all can.
+fn unplanned(robot: &Robot, blocks: &[ObjectPose], plan: &PlanSettings) -> Option<String> {
+    let rest = robot.neutral();
+    blocks.iter().enumerate().find_map(|(i, block)| {
+        let others = blocks.iter().enumerate().filter(|(j, _)| *j != i);
+        let others: Vec<Cuboid> = others.map(|(_, it)| it.cuboid()).collect();
+        let planned = plan_pick(robot, block, None, &rest, &others, plan);
+        planned.err().map(|error| error.to_string())
+    })
 }
 
 /// Places of the hand-over that are tried: to the left of what the arm reaches, then nearer and to the right.
