@@ -106,10 +106,6 @@ fn fingers(
         closed_m.max(0.0) * 1e3,
         open_m * 1e3
     ));
-    let force = joint.effort.filter(|effort| slides && (1.0..500.0).contains(effort));
-    if force.is_none() {
-        findings.assumed(format!("each finger presses with {FORCE_N:.0} N: the file does not say"));
-    }
     let tip = tip(source, arm, &source.poses(&open), &tips, hulls, (&y, &z));
     if tip.1 {
         findings.assumed(format!(
@@ -121,7 +117,7 @@ fn fingers(
         frame: frame(tip.0, &y, &z),
         closed_m: closed_m.max(0.0),
         open_m,
-        force_n: force.unwrap_or(FORCE_N),
+        force_n: force(joint, findings),
         open,
         is_drawn: false,
     }
@@ -177,6 +173,16 @@ fn opening(measured: Option<(f64, f64)>, travel: f64, findings: &mut Findings) -
     findings
         .assumed(format!("the gripper opens {mm:.0} mm: its shapes do not say; --opening-mm N"));
     (0.0, OPEN_M)
+}
+
+/// Returns the force of a finger, newtons: the effort of its joint, if that is a force.
+fn force(joint: &Joint, findings: &mut Findings) -> f64 {
+    let slides = joint.kind == JointKind::Prismatic;
+    let force = joint.effort.filter(|effort| slides && (1.0..500.0).contains(effort));
+    force.unwrap_or_else(|| {
+        findings.assumed(format!("each finger presses with {FORCE_N:.0} N: the file does not say"));
+        FORCE_N
+    })
 }
 
 fn kind(source: &Source, arm: &Arm) -> String {

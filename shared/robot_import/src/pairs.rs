@@ -126,6 +126,12 @@ pub(crate) fn sample(
     let zero = sampler.placed(still);
     take(&mut rest, &mut found.default, |pair| distance(&zero, pair, 0.0) <= 0.0);
     always(&mut sampler, &mut rest, &mut found.always);
+    by_distance(&mut sampler, rest, &mut found);
+    found
+}
+
+/// Sorts the rest by how near the links come to each other.
+fn by_distance(sampler: &mut Sampler<'_>, rest: Vec<Pair>, found: &mut Pairs) {
     let mut least = vec![f64::INFINITY; rest.len()];
     for _ in 0..POSTURES {
         let placed = sampler.posture();
@@ -142,7 +148,6 @@ pub(crate) fn sample(
             _ => found.never.insert(pair),
         };
     }
-    found
 }
 
 fn take(rest: &mut Vec<Pair>, into: &mut BTreeSet<Pair>, is_in: impl Fn(Pair) -> bool) {

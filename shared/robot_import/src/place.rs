@@ -261,6 +261,29 @@ fn rest(robot: &Robot, at: [f64; 2], table_z_m: f64) -> Result<(Joints, f64), St
     })
 }
 
+/// Returns the posture of rest with the greatest clearance of some places, and the clearance.
+///
+/// # Errors
+/// What is in the way.
+fn rest_near(robot: &Robot, middle: [f64; 2], table_z_m: f64) -> Result<(Joints, f64), String> {
+    let mut found: Result<(Joints, f64), String> = Err(String::new());
+    for x in [middle[0] - 0.06, middle[0], middle[0] - 0.12, middle[0] + 0.06] {
+        let next = rest(robot, [x, 0.0], table_z_m);
+        let is_better = match (&next, &found) {
+            (Ok(next), Ok(found)) => next.1 > found.1,
+            (_, Err(_)) => true,
+            (Err(_), Ok(_)) => false,
+        };
+        if is_better {
+            found = next;
+        }
+        if found.as_ref().is_ok_and(|(_, clearance_m)| *clearance_m >= CLEARANCES_M[0]) {
+            break;
+        }
+    }
+    found
+}
+
 /// Returns the posture of rest and others to either side of it that are within the limits.
 fn around(robot: &Robot, neutral: Joints) -> Vec<(&'static str, Joints)> {
     let chain = &robot.arm(Limb::Only).chain;
@@ -327,21 +350,10 @@ pub(crate) fn on_table(
     let Some(&middle) = places.first().filter(|_| places.len() >= BLOCKS) else {
         return Err(progress);
     };
-    let nearer = [middle[0] - 0.06, middle[0], middle[0] - 0.12, middle[0] + 0.06];
-    let mut found: Option<(Joints, f64)> = None;
-    for x in nearer {
-        match rest(robot, [x, 0.0], table_z_m) {
-            Ok(next) if found.is_none_or(|(_, clearance_m)| next.1 > clearance_m) => {
-                found = Some(next);
-            }
-            Ok(_) => {}
-            Err(why) => progress.why = why,
-        }
-        if found.is_some_and(|(_, clearance_m)| clearance_m >= CLEARANCES_M[0]) {
-            break;
-        }
-    }
-    let Some((neutral, clearance_m)) = found else { return Err(progress) };
+    let (neutral, clearance_m) = match rest_near(robot, middle, table_z_m) {
+        Ok(found) => found,
+        Err(why) => return Err(Progress { why, ..progress }),
+    };
     progress.rests = true;
     let postures = around(robot, neutral);
     let Some(robot) = with_rest(&postures) else { return Err(progress) };
