@@ -24,6 +24,7 @@ mod full_memory;
 mod gateway;
 mod haste;
 mod hearing;
+mod imported_robots;
 mod installed;
 mod interrupted;
 mod isolation;

@@ -6,6 +6,7 @@ use command_line::Outcome;
 use command_line::args::ConfigArgs;
 use command_line::output::Output;
 use command_line::{configuration, shipped};
+use diagnostics::Diagnostics;
 use robot_import::{Findings, Gripper, Imported, Kind, Options};
 use safe_files::OutputFolder;
 use serde_json::json;
@@ -33,13 +34,24 @@ pub(super) fn import(args: &ImportArgs, out: &mut Output<'_>) -> Outcome {
     }
     files.write(&imported)?;
     let examined = preflight::examine(&folder, Some(&options.name), &[], None);
-    let problems = examined.verdict().err();
+    report(&files, &imported, &options.name, &folder, examined.verdict().err(), out)
+}
+
+/// Prints what was written, and what is wrong with it.
+fn report(
+    files: &Files,
+    imported: &Imported,
+    name: &str,
+    folder: &Path,
+    problems: Option<Diagnostics>,
+    out: &mut Output<'_>,
+) -> Outcome {
     if out.is_json() {
         let paths: Vec<PathBuf> = files.0.iter().map(|(path, _)| path.clone()).collect();
         let problems: Vec<String> =
             problems.iter().flat_map(|all| all.iter()).map(ToString::to_string).collect();
         out.json(&json!({
-            "robot": options.name, "profile": options.name, "files": paths, "findings": imported.findings.findings,
+            "robot": name, "profile": name, "files": paths, "findings": imported.findings.findings,
             "fits": imported.findings.fits, "pairs": imported.findings.pairs, "problems": problems,
         }))?;
         return Ok(if problems.is_empty() { Exit::Ok } else { Exit::Config });
@@ -54,7 +66,7 @@ pub(super) fn import(args: &ImportArgs, out: &mut Output<'_>) -> Outcome {
     out.line(format_args!(
         "checked: it is right; start it: whichone up --config {} --profile {}",
         folder.display(),
-        options.name
+        name
     ))?;
     Ok(Exit::Ok)
 }
@@ -87,8 +99,11 @@ fn folder(args: &ImportArgs) -> Result<PathBuf, Failure> {
     configuration::own_folder(&ConfigArgs { config: args.config.clone(), ..ConfigArgs::default() })
 }
 
+/// Text of a file.
+type Text = fn(&Imported) -> &str;
+
 /// The files that are written, and which text each holds.
-struct Files([(PathBuf, fn(&Imported) -> &str); 4]);
+struct Files([(PathBuf, Text); 4]);
 
 impl Files {
     fn new(name: &str, folder: &Path) -> Self {

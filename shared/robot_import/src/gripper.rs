@@ -5,7 +5,7 @@ use robot_model::JointKind;
 
 use crate::points::Hull;
 use crate::report::Findings;
-use crate::source::Source;
+use crate::source::{Joint, Source};
 use crate::structure::Arm;
 
 /// Opening and force where the description has none: of a common two-finger gripper.
@@ -89,59 +89,15 @@ fn fingers(
     let joint = &source.joints[leader];
     let slides = joint.kind == JointKind::Prismatic;
     let tips = tips(source, arm);
-    let q = at_end(source, arm, true);
-    let poses = source.poses(&q);
-    let to_last = poses[arm.last].inverse();
-    let axis = to_last.rotation * poses[joint.child].rotation * joint.axis.into_inner();
-    let reach = reach(source, arm, &poses, &tips, hulls);
-    // The fingers reach away from the hand, at right angles to the axis of their joints.
-    let hand = to_last * poses[arm.hand].translation.vector.into_point();
-    let out = (reach - hand.coords) - axis * (reach - hand.coords).dot(&axis);
-    let z = out.try_normalize(1e-4).unwrap_or_else(|| outwards(source, arm, &poses));
-    let z = snapped(z, &axis);
-    let y = if slides { axis } else { axis.cross(&z) };
-    let y = (y - z * y.dot(&z)).normalize();
+    let poses = source.poses(&at_end(source, arm, true));
+    let (y, z) = axes(source, arm, joint, &poses, &reach(source, arm, &poses, &tips, hulls));
     let ends = [false, true].map(|upper| {
         let q = at_end(source, arm, upper);
         (gap(source, arm, &q, &tips, hulls, (&y, &z)), q)
     });
     let [(one, q_one), (other, q_other)] = ends;
-    let travel: f64 = arm
-        .fingers
-        .iter()
-        .filter(|_| slides)
-        .map(|joint| {
-            let joint = &source.joints[*joint];
-            let (low, high) = match joint.follows {
-                Some(rule) => {
-                    let (low, high) = source.joints[rule.joint].span();
-                    (rule.factor * low, rule.factor * high)
-                }
-                None => joint.span(),
-            };
-            (high - low).abs()
-        })
-        .sum();
-    let measured = one.zip(other).map(|(a, b)| (a.min(b), a.max(b)));
-    let believable =
-        measured.filter(|(low, high)| high - low.max(0.0) >= OPENING_MIN_M && *high < 0.4);
-    let (closed_m, open_m) = match (believable, slides && travel >= OPENING_MIN_M) {
-        (Some(ends), _) => ends,
-        (None, true) => {
-            findings.assumed(format!(
-                "the fingers close entirely: they open by their travel, {:.0} mm",
-                travel * 1e3
-            ));
-            (0.0, travel)
-        }
-        (None, false) => {
-            findings.assumed(format!(
-                "the gripper opens {:.0} mm: its shapes do not say; --opening-mm N",
-                OPEN_M * 1e3
-            ));
-            (0.0, OPEN_M)
-        }
-    };
+    let travel = if slides { travel(source, arm) } else { 0.0 };
+    let (closed_m, open_m) = opening(one.zip(other), travel, findings);
     let open = if one.unwrap_or(0.0) > other.unwrap_or(1.0) { q_one } else { q_other };
     let kind = kind(source, arm);
     findings.chosen(format!(
@@ -150,10 +106,6 @@ fn fingers(
         closed_m.max(0.0) * 1e3,
         open_m * 1e3
     ));
-    let force = joint.effort.filter(|effort| slides && (1.0..500.0).contains(effort));
-    if force.is_none() {
-        findings.assumed(format!("each finger presses with {FORCE_N:.0} N: the file does not say"));
-    }
     let tip = tip(source, arm, &source.poses(&open), &tips, hulls, (&y, &z));
     if tip.1 {
         findings.assumed(format!(
@@ -165,20 +117,72 @@ fn fingers(
         frame: frame(tip.0, &y, &z),
         closed_m: closed_m.max(0.0),
         open_m,
-        force_n: force.unwrap_or(FORCE_N),
+        force_n: force(joint, findings),
         open,
         is_drawn: false,
     }
 }
 
-trait IntoPoint {
-    fn into_point(self) -> nalgebra::Point3<f64>;
+/// Returns the axes y and z of the gripper: the travel of its fingers, and out of them, in the last link's frame.
+fn axes(
+    source: &Source,
+    arm: &Arm,
+    joint: &Joint,
+    poses: &[Isometry3<f64>],
+    reach: &Vector3<f64>,
+) -> (Vector3<f64>, Vector3<f64>) {
+    let to_last = poses[arm.last].inverse();
+    let axis = to_last.rotation * poses[joint.child].rotation * joint.axis.into_inner();
+    // The fingers reach away from the hand, at right angles to the axis of their joints.
+    let hand = (to_last * poses[arm.hand]).translation.vector;
+    let out = (reach - hand) - axis * (reach - hand).dot(&axis);
+    let z = out.try_normalize(1e-4).unwrap_or_else(|| outwards(source, arm, poses));
+    let z = snapped(z, &axis);
+    let y = if joint.kind == JointKind::Prismatic { axis } else { axis.cross(&z) };
+    ((y - z * y.dot(&z)).normalize(), z)
 }
 
-impl IntoPoint for Vector3<f64> {
-    fn into_point(self) -> nalgebra::Point3<f64> {
-        nalgebra::Point3::from(self)
+/// Returns the travel of all fingers together, metres.
+fn travel(source: &Source, arm: &Arm) -> f64 {
+    let of = |joint: &usize| {
+        let joint = &source.joints[*joint];
+        let (low, high) = joint.follows.map_or(joint.span(), |rule| {
+            let (low, high) = source.joints[rule.joint].span();
+            (rule.factor * low, rule.factor * high)
+        });
+        (high - low).abs()
+    };
+    arm.fingers.iter().map(of).sum()
+}
+
+/// Returns the distance of closed and of open fingers: as measured between their shapes, else by their travel.
+fn opening(measured: Option<(f64, f64)>, travel: f64, findings: &mut Findings) -> (f64, f64) {
+    let ends = measured.map(|(a, b)| (a.min(b), a.max(b)));
+    let is_believable =
+        |(low, high): &(f64, f64)| high - low.max(0.0) >= OPENING_MIN_M && *high < 0.4;
+    if let Some(ends) = ends.filter(is_believable) {
+        return ends;
     }
+    if travel >= OPENING_MIN_M {
+        let mm = travel * 1e3;
+        findings
+            .assumed(format!("the fingers close entirely: they open by their travel, {mm:.0} mm"));
+        return (0.0, travel);
+    }
+    let mm = OPEN_M * 1e3;
+    findings
+        .assumed(format!("the gripper opens {mm:.0} mm: its shapes do not say; --opening-mm N"));
+    (0.0, OPEN_M)
+}
+
+/// Returns the force of a finger, newtons: the effort of its joint, if that is a force.
+fn force(joint: &Joint, findings: &mut Findings) -> f64 {
+    let slides = joint.kind == JointKind::Prismatic;
+    let force = joint.effort.filter(|effort| slides && (1.0..500.0).contains(effort));
+    force.unwrap_or_else(|| {
+        findings.assumed(format!("each finger presses with {FORCE_N:.0} N: the file does not say"));
+        FORCE_N
+    })
 }
 
 fn kind(source: &Source, arm: &Arm) -> String {

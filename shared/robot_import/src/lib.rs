@@ -20,6 +20,7 @@ mod capsule;
 mod configuration;
 mod gripper;
 mod mesh;
+mod options;
 mod pairs;
 mod place;
 mod points;
@@ -40,44 +41,16 @@ use diagnostics::{Diagnostic, Diagnostics};
 use manipulation::Robot;
 use nalgebra::{Isometry3, Translation3};
 
+pub use options::{Gripper, Options};
 pub use report::{Finding, Findings, Fit, Kind, PairCounts};
 
 use capsule::Capsule;
-use pairs::{Pair, Pairs, Random};
+use pairs::{Pair, Random};
 use place::{BLOCKS, CLEARANCES_M, Placed, Progress};
 use points::Hull;
 use shapes::Shape;
 use source::Source;
-use structure::Arm;
-
-/// The gripper that is wanted.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Gripper {
-    /// The one that is found.
-    #[default]
-    Found,
-    /// The one whose fingers this link carries.
-    Link(String),
-    /// None: two fingers are assumed on the flange.
-    None,
-}
-
-/// Choices of the owner.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Options {
-    /// Name of the robot, of its files and of its profile.
-    pub name: String,
-    /// Link that the arm hangs on.
-    pub base: Option<String>,
-    /// Link at the end of the arm.
-    pub tip: Option<String>,
-    /// Gripper.
-    pub gripper: Gripper,
-    /// Distance between the open fingers, metres.
-    pub open_m: Option<f64>,
-    /// SRDF to compare with; the one beside the file by default.
-    pub srdf: Option<std::path::PathBuf>,
-}
+use write::Import;
 
 /// Files of an imported robot, as text.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,26 +74,6 @@ pub struct Refused {
     pub faults: Diagnostics,
     /// What was found until then.
     pub findings: Findings,
-}
-
-/// Parts of a robot between reading and writing.
-struct Import<'a> {
-    name: &'a str,
-    file: &'a str,
-    source: &'a Source,
-    arm: &'a Arm,
-    gripper: &'a gripper::Gripper,
-    names: write::Names,
-    bounds: Vec<write::Bounds>,
-    /// Shapes of each link, in its frame.
-    shapes: Vec<Vec<Shape>>,
-    /// Poses of the links at rest: lifts in their middle, the gripper open, the rest at zero.
-    rest: Vec<Isometry3<f64>>,
-    /// Frame base in the root's.
-    mount: Isometry3<f64>,
-    pairs: Pairs,
-    /// Pairs that may touch only since their shapes are wider than the links.
-    fat: Vec<Pair>,
 }
 
 /// Positions of frame base behind the arm's base that are tried, metres: the table begins 0.4 m ahead of the frame, which
@@ -197,14 +150,7 @@ fn imported(
     let name = |link: usize| source.links[link].name.clone();
     findings.pairs.fat = import.fat.iter().map(|(a, b)| (name(*a), name(*b))).collect();
     let placed = import.placed(&hulls, &label, findings)?;
-    let postures = import.postures(&placed.postures);
-    Ok(Imported {
-        urdf: write::urdf(&import),
-        srdf: write::srdf(&import, &postures),
-        scene: configuration::scene(&options.name, &placed),
-        profile: configuration::profile(&options.name, &placed),
-        findings: Findings::default(),
-    })
+    Ok(import.files(&placed))
 }
 
 fn read_source(file: &Path, label: &str, findings: &mut Findings) -> Result<Source, Diagnostics> {
@@ -337,6 +283,17 @@ impl Import<'_> {
         };
         let theirs: Vec<Capsule> = placed(b).collect();
         placed(a).any(|own| theirs.iter().any(|it| own.to(it) < KEPT_M))
+    }
+
+    /// Returns the text of every file.
+    fn files(&self, placed: &Placed) -> Imported {
+        Imported {
+            urdf: write::urdf(self),
+            srdf: write::srdf(self, &self.postures(&placed.postures)),
+            scene: configuration::scene(self.name, placed),
+            profile: configuration::profile(self.name, placed),
+            findings: Findings::default(),
+        }
     }
 
     fn postures(&self, postures: &[(&'static str, manipulation::Joints)]) -> Vec<write::Posture> {

@@ -86,14 +86,8 @@ fn distance(placed: &[Vec<Hull>], (a, b): Pair, within: f64) -> f64 {
     all.fold(f64::INFINITY, f64::min)
 }
 
-/// Sorts the pairs; `still` has the positions of joints that belong to neither arm nor gripper.
-pub(crate) fn sample(
-    source: &Source,
-    arm: &Arm,
-    hulls: &[Vec<Hull>],
-    still: &[f64],
-    seed: u64,
-) -> Pairs {
+/// Returns the pairs of links with shapes of which one at least moves with the arm.
+fn candidates(source: &Source, arm: &Arm, hulls: &[Vec<Hull>]) -> Vec<Pair> {
     let first = source.joints[arm.joints[0]].child;
     let solid: Vec<usize> =
         (0..source.links.len()).filter(|link| !hulls[*link].is_empty()).collect();
@@ -102,7 +96,18 @@ pub(crate) fn sample(
         .iter()
         .enumerate()
         .flat_map(|(at, a)| solid[at + 1..].iter().map(move |b| (*a.min(b), *a.max(b))));
-    let all: Vec<Pair> = pairs.filter(|(a, b)| is_own(*a) || is_own(*b)).collect();
+    pairs.filter(|(a, b)| is_own(*a) || is_own(*b)).collect()
+}
+
+/// Sorts the pairs; `still` has the positions of joints that belong to neither arm nor gripper.
+pub(crate) fn sample(
+    source: &Source,
+    arm: &Arm,
+    hulls: &[Vec<Hull>],
+    still: &[f64],
+    seed: u64,
+) -> Pairs {
+    let all = candidates(source, arm, hulls);
     let moving = arm.joints.iter().chain(&arm.fingers).copied();
     let moving = moving.filter(|joint| source.joints[*joint].follows.is_none()).collect();
     let mut sampler =
@@ -121,6 +126,12 @@ pub(crate) fn sample(
     let zero = sampler.placed(still);
     take(&mut rest, &mut found.default, |pair| distance(&zero, pair, 0.0) <= 0.0);
     always(&mut sampler, &mut rest, &mut found.always);
+    by_distance(&mut sampler, rest, &mut found);
+    found
+}
+
+/// Sorts the rest by how near the links come to each other.
+fn by_distance(sampler: &mut Sampler<'_>, rest: Vec<Pair>, found: &mut Pairs) {
     let mut least = vec![f64::INFINITY; rest.len()];
     for _ in 0..POSTURES {
         let placed = sampler.posture();
@@ -137,7 +148,6 @@ pub(crate) fn sample(
             _ => found.never.insert(pair),
         };
     }
-    found
 }
 
 fn take(rest: &mut Vec<Pair>, into: &mut BTreeSet<Pair>, is_in: impl Fn(Pair) -> bool) {

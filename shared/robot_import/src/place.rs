@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use manipulation::{
     ArmShape, Chain, Cuboid, Gap, Joints, Limb, ObjectPose, PlanSettings, Robot, fetching_limb,
+    plan_pick,
 };
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
@@ -260,6 +261,29 @@ fn rest(robot: &Robot, at: [f64; 2], table_z_m: f64) -> Result<(Joints, f64), St
     })
 }
 
+/// Returns the posture of rest with the greatest clearance of some places, and the clearance.
+///
+/// # Errors
+/// What is in the way.
+fn rest_near(robot: &Robot, middle: [f64; 2], table_z_m: f64) -> Result<(Joints, f64), String> {
+    let mut found: Result<(Joints, f64), String> = Err(String::new());
+    for x in [middle[0] - 0.06, middle[0], middle[0] - 0.12, middle[0] + 0.06] {
+        let next = rest(robot, [x, 0.0], table_z_m);
+        let is_better = match (&next, &found) {
+            (Ok(next), Ok(found)) => next.1 > found.1,
+            (_, Err(_)) => true,
+            (Err(_), Ok(_)) => false,
+        };
+        if is_better {
+            found = next;
+        }
+        if found.as_ref().is_ok_and(|(_, clearance_m)| *clearance_m >= CLEARANCES_M[0]) {
+            break;
+        }
+    }
+    found
+}
+
 /// Returns the posture of rest and others to either side of it that are within the limits.
 fn around(robot: &Robot, neutral: Joints) -> Vec<(&'static str, Joints)> {
     let chain = &robot.arm(Limb::Only).chain;
@@ -326,29 +350,20 @@ pub(crate) fn on_table(
     let Some(&middle) = places.first().filter(|_| places.len() >= BLOCKS) else {
         return Err(progress);
     };
-    let nearer = [middle[0] - 0.06, middle[0], middle[0] - 0.12, middle[0] + 0.06];
-    let mut found: Option<(Joints, f64)> = None;
-    for x in nearer {
-        match rest(robot, [x, 0.0], table_z_m) {
-            Ok(next) if found.is_none_or(|(_, clearance_m)| next.1 > clearance_m) => {
-                found = Some(next);
-            }
-            Ok(_) => {}
-            Err(why) => progress.why = why,
-        }
-        if found.is_some_and(|(_, clearance_m)| clearance_m >= CLEARANCES_M[0]) {
-            break;
-        }
-    }
-    let Some((neutral, clearance_m)) = found else { return Err(progress) };
+    let (neutral, clearance_m) = match rest_near(robot, middle, table_z_m) {
+        Ok(found) => found,
+        Err(why) => return Err(Progress { why, ..progress }),
+    };
     progress.rests = true;
     let postures = around(robot, neutral);
     let Some(robot) = with_rest(&postures) else { return Err(progress) };
     let widths = widths(gripper);
     for hand_over_m in hand_overs(&places, middle, table_z_m) {
         let plan = settings(table_z_m, hand_over_m);
-        let (blocks, why) = blocks(&robot, &places, hand_over_m, &widths, &plan);
-        if blocks.len() == BLOCKS {
+        let (blocks, mut why) = blocks(&robot, &places, hand_over_m, &widths, &plan);
+        if let Some(error) = unplanned(&robot, &blocks, &plan) {
+            why = error;
+        } else if blocks.len() == BLOCKS {
             return Ok(Placed { table_z_m, hand_over_m, postures, clearance_m, blocks });
         }
         if blocks.len() > progress.blocks || progress.blocks == 0 {
@@ -356,6 +371,17 @@ pub(crate) fn on_table(
         }
     }
     Err(progress)
+}
+
+/// Returns why the whole motion for one of the blocks cannot be planned; none where all can.
+fn unplanned(robot: &Robot, blocks: &[ObjectPose], plan: &PlanSettings) -> Option<String> {
+    let rest = robot.neutral();
+    blocks.iter().enumerate().find_map(|(i, block)| {
+        let others = blocks.iter().enumerate().filter(|(j, _)| *j != i);
+        let others: Vec<Cuboid> = others.map(|(_, it)| it.cuboid()).collect();
+        let planned = plan_pick(robot, block, None, &rest, &others, plan);
+        planned.err().map(|error| error.to_string())
+    })
 }
 
 /// Places of the hand-over that are tried: to the left of what the arm reaches, then nearer and to the right.

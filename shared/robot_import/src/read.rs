@@ -95,17 +95,7 @@ fn joint(
     findings: &mut Findings,
 ) -> Joint {
     let name = attribute(node, "name").to_owned();
-    let written = attribute(node, "type");
-    let kind = match written {
-        "revolute" => JointKind::Revolute,
-        "continuous" => JointKind::Continuous,
-        "prismatic" => JointKind::Prismatic,
-        "fixed" => JointKind::Fixed,
-        other => {
-            findings.assumed(format!("joint {name} is of type {other:?}: it is taken to be fixed"));
-            JointKind::Fixed
-        }
-    };
+    let kind = kind(&name, attribute(node, "type"), findings);
     let axis = elements(node, "axis").next().and_then(|axis| vector(axis, "xyz"));
     let axis = Unit::try_new(axis.unwrap_or_else(Vector3::x), 1e-9);
     if axis.is_none() && kind != JointKind::Fixed {
@@ -130,6 +120,19 @@ fn joint(
         velocity: number("velocity"),
         effort: number("effort"),
         follows,
+    }
+}
+
+fn kind(name: &str, written: &str, findings: &mut Findings) -> JointKind {
+    match written {
+        "revolute" => JointKind::Revolute,
+        "continuous" => JointKind::Continuous,
+        "prismatic" => JointKind::Prismatic,
+        "fixed" => JointKind::Fixed,
+        other => {
+            findings.assumed(format!("joint {name} is of type {other:?}: it is taken to be fixed"));
+            JointKind::Fixed
+        }
     }
 }
 

@@ -117,22 +117,7 @@ pub(crate) fn guess(
             continue;
         }
         is_guessed[link] = true;
-        let ends = source.children(link).map(|joint| &source.joints[joint]);
-        let ends = ends.filter(|joint| {
-            source.is_below(arm.last, joint.child) || source.is_below(arm.hand, joint.child)
-        });
-        let mut ends: Vec<_> = ends.map(|joint| joint.origin.translation.vector).collect();
-        if ends.is_empty() {
-            ends.push(Vector3::zeros());
-        }
-        // The base stands on something, and reaches no lower than its frame.
-        let start = |b: &Vector3<f64>| match link == arm.base && b.norm() > 2.0 * radius {
-            true => b.normalize() * radius,
-            false => Vector3::zeros(),
-        };
-        let pieces = ends.into_iter().map(|b| Capsule { a: start(&b), b, radius });
-        hulls[link] =
-            pieces.filter_map(|own| Hull::new(&own.surface(128).collect::<Vec<_>>())).collect();
+        hulls[link] = spaced(source, arm, link, radius);
     }
     let names: Vec<&str> = (0..source.links.len())
         .filter(|link| is_guessed[*link])
@@ -146,6 +131,25 @@ pub(crate) fn guess(
         ));
     }
     is_guessed
+}
+
+/// Returns the hulls of a link as long as the way to the joints that it carries.
+fn spaced(source: &Source, arm: &Arm, link: usize, radius: f64) -> Vec<Hull> {
+    let ends = source.children(link).map(|joint| &source.joints[joint]);
+    let ends = ends.filter(|joint| {
+        source.is_below(arm.last, joint.child) || source.is_below(arm.hand, joint.child)
+    });
+    let mut ends: Vec<_> = ends.map(|joint| joint.origin.translation.vector).collect();
+    if ends.is_empty() {
+        ends.push(Vector3::zeros());
+    }
+    // The base stands on something, and reaches no lower than its frame.
+    let start = |b: &Vector3<f64>| match link == arm.base && b.norm() > 2.0 * radius {
+        true => b.normalize() * radius,
+        false => Vector3::zeros(),
+    };
+    let pieces = ends.into_iter().map(|b| Capsule { a: start(&b), b, radius });
+    pieces.filter_map(|own| Hull::new(&own.surface(128).collect::<Vec<_>>())).collect()
 }
 
 /// Returns the shapes of a link of the arm; those of the hand end at the fingertips.

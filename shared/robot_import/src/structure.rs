@@ -3,9 +3,9 @@
 use diagnostics::Diagnostic;
 use robot_model::JointKind;
 
+use crate::options::{Gripper as Asked, Options};
 use crate::report::Findings;
 use crate::source::{Joint, Source};
-use crate::{Gripper as Asked, Options};
 
 /// Fewest turning joints before a gripper, and of what counts as a limb.
 const LIMB_MIN: usize = 4;

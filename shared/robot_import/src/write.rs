@@ -6,9 +6,12 @@ use std::fmt::Write;
 use nalgebra::{Isometry3, Vector3};
 use robot_model::JointKind;
 
-use crate::Import;
+use crate::gripper::Gripper;
+use crate::pairs::{Pair, Pairs};
 use crate::report::Findings;
 use crate::shapes::Shape;
+use crate::source::Source;
+use crate::structure::Arm;
 
 /// Name of the limb; the link between its fingertips is `arm_gripper`.
 pub(crate) const LIMB: &str = "arm";
@@ -20,6 +23,26 @@ const FINGER_M_S: f64 = 0.1;
 const EFFORT: f64 = 10.0;
 /// A joint of the arm is at least as fast as that, rad/s.
 const SLOWEST: f64 = 0.05;
+
+/// Parts of a robot between reading and writing.
+pub(crate) struct Import<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) file: &'a str,
+    pub(crate) source: &'a Source,
+    pub(crate) arm: &'a Arm,
+    pub(crate) gripper: &'a Gripper,
+    pub(crate) names: Names,
+    pub(crate) bounds: Vec<Bounds>,
+    /// Shapes of each link, in its frame.
+    pub(crate) shapes: Vec<Vec<Shape>>,
+    /// Poses of the links at rest: lifts in their middle, the gripper open, the rest at zero.
+    pub(crate) rest: Vec<Isometry3<f64>>,
+    /// Frame base in the root's.
+    pub(crate) mount: Isometry3<f64>,
+    pub(crate) pairs: Pairs,
+    /// Pairs that may touch only since their shapes are wider than the links.
+    pub(crate) fat: Vec<Pair>,
+}
 
 /// Names of links and joints in the files that are written.
 #[derive(Clone, Debug, Default)]
