@@ -217,7 +217,7 @@ const WRITING: [(&str, &str); 8] = [
 ];
 
 /// Files that do one of these things, each with the reason.
-const WRITERS: [(&str, &str, &str); 7] = [
+const WRITERS: [(&str, &str, &str); 8] = [
     (
         "shared/service/src/journal_record/golden.rs",
         "fs::write(",
@@ -241,10 +241,11 @@ const WRITERS: [(&str, &str, &str); 7] = [
     ),
     ("shared/service/src/journal_set.rs", "fs::rename(", "journals are set aside"),
     (
-        "services/",
+        "shared/web_server/src/audit.rs",
         "fs::rename(",
-        "a full audit of the gateway becomes the first of the older ones, journals are put aside",
+        "a full audit becomes the first of the older ones",
     ),
+    ("services/supervisor/src/epoch.rs", "fs::rename(", "journals are put aside"),
 ];
 
 /// The text without items for tests.
