@@ -24,6 +24,8 @@ mod full_memory;
 mod gateway;
 mod haste;
 mod hearing;
+mod http;
+mod http_strangers;
 mod installed;
 mod interrupted;
 mod isolation;

@@ -13,6 +13,7 @@ pub mod cli;
 pub mod feed;
 mod mirrors;
 pub mod people;
+mod programs;
 mod proxy;
 mod robots;
 pub mod rules;
