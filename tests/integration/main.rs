@@ -25,6 +25,8 @@ mod gateway;
 mod haste;
 mod hearing;
 mod imported_robots;
+mod http;
+mod http_strangers;
 mod installed;
 mod interrupted;
 mod isolation;

@@ -1,10 +1,8 @@
 //! A console page without a browser: its socket and the messages that it received.
 
+use crate::http_program::true_answer;
 use crate::{Group, wait_for};
-use dialogue::Model;
-use evaluation::simulation::SimulatedUser;
-use evaluation::simulation::users::Domain;
-use scene::{Scene, question_from_json};
+use scene::Scene;
 use serde_json::{Map, Value as Json, json};
 use service::console_link;
 use std::io::{ErrorKind, Read, Write};
@@ -13,7 +11,6 @@ use std::time::{Duration, Instant};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::http::HeaderValue;
 use tungstenite::{Message, WebSocket, client};
-use vocabulary::Params;
 
 /// Timeout of one read of the socket.
 const LOOK: Duration = Duration::from_millis(20);
@@ -348,10 +345,6 @@ impl Page {
         let objects: Vec<Json> = objects.map(named).collect();
         let scene = Scene::from_json("the page's scene", &json!({ "objects": objects }))
             .unwrap_or_else(|problems| panic!("{problems:?}"));
-        let question = question_from_json(&scene, question).unwrap_or_else(|e| panic!("{e}"));
-        let model = Model::new(&scene, Params::default());
-        let mut user = SimulatedUser::truthful(scene.object_named(object));
-        let turn = user.answer(Domain { scene: &scene, model: &model }, question);
-        turn.reply.text().unwrap_or("I do not know").to_owned()
+        true_answer(&scene, question, object)
     }
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use config::{Recogniser, Settings, Voice};
+use http_api::{Api, Feed, Rules};
 use messages::Service;
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use service::bus::WakeListener;
@@ -96,12 +97,16 @@ impl Console {
         let desk = Desk::new(paths.control_socket(), in_force, scenes_lock(settings));
         let scenes = Scenes::start(desk).map_err(failed("scene editor's thread"))?;
         let session = random_secret().map_err(failed("session"))?;
+        let access = Arc::new(access(settings, paths)?);
+        let hub = Hub::new(channels, limits.viewers, handover, Metrics::new(paths.recordings()));
+        let (http, feed) = http(&access, &hub, paths).map_err(failed("interface for programs"))?;
         let app = Arc::new(App {
             history,
             scenes,
-            hub: Hub::new(channels, limits.viewers, handover, Metrics::new(paths.recordings())),
+            hub,
             live: Live::new(settings, paths.name().as_str(), &session, is_live_possible)?,
-            access: access(settings, paths)?,
+            access,
+            http,
             group: paths.name().to_string(),
             settings: page_settings(settings, study.is_some()),
             urdf: settings.robot_files().urdf.text.clone(),
@@ -113,7 +118,7 @@ impl Console {
         let address: SocketAddr = settings.console.listen;
         let web = Web::new(&app, address, paths.console_url(), limits.others)
             .map_err(failed("web server's threads"))?;
-        let bridge = Bridge::open(Arc::clone(&app), client, paths, settings, study)?;
+        let bridge = Bridge::open(Arc::clone(&app), client, paths, settings, (study, feed))?;
         let inbox = Inbox { commands: command_inbox, motions: motion_inbox };
         Ok(Self { app, bridge, inbox, wake_listener, web, is_ending: false })
     }
@@ -139,6 +144,14 @@ fn access(settings: &Settings, paths: &GroupPaths) -> Result<Access, Failure> {
     let file = console_link::token_file(paths);
     let failed = |error| Failure::new(Exit::Storage, format!("{}: {error}", file.display()));
     Access::by_token(&file, console_link::sessions_file(paths)).map_err(failed)
+}
+
+/// Opens the interface for programs, which the console's own token may use as well.
+fn http(access: &Arc<Access>, hub: &Hub, paths: &GroupPaths) -> std::io::Result<(Arc<Api>, Feed)> {
+    let access = Arc::clone(access);
+    let is_owner = Box::new(move |said: &str| access.is_token(said));
+    let (is_stop, ending) = (language::is_stop, hub.ending());
+    http_api::open(paths, Rules { is_owner, is_stop, ending })
 }
 
 /// Raises the limit of descriptors as far as allowed, and divides it: first to pages, then to the live view.
@@ -185,7 +198,8 @@ impl Cycle for Console {
         let is_watched = self.app.hub.viewers() > 0 || self.bridge.is_busy();
         let longest = if is_watched { watched } else { alone };
         let Inbox { motions, commands } = &self.inbox;
-        ([Some(motions.fd()), Some(commands.fd()), None], now + longest)
+        let programs = Some(self.bridge.http.fd());
+        ([Some(motions.fd()), Some(commands.fd()), programs], now + longest)
     }
 
     fn shut_down(&mut self) {

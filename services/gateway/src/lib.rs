@@ -13,6 +13,7 @@ pub mod cli;
 pub mod feed;
 mod mirrors;
 pub mod people;
+mod programs;
 mod proxy;
 mod robots;
 pub mod rules;
@@ -31,11 +32,11 @@ use service::exit::{Exit, Failure};
 use service::folders::make_private;
 use service::group::GroupName;
 use tokio::sync::watch;
+use web_server::audit::Audit;
 use web_server::connections::{Gate, Of, Pages};
 use web_server::sessions::Sessions;
 
 use access::{Address, SESSIONS, SESSIONS_FILE};
-use audit::Audit;
 use budgets::{Budgets, Places};
 use people::PeopleFile;
 use robots::Robots;
@@ -128,8 +129,9 @@ impl Gateway {
     fn open(options: &Options, address: Address) -> Result<Self, Failure> {
         let folder = &options.folder;
         make_private(folder).map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
-        let audit = Audit::open(folder)
-            .map_err(|error| Failure::file(&folder.join(audit::FILE), &error))?;
+        let audit = Audit::open(folder, audit::NAME).map_err(|error| {
+            Failure::file(&folder.join(audit::NAME).with_extension("jsonl"), &error)
+        })?;
         Ok(Self {
             people: PeopleFile::open(folder.join(people::FILE))?,
             sessions: Sessions::open(SESSIONS, folder.join(SESSIONS_FILE)),

@@ -2,10 +2,11 @@
 
 use std::time::Duration;
 
-use axum::body::{Body, to_bytes};
-use axum::http::{HeaderMap, Request, Response, StatusCode, header};
+use axum::body::{Body, Bytes, to_bytes};
+use axum::http::{HeaderMap, Method, Request, Response, StatusCode, header};
 use hyper::client::conn::http1::handshake;
 use hyper_util::rt::TokioIo;
+use roster::Name;
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
@@ -14,6 +15,8 @@ use crate::robots::Console;
 
 /// Timeout of a console's answer.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// Timeout of its answer to a program, which may wait for the robot's reply for a minute.
+const PROGRAM_PATIENCE: Duration = Duration::from_secs(75);
 /// Timeout of its answer for the list of robots.
 const LOOK_PATIENCE: Duration = Duration::from_millis(1_500);
 /// Largest state for the list of robots, bytes.
@@ -21,6 +24,10 @@ const STATE_MAX: usize = 4 << 20;
 
 /// Headers of a request that matter to a console. Whatever else a browser sends, cookies first of all, stays here.
 const PASSED: [&str; 4] = ["accept", "accept-encoding", "if-none-match", "host"];
+/// Those of a program.
+const PROGRAMS: [&str; 5] = ["accept", "content-type", "host", "idempotency-key", "last-event-id"];
+/// Tells the console for whom the gateway asks.
+const PERSON: &str = "whichone-person";
 /// Headers of an answer that are about the connection, or that only the gateway may set.
 const KEPT_BACK: [&str; 6] =
     ["connection", "transfer-encoding", "upgrade", "set-cookie", "location", "www-authenticate"];
@@ -84,6 +91,40 @@ pub(crate) async fn pass(
     Ok(response)
 }
 
+/// A request of a program.
+#[derive(Debug)]
+pub(crate) struct ProgramRequest<'a> {
+    pub(crate) method: &'a Method,
+    pub(crate) path: &'a str,
+    pub(crate) headers: &'a HeaderMap,
+    /// Whose secret the program has.
+    pub(crate) person: &'a Name,
+    pub(crate) body: Bytes,
+}
+
+/// Passes a program's request on to a console, in the name of its person.
+///
+/// # Errors
+/// The reason for which there is no answer.
+pub(crate) async fn pass_program(
+    console: &Console,
+    ProgramRequest { method, path, headers, person, body }: ProgramRequest<'_>,
+) -> Result<Response<Body>, String> {
+    let mut request = Request::builder().method(method).uri(path);
+    for name in PROGRAMS {
+        if let Some(value) = headers.get(name) {
+            request = request.header(name, value);
+        }
+    }
+    let request = request.header(PERSON, person.as_str());
+    let answer = timeout(PROGRAM_PATIENCE, ask_with(console, request, Body::from(body))).await;
+    let mut response = answer.map_err(|_| "the robot's console does not answer".to_owned())??;
+    for name in KEPT_BACK {
+        response.headers_mut().remove(name);
+    }
+    Ok(response)
+}
+
 /// Reads something small from a console; `None` where that fails.
 pub(crate) async fn get(console: &Console, path: &str) -> Option<Vec<u8>> {
     let read = async {
@@ -99,8 +140,16 @@ async fn ask(
     console: &Console,
     request: axum::http::request::Builder,
 ) -> Result<Response<Body>, String> {
+    ask_with(console, request, Body::empty()).await
+}
+
+async fn ask_with(
+    console: &Console,
+    request: axum::http::request::Builder,
+    body: Body,
+) -> Result<Response<Body>, String> {
     let bearer = format!("Bearer {}", console.token);
-    let request = request.header(header::AUTHORIZATION, bearer).body(Body::empty());
+    let request = request.header(header::AUTHORIZATION, bearer).body(body);
     let request = request.map_err(|error| error.to_string())?;
     let stream = TcpStream::connect(&console.place).await.map_err(|error| error.to_string())?;
     // Connections of this machine cost little, so that each request has its own.

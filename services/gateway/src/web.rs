@@ -23,7 +23,7 @@ use crate::audit::{Entry, Outcome};
 use crate::people::Right;
 use crate::robots::Unreached;
 use crate::socket::{self, FRAME_BYTES_MAX, Visit};
-use crate::{Gateway, access, proxy};
+use crate::{Gateway, access, programs, proxy};
 
 /// The gateway's own files: path, type, contents. Colours and type are those of the console's page.
 const FILES: [(&str, &str, &str); 5] = [
@@ -53,6 +53,7 @@ pub(crate) fn router(gateway: Arc<Gateway>) -> Router {
         .route("/_/{file}", get(file))
         .route("/{robot}", get(to_folder))
         .route("/{robot}/", get(robot_page))
+        .route("/{robot}/api/v1/{*path}", get(program).post(program))
         .route("/{robot}/{*path}", get(robot_page))
         .fallback(|| async { (StatusCode::NOT_FOUND, "page not found\n") })
         .layer(middleware::from_fn_with_state(Arc::clone(&gateway), guard))
@@ -126,7 +127,39 @@ async fn to_folder(Path(robot): Path<String>) -> Response<Body> {
     }
 }
 
-/// Everything of a robot's console, its socket included.
+/// The interface for programs of a robot's console.
+async fn program(State(gateway): Shared, on: On, request: Request) -> Response<Body> {
+    let (parts, body) = request.into_parts();
+    let ConnectInfo(Of(connection)) = on;
+    let Ok(known) = known(&gateway, &connection, &parts.headers).await else {
+        let why = "unknown secret; programs send the header Authorization: Bearer SECRET";
+        return programs::problem(StatusCode::UNAUTHORIZED, why);
+    };
+    let (first, rest) = split(&parts.uri);
+    let (robot, right) = match right_to(&gateway, &known.person, first) {
+        Ok(right) => right,
+        Err(why) => return programs::problem(StatusCode::FORBIDDEN, &why),
+    };
+    let console = match gateway.robots.reach(&robot).await {
+        Ok(console) => console,
+        Err(why) => return programs::problem(StatusCode::SERVICE_UNAVAILABLE, &why.to_string()),
+    };
+    let visitor = programs::Visitor { person: &known.person, robot: &robot, right };
+    programs::serve(&gateway, visitor, &console, &parts, (rest, body)).await
+}
+
+/// Returns a robot and the person's right to it, or why there is none. Whether there is such a robot is not for strangers
+/// to know.
+fn right_to(gateway: &Gateway, person: &Name, robot: &str) -> Result<(Name, Right), String> {
+    let right = Name::new(robot).ok().and_then(|robot| {
+        let right = gateway.people.current().right(person, &robot)?;
+        Some((robot, right))
+    });
+    let help = "help: ask who administers the gateway";
+    right.ok_or_else(|| format!("{person} has no right to a robot {robot}; {help}"))
+}
+
+/// Everything else of a robot's console, its socket included.
 async fn robot_page(State(gateway): Shared, on: On, request: Request) -> Response<Body> {
     let (mut parts, _) = request.into_parts();
     let (headers, uri) = (parts.headers.clone(), parts.uri.clone());
@@ -135,18 +168,10 @@ async fn robot_page(State(gateway): Shared, on: On, request: Request) -> Respons
         Ok(known) => known,
         Err(response) => return response,
     };
-    let person = &known.person;
     let (first, rest) = split(&uri);
-    let right = Name::new(first).ok().and_then(|robot| {
-        let right = gateway.people.current().right(person, &robot)?;
-        Some((robot, right))
-    });
-    // Whether there is such a robot is not for strangers to know.
-    let Some((robot, right)) = right else {
-        let why = format!(
-            "{person} has no right to a robot {first}; help: ask who administers the gateway"
-        );
-        return refuse(&headers, StatusCode::FORBIDDEN, &why);
+    let (robot, right) = match right_to(&gateway, &known.person, first) {
+        Ok(right) => right,
+        Err(why) => return refuse(&headers, StatusCode::FORBIDDEN, &why),
     };
     if rest == "/login" {
         return Redirect::to("/_/login").into_response();

@@ -204,6 +204,8 @@ pub enum Verb {
     Release(ServiceArgs),
     /// Print the link to the console's page, with the token that lets you in.
     Console(ConsoleArgs),
+    /// Make, list or revoke tokens with which programs talk to the robot over HTTP (docs/http.md).
+    Token(http_api::verb::TokenArgs),
     /// Show the logs of the services.
     Logs(LogsArgs),
     /// Reload the configuration and restart the affected services.

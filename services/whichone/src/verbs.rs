@@ -57,6 +57,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Hold(args) => operate::on_service(&paths()?, Request::Hold, args, out),
         Verb::Release(args) => operate::on_service(&paths()?, Request::Release, args, out),
         Verb::Console(args) => console::console(&paths()?, &args, out),
+        Verb::Token(args) => http_api::verb::token(&paths()?, &args, out),
         Verb::Logs(args) => logs::logs(&paths()?, &args, out),
         Verb::Reload(args) => operate::reload(&paths()?, args, out),
         Verb::Check(args) => check::check(&args, out),

@@ -57,6 +57,8 @@ pub struct Bridge {
     model: ViewModel,
     voice: Voice,
     study: Option<Box<dyn Part>>,
+    /// The interface for programs.
+    pub http: http_api::Feed,
     feed: Feed,
     tally: Tally,
     submissions: Submissions,
@@ -113,7 +115,7 @@ impl Bridge {
         client: Client,
         paths: &GroupPaths,
         settings: &Settings,
-        study: Option<Box<dyn Part>>,
+        (study, http): (Option<Box<dyn Part>>, http_api::Feed),
     ) -> Result<Self, Failure> {
         let bus = client.bus();
         let failed =
@@ -130,6 +132,7 @@ impl Bridge {
             model: ViewModel::new(scene, transcript),
             voice: Voice::default(),
             study,
+            http,
             feed: Feed::new(settings, paths.log()),
             tally: Tally::new(clock::now()),
             submissions: Submissions::default(),
@@ -160,7 +163,7 @@ impl Bridge {
 
     /// Returns whether something waits for an answer, so that the next pass should come soon.
     pub fn is_busy(&self) -> bool {
-        !self.submissions.is_empty() || self.motions.is_waiting()
+        !self.submissions.is_empty() || self.motions.is_waiting() || self.http.is_busy()
     }
 
     fn hub(&self) -> &Hub {
@@ -191,6 +194,7 @@ impl Bridge {
             self.submissions.on_receipt(receipt, || model.unavailable(&later), &self.app.hub);
             model.on_receipt(receipt, now);
             tally.on_receipt(receipt, metrics);
+            self.http.on_receipt(receipt);
         }
         let table = topics.latest.table();
         for observation in &observations {
@@ -199,7 +203,10 @@ impl Bridge {
                 None => model.on_observation(observation),
             }
         }
-        acts.iter().for_each(|act| model.on_act(act));
+        acts.iter().for_each(|act| {
+            model.on_act(act);
+            self.http.on_act(act);
+        });
         arrived.activity.into_iter().for_each(|activity| model.on_activity(activity));
         if let Some(presented) = arrived.presented {
             let file = SoundFile::of(&presented).to_string();
@@ -297,6 +304,8 @@ impl Bridge {
     fn advance(&mut self, now: Now) {
         self.model.tick(now);
         self.submissions.pass(&self.injections, &self.app.hub, now.at);
+        let unavailable = || self.model.unavailable(&[Service::Speech]);
+        self.http.pass(&self.injections, self.model.accepted(), unavailable, now.at);
         self.motions.pass(self.model.group(), &self.app.hub, now.at);
         self.voice.pass(&self.app.hub, now.at);
         let events = self.model.take_events();
@@ -313,6 +322,8 @@ impl Bridge {
 
     fn show(&mut self, now: Now) {
         let sections = self.model.sections(now);
+        let (scene, latest, group) = (self.model.scene(), self.model.latest(), self.model.group());
+        self.http.publish(&http_api::Robot { scene, latest, group }, !sections.is_empty());
         let study = self.study.as_ref().and_then(|study| study.section(&self.model.robot(now)));
         let study = study.map(|study| ("study", study));
         for (name, text) in sections.into_iter().chain(study) {

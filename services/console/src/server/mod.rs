@@ -45,7 +45,9 @@ pub struct App {
     pub live: Live,
     pub history: Arc<History>,
     pub scenes: Scenes,
-    pub access: Access,
+    pub access: Arc<Access>,
+    /// The interface for programs.
+    pub http: Arc<http_api::Api>,
     pub group: String,
     pub settings: PageSettings,
     /// The robot's description (URDF).
@@ -94,6 +96,7 @@ fn router(app: Arc<App>) -> Router {
         .fallback(routes::asset)
         .layer(middleware::from_fn_with_state(Arc::clone(&app), admit))
         // The routes below are open without the token, or check it themselves.
+        .merge(http_api::routes(Arc::clone(&app.http)))
         .route("/foxglove", get(routes::foxglove))
         .route("/healthz", get(routes::health))
         .route("/login", get(routes::asset).post(routes::login).layer(form_limit()))

@@ -1,0 +1,314 @@
+//! `say` and `cancel`: words under a key, and the robot's reply to them.
+
+use std::time::{Duration, Instant};
+
+use axum::body::{Body, to_bytes};
+use axum::http::{HeaderMap, HeaderName, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use messages::PromptId;
+use serde::{Deserialize, Serialize};
+use service::console_link::random_secret;
+use tokio::sync::oneshot;
+use tokio::time::timeout;
+use vocabulary::PersonId;
+
+use crate::api::{Api, Caller};
+use crate::conversations::Repeated;
+use crate::feed::{Heard, PATIENCE, Request, request_key};
+use crate::problem::Problem;
+use crate::state::{Kind, Reply};
+use crate::tokens::Right;
+
+/// Longest body, bytes.
+const BODY_MAX: usize = 16 << 10;
+/// Time for the body to arrive, seconds.
+const BODY_S: u64 = 10;
+/// Longest text, characters.
+const TEXT_MAX: usize = 1_000;
+/// Longest key and conversation, bytes.
+const KEY_MAX: usize = 200;
+/// Waits for a reply, seconds: unless the request says otherwise, and the longest.
+const WAIT_S: (f64, f64) = (8.0, 60.0);
+/// Time after which an utterance that no act answers has its reply.
+const SETTLED_AFTER: Duration = Duration::from_millis(300);
+/// Longest sleep while a reply is awaited.
+const LOOK_EVERY: Duration = Duration::from_millis(100);
+/// Longest wait for the number of words that stop the arm.
+const STOP_WORDS: Duration = Duration::from_millis(250);
+/// Words that withdraw a request.
+const NEVER_MIND: &str = "never mind";
+/// The same words under the same key are said once.
+const IDEMPOTENCY_KEY: HeaderName = HeaderName::from_static("idempotency-key");
+
+/// The body of `say`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Said {
+    text: String,
+    conversation: Option<String>,
+    from: Option<String>,
+    wait_s: Option<f64>,
+    seen: Option<u64>,
+}
+
+/// A checked request.
+#[derive(Debug)]
+pub(crate) struct Words {
+    text: String,
+    /// Whose dialogue it is; the token's name where the request has none.
+    conversation: String,
+    from: PersonId,
+    /// The key of the request; a random one where it has none.
+    key: String,
+    wait: Duration,
+    seen: Option<u64>,
+}
+
+/// The answer.
+#[derive(Debug, Serialize)]
+struct Answer {
+    /// Number of the utterance; none where words that stop the arm were not said as well.
+    utterance: Option<u64>,
+    /// Whether an earlier request with this key had said it.
+    known: bool,
+    reply: Reply,
+}
+
+/// Reads the body.
+pub(crate) async fn read(
+    body: Body,
+    headers: &HeaderMap,
+    caller: &Caller,
+) -> Result<Words, Problem> {
+    let read = timeout(Duration::from_secs(BODY_S), to_bytes(body, BODY_MAX)).await;
+    let bytes = match read {
+        Err(_) => return Err(Problem::slow(BODY_S)),
+        Ok(Err(error)) if error.to_string().contains("length limit") => {
+            return Err(Problem::too_large(BODY_MAX));
+        }
+        Ok(Err(error)) => return Err(Problem::unreadable(error.to_string())),
+        Ok(Ok(bytes)) => bytes,
+    };
+    let said: Said = serde_json::from_slice(&bytes).map_err(|error| {
+        let help = r#"help: expected {"text": "…"}; see /api/v1/openapi.json"#;
+        Problem::unreadable(format!("invalid request: {error}; {help}"))
+    })?;
+    check(said, headers, caller)
+}
+
+fn check(said: Said, headers: &HeaderMap, caller: &Caller) -> Result<Words, Problem> {
+    let Said { text, conversation, from, wait_s, seen } = said;
+    let text = text.replace(char::is_control, " ").trim().to_owned();
+    let length = text.chars().count();
+    if !(1..=TEXT_MAX).contains(&length) {
+        let what = format!("text: expected 1 to {TEXT_MAX} characters, found {length}");
+        return Err(Problem::invalid(what));
+    }
+    let wait_s = wait_s.unwrap_or(WAIT_S.0);
+    if !(0.0..=WAIT_S.1).contains(&wait_s) {
+        let what = format!("wait_s: expected 0 to {} seconds, found {wait_s}", WAIT_S.1);
+        return Err(Problem::invalid(what));
+    }
+    let from = PersonId::new(from.as_deref().unwrap_or_default());
+    Ok(Words {
+        text,
+        conversation: match conversation {
+            Some(name) => within("conversation", name)?,
+            None => caller.name.clone(),
+        },
+        from: from.map_err(|error| Problem::invalid(format!("from: {error}")))?,
+        key: key(headers)?,
+        wait: Duration::from_secs_f64(wait_s),
+        seen,
+    })
+}
+
+fn within(what: &str, text: String) -> Result<String, Problem> {
+    match text.len() {
+        1..=KEY_MAX => Ok(text),
+        found => {
+            Err(Problem::invalid(format!("{what}: expected 1 to {KEY_MAX} bytes, found {found}")))
+        }
+    }
+}
+
+/// Returns the request's key, or a random one.
+fn key(headers: &HeaderMap) -> Result<String, Problem> {
+    let Some(key) = headers.get(&IDEMPOTENCY_KEY) else {
+        let random = random_secret();
+        return random.map_err(|error| Problem::unavailable(format!("random numbers: {error}")));
+    };
+    let plain = key.to_str().map_err(|_| Problem::invalid("Idempotency-Key: expected ASCII"))?;
+    within("Idempotency-Key", plain.to_owned())
+}
+
+/// Says the words, and answers with the robot's reply. Words that stop the arm stop it first, whatever becomes of them.
+pub(crate) async fn say(api: &Api, caller: &Caller, words: Words) -> Result<Response, Problem> {
+    if !(api.rules.is_stop)(&words.text) {
+        api.must(caller, Right::Talk, "say")?;
+        return answer(api, caller, &words).await;
+    }
+    if !caller.may(Right::Stop) {
+        api.must(caller, Right::Talk, "say")?;
+    }
+    let talk = async {
+        match caller.may(Right::Talk) {
+            // The words are on their way at once; the answer to a stop does not wait for them.
+            true => timeout(STOP_WORDS, utter(api, caller, &words, true)).await.ok()?.ok(),
+            false => None,
+        }
+    };
+    let (stopped, said) = tokio::join!(api.motion.stop(), talk);
+    let outcome = if stopped.is_ok() { "done" } else { "failed" };
+    api.note(caller, "stop", outcome, Some(&words.text));
+    stopped?;
+    let reply = Reply::plain(Kind::Stopped, "I have stopped.");
+    let (utterance, known) = said.unzip();
+    let answer = Answer { utterance, known: known.unwrap_or(false), reply };
+    Ok(json(StatusCode::OK, body_of(&answer)))
+}
+
+/// Withdraws the open request.
+pub(crate) async fn cancel(
+    api: &Api,
+    caller: &Caller,
+    headers: &HeaderMap,
+) -> Result<Response, Problem> {
+    api.must(caller, Right::Talk, "cancel")?;
+    let said = Said { text: NEVER_MIND.to_owned(), ..Said::default() };
+    let words = check(said, headers, caller)?;
+    let is_new = api.conversations().repeated(&words.key_of(caller), &words.text).is_none();
+    if is_new && api.events.state().interaction == 0 {
+        return Err(Problem::conflict("nothing_open", "no request is open"));
+    }
+    answer(api, caller, &words).await
+}
+
+async fn answer(api: &Api, caller: &Caller, words: &Words) -> Result<Response, Problem> {
+    let _place = api.words.take(&caller.name).ok_or_else(|| Problem::too_many("requests"))?;
+    let until = Instant::now() + words.wait;
+    match api.conversations().repeated(&words.key_of(caller), &words.text) {
+        Some(Repeated::Reply(body)) => return Ok(json(StatusCode::OK, body)),
+        Some(Repeated::OtherWords) => return Err(other_words()),
+        None => {}
+    }
+    let open = api.events.state().interaction;
+    let (seq, known) = utter(api, caller, words, false).await?;
+    let reply = reply(api, (seq, open), until).await;
+    api.conversations().show(&words.conversation, reply.prompt);
+    if reply.kind == Kind::Pending {
+        let answer = Answer { utterance: Some(seq), known, reply };
+        return Ok(json(StatusCode::ACCEPTED, body_of(&answer)));
+    }
+    let answer = Answer { utterance: Some(seq), known, reply };
+    let repeated = body_of(&Answer { known: true, reply: answer.reply.clone(), ..answer });
+    api.conversations().remember(words.key_of(caller), &words.text, &repeated);
+    Ok(json(StatusCode::OK, body_of(&answer)))
+}
+
+fn other_words() -> Problem {
+    let help = "help: use a new Idempotency-Key for other words";
+    Problem::conflict("key_of_another_text", format!("this key belongs to other words; {help}"))
+}
+
+/// Hands the words to the robot; returns the utterance's number, and whether an earlier request had said it. Words that
+/// stop the arm ask for no conversation.
+async fn utter(
+    api: &Api,
+    caller: &Caller,
+    words: &Words,
+    is_stop: bool,
+) -> Result<(u64, bool), Problem> {
+    let state = api.events.state();
+    if !is_stop {
+        if !api.conversations().claim(&words.conversation, &state, Instant::now()) {
+            return Err(Problem::busy());
+        }
+        if let Err(problem) = api.record(caller, "say", Some(&words.text)).await {
+            api.conversations().said(&words.conversation, None);
+            return Err(problem);
+        }
+    }
+    let heard = hand_over(api, caller, words).await;
+    let seq = match heard {
+        Heard::Accepted { seq, .. } => Some(seq),
+        _ => None,
+    };
+    if !is_stop {
+        api.conversations().said(&words.conversation, seq);
+    }
+    match heard {
+        Heard::Accepted { seq, known } => Ok((seq, known)),
+        Heard::Conflict(_) => Err(other_words()),
+        Heard::Refused(note) => Err(Problem::refused(&note)),
+        Heard::Unavailable(why) => Err(Problem::unavailable(why)),
+        Heard::Lost(why) => Err(Problem::not_accepted(why)),
+    }
+}
+
+async fn hand_over(api: &Api, caller: &Caller, words: &Words) -> Heard {
+    let (answer, answered) = oneshot::channel();
+    let seen = words.seen.unwrap_or_else(|| api.conversations().shown(&words.conversation));
+    let request = Request {
+        key: request_key(&caller.name, &words.key),
+        text: words.text.clone(),
+        from: words.from.as_str().to_owned(),
+        seen: PromptId(seen),
+        answer,
+    };
+    if api.requests.offer(request).is_err() {
+        return Heard::Lost("the console is busy");
+    }
+    // The main loop gives up earlier, unless it hangs.
+    let patience = Duration::from_secs_f64(PATIENCE.s() + 2.0);
+    match timeout(patience, answered).await {
+        Ok(Ok(heard)) => heard,
+        Ok(Err(_)) | Err(_) => Heard::Lost("the console does not answer"),
+    }
+}
+
+/// Waits for the reply to an utterance: until it is applied and an act answers it. Where the robot gives up an object and
+/// goes on with a question, both lines are one reply. `open` is the request that was open before, 0 for none.
+async fn reply(api: &Api, (utterance, open): (u64, u64), until: Instant) -> Reply {
+    let mut states = api.events.watch();
+    let (mut applied, mut before) = (None, None);
+    loop {
+        let state = states.borrow_and_update().clone();
+        let now = Instant::now();
+        if state.utterance >= utterance {
+            let since = *applied.get_or_insert(now);
+            let is_settled = state.answers(utterance) || now >= since + SETTLED_AFTER;
+            if state.is_on_the_way() && now < until {
+                before = Some(state.text.clone());
+            } else if is_settled {
+                let reply = state.reply(utterance, open);
+                let before = before.filter(|before| !reply.text.contains(before.as_str()));
+                let text = before.iter().map(String::as_str).chain([reply.text.as_str()]);
+                let text = text.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" ");
+                return Reply { text, ..reply };
+            }
+        }
+        if now >= until {
+            return Reply::plain(Kind::Pending, "");
+        }
+        // Changed or not: the time counts as well.
+        let _ = timeout(LOOK_EVERY.min(until - now), states.changed()).await;
+    }
+}
+
+impl Words {
+    /// What a repetition of the request has in common with it.
+    fn key_of(&self, caller: &Caller) -> (String, String) {
+        (caller.name.clone(), self.key.clone())
+    }
+}
+
+fn body_of(answer: &Answer) -> String {
+    // Every answer can be written.
+    serde_json::to_string(answer).unwrap_or_default()
+}
+
+fn json(status: StatusCode, body: String) -> Response {
+    let kind = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
+    (status, kind, body).into_response()
+}

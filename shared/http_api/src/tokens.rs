@@ -1,0 +1,284 @@
+//! Tokens of programs, each with a name and rights: a file of the group's owner, read again when it has changed.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::hint::black_box;
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use roster::Name;
+use safe_files::{read_private, replace_private_synced};
+use serde::{Deserialize, Serialize};
+use service::console_link::{is_token, random_secret};
+use service::exit::{Exit, Failure};
+use service::group::GroupPaths;
+use web_server::sessions::{HASH, hash};
+
+/// Head of the file.
+const HEAD: &str = "# Tokens of programs (docs/http.md): `whichone token add` and `revoke` write this file. A secret is \
+                    stored as its hash.\n\n";
+/// Most tokens.
+const TOKENS_MAX: usize = 64;
+
+/// What a token allows.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, clap::ValueEnum,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum Right {
+    /// Read the state and the events.
+    See,
+    /// Say something, and withdraw a request.
+    Talk,
+    /// Stop the arm.
+    Stop,
+    /// Release the stop.
+    Resume,
+}
+
+impl Right {
+    /// Every right.
+    pub const ALL: [Self; 4] = [Self::See, Self::Talk, Self::Stop, Self::Resume];
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::See => "see",
+            Self::Talk => "talk",
+            Self::Stop => "stop",
+            Self::Resume => "resume",
+        }
+    }
+}
+
+/// A token as in the file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Token {
+    /// Hash of the secret.
+    secret: String,
+    /// Its rights.
+    pub may: BTreeSet<Right>,
+    /// When it was made, Unix seconds.
+    pub made_s: u64,
+}
+
+/// Every token of a group, by name.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Tokens(BTreeMap<Name, Token>);
+
+/// Returns the file of the tokens.
+pub fn tokens_file(paths: &GroupPaths) -> PathBuf {
+    paths.root().join("http.tokens")
+}
+
+impl Tokens {
+    /// Reads the file; a missing one has no token.
+    ///
+    /// # Errors
+    /// Others could read or change the file, or it is not one of tokens.
+    pub fn load(path: &Path) -> Result<Self, Failure> {
+        if !path.exists() {
+            return Ok(Self::default());
+        }
+        let bad = |what: String| Failure::new(Exit::Config, format!("{}: {what}", path.display()));
+        let text = read_private(path).ok_or_else(|| {
+            bad("other users can read or change it, or it is another user's; help: chmod 600"
+                .into())
+        })?;
+        let tokens: Self = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
+        for (name, Token { secret, .. }) in &tokens.0 {
+            let digits = secret.strip_prefix(HASH).unwrap_or_default();
+            if digits.len() != 64 || !digits.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+                let help = "help: let `whichone token add` write it";
+                let what = format!("{name}.secret: expected {HASH} and 64 digits; {help}");
+                return Err(bad(what));
+            }
+        }
+        Ok(tokens)
+    }
+
+    fn save(&self, path: &Path) -> Result<(), Failure> {
+        let text = toml::to_string(self)
+            .map_err(|error| Failure::new(Exit::Invariant, error.to_string()))?;
+        replace_private_synced(path, format!("{HEAD}{text}"))
+            .map_err(|error| Failure::file(path, &error))
+    }
+
+    /// Every token, by name.
+    pub fn iter(&self) -> impl Iterator<Item = (&Name, &Token)> {
+        self.0.iter()
+    }
+
+    /// Returns the token with this secret. The time that it takes depends on the number of tokens alone.
+    pub fn with_secret(&self, secret: &str) -> Option<(&Name, &Token)> {
+        let wanted = hash(secret);
+        let mut found = None;
+        for (name, token) in &self.0 {
+            if is_equal(&wanted, &token.secret) {
+                found = Some((name, token));
+            }
+        }
+        found.filter(|_| is_token(secret))
+    }
+}
+
+/// Compares every byte, wherever the first difference is.
+fn is_equal(one: &str, other: &str) -> bool {
+    let difference = one.bytes().zip(other.bytes()).fold(0, |all, (a, b)| black_box(all | (a ^ b)));
+    one.len() == other.len() && difference == 0
+}
+
+/// Adds a token, or changes the rights of one; returns the secret of a new one, or of one whose secret is renewed.
+///
+/// # Errors
+/// There are too many, or the file cannot be read or written.
+pub(crate) fn add(
+    path: &Path,
+    name: &Name,
+    may: BTreeSet<Right>,
+    renew: bool,
+    made_s: u64,
+) -> Result<Option<String>, Failure> {
+    let mut tokens = Tokens::load(path)?;
+    let known = tokens.0.get(name).filter(|_| !renew).cloned();
+    if tokens.0.len() >= TOKENS_MAX && !tokens.0.contains_key(name) {
+        let what = format!("expected at most {TOKENS_MAX} tokens; help: `whichone token revoke`");
+        return Err(Failure::new(Exit::Usage, what));
+    }
+    let no_numbers = |error| Failure::new(Exit::NotReached, format!("random numbers: {error}"));
+    let fresh = match &known {
+        Some(_) => None,
+        None => Some(random_secret().map_err(no_numbers)?),
+    };
+    let made =
+        fresh.as_deref().map(|secret| Token { secret: hash(secret), may: may.clone(), made_s });
+    let token = known.map(|token| Token { may: may.clone(), ..token }).or(made);
+    tokens.0.extend(token.map(|token| (name.clone(), token)));
+    tokens.save(path)?;
+    Ok(fresh)
+}
+
+/// Revokes a token: its next request is refused, and its events end.
+///
+/// # Errors
+/// There is no such token, or the file cannot be read or written.
+pub(crate) fn revoke(path: &Path, name: &Name) -> Result<(), Failure> {
+    let mut tokens = Tokens::load(path)?;
+    if tokens.0.remove(name).is_none() {
+        let what = format!("{name}: token not found; help: `whichone token list`");
+        return Err(Failure::new(Exit::Usage, what));
+    }
+    tokens.save(path)
+}
+
+/// The file, read again when it has changed.
+#[derive(Debug)]
+pub(crate) struct TokenFile {
+    path: PathBuf,
+    read: Mutex<(Option<Stamp>, Arc<Tokens>)>,
+}
+
+/// Identity of a version of the file.
+type Stamp = (u64, i64, i64, u64);
+
+impl TokenFile {
+    pub(crate) fn new(path: PathBuf) -> Self {
+        Self { path, read: Mutex::default() }
+    }
+
+    /// The tokens as of now. A file that became unreadable leaves those of before, with a line in the log.
+    pub(crate) fn current(&self) -> Arc<Tokens> {
+        // Every change leaves a consistent pair.
+        let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = stamp(&self.path);
+        if now != read.0 {
+            read.0 = now;
+            match Tokens::load(&self.path) {
+                Ok(tokens) => read.1 = Arc::new(tokens),
+                Err(error) => tracing::error!("{error}; the former tokens stay in force"),
+            }
+        }
+        Arc::clone(&read.1)
+    }
+}
+
+fn stamp(path: &Path) -> Option<Stamp> {
+    let file = fs::metadata(path).ok()?;
+    Some((file.ino(), file.mtime(), file.mtime_nsec(), file.size()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use safe_files::replace_private;
+
+    fn name(text: &str) -> Name {
+        Name::new(text).unwrap()
+    }
+
+    #[test]
+    fn tokens_have_names_rights_and_hashed_secrets() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("http.tokens");
+        let may = |rights: &[Right]| rights.iter().copied().collect::<BTreeSet<_>>();
+        let file = TokenFile::new(path.clone());
+        assert_eq!(*file.current(), Tokens::default());
+        let hall = add(&path, &name("hall"), may(&[Right::See]), false, 7).unwrap().unwrap();
+        let kitchen = add(&path, &name("kitchen"), may(&Right::ALL), false, 8).unwrap().unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(!text.contains(&hall) && !text.contains(&kitchen), "{text}");
+        assert_eq!(fs::metadata(&path).unwrap().mode() & 0o777, 0o600);
+        let found = |secret: &str| {
+            let tokens = file.current();
+            let found = tokens.with_secret(secret);
+            found.map(|(name, token)| (name.to_string(), token.may.clone()))
+        };
+        assert_eq!(found(&hall), Some(("hall".to_owned(), may(&[Right::See]))));
+        let other = if hall.ends_with('0') { "1" } else { "0" };
+        let nearly = format!("{}{other}", &hall[..31]);
+        for wrong in [nearly.as_str(), &hall[..31], "", "0123456789abcdef", &hash(&hall)] {
+            assert_eq!(found(wrong), None, "{wrong}");
+        }
+        // Changed rights keep the secret; renewing and revoking end it.
+        assert_eq!(add(&path, &name("hall"), may(&[Right::Stop]), false, 9).unwrap(), None);
+        assert_eq!(found(&hall), Some(("hall".to_owned(), may(&[Right::Stop]))));
+        let renewed = add(&path, &name("hall"), may(&[Right::Stop]), true, 10).unwrap().unwrap();
+        assert_eq!((found(&hall), found(&renewed).is_some()), (None, true));
+        revoke(&path, &name("kitchen")).unwrap();
+        assert_eq!(found(&kitchen), None);
+        assert!(revoke(&path, &name("kitchen")).unwrap_err().message.contains("token not found"));
+    }
+
+    #[test]
+    fn file_of_tokens_is_checked() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("http.tokens");
+        let secret = hash("0123456789abcdef");
+        for (text, expected) in [
+            ("[hall]\nsecret = \"x\"\nmay = []\nmade_s = 1\n".to_owned(), "hall.secret"),
+            (format!("[hall]\nsecret = \"{secret}\"\nmay = [\"fly\"]\nmade_s = 1\n"), "fly"),
+            (format!("[Hall]\nsecret = \"{secret}\"\nmay = []\nmade_s = 1\n"), "not a name"),
+        ] {
+            replace_private(&path, text).unwrap();
+            let message = Tokens::load(&path).unwrap_err().message;
+            assert!(message.contains(expected) && message.contains("http.tokens"), "{message}");
+        }
+        let other = folder.path().join("open");
+        fs::write(&other, "").unwrap();
+        assert!(Tokens::load(&other).unwrap_err().message.contains("chmod 600"));
+    }
+
+    #[test]
+    fn unreadable_file_leaves_the_former_tokens() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("http.tokens");
+        let secret = add(&path, &name("hall"), BTreeSet::new(), false, 7).unwrap().unwrap();
+        let file = TokenFile::new(path.clone());
+        assert!(file.current().with_secret(&secret).is_some());
+        replace_private(&path, "nonsense").unwrap();
+        assert!(file.current().with_secret(&secret).is_some());
+    }
+}
