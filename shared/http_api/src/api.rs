@@ -25,13 +25,11 @@ use crate::feed::{Feed, Request};
 use crate::limits::Places;
 use crate::motion::Motion;
 use crate::problem::Problem;
-use crate::tokens::{Right, Token, TokenFile, tokens_file};
+use crate::tokens::{OWNER, Right, Token, TokenFile, tokens_file};
 use crate::uses::{UseFile, uses_file};
 
 /// Name of the audit in the group's folder, without ending.
 pub(crate) const AUDIT: &str = "http-audit";
-/// Name under which the console's own token is used.
-const OWNER: &str = "console";
 /// The person for whom a gateway asks, which has the console's own token.
 const PERSON: HeaderName = HeaderName::from_static("whichone-person");
 /// Requests with a wrong token whose answers are delayed at a time, against guessing; others are refused at once.

@@ -20,6 +20,10 @@ const HEAD: &str = "# Tokens of programs (docs/http.md): `whichone token add` an
                     stored as its hash.\n\n";
 /// Most tokens.
 const TOKENS_MAX: usize = 64;
+/// Largest file, bytes: a greater one would keep the requests waiting that are checked against it.
+const FILE_MAX: u64 = 64 << 10;
+/// Name under which the console's own token is used; none of the file's has it.
+pub(crate) const OWNER: &str = "console";
 
 /// What a token allows.
 #[derive(
@@ -84,12 +88,20 @@ impl Tokens {
             return Ok(Self::default());
         }
         let bad = |what: String| Failure::new(Exit::Config, format!("{}: {what}", path.display()));
+        if fs::metadata(path).is_ok_and(|file| file.len() > FILE_MAX) {
+            return Err(bad(format!(
+                "expected at most {FILE_MAX} bytes; help: remove what is no token"
+            )));
+        }
         let text = read_private(path).ok_or_else(|| {
             bad("other users can read or change it, or it is another user's; help: chmod 600"
                 .into())
         })?;
         let tokens: Self = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
         for (name, Token { secret, .. }) in &tokens.0 {
+            if name.as_str() == OWNER {
+                return Err(bad(reserved()));
+            }
             let digits = secret.strip_prefix(HASH).unwrap_or_default();
             if digits.len() != 64 || !digits.bytes().all(|byte| byte.is_ascii_hexdigit()) {
                 let help = "help: let `whichone token add` write it";
@@ -125,6 +137,12 @@ impl Tokens {
     }
 }
 
+fn reserved() -> String {
+    format!(
+        "expected another name than {OWNER}, which the page's token has; help: choose the program's name"
+    )
+}
+
 /// Compares every byte, wherever the first difference is.
 fn is_equal(one: &str, other: &str) -> bool {
     let difference = one.bytes().zip(other.bytes()).fold(0, |all, (a, b)| black_box(all | (a ^ b)));
@@ -142,6 +160,9 @@ pub(crate) fn add(
     renew: bool,
     made_s: u64,
 ) -> Result<Option<String>, Failure> {
+    if name.as_str() == OWNER {
+        return Err(Failure::new(Exit::Usage, reserved()));
+    }
     let mut tokens = Tokens::load(path)?;
     let known = tokens.0.get(name).filter(|_| !renew).cloned();
     if tokens.0.len() >= TOKENS_MAX && !tokens.0.contains_key(name) {
@@ -261,11 +282,15 @@ mod tests {
             ("[hall]\nsecret = \"x\"\nmay = []\nmade_s = 1\n".to_owned(), "hall.secret"),
             (format!("[hall]\nsecret = \"{secret}\"\nmay = [\"fly\"]\nmade_s = 1\n"), "fly"),
             (format!("[Hall]\nsecret = \"{secret}\"\nmay = []\nmade_s = 1\n"), "not a name"),
+            (format!("[console]\nsecret = \"{secret}\"\nmay = []\nmade_s = 1\n"), "another name"),
+            ("# no token\n".repeat(1 << 13), "at most 65536 bytes"),
         ] {
             replace_private(&path, text).unwrap();
             let message = Tokens::load(&path).unwrap_err().message;
             assert!(message.contains(expected) && message.contains("http.tokens"), "{message}");
         }
+        let console = add(&path, &name("console"), BTreeSet::new(), false, 7);
+        assert!(console.unwrap_err().message.contains("another name"));
         let other = folder.path().join("open");
         fs::write(&other, "").unwrap();
         assert!(Tokens::load(&other).unwrap_err().message.contains("chmod 600"));

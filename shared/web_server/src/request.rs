@@ -7,9 +7,10 @@ pub fn text<'a>(headers: &'a HeaderMap, name: &header::HeaderName) -> Option<&'a
     headers.get(name)?.to_str().ok()
 }
 
-/// Returns the secret that a program sends.
+/// Returns the secret that a program sends. The scheme may be in capital or small letters (RFC 9110, 11.1).
 pub fn bearer(headers: &HeaderMap) -> Option<&str> {
-    text(headers, &header::AUTHORIZATION)?.strip_prefix("Bearer ")
+    let (scheme, secret) = text(headers, &header::AUTHORIZATION)?.split_once(' ')?;
+    scheme.eq_ignore_ascii_case("bearer").then_some(secret)
 }
 
 /// Returns the origin of the page that makes the request.
@@ -53,6 +54,15 @@ mod tests {
 
     fn headers(pairs: &[(&'static str, &str)]) -> HeaderMap {
         pairs.iter().map(|(name, value)| (name.parse().unwrap(), value.parse().unwrap())).collect()
+    }
+
+    #[test]
+    fn scheme_of_a_secret_is_read_in_any_case() {
+        for (header, secret) in
+            [("Bearer x", Some("x")), ("bearer x", Some("x")), ("Basic x", None), ("Bearer", None)]
+        {
+            assert_eq!(bearer(&headers(&[("authorization", header)])), secret, "{header}");
+        }
     }
 
     #[test]

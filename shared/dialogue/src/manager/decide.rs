@@ -86,7 +86,9 @@ impl Manager {
         };
         let offered = match action {
             Action::Ask(_) | Action::Wait => self.offer_instead(state, value),
-            Action::Pick(object) if !exhausted => self.offer_first(state, object, &alike),
+            Action::Pick(object) if !exhausted => {
+                self.offer_first(state, object, (&alike, basis.preference))
+            }
             Action::Pick(_) => None,
         };
         if let Some(offered) = offered {

@@ -8,7 +8,7 @@ use scene::{AttributeId, ObjectId, Question, ValueId};
 
 use super::acts::set;
 use super::line::{AboutObjects, Content, Line, Preface, Remark};
-use super::state::{Act, Interaction, State};
+use super::state::{Act, Interaction, Preference, State};
 use super::{LEFT_MAX, Manager};
 use crate::Belief;
 use crate::planning::Price;
@@ -19,20 +19,26 @@ const FITS_MIN: f64 = 0.5;
 /// Probability from which the user takes an attribute for one value.
 const TAKEN_MIN: f64 = 0.5;
 
+/// Offers of an object to a user who does not answer them.
+const OFFERS_MAX: usize = 2;
+
 /// An object that is offered, and the line for it.
 pub(super) type Offered = (ObjectId, Line);
 
 impl Manager {
     /// Returns the offer of the object that would be fetched now, if what was said does not fit it, or
-    /// if the user cannot tell it from others, which `alike` names. It is offered once, and only to a
-    /// user who may take a value for another one.
+    /// if the user cannot tell it from others, which `alike` names: then a second time, if the user has said
+    /// neither which one nor, by `preference`, that either will do. Only a user who may take a value for another one is
+    /// offered something.
     pub(super) fn offer_first(
         &mut self,
         state: &State,
         object: ObjectId,
-        alike: &Preface,
+        (alike, preference): (&Preface, Preference),
     ) -> Option<Offered> {
-        let open = state.open.as_ref().filter(|open| !is_offered(open, object))?;
+        let is_unanswered = *alike != Preface::None && preference == Preference::Best;
+        let most = if is_unanswered { OFFERS_MAX } else { 1 };
+        let open = state.open.as_ref().filter(|open| offers(open, object) < most)?;
         // What is not here is concluded, and cannot be offered.
         let is_here = Some(object) != self.setup.model.absent();
         let fit = self.fit(open, |i| f64::from(u8::from(i == object))).filter(|_| is_here)?;
@@ -155,5 +161,9 @@ impl Act {
 }
 
 fn is_offered(open: &Interaction, object: ObjectId) -> bool {
-    open.prompts.iter().any(|prompt| prompt.question == Question::Point(object))
+    offers(open, object) > 0
+}
+
+fn offers(open: &Interaction, object: ObjectId) -> usize {
+    open.prompts.iter().filter(|prompt| prompt.question == Question::Point(object)).count()
 }

@@ -72,6 +72,21 @@ fn objects_that_the_user_cannot_tell_apart_are_named() {
     assert!(["metal", "metal2"].contains(&name.as_str()), "{name}");
 }
 
+/// Words that tell nothing new, such as a late answer to another question, are no consent: the offer stands, once more.
+#[test]
+fn an_offer_that_is_not_answered_is_repeated_and_not_taken() {
+    let mut manager = manager();
+    let mut state = first(&mut manager, words(&["metallic"]));
+    while !matches!(state.act.question, Question::Point(_)) {
+        state = reply(&mut manager, &state, answer(Response::CannotTell));
+    }
+    let offered = state.act.question;
+    let again = reply(&mut manager, &state, words(&["metallic"]));
+    assert_eq!((again.act.kind, again.act.question), (ActKind::Ask, offered), "{}", text(&again));
+    let taken = reply(&mut manager, &again, answer(Response::CannotTell));
+    assert_eq!(taken.act.kind, ActKind::Pick, "{}", text(&taken));
+}
+
 #[test]
 fn an_attribute_that_does_not_matter_is_not_asked_about_and_any_of_it_is_right() {
     let mut manager = manager();
