@@ -129,7 +129,7 @@ impl Program {
         })
     }
 
-    /// As [`Program::say_under`]; none where the console is away, or invites to try again.
+    /// As [`Program::say_under`]; `None` if the console is away, or invites to try again.
     pub fn try_to_say(&self, key: &str, body: &Json) -> Option<Answer> {
         let place = self.console.place.split('/').next().unwrap_or_default();
         TcpStream::connect(place).ok()?;

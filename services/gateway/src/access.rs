@@ -116,7 +116,7 @@ pub(crate) fn log_in(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::people::{self, PeopleFile};
+    use crate::people::{self, People, PeopleFile};
 
     fn headers(pairs: &[(&'static str, &str)]) -> HeaderMap {
         pairs.iter().map(|(name, value)| (name.parse().unwrap(), value.parse().unwrap())).collect()
@@ -149,7 +149,7 @@ mod tests {
         let path = folder.path().join(people::FILE);
         let ann = Name::new("ann").unwrap();
         let secret = people::add(&path, &ann, &[], &[], false).unwrap().unwrap();
-        let file = PeopleFile::open(path.clone()).unwrap();
+        let file = PeopleFile::open(path.clone(), People::load).unwrap();
         let sessions = || Sessions::open(SESSIONS, folder.path().join(SESSIONS_FILE));
         let begun = sessions();
         assert_eq!(log_in(&file.current(), &begun, "0123456789abcdef"), None);

@@ -38,7 +38,7 @@ use web_server::sessions::Sessions;
 
 use access::{Address, SESSIONS, SESSIONS_FILE};
 use budgets::{Budgets, Places};
-use people::PeopleFile;
+use people::{People, PeopleFile};
 use robots::Robots;
 use roster::Name;
 
@@ -133,7 +133,7 @@ impl Gateway {
             Failure::file(&folder.join(audit::NAME).with_extension("jsonl"), &error)
         })?;
         Ok(Self {
-            people: PeopleFile::open(folder.join(people::FILE))?,
+            people: PeopleFile::open(folder.join(people::FILE), People::load)?,
             sessions: Sessions::open(SESSIONS, folder.join(SESSIONS_FILE)),
             audit,
             robots: Robots::new(&options.groups, options.keys.as_deref(), folder)?,

@@ -1,15 +1,14 @@
 //! The people of a gateway and their rights: a file of the administrator, read again when it has changed.
 
 use std::collections::BTreeMap;
-use std::os::unix::fs::MetadataExt;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::path::Path;
 
 use roster::Name;
 use safe_files::{read_private, replace_private_synced};
 use serde::{Deserialize, Serialize};
 use service::console_link::{is_token, random_secret};
 use service::exit::{Exit, Failure};
+use web_server::followed::Followed;
 use web_server::sessions::{HASH, hash};
 
 /// The file in the gateway's folder.
@@ -175,46 +174,7 @@ pub fn remove(path: &Path, name: &Name) -> Result<(), Failure> {
 }
 
 /// The file, read again when it has changed.
-#[derive(Debug)]
-pub struct PeopleFile {
-    path: PathBuf,
-    read: Mutex<(Option<Stamp>, Arc<People>)>,
-}
-
-/// Identity of a version of the file.
-type Stamp = (u64, i64, i64, u64);
-
-impl PeopleFile {
-    /// Reads the file.
-    ///
-    /// # Errors
-    /// As of [`People::load`].
-    pub fn open(path: PathBuf) -> Result<Self, Failure> {
-        let stamp = stamp(&path);
-        let people = Arc::new(People::load(&path)?);
-        Ok(Self { path, read: Mutex::new((stamp, people)) })
-    }
-
-    /// The people as of now. A file that became unreadable leaves those of before, with a line in the log.
-    pub fn current(&self) -> Arc<People> {
-        // Every change leaves a consistent pair.
-        let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
-        let now = stamp(&self.path);
-        if now != read.0 {
-            read.0 = now;
-            match People::load(&self.path) {
-                Ok(people) => read.1 = Arc::new(people),
-                Err(error) => tracing::error!("{error}; the former rights stay in force"),
-            }
-        }
-        Arc::clone(&read.1)
-    }
-}
-
-fn stamp(path: &Path) -> Option<Stamp> {
-    let file = std::fs::metadata(path).ok()?;
-    Some((file.ino(), file.mtime(), file.mtime_nsec(), file.size()))
-}
+pub type PeopleFile = Followed<People>;
 
 #[cfg(test)]
 mod tests {
@@ -234,7 +194,7 @@ mod tests {
         let bob = add(&path, &name("bob"), &[], &robots(&["r2"]), false).unwrap().unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(!text.contains(&ann) && !text.contains(&bob), "{text}");
-        let file = PeopleFile::open(path.clone()).unwrap();
+        let file = PeopleFile::open(path.clone(), People::load).unwrap();
         let people = file.current();
         assert_eq!(people.with_secret(&ann), Some(&name("ann")));
         assert_eq!(people.with_secret("0123456789abcdef"), None);

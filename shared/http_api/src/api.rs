@@ -25,7 +25,7 @@ use crate::feed::{Feed, Request};
 use crate::limits::Places;
 use crate::motion::Motion;
 use crate::problem::Problem;
-use crate::tokens::{OWNER, Right, Token, TokenFile, tokens_file};
+use crate::tokens::{OWNER, Right, Token, TokenFile, Tokens, tokens_file};
 use crate::uses::{UseFile, uses_file};
 
 /// Name of the audit in the group's folder, without ending.
@@ -113,7 +113,7 @@ pub fn open(paths: &GroupPaths, rules: Rules) -> io::Result<(Arc<Api>, Feed)> {
         words: Places::new(WORDS_MAX.0, WORDS_MAX.1),
         streams: Places::new(STREAMS_MAX.0, STREAMS_MAX.1),
         conversations: Mutex::default(),
-        tokens: TokenFile::new(tokens_file(paths)),
+        tokens: TokenFile::new(tokens_file(paths), Tokens::load),
         uses: UseFile::open(uses_file(paths)),
         audit: Audit::open(paths.root(), AUDIT)?,
         guesses: Places::new(GUESSES_MAX, GUESSES_MAX),

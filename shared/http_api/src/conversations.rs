@@ -63,7 +63,7 @@ impl Conversations {
         true
     }
 
-    /// Notes the utterance of a conversation that has claimed the robot; none where it was not accepted.
+    /// Notes the utterance of a conversation that has claimed the robot; `None` if it was not accepted.
     pub(crate) fn said(&mut self, conversation: &str, utterance: Option<u64>) {
         let own = |owner: &mut Owner| owner.conversation == conversation;
         match utterance {

@@ -124,7 +124,7 @@ impl Events {
         format!("{}-{number}", self.kept().stream)
     }
 
-    /// Returns the number of an identifier that a client has; none where it is of another stream, or nonsense.
+    /// Returns the number of an identifier that a client has; `None` if it is of another stream, or nonsense.
     pub(crate) fn number(&self, id: &str) -> Option<u64> {
         let (stream, number) = id.rsplit_once('-')?;
         let kept = self.kept();

@@ -23,7 +23,7 @@ impl Places {
         Self { taken: Arc::default(), each, all }
     }
 
-    /// Takes a place; none where all are taken.
+    /// Takes a place; `None` if all are taken.
     pub(crate) fn take(&self, name: &str) -> Option<Place> {
         // A count is changed in one step.
         let mut taken = self.taken.lock().unwrap_or_else(PoisonError::into_inner);

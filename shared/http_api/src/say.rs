@@ -67,7 +67,7 @@ pub(crate) struct Words {
 /// The answer.
 #[derive(Debug, Serialize)]
 struct Answer {
-    /// Number of the utterance; none where words that stop the arm were not said as well.
+    /// Number of the utterance; `None` if words that stop the arm were not said as well.
     utterance: Option<u64>,
     /// Whether an earlier request with this key had said it.
     known: bool,

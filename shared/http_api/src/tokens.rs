@@ -3,9 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::hint::black_box;
-use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
 
 use roster::Name;
 use safe_files::{read_private, replace_private_synced};
@@ -13,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use service::console_link::{is_token, random_secret};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
+use web_server::followed::Followed;
 use web_server::sessions::{HASH, hash};
 
 /// Head of the file.
@@ -196,43 +195,12 @@ pub(crate) fn revoke(path: &Path, name: &Name) -> Result<(), Failure> {
 }
 
 /// The file, read again when it has changed.
-#[derive(Debug)]
-pub(crate) struct TokenFile {
-    path: PathBuf,
-    read: Mutex<(Option<Stamp>, Arc<Tokens>)>,
-}
-
-/// Identity of a version of the file.
-type Stamp = (u64, i64, i64, u64);
-
-impl TokenFile {
-    pub(crate) fn new(path: PathBuf) -> Self {
-        Self { path, read: Mutex::default() }
-    }
-
-    /// The tokens as of now. A file that became unreadable leaves those of before, with a line in the log.
-    pub(crate) fn current(&self) -> Arc<Tokens> {
-        // Every change leaves a consistent pair.
-        let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
-        let now = stamp(&self.path);
-        if now != read.0 {
-            read.0 = now;
-            match Tokens::load(&self.path) {
-                Ok(tokens) => read.1 = Arc::new(tokens),
-                Err(error) => tracing::error!("{error}; the former tokens stay in force"),
-            }
-        }
-        Arc::clone(&read.1)
-    }
-}
-
-fn stamp(path: &Path) -> Option<Stamp> {
-    let file = fs::metadata(path).ok()?;
-    Some((file.ino(), file.mtime(), file.mtime_nsec(), file.size()))
-}
+pub(crate) type TokenFile = Followed<Tokens>;
 
 #[cfg(test)]
 mod tests {
+    use std::os::unix::fs::MetadataExt;
+
     use super::*;
     use safe_files::replace_private;
 
@@ -245,7 +213,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("http.tokens");
         let may = |rights: &[Right]| rights.iter().copied().collect::<BTreeSet<_>>();
-        let file = TokenFile::new(path.clone());
+        let file = TokenFile::new(path.clone(), Tokens::load);
         assert_eq!(*file.current(), Tokens::default());
         let hall = add(&path, &name("hall"), may(&[Right::See]), false, 7).unwrap().unwrap();
         let kitchen = add(&path, &name("kitchen"), may(&Right::ALL), false, 8).unwrap().unwrap();
@@ -301,7 +269,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("http.tokens");
         let secret = add(&path, &name("hall"), BTreeSet::new(), false, 7).unwrap().unwrap();
-        let file = TokenFile::new(path.clone());
+        let file = TokenFile::new(path.clone(), Tokens::load);
         assert!(file.current().with_secret(&secret).is_some());
         replace_private(&path, "nonsense").unwrap();
         assert!(file.current().with_secret(&secret).is_some());

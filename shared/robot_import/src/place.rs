@@ -373,7 +373,7 @@ pub(crate) fn on_table(
     Err(progress)
 }
 
-/// Returns why the whole motion for one of the blocks cannot be planned; none where all can.
+/// Returns why the whole motion for one of the blocks cannot be planned; `None` if all can.
 fn unplanned(robot: &Robot, blocks: &[ObjectPose], plan: &PlanSettings) -> Option<String> {
     let rest = robot.neutral();
     blocks.iter().enumerate().find_map(|(i, block)| {

@@ -10,7 +10,7 @@ use crate::view_model::line::{Answered, Meaning};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interaction {
     pub interaction: u64,
-    /// When its first words were accepted, milliseconds since 1970; none where that is not known.
+    /// When its first words were accepted, milliseconds since 1970; `None` if that is not known.
     pub unix_ms: Option<u64>,
     /// False where its beginning is in no journal any more.
     pub whole: bool,
@@ -39,7 +39,7 @@ pub struct Moment {
     /// Time since the interaction's first words, milliseconds.
     pub after_ms: u64,
     pub event: Event,
-    /// Belief and decision after it; none where it changed neither.
+    /// Belief and decision after it; `None` if it changed neither.
     pub thought: Option<Thought>,
 }
 

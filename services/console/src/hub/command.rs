@@ -45,7 +45,7 @@ pub struct Words {
     pub seen: PromptId,
     /// Who speaks.
     pub from: PersonId,
-    /// Key of the request, the same for each repetition of it; none where nothing repeats it.
+    /// Key of the request, the same for each repetition of it; `None` if nothing repeats it.
     pub key: Option<RequestKey>,
 }
 
@@ -67,7 +67,7 @@ pub fn typed(text: &str) -> Words {
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
     pub viewer: ViewerId,
-    /// The command's number; none where the order comes with words, which are answered.
+    /// The command's number; `None` if the order comes with words, which are answered.
     pub id: Option<u64>,
     /// `true` latches the stop, `false` releases it.
     pub stop: bool,

@@ -126,7 +126,7 @@ impl ViewModel {
         self.group.as_ref()
     }
 
-    /// Returns why the first of these services does nothing for anyone for now; none where they work or soon
+    /// Returns why the first of these services does nothing for anyone for now; `None` if they work or soon
     /// will.
     pub fn unavailable(&self, services: &[Service]) -> Option<String> {
         let named = |name: &str| services.iter().any(|service| service.name() == name);

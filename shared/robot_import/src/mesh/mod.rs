@@ -18,7 +18,7 @@ const SHORTEST_M: f64 = 0.003;
 /// Most bytes of a mesh that are read.
 const BYTES_MAX: u64 = 256 << 20;
 
-/// Returns the vertices of a mesh, metres; none where the file is missing or unreadable, which is reported.
+/// Returns the vertices of a mesh, metres; `None` if the file is missing or unreadable, which is reported.
 pub(crate) fn vertices(
     written: &str,
     scale: &Vector3<f64>,
