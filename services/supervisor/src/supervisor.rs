@@ -26,12 +26,14 @@ pub use start::StartError;
 
 use ending::Ending;
 use poll::Ready;
+use put_down::PutDown;
 use replacing::Replacement;
 use waits::Wait;
 
 mod ending;
 mod orphans;
 mod poll;
+mod put_down;
 mod reload;
 mod replacing;
 mod report;
@@ -64,6 +66,7 @@ pub struct Supervisor {
     server: Server,
     signals: Signals,
     init_system: Notifier,
+    put_down: PutDown,
     waits: Vec<Wait>,
     replacements: BTreeMap<usize, Replacement>,
     orphans: Vec<String>,
@@ -214,6 +217,21 @@ impl Supervisor {
         for event in self.services[service].listen(now) {
             self.give(service, event, now);
         }
+    }
+
+    /// Requests every service up but those that an operator has put down.
+    fn start_group(&mut self, now: Time) {
+        self.group.start(now);
+        let position = |name: &str| self.services.iter().position(|it| it.spec.name == name);
+        self.put_down.apply(&mut self.group, position, now);
+    }
+
+    /// Carries out an operator's order for a service, which outlives the supervisor.
+    fn order(&mut self, service: usize, order: Event, now: Time) {
+        if self.put_down.note(&self.services[service].spec.name, order) {
+            self.put_down.write(&self.around.paths.put_down());
+        }
+        self.give(service, order, now);
     }
 
     /// Passes an event to a service and carries out the effects.

@@ -162,6 +162,11 @@ impl ParsedUtterance<'_> {
             let yes = Reading { response: Response::Yes, doubt, ..best.clone() };
             return vec![(1.0 - MAYBE_WEIGHT, best), (MAYBE_WEIGHT, yes)];
         }
+        if self.may_take_back(&best) {
+            let doubt = Doubt { response: 0.0, ..best.doubt.clone() };
+            let correction = Reading { response: Response::None, doubt, ..best.clone() };
+            return vec![(0.5, best), (0.5, correction)];
+        }
         vec![(1.0, best)]
     }
 
@@ -182,6 +187,17 @@ impl ParsedUtterance<'_> {
             base.iter().filter(others).copied().collect()
         };
         members.iter().take(READINGS_MAX - 1).map(chosen).collect()
+    }
+
+    /// "no, yellow", in answer to "A screwdriver or pliers?": neither of them, or another colour than the user said before.
+    /// Lacking figures, both are as likely.
+    fn may_take_back(&self, best: &Reading) -> bool {
+        let QuestionWords::Choice(options) = self.asked else { return false };
+        let is_offered = |word: &WordId| options.contains(&Some(*word));
+        let concerns =
+            |value: &Asserted<'_>| self.questions.values_beside(value).iter().any(is_offered);
+        let base = &self.content.base;
+        best.response == Response::No && !base.is_empty() && !base.iter().any(concerns)
     }
 
     /// "maybe", "it could be", and nothing else, in answer to a yes or no question.

@@ -260,6 +260,11 @@ impl GroupPaths {
         self.root.join("stop.kept")
     }
 
+    /// The services that an operator has put down. It outlives a supervisor that is killed.
+    pub fn put_down(&self) -> PathBuf {
+        self.root.join("put_down")
+    }
+
     /// The address of the console, while it serves one.
     pub fn console_url(&self) -> PathBuf {
         self.run().join("console.url")

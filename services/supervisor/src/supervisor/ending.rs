@@ -8,6 +8,7 @@ use service::exit::Exit;
 use service::shm_cleanup::{Admin, remove_leftovers};
 
 use super::Supervisor;
+use super::put_down;
 use super::start::{StartError, make_folders};
 use super::waits::Goal;
 use crate::Time;
@@ -150,7 +151,7 @@ impl Supervisor {
         let now = self.now();
         self.last_renewal = Some(now);
         self.reported_ready = false;
-        self.group.start(now);
+        self.start_group(now);
         Ok(())
     }
 
@@ -163,6 +164,7 @@ impl Supervisor {
         {
             tracing::error!(folder = %paths.run().display(), %error, "not removed");
         }
+        put_down::forget(&paths.put_down());
         let killed = self.services.iter().filter(|service| {
             service.ended.as_ref().is_some_and(|ended| ended.killed && ended.at >= ending.since)
         });

@@ -46,12 +46,12 @@ impl Supervisor {
             }
             Request::Start(Target { service, wait_ms }) => {
                 let service = self.find(&service)?;
-                self.give(service, Event::Start, now);
+                self.order(service, Event::Start, now);
                 self.await_ready(client, service, 0, wait_ms, now);
             }
             Request::Release(Target { service, wait_ms }) => {
                 let service = self.find(&service)?;
-                self.give(service, Event::Release, now);
+                self.order(service, Event::Release, now);
                 self.await_release(client, service, wait_ms, now);
             }
             Request::Restart { service, original, wait_ms } => {
@@ -60,7 +60,7 @@ impl Supervisor {
                     self.services[service].replace_command(None);
                 }
                 let before = self.group.machine(service).incarnation();
-                self.give(service, Event::Restart, now);
+                self.order(service, Event::Restart, now);
                 self.await_ready(client, service, before, wait_ms, now);
             }
             Request::Stop(Target { service, wait_ms }) => {
@@ -100,7 +100,7 @@ impl Supervisor {
         now: Time,
     ) -> Result<(), Refusal> {
         let service = self.find(service)?;
-        self.give(service, event, now);
+        self.order(service, event, now);
         let name = self.name(service);
         let message = match (event, wait_ms) {
             (_, 0) => format!("{name} is stopping"),

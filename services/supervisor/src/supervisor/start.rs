@@ -16,6 +16,7 @@ use service::notify::Notifier;
 use service::shm_cleanup::{Admin, NoRoom, check_room, remove_leftovers};
 use thiserror::Error;
 
+use super::put_down::PutDown;
 use super::{Supervisor, TICK};
 use crate::configuration::GroupSpec;
 use crate::configuration::{Configuration, Load};
@@ -97,6 +98,7 @@ pub(super) fn start(
         Notifier::default()
     });
     let services = configuration.spec.services.iter().cloned().map(Service::new).collect();
+    let put_down = PutDown::read(&around.paths.put_down());
     let now = started.elapsed();
     let mut supervisor = Supervisor {
         started,
@@ -111,6 +113,7 @@ pub(super) fn start(
         server,
         signals,
         init_system,
+        put_down,
         waits: Vec::new(),
         replacements: BTreeMap::new(),
         orphans: Vec::new(),
@@ -125,7 +128,7 @@ pub(super) fn start(
         reported_ready: false,
         taken,
     };
-    supervisor.group.start(now);
+    supervisor.start_group(now);
     Ok(supervisor)
 }
 

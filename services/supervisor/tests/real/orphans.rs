@@ -1,6 +1,7 @@
 use rustix::process::Signal;
 use serde_json::json;
-use service::control::Request;
+use service::control::{Request, Target};
+use service::status::Actual;
 
 use crate::harness::{Group, WAIT_MS, is_alive, send, service, wait_for, with};
 
@@ -23,6 +24,28 @@ fn services_end_by_themselves_when_the_supervisor_is_killed() {
     group.ask(&Request::Down);
     group.wait_end();
     group.check_nothing_left();
+}
+
+#[test]
+fn what_an_operator_put_down_stays_down_when_the_supervisor_is_killed() {
+    let services = ["arm", "policy", "speech"].map(|name| service(name, &[]));
+    let mut group = Group::ready(services.into());
+    group.done(&Request::Hold(Target::new("arm", WAIT_MS)));
+    group.done(&Request::Stop(Target::new("policy", WAIT_MS)));
+    kill_supervisor(&mut group);
+    group.run();
+    group.until_ready("speech", 1);
+    let states = ["arm", "policy"].map(|name| group.service(name).actual);
+    assert_eq!(states, [Actual::Held, Actual::Down]);
+    group.done(&Request::Release(Target::new("arm", WAIT_MS)));
+    kill_supervisor(&mut group);
+    group.run();
+    group.until_ready("arm", 1);
+    assert_eq!(group.service("policy").actual, Actual::Down);
+    group.ask(&Request::Down);
+    group.wait_end();
+    group.run();
+    group.until_ready("policy", 1);
 }
 
 #[test]

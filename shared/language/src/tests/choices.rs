@@ -58,3 +58,25 @@ fn choices_are_answered_by_value_by_order_and_by_neither() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+#[test]
+fn no_and_another_attribute_may_take_back_what_was_said_before() {
+    let scene = scene("bowls");
+    let reader = Reader::new(&scene, vocabulary::Language::Careful);
+    let color = scene.attribute_named("color").unwrap();
+    let value = |name: &str| scene.value_named(color, name).unwrap();
+    let question =
+        Question::Choice(color, Options::new(&[value("white"), value("clear")]).unwrap());
+    let answers = |text: &str| -> Vec<(f64, Response)> {
+        let readings = reader.readings(text, &[], question);
+        readings.iter().map(|(weight, reading)| (*weight, reading.response)).collect()
+    };
+    let [(is_answer, Response::No), (is_correction, Response::None)] = answers("no, small")[..]
+    else {
+        panic!("{:?}", answers("no, small"));
+    };
+    assert!((is_answer - is_correction).abs() < 0.1, "{is_answer} {is_correction}");
+    for text in ["no", "no, metallic", "neither"] {
+        assert!(answers(text).iter().all(|(_, answer)| *answer == Response::No), "{text}");
+    }
+}
