@@ -10,7 +10,7 @@ programs. Standard input is what `cargo test --no-run --message-format=json-rend
 Programs that start processes run at normal priority, those that only compute fill the gaps at the lowest one. Tests
 in real time come last, once the process WHICHONE_BESIDE, which tests something else meanwhile, has ended. A few
 failed tests are tried again, alone, and must pass three times in a row: `flaky.toml`. At the end nothing may be left:
-processes, shared memory, temporary files.
+processes, shared memory, temporary files. With WHICHONE_TIMES set it prints the slowest tests.
 """
 
 import json
@@ -42,6 +42,7 @@ RUNS_REMEMBERED = 20
 SECOND_TRIES_ALLOWED = 2
 # Letters that all names of a group in shared memory share at their start (`ShmName` in shared/runtime/src/group.rs).
 PREFIX = 24
+SLOWEST_PRINTED = 40
 TOO_SLOW = "the physics did not keep up with real time"
 
 
@@ -147,6 +148,10 @@ class Runner:
         """Runs a program to its end, and kills it with what it started if it hangs."""
         began = time.monotonic()
         environment = dict(self.environment, CARGO_MANIFEST_DIR=program.folder)
+        if os.environ.get("WHICHONE_TIMES"):
+            # libtest counts times as unstable.
+            environment["RUSTC_BOOTSTRAP"] = "1"
+            options = ["-Zunstable-options", "--report-time", *options]
         process = subprocess.Popen(
             ["nice", "-n", str(nice), program.path, *options],
             cwd=program.folder,
@@ -238,9 +243,20 @@ class Runner:
         return passed, slow, broken
 
 
+def say_slowest(results):
+    """Prints the slowest tests, if their times are known."""
+    timed = [
+        (float(seconds), f"{result.program.name} {test}")
+        for result in results
+        for test, seconds in re.findall(r"^test (\S+) .*<([\d.]+)s>$", result.output, re.M)
+    ]
+    for seconds, name in sorted(timed, reverse=True)[:SLOWEST_PRINTED]:
+        say(f"{seconds:6.1f} s  {name}")
+
+
 def failed_in(output):
     """Names of the failed tests."""
-    named = re.findall(r"^test (\S+)(?: - should panic)? \.\.\. FAILED$", output, re.M)
+    named = re.findall(r"^test (\S+)(?: - should panic)? \.\.\. FAILED(?: <[\d.]+s>)?$", output, re.M)
     listed = output.rsplit("\nfailures:\n", 1)
     if len(listed) == 2:
         named += re.findall(r"^    (\S+)$", listed[1], re.M)
@@ -393,6 +409,7 @@ def judge(lane, runner, leftovers, began):
         judge_second_tries([])
     for name in broken if bad else []:
         say(f"failed: {name}")
+    say_slowest(runner.results)
     left = leftovers.find(runner.lanes["known_leftovers"])
     for what in left:
         say(f"left behind: {what}")
