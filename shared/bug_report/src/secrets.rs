@@ -123,18 +123,25 @@ fn without_phrase(text: &str, phrase: &str) -> String {
     clean + &text[from..]
 }
 
-/// Absolute paths behind names that contain `key`, in TOML or JSON.
+/// Names of settings whose value is a file, or a folder, of secrets.
+const FILE_NAMES: [&str; 7] =
+    ["key_file", "keys", "keyfile", "key_path", "password_file", "token_file", "credentials_file"];
+
+/// Absolute paths behind such names: in TOML, in the pairs of a status, and in the values of `check --json`.
 fn named_files(text: &str) -> BTreeSet<PathBuf> {
-    const DISTANCE_MAX: usize = 40;
+    let after_gap = |text: &'_ str| -> usize {
+        let is_between = |it: char| [' ', '"', '\'', '\\', '=', ':', ','].contains(&it);
+        text.len() - text.trim_start_matches(is_between).len()
+    };
     let mut found = BTreeSet::new();
-    for (at, _) in text.match_indices("key") {
-        let rest = &text[at..];
-        let window = rest.char_indices().nth(DISTANCE_MAX).map_or(rest, |(end, _)| &rest[..end]);
-        let openings = ["\"/", "'/"].iter().filter_map(|opening| window.find(opening));
-        let Some(start) = openings.min() else { continue };
-        let path = &rest[start + 1..];
-        let end = path.find(['"', '\'', '\\', '\n']).unwrap_or(path.len());
-        found.insert(PathBuf::from(&path[..end]));
+    for (at, name) in FILE_NAMES.iter().flat_map(|name| text.match_indices(name)) {
+        let rest = &text[at + name.len()..];
+        let rest = &rest[after_gap(rest)..];
+        let rest = rest.strip_prefix("value").map_or(rest, |rest| &rest[after_gap(rest)..]);
+        if rest.starts_with('/') {
+            let end = rest.find(['"', '\'', '\\', '\n']).unwrap_or(rest.len());
+            found.insert(PathBuf::from(&rest[..end]));
+        }
     }
     found
 }

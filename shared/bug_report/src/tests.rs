@@ -114,6 +114,11 @@ fn names_of_files_are_read_out_of_a_status() {
     let file = home.path().join("model.key");
     fs::write(&file, "sk-of-the-model\n").unwrap();
     let mut scrubber = Scrubber::of(&paths);
+    let config = home.path().join("arm.toml");
+    fs::write(&config, "# ordinary words\n").unwrap();
+    let of_another = serde_json::json!({ "key": "arm.limb", "from": config }).to_string();
+    scrubber.learn(&of_another);
+    assert!(!scrubber.is_in(b"# ordinary words"), "a file that merely stands behind a key");
     let set = format!("\"{}\"", file.display());
     scrubber.learn(&serde_json::json!({ "set": [["dialogue.model.key_file", set]] }).to_string());
     assert!(scrubber.is_in(b"sk-of-the-model"));
