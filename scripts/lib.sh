@@ -36,6 +36,26 @@ lint_while_building() {
     export CLIPPY_ARGS=-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__
 }
 
+# git_version NUMBER [COMMIT]: the version of what is built from a commit, HEAD by default. Of a tag it is the number;
+# else it has the commit's time and hash, and sorts before the release of that number, or behind it if that is out.
+git_version() {
+    local number=$1 commit=${2:-HEAD} sign='~' moment
+    moment=$(TZ=UTC git log -1 --date=format-local:%Y%m%d%H%M%S --format=%cd.%h --abbrev=12 "$commit" 2>/dev/null) ||
+        { printf '%s\n' "$number" && return; }
+    if git merge-base --is-ancestor "v$number" "$commit" 2>/dev/null; then
+        sign='+'
+        # An ancestor of the tag as well: the same commit.
+        git merge-base --is-ancestor "$commit" "v$number" && { printf '%s\n' "$number" && return; }
+    fi
+    printf '%s%sgit%s\n' "$number" "$sign" "$moment"
+}
+
+# pack ARCHIVE FOLDER NAME: packs NAME of a folder so that the same content makes the same bytes.
+pack() {
+    tar -C "$2" --format=gnu --sort=name --owner=0 --group=0 --numeric-owner --mode='u+rwX,go+rX,go-w' \
+        --mtime="@${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct 2>/dev/null || date +%s)}" -cf - "$3" | gzip -9n >"$1"
+}
+
 # A ROS 1 master, robot and recorder, for the tests and benchmarks of the bridge.
 ros1_packages=(python3-rosmaster python3-rospy python3-rosbag python3-sensor-msgs python3-trajectory-msgs
     python3-genmsg python3-genpy ros-std-msgs ros-geometry-msgs ros-sensor-msgs)

@@ -6,6 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::io::Read as _;
 use std::process::Command;
 
 const TOP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
@@ -258,5 +259,43 @@ fn every_direct_dependency_is_documented_with_its_licence() {
         for one in claimed.split('/') {
             assert!(actual.contains(one), "{name}: `{claimed}` documented, `{actual}` found");
         }
+    }
+}
+
+/// `scripts/package notices` writes them.
+#[test]
+fn licences_of_every_library_are_in_the_program() {
+    let notices = fs::read(format!("{TOP}/services/whichone/notices.gz")).unwrap();
+    let mut text = String::new();
+    flate2::read::GzDecoder::new(notices.as_slice()).read_to_string(&mut text).unwrap();
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--locked", "--package", "whichone", "--edges", "normal"])
+        .args(["--prefix", "none", "--features", "dds,zenoh,tls", "--format", "{p}"])
+        .current_dir(TOP)
+        .output()
+        .unwrap();
+    let lines = distinct(&output.stdout);
+    let others = lines.iter().filter(|line| !line.contains("(/"));
+    let named = others.map(|line| line.replacen(" v", " ", 1).replace(" (proc-macro)", ""));
+    let has = |name: &String| text.lines().any(|line| line.split(", ").any(|it| it == name));
+    let missing: Vec<String> =
+        named.chain(VENDORED.map(str::to_owned)).filter(|name| !has(name)).collect();
+    assert!(missing.is_empty(), "{missing:?}; help: scripts/package notices");
+}
+
+/// What is released together has one version.
+#[test]
+fn version_is_the_same_wherever_it_stands() {
+    let version = env!("CARGO_PKG_VERSION");
+    for (file, line) in [
+        ("shared/sdk/python/pyproject.toml", format!("version = \"{version}\"")),
+        ("shared/sdk/python/whichone/__init__.py", format!("__version__ = \"{version}\"")),
+        ("CITATION.cff", format!("version: {version}")),
+        ("README.md", format!("file=whichone-{version}-x86_64-linux.tar.gz")),
+        ("README.md", format!("/releases/download/v{version}/")),
+        ("CHANGELOG.md", format!("## {version} (")),
+    ] {
+        let text = fs::read_to_string(format!("{TOP}/{file}")).unwrap();
+        assert!(text.contains(&line), "{file}: expected `{line}`");
     }
 }

@@ -276,7 +276,7 @@ image_scenario() (
     export DISABLE_HC_SYSTEMD=true
     # shellcheck disable=SC2206
     run=($podman run --detach --name "$container" --shm-size 64m --volume "$container:/var/lib/whichone" --read-only
-        --tmpfs /tmp --publish 127.0.0.1::8377 --ulimit nofile=1024:4096 --ulimit nproc=1000:1000 "whichone:$version")
+        --tmpfs /tmp --publish 127.0.0.1::8377 --ulimit nofile=1024:4096 --ulimit nproc=1000:1000 "whichone:$image")
     source "$here/inside.sh"
     in_container() { $podman exec "$container" whichone "$@"; }
     # in_order NAME: the group is ready, and its journals are those of before, at least $records of them.

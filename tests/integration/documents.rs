@@ -57,6 +57,7 @@ documents! {
     document_baxter: "docs/baxter.md" after "";
     document_concepts: "docs/concepts.md" after "";
     document_http: "docs/http.md" after UP;
+    document_stability: "docs/stability.md" after "";
     document_journals: "docs/journals.md" after A_DIALOGUE;
     document_operations: "docs/operations.md" after "";
     document_perception: "docs/perception.md" after "";

@@ -68,7 +68,7 @@ fn tokens_have_names_rights_and_an_audit() {
     assert!(!std::fs::read_to_string(&file).unwrap().contains(&secret));
     assert_eq!(program.say("get me the bowl").reply()["kind"], "question");
     let listed = group.must(&["token", "list", "--json"]).json();
-    let hall = listed.as_array().unwrap().iter().find(|it| it["name"] == "hall").unwrap();
+    let hall = listed["tokens"].as_array().unwrap().iter().find(|it| it["name"] == "hall").unwrap();
     assert_eq!(hall["may"], json!(["see", "talk"]));
     assert!(hall["used_s"].as_u64() > Some(1_700_000_000), "{listed}");
     let audit = std::fs::read_to_string(group.paths().root().join("http-audit.jsonl")).unwrap();

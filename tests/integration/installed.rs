@@ -64,6 +64,7 @@ fn one_file_in_an_empty_folder_is_a_working_group() {
     let policy = installed.group.pid("policy").as_raw_nonzero();
     let comm = std::fs::read_to_string(format!("/proc/{policy}/comm")).unwrap();
     assert_eq!(comm, "whichone-policy\n", "lists of processes show the service");
+    assert_is_identified(&installed);
     installed.must(&["say", "get me the bowl"]);
     let words = ["await", "pick", "--json", "--timeout", "50", "--answer-as", "white2"];
     let fetched = installed.must(&words).json();
@@ -83,6 +84,27 @@ fn one_file_in_an_empty_folder_is_a_working_group() {
         "nothing is put elsewhere"
     );
     installed.group.down();
+}
+
+/// Every place that states a build states the one that the program states: status, services, logs.
+fn assert_is_identified(installed: &Installed) {
+    let stated = installed.must(&["--version", "--json"]).json();
+    let line = installed.must(&["--version"]).stdout;
+    let status = installed.must(&["status", "--json"]).json();
+    for key in ["version", "commit", "date", "features", "target"] {
+        assert_eq!(status["build"][key], stated[key], "{key} in {status}");
+    }
+    let version = status["version"].as_str().unwrap();
+    let commit = stated["commit"].as_str();
+    assert!(commit.is_none_or(|commit| version.ends_with(commit)), "{version} in {stated}");
+    let services = status["services"].as_array().unwrap();
+    assert!(services.iter().all(|it| it["version"] == version), "{status}");
+    let build = line.trim().strip_prefix("whichone ").unwrap();
+    for name in ["supervisor", "policy", "arm"] {
+        let log = std::fs::read_to_string(installed.group.paths().log_file(name)).unwrap();
+        let first = log.lines().next().unwrap();
+        assert!(first.contains(&format!("whichone-{name} {build}")), "{first}, not {build}");
+    }
 }
 
 #[test]

@@ -52,8 +52,9 @@ fn link_dialogue_at_a_mirror_ends_in_the_right_pick() {
     assert!(ended.stderr.contains("mirrors robot r1"), "{ended:?}");
     robot.verify_journals();
     let listed = relay.fleet(&relay.person("ann")).json();
-    assert_eq!(listed[0]["robot"], "r1", "{listed}");
-    assert_eq!(listed[0]["presence"]["dialogue"], "idle", "{listed}");
+    let robot_of_it = &listed["robots"][0];
+    assert_eq!(robot_of_it["robot"], "r1", "{listed}");
+    assert_eq!(robot_of_it["presence"]["dialogue"], "idle", "{listed}");
     mirror.down();
     robot.down();
 }
@@ -147,7 +148,8 @@ fn link_refuses_wrong_keys() {
     }
     assert_eq!(relay.fleet(&relay.person("mallory")).code, Some(1));
     // Another one's robot is neither listed nor mirrored.
-    assert_eq!(relay.fleet(&relay.person("carl")).json().as_array().map(Vec::len), Some(0));
+    let listed = relay.fleet(&relay.person("carl")).json();
+    assert_eq!(listed["robots"].as_array().map(Vec::len), Some(0));
     let mut foreign = Mirror::launch("r1", &relay.person("carl"));
     // A viewer sees, and is neither heard nor obeyed.
     let viewer = Mirror::start("r1", &relay.person("bob"));

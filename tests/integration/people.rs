@@ -10,8 +10,9 @@ fn fetch_for(group: &Group, name: &str, request: &str, object: &str) {
 }
 
 fn known(group: &Group) -> Vec<(String, u64)> {
-    let listed = group.must(&["people", "list", "--json"]).stdout;
-    let people: Vec<Value> = serde_json::from_str(&listed).expect("a list");
+    let listed = group.must(&["people", "list", "--json"]).json();
+    assert_eq!(listed["schema"], 1);
+    let people = listed["people"].as_array().expect("a list");
     let one = |person: &Value| {
         (person["name"].as_str().unwrap().to_owned(), person["deliveries"].as_u64().unwrap())
     };

@@ -10,6 +10,7 @@ use roster::Name;
 use service::exit::{Exit, Failure};
 use service::folders::make_private;
 use service::group::GroupName;
+use service::json_schema::with_schema;
 
 use crate::access::Address;
 use crate::people::{self, EVERY_ROBOT, People};
@@ -162,7 +163,8 @@ fn listed(people: &People) -> String {
 
 fn listed_json(people: &People) -> String {
     let one = |(name, person): (&Name, &people::Person)| serde_json::json!({ "person": name, "operator": person.operator, "viewer": person.viewer });
-    format!("{}\n", people.iter().map(one).collect::<serde_json::Value>())
+    let people: serde_json::Value = people.iter().map(one).collect();
+    format!("{}\n", with_schema(&serde_json::json!({ "people": people }).to_string()))
 }
 
 fn print(text: &str) -> Result<(), Failure> {

@@ -114,7 +114,7 @@ async fn robots(State(gateway): Shared, on: On, headers: HeaderMap) -> Response<
         Err(response) => return response,
     };
     let robots = gateway.robots.list(&gateway.people.current(), &person).await;
-    let version = env!("CARGO_PKG_VERSION");
+    let version = build_info::full_version();
     let kind = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
     (kind, json!({ "person": person, "version": version, "robots": robots }).to_string())
         .into_response()

@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand};
 use roster::Name;
 use service::exit::{Exit, Failure};
 use service::group::{ENV_GROUP, GroupName};
+use service::json_schema::with_schema;
 
 use crate::keyring::{self, Wanted};
 use crate::{fleet, mirror, robot, router, watch};
@@ -133,7 +134,10 @@ fn carry_out(cli: Cli) -> Result<(), Failure> {
         Some(Verb::Fleet { keys, json, .. }) => {
             let robots = fleet::list(&keys)?;
             match json {
-                true => print(&format!("{}\n", serde_json::json!(robots))),
+                true => {
+                    let listed = serde_json::json!({ "robots": robots }).to_string();
+                    print(&format!("{}\n", with_schema(&listed)))
+                }
                 false => print(&fleet::table(&robots)),
             }
         }

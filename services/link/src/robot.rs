@@ -117,7 +117,7 @@ impl Robot {
         let is_ending = Arc::new(AtomicBool::new(false));
         let presence = Presence {
             robot: identity.name.to_string(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: build_info::full_version(),
             scene: settings.scene.name().to_owned(),
             dialogue: "idle".to_owned(),
             arm: "rest".to_owned(),

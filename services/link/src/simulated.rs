@@ -228,7 +228,7 @@ impl Robot {
         let mind = lock(&self.mind);
         Presence {
             robot: self.name.to_string(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: build_info::full_version(),
             state: "ready".to_owned(),
             scene: "bowls".to_owned(),
             dialogue: "idle".to_owned(),
@@ -270,7 +270,7 @@ impl Robot {
         match call {
             Call::Presence => serde_json::to_vec(&self.presence_now()).ok(),
             Call::Hello => {
-                let version = env!("CARGO_PKG_VERSION").to_owned();
+                let version = build_info::full_version();
                 let settings = settings.to_owned();
                 postcard::to_stdvec(&Hello { version, epoch: self.start, settings }).ok()
             }

@@ -138,7 +138,7 @@ fn attached(environment: &Environment, settings: &Settings) -> Attached {
         ("group", environment.paths.name().to_string()),
         ("epoch", environment.epoch.to_string()),
         ("scene", settings.scene.name().to_owned()),
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("version", build_info::full_version()),
     ];
     Attached {
         files: files.map(|(name, media, text)| (name.to_owned(), media, text)).collect(),

@@ -35,6 +35,7 @@ use utterance_intake::UtteranceIntake;
 pub use endpointing::{EarlyDecoding, Endpointing, PreparedJudge};
 pub use io::{In, Out, PlaybackRequest, Recognised, RecognisedSegment, RecognitionInput};
 pub use messages::Hypothesis;
+pub use speech_engines::WHISPER;
 pub use speech_engines::live_events::MicrophoneStatus;
 pub use speech_engines::voice::{PlaybackEvent, PlaybackState};
 

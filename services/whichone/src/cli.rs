@@ -104,8 +104,9 @@ impl From<QuickCli> for Cli {
 }
 
 /// Verbs for which `--group` is meaningless: it is accepted there, and not listed.
-const WITHOUT_GROUP: [&str; 13] = [
+const WITHOUT_GROUP: [&str; 14] = [
     "check",
+    "licences",
     "conform",
     "init",
     "scene",
@@ -327,6 +328,13 @@ pub enum Verb {
     /// Checks programs, configuration, folders, shared memory, leftovers of killed groups, the
     /// recogniser, the voice and the microphone.
     Doctor(ConfigArgs),
+    /// Collect what a maintainer needs to see, as one archive: version, machine, configuration, logs, journals.
+    ///
+    /// Keys, passwords and tokens are left out, and so is what people said, unless --with-words is given. What is in the
+    /// archive, and what is not, is listed. No running group is needed.
+    Report(bug_report::ReportArgs),
+    /// Print the licences of the libraries in this program.
+    Licences,
     /// Verbs of the laboratory.
     #[command(flatten)]
     Laboratory(Box<laboratory::Verb>),

@@ -32,6 +32,12 @@ pub(crate) fn run() -> Option<ExitCode> {
     Some(program())
 }
 
+/// Optional features that are compiled in, by the names that `cargo install --features` takes.
+pub(crate) fn features() -> Vec<&'static str> {
+    let whisper = speech::WHISPER.then_some("whisper");
+    parts::features().into_iter().chain(whisper).collect()
+}
+
 /// The program with this name, or the feature that a build needs for it; `None` if there is none.
 fn program(name: &str) -> Option<Result<Program, &'static str>> {
     parts::program(name).or_else(|| core_program(name).map(Ok))

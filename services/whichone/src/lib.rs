@@ -6,6 +6,7 @@
 
 use std::ffi::OsString;
 
+use clap::error::ErrorKind;
 use command_line::output::{Output, print_error, print_json_error};
 use command_line::shipped;
 use service::exit::{Exit, Failure};
@@ -16,6 +17,16 @@ pub mod cli;
 
 pub mod verbs;
 
+/// Prints the identity of this build.
+fn print_version(json: bool) -> Exit {
+    let (mut out, build) = (Output::standard(json), build_info::current());
+    let printed = match json {
+        true => out.json(build),
+        false => out.line(format_args!("whichone {build}")),
+    };
+    printed.map_or_else(|failure| failure.exit, |()| Exit::Ok)
+}
+
 /// Runs the command line `arguments`, program name first, and returns the exit code of the process. The
 /// configuration in `files` is built in.
 pub fn run(arguments: impl IntoIterator<Item = OsString>, files: shipped::Files) -> Exit {
@@ -25,6 +36,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, files: shipped::Files)
     let cli = match Cli::parse_line(arguments) {
         Ok(cli) => cli,
         Err(error) => {
+            if error.kind() == ErrorKind::DisplayVersion {
+                return print_version(json);
+            }
             let exit = if error.use_stderr() { Exit::Usage } else { Exit::Ok };
             if exit == Exit::Usage && json {
                 let text = error.to_string();

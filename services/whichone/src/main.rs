@@ -7,6 +7,7 @@ mod hosted;
 mod shipped_files;
 
 fn main() -> ExitCode {
+    build_info::register(source_commit::source_commit!(), hosted::features());
     parts::register();
     hosted::run().unwrap_or_else(|| whichone::run(std::env::args_os(), shipped_files::FILES).code())
 }

@@ -20,6 +20,7 @@ mod hearing;
 mod init;
 mod inspection;
 mod leftovers;
+mod licences;
 mod link;
 mod listen;
 mod logs;
@@ -89,6 +90,8 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Complete { line } => completion::complete(&line, out),
         Verb::Init { folder } => init::init(&folder, out),
         Verb::Man { folder } => init::man(&folder, out),
+        Verb::Licences => licences::licences(out),
+        Verb::Report(args) => bug_report::report(&paths()?, &args, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
         Verb::Laboratory(verb) => laboratory::run(*verb, paths, out),
     }

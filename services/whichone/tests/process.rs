@@ -55,7 +55,31 @@ fn wrong_calls_exit_64_and_help_0() {
     home.check("say --timeout soon hello", 64, "seconds");
     home.check("--help", 0, "whichone");
     home.check("ik --help", 0, "--limb");
-    home.check("--version", 0, env!("CARGO_PKG_VERSION"));
+    home.check("--version", 0, concat!("whichone ", env!("CARGO_PKG_VERSION"), " (commit "));
+}
+
+#[test]
+fn version_names_the_commit_the_features_and_the_target() {
+    let home = Home::new();
+    let output = home.run("--version --json");
+    let build: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (&build["schema"], &build["version"]),
+        (&1.into(), &env!("CARGO_PKG_VERSION").into())
+    );
+    assert!(build["target"].as_str().unwrap().contains("linux"), "{build}");
+    assert!(build["features"].is_array(), "{build}");
+    // These tests are built in a checkout, or from an archive that states its commit, or from neither.
+    let git = Command::new("git")
+        .args(["rev-parse", "HEAD"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output();
+    let head =
+        git.ok().filter(|it| it.status.success()).map(|it| String::from_utf8(it.stdout).unwrap());
+    if let (Some(head), Some(commit)) = (head, build["commit"].as_str()) {
+        assert_eq!(commit.len(), 12, "{build}");
+        assert!(head.starts_with(commit), "{build}: HEAD is {head}");
+    }
 }
 
 #[test]
@@ -67,7 +91,11 @@ fn without_a_group_every_verb_says_how_to_start_one() {
         home.check(line, 1, help);
     }
     home.check("status", 1, help);
-    home.check("status --json --group lab", 1, "{\"name\":\"lab\",\"state\":\"down\",");
+    home.check(
+        "status --json --group lab",
+        1,
+        "{\"schema\":1,\"name\":\"lab\",\"state\":\"down\",",
+    );
     home.check("logs arm", 64, help);
     home.check("down", 0, "not running");
     home.check("journal speech", 1, help);

@@ -1,10 +1,11 @@
 //! Output of the verbs.
 //!
 //! Invariant: results go to standard output, as text or as JSON; progress and errors go to standard
-//! error, with `--json` errors also to standard output as `{"error","exit"}`. Colour appears on terminals only, and never where `NO_COLOR` is set. Whatever is printed
+//! error, with `--json` errors also to standard output as `{"schema","error","exit"}`. Colour appears on terminals only, and never where `NO_COLOR` is set. Whatever is printed
 //! passes [`printable`], so that no foreign text steers the terminal.
 
 use service::exit::Failure;
+use service::json_schema::with_schema;
 use service::printable::{printable, printable_json};
 use std::borrow::Cow;
 use std::fmt::{self, Display};
@@ -99,7 +100,7 @@ impl<'a> Output<'a> {
         writeln!(self.sink, "{}", self.style.clean(&text)).map_err(Failure::output)
     }
 
-    /// Prints a value as one line of JSON, at once.
+    /// Prints a value as one line of JSON, at once. With `--json` an object begins with its `schema`.
     ///
     /// # Errors
     /// The output is closed or full.
@@ -114,6 +115,8 @@ impl<'a> Output<'a> {
     /// The output is closed or full.
     pub fn queue_json(&mut self, value: &impl Serialize) -> Result<(), Failure> {
         let json = serde_json::to_string(value).map_err(|e| Failure::output(e.into()))?;
+        // Batch tools print JSON in any case, in the format of their input.
+        let json = if self.json { with_schema(&json) } else { json };
         writeln!(self.sink, "{}", printable_json(&json)).map_err(Failure::output)
     }
 
@@ -260,7 +263,9 @@ mod tests {
     #[test]
     fn json_value_is_printed_on_one_line() {
         let mut bytes = Vec::new();
-        Output::to(&mut bytes, true).json(&serde_json::json!({"a": "b\nc"})).unwrap();
-        assert_eq!(bytes, b"{\"a\":\"b\\nc\"}\n");
+        let value = serde_json::json!({"a": "b\nc"});
+        Output::to(&mut bytes, true).json(&value).unwrap();
+        Output::to(&mut bytes, false).json(&value).unwrap();
+        assert_eq!(bytes, b"{\"schema\":1,\"a\":\"b\\nc\"}\n{\"a\":\"b\\nc\"}\n");
     }
 }

@@ -69,7 +69,7 @@ fn folder_of(files: Files, home: &Path) -> Result<Option<PathBuf>, Failure> {
         hash.text(path);
         hash.text(text);
     }
-    let version = env!("CARGO_PKG_VERSION");
+    let version = build_info::VERSION;
     let folder = home.join(format!("{FOLDER}{version}-{:08x}", hash.value() >> 32));
     if folder.is_dir() {
         return Ok(Some(folder));

@@ -46,7 +46,7 @@ pub fn routes<S: Clone + Send + Sync + 'static>(api: Arc<Api>) -> Router<S> {
 
 async fn info(State(api): Shared) -> Response {
     let is_online = api.events.state().state != Word::Disconnected;
-    let version = env!("CARGO_PKG_VERSION");
+    let version = build_info::VERSION;
     as_json(&json!({
         "api": API, "id": api.id, "name": api.group, "version": version, "online": is_online,
     }))

@@ -103,7 +103,7 @@ fn list(paths: &GroupPaths, tokens: &Tokens, out: &mut Output<'_>) -> Outcome {
             json!({ "name": name, "may": token.may, "made_s": token.made_s,
                     "used_s": uses.get(name.as_str()) })
         };
-        out.json(&tokens.iter().map(one).collect::<Json>())?;
+        out.json(&json!({ "tokens": tokens.iter().map(one).collect::<Json>() }))?;
         return Ok(Exit::Ok);
     }
     let row = |(name, token): (&Name, &tokens::Token)| {

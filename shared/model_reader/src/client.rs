@@ -50,7 +50,7 @@ impl Client {
     /// # Errors
     /// The URL needs TLS and the build has none, or the key cannot be read.
     pub fn new(model: &LanguageModel, scene: &Scene) -> Result<Self, ClientError> {
-        if model.url.starts_with("https:") && !cfg!(feature = "tls") {
+        if model.url.starts_with("https:") && !crate::TLS {
             return Err(ClientError::NoTls);
         }
         let authorization = model.key_file.as_deref().map(bearer).transpose()?;
@@ -59,7 +59,7 @@ impl Client {
             // The service is the one that is configured, and no other.
             .proxy(None)
             .max_redirects(0)
-            .user_agent(concat!("whichone/", env!("CARGO_PKG_VERSION")));
+            .user_agent(format!("whichone/{}", build_info::VERSION));
         Ok(Self {
             agent: config.build().into(),
             url: model.url.clone(),

@@ -19,6 +19,9 @@ pub use client::{Client, ClientError};
 pub use prompt::{Prompt, utterance};
 pub use settings::{Calibration, Configured, LanguageModel};
 
+/// True if requests over https are compiled in.
+pub const TLS: bool = cfg!(feature = "tls");
+
 /// The section of the language model.
 pub static PART: config::Part = config::Part {
     name: "model_reader",

@@ -132,7 +132,7 @@ impl StudyController {
             plan: plan(&self.protocol, &self.counts(), seed),
             protocol: self.protocol.clone(),
             group: self.group.clone(),
-            software: env!("CARGO_PKG_VERSION").to_owned(),
+            software: build_info::full_version(),
         };
         Ok((begun.participant.clone(), vec![Event::Begun(Box::new(begun))]))
     }

@@ -33,6 +33,13 @@ pub fn register() {
     config::register(PARTS, drivers::known());
 }
 
+/// Optional features that are compiled in, of these parts.
+pub fn features() -> Vec<&'static str> {
+    let has = |name: &str| matches!(program(name), Some(Ok(_)));
+    let all = [("dds", has("ros2")), ("zenoh", has("link")), ("tls", model_reader::TLS)];
+    all.into_iter().filter(|(_, is_in)| *is_in).map(|(name, _)| name).collect()
+}
+
 /// The error for a program that this build is without.
 pub fn how_to_get(part: &str, feature: &str) -> String {
     format!(

@@ -36,7 +36,7 @@ pub struct Attached {
 pub(crate) fn options() -> WriteOptions {
     WriteOptions::new()
         .profile("")
-        .library(concat!("whichone ", env!("CARGO_PKG_VERSION")))
+        .library(format!("whichone {}", build_info::full_version()))
         .compression(Some(Compression::Lz4))
         .chunk_size(Some(CHUNK_BYTES))
         // A chunk is written whole or not at all.

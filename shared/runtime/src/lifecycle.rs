@@ -173,7 +173,8 @@ impl Lifecycle {
 
     /// Notifies the supervisor that the service is ready.
     pub fn ready(&mut self) {
-        self.notifier.say(concat!("X_VERSION=", env!("CARGO_PKG_VERSION"), "\nREADY=1"));
+        let version = build_info::full_version();
+        self.notifier.say(&format!("X_VERSION={version}\nREADY=1"));
     }
 
     /// Gives the operator's status what the service says, if that has changed.

@@ -16,6 +16,7 @@ use crate::exit::{Exit, Failure};
 use crate::flight;
 use crate::journal_clock::WallTimes;
 use crate::journal_record::JournalLine;
+use crate::json_schema::with_schema;
 use crate::printable::{one_line, printable_json};
 use crate::service_loop::{Program, Record};
 use crate::{Time, wall_time};
@@ -372,7 +373,7 @@ fn verify<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fai
 /// Prints a value as one line.
 fn json_line(out: &mut impl Write, value: &impl Serialize) -> Result<(), Failure> {
     let json = serde_json::to_string(value).map_err(|error| Failure::output(error.into()))?;
-    line(out, printable_json(&json))
+    line(out, printable_json(&with_schema(&json)))
 }
 
 fn line(out: &mut impl Write, text: impl std::fmt::Display) -> Result<(), Failure> {

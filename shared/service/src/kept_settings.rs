@@ -88,7 +88,7 @@ fn own_program() -> Option<String> {
     let file = fs::metadata("/proc/self/exe").ok()?;
     let (device, inode, bytes) = (file.dev(), file.ino(), file.len());
     let (s, ns) = (file.ctime(), file.ctime_nsec());
-    Some(format!("{} {device} {inode} {bytes} {s}.{ns:09}\n", env!("CARGO_PKG_VERSION")))
+    Some(format!("{} {device} {inode} {bytes} {s}.{ns:09}\n", build_info::VERSION))
 }
 
 /// Folders with the kept settings, newest first.

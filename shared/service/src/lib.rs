@@ -59,6 +59,7 @@ pub mod inspection;
 mod journal_clock;
 pub mod journal_record;
 pub mod journal_set;
+pub mod json_schema;
 pub mod kept_settings;
 pub mod launch;
 pub mod log_file;

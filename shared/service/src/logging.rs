@@ -12,6 +12,7 @@ use rustix::fs::{FileType, Mode, OFlags, fstat, open};
 use std::fs::File;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::os::fd::{AsFd, OwnedFd};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
@@ -58,6 +59,13 @@ pub fn init() -> LogFlush {
     // A second call (tests in one process) leaves the first subscriber in place.
     let _ = builder.try_init();
     flush
+}
+
+/// Logs the name that the program was started under, and its build: the first line of a long-running process.
+pub fn identify() {
+    let program = std::env::args_os().next().map(PathBuf::from);
+    let name = program.as_deref().and_then(Path::file_name).unwrap_or_default();
+    tracing::info!("{} {}", name.to_string_lossy(), build_info::current());
 }
 
 /// Changes the format of the lines that follow to what the configuration says: one JSON object a line, or text.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use build_info::BuildInfo;
 use serde::{Deserialize, Serialize};
 
 use crate::exit::ProcessExit;
@@ -15,8 +16,11 @@ pub struct GroupStatus {
     pub state: GroupState,
     /// The supervisor's process.
     pub supervisor_pid: u32,
-    /// The supervisor's version.
+    /// The supervisor's version, with its commit.
     pub version: String,
+    /// The supervisor's build. None in the status of an earlier version.
+    #[serde(default)]
+    pub build: Option<BuildInfo>,
     /// Time since the supervisor's start, seconds.
     pub uptime_s: f64,
     /// Life of the journals.

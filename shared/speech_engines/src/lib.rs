@@ -22,3 +22,6 @@ pub mod unrecorded_sound;
 pub mod vad;
 pub mod voice;
 pub mod worker_thread;
+
+/// True if the second recogniser, whisper.cpp, is compiled in.
+pub const WHISPER: bool = cfg!(feature = "whisper");

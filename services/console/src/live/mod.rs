@@ -54,7 +54,7 @@ impl Live {
         is_possible: bool,
     ) -> Result<Self, Diagnostics> {
         let Recorder { sound, .. } = settings.part()?;
-        let version = env!("CARGO_PKG_VERSION").to_owned();
+        let version = build_info::full_version();
         let channels: Vec<(ChannelId, Channel)> = shown(sound).collect();
         let metadata = BTreeMap::from([("group", group.to_owned()), ("version", version.clone())]);
         let name = format!("whichone {group}");

@@ -67,6 +67,7 @@ const FIGURES: [Figure; 11] = [
 
 impl Collector for GroupMetrics {
     fn encode(&self, mut encoder: DescriptorEncoder<'_>) -> Result<(), fmt::Error> {
+        build(&mut encoder)?;
         let files = entries(&self.recordings);
         let bytes: u64 = files.iter().map(|file| file.bytes).sum();
         let is_written = files.last().is_some_and(Entry::is_being_written);
@@ -97,6 +98,20 @@ impl Collector for GroupMetrics {
         }
         Ok(())
     }
+}
+
+/// The console's build, as labels of a constant.
+fn build(encoder: &mut DescriptorEncoder<'_>) -> Result<(), fmt::Error> {
+    let build = build_info::current();
+    let labels = [
+        ("version", build.version.as_str()),
+        ("commit", build.commit.as_deref().unwrap_or("unknown")),
+        ("features", &build.features.join(",")),
+        ("target", &build.target),
+    ];
+    let help = "Build of the programs";
+    let mut family = encoder.encode_descriptor("build_info", help, None, MetricType::Gauge)?;
+    ConstGauge::new(1.0).encode(family.encode_family(&labels)?)
 }
 
 fn gauge(

@@ -27,6 +27,12 @@ fn metrics_are_exported_under_their_names() {
         "whichone_console_answer_seconds_count 1",
         "whichone_picks_total{outcome=\"delivered\"} 0",
         "whichone_recordings_files 0.0",
+        // The commit is registered by programs alone.
+        &format!(
+            "whichone_build_info{{version=\"{}\",commit=\"unknown\",features=\"\",target=\"{}\"}} 1.0",
+            build_info::VERSION,
+            build_info::TARGET
+        ),
     ];
     assert_prints(&metrics, &lines);
 }

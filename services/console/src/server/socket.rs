@@ -213,10 +213,11 @@ pub(crate) async fn send(out: &mut Out, frame: Frame, hub: &Hub) -> Result<(), E
 }
 
 fn welcome(viewer: ViewerId, app: &App) -> String {
+    let version = build_info::full_version();
     let welcome = Welcome {
         protocol: PROTOCOL,
         viewer: viewer.to_string(),
-        version: env!("CARGO_PKG_VERSION"),
+        version: &version,
         group: &app.group,
         server_ms: ms(clock::now()),
         first_line: app.hub.board.first_line(),

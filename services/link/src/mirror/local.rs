@@ -58,7 +58,7 @@ pub(super) fn settings(
 ) -> Result<Settings, Failure> {
     own_settings(&hello.settings, paths, options).map_err(|failure| {
         let Hello { version, .. } = hello;
-        let own = env!("CARGO_PKG_VERSION");
+        let own = build_info::full_version();
         let what = format!(
             "{failure}\nhelp: the robot runs whichone {version}, this is {own}; install the same version"
         );

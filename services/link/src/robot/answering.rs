@@ -21,7 +21,7 @@ impl Robot {
         let bytes = match call {
             Call::Presence => serde_json::to_vec(&self.presence).ok(),
             Call::Hello => {
-                let version = env!("CARGO_PKG_VERSION").to_owned();
+                let version = build_info::full_version();
                 let settings = self.settings.snapshot();
                 postcard::to_stdvec(&Hello { version, epoch: self.epoch, settings }).ok()
             }

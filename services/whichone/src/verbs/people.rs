@@ -78,7 +78,7 @@ fn read(paths: &GroupPaths) -> Result<Vec<PersonRecord>, Failure> {
 
 fn list(people: &[PersonRecord], out: &mut Output<'_>) -> Outcome {
     if out.is_json() {
-        out.json(&people)?;
+        out.json(&json!({ "people": people }))?;
         return Ok(Exit::Ok);
     }
     if people.is_empty() {

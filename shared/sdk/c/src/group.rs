@@ -65,6 +65,7 @@ impl Words {
 impl Group {
     fn of_service(name: &str) -> Result<Self, Failure> {
         let log = logging::init();
+        logging::identify();
         let environment = Environment::read(Vec::new())?;
         let Environment { paths, epoch, incarnation, .. } = environment;
         let lifecycle = Some(Lifecycle::begin(&paths)?);

@@ -88,7 +88,7 @@ impl Head {
     ) -> Self {
         Self {
             service: P::SERVICE.name().to_owned(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: build_info::full_version(),
             record: P::RECORD.map(str::to_owned),
             group: environment.paths.name().to_string(),
             epoch: environment.epoch.0,

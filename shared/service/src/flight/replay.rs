@@ -148,7 +148,7 @@ fn report(file: &Path, head: &Head) -> Report {
         file: file.to_owned(),
         service: head.service.clone(),
         recorded_by: head.version.clone(),
-        replayed_by: env!("CARGO_PKG_VERSION").to_owned(),
+        replayed_by: build_info::full_version(),
         passes: 0,
         events: 0,
         seconds: 0.0,

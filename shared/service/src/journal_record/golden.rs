@@ -4,6 +4,7 @@ use messages::Service;
 
 use super::{JournalLine, JournalRecord};
 use crate::Time;
+use crate::json_schema::with_schema;
 
 /// Wall time at the beginning of the monotonic clock, milliseconds since 1970.
 const BEGAN_MS: u64 = 1_700_000_000_000;
@@ -16,7 +17,8 @@ pub fn lines(records: impl IntoIterator<Item = (Time, String, JournalRecord)>) -
     let line = |(seq, (at, text, record)): (u64, (Time, String, JournalRecord))| {
         let (at_ns, unix_ms) = (at.ns(), Some(BEGAN_MS + at.ns() / 1_000_000));
         let line = serde_json::to_string(&JournalLine { seq, at_ns, unix_ms, text, record });
-        line.unwrap_or_else(|error| panic!("record {seq}: {error}")) + "\n"
+        let line = line.unwrap_or_else(|error| panic!("record {seq}: {error}"));
+        with_schema(&line) + "\n"
     };
     (1..).zip(records).map(line).collect()
 }

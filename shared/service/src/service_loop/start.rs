@@ -41,6 +41,7 @@ pub fn program(
         return help(name, about);
     }
     let _log = logging::init();
+    logging::identify();
     match serve(arguments) {
         Ok(()) => Exit::Ok.code(),
         Err(failure) => {

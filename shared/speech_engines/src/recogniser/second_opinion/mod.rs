@@ -211,8 +211,7 @@ mod tests {
         let Err(error) = load(Path::new("/no/such/ggml-model.bin"), &bowls()) else {
             panic!("a missing model opened")
         };
-        let help =
-            if cfg!(feature = "whisper") { "ggml-base-q8_0.bin" } else { "not part of this build" };
+        let help = if crate::WHISPER { "ggml-base-q8_0.bin" } else { "not part of this build" };
         assert!(error.to_string().contains(help), "{error}");
     }
 
