@@ -1,5 +1,6 @@
 """Sentences through Home Assistant's whole pipeline, in which its own intents go first."""
 
+import pytest
 from homeassistant.components import conversation
 from homeassistant.core import Context
 
@@ -36,11 +37,15 @@ async def test_never_mind_and_stop_reach_a_busy_robot_and_no_other(core, hass_ws
     assert fake.asked.count("motion/stop") == 1
 
 
-async def test_robot_is_stopped_by_name_in_every_state_and_by_every_agent(core, fake, entry):
+@pytest.mark.parametrize(
+    ("language", "text", "answer"),
+    [("en", "Stop the robot!", "I have stopped."), ("de", "Stopp den Roboter!", "Ich habe angehalten.")],
+)
+async def test_robot_is_stopped_by_name_in_every_state_and_by_every_agent(core, fake, entry, language, text, answer):
     said = await conversation.async_converse(
-        core, "stop the robot", None, Context(), "en", agent_id="conversation.home_assistant"
+        core, text, None, Context(), language, agent_id="conversation.home_assistant"
     )
-    assert said.response.speech["plain"]["speech"] == "I have stopped."
+    assert said.response.speech["plain"]["speech"] == answer
     assert fake.asked.count("motion/stop") == 1
 
 

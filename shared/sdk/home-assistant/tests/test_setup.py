@@ -1,11 +1,13 @@
 """Setting up a robot, and changing how it is reached."""
 
 import json
+from ipaddress import ip_address
 from pathlib import Path
 
 import pytest
-from homeassistant.config_entries import SOURCE_USER, ConfigEntryState
+from homeassistant.config_entries import SOURCE_USER, SOURCE_ZEROCONF, ConfigEntryState
 from homeassistant.data_entry_flow import FlowResultType
+from homeassistant.helpers.service_info.zeroconf import ZeroconfServiceInfo
 from pytest_homeassistant_custom_component.common import MockConfigEntry
 
 from conftest import connected, until
@@ -51,6 +53,38 @@ async def test_user_sets_up_a_robot_through_every_mistake(core, fake):
     assert done["result"].unique_id == ID
     again = await fill(core, await begin(core), fake.url, TOKEN)
     assert again["reason"] == "already_configured"
+    await core.config_entries.async_unload(done["result"].entry_id)
+
+
+def announced(port, **changed):
+    """Return what a robot announces in its network."""
+    address = ip_address("127.0.0.1")
+    return ZeroconfServiceInfo(
+        ip_address=address,
+        ip_addresses=[address],
+        port=port,
+        hostname="robot.local.",
+        type="_whichone._tcp.local.",
+        name="robot._whichone._tcp.local.",
+        properties={"api": "1", "id": ID, "name": "kitchen"} | changed,
+    )
+
+
+async def find(hass, found):
+    """Have Home Assistant find a robot."""
+    return await hass.config_entries.flow.async_init("whichone", context={"source": SOURCE_ZEROCONF}, data=found)
+
+
+async def test_robot_that_is_found_is_set_up_with_its_token(core, fake):
+    assert (await find(core, announced(fake.port, api="2")))["reason"] == "api_version"
+    flow = await find(core, announced(fake.port))
+    assert flow["data_schema"]({"token": TOKEN})["url"] == fake.url
+    done = await fill(core, flow, fake.url, TOKEN)
+    assert done["type"] is FlowResultType.CREATE_ENTRY
+    await core.async_block_till_done()
+    # Who announces a known name elsewhere does not get the token.
+    assert (await find(core, announced(1)))["reason"] == "already_configured"
+    assert done["result"].data["url"] == fake.url
     await core.config_entries.async_unload(done["result"].entry_id)
 
 

@@ -23,7 +23,6 @@ async def async_setup_entry(hass: HomeAssistant, entry: WhichoneEntry) -> bool:
     sentences = Sentences(hass, entry)
     entry.async_on_unload(sentences.end)
     await sentences.begin()
-    entry.async_on_unload(entry.add_update_listener(_reload))
     entry.async_create_background_task(hass, link.follow(), f"whichone events of {entry.title}")
     return True
 
@@ -36,7 +35,3 @@ async def async_unload_entry(hass: HomeAssistant, entry: WhichoneEntry) -> bool:
 async def async_remove_entry(hass: HomeAssistant, entry: WhichoneEntry) -> None:
     """Remove what is said about a robot that is gone."""
     issues.clear(hass, entry, issues.API_VERSION, issues.OTHER_ROBOT, issues.RIGHTS)
-
-
-async def _reload(hass: HomeAssistant, entry: WhichoneEntry) -> None:
-    await hass.config_entries.async_reload(entry.entry_id)

@@ -60,7 +60,8 @@ class WhichoneFlow(ConfigFlow, domain=DOMAIN):
             return self.async_abort(reason="api_version")
         self._url = str(URL.build(scheme="http", host=discovery_info.host, port=discovery_info.port))
         await self.async_set_unique_id(found["id"])
-        self._abort_if_unique_id_configured(updates={CONF_URL: self._url})
+        # A known robot keeps its address: anyone in the network can announce its name, and would get the token.
+        self._abort_if_unique_id_configured()
         self.context["title_placeholders"] = {"name": found.get("name") or "whichone"}
         return await self.async_step_user()
 

@@ -24,8 +24,14 @@ SILENCE_S: Final = 40.0
 # Pauses before the events are asked for again, seconds: the first, and the longest.
 BACKOFF_S: Final = (0.5, 10.0)
 
-# Sentences that mean the robot in every state, whichever agent is spoken to.
-STOP_THE_ROBOT: Final = ["stop [the] robot", "robot stop", "stop moving"]
+# Sentences that mean the robot in every state, whichever agent is spoken to. A stop is understood in German, too.
+STOP_THE_ROBOT: Final = [
+    "stop [the] robot",
+    "robot stop",
+    "stop moving",
+    "(stopp|stoppe) [den] roboter",
+    "roboter stopp",
+]
 # Sentences that mean it while it is busy. Home Assistant takes both for its own otherwise, or does nothing.
-STOP: Final = ["stop", "freeze", "stop it", "stop that"]
+STOP: Final = ["stop", "freeze", "stop it", "stop that", "stopp", "halt"]
 NEVER_MIND: Final = ["never mind", "nevermind"]

@@ -86,7 +86,7 @@ class Link:
                 async for event in self.robot.events(self._last):
                     pause = BACKOFF_S[0]
                     self._take(event)
-                self._set_connected(False)
+                # Not a lost connection yet: a gateway ends streams after a while.
             except RobotError as error:
                 self._set_connected(False)
                 self._on_error(error)
