@@ -98,6 +98,20 @@ rclpy_python() {
         ros-jazzy-{std,sensor,visualization,diagnostic}-msgs==5.3.6 ros-jazzy-std-srvs==5.3.6
 }
 
+# For Home Assistant: its core and what its voice pipeline needs. HOME_ASSISTANT_PYTHON names an interpreter of that version.
+home_assistant_needs="no Python 3.13 with packages of PyPI, which Home Assistant 2025.4 needs (HOME_ASSISTANT_PYTHON)"
+home_assistant_python() {
+    local python
+    for python in "${HOME_ASSISTANT_PYTHON:-}" python3.13 "$HOME"/.pyenv/versions/3.13.*/bin/python; do
+        "$python" -c 'import sys, venv; sys.exit(sys.version_info[:2] != (3, 13))' &>/dev/null || continue
+        PYTHON=$python python_with home-assistant pytest-homeassistant-custom-component==0.13.236 ruff==0.17.6 \
+            hassil==2.2.3 home-assistant-intents==2025.3.28 ha-ffmpeg==3.2.2 mutagen==1.47.0 pymicro-vad==1.0.1 \
+            pyspeex-noise==1.0.2
+        return
+    done
+    return 1
+}
+
 # Everything that is shipped, in one set: with the same features in every step each crate is built once. Never add
 # `-p`: the features of a single package are other ones, with which cargo builds most crates again.
 # whisper.cpp is left to scripts/nightly, as it needs cmake and libclang.

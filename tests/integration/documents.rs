@@ -56,6 +56,7 @@ documents! {
     document_readme: "README.md" after "";
     document_baxter: "docs/baxter.md" after "";
     document_concepts: "docs/concepts.md" after "";
+    document_home_assistant: "docs/home-assistant.md" after UP;
     document_http: "docs/http.md" after UP;
     document_stability: "docs/stability.md" after "";
     document_journals: "docs/journals.md" after A_DIALOGUE;

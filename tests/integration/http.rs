@@ -23,7 +23,7 @@ fn bowls() -> Scene {
 }
 
 /// Waits until the robot is in a state, and returns it whole.
-fn until_state(program: &Program, word: &str) -> Json {
+pub(crate) fn until_state(program: &Program, word: &str) -> Json {
     wait_for(&format!("the state {word}"), 20.0, || {
         let state = program.get("/state").body;
         (state["state"] == word).then_some(state)
@@ -79,6 +79,12 @@ fn tokens_have_names_rights_and_an_audit() {
         (&entries[0]["what"], &entries[0]["text"]),
         (&json!("say"), &json!("get me the bowl"))
     );
+
+    // Whoever removes the audit does not end it.
+    std::fs::remove_file(group.paths().root().join("http-audit.jsonl")).unwrap();
+    program.say("the white one");
+    let audit = std::fs::read_to_string(group.paths().root().join("http-audit.jsonl")).unwrap();
+    assert!(audit.contains("the white one"), "{audit}");
 
     // Rights change at once, and so does the end.
     let mut events = program.events(None);

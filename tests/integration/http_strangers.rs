@@ -11,6 +11,8 @@ use whichone_tests::Group;
 use whichone_tests::console::http;
 use whichone_tests::http_program::Program;
 
+use crate::http::until_state;
+
 #[test]
 fn ten_thousand_wrong_tokens_are_refused_and_delay_no_one() {
     const GUESSES: usize = 10_000;
@@ -76,6 +78,7 @@ fn pages_of_other_sites_are_refused() {
 fn slow_large_and_unreadable_requests_get_typed_answers() {
     let group = Group::up(&[]);
     let program = Program::new(&group, "hall", "see,talk,stop,resume");
+    until_state(&program, "idle");
     let say = |body: &str| {
         let answer = program.ask("POST", "/say", &[], body);
         (answer.status, answer.body["code"].as_str().unwrap_or_default().to_owned())
@@ -94,10 +97,18 @@ fn slow_large_and_unreadable_requests_get_typed_answers() {
         (r#"{"text":"yes","wait_s":-1}"#.to_owned(), 422, "invalid"),
         (r#"{"text":"yes","conversation":""}"#.to_owned(), 422, "invalid"),
         (r#"{"text":"yes","from":"a\u0007b"}"#.to_owned(), 422, "invalid"),
+        // A line that the robot has not said yet.
+        (r#"{"text":"yes","seen":999}"#.to_owned(), 422, "invalid"),
         (format!(r#"{{"text":"{}"}}"#, "x".repeat(20_000)), 413, "too_large"),
     ] {
         assert_eq!(say(&body), (status, code.to_owned()), "{body:.80}");
     }
+    for (method, path) in [("GET", "/state"), ("POST", "/motion/resume"), ("POST", "/cancel")] {
+        let twice = program.ask(method, path, &["Authorization: Bearer 0123456789abcdef"], "");
+        assert_eq!((twice.status, &twice.body["code"]), (400, &json!("unreadable")), "{path}");
+    }
+    let stop = r#"{"text":"stop","seen":999}"#;
+    assert_eq!(program.ask("POST", "/say", &[], stop).reply()["kind"], "stopped");
     let odd = http(&program.console, "GET", "/api/v1/nothing", &[], "");
     assert!(odd.0 == 404 && odd.2.contains("not_found"), "{odd:?}");
     let odd = http(&program.console, "DELETE", "/api/v1/say", &[], "");

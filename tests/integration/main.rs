@@ -24,6 +24,7 @@ mod full_memory;
 mod gateway;
 mod haste;
 mod hearing;
+mod home_assistant;
 mod http;
 mod http_strangers;
 mod imported_robots;

@@ -16,7 +16,7 @@ use tokio::sync::watch;
 use web_server::audit::Audit;
 use web_server::connections::Connection;
 use web_server::login::pause;
-use web_server::request::{bearer, is_own, origin};
+use web_server::request::{authorizations, bearer, is_own, origin};
 use web_server::sessions::unix_s;
 
 use crate::conversations::Conversations;
@@ -141,6 +141,13 @@ impl Api {
     ) -> Result<Caller, Problem> {
         if let Some(origin) = origin(headers).filter(|_| !is_own(headers)) {
             return Err(Problem::origin(origin));
+        }
+        let count = authorizations(headers);
+        if count > 1 {
+            let what = format!("expected one header Authorization, found {count}");
+            return Err(Problem::unreadable(format!(
+                "{what}; help: send the program's token alone"
+            )));
         }
         let said = bearer(headers);
         let Some(caller) = self.known(headers, said.unwrap_or_default()) else {

@@ -16,7 +16,7 @@ use crate::api::{Api, Caller};
 use crate::conversations::Repeated;
 use crate::feed::{Heard, PATIENCE, Request, request_key};
 use crate::problem::Problem;
-use crate::state::{Kind, Reply};
+use crate::state::{Kind, Reply, State};
 use crate::tokens::Right;
 
 /// Longest body, bytes.
@@ -220,6 +220,11 @@ async fn utter(
     is_stop: bool,
 ) -> Result<(u64, bool), Problem> {
     let state = api.events.state();
+    let seen = match seen(api, words, &state) {
+        // Nothing may keep a stop back.
+        Err(_) if is_stop => 0,
+        seen => seen?,
+    };
     if !is_stop {
         if !api.conversations().claim(&words.conversation, &state, Instant::now()) {
             return Err(Problem::busy());
@@ -229,7 +234,7 @@ async fn utter(
             return Err(problem);
         }
     }
-    let heard = hand_over(api, caller, words).await;
+    let heard = hand_over(api, caller, words, seen).await;
     let seq = match heard {
         Heard::Accepted { seq, .. } => Some(seq),
         _ => None,
@@ -246,9 +251,21 @@ async fn utter(
     }
 }
 
-async fn hand_over(api: &Api, caller: &Caller, words: &Words) -> Heard {
+/// Returns the latest prompt that the person was shown. One that was not said yet would have the speech service wait for it.
+fn seen(api: &Api, words: &Words, state: &State) -> Result<u64, Problem> {
+    let Some(seen) = words.seen else { return Ok(api.conversations().shown(&words.conversation)) };
+    if seen > state.prompt && !state.inner.is_known {
+        return Err(Problem::unavailable("the robot's latest line is not known yet"));
+    }
+    if seen > state.prompt {
+        let what = format!("seen: expected a line that was said, up to {}", state.prompt);
+        return Err(Problem::invalid(format!("{what}, found {seen}; help: leave it out")));
+    }
+    Ok(seen)
+}
+
+async fn hand_over(api: &Api, caller: &Caller, words: &Words, seen: u64) -> Heard {
     let (answer, answered) = oneshot::channel();
-    let seen = words.seen.unwrap_or_else(|| api.conversations().shown(&words.conversation));
     let request = Request {
         key: request_key(&caller.name, &words.key),
         text: words.text.clone(),

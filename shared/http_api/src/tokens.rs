@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 
 use roster::Name;
-use safe_files::{read_private, replace_private_synced};
+use safe_files::{load_private, replace_private_synced};
 use serde::{Deserialize, Serialize};
 use service::console_link::{is_token, random_secret};
 use service::exit::{Exit, Failure};
@@ -92,10 +92,7 @@ impl Tokens {
                 "expected at most {FILE_MAX} bytes; help: remove what is no token"
             )));
         }
-        let text = read_private(path).ok_or_else(|| {
-            bad("other users can read or change it, or it is another user's; help: chmod 600"
-                .into())
-        })?;
+        let text = load_private(path).map_err(|error| bad(error.to_string()))?;
         let tokens: Self = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
         for (name, Token { secret, .. }) in &tokens.0 {
             if name.as_str() == OWNER {
@@ -259,6 +256,9 @@ mod tests {
         }
         let console = add(&path, &name("console"), BTreeSet::new(), false, 7);
         assert!(console.unwrap_err().message.contains("another name"));
+        replace_private(&path, b"# caf\xe9\n").unwrap();
+        let message = Tokens::load(&path).unwrap_err().message;
+        assert!(message.contains("expected UTF-8") && message.contains("http.tokens"), "{message}");
         let other = folder.path().join("open");
         fs::write(&other, "").unwrap();
         assert!(Tokens::load(&other).unwrap_err().message.contains("chmod 600"));

@@ -31,10 +31,26 @@ pub fn read_regular(path: &Path) -> io::Result<String> {
 
 /// Reads a file of this user that no other user can read or change; none otherwise.
 pub fn read_private(path: &Path) -> Option<String> {
-    let file = fs::symlink_metadata(path).ok()?;
+    load_private(path).ok()
+}
+
+/// As [`read_private`], with the reason if there is none.
+///
+/// # Errors
+/// It cannot be read, is not a file of this user alone, or is not UTF-8.
+pub fn load_private(path: &Path) -> io::Result<String> {
+    let file = fs::symlink_metadata(path)?;
     let is_own = file.uid() == geteuid().as_raw();
-    let is_private = file.is_file() && is_own && file.mode() & 0o077 == 0;
-    is_private.then(|| fs::read_to_string(path).ok())?
+    if !file.is_file() || !is_own || file.mode() & 0o077 != 0 {
+        let what = "other users can read or change it, or it is another user's; help: chmod 600";
+        return Err(io::Error::new(io::ErrorKind::PermissionDenied, what));
+    }
+    String::from_utf8(fs::read(path)?).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let what =
+            format!("expected UTF-8, found another byte at offset {at}; help: save it as UTF-8");
+        io::Error::new(io::ErrorKind::InvalidData, what)
+    })
 }
 
 fn judge(found: &Metadata) -> io::Result<()> {
@@ -54,6 +70,18 @@ mod tests {
     use rustix::fs::{CWD, FileType, Mode, mknodat};
 
     use super::*;
+
+    #[test]
+    fn private_file_of_other_bytes_says_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("http.tokens");
+        crate::replace_private(&file, b"# caf\xe9\n").unwrap();
+        let error = load_private(&file).unwrap_err().to_string();
+        assert!(error.contains("expected UTF-8") && error.contains("offset 5"), "{error}");
+        assert_eq!(read_private(&file), None);
+        fs::set_permissions(&file, Permissions::from_mode(0o640)).unwrap();
+        assert!(load_private(&file).unwrap_err().to_string().contains("chmod 600"));
+    }
 
     #[test]
     fn private_file_is_for_its_owner_alone() {

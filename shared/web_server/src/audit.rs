@@ -6,7 +6,7 @@
 use std::fmt::Debug;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
-use std::os::unix::fs::OpenOptionsExt;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
@@ -107,6 +107,9 @@ impl Log {
     }
 
     fn append(&mut self, lines: &[u8]) -> io::Result<()> {
+        if !self.is_in_place()? {
+            (self.file, self.bytes) = open(&self.path)?;
+        }
         if self.bytes > 0 && self.bytes + lines.len() as u64 > self.bytes_max {
             self.rotate()?;
         }
@@ -117,6 +120,16 @@ impl Log {
             Err(_) => self.file.set_len(self.bytes)?,
         }
         written
+    }
+
+    /// Returns whether the open file is the one of this name: someone may have removed or replaced it.
+    fn is_in_place(&self) -> io::Result<bool> {
+        let identity = |file: fs::Metadata| (file.dev(), file.ino());
+        match fs::metadata(&self.path) {
+            Ok(found) => Ok(identity(found) == identity(self.file.metadata()?)),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+            Err(error) => Err(error),
+        }
     }
 
     fn rotate(&mut self) -> io::Result<()> {
@@ -167,6 +180,21 @@ mod tests {
         fs::write(folder.path().join(FILE), "torn").unwrap();
         Log::open(folder.path(), "audit", 20).unwrap().append(b"whole\n").unwrap();
         assert_eq!(read(FILE), "torn\nwhole\n");
+    }
+
+    #[test]
+    fn file_that_was_removed_or_replaced_is_made_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(FILE);
+        let mut log = Log::open(folder.path(), "audit", 100).unwrap();
+        log.append(b"one\n").unwrap();
+        fs::remove_file(&path).unwrap();
+        log.append(b"two\n").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "two\n");
+        fs::rename(&path, folder.path().join("moved")).unwrap();
+        fs::write(&path, "torn").unwrap();
+        log.append(b"three\n").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "torn\nthree\n");
     }
 
     #[tokio::test]

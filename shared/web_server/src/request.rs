@@ -7,10 +7,19 @@ pub fn text<'a>(headers: &'a HeaderMap, name: &header::HeaderName) -> Option<&'a
     headers.get(name)?.to_str().ok()
 }
 
-/// Returns the secret that a program sends. The scheme may be in capital or small letters (RFC 9110, 11.1).
+/// Returns the secret that a program sends. The scheme may be in capital or small letters (RFC 9110, 11.1). Of several
+/// none counts: what is sent then is a wrong secret.
 pub fn bearer(headers: &HeaderMap) -> Option<&str> {
+    if authorizations(headers) > 1 {
+        return Some("");
+    }
     let (scheme, secret) = text(headers, &header::AUTHORIZATION)?.split_once(' ')?;
     scheme.eq_ignore_ascii_case("bearer").then_some(secret)
+}
+
+/// Returns how many headers `Authorization` a request has: more than one is an error of its sender (RFC 9110, 5.3).
+pub fn authorizations(headers: &HeaderMap) -> usize {
+    headers.get_all(header::AUTHORIZATION).iter().count()
 }
 
 /// Returns the origin of the page that makes the request.

@@ -1,0 +1,144 @@
+"""Setting up a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import voluptuous as vol
+from homeassistant.config_entries import ConfigEntry, ConfigFlow, ConfigFlowResult, OptionsFlow
+from homeassistant.const import CONF_TOKEN, CONF_URL
+from homeassistant.core import callback
+from homeassistant.helpers.aiohttp_client import async_get_clientsession
+from homeassistant.helpers.selector import (
+    BooleanSelector,
+    TextSelector,
+    TextSelectorConfig,
+    TextSelectorType,
+)
+from homeassistant.helpers.service_info.zeroconf import ZeroconfServiceInfo
+from yarl import URL
+
+from .api import CannotConnect, InvalidToken, Problem, Robot
+from .const import API, CONF_NAME_PEOPLE, DOMAIN
+
+_PLAIN = TextSelector(TextSelectorConfig(type=TextSelectorType.URL))
+_SECRET = TextSelector(TextSelectorConfig(type=TextSelectorType.PASSWORD))
+_TOKEN = {vol.Required(CONF_TOKEN): _SECRET}
+
+
+class WhichoneFlow(ConfigFlow, domain=DOMAIN):
+    """Asks for the robot's address and a token, and tries them."""
+
+    VERSION = 1
+
+    def __init__(self) -> None:
+        """Begin with nothing found."""
+        self._url = ""
+
+    @staticmethod
+    @callback
+    def async_get_options_flow(config_entry: ConfigEntry) -> OptionsFlow:
+        """Return the flow of the options."""
+        return WhichoneOptions()
+
+    async def async_step_user(self, user_input: dict[str, Any] | None = None) -> ConfigFlowResult:
+        """Set up a robot by its address."""
+        errors: dict[str, str] = {}
+        if user_input is not None:
+            data, info, errors = await self._try(user_input)
+            if not errors:
+                await self.async_set_unique_id(info["id"], raise_on_progress=False)
+                self._abort_if_unique_id_configured(updates=data)
+                return self.async_create_entry(title=info["name"], data=data)
+        return self._form("user", user_input, errors)
+
+    async def async_step_zeroconf(self, discovery_info: ZeroconfServiceInfo) -> ConfigFlowResult:
+        """Take the address of a robot that announces itself."""
+        found = discovery_info.properties
+        if found.get("api") != str(API) or not found.get("id"):
+            return self.async_abort(reason="api_version")
+        self._url = str(URL.build(scheme="http", host=discovery_info.host, port=discovery_info.port))
+        await self.async_set_unique_id(found["id"])
+        # A known robot keeps its address: anyone in the network can announce its name, and would get the token.
+        self._abort_if_unique_id_configured()
+        self.context["title_placeholders"] = {"name": found.get("name") or "whichone"}
+        return await self.async_step_user()
+
+    async def async_step_reconfigure(self, user_input: dict[str, Any] | None = None) -> ConfigFlowResult:
+        """Change the address or the token of a robot."""
+        entry, errors = self._get_reconfigure_entry(), {}
+        if user_input is not None:
+            data, info, errors = await self._try(user_input)
+            if not errors:
+                await self.async_set_unique_id(info["id"])
+                self._abort_if_unique_id_mismatch(reason="other_robot")
+                return self.async_update_reload_and_abort(entry, data_updates=data)
+        return self._form("reconfigure", user_input or {CONF_URL: entry.data[CONF_URL]}, errors)
+
+    async def async_step_reauth(self, entry_data: Mapping[str, Any]) -> ConfigFlowResult:
+        """Ask for another token: the robot refuses the one that is stored."""
+        return await self.async_step_reauth_confirm()
+
+    async def async_step_reauth_confirm(self, user_input: dict[str, Any] | None = None) -> ConfigFlowResult:
+        """Try the other token."""
+        entry, errors = self._get_reauth_entry(), {}
+        if user_input is not None:
+            data, info, errors = await self._try({**entry.data, **user_input})
+            if not errors:
+                await self.async_set_unique_id(info["id"])
+                self._abort_if_unique_id_mismatch(reason="other_robot")
+                return self.async_update_reload_and_abort(entry, data_updates=data)
+        names = {"name": entry.title}
+        return self.async_show_form(
+            step_id="reauth_confirm", errors=errors, data_schema=vol.Schema(_TOKEN), description_placeholders=names
+        )
+
+    def _form(self, step: str, given: dict[str, Any] | None, errors: dict[str, str]) -> ConfigFlowResult:
+        url = (given or {}).get(CONF_URL) or self._url
+        fields = {vol.Required(CONF_URL, default=url or vol.UNDEFINED): _PLAIN} | _TOKEN
+        return self.async_show_form(step_id=step, errors=errors, data_schema=vol.Schema(fields))
+
+    async def _try(self, given: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any], dict[str, str]]:
+        """Return what is to be stored, which robot it is, and what is wrong with it."""
+        url = robot_url(given[CONF_URL])
+        if url is None:
+            return {}, {}, {CONF_URL: "invalid_url"}
+        data = {CONF_URL: url, CONF_TOKEN: given[CONF_TOKEN].strip()}
+        robot = Robot(async_get_clientsession(self.hass), url, data[CONF_TOKEN])
+        try:
+            info = await robot.info()
+            if info.get("api") != API or not info.get("id"):
+                return data, info, {"base": "api_version"}
+            await robot.state()
+        except InvalidToken:
+            return data, {}, {CONF_TOKEN: "invalid_token"}
+        except Problem as problem:
+            return data, {}, {"base": "missing_right" if problem.code == "right" else "cannot_connect"}
+        except CannotConnect:
+            return data, {}, {"base": "cannot_connect"}
+        return data, info, {}
+
+
+class WhichoneOptions(OptionsFlow):
+    """Asks what the robot is told about people."""
+
+    async def async_step_init(self, user_input: dict[str, Any] | None = None) -> ConfigFlowResult:
+        """Ask for the options."""
+        if user_input is not None:
+            return self.async_create_entry(data=user_input)
+        names = self.config_entry.options.get(CONF_NAME_PEOPLE, False)
+        fields = {vol.Required(CONF_NAME_PEOPLE, default=names): BooleanSelector()}
+        return self.async_show_form(step_id="init", data_schema=vol.Schema(fields))
+
+
+def robot_url(text: str) -> str | None:
+    """Return an address without what `whichone console` adds to it, `None` if it is not one."""
+    try:
+        url = URL(text.strip())
+    except ValueError:
+        return None
+    if url.scheme not in ("http", "https") or not url.host:
+        return None
+    path = url.path.rstrip("/").removesuffix("/api/v1")
+    return str(url.with_query(None).with_fragment(None).with_path(path)).rstrip("/")

@@ -1,0 +1,106 @@
+"""The robot as a conversation agent."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from typing import Any, Literal
+
+from homeassistant.components.conversation import (
+    AssistantContent,
+    ChatLog,
+    ConversationEntity,
+    ConversationInput,
+    ConversationResult,
+)
+from homeassistant.core import HomeAssistant
+from homeassistant.helpers import intent
+from homeassistant.helpers.entity_platform import AddEntitiesCallback
+from homeassistant.util import ulid
+
+from . import issues, spoken
+from .api import InvalidToken, Problem, RobotError, Words
+from .const import CONF_NAME_PEOPLE
+from .entity import WhichoneEntity
+from .link import WhichoneEntry
+from .whose import conversation_of, name_of
+
+PARALLEL_UPDATES = 0  # a stop never waits for an earlier sentence
+
+# Dialogues whose latest line is remembered.
+_SHOWN_MAX = 64
+
+
+async def async_setup_entry(hass: HomeAssistant, entry: WhichoneEntry, add: AddEntitiesCallback) -> None:
+    """Add the agent of a robot."""
+    add([Agent(entry)])
+
+
+class Agent(WhichoneEntity, ConversationEntity):
+    """Passes sentences to the robot, and its replies back."""
+
+    _attr_name = None
+
+    def __init__(self, entry: WhichoneEntry) -> None:
+        """Begin without an open dialogue."""
+        super().__init__(entry, "robot")
+        self._entry = entry
+        self._shown: OrderedDict[str, int] = OrderedDict()
+
+    @property
+    def available(self) -> bool:
+        """Always: an agent that is unavailable ends a pipeline with an error, this one says that the robot is away."""
+        return True
+
+    @property
+    def supported_languages(self) -> list[str] | Literal["*"]:
+        """The language of the robot."""
+        return ["en"]
+
+    async def _async_handle_message(self, user_input: ConversationInput, chat_log: ChatLog) -> ConversationResult:
+        """Say it to the robot. The microphone stays open exactly if the robot waits for an answer."""
+        response = intent.IntentResponse(language=user_input.language)
+        waits = False
+        try:
+            reply = await self._say(user_input, chat_log.conversation_id)
+        except RobotError as error:
+            text = await self._on_error(error, user_input.language)
+            response.async_set_error(intent.IntentResponseErrorCode.FAILED_TO_HANDLE, text)
+        else:
+            text, waits = reply["text"], bool(reply["expects_answer"])
+            if reply["kind"] == "pending":
+                text = await spoken.sentence(self.hass, user_input.language, "no_answer")
+            response.async_set_speech(text)
+        chat_log.async_add_assistant_content_without_tools(AssistantContent(user_input.agent_id, text))
+        return ConversationResult(response, chat_log.conversation_id, continue_conversation=waits)
+
+    async def _say(self, user_input: ConversationInput, conversation_id: str) -> dict[str, Any]:
+        """Say it under a key of its own, and remember which line the person is given."""
+        user = user_input.context.user_id
+        satellite = getattr(user_input, "satellite_id", None)  # newer than Home Assistant 2025.4
+        whose = conversation_of(satellite, user_input.device_id, user, conversation_id)
+        person = await name_of(self.hass, user) if self._entry.options.get(CONF_NAME_PEOPLE) else None
+        words = Words(user_input.text, ulid.ulid_now(), whose, self._shown.get(whose), person)
+        try:
+            reply = await self.link.robot.say(words)
+        except Problem as problem:
+            if problem.code != "invalid" or words.seen is None:
+                raise
+            # The robot begins afresh: its lines are numbered anew.
+            self._shown.pop(whose, None)
+            reply = await self.link.robot.say(Words(words.text, ulid.ulid_now(), whose, None, person))
+        self.link.nudge()
+        issues.clear(self.hass, self._entry, issues.RIGHTS)
+        if reply["prompt"]:
+            self._shown[whose] = reply["prompt"]
+            self._shown.move_to_end(whose)
+            if len(self._shown) > _SHOWN_MAX:
+                self._shown.popitem(last=False)
+        return reply
+
+    async def _on_error(self, error: RobotError, language: str) -> str:
+        """Return what is said instead of a reply, and have the owner do what only the owner can do."""
+        if isinstance(error, InvalidToken):
+            self._entry.async_start_reauth(self.hass)
+        if isinstance(error, Problem) and error.code == "right":
+            issues.report(self.hass, self._entry, issues.RIGHTS, detail=error.detail)
+        return await spoken.error(self.hass, language, error)
