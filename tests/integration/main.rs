@@ -62,5 +62,6 @@ mod stop_matrix;
 mod stops;
 mod supervision;
 mod swap;
+mod trajectory;
 mod unusual_users;
 mod user_model;
