@@ -90,12 +90,16 @@ recording_python() {
         jsonschema==4.26.0 foxglove-sdk==0.30.3 websockets==17.4 prometheus-client==0.26.0
 }
 
-# For the ROS 2 node: Cyclone DDS, and ROS 2 Jazzy, whose packages are for Python 3.11 alone.
+# For the ROS 2 node and the driver `trajectory`: Cyclone DDS, and ROS 2 Jazzy, whose packages are for Python 3.11
+# alone.
 cyclone_python() { python_with cyclone cyclonedds==11.0.1; }
 rclpy_python() {
+    local python
     command -v python3.11 >/dev/null || return 1
-    PYTHON=python3.11 python_with rclpy ros-jazzy-rclpy==7.1.6 ros-jazzy-rmw-fastrtps-cpp==8.4.3 \
-        ros-jazzy-{std,sensor,visualization,diagnostic}-msgs==5.3.6 ros-jazzy-std-srvs==5.3.6
+    python=$(PYTHON=python3.11 python_with rclpy ros-jazzy-rclpy==7.1.6 ros-jazzy-rmw-fastrtps-cpp==8.4.3 \
+        ros-jazzy-{std,sensor,visualization,diagnostic}-msgs==5.3.6 ros-jazzy-std-srvs==5.3.6 \
+        ros-jazzy-trajectory-msgs==5.3.6 ros-jazzy-action-msgs==2.0.3 "${rosidl[@]}") &&
+        control_msgs "${python%/bin/python}" && printf '%s\n' "$python"
 }
 
 # For Home Assistant: its core and what its voice pipeline needs. HOME_ASSISTANT_PYTHON names an interpreter of that version.
@@ -111,6 +115,39 @@ home_assistant_python() {
     done
     return 1
 }
+
+# What makes Python and C++ of definitions of messages.
+rosidl=(ros-jazzy-rosidl-default-{generators,runtime}==1.6.0 ros-jazzy-rosidl-core-{generators,runtime}==0.2.0
+    ros-jazzy-rosidl-generator-py==0.22.2 ros-jazzy-rosidl-{pycommon,cli}==4.6.6 ros-jazzy-rpyutils==0.4.2
+    ros-jazzy-python-cmake-module==0.11.1 ros-jazzy-ament-package==0.16.4 ros-jazzy-ament-cmake-ros==0.12.0
+    ros-jazzy-ament-cmake{,-include-directories,-gtest,-gmock,-pytest,-vendor-package}==2.5.4
+    cmake==4.4.5 ninja==1.13.2 catkin_pkg==1.1.1 empy==3.3.4 'setuptools<80')
+
+# control_msgs VENV: builds the actions of ros2_control's controllers (tests/ros2/control_msgs), which are in no package
+# of PyPI, into an environment with ROS 2: a minute or more of one core, once. Needs a C++ compiler.
+control_msgs() (
+    venv=$1 source="$root/tests/ros2/control_msgs"
+    sum=$(cd "$source" && find . -type f -print0 | sort -z | xargs -0 cat | sha256sum)
+    [[ "$(cat "$venv/control_msgs" 2>/dev/null)" != "$sum" ]] || exit 0
+    say "building control_msgs into ${venv#"$root"/}"
+    include=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_paths()["include"])')
+    numpy=$("$venv/bin/python" -c 'import numpy; print(numpy.get_include())')
+    # The packages name the Python that they were built with.
+    built=/opt/python/cp311-cp311
+    { grep -rl "$built" "$venv/share" || true; } | xargs -r sed -i \
+        -e "s#$built/lib/python3.11/site-packages/numpy/_core/include#$numpy#g" \
+        -e "s#$built/include/python3.11#$include#g"
+    export AMENT_PREFIX_PATH=$venv CMAKE_PREFIX_PATH=$venv LD_LIBRARY_PATH=$venv/lib PATH=$venv/bin:$PATH
+    {
+        cmake -S "$source" -B "$venv/build/control_msgs" -G Ninja -DCMAKE_BUILD_TYPE=MinSizeRel -DBUILD_TESTING=OFF \
+            -DPython3_EXECUTABLE="$venv/bin/python" -DCMAKE_INSTALL_PREFIX="$venv" &&
+            cmake --build "$venv/build/control_msgs" --target install
+    } >"$venv/control_msgs.log" 2>&1 || {
+        say "control_msgs cannot be built: $venv/control_msgs.log"
+        exit 1
+    }
+    printf '%s\n' "$sum" >"$venv/control_msgs"
+)
 
 # Everything that is shipped, in one set: with the same features in every step each crate is built once. Never add
 # `-p`: the features of a single package are other ones, with which cargo builds most crates again.

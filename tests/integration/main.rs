@@ -65,5 +65,6 @@ mod stop_matrix;
 mod stops;
 mod supervision;
 mod swap;
+mod trajectory;
 mod unusual_users;
 mod user_model;

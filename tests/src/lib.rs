@@ -3,6 +3,7 @@
 
 mod command;
 pub mod console;
+pub mod controllers;
 pub mod fuzz;
 pub mod gateway;
 mod group;

@@ -72,13 +72,20 @@ impl Implementation {
         self.peer(own_domain())
     }
 
+    /// Returns the path of its Python interpreter.
+    pub(crate) fn interpreter(self) -> String {
+        let name = self.python;
+        std::env::var(name)
+            .unwrap_or_else(|_| panic!("{name} is not set; help: run `scripts/ros2 test`"))
+    }
+
     /// Starts a program in a domain.
     fn peer(self, domain: u16) -> Ros2Peer {
-        let Self { python, script, .. } = self;
-        let python = std::env::var(python)
-            .unwrap_or_else(|_| panic!("{python} is not set; help: run `scripts/ros2 test`"));
-        let mut command = Command::new(python);
-        command.args([script, &domain.to_string()]).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut command = Command::new(self.interpreter());
+        command
+            .args([self.script, &domain.to_string()])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped());
         let mut process = command.spawn().expect("the interpreter starts");
         let to = process.stdin.take().expect("a pipe");
         let from = BufReader::new(process.stdout.take().expect("a pipe"));

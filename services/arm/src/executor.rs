@@ -209,6 +209,7 @@ fn follow(
     let State { q, qd, qdd } = motion.state(*t_s);
     let command = Command { limb, q, qd, qdd, t_s: *t_s, fingers };
     driver.command(&command, passed_s);
+    driver.look_ahead(limb, motion, *t_s);
     if seconds < remaining_s {
         return Ok(None);
     }

@@ -187,12 +187,20 @@ impl ArmNode {
         self.state.obeyed = given.min(now);
         self.state.stopped = order == MotionOrder::Stop;
         match order {
-            MotionOrder::Stop => self.executor.halt(),
+            MotionOrder::Stop => self.stop_motion(),
             MotionOrder::Resume => self.acknowledge_interruption(),
         }
         tracing::info!(?order, "motion order applied");
         self.urgent = true;
         self.record(Cause::Motion(order), now, fx);
+    }
+
+    fn stop_motion(&mut self) {
+        if self.driver.stop() {
+            self.executor.stand();
+        } else {
+            self.executor.halt();
+        }
     }
 
     /// Clears an interruption that a person has handled; what the gripper held was taken out.

@@ -139,6 +139,8 @@ impl Robot {
                 let event = self.fingers[limb].command(command, &gripper);
                 event.into_iter().for_each(|event| self.react(limb, event));
             }
+            // Of robots with messages of their own.
+            Order::Own(_) => {}
         }
     }
 

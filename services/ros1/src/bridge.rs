@@ -1,12 +1,12 @@
 //! The bridge as a service of the group.
 
 use crate::address::Address;
-use crate::clock::StampClock;
 use crate::node::{Node, Topics};
 use crate::publication::Publication;
 use crate::settings::Ros1;
 use crate::subscription::{Sink, Subscription};
 use crate::{convert, detectors, guarded, types as ros};
+use ::ros::clock::StampClock;
 use ::ros::wire::{Message, RosTime, Unreadable};
 use config::Settings;
 use messages::robot::{Order, Report};
@@ -191,6 +191,8 @@ impl ToRobot {
             Order::Gripper(limb, command) => {
                 self.fingers[*limb].publish(&convert::gripper_command(command)?, made);
             }
+            // Of robots with messages of their own.
+            Order::Own(_) => {}
         }
         Ok(())
     }

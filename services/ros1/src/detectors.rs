@@ -1,10 +1,10 @@
 //! Messages of detectors as sightings for the group.
 
-use crate::clock::StampClock;
 use crate::guarded;
 use crate::settings::Ros1Objects;
 use crate::subscription::{Sink, Subscription};
 use crate::types as ros;
+use ::ros::clock::StampClock;
 use ::ros::detectors::Labels;
 use ::ros::wire::{Message, RosTime};
 use config::Settings;

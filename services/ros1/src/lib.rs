@@ -6,7 +6,6 @@
 
 pub mod address;
 pub mod bridge;
-pub mod clock;
 pub mod connection;
 pub mod convert;
 pub mod detectors;

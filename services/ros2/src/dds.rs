@@ -1,19 +1,17 @@
 //! The node's publishers, subscriptions and services.
 
-use crate::settings::{Network, Ros2, Ros2Objects};
+use crate::settings::{Ros2, Ros2Objects};
 use crate::types::{
     AlvarMarkers, Detection3DArray, DiagnosticArray, Empty, JointState, MarkerArray, Text,
     TfMessage,
 };
 use opening::{Opening, latched, reliable};
-use ros2_client::{Context, Node, NodeName, NodeOptions};
-use rustdds::DomainParticipantBuilder;
+use ros2_client::Node;
 use rustdds::mio1::{Events, Poll};
-use std::net::Ipv4Addr;
 use std::os::fd::{AsRawFd, BorrowedFd};
 use std::time::Duration;
 
-mod opening;
+pub(crate) mod opening;
 mod ports;
 
 pub(crate) use ports::{Call, Inlet, Outlet, Trigger};
@@ -39,29 +37,20 @@ pub(crate) struct Dds {
     pub(crate) stop: Trigger,
     pub(crate) resume: Trigger,
     pub(crate) cancel: Trigger,
+    pub(crate) arrivals: Arrivals,
+    _node: Node,
+}
+
+/// What wakes a node: something has arrived.
+pub(crate) struct Arrivals {
     poll: Poll,
     events: Events,
-    _node: Node,
 }
 
 impl Dds {
     /// Joins the domain.
     pub(crate) fn open(settings: &Ros2) -> Result<Self, Error> {
-        let mut participant = DomainParticipantBuilder::new(settings.domain_id);
-        participant = match settings.network {
-            Network::Loopback => participant.with_only_networks([Ipv4Addr::LOCALHOST]),
-            Network::Interface(address) => participant.with_only_networks([address]),
-            Network::All => participant,
-        };
-        let participant = participant.build().map_err(|error| format!("DDS: {error:?}"))?;
-        let context = Context::from_domain_participant(participant);
-        let context = context.map_err(|error| format!("DDS: {error:?}"))?;
-        let name = NodeName::new(&settings.namespace, &settings.node);
-        let name = name.map_err(|error| format!("node name: {error:?}"))?;
-        let node = context.new_node(name, NodeOptions::new().enable_rosout(false));
-        let node = node.map_err(|error| format!("node: {error:?}"))?;
-        let poll = Poll::new().map_err(|error| format!("poll: {error}"))?;
-        let mut opening = Opening { node, poll, settings };
+        let mut opening = Opening::join(settings, &settings.node)?;
         let o = &mut opening;
         let text = ("std_msgs", "String");
         let namespace = settings.namespace.as_str();
@@ -93,10 +82,16 @@ impl Dds {
             tf: o.outlet(("/", "tf"), transforms, &reliable(100))?,
             state: o.own_outlet("state", text, &latched())?,
             diagnostics: o.outlet(("/", "diagnostics"), diagnostics, &reliable(10))?,
-            poll: opening.poll,
-            events: Events::with_capacity(32),
+            arrivals: Arrivals::new(opening.poll),
             _node: opening.node,
         })
+    }
+}
+
+impl Arrivals {
+    /// Returns the arrivals of everything that is registered there.
+    pub(crate) fn new(poll: Poll) -> Self {
+        Self { poll, events: Events::with_capacity(32) }
     }
 
     /// Readable while something may wait to be taken.

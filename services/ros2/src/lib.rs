@@ -12,6 +12,7 @@ pub mod joints;
 pub mod objects;
 pub mod orders;
 pub mod settings;
+pub mod trajectory;
 pub mod types;
 
 #[cfg(feature = "dds")]
@@ -19,7 +20,7 @@ mod dds;
 #[cfg(feature = "dds")]
 pub mod node;
 #[cfg(feature = "dds")]
-mod threads;
+mod process;
 
 use config::{Part, PartService, Registered};
 

@@ -4,13 +4,13 @@ use crate::dds::Dds;
 use crate::detectors::Detectors;
 use crate::diagnostics::Counters;
 use crate::joints::JointNames;
+use crate::process::{ThreadWatch, limit_memory};
 use crate::settings::{NAME, Ros2};
 use crate::types::{Text, Triggered};
-use crate::{hear, orders, threads};
+use crate::{hear, orders};
 use config::Settings;
 use messages::{Injection, JointStates, Service, Sighting, WorldView, topics};
 use motion::MotionCall;
-use rustix::process::{Resource, Rlimit, setrlimit};
 use scene::Scene;
 use service::bus::{EncodedReader, EncodedWriter, Reader, WakeListener};
 use service::client::Client;
@@ -41,16 +41,9 @@ pub fn run() -> ExitCode {
     service_loop::program(NAME, about, serve)
 }
 
-/// Most memory of the process, bytes. The DDS implementation believes what a peer says of the length of its message, and
-/// of the number of peers; beyond this the process ends, and the supervisor starts it again.
-const MEMORY_MAX: u64 = 512 << 20;
-
 fn serve(arguments: Vec<String>) -> Result<(), Failure> {
     let environment = Environment::read(arguments)?;
-    let most = Rlimit { current: Some(MEMORY_MAX), maximum: Some(MEMORY_MAX) };
-    setrlimit(Resource::Data, most).map_err(|error| {
-        Failure::new(Exit::NotReached, format!("limit of the process's memory: {error}"))
-    })?;
+    limit_memory()?;
     // A signal would end the threads of the DDS implementation: the kernel gives those that are handled, which
     // end the process anyway, to the main thread.
     let lifecycle = Lifecycle::begin(&environment.paths)?;
@@ -89,8 +82,7 @@ struct Node {
     /// Refused utterances that a warning has reported.
     reported: u64,
     began: Time,
-    threads: usize,
-    counted: Time,
+    threads: ThreadWatch,
     shown: Time,
     state: String,
     objects: Option<(WorldView, Vec<f64>)>,
@@ -131,9 +123,8 @@ impl Node {
             .publish(Text { data: files.urdf.text.clone() }, &mut counters.dropped);
         let (sender, statuses) = worker_channel::channel().map_err(failed("inbox"))?;
         health::watch(paths, sender).map_err(failed("supervisor's thread"))?;
-        let threads = threads::running();
         let Ros2 { domain_id, namespace, node, network, .. } = &own;
-        tracing::info!(domain_id, namespace, node, ?network, threads, "joined the DDS domain");
+        tracing::info!(domain_id, namespace, node, ?network, "joined the DDS domain");
         let began = clock::now();
         Ok(Self {
             dds,
@@ -154,8 +145,7 @@ impl Node {
             counters,
             reported: 0,
             began,
-            threads,
-            counted: began,
+            threads: ThreadWatch::begin(began),
             shown: Time(0),
             state: String::new(),
             objects: None,
@@ -172,7 +162,8 @@ impl Cycle for Node {
 
     fn wake(&self, now: Time) -> (Sources<'_>, Time) {
         let longest = if self.has_more { Span::from_ms(0) } else { LOOK_EVERY };
-        let sources = [Some(self.dds.fd()), Some(self.stop_client.fd()), Some(self.statuses.fd())];
+        let sources =
+            [Some(self.dds.arrivals.fd()), Some(self.stop_client.fd()), Some(self.statuses.fd())];
         (sources, now + longest)
     }
 
@@ -197,7 +188,7 @@ impl Cycle for Node {
         let now = clock::now();
         self.diagnose();
         self.show(now);
-        self.count_threads(now)?;
+        self.threads.count(now)?;
         Ok(ControlFlow::Continue(()))
     }
 

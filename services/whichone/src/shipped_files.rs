@@ -24,6 +24,7 @@ pub(crate) const FILES: Files = &[
     file!("profiles/mujoco.toml"),
     file!("profiles/paper.toml"),
     file!("profiles/ros2.toml"),
+    file!("profiles/trajectory.toml"),
     file!("profiles/ur5e.toml"),
     file!("robots/baxter.srdf"),
     file!("robots/baxter.urdf"),

@@ -1,5 +1,6 @@
 //! The trait of a driver.
 
+use manipulation::{Limb, Trajectory};
 use messages::MotionInhibit;
 use messages::robot::{Order, Report};
 use vocabulary::time::{Span, Time};
@@ -20,6 +21,16 @@ pub trait ArmDriver {
     /// moves: a limb without a command stays where it is. `seconds` have passed since the
     /// limb's last command, or since its motion began.
     fn command(&mut self, command: &Command, seconds: f64);
+
+    /// Shows the motion of a limb of which the latest command is a part, `t_s` seconds from its start: a robot that
+    /// follows trajectories by itself is given what comes next.
+    fn look_ahead(&mut self, _limb: Limb, _motion: &Trajectory, _t_s: f64) {}
+
+    /// Handles an order to the motion stop. Returns whether the driver brings the robot to rest by itself: without it
+    /// the arm commands a halt on the planned path.
+    fn stop(&mut self) -> bool {
+        false
+    }
 
     /// Handles a report of the robot.
     fn on_report(&mut self, _report: &Report<'_>, _now: Time) {}

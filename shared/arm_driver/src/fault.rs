@@ -41,6 +41,14 @@ pub enum Fault {
         /// Keys of the bound and of the time allowed in the configuration.
         settings: &'static str,
     },
+    /// The robot's own controller did not carry out a motion.
+    #[error("the controller of the {limb} arm {why}")]
+    Controller {
+        /// The limb.
+        limb: Limb,
+        /// Its answer, and a likely cause.
+        why: &'static str,
+    },
     /// The fingers did not complete their command.
     #[error("the {limb} gripper did not complete its command within {late_s:.1} s")]
     Fingers {

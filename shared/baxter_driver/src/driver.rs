@@ -265,7 +265,7 @@ impl ArmDriver for BaxterDriver {
                 self.grippers[*limb].on_properties(properties);
             }
             // The chain of the joints says the same.
-            Report::Endpoint(..) => {}
+            Report::Endpoint(..) | Report::Own(_) => {}
         }
     }
 

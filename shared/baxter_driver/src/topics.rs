@@ -55,6 +55,7 @@ impl Port for RobotTopics {
             Order::FeedForward(limb, point) => self.feed_forward[*limb].send(point),
             Order::SpeedRatio(limb, ratio) => self.ratios[*limb].send(ratio),
             Order::Gripper(limb, command) => self.fingers[*limb].send(command),
+            Order::Own(_) => Ok(()),
         }
     }
 }

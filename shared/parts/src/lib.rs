@@ -17,9 +17,12 @@ macro_rules! parts {
     };
 }
 
+use ros2::trajectory;
+
 parts! {
     programs:
         ros2
+        trajectory
         link
         recorder
         baxter
@@ -44,7 +47,7 @@ pub fn features() -> Vec<&'static str> {
 pub fn how_to_get(part: &str, feature: &str) -> String {
     format!(
         "whichone-{part}: no such program, and this `whichone` was built without it; \
-         help: `cargo build --release -p {part} --features {part}/{feature}` in a checkout, or \
+         help: `cargo build --release --features {feature}` in a checkout, or \
          `cargo install --path services/whichone --features {feature}`"
     )
 }

@@ -1,34 +1,66 @@
 //! Opening of publishers, subscriptions and services.
 
 use super::{Error, Inlet, Outlet, Trigger};
-use crate::settings::{self, Ros2};
+use crate::settings::{self, Network, Ros2};
 use ros2_client::qos::{Durability, History, WhenFull};
-use ros2_client::{MessageTypeName, Name, Node, QosProfile, ServiceMapping, ServiceTypeName};
+use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions, QosProfile};
+use ros2_client::{ServiceMapping, ServiceTypeName};
+use rustdds::DomainParticipantBuilder;
 use rustdds::mio1::{Interest, Poll, Token, event::Source};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt::Debug;
+use std::net::Ipv4Addr;
 
-pub(super) fn reliable(depth: usize) -> QosProfile {
+pub(crate) fn reliable(depth: usize) -> QosProfile {
     let fail = QosProfile::publisher_default().reliability_reliable(WhenFull::Fail);
     fail.history(History::KeepLast { depth })
 }
 
-pub(super) fn latched() -> QosProfile {
+pub(crate) fn latched() -> QosProfile {
     reliable(1).durability(Durability::TransientLocal)
 }
 
-/// Of detectors. Those that publish reliably match it, too.
-fn best_effort(depth: usize) -> QosProfile {
+/// Of detectors and joint states. Those that publish reliably match it, too.
+pub(crate) fn best_effort(depth: usize) -> QosProfile {
     let qos = QosProfile::subscription_default().reliability_best_effort();
     qos.history(History::KeepLast { depth })
 }
 
 /// Opens what the node consists of.
-pub(super) struct Opening<'a> {
-    pub(super) node: Node,
-    pub(super) poll: Poll,
-    pub(super) settings: &'a Ros2,
+pub(crate) struct Opening<'a> {
+    pub(crate) node: Node,
+    pub(crate) poll: Poll,
+    pub(crate) settings: &'a Ros2,
+}
+
+impl<'a> Opening<'a> {
+    /// Joins the domain as a node of this name.
+    pub(crate) fn join(settings: &'a Ros2, name: &str) -> Result<Self, Error> {
+        let mut participant = DomainParticipantBuilder::new(settings.domain_id);
+        participant = match settings.network {
+            Network::Loopback => participant.with_only_networks([Ipv4Addr::LOCALHOST]),
+            Network::Interface(address) => participant.with_only_networks([address]),
+            Network::All => participant,
+        };
+        let participant = participant.build().map_err(|error| format!("DDS: {error:?}"))?;
+        let context = Context::from_domain_participant(participant);
+        let context = context.map_err(|error| format!("DDS: {error:?}"))?;
+        let name = NodeName::new(&settings.namespace, name);
+        let name = name.map_err(|error| format!("node name: {error:?}"))?;
+        let node = context.new_node(name, NodeOptions::new().enable_rosout(false));
+        let node = node.map_err(|error| format!("node: {error:?}"))?;
+        let poll = Poll::new().map_err(|error| format!("poll: {error}"))?;
+        Ok(Self { node, poll, settings })
+    }
+
+    /// Returns how services, and those of actions, are mapped to topics.
+    pub(crate) fn service_mapping(&self) -> ServiceMapping {
+        match self.settings.services {
+            settings::ServiceMapping::Enhanced => ServiceMapping::Enhanced,
+            settings::ServiceMapping::Cyclone => ServiceMapping::Cyclone,
+        }
+    }
 }
 
 impl Opening<'_> {
@@ -75,7 +107,7 @@ impl Opening<'_> {
         topic.map(|topic| self.inlet(topic, kind, best_effort(depth))).transpose()
     }
 
-    fn inlet<M: DeserializeOwned + 'static>(
+    pub(crate) fn inlet<M: DeserializeOwned + 'static>(
         &mut self,
         name: &str,
         (package, kind): (&str, &str),
@@ -95,10 +127,7 @@ impl Opening<'_> {
         let (namespace, name) = self.settings.own_name(name);
         let failed = |error: &dyn Debug| format!("service {name}: {error:?}");
         let full = Name::new(&namespace, &name).map_err(|e| failed(&e))?;
-        let mapping = match self.settings.services {
-            settings::ServiceMapping::Enhanced => ServiceMapping::Enhanced,
-            settings::ServiceMapping::Cyclone => ServiceMapping::Cyclone,
-        };
+        let mapping = self.service_mapping();
         let kind = ServiceTypeName::new("std_srvs", "Trigger");
         let server = self.node.create_server(mapping, &full, &kind, reliable(16), reliable(16));
         let mut server = server.map_err(|e| failed(&e))?;

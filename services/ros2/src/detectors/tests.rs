@@ -122,14 +122,14 @@ fn of_all_transforms_those_of_markers_are_taken() {
 }
 
 #[cfg(feature = "dds")]
-mod bytes {
+pub(crate) mod bytes {
     use super::*;
     use rustdds::RepresentationIdentifier;
     use rustdds::serialization::deserialize_from_cdr_with_rep_id;
     use serde::de::DeserializeOwned;
 
     /// Reads a message that Cyclone DDS has written, behind the four bytes of its encoding.
-    fn read<M: DeserializeOwned>(hex: &str) -> M {
+    pub(crate) fn read<M: DeserializeOwned>(hex: &str) -> M {
         let digits: Vec<char> = hex.chars().filter(char::is_ascii_hexdigit).collect();
         let byte = |pair: &[char]| u8::from_str_radix(&pair.iter().collect::<String>(), 16);
         let bytes: Vec<u8> = digits.chunks(2).map(|pair| byte(pair).unwrap()).collect();

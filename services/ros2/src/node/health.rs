@@ -3,17 +3,13 @@
 use super::Node;
 use crate::clock::SystemClock;
 use crate::diagnostics::statuses;
-use crate::threads;
 use crate::types::{DiagnosticArray, Header};
 use service::control::{Watched, watch_supervisor};
-use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::worker_channel::DeviceSender;
-use service::{Span, Time, clock};
+use service::{Span, clock};
 use std::time::Duration;
 
-/// Interval at which the threads of the DDS implementation are counted.
-const COUNT_EVERY: Span = Span::from_ms(250);
 /// Interval of the diagnostics.
 const DIAGNOSE_EVERY: Span = Span::from_ms(1_000);
 
@@ -39,25 +35,6 @@ impl Node {
         self.dds
             .diagnostics
             .publish(DiagnosticArray { header, status }, &mut self.counters.dropped);
-    }
-
-    /// Returns an error if a thread of the DDS implementation has ended: only a new process helps.
-    pub(super) fn count_threads(&mut self, now: Time) -> Result<(), Failure> {
-        if now < self.counted + COUNT_EVERY {
-            return Ok(());
-        }
-        self.counted = now;
-        let running = threads::running();
-        self.threads = self.threads.max(running);
-        if running == self.threads {
-            return Ok(());
-        }
-        let what = format!(
-            "{running} of {} DDS threads run: one has ended, as after a stop of the process or a \
-             suspension of the machine; restarting",
-            self.threads
-        );
-        Err(Failure::new(Exit::NotReached, what))
     }
 }
 

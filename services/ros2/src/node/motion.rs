@@ -14,7 +14,7 @@ impl Node {
     /// Takes orders to the motion stop and gives them to the arm.
     pub(super) fn on_orders(&mut self) {
         let Self { dds, counters, orders, .. } = self;
-        dds.clear();
+        dds.arrivals.clear();
         let mut is_stopped = false;
         // A flood of stops is one stop.
         let more = dds.stop_topic.drain(&mut counters.unreadable, |_, _| is_stopped = true);

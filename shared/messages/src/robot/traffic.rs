@@ -21,6 +21,8 @@ pub enum Report<'a> {
     Gripper(usize, MessageRef<'a, EndEffectorState>),
     /// `end_effector/<limb>_gripper/properties`.
     Properties(usize, MessageRef<'a, EndEffectorProperties>),
+    /// A report of a robot with messages of its own, which its driver encodes and reads.
+    Own(Vec<u8>),
 }
 
 /// An order to a robot.
@@ -34,4 +36,6 @@ pub enum Order<'a> {
     SpeedRatio(usize, SpeedRatio),
     /// `end_effector/<limb>_gripper/command`.
     Gripper(usize, MessageRef<'a, EndEffectorCommand>),
+    /// An order to a robot with messages of its own.
+    Own(Vec<u8>),
 }

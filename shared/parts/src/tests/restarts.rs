@@ -7,9 +7,12 @@ use messages::Service;
 
 use super::{Folder, sections};
 
+/// Those that a group can do without.
+const OTHERS: [&str; 4] = ["ros2", "trajectory", "link", "baxter"];
+
 /// Names of the services that ship.
 fn services() -> Vec<&'static str> {
-    Service::BUILT_IN.map(Service::name).into_iter().chain(["ros2", "link", "baxter"]).collect()
+    Service::BUILT_IN.map(Service::name).into_iter().chain(OTHERS).collect()
 }
 
 /// The services that a reload restarts between two configurations.
@@ -32,7 +35,12 @@ fn values_restart_the_services_that_read_them() {
         ("arm.simulated.loss", "0.1", &["arm", "console", "recorder", "ros2", "link", "baxter"]),
         ("arm.ros1.master", "lab", &["arm", "console", "recorder", "ros2", "link", "baxter"]),
         ("console.viewers_max", "9", &["console", "recorder", "link"]),
-        ("ros2.domain_id", "7", &["recorder", "ros2", "link"]),
+        ("ros2.domain_id", "7", &["recorder", "ros2", "trajectory", "link"]),
+        (
+            "arm.trajectory.stale_s",
+            "0.2",
+            &["arm", "console", "recorder", "ros2", "trajectory", "link", "baxter"],
+        ),
         ("link.keys", "/keys", &["recorder", "link"]),
         ("group.recorder.sound", "true", &["console", "recorder", "link"]),
         ("group.recorder.mib_max", "64", &["recorder", "link"]),

@@ -1,6 +1,6 @@
 //! Stamps of the robot's clock as times of this machine's monotonic clock.
 
-use service::{Span, Time};
+use vocabulary::time::{Span, Time};
 
 /// Fastest that the clocks are assumed to drift apart, as a share: more than crystals and NTP together.
 const DRIFT_MAX: f64 = 1e-3;
@@ -35,6 +35,11 @@ impl StampClock {
         };
         self.least = Some((least, arrival, latest));
         Time((stamp + least).clamp(0, now) as u64)
+    }
+
+    /// Returns the robot's stamp for a time of this machine, ns; `None` before the first stamp.
+    pub fn stamp(&self, at: Time) -> Option<i64> {
+        self.least.map(|(least, ..)| at.ns() as i64 - least)
     }
 }
 
