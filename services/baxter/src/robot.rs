@@ -139,6 +139,7 @@ impl Robot {
                 let event = self.fingers[limb].command(command, &gripper);
                 event.into_iter().for_each(|event| self.react(limb, event));
             }
+            Order::Own(_) => {}
         }
     }
 

@@ -191,6 +191,7 @@ impl ToRobot {
             Order::Gripper(limb, command) => {
                 self.fingers[*limb].publish(&convert::gripper_command(command)?, made);
             }
+            Order::Own(_) => {}
         }
         Ok(())
     }

@@ -21,6 +21,8 @@ pub enum Report<'a> {
     Gripper(usize, MessageRef<'a, EndEffectorState>),
     /// `end_effector/<limb>_gripper/properties`.
     Properties(usize, MessageRef<'a, EndEffectorProperties>),
+    /// A report that a driver's own port makes, in an encoding that only that driver reads.
+    Own(Vec<u8>),
 }
 
 /// An order to a robot.
@@ -34,4 +36,6 @@ pub enum Order<'a> {
     SpeedRatio(usize, SpeedRatio),
     /// `end_effector/<limb>_gripper/command`.
     Gripper(usize, MessageRef<'a, EndEffectorCommand>),
+    /// An order that only the driver's own port reads.
+    Own(Vec<u8>),
 }
