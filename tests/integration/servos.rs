@@ -55,7 +55,8 @@ impl Bench {
             format!("arm.feetech.port={}", self.port),
             format!("arm.feetech.calibration={}", calibration.display()),
         ];
-        let of_scene = UR5E.into_iter().filter(|setting| !setting.starts_with("arm.robot")).map(str::to_owned);
+        let of_scene =
+            UR5E.into_iter().filter(|setting| !setting.starts_with("arm.robot")).map(str::to_owned);
         of_scene.chain(own).collect()
     }
 
@@ -109,11 +110,18 @@ impl Drop for Bench {
 
 /// Servos in the names of the joints, which turn by half a turn to either side.
 fn calibrated() -> Value {
-    let joints = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint", "wrist_2_joint"];
+    let joints = [
+        "shoulder_pan_joint",
+        "shoulder_lift_joint",
+        "elbow_joint",
+        "wrist_1_joint",
+        "wrist_2_joint",
+    ];
     let names = joints.into_iter().chain(["wrist_3_joint", "gripper"]).zip(1..);
     let of = |(name, id): (&str, u8)| {
         let range = if name == "gripper" { (2033, 3490) } else { (0, 4095) };
-        let servo = json!({ "id": id, "drive_mode": 0, "homing_offset": 0, "range_min": range.0, "range_max": range.1 });
+        let servo = json!({ "id": id, "drive_mode": 0, "homing_offset": 0, "range_min": range.0,
+                            "range_max": range.1 });
         (name.to_owned(), servo)
     };
     Value::Object(names.map(of).collect())
@@ -176,10 +184,13 @@ fn hot_servo_stops_the_others_names_its_joint_and_latches() {
     let log = group.wait_for_log("arm", "elbow_joint: overheated");
     assert!(log.contains("75 °C"), "{log}");
     let state = bench.state();
-    let holding = state["servos"].as_array().unwrap().iter().filter(|servo| servo["torque"] == 1).count();
+    let holding =
+        state["servos"].as_array().unwrap().iter().filter(|servo| servo["torque"] == 1).count();
     assert_eq!(holding, 6, "{state}");
     bench.tell("heat 3 40");
-    wait_for("the elbow holds again", 10.0, || Some(group.arm()).filter(|arm| arm["hindrance"] == "none"));
+    wait_for("the elbow holds again", 10.0, || {
+        Some(group.arm()).filter(|arm| arm["hindrance"] == "none")
+    });
     assert_eq!(group.arm()["stopped"], true, "until somebody resumes");
     group.down();
 }
@@ -194,7 +205,11 @@ fn port_has_one_user_and_missing_things_are_named() {
     };
     let config = bench.config().display().to_string();
     let call = |group: &Group, words: &[&str], set: &[String]| {
-        let words = words.iter().copied().chain(["--config", &config]).chain(set.iter().map(String::as_str));
+        let words = words
+            .iter()
+            .copied()
+            .chain(["--config", &config])
+            .chain(set.iter().map(String::as_str));
         group.call(&words.collect::<Vec<_>>())
     };
     let right = call(&group, &["check"], &set(&settings));
@@ -206,29 +221,54 @@ fn port_has_one_user_and_missing_things_are_named() {
     });
     let wrong = call(&group, &["check"], &set(&wrong.collect::<Vec<_>>()));
     assert_eq!(wrong.code, Some(78), "{wrong:?}");
-    for part in ["arm.feetech.port: /dev/no-such-port: no such device; help:", "arm.jsonx", "2 problems"] {
+    for part in
+        ["arm.feetech.port: /dev/no-such-port: no such device; help:", "arm.jsonx", "2 problems"]
+    {
         assert!(wrong.stderr.contains(part), "{part}: {wrong:?}");
     }
     bench.tell("byte 3 11 0");
     let servos = call(&group, &["robot", "servos"], &set(&settings));
     assert_eq!(servos.code, Some(1), "{servos:?}");
     assert!(servos.stdout.contains("elbow_joint") && servos.stdout.contains("7.4 V"), "{servos:?}");
-    assert!(servos.stderr.contains("servo 3 (elbow_joint) has range_max 3840, the file 4095"), "{servos:?}");
+    assert!(
+        servos.stderr.contains("servo 3 (elbow_joint) has range_max 3840, the file 4095"),
+        "{servos:?}"
+    );
     let written = call(&group, &["robot", "servos", "--write-calibration"], &set(&settings));
     assert_eq!(written.code, Some(0), "{written:?}");
     bench.tell("dip");
     let state = bench.state();
-    assert_eq!((&state["servos"][2]["range"], &state["servos"][2]["lock"]), (&json!([0, 4095]), &json!(1)), "{state}");
+    assert_eq!(
+        (&state["servos"][2]["range"], &state["servos"][2]["lock"]),
+        (&json!([0, 4095]), &json!(1)),
+        "{state}"
+    );
     let started: Vec<&str> = settings.iter().map(String::as_str).collect();
     assert_eq!(group.start(&started).code, Some(0), "{}", group.logs());
-    wait_for("the servos hold", 10.0, || Some(group.arm()).filter(|arm| arm["hindrance"] == "none"));
+    wait_for("the servos hold", 10.0, || {
+        Some(group.arm()).filter(|arm| arm["hindrance"] == "none")
+    });
     let second = call(&group, &["robot", "servos"], &set(&settings));
-    assert!(second.code == Some(78) && second.stderr.contains("another program uses it"), "{second:?}");
+    assert!(
+        second.code == Some(78) && second.stderr.contains("another program uses it"),
+        "{second:?}"
+    );
     group.down();
-    let holding = call(&Group::with_config(bench.config()), &["robot", "servos", "--write-calibration"], &set(&settings));
-    assert!(holding.code == Some(1) && holding.stderr.contains("expected servos without torque"), "{holding:?}");
+    let holding = call(
+        &Group::with_config(bench.config()),
+        &["robot", "servos", "--write-calibration"],
+        &set(&settings),
+    );
+    assert!(
+        holding.code == Some(1) && holding.stderr.contains("expected servos without torque"),
+        "{holding:?}"
+    );
     bench.tell("dead 2");
-    let released = call(&Group::with_config(bench.config()), &["robot", "servos", "--release"], &set(&settings));
+    let released = call(
+        &Group::with_config(bench.config()),
+        &["robot", "servos", "--release"],
+        &set(&settings),
+    );
     assert_eq!(released.code, Some(1), "{released:?}");
     let lines = released.stdout.lines().filter(|line| line.ends_with("released")).count();
     assert_eq!(lines, 6, "every other one: {released:?}");

@@ -74,11 +74,16 @@ impl<L: Line> Bus<L> {
     }
 
     /// Writes one register of many servos at once. Nothing answers: read it back.
-    pub(crate) fn write(&mut self, Register(address, size): Register, values: &[(u8, u16)]) -> Result<(), Trouble> {
-        let bytes = |value: u16| value.to_le_bytes()[..usize::from(size)].to_vec();
+    pub(crate) fn write(
+        &mut self,
+        Register(address, size): Register,
+        values: &[(u8, u64)],
+    ) -> Result<(), Trouble> {
+        let bytes = |value: u64| value.to_le_bytes()[..usize::from(size)].to_vec();
         let room = (DATA_MAX - 2) / (usize::from(size) + 1);
         for some in values.chunks(room) {
-            let values: Vec<(u8, Vec<u8>)> = some.iter().map(|(id, value)| (*id, bytes(*value))).collect();
+            let values: Vec<(u8, Vec<u8>)> =
+                some.iter().map(|(id, value)| (*id, bytes(*value))).collect();
             self.clean()?;
             self.line.send(&packet::sync_write(address, size, &values))?;
         }

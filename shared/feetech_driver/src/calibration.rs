@@ -23,24 +23,24 @@ const ID_MAX: u8 = 253;
 
 /// One servo of a calibration. `drive_mode` is not used, as lerobot does not use it for degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-pub struct Calibrated {
+pub(crate) struct Calibrated {
     /// Its number on the bus.
-    pub id: u8,
+    pub(crate) id: u8,
     /// Shown position = actual − offset, steps.
-    pub homing_offset: i32,
+    pub(crate) homing_offset: i32,
     /// Least recorded position, steps.
-    pub range_min: u16,
+    pub(crate) range_min: u16,
     /// Greatest recorded position, steps.
-    pub range_max: u16,
+    pub(crate) range_max: u16,
 }
 
 /// A calibration file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Calibration {
+pub(crate) struct Calibration {
     /// Where it was found.
-    pub file: PathBuf,
+    pub(crate) file: PathBuf,
     /// Servos by their joints' names.
-    pub servos: BTreeMap<String, Calibrated>,
+    pub(crate) servos: BTreeMap<String, Calibrated>,
 }
 
 impl Calibrated {
@@ -93,7 +93,8 @@ impl Calibrated {
             ));
         }
         let is_wide = homing_offset.abs() > OFFSET_MAX;
-        is_wide.then(|| format!("expected a `homing_offset` of -2047 to 2047, found {homing_offset}"))
+        is_wide
+            .then(|| format!("expected a `homing_offset` of -2047 to 2047, found {homing_offset}"))
     }
 }
 
@@ -102,17 +103,25 @@ impl Calibration {
     ///
     /// # Errors
     /// It cannot be read, or has a servo that cannot be.
-    pub fn read(file: &Path) -> Result<Self, Diagnostic> {
+    pub(crate) fn read(file: &Path) -> Result<Self, Diagnostic> {
         let label = file.display().to_string();
         let wrong = |key: &str, what: String| {
-            Diagnostic::new(&*label, key, what, "calibrate the arm again: `lerobot-calibrate --robot.type=so101_follower …`")
+            Diagnostic::new(
+                &*label,
+                key,
+                what,
+                "calibrate the arm again: `lerobot-calibrate --robot.type=so101_follower …`",
+            )
         };
         let text = safe_files::read_regular(file).map_err(|error| wrong("", error.to_string()))?;
         if text.len() > BYTES_MAX {
-            return Err(wrong("", format!("expected at most {BYTES_MAX} bytes, found {}", text.len())));
+            return Err(wrong(
+                "",
+                format!("expected at most {BYTES_MAX} bytes, found {}", text.len()),
+            ));
         }
-        let servos: BTreeMap<String, Calibrated> =
-            serde_json::from_str(&text).map_err(|error| wrong("", format!("not a calibration of lerobot: {error}")))?;
+        let servos: BTreeMap<String, Calibrated> = serde_json::from_str(&text)
+            .map_err(|error| wrong("", format!("not a calibration of lerobot: {error}")))?;
         let mut of_id = BTreeMap::new();
         for (joint, servo) in &servos {
             if let Some(problem) = servo.problem() {
@@ -127,8 +136,10 @@ impl Calibration {
 }
 
 /// Returns the places at which lerobot keeps the calibration of the robot with this id, the newest release first.
-pub fn places(robot_id: &str) -> Vec<PathBuf> {
-    let folder = calibrations(&|name| env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from));
+pub(crate) fn places(robot_id: &str) -> Vec<PathBuf> {
+    let folder = calibrations(&|name| {
+        env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from)
+    });
     let file = format!("{robot_id}.json");
     RELEASES.map(|release| folder.join("robots").join(release).join(&file)).into()
 }
@@ -138,7 +149,8 @@ fn calibrations(variable: &dyn Fn(&str) -> Option<PathBuf>) -> PathBuf {
     if let Some(own) = variable("HF_LEROBOT_CALIBRATION") {
         return own;
     }
-    let lerobot = variable("HF_LEROBOT_HOME").or_else(|| Some(variable("HF_HOME")?.join("lerobot")));
+    let lerobot =
+        variable("HF_LEROBOT_HOME").or_else(|| Some(variable("HF_HOME")?.join("lerobot")));
     let cache = || {
         let cache = variable("XDG_CACHE_HOME").or_else(|| Some(variable("HOME")?.join(".cache")));
         cache.unwrap_or_default().join("huggingface/lerobot")
@@ -150,7 +162,8 @@ fn calibrations(variable: &dyn Fn(&str) -> Option<PathBuf>) -> PathBuf {
 mod tests {
     use super::*;
 
-    const PAN: Calibrated = Calibrated { id: 1, homing_offset: -57, range_min: 751, range_max: 3471 };
+    const PAN: Calibrated =
+        Calibrated { id: 1, homing_offset: -57, range_min: 751, range_max: 3471 };
 
     fn read(text: &str) -> Result<Calibration, String> {
         let folder = tempfile::tempdir().unwrap();
@@ -172,7 +185,7 @@ mod tests {
 
     #[test]
     fn calibration_of_lerobot_is_read_and_a_wrong_one_names_the_joint() {
-        let one = r#"{"shoulder_pan": {"id": 1, "drive_mode": 0, "homing_offset": -57, "range_min": 751, "range_max": 3471}"#;
+        let one = r#"{"shoulder_pan":{"id": 1,"drive_mode":0,"homing_offset":-57,"range_min":751,"range_max":3471}"#;
         assert_eq!(read(&format!("{one}}}")).unwrap().servos["shoulder_pan"], PAN);
         let two = one.replacen('{', "", 1).replace("shoulder_pan", "elbow_flex");
         for (text, word) in [
@@ -191,16 +204,29 @@ mod tests {
     #[test]
     fn calibration_is_looked_for_where_each_release_keeps_it() {
         let with = |set: &[(&str, &str)]| {
-            let set: Vec<(String, PathBuf)> = set.iter().map(|(k, v)| ((*k).to_owned(), v.into())).collect();
-            calibrations(&move |name| set.iter().find(|(key, _)| key == name).map(|(_, value)| value.clone()))
+            let set: Vec<(String, PathBuf)> =
+                set.iter().map(|(k, v)| ((*k).to_owned(), v.into())).collect();
+            calibrations(&move |name| {
+                set.iter().find(|(key, _)| key == name).map(|(_, value)| value.clone())
+            })
         };
         let home = ("HOME", "/h");
         assert_eq!(with(&[home]), Path::new("/h/.cache/huggingface/lerobot/calibration"));
         assert_eq!(with(&[home, ("HF_HOME", "/f")]), Path::new("/f/lerobot/calibration"));
-        assert_eq!(with(&[home, ("HF_LEROBOT_HOME", "/l"), ("HF_HOME", "/f")]), Path::new("/l/calibration"));
-        assert_eq!(with(&[("HF_LEROBOT_CALIBRATION", "/c"), ("HF_LEROBOT_HOME", "/l")]), Path::new("/c"));
+        assert_eq!(
+            with(&[home, ("HF_LEROBOT_HOME", "/l"), ("HF_HOME", "/f")]),
+            Path::new("/l/calibration")
+        );
+        assert_eq!(
+            with(&[("HF_LEROBOT_CALIBRATION", "/c"), ("HF_LEROBOT_HOME", "/l")]),
+            Path::new("/c")
+        );
         let places = places("mine");
-        let ends = ["so_follower/mine.json", "so101_follower/mine.json", "so100_follower/mine.json"];
-        assert!(places.iter().zip(ends).all(|(place, end)| place.ends_with(format!("robots/{end}"))), "{places:?}");
+        let ends =
+            ["so_follower/mine.json", "so101_follower/mine.json", "so100_follower/mine.json"];
+        assert!(
+            places.iter().zip(ends).all(|(place, end)| place.ends_with(format!("robots/{end}"))),
+            "{places:?}"
+        );
     }
 }

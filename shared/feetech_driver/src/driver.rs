@@ -137,7 +137,11 @@ impl FeetechDriver {
             measured.velocity[LIMB][place] = servo.speed;
             measured.effort[LIMB][place] = servo.load * STALL_NM;
         }
-        jaw.on_servo(&reading.servos[self.joints], now);
+        let jaw_servo = &reading.servos[self.joints];
+        if jaw_servo.has_let_go {
+            jaw.let_go();
+        }
+        jaw.on_servo(jaw_servo, now);
         if let Some(width_m) = jaw.width_m() {
             measured.posture.width_m[LIMB] = width_m;
         }
@@ -149,7 +153,9 @@ impl FeetechDriver {
 
     /// Notes the fault of a servo when it begins.
     fn look_for_alarm(&mut self, place: usize, servo: &Servo, now: Time) {
-        let let_go = servo.has_let_go.then_some("has let go, or has restarted: its torque is off or its settings are lost");
+        let let_go = servo
+            .has_let_go
+            .then_some("has let go, or has restarted: its torque is off or its settings are lost");
         let Some(reason) = servo.errors.reason().or(let_go) else {
             self.state.alarms[place] = None;
             return;
@@ -157,14 +163,27 @@ impl FeetechDriver {
         if servo.errors.any() {
             self.state.alarmed = Some(now);
         }
-        if self.state.alarms[place].as_deref() == Some(reason) {
+        let before = &self.state.alarms[place];
+        // A servo that was too hot has let go as well.
+        if before.as_deref() == Some(reason) || before.is_some() && !servo.errors.any() {
             return;
         }
         (self.state.alarms[place], self.state.alarmed) = (Some(reason.to_owned()), Some(now));
         let Servo { load, volts, celsius, errors, .. } = *servo;
         let joint = self.joint(place).to_owned();
-        tracing::error!(joint, reason, load, volts, celsius, errors = errors.0, "a servo protects itself");
-        self.state.fault.get_or_insert((joint, format!("{reason} ({celsius} °C, {volts:.1} V, load {:.0} %)", 100.0 * load)));
+        tracing::error!(
+            joint,
+            reason,
+            load,
+            volts,
+            celsius,
+            errors = errors.0,
+            "a servo protects itself"
+        );
+        self.state.fault.get_or_insert((
+            joint,
+            format!("{reason} ({celsius} °C, {volts:.1} V, load {:.0} %)", 100.0 * load),
+        ));
     }
 
     fn on_unusable(&mut self, reason: String) {
@@ -198,9 +217,23 @@ impl FeetechDriver {
     /// Returns whether servos that do not hold shall do so: none has a fault, and none is hot.
     fn shall_hold(&self, now: Time) -> bool {
         let Some(reading) = &self.state.reading else { return false };
-        let is_sound = |servo: &Servo| !servo.errors.any() && (servo.is_cool || !self.state.was_ready);
+        let is_sound =
+            |servo: &Servo| !servo.errors.any() && (servo.is_cool || !self.state.was_ready);
         let rested = self.state.alarmed.is_none_or(|alarmed| now.since(alarmed) >= HEALED);
         !reading.is_ready && rested && reading.servos.iter().all(is_sound)
+    }
+
+    /// A posture with the joints that do not hold where they are: their servos begin to hold there.
+    fn with_loose(&self, mut q: Joints) -> Joints {
+        let (here, State { reading, was_ready, .. }) = (self.q(), &self.state);
+        for (j, servo) in
+            reading.iter().flat_map(|reading| &reading.servos[..self.joints]).enumerate()
+        {
+            if servo.has_let_go || !was_ready {
+                q[j] = here[j];
+            }
+        }
+        q
     }
 
     /// Goals of the joints: at most a tenth of a second ahead.
@@ -219,7 +252,9 @@ impl FeetechDriver {
     }
 
     fn stands(&self) -> bool {
-        self.state.measured.velocity[LIMB].iter().all(|v| v.abs() < self.settings.tolerances.still_rad_s)
+        self.state.measured.velocity[LIMB]
+            .iter()
+            .all(|v| v.abs() < self.settings.tolerances.still_rad_s)
     }
 }
 
@@ -265,7 +300,7 @@ impl ArmDriver for FeetechDriver {
         let held = self.state.q.unwrap_or(here);
         // A person has moved an arm at rest: it stays where it was put.
         let was_pushed = !moves && self.furthest(&held).1 > self.settings.tolerances.path_rad;
-        let q = if was_pushed { here } else { held };
+        let q = if was_pushed { here } else { self.with_loose(held) };
         let is_heard = self.state.reading.is_some() && self.state.unusable.is_none();
         if self.state.sent.is_some_and(|sent| now.since(sent) < ORDER_EVERY) || !is_heard {
             return Vec::new();
@@ -315,7 +350,8 @@ impl ArmDriver for FeetechDriver {
     }
 
     fn hold_here(&mut self) {
-        (self.state.q, self.state.moves, self.state.moved, self.state.fault) = (None, false, false, None);
+        (self.state.q, self.state.moves, self.state.moved, self.state.fault) =
+            (None, false, false, None);
         self.state.jaw.hold_here();
     }
 

@@ -46,11 +46,14 @@ pub(crate) fn shake<L: Line>(bus: &mut Bus<L>, layout: &Layout) -> Result<Servos
         } else {
             continue;
         };
-        return Err(Ended(format!("{wrong}; help: set the servo up again, `lerobot-setup-motors`")));
+        return Err(Ended(format!(
+            "{wrong}; help: set the servo up again, `lerobot-setup-motors`"
+        )));
     }
     let firmware: BTreeSet<[u8; 2]> = stored.iter().map(|servo| servo.firmware).collect();
     if firmware.len() > 1 {
-        let versions: Vec<String> = firmware.iter().map(|[major, minor]| format!("{major}.{minor}")).collect();
+        let versions: Vec<String> =
+            firmware.iter().map(|[major, minor]| format!("{major}.{minor}")).collect();
         tracing::warn!(
             "the servos have different firmware: {}; help: update them with the maker's program",
             versions.join(", ")
@@ -122,7 +125,10 @@ pub(crate) fn compare(stored: &[Stored], layout: &Layout) -> Result<(), String> 
 }
 
 /// The registers that differ from the calibration.
-pub(crate) fn differences<'a>(stored: &'a [Stored], layout: &'a Layout) -> impl Iterator<Item = String> + 'a {
+pub(crate) fn differences<'a>(
+    stored: &'a [Stored],
+    layout: &'a Layout,
+) -> impl Iterator<Item = String> + 'a {
     stored.iter().zip(&layout.members).flat_map(|(servo, member)| {
         let file = member.calibrated;
         let pairs = [
@@ -131,6 +137,8 @@ pub(crate) fn differences<'a>(stored: &'a [Stored], layout: &'a Layout) -> impl 
             ("homing_offset", servo.offset, file.homing_offset),
         ];
         let differ = pairs.into_iter().filter(|(_, servo, file)| servo != file);
-        differ.map(|(what, servo, file)| format!("{} has {what} {servo}, the file {file}", member.name()))
+        differ.map(|(what, servo, file)| {
+            format!("{} has {what} {servo}, the file {file}", member.name())
+        })
     })
 }

@@ -1,5 +1,5 @@
-//! The jaw: closed with a limit of torque, and held with less than that, so that the servo's protection against overload
-//! does not let go.
+//! The jaw: closed with a limit of torque, and held with less than that, so that the servo's protection against
+//! overload does not let go.
 
 use arm_driver::Fingers;
 use manipulation::gripper::Gripper;
@@ -23,8 +23,8 @@ const PRESSES: f64 = 0.08;
 const CLOSED: f64 = 3.0;
 /// Difference from a commanded position that counts as there, percent.
 const THERE: f64 = 3.0;
-/// A held object has slipped if the jaw closes by more, percent.
-const SLIPPED: f64 = 5.0;
+/// A held object has slipped or given way if the jaw closes by more, percent: it nearly reaches its goal.
+const SLIPPED: f64 = 1.8;
 /// Time for which it must stand, before its position means something.
 const STEADY: Span = Span::from_ms(150);
 /// Time after which a jaw that stands elsewhere will not go on.
@@ -101,7 +101,8 @@ impl Jaw {
             Fingers::Stay if matches!(self.aim, Aim::Go(..)) => self.hold_here(),
             Fingers::Stay => {}
             Fingers::Open(width_m) => {
-                let reversed: Vec<(f64, f64)> = self.curve.iter().map(|(percent, width)| (*width, *percent)).collect();
+                let reversed: Vec<(f64, f64)> =
+                    self.curve.iter().map(|(percent, width)| (*width, *percent)).collect();
                 let to = along(&reversed, width_m);
                 if is_new(&self.aim, to) {
                     (self.aim, self.steady_since) = (Aim::Go(to, now), None);
@@ -115,8 +116,14 @@ impl Jaw {
     /// Stops where it is; what it holds it keeps.
     pub(crate) fn hold_here(&mut self) {
         if !matches!(self.aim, Aim::Holds(_) | Aim::Unknown) {
-            (self.aim, self.goal) = if self.presses() { (Aim::Unknown, None) } else { (Aim::Stay, self.percent) };
+            (self.aim, self.goal) =
+                if self.presses() { (Aim::Unknown, None) } else { (Aim::Stay, self.percent) };
         }
+    }
+
+    /// Forgets everything: its servo has let go.
+    pub(crate) fn let_go(&mut self) {
+        (self.aim, self.goal) = (Aim::Unknown, None);
     }
 
     /// Moves on to a time. Returns the goal, percent, and the limit of torque, 0.1 %; `None` before the first reading.
@@ -149,7 +156,9 @@ impl Jaw {
             Aim::Unknown if is_steady && self.presses() => self.aim = Aim::Holds(percent),
             Aim::Grip(_) if is_steady && percent <= CLOSED => self.aim = Aim::Closed,
             Aim::Grip(_) if is_steady && self.presses() => self.aim = Aim::Holds(percent),
-            Aim::Grip(since) if self.stands_for(STUCK, now) && now.since(since) > STUCK => self.aim = Aim::Closed,
+            Aim::Grip(since) if self.stands_for(STUCK, now) && now.since(since) > STUCK => {
+                self.aim = Aim::Closed
+            }
             Aim::Holds(at) if percent < at - SLIPPED => self.aim = Aim::Grip(now),
             _ => {}
         }
@@ -170,7 +179,8 @@ impl Jaw {
             _ if self.percent.is_none() => None,
             Aim::Unknown => Some(self.presses()),
             Aim::Holds(_) => Some(true),
-            Aim::Stay | Aim::Go(..) | Aim::Grip(_) | Aim::Closed => Some(false),
+            Aim::Grip(_) => None,
+            Aim::Stay | Aim::Go(..) | Aim::Closed => Some(false),
         }
     }
 
@@ -184,8 +194,9 @@ impl Jaw {
         }
     }
 
+    /// Returns whether the jaw moves, or is not known yet to hold something or nothing.
     pub(crate) fn is_moving(&self) -> bool {
-        self.percent.is_some() && self.steady_since.is_none()
+        self.percent.is_some() && (self.steady_since.is_none() || matches!(self.aim, Aim::Grip(_)))
     }
 }
 
@@ -209,7 +220,9 @@ mod tests {
     #[test]
     fn curve_of_the_jaw_is_followed_between_its_points_and_kept_at_its_ends() {
         let curve = [(0.0, 0.002), (10.0, 0.018), (50.0, 0.078)];
-        for (percent, width_m) in [(-3.0, 0.002), (0.0, 0.002), (5.0, 0.010), (30.0, 0.048), (90.0, 0.078)] {
+        for (percent, width_m) in
+            [(-3.0, 0.002), (0.0, 0.002), (5.0, 0.010), (30.0, 0.048), (90.0, 0.078)]
+        {
             assert!((along(&curve, percent) - width_m).abs() < 1e-12, "{percent} %");
         }
     }

@@ -49,7 +49,9 @@ impl Member {
     /// The joint's position: radians, or percent of the jaw.
     pub(crate) fn value(&self, steps: i32) -> f64 {
         match self.unit {
-            Unit::Angle { zero_rad, reversed } => zero_rad + sign(reversed) * self.calibrated.radians(steps),
+            Unit::Angle { zero_rad, reversed } => {
+                zero_rad + sign(reversed) * self.calibrated.radians(steps)
+            }
             Unit::Percent => self.calibrated.percent(steps),
         }
     }
@@ -57,7 +59,9 @@ impl Member {
     /// The servo's position, within its range.
     pub(crate) fn steps(&self, value: f64) -> u16 {
         match self.unit {
-            Unit::Angle { zero_rad, reversed } => self.calibrated.steps(sign(reversed) * (value - zero_rad)),
+            Unit::Angle { zero_rad, reversed } => {
+                self.calibrated.steps(sign(reversed) * (value - zero_rad))
+            }
             Unit::Percent => self.calibrated.steps_of_percent(value),
         }
     }
@@ -96,10 +100,16 @@ impl Layout {
                 problems.push(without_servo(&file, joint, servo, calibration));
                 continue;
             };
-            let (zero_rad, reversed) = entry.map_or((0.0, false), |entry| (entry.zero_rad, entry.reversed));
+            let (zero_rad, reversed) =
+                entry.map_or((0.0, false), |entry| (entry.zero_rad, entry.reversed));
             let reach = calibrated.reach_rad() + EXCESS_RAD;
             if lower < zero_rad - reach || upper > zero_rad + reach {
-                problems.push(too_far(&file, joint, (lower, upper), (zero_rad, calibrated.reach_rad())));
+                problems.push(too_far(
+                    &file,
+                    joint,
+                    (lower, upper),
+                    (zero_rad, calibrated.reach_rad()),
+                ));
             }
             let unit = Unit::Angle { zero_rad, reversed };
             members.push(Member { joint: joint.clone(), calibrated: *calibrated, unit });
@@ -108,7 +118,11 @@ impl Layout {
         match calibration.servos.get(gripper) {
             None => problems.push(without_servo(&file, "of the gripper", gripper, calibration)),
             Some(calibrated) => {
-                members.push(Member { joint: gripper.clone(), calibrated: *calibrated, unit: Unit::Percent });
+                members.push(Member {
+                    joint: gripper.clone(),
+                    calibrated: *calibrated,
+                    unit: Unit::Percent,
+                });
             }
         }
         if problems.is_empty() { Ok(Self { members }) } else { Err(problems) }
@@ -121,16 +135,24 @@ impl Layout {
 
 fn without_servo(file: &str, joint: &str, servo: &str, calibration: &Calibration) -> Diagnostic {
     let known: Vec<&str> = calibration.servos.keys().map(String::as_str).collect();
-    let what = format!("joint {joint} has no servo: expected `{servo}`, found {}", known.join(", "));
+    let what =
+        format!("joint {joint} has no servo: expected `{servo}`, found {}", known.join(", "));
     let near = diagnostics::nearest(servo, known.iter().copied()).unwrap_or("NAME");
     let help = match joint {
         "of the gripper" => format!("name it in arm.toml: [feetech] gripper = \"{near}\""),
-        _ => format!("name it in arm.toml: [feetech] joints = [{{ joint = \"{joint}\", servo = \"{near}\" }}]"),
+        _ => format!(
+            "name it in arm.toml: [feetech] joints = [{{ joint = \"{joint}\", servo = \"{near}\" }}]"
+        ),
     };
     Diagnostic::new(file, servo, what, help)
 }
 
-fn too_far(file: &str, joint: &str, (lower, upper): (f64, f64), (zero, reach): (f64, f64)) -> Diagnostic {
+fn too_far(
+    file: &str,
+    joint: &str,
+    (lower, upper): (f64, f64),
+    (zero, reach): (f64, f64),
+) -> Diagnostic {
     let (least, most) = (zero - reach, zero + reach);
     let what = format!(
         "joint {joint} may move from {lower:.3} to {upper:.3} rad by the robot's file, its servo from {least:.3} to \

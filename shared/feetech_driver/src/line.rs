@@ -43,7 +43,9 @@ pub(crate) enum PortProblem {
     Absent,
     #[error("no permission; help: `sudo usermod -aG dialout $USER`, then log in again")]
     Forbidden,
-    #[error("another program uses it; help: end that program: a lerobot script, a terminal, or another group")]
+    #[error(
+        "another program uses it; help: end that program: a lerobot script, a terminal, or another group"
+    )]
     Busy,
     #[error("not a serial port; help: look into /dev/serial/by-id")]
     NoTerminal,
@@ -80,7 +82,8 @@ impl SerialLine {
         let mut attributes = tcgetattr(&fd)?;
         attributes.make_raw();
         attributes.control_modes |= ControlModes::CREAD | ControlModes::CLOCAL;
-        attributes.control_modes -= ControlModes::CRTSCTS | ControlModes::CSTOPB | ControlModes::PARENB;
+        attributes.control_modes -=
+            ControlModes::CRTSCTS | ControlModes::CSTOPB | ControlModes::PARENB;
         attributes.set_speed(baud)?;
         tcsetattr(&fd, OptionalActions::Flush, &attributes)?;
         shorten_latency(port);
@@ -91,13 +94,16 @@ impl SerialLine {
     fn ready(&self, flags: PollFlags, until: Time) -> io::Result<bool> {
         loop {
             let left = until.since(clock::now());
-            let timeout = Timespec { tv_sec: 0, tv_nsec: (left.s() * 1e9).clamp(0.0, 999_999_999.0) as i64 };
+            let timeout =
+                Timespec { tv_sec: 0, tv_nsec: (left.s() * 1e9).clamp(0.0, 999_999_999.0) as i64 };
             let mut fds = [PollFd::new(&self.0, flags)];
             match poll(&mut fds, Some(&timeout)) {
                 Ok(0) | Err(Errno::INTR) if clock::now() < until => {}
                 Ok(0) | Err(Errno::INTR) => return Ok(false),
                 Ok(_) if fds[0].revents().intersects(flags) => return Ok(true),
-                Ok(_) => return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the device is gone")),
+                Ok(_) => {
+                    return Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the device is gone"));
+                }
                 Err(error) => return Err(error.into()),
             }
         }

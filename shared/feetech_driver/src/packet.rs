@@ -16,10 +16,6 @@ pub(crate) const EVERY_SERVO: u8 = 0xfe;
 pub(crate) enum Instruction {
     /// Answered by an empty packet.
     Ping = 0x01,
-    /// Address and count; answered by the bytes.
-    Read = 0x02,
-    /// Address and bytes; answered by an empty packet.
-    Write = 0x03,
     /// Address, count and ids; answered by each servo in this order.
     SyncRead = 0x82,
     /// Address, count, and id and bytes of each servo; not answered.
@@ -70,7 +66,9 @@ impl Errors {
     /// The gravest condition; `None` if there is none.
     pub(crate) fn reason(self) -> Option<&'static str> {
         let known = Self::CONDITIONS.iter().find(|(bit, _)| self.0 & bit != 0);
-        known.map(|(_, reason)| *reason).or(self.any().then_some("an error that this program does not know"))
+        known
+            .map(|(_, reason)| *reason)
+            .or(self.any().then_some("an error that this program does not know"))
     }
 }
 
@@ -118,18 +116,27 @@ pub(crate) const fn answer_len(count: u8) -> usize {
 ///
 /// # Errors
 /// Anything that differs: one byte too many or too few, another servo's answer, a wrong checksum.
-pub(crate) fn answers<'a>(bytes: &'a [u8], ids: &[u8], count: u8) -> Result<Vec<Answer<'a>>, Damage> {
+pub(crate) fn answers<'a>(
+    bytes: &'a [u8],
+    ids: &[u8],
+    count: u8,
+) -> Result<Vec<Answer<'a>>, Damage> {
     let length = answer_len(count);
     let expected = length * ids.len();
     if bytes.len() != expected {
         return Err(Damage::Count { expected, found: bytes.len() });
     }
-    ids.iter().zip(bytes.chunks_exact(length)).map(|(id, bytes)| answer(bytes, *id, count)).collect()
+    ids.iter()
+        .zip(bytes.chunks_exact(length))
+        .map(|(id, bytes)| answer(bytes, *id, count))
+        .collect()
 }
 
 /// Reads one whole answer.
 fn answer(bytes: &[u8], id: u8, count: u8) -> Result<Answer<'_>, Damage> {
-    let [0xff, 0xff, found, length, errors, data @ .., sum] = bytes else { return Err(Damage::Header) };
+    let [0xff, 0xff, found, length, errors, data @ .., sum] = bytes else {
+        return Err(Damage::Header);
+    };
     if *found != id {
         return Err(Damage::Id { expected: id, found: *found });
     }
@@ -154,7 +161,7 @@ mod tests {
     /// Bytes as a bus with real conventions carries them: the SDK's manual has the same.
     #[test]
     fn packets_have_the_bytes_of_the_manual() {
-        assert_eq!(request(1, Instruction::Read, &[3, 2]), [0xff, 0xff, 1, 4, 2, 3, 2, 0xf3]);
+        assert_eq!(packet(1, 2, &[3, 2]), [0xff, 0xff, 1, 4, 2, 3, 2, 0xf3]);
         assert_eq!(request(EVERY_SERVO, Instruction::Ping, &[]), [0xff, 0xff, 0xfe, 2, 1, 0xfe]);
         let read = sync_read(56, 2, &[1, 2]);
         assert_eq!(read, [0xff, 0xff, 0xfe, 6, 0x82, 56, 2, 1, 2, 0x3c]);
@@ -172,10 +179,15 @@ mod tests {
             let ids: Vec<u8> = (1..=1 + random.below(7) as u8).collect();
             let parts: Vec<(u8, Vec<u8>)> = ids
                 .iter()
-                .map(|_| (random.below(256) as u8, (0..count).map(|_| random.below(256) as u8).collect()))
+                .map(|_| {
+                    (random.below(256) as u8, (0..count).map(|_| random.below(256) as u8).collect())
+                })
                 .collect();
-            let mut bytes: Vec<u8> =
-                ids.iter().zip(&parts).flat_map(|(id, (errors, data))| answer_of(*id, *errors, data)).collect();
+            let mut bytes: Vec<u8> = ids
+                .iter()
+                .zip(&parts)
+                .flat_map(|(id, (errors, data))| answer_of(*id, *errors, data))
+                .collect();
             let read = answers(&bytes, &ids, count).unwrap();
             for (answer, (errors, data)) in read.iter().zip(&parts) {
                 assert_eq!((answer.errors.0, answer.data), (*errors, &data[..]), "seed {seed}");

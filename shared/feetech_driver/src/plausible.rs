@@ -1,5 +1,5 @@
-//! Whether positions can be true: the protocol has no sequence numbers, so an answer that was late may stand in the place
-//! of one that was lost.
+//! Judgement of positions: the protocol has no sequence numbers, so an answer that was late may stand in the place of
+//! one that was lost.
 
 use service::Time;
 
@@ -9,8 +9,8 @@ use crate::registers::State;
 const NOISE: f64 = 12.0;
 /// Greatest acceleration of a joint, steps/s².
 const ACCELERATION: f64 = 25_400.0;
-/// Readings in a row that agree with one another and not with those before, after which they count: the joint was moved,
-/// or its servo has lost its homing offset.
+/// Readings in a row that agree with one another and not with those before, after which they count: the joint was
+/// moved, or its servo has lost its homing offset.
 const AGREED: u32 = 5;
 
 /// Memory of the latest readings.
@@ -25,14 +25,21 @@ pub(crate) struct Plausibility {
 impl Plausibility {
     /// Returns whether the joints can have come to these positions since the last ones that were accepted.
     pub(crate) fn accepts(&mut self, states: &[State], at: Time) -> bool {
-        let found: Vec<(i32, i32)> = states.iter().map(|state| (state.position, state.speed)).collect();
+        let found: Vec<(i32, i32)> =
+            states.iter().map(|state| (state.position, state.speed)).collect();
         let follows = |before: &Option<(Time, Vec<(i32, i32)>)>| {
-            before.as_ref().is_none_or(|(then, before)| follows(before, &found, at.since(*then).s()))
+            before
+                .as_ref()
+                .is_none_or(|(then, before)| follows(before, &found, at.since(*then).s()))
         };
         if follows(&self.accepted) {
             (self.refused, self.agreeing) = (None, 0);
         } else {
-            self.agreeing = if self.refused.is_some() && follows(&self.refused) { self.agreeing + 1 } else { 1 };
+            self.agreeing = if self.refused.is_some() && follows(&self.refused) {
+                self.agreeing + 1
+            } else {
+                1
+            };
             if self.agreeing < AGREED {
                 self.refused = Some((at, found));
                 return false;
@@ -61,7 +68,20 @@ mod tests {
     fn state(position: i32, speed: i32) -> State {
         let still = (Errors(0), 1, 254, 0, 0, 0);
         let (errors, torque, acceleration, goal, speed_limit, torque_limit) = still;
-        let own = State { id: 1, errors, torque, acceleration, goal, speed_limit, torque_limit, position, speed, load: 0, decivolts: 74, celsius: 30 };
+        let own = State {
+            id: 1,
+            errors,
+            torque,
+            acceleration,
+            goal,
+            speed_limit,
+            torque_limit,
+            position,
+            speed,
+            load: 0,
+            decivolts: 74,
+            celsius: 30,
+        };
         own
     }
 

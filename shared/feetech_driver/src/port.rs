@@ -1,4 +1,4 @@
-//! The thread that uses the bus, and its mailbox. It carries goals to the servos and readings back, and decides nothing.
+//! The thread that uses the bus, and its mailbox. It carries goals to the servos and readings back; it decides nothing.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -146,7 +146,8 @@ fn serve(with: &Use, mailbox: &Mailbox) {
 
 /// Uses the port until the end.
 fn use_port(with: &Use, mailbox: &Mailbox) -> Result<(), Ended> {
-    let line = SerialLine::open(&with.port, with.baud).map_err(|problem| Ended(problem.to_string()))?;
+    let line =
+        SerialLine::open(&with.port, with.baud).map_err(|problem| Ended(problem.to_string()))?;
     let mut session = Session::begin(line, with.layout.clone(), with.limits.clone())?;
     while let Some(told) = mailbox.wait(PAUSE_MAX) {
         session.exchange(&told)?.into_iter().for_each(|heard| mailbox.put(heard));

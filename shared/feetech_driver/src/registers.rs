@@ -27,6 +27,8 @@ pub(crate) const ACCELERATION: Register = Register(41, 1);
 pub(crate) const GOAL: Register = Register(42, 2);
 /// Greatest speed, steps/s.
 pub(crate) const SPEED_LIMIT: Register = Register(46, 2);
+/// From the goal to the limit of torque: goal, time (not used), speed and torque.
+pub(crate) const TARGET: Register = Register(42, 8);
 /// Greatest torque, 0.1 %; a copy of a stored value at power-on.
 pub(crate) const TORQUE_LIMIT: Register = Register(48, 2);
 /// 0: stored registers are saved; 1: they are used and lost at power-off.

@@ -11,7 +11,9 @@ use crate::bus::Bus;
 use crate::handshake;
 use crate::layout::{Layout, Member};
 use crate::line::{Line, PortProblem, SerialLine};
-use crate::registers::{LOCK, OFFSET, RANGE_MAX, RANGE_MIN, Register, STATE, STORED, State, Stored, TORQUE, with_sign};
+use crate::registers::{
+    LOCK, OFFSET, RANGE_MAX, RANGE_MIN, Register, STATE, STORED, State, Stored, TORQUE, with_sign,
+};
 use crate::session::{Ended, number};
 
 /// Attempts at each servo.
@@ -94,7 +96,8 @@ impl ServiceDesk {
     /// A servo holds: its joint would move, as its position would mean another one.
     pub fn write_calibration(&mut self) -> Result<Vec<Done>, String> {
         let found = self.look();
-        let holding: Vec<&str> = found.iter().filter(|it| it.holds()).map(|it| it.joint.as_str()).collect();
+        let holding: Vec<&str> =
+            found.iter().filter(|it| it.holds()).map(|it| it.joint.as_str()).collect();
         if !holding.is_empty() {
             return Err(format!(
                 "expected servos without torque, found {} holding; help: support the arm, then `whichone robot servos \
@@ -158,7 +161,8 @@ fn write_one<L: Line>(bus: &mut Bus<L>, member: &Member) -> Result<(), Ended> {
         (RANGE_MAX, own.range_max),
         (OFFSET, with_sign(own.homing_offset, 11)),
     ];
-    let written = values.into_iter().try_for_each(|(register, value)| set(bus, id, register, value));
+    let written =
+        values.into_iter().try_for_each(|(register, value)| set(bus, id, register, value));
     let locked = set(bus, id, LOCK, 1);
     written.and(locked)
 }
@@ -166,7 +170,8 @@ fn write_one<L: Line>(bus: &mut Bus<L>, member: &Member) -> Result<(), Ended> {
 /// Writes a register of one servo until it is read back.
 fn set<L: Line>(bus: &mut Bus<L>, id: u8, register: Register, value: u16) -> Result<(), Ended> {
     for _ in 0..ATTEMPTS {
-        bus.write(register, &[(id, value)]).map_err(|trouble| Ended(trouble.to_string()))?;
+        bus.write(register, &[(id, u64::from(value))])
+            .map_err(|trouble| Ended(trouble.to_string()))?;
         if handshake::read_surely(bus, register, &[id], number)? == [value] {
             return Ok(());
         }

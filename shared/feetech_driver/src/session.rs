@@ -1,4 +1,4 @@
-//! A bus in use: the handshake, and one exchange after the other. Nothing here moves the arm but the goals that it is told.
+//! A bus in use: the handshake, and one exchange after the other. Nothing here moves the arm but the goals of orders.
 
 use service::{Span, Time};
 
@@ -8,7 +8,8 @@ use crate::layout::Layout;
 use crate::line::Line;
 use crate::plausible::Plausibility;
 use crate::registers::{
-    ACCELERATION, GOAL, Register, SPEED_LIMIT, STATE, STORED, State, Stored, TORQUE, TORQUE_LIMIT,
+    ACCELERATION, GOAL, Register, SPEED_LIMIT, STATE, STORED, State, Stored, TARGET, TORQUE,
+    TORQUE_LIMIT,
 };
 use crate::traffic::{Heard, Reading, Servo, Told};
 
@@ -17,12 +18,16 @@ use crate::traffic::{Heard, Reading, Servo, Told};
 const ACCELERATION_SET: u16 = 254;
 /// Torque with which a servo begins to hold, 0.1 %.
 const SOFT_PERMILLE: u16 = 200;
+/// Exchanges after which their numbers repeat: longer than an answer can be late. The torque differs by 1.5 %.
+const TURNS: u16 = 16;
 /// Time in which it grows to the whole torque.
 const SOFT_START: Span = Span::from_ms(500);
 /// Attempts at a write that is read back.
 const ATTEMPTS: u32 = 5;
 /// Readings in a row that fail before each servo is asked whether it is there.
 const FAILURES_MAX: u32 = 8;
+/// Requests in a row without an answer, after which a servo is missing.
+const UNANSWERED_MAX: u32 = 3;
 /// Readings in a row in which a servo does not have its goal, before that is reported.
 const UNHEEDED_MAX: u32 = 20;
 /// Interval between looks at the stored registers.
@@ -54,8 +59,12 @@ pub(crate) struct Session<L> {
     ids: Vec<u8>,
     limits: Limits,
     servos: Servos,
-    /// Goals that were written last; empty before the first.
+    /// Goals; empty before the first.
     goals: Vec<u16>,
+    /// Goals and limits of torque that were written last; empty before the first.
+    written: Vec<(u16, u16)>,
+    /// Number of the latest exchange, which the limits of torque carry.
+    turn: u16,
     /// Those that hold.
     holds: Vec<bool>,
     /// All of them were told to hold.
@@ -66,6 +75,8 @@ pub(crate) struct Session<L> {
     grip_permille: u16,
     plausibility: Plausibility,
     failures: u32,
+    /// Requests in a row that each servo has not answered.
+    unanswered: Vec<u32>,
     unheeded: u32,
     /// Time of the latest look at the stored registers.
     looked: Time,
@@ -80,7 +91,8 @@ impl<L: Line> Session<L> {
         let mut bus = Bus::new(line);
         let servos = handshake::shake(&mut bus, &layout)?;
         let (ids, looked) = (layout.ids(), bus.line.now());
-        let none = vec![false; ids.len()];
+        let servo_count = ids.len();
+        let none = vec![false; servo_count];
         let mut session = Self {
             bus,
             layout,
@@ -88,6 +100,8 @@ impl<L: Line> Session<L> {
             limits,
             servos,
             goals: Vec::new(),
+            written: Vec::new(),
+            turn: 0,
             holds: none.clone(),
             is_on: false,
             begun: none,
@@ -95,6 +109,7 @@ impl<L: Line> Session<L> {
             grip_permille: SOFT_PERMILLE,
             plausibility: Plausibility::default(),
             failures: 0,
+            unanswered: vec![0; servo_count],
             unheeded: 0,
             looked,
         };
@@ -106,75 +121,98 @@ impl<L: Line> Session<L> {
         Ok(session)
     }
 
-    pub(crate) fn line(&mut self) -> &mut L {
-        &mut self.bus.line
-    }
-
-    /// Tells the servos their goals, and reads them.
+    /// Reads the servos, then tells them their goals. In this order, since a new goal ends the overload of a servo.
     ///
     /// # Errors
     /// The device is gone, or what is on it is not the arm any more.
     pub(crate) fn exchange(&mut self, told: &Told) -> Result<Option<Heard>, Ended> {
         if told.switch_on && !self.all_hold() {
             self.switch_on()?;
-        } else if self.is_on && told.goals.len() == self.ids.len() {
+        }
+        let asked = self.bus.line.now();
+        let heard = match self.bus.read(STATE, &self.ids, State::of) {
+            Ok(states) => {
+                self.failures = 0;
+                self.unanswered.fill(0);
+                self.judge(&states, asked)?
+            }
+            Err(trouble) => self.failed(&trouble)?,
+        };
+        if self.is_on && !told.switch_on && told.goals.len() == self.ids.len() {
             let goals = self.layout.members.iter().zip(&told.goals);
             self.goals = goals.map(|(member, value)| member.steps(*value)).collect();
             self.grip_permille = told.grip_permille;
         }
-        self.write_goals()?;
-        let asked = self.bus.line.now();
-        match self.bus.read(STATE, &self.ids, State::of) {
-            Ok(states) => {
-                self.failures = 0;
-                let heard = self.judge(&states, asked)?;
-                self.look_at_stored()?;
-                Ok(heard)
-            }
-            Err(trouble) => self.failed(trouble),
-        }
+        self.write_targets(asked)?;
+        self.look_at_stored()?;
+        Ok(heard)
     }
 
-    fn write_goals(&mut self) -> Result<(), Ended> {
-        let goals = self.ids.iter().copied().zip(self.goals.iter().copied()).zip(&self.holds);
-        let goals: Vec<(u8, u16)> = goals.filter(|(_, holds)| **holds).map(|(goal, _)| goal).collect();
-        if goals.is_empty() { Ok(()) } else { self.write(GOAL, &goals) }
+    /// Writes goals and limits to the servos that hold.
+    fn write_targets(&mut self, now: Time) -> Result<(), Ended> {
+        self.turn = (self.turn + 1) % TURNS;
+        let limits = self.torque_limits(now);
+        let targets = self.goals.iter().zip(limits);
+        self.written =
+            targets.map(|(goal, limit)| (*goal, limit.saturating_sub(self.turn))).collect();
+        let speed = u64::from(self.limits.speed);
+        let value =
+            |(goal, limit): (u16, u16)| u64::from(goal) | speed << 32 | u64::from(limit) << 48;
+        let targets = self.ids.iter().zip(&self.written).zip(&self.holds);
+        let targets: Vec<(u8, u64)> = targets
+            .filter(|(_, holds)| **holds)
+            .map(|((id, target), _)| (*id, value(*target)))
+            .collect();
+        if targets.is_empty() { Ok(()) } else { self.write(TARGET, &targets) }
     }
 
     /// Writes without an answer. Noise on the line is found by the reading that follows.
-    fn write(&mut self, register: Register, values: &[(u8, u16)]) -> Result<(), Ended> {
+    fn write(&mut self, register: Register, values: &[(u8, u64)]) -> Result<(), Ended> {
         match self.bus.write(register, values) {
             Err(trouble) if trouble.is_of_device() => Err(Ended(trouble.to_string())),
             _ => Ok(()),
         }
     }
 
-    fn failed(&mut self, trouble: Trouble) -> Result<Option<Heard>, Ended> {
+    fn failed(&mut self, trouble: &Trouble) -> Result<Option<Heard>, Ended> {
         if trouble.is_of_device() {
             return Err(Ended(trouble.to_string()));
         }
         self.failures += 1;
         tracing::debug!(%trouble, self.failures, "reading of the servos rejected");
-        if self.failures % FAILURES_MAX != 0 {
+        if self.failures < FAILURES_MAX {
             return Ok(None);
         }
-        let missing = handshake::missing(&mut self.bus, &self.layout)?;
+        self.look_for_one()
+    }
+
+    /// Asks one servo after the other whether it is there, one in each exchange: goals shall not wait for this.
+    fn look_for_one(&mut self) -> Result<Option<Heard>, Ended> {
+        let place = self.failures as usize % self.ids.len();
+        let answers = self.bus.ping(self.ids[place]).map_err(|trouble| Ended(trouble.to_string()))?;
+        self.unanswered[place] = if answers { 0 } else { self.unanswered[place] + 1 };
+        let missing = self.layout.members.iter().zip(&self.unanswered).filter(|(_, count)| **count >= UNANSWERED_MAX);
+        let missing: Vec<String> = missing.map(|(member, _)| member.name()).collect();
         Ok((!missing.is_empty()).then(|| Heard::Unusable(format!("no answer of {}", missing.join(", ")))))
     }
 
     fn judge(&mut self, states: &[State], asked: Time) -> Result<Option<Heard>, Ended> {
-        if let Some((goal, place)) = self.disobedient(states) {
+        if let Some(place) = self.disobedient(states) {
             self.unheeded += 1;
             if self.unheeded < UNHEEDED_MAX {
-                // The goal was lost, or the answer is one that was late.
+                // What was written was lost, or the answer is one that was late.
                 return Ok(None);
             }
-            let name = self.layout.members[place].name();
-            return Err(Ended(format!("{name} does not keep its goal: expected {}, found {goal}", self.goals[place])));
+            let (name, State { goal, torque_limit, .. }) =
+                (self.layout.members[place].name(), states[place]);
+            return Err(Ended(format!(
+                "{name} does not keep goal and limit of torque: expected {:?}, found {:?}",
+                self.written[place],
+                (goal, torque_limit)
+            )));
         }
         self.unheeded = 0;
         let is_plausible = self.plausibility.accepts(states, asked);
-        self.keep_torque(states, asked)?;
         for (place, state) in states.iter().enumerate() {
             self.holds[place] &= self.has_settings(state);
         }
@@ -184,18 +222,19 @@ impl<L: Line> Session<L> {
         Ok(Some(Heard::Reading(reading)))
     }
 
-    /// A servo that holds and has another goal than it was told, by its place.
-    fn disobedient(&self, states: &[State]) -> Option<(u16, usize)> {
-        let goals = states.iter().zip(&self.goals).enumerate();
-        let holds = |place: usize, state: &State| self.holds[place] && self.has_settings(state);
-        let mut others = goals.filter(|(place, (state, goal))| holds(*place, state) && state.goal != **goal);
-        others.next().map(|(place, (state, _))| (state.goal, place))
+    /// The place of a servo that holds and has not what was written last. The limit of torque changes a little with
+    /// every exchange: so an answer of an earlier one is found, which nothing else in it tells.
+    fn disobedient(&self, states: &[State]) -> Option<usize> {
+        let mut written = states.iter().zip(&self.written).enumerate();
+        written.find_map(|(place, (state, written))| {
+            let holds = self.holds[place] && self.has_settings(state);
+            (holds && (state.goal, state.torque_limit) != *written).then_some(place)
+        })
     }
 
     /// The settings of a servo that holds: those that it was told, which a restart takes away.
     fn has_settings(&self, state: &State) -> bool {
-        let set = (1, ACCELERATION_SET, self.limits.speed);
-        (u16::from(state.torque), u16::from(state.acceleration), state.speed_limit) == set
+        (u16::from(state.torque), u16::from(state.acceleration)) == (1, ACCELERATION_SET)
     }
 
     fn all_hold(&self) -> bool {
@@ -223,21 +262,9 @@ impl<L: Line> Session<L> {
         let of = |place: usize| {
             let whole = if place == jaw { self.grip_permille } else { self.limits.joints_permille };
             let soft = SOFT_PERMILLE.min(whole);
-            // In twenty steps, each of which is written once.
-            let risen = (20.0 * grown).floor() / 20.0 * f64::from(whole - soft);
-            if self.begun[place] { soft + risen as u16 } else { whole }
+            if self.begun[place] { soft + (grown * f64::from(whole - soft)) as u16 } else { whole }
         };
         (0..self.ids.len()).map(of).collect()
-    }
-
-    /// Writes the limits of torque that differ.
-    fn keep_torque(&mut self, states: &[State], now: Time) -> Result<(), Ended> {
-        let wanted = states.iter().zip(self.torque_limits(now)).zip(&self.holds);
-        let differ: Vec<(u8, u16)> = wanted
-            .filter(|((state, limit), holds)| **holds && state.torque_limit != *limit)
-            .map(|((state, limit), _)| (state.id, limit))
-            .collect();
-        if differ.is_empty() { Ok(()) } else { self.write(TORQUE_LIMIT, &differ) }
     }
 
     /// Compares the stored registers once a second.
@@ -263,7 +290,8 @@ impl<L: Line> Session<L> {
         self.begun_at = self.bus.line.now();
         self.goals = states.iter().map(|state| self.present(state)).collect::<Result<_, _>>()?;
         let speed = self.limits.speed;
-        let settings = [(ACCELERATION, ACCELERATION_SET), (SPEED_LIMIT, speed), (TORQUE_LIMIT, SOFT_PERMILLE)];
+        let settings =
+            [(ACCELERATION, ACCELERATION_SET), (SPEED_LIMIT, speed), (TORQUE_LIMIT, SOFT_PERMILLE)];
         for (register, value) in settings {
             self.write_surely(register, &vec![value; self.ids.len()])?;
         }
@@ -272,6 +300,8 @@ impl<L: Line> Session<L> {
         self.write_surely(TORQUE, &vec![1; self.ids.len()])?;
         (self.holds, self.is_on) = (vec![true; self.ids.len()], true);
         (self.begun_at, self.plausibility) = (self.bus.line.now(), Plausibility::default());
+        // The next reading has what is written with the next goals.
+        self.written.clear();
         Ok(())
     }
 
@@ -301,8 +331,11 @@ impl<L: Line> Session<L> {
         for _ in 0..ATTEMPTS {
             let of = |place: &usize| self.begun[*place];
             let places: Vec<usize> = (0..self.ids.len()).filter(of).collect();
-            let written: Vec<(u8, u16)> = places.iter().map(|place| (self.ids[*place], values[*place])).collect();
-            self.write(register, &written)?;
+            let written: Vec<(u8, u16)> =
+                places.iter().map(|place| (self.ids[*place], values[*place])).collect();
+            let values: Vec<(u8, u64)> =
+                written.iter().map(|(id, value)| (*id, u64::from(*value))).collect();
+            self.write(register, &values)?;
             let ids: Vec<u8> = written.iter().map(|(id, _)| *id).collect();
             let found = handshake::read_surely(&mut self.bus, register, &ids, number)?;
             if found.iter().zip(&written).all(|(found, (_, value))| found == value) {

@@ -114,10 +114,11 @@ impl Section for Feetech {
     }
 
     fn check(&self, others: &mut Check<'_>) {
-        if others.arm.driver == crate::NAME && self.robot_id.is_none() && self.calibration.is_none() {
+        if others.arm.driver == crate::NAME && self.robot_id.is_none() && self.calibration.is_none()
+        {
             let what = "no calibration is named";
-            let help = "write the id that lerobot calibrated the arm under, `robot_id = \"ID\"`, or the path of a file, \
-                        `calibration = \"/…/ID.json\"`";
+            let help = "write the id under which lerobot calibrated the arm, `robot_id = \"ID\"`, or the path of a \
+                        file, `calibration = \"/…/ID.json\"`";
             others.problem(&["arm", crate::NAME, "robot_id"], what, help);
         }
     }
@@ -152,10 +153,15 @@ impl Feetech {
                 f.problem(key, what, "remove some");
             }
         }
-        let rises = |two: &[Opening]| two[0].percent < two[1].percent && two[0].width_m < two[1].width_m;
+        let rises =
+            |two: &[Opening]| two[0].percent < two[1].percent && two[0].width_m < two[1].width_m;
         if self.openings.len() == 1 || !self.openings.windows(2).all(rises) {
-            let what = "expected none or at least two points, each with a greater percent and width than the one before";
-            f.problem("openings", what, "sort them, or remove them: the width then grows in proportion");
+            let what = "expected none or at least two points, percent and width of each above those of the one before";
+            f.problem(
+                "openings",
+                what,
+                "sort them, or remove them: the width then grows in proportion",
+            );
         }
     }
 
@@ -173,7 +179,8 @@ impl Feetech {
         }
         let searched: Vec<String> = places.iter().map(|file| file.display().to_string()).collect();
         let what = format!("no calibration file; looked for {}", searched.join(", "));
-        let help = "calibrate the arm, `lerobot-calibrate --robot.type=so101_follower --robot.port=PORT --robot.id=ID`, or \
+        let help = "calibrate the arm, `lerobot-calibrate --robot.type=so101_follower --robot.port=PORT \
+                    --robot.id=ID`, or \
                     name the file: arm.feetech.calibration";
         Err(Diagnostic::new("arm.toml", "arm.feetech.robot_id", what, help))
     }

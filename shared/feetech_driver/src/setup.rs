@@ -26,13 +26,17 @@ pub(crate) fn suits(settings: &Settings, own: &Feetech, robot: &Robot) -> Result
     }
     let arm = robot.arm(Limb::Only);
     let speeds = arm.joint_names.iter().zip(arm.limits.velocity);
-    let Some((joint, fastest)) = speeds.max_by(|(_, a), (_, b)| a.total_cmp(b)) else { return Ok(()) };
+    let Some((joint, fastest)) = speeds.max_by(|(_, a), (_, b)| a.total_cmp(b)) else {
+        return Ok(());
+    };
     let planned = fastest * settings.arm.motion.speed_ratio;
     if planned <= own.speed_max_rad_s {
         return Ok(());
     }
     let most = own.speed_max_rad_s;
-    let what = format!("joint {joint} is planned to move at {planned:.2} rad/s, its servo moves at {most:.2} at most");
+    let what = format!(
+        "joint {joint} is planned to move at {planned:.2} rad/s, its servo moves at {most:.2} at most"
+    );
     let help = format!(
         "write `speed_ratio = {:.2}`, lower the velocity of its <limit>, or raise arm.feetech.speed_max_rad_s",
         (100.0 * most / fastest).floor() / 100.0
@@ -42,7 +46,8 @@ pub(crate) fn suits(settings: &Settings, own: &Feetech, robot: &Robot) -> Result
 
 /// The port and what is on it, by settings and calibration.
 pub(crate) fn with(settings: &Settings, robot: &Robot) -> Result<Use, Vec<Diagnostic>> {
-    let own: Feetech = settings.part().map_err(|problems| problems.iter().cloned().collect::<Vec<_>>())?;
+    let own: Feetech =
+        settings.part().map_err(|problems| problems.iter().cloned().collect::<Vec<_>>())?;
     let calibration = own.calibrated().map_err(|problem| vec![problem])?;
     let layout = Layout::new(&own, robot, &calibration)?;
     let limits = Limits {
@@ -53,12 +58,17 @@ pub(crate) fn with(settings: &Settings, robot: &Robot) -> Result<Use, Vec<Diagno
 }
 
 /// Starts the thread that uses the bus.
-pub(crate) fn connect(_: &Bus, settings: &Settings, robot: &Robot) -> Result<Box<dyn Port>, Failure> {
+pub(crate) fn connect(
+    _: &Bus,
+    settings: &Settings,
+    robot: &Robot,
+) -> Result<Box<dyn Port>, Failure> {
     let with = with(settings, robot).map_err(|problems| {
         let lines: Vec<String> = problems.iter().map(Diagnostic::to_string).collect();
         Failure::new(Exit::Config, lines.join("\n"))
     })?;
-    let port = ServoPort::start(with).map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?;
+    let port = ServoPort::start(with)
+        .map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?;
     Ok(Box::new(port))
 }
 
@@ -74,7 +84,11 @@ pub(crate) fn examine(settings: &Settings, robot: &Robot) -> Vec<Diagnostic> {
 }
 
 /// A problem of the port, at its key.
-pub(crate) fn port_diagnostic(settings: &Settings, port: &Path, problem: &PortProblem) -> Diagnostic {
+pub(crate) fn port_diagnostic(
+    settings: &Settings,
+    port: &Path,
+    problem: &PortProblem,
+) -> Diagnostic {
     let text = format!("{}: {problem}", port.display());
     let (what, help) = text.split_once("; help: ").unwrap_or((&text, "choose another port"));
     settings.diagnostic(&["arm", crate::NAME, "port"], what, help)

@@ -17,7 +17,8 @@ pub(super) fn servos(args: &ServosArgs, out: &mut Output<'_>) -> Outcome {
         return done(&desk.release(), "released", out);
     }
     if args.write_calibration {
-        let written = desk.write_calibration().map_err(|reason| Failure::new(Exit::NotReached, reason))?;
+        let written =
+            desk.write_calibration().map_err(|reason| Failure::new(Exit::NotReached, reason))?;
         return done(&written, "calibrated", out);
     }
     show(&desk.look(), out)
@@ -29,7 +30,10 @@ fn done(all: &[Done], word: &str, out: &mut Output<'_>) -> Outcome {
         if out.is_json() {
             out.json(servo)?;
         } else {
-            let result = servo.problem.as_deref().map_or(word.to_owned(), |problem| format!("failed: {problem}"));
+            let result = servo
+                .problem
+                .as_deref()
+                .map_or(word.to_owned(), |problem| format!("failed: {problem}"));
             out.line(format_args!("{:<16} {result}", servo.joint))?;
         }
     }
@@ -43,11 +47,13 @@ fn show(all: &[Found], out: &mut Output<'_>) -> Outcome {
         all.iter().try_for_each(|servo| out.json(servo))?;
     } else {
         let rows: Vec<Vec<String>> = all.iter().map(row).collect();
-        let heads = ["ID", "JOINT", "POSITION", "STEPS", "TORQUE", "SUPPLY", "HEAT", "FIRMWARE", "ERROR"];
+        let heads =
+            ["ID", "JOINT", "POSITION", "STEPS", "TORQUE", "SUPPLY", "HEAT", "FIRMWARE", "ERROR"];
         table(&heads, &rows).into_iter().try_for_each(|line| out.line(line))?;
     }
     let states = all.iter().filter_map(|servo| servo.state.as_ref());
-    let differences: Vec<&str> = states.flat_map(|it| it.differences.iter().map(String::as_str)).collect();
+    let differences: Vec<&str> =
+        states.flat_map(|it| it.differences.iter().map(String::as_str)).collect();
     if !differences.is_empty() && !out.is_json() {
         note(format_args!(
             "not calibrated as the file says: {}; help: `whichone robot servos --write-calibration`",
@@ -62,15 +68,16 @@ fn row(servo: &Found) -> Vec<String> {
     let mut row = vec![servo.id.to_string(), servo.joint.clone()];
     match &servo.state {
         None => row.extend(["no answer", "", "", "", "", "", ""].map(str::to_owned)),
-        Some(Condition { position, steps, holds, volts, celsius, firmware, error, .. }) => row.extend([
-            format!("{position:.3}"),
-            steps.to_string(),
-            if *holds { "on" } else { "off" }.to_owned(),
-            format!("{volts:.1} V"),
-            format!("{celsius} °C"),
-            firmware.clone(),
-            error.clone().unwrap_or_else(|| "-".to_owned()),
-        ]),
+        Some(Condition { position, steps, holds, volts, celsius, firmware, error, .. }) => row
+            .extend([
+                format!("{position:.3}"),
+                steps.to_string(),
+                if *holds { "on" } else { "off" }.to_owned(),
+                format!("{volts:.1} V"),
+                format!("{celsius} °C"),
+                firmware.clone(),
+                error.clone().unwrap_or_else(|| "-".to_owned()),
+            ]),
     }
     row
 }

@@ -72,7 +72,9 @@ impl Bus {
         self.heard.extend_from_slice(bytes);
         while let Some(at) = self.heard.windows(2).position(|two| two == [0xff, 0xff]) {
             self.heard.drain(..at);
-            let Some(length) = self.heard.get(3).map(|length| usize::from(*length) + 4) else { return };
+            let Some(length) = self.heard.get(3).map(|length| usize::from(*length) + 4) else {
+                return;
+            };
             if self.heard.len() < length {
                 return;
             }
@@ -127,9 +129,11 @@ impl Bus {
                 }
             }
             (0x82, [address, count, ids @ ..]) => {
-                let place = |id: &u8| places.iter().copied().find(|place| self.servos[*place].id() == *id);
+                let place =
+                    |id: &u8| places.iter().copied().find(|place| self.servos[*place].id() == *id);
                 let asked: Vec<usize> = ids.iter().filter_map(place).collect();
-                for place in &asked {
+                let shows_position = (*address..address.saturating_add(*count)).contains(&56);
+                for place in asked.iter().filter(|_| shows_position) {
                     self.sampled[*place] = self.servos[*place].word(56);
                 }
                 self.answer(&asked, |servo| servo.read((*address).into(), (*count).into()));
@@ -137,7 +141,9 @@ impl Bus {
             (0x83, [address, count, values @ ..]) => {
                 for value in values.chunks_exact(usize::from(*count) + 1) {
                     let place = places.iter().find(|place| self.servos[**place].id() == value[0]);
-                    place.iter().for_each(|place| self.servos[**place].write((*address).into(), &value[1..]));
+                    place.iter().for_each(|place| {
+                        self.servos[**place].write((*address).into(), &value[1..])
+                    });
                 }
             }
             _ => {}
@@ -150,7 +156,8 @@ impl Bus {
         for place in places {
             let servo = &self.servos[*place];
             let data = data(servo);
-            let mut packet = vec![0xff, 0xff, servo.id(), data.len() as u8 + 2, servo.errors() & 0x7f];
+            let mut packet =
+                vec![0xff, 0xff, servo.id(), data.len() as u8 + 2, servo.errors() & 0x7f];
             packet.extend(data);
             packet.push(sum(&packet[2..]));
             let (late_s, bytes) = self.faults.pass(packet);

@@ -3,7 +3,8 @@
 use vocabulary::Rng;
 
 /// Names of the faults.
-pub const KINDS: [&str; 7] = ["lost", "late", "damaged", "truncated", "doubled", "noise", "wrong_id"];
+pub const KINDS: [&str; 7] =
+    ["lost", "late", "damaged", "truncated", "doubled", "noise", "wrong_id"];
 /// Longest delay of a late answer, seconds.
 const LATE_MAX_S: f64 = 0.12;
 
@@ -49,7 +50,8 @@ impl Faults {
     /// Returns what becomes of an answer: its delay in seconds and its bytes, of which there may be none.
     pub(crate) fn pass(&mut self, good: Vec<u8>) -> (f64, Vec<u8>) {
         let happens = |rng: &mut Rng, chance: f64| chance > 0.0 && rng.uniform() < chance;
-        let Some(kind) = (0..KINDS.len()).find(|kind| happens(&mut self.rng, self.chances[*kind])) else {
+        let Some(kind) = (0..KINDS.len()).find(|kind| happens(&mut self.rng, self.chances[*kind]))
+        else {
             return (0.0, good);
         };
         self.made[kind] += 1;

@@ -1,10 +1,11 @@
-//! A simulated bus of servos like those of an SO-101, for tests without hardware. It shares no code with the driver: what
-//! both take from the manual is written down twice.
+//! A simulated bus of servos like those of an SO-101, for tests without hardware. It shares no code with the driver:
+//! what both take from the manual is written down twice.
 //!
-//! [`Bus`] lives in a time that the caller sets; the program `servo_bus` serves one behind a pseudo-terminal in real time.
+//! [`Bus`] lives in a time that the caller sets; the program `servo_bus` serves one behind a pseudo-terminal in real
+//! time.
 //! Modelled are registers with lock and power-off, a position loop with limits of speed and acceleration, obstacles,
-//! overload, heat, voltage, dead servos, other baud rates, and answers that are lost, late, damaged, truncated, doubled,
-//! preceded by noise, or another servo's. Not modelled are echo, inertia, backlash and firmware versions.
+//! overload, heat, voltage, dead servos, other baud rates, and answers that are lost, late, damaged, truncated,
+//! doubled, preceded by noise, or another servo's. Not modelled are echo, inertia, backlash and firmware versions.
 
 mod bus;
 mod faults;

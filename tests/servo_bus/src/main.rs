@@ -4,12 +4,16 @@
 //! servo_bus [--servos N] [--seed N] [--faults lost=0.02,late=0.02] [--calibration FILE]
 //! ```
 //!
-//! It prints the path of the terminal, and obeys lines of its input: `block ID` (the joint meets an obstacle where it is),
-//! `free ID`, `jaw ID STEPS` (an object stops it on the way down), `heat ID CELSIUS`, `volts ID VOLTS`, `dead ID`,
+//! It prints the path of the terminal, and obeys lines of its input: `block ID` (the joint meets an obstacle where it
+//! is), `free ID`, `jaw ID STEPS` (an object stops it on the way down), `heat ID CELSIUS`, `volts ID VOLTS`, `dead ID`,
 //! `alive ID`, `dip` (the supply of all is interrupted), `byte ID ADDRESS VALUE`, `faults KIND CHANCE`, `state` (prints
 //! JSON). It ends with its input.
 
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program for tests, whose answers are printed")]
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a program for tests, whose answers are printed"
+)]
 
 use std::error::Error;
 use std::io::{self, BufRead, Write};
@@ -40,7 +44,8 @@ fn run() -> Result<(), Box<dyn Error>> {
         terminal.serve(&mut bus)?;
         match lines.try_recv() {
             Ok(line) => {
-                let done = obey(&mut bus, &line).ok_or_else(|| format!("not understood: {line}"))?;
+                let done =
+                    obey(&mut bus, &line).ok_or_else(|| format!("not understood: {line}"))?;
                 if let Some(answer) = done {
                     println!("{answer}");
                     io::stdout().flush()?;
@@ -81,7 +86,8 @@ fn configured(mut arguments: impl Iterator<Item = String>) -> Result<Bus, Box<dy
         bus.faults.set(kind, chance.parse()?).ok_or_else(|| format!("unknown fault {kind}"))?;
     }
     if let Some(file) = calibration {
-        calibrate(&mut bus, &serde_json::from_str(&std::fs::read_to_string(file)?)?).ok_or("no calibration")?;
+        calibrate(&mut bus, &serde_json::from_str(&std::fs::read_to_string(file)?)?)
+            .ok_or("no calibration")?;
     }
     Ok(bus)
 }
@@ -90,7 +96,8 @@ fn configured(mut arguments: impl Iterator<Item = String>) -> Result<Bus, Box<dy
 fn calibrate(bus: &mut Bus, calibration: &Value) -> Option<()> {
     for of in calibration.as_object()?.values() {
         let number = |key: &str| of[key].as_i64();
-        let range = (u16::try_from(number("range_min")?).ok()?, u16::try_from(number("range_max")?).ok()?);
+        let range =
+            (u16::try_from(number("range_min")?).ok()?, u16::try_from(number("range_max")?).ok()?);
         let servo = bus.servo(u8::try_from(number("id")?).ok()?)?;
         servo.calibrate(i32::try_from(number("homing_offset")?).ok()?, range);
         servo.stand_at(0.5 * (f64::from(range.0) + f64::from(range.1)));
@@ -130,6 +137,6 @@ fn state(bus: &Bus) -> Value {
                 "torque": servo.byte(40), "torque_limit": servo.word(48), "errors": servo.errors(),
                 "range": [servo.saved_word(9), servo.saved_word(11)], "lock": servo.byte(55) })
     });
-    json!({ "now_s": bus.now_s(), "moved_s": bus.moved_s, "requests": bus.requests, "servos": servos.collect::<Vec<_>>(),
-            "faults": bus.faults.made })
+    json!({ "now_s": bus.now_s(), "moved_s": bus.moved_s, "requests": bus.requests,
+            "servos": servos.collect::<Vec<_>>(), "faults": bus.faults.made })
 }

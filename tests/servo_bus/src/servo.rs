@@ -177,7 +177,7 @@ impl Servo {
         }
         // Another goal, or switching it on, ends the protection.
         let switched = (address..address + data.len()).contains(&40) && self.holds();
-        if self.word(42) != goal || switched {
+        if self.protects && (self.word(42) != goal || switched) {
             (self.protects, self.overloaded_s) = (false, 0.0);
             self.registers[65] &= !OVERLOAD;
         }
@@ -186,9 +186,14 @@ impl Servo {
     /// Moves on by a few milliseconds.
     pub(crate) fn step(&mut self, dt: f64) {
         let limit = f64::from(self.word(48)) / 1000.0;
-        let limit = if self.protects { limit.min(f64::from(self.registers[34]) / 100.0) } else { limit };
+        let limit =
+            if self.protects { limit.min(f64::from(self.registers[34]) / 100.0) } else { limit };
         self.load = 0.0;
-        if self.holds() { self.follow(limit, dt) } else { self.fall(dt) }
+        if self.holds() {
+            self.follow(limit, dt)
+        } else {
+            self.fall(dt)
+        }
         self.protect(dt);
         self.measure();
     }
@@ -202,7 +207,8 @@ impl Servo {
             0 => FASTEST,
             limit => f64::from(limit).min(FASTEST),
         };
-        let acceleration = 100.0 * f64::from(if self.registers[41] == 0 { 254 } else { self.registers[41] });
+        let acceleration =
+            100.0 * f64::from(if self.registers[41] == 0 { 254 } else { self.registers[41] });
         let braking = (2.0 * acceleration * gap.abs()).sqrt();
         let wanted = (gap * GAIN).clamp(-top, top).clamp(-braking, braking);
         self.speed += (wanted - self.speed).clamp(-acceleration * dt, acceleration * dt);
@@ -238,7 +244,8 @@ impl Servo {
             (VOLTAGE, !supply.contains(&(10.0 * self.volts))),
         ];
         for (bit, is_so) in conditions {
-            self.registers[65] = if is_so { self.registers[65] | bit } else { self.registers[65] & !bit };
+            self.registers[65] =
+                if is_so { self.registers[65] | bit } else { self.registers[65] & !bit };
             if is_so && self.registers[19] & bit != 0 {
                 self.registers[40] = 0;
             }

@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// Longest time in which a stop has to be in every servo, seconds.
-const STOP_MAX_S: f64 = 0.1;
+/// Longest time in which a stop has to be in every servo among such faults, seconds. Without them it takes a cycle.
+const STOP_MAX_S: f64 = 0.3;
 
 /// Counts of a run.
 #[derive(Debug, Default)]
@@ -48,7 +48,11 @@ fn run(cycles: u32, chance: f64, seed: u64) -> Counts {
             counts.longest_s = counts.longest_s.max(rig.now_s() - accepted_s);
             accepted_s = rig.now_s();
             let sampled = rig.bus.borrow().sampled.clone();
-            let truths = layout.members.iter().zip(&sampled).map(|(member, steps)| member.value(i32::from(*steps)));
+            let truths = layout
+                .members
+                .iter()
+                .zip(&sampled)
+                .map(|(member, steps)| member.value(i32::from(*steps)));
             let off = reading.servos.iter().zip(truths).any(|(servo, truth)| servo.value != truth);
             counts.wrong += u32::from(off);
         }
@@ -73,9 +77,12 @@ fn run(cycles: u32, chance: f64, seed: u64) -> Counts {
 #[test]
 fn no_wrong_position_is_accepted_and_no_stop_is_missed_among_faults_of_answers() {
     let seed = servo_bus::seed();
-    let cycles = std::env::var("WHICHONE_CYCLES").ok().and_then(|n| n.parse().ok()).unwrap_or(10_000);
+    let cycles =
+        std::env::var("WHICHONE_CYCLES").ok().and_then(|n| n.parse().ok()).unwrap_or(10_000);
     let counts = run(cycles, 0.02, seed);
-    println!("{cycles} cycles, 2 % of each of 7 faults an answer and 2 % deaf servos a request, seed {seed}: {counts:?}");
+    println!(
+        "{cycles} cycles, 2 % of each of 7 faults an answer and 2 % deaf servos a request, seed {seed}: {counts:?}"
+    );
     assert_eq!((counts.wrong, counts.missed), (0, 0), "seed {seed}: {counts:?}");
     assert!(counts.readings > cycles / 8 && counts.stops > 90, "seed {seed}: {counts:?}");
 }
@@ -95,14 +102,22 @@ fn late_answer_is_not_taken_for_the_next_one() {
     rig.bus.borrow_mut().faults.set("late", 1.0).unwrap();
     rig.pass(None);
     rig.bus.borrow_mut().faults.set("late", 0.0).unwrap();
-    rig.bus.borrow_mut().servos[0].stand_at(2150.0);
+    {
+        // The joint is held 60 steps from where it was.
+        let mut bus = rig.bus.borrow_mut();
+        let jammed = bus.servos[0].actual + 60.0;
+        (bus.servos[0].actual, bus.servos[0].blocked) = (jammed, (jammed, jammed));
+    }
     for _ in 0..20 {
         rig.reading = None;
         rig.pass(None);
         let found = rig.reading.as_ref().filter(|reading| reading.is_plausible);
-        assert!(found.is_none_or(|reading| reading.servos[0].value != before), "an old position");
+        assert!(
+            found.is_none_or(|reading| reading.servos[0].value > before + 0.05),
+            "an old position"
+        );
     }
-    assert!(rig.driver.measured().posture.joints[0][0] > before + 0.02);
+    assert!(rig.driver.measured().posture.joints[0][0] > before + 0.05);
 }
 
 /// Readings are rejected as a whole: nothing that is not every answer in its order moves the driver.

@@ -43,7 +43,8 @@ fn object_is_held_for_five_minutes_without_overload() {
     assert_eq!(holding(&mut rig), Some(true));
     assert!(rig.faults.is_empty(), "{:?}", rig.faults);
     let bus = rig.bus.borrow();
-    assert_eq!((bus.servos[JAW].errors(), bus.servos[JAW].word(48)), (0, 200));
+    assert_eq!(bus.servos[JAW].errors(), 0);
+    assert!((185..=200).contains(&bus.servos[JAW].word(48)));
     let squeeze = bus.servos[JAW].shown() - f64::from(bus.servos[JAW].word(42));
     assert!((20.0..60.0).contains(&squeeze), "{squeeze} steps below the object");
 }

@@ -10,8 +10,8 @@ use std::io;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-use diagnostics::TextFile;
 use arm_driver::{ArmDriver, Command, Fault, Fingers, Grip, Posture, Start};
+use diagnostics::TextFile;
 use manipulation::{Joints, Limb, Robot};
 use messages::MotionInhibit;
 use service::{Span, Time};
@@ -104,7 +104,13 @@ fn settings() -> Feetech {
         openings: Vec::new(),
         speed_max_rad_s: 1.5,
         torque: Torques { joints_percent: 100.0, grip_percent: 40.0, hold_percent: 20.0 },
-        tolerances: Tolerances { path_rad: 0.15, goal_rad: 0.03, goal_time_s: 1.5, still_rad_s: 0.05, stale_s: 0.15 },
+        tolerances: Tolerances {
+            path_rad: 0.15,
+            goal_rad: 0.03,
+            goal_time_s: 1.5,
+            still_rad_s: 0.05,
+            stale_s: 0.15,
+        },
     }
 }
 
@@ -113,13 +119,18 @@ fn robot() -> Robot {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/robots/ur5e");
     let read = |ending: &str| std::fs::read_to_string(format!("{folder}.{ending}")).unwrap();
     let narrow = "\"-1.5\" upper=\"1.5\"";
-    let wide = ["6.283185307179586", "3.141592653589793"].map(|most| format!("\"-{most}\" upper=\"{most}\""));
+    let wide = ["6.283185307179586", "3.141592653589793"]
+        .map(|most| format!("\"-{most}\" upper=\"{most}\""));
     let urdf = wide.iter().fold(read("urdf"), |text, wide| text.replace(wide, narrow));
-    let postures = [("-2.0", "-1.4"), ("2.0", "1.4"), ("-1.8", "-1.4"), ("-1.5708", "-1.4"), ("1.5", "1.4")];
+    let postures =
+        [("-2.0", "-1.4"), ("2.0", "1.4"), ("-1.8", "-1.4"), ("-1.5708", "-1.4"), ("1.5", "1.4")];
     let value = |text: &str| format!("value=\"{text}\"");
-    let srdf = postures.iter().fold(read("srdf"), |text, (old, new)| text.replace(&value(old), &value(new)));
+    let srdf = postures
+        .iter()
+        .fold(read("srdf"), |text, (old, new)| text.replace(&value(old), &value(new)));
     let srdf = TextFile::new("ur5e.srdf", srdf);
-    let description = robot_model::Robot::read(&TextFile::new("ur5e.urdf", urdf), Some(&srdf)).unwrap();
+    let description =
+        robot_model::Robot::read(&TextFile::new("ur5e.urdf", urdf), Some(&srdf)).unwrap();
     Robot::from_description(&description).unwrap()
 }
 
@@ -156,7 +167,16 @@ impl Rig {
         let posture = Posture { joints: [[0.0; 7]; 2], width_m: [0.0; 2] };
         let start = Start { robot: &robot, limb: None, posture, holding: None };
         let driver = FeetechDriver::new(settings(), &start);
-        Self { bus, session, driver, told: Told::default(), reading: None, faults: Vec::new(), from: [0.0; 7], began_s: 0.0 }
+        Self {
+            bus,
+            session,
+            driver,
+            told: Told::default(),
+            reading: None,
+            faults: Vec::new(),
+            from: [0.0; 7],
+            began_s: 0.0,
+        }
     }
 
     fn session(bus: &Rc<RefCell<Bus>>) -> Result<Session<SimLine>, Ended> {
@@ -213,7 +233,12 @@ impl Rig {
     fn until_ready(&mut self, longest_s: f64) {
         let end_s = self.now_s() + longest_s;
         while self.driver.inhibit() != MotionInhibit::None {
-            assert!(self.now_s() < end_s, "not ready: {:?}, {:?}", self.driver.inhibit(), self.session.as_ref().err());
+            assert!(
+                self.now_s() < end_s,
+                "not ready: {:?}, {:?}",
+                self.driver.inhibit(),
+                self.session.as_ref().err()
+            );
             self.pass(None);
         }
         (self.from, self.began_s) = (self.driver.measured().posture.joints[0], self.now_s());
@@ -227,12 +252,13 @@ impl Rig {
         }
     }
 
-    /// All joints swing about where they were, by half a radian.
+    /// All joints swing about where they were, by 0.16 rad.
     fn swing(&self, fingers: Fingers) -> Command {
         let t_s = self.now_s() - self.began_s;
-        let (w, mut q) = (2.0, self.from);
-        q[..6].iter_mut().for_each(|q| *q += 0.4 * (w * t_s).sin());
-        let qd = [0.4 * w * (w * t_s).cos(); 7];
+        // Twice a second, from rest.
+        let (w, mut q) = (4.0 * std::f64::consts::PI, self.from);
+        q[..6].iter_mut().for_each(|q| *q += 0.08 * (1.0 - (w * t_s).cos()));
+        let qd = [0.08 * w * (w * t_s).sin(); 7];
         Command { limb: Limb::Only, q, qd, qdd: [0.0; 7], t_s, fingers }
     }
 

@@ -16,8 +16,8 @@ pub enum RobotVerb {
     Import(ImportArgs),
     /// Show the servos of the configured arm, calibrate them by its file, or switch them off, while no group uses them.
     ///
-    /// Without an option it prints position, supply, temperature and errors of each servo, and where its registers differ
-    /// from the calibration.
+    /// Without an option it prints position, supply, temperature and errors of each servo, and where its registers
+    /// differ from the calibration.
     Servos(ServosArgs),
 }
 
