@@ -58,6 +58,7 @@ mod ros2;
 mod sdk;
 mod sdk_bindings;
 mod second_user;
+mod servos;
 mod shortage;
 mod speech;
 mod spoken;

@@ -63,7 +63,7 @@ pub(crate) enum Executor {
 }
 
 /// Result of advancing in time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Progress {
     /// Still running.
     Under,

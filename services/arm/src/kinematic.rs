@@ -7,8 +7,9 @@ use manipulation::gripper::{self, Gripper};
 /// The driver that every arm has.
 pub(crate) static DRIVER: Driver = Driver {
     about: &config::KINEMATIC,
-    configure: |_| Ok(Configured::new(|start| Box::new(KinematicArm::at(start)))),
+    configure: |_, _| Ok(Configured::new(|start| Box::new(KinematicArm::at(start)))),
     connect: None,
+    examine: None,
 };
 
 /// Distance of a joint from the neutral posture that still counts as rest, radians.

@@ -139,6 +139,10 @@ impl ArmNode {
         );
         self.executor.stand();
         self.driver.hold_here();
+        // Neither the next order nor a part that works again moves it on.
+        if matches!(fault, Fault::Part { .. }) {
+            self.latch_stop(now, fx);
+        }
         if self.state.open_pick().is_some() {
             self.end(PickOutcome::Blocked, now, fx);
         } else {

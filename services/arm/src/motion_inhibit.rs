@@ -79,7 +79,8 @@ fn log(inhibit: MotionInhibit) {
         ),
         MotionInhibit::Unheard => (
             "no messages from the robot, or from a part of it",
-            "start the robot's bridge or whichone-baxter; with one gripper only, set arm.limb",
+            "a Baxter: start its bridge or whichone-baxter, and with one gripper only set arm.limb; \
+             servos: whichone robot servos",
         ),
         MotionInhibit::Stale => (
             "joint states are stale; halting",

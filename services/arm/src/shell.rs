@@ -42,7 +42,7 @@ impl<D: Drivers> Program for ArmProgram<D> {
         let setup = ArmSetup::new(settings)?;
         Ok(Config {
             arm: settings.arm.clone(),
-            driver: (driver::<D>(settings)?.configure)(settings)?,
+            driver: (driver::<D>(settings)?.configure)(settings, &setup.robot)?,
             setup,
             scene: settings.scene.clone(),
             perceives: settings.group.perception.enabled,
@@ -75,6 +75,14 @@ impl<D: Drivers> Program for ArmProgram<D> {
 fn driver<D: Drivers>(settings: &Settings) -> Result<&'static Driver, Diagnostics> {
     let others = D::LIST.iter().copied();
     arm_driver::named(std::iter::once(&kinematic::DRIVER).chain(others), settings)
+}
+
+/// The way to the robot, if the driver moves one.
+fn connected<D: Drivers>(context: &Context<'_, In<'static>>) -> Result<Option<Box<dyn Port>>, Failure> {
+    let settings = context.settings;
+    let Some(connect) = driver::<D>(settings)?.connect else { return Ok(None) };
+    let setup = ArmSetup::new(settings)?;
+    connect(context.bus, settings, &setup.robot).map(Some)
 }
 
 /// The arm's topics and its planner.
@@ -115,11 +123,10 @@ impl<D> ArmShell<D> {
 
 impl<D: Drivers> Shell<ArmNode> for ArmShell<D> {
     fn open(context: &Context<'_, In<'static>>) -> Result<Self, Failure> {
+        let robot = connected::<D>(context)?;
         let (bus, paths) = (context.bus, &context.environment.paths);
         let perceives = context.settings.group.perception.enabled;
         let table = perceives.then(|| bus.encoded_reader(&topics::OBJECTS));
-        let connect = driver::<D>(context.settings)?.connect;
-        let robot = connect.map(|connect| connect(bus, context.settings));
         let stop_failure = |error| Failure::file(&paths.stop_socket(), &error);
         Ok(Self {
             acts: bus.reader(&topics::ACT)?,
@@ -133,7 +140,7 @@ impl<D: Drivers> Shell<ArmNode> for ArmShell<D> {
             passed: Time(0),
             planner: PlannerThread::start(context.devices.clone())
                 .map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?,
-            robot: robot.transpose()?,
+            robot,
             drivers: PhantomData,
             table: table.transpose()?,
         })

@@ -2,19 +2,14 @@
 
 use manipulation::Limb;
 
-/// A motion that the robot did not carry out as commanded.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+/// A motion that the robot did not carry out as commanded, or a part of it that protects itself.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
     /// A joint left the path: an obstacle, or the robot is slower than it should be.
-    #[error(
-        "{limb}_{joint} is {error_rad:.3} rad from its path, {tolerance_rad:.3} at most \
-         ({setting})"
-    )]
+    #[error("{joint} is {error_rad:.3} rad from its path, {tolerance_rad:.3} at most ({setting})")]
     Path {
-        /// The limb.
-        limb: Limb,
-        /// The joint without its limb, e.g. `s0`.
-        joint: &'static str,
+        /// Its name in the robot's description.
+        joint: String,
         /// Deviation, radians.
         error_rad: f64,
         /// The bound, radians.
@@ -24,14 +19,12 @@ pub enum Fault {
     },
     /// A joint did not reach its goal.
     #[error(
-        "{limb}_{joint} is {error_rad:.4} rad from its goal {late_s:.1} s after it should be \
-         there, {tolerance_rad:.4} at most ({settings})"
+        "{joint} is {error_rad:.4} rad from its goal {late_s:.1} s after it should be there, {tolerance_rad:.4} at \
+         most ({settings})"
     )]
     Goal {
-        /// The limb.
-        limb: Limb,
-        /// The joint without its limb.
-        joint: &'static str,
+        /// Its name in the robot's description.
+        joint: String,
         /// Deviation, radians.
         error_rad: f64,
         /// The bound, radians.
@@ -56,5 +49,13 @@ pub enum Fault {
         limb: Limb,
         /// Their delay, seconds.
         late_s: f64,
+    },
+    /// A part of the robot protects itself or is lost. It latches the motion stop.
+    #[error("{part}: {reason}")]
+    Part {
+        /// The joint, or another part.
+        part: String,
+        /// Its condition.
+        reason: String,
     },
 }

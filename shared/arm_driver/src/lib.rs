@@ -12,4 +12,4 @@ mod registration;
 pub use driver::ArmDriver;
 pub use fault::Fault;
 pub use motion::{Command, Fingers, Grip, Measured, Posture, Source};
-pub use registration::{Configured, Connect, Driver, Drivers, Port, Start, named};
+pub use registration::{Configured, Connect, Driver, Drivers, Examine, Port, Start, named};

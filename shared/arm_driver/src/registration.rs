@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use config::Settings;
-use diagnostics::Diagnostics;
+use diagnostics::{Diagnostic, Diagnostics};
 use manipulation::{Limb, Robot};
 use messages::robot::{Order, Report};
 use runtime::bus::{Bus, PortError};
@@ -17,20 +17,25 @@ use crate::{ArmDriver, Posture};
 pub struct Driver {
     /// Its name in `arm.driver`, its sections and the facts by which a configuration is checked.
     pub about: &'static config::Driver,
-    /// Reads its settings.
+    /// Reads its settings for a robot.
     ///
     /// # Errors
     /// Every problem at once; there are none in a configuration that was checked by a program that knows the driver.
-    pub configure: fn(&Settings) -> Result<Configured, Diagnostics>,
+    pub configure: fn(&Settings, &Robot) -> Result<Configured, Diagnostics>,
     /// The way to the robot; `None` for a model, which has no robot.
     pub connect: Option<Connect>,
+    /// Looks for what the driver needs on this machine, such as devices; `None` if it needs nothing.
+    pub examine: Option<Examine>,
 }
 
 /// Opens the way to the robot: topics of the group, or what the driver's settings name.
 ///
 /// # Errors
 /// Topics or devices that cannot be opened.
-pub type Connect = fn(&Bus, &Settings) -> Result<Box<dyn Port>, Failure>;
+pub type Connect = fn(&Bus, &Settings, &Robot) -> Result<Box<dyn Port>, Failure>;
+
+/// Returns everything that is missing, for `whichone check`.
+pub type Examine = fn(&Settings, &Robot) -> Vec<Diagnostic>;
 
 /// The drivers of a program that moves an arm.
 pub trait Drivers: 'static {

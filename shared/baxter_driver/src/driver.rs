@@ -6,7 +6,7 @@
 //! limb that hears none for 0.2 s takes over the position that it happens to have.
 
 use arm_driver::{ArmDriver, Command, Fault, Fingers, Measured, Source, Start};
-use manipulation::{JOINTS, Joints, Limb, PositionLimits, Robot};
+use manipulation::{Joints, Limb, PositionLimits, Robot};
 use messages::MotionInhibit;
 use messages::robot::{
     AssemblyState, JointCommand, JointMode, JointState, JointTrajectoryPoint, Order, Report,
@@ -175,6 +175,15 @@ impl BaxterDriver {
         matches!(self.inhibit, None | Stale | Gripper | Calibrating)
     }
 
+    /// The joint of a limb that is furthest from a posture, and how far, radians.
+    fn furthest(&self, limb: Limb, from: &Joints) -> (usize, f64) {
+        furthest(from, &self.measured_of(limb))
+    }
+
+    fn joint(&self, limb: Limb, place: usize) -> String {
+        self.robot.arm(limb).joint_names.get(place).cloned().unwrap_or_default()
+    }
+
     fn measured_of(&self, limb: Limb) -> Joints {
         self.measured.posture.joints[limb]
     }
@@ -309,17 +318,17 @@ impl ArmDriver for BaxterDriver {
     fn fault(&self) -> Option<Fault> {
         self.robot.limbs().iter().copied().find_map(|limb| {
             let set = &self.limbs[limb];
-            let (joint, error_rad) = furthest(&set.q?, &self.measured_of(limb));
+            let (joint, error_rad) = self.furthest(limb, &set.q?);
             let tolerance_rad = self.settings.path_tolerance_rad;
             let left = set.moved && error_rad > tolerance_rad;
             let setting = "arm.baxter.path_tolerance_rad";
-            left.then_some(Fault::Path { limb, joint, error_rad, tolerance_rad, setting })
+            left.then(|| Fault::Path { joint: self.joint(limb, joint), error_rad, tolerance_rad, setting })
         })
     }
 
     fn has_arrived(&mut self, command: &Command, late_s: f64) -> Result<bool, Fault> {
         let limb = command.limb;
-        let (joint, error_rad) = furthest(&command.q, &self.measured_of(limb));
+        let (joint, error_rad) = self.furthest(limb, &command.q);
         let tolerance_rad = self.settings.goal_tolerance_rad;
         let velocity = &self.measured.velocity[limb];
         let still = velocity.iter().all(|v| v.abs() < self.settings.still_rad_s);
@@ -329,7 +338,8 @@ impl ArmDriver for BaxterDriver {
         self.limbs[limb].arrived = there.then_some(command.q);
         if !there && late_s > self.settings.goal_time_s {
             let settings = "arm.baxter.goal_tolerance_rad, goal_time_s";
-            return Err(Fault::Goal { limb, joint, error_rad, tolerance_rad, late_s, settings });
+            let joint = self.joint(limb, joint);
+            return Err(Fault::Goal { joint, error_rad, tolerance_rad, late_s, settings });
         }
         let gripper = &self.grippers[limb];
         let done = command.fingers == Fingers::Stay || gripper.has_settled(self.now);
@@ -360,11 +370,10 @@ impl ArmDriver for BaxterDriver {
     }
 }
 
-/// Returns the joint at which two postures differ most, and by how much, radians.
-fn furthest(a: &Joints, b: &Joints) -> (&'static str, f64) {
-    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
-    let named = JOINTS.into_iter().zip(differences);
-    named.max_by(|(_, x), (_, y)| x.total_cmp(y)).unwrap_or(("", 0.0))
+/// Returns the place of the joint at which two postures differ most, and by how much, radians.
+fn furthest(a: &Joints, b: &Joints) -> (usize, f64) {
+    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs()).enumerate();
+    differences.max_by(|(_, x), (_, y)| x.total_cmp(y)).unwrap_or((0, 0.0))
 }
 
 /// Returns the posture with joints on their limits that are measured a little beyond them.

@@ -12,6 +12,7 @@ pub use settings::Baxter;
 
 use arm_driver::{Configured, Driver};
 use config::{Registered, Settings};
+use manipulation::Robot;
 
 /// The driver `baxter`.
 pub static DRIVER: Driver = Driver {
@@ -21,9 +22,10 @@ pub static DRIVER: Driver = Driver {
         needs: None,
         sections: &[Registered::of::<Baxter>()],
     },
-    configure: |settings: &Settings| {
+    configure: |settings: &Settings, _: &Robot| {
         let own: Baxter = settings.part()?;
         Ok(Configured::new(move |start| Box::new(BaxterDriver::new(own, start))))
     },
     connect: Some(topics::connect),
+    examine: None,
 };

@@ -197,7 +197,7 @@ fn baxter_driver_reports_a_joint_off_its_path() {
     bench.pass(Some(bench.moving(0.3, Fingers::Stay)));
     bench.driver.begin_pass(bench.now, [true; 2]);
     let fault = bench.driver.fault().unwrap();
-    assert!(matches!(fault, Fault::Path { joint: "e1", .. }), "{fault}");
+    assert!(matches!(&fault, Fault::Path { joint, .. } if joint == "left_e1"), "{fault}");
     bench.driver.hold_here();
     bench.pass(None);
     assert_eq!(bench.driver.fault(), None);
@@ -221,7 +221,8 @@ fn baxter_driver_reports_a_goal_reached_or_late() {
     assert_eq!(bench.driver.has_arrived(&near, 0.0), Ok(true));
     let far = bench.moving(0.01, Fingers::Stay);
     assert_eq!(bench.driver.has_arrived(&far, 0.9), Ok(false));
-    assert!(matches!(bench.driver.has_arrived(&far, 1.1), Err(Fault::Goal { joint: "e1", .. })));
+    let late = bench.driver.has_arrived(&far, 1.1);
+    assert!(matches!(&late, Err(Fault::Goal { joint, .. }) if joint == "left_e1"), "{late:?}");
 }
 
 #[test]

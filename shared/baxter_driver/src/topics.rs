@@ -2,6 +2,7 @@
 
 use arm_driver::Port;
 use config::Settings;
+use manipulation::Robot;
 use messages::robot::{
     AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, JointCommand,
     JointState, JointTrajectoryPoint, Order, Report, SpeedRatio,
@@ -25,7 +26,7 @@ struct RobotTopics {
 }
 
 /// Opens the topics.
-pub(crate) fn connect(bus: &Bus, _: &Settings) -> Result<Box<dyn Port>, Failure> {
+pub(crate) fn connect(bus: &Bus, _: &Settings, _: &Robot) -> Result<Box<dyn Port>, Failure> {
     Ok(Box::new(RobotTopics {
         joints: bus.reader(&robot::JOINT_STATES)?,
         assembly: bus.reader(&robot::STATE)?,

@@ -7,7 +7,8 @@ use arm_driver::{Driver, Drivers};
 pub struct Shipped;
 
 impl Drivers for Shipped {
-    const LIST: &'static [&'static Driver] = &[&baxter_driver::DRIVER, &trajectory_driver::DRIVER];
+    const LIST: &'static [&'static Driver] =
+        &[&baxter_driver::DRIVER, &feetech_driver::DRIVER, &trajectory_driver::DRIVER];
 }
 
 /// The same for a program that loads configurations.

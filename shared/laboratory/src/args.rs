@@ -13,5 +13,5 @@ pub use batch::{ArmArgs, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm}
 pub use conform::ConformArgs;
 pub use export::{ExportVerb, McapArgs, PomdpArgs};
 pub use replay::ReplayArgs;
-pub use robot::{ImportArgs, RobotVerb};
+pub use robot::{ImportArgs, RobotVerb, ServosArgs};
 pub use study::{ALL, Preset, ReportArgs, StudyArgs, StudyVerb};

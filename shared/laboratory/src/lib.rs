@@ -22,6 +22,7 @@ mod export;
 mod planning;
 mod replay;
 mod robot;
+mod servos;
 mod study;
 
 pub use conform::conform;
@@ -58,7 +59,7 @@ pub enum Verb {
         #[command(subcommand)]
         what: ArmVerb,
     },
-    /// Bring in a robot that others have described.
+    /// Bring in a robot that others have described, or look after the servos of one.
     Robot {
         /// Action.
         #[command(subcommand)]
@@ -98,6 +99,7 @@ pub fn run(
         },
         Verb::Arm { what: ArmVerb::Plot(args) } => arm::plot(&args, out),
         Verb::Robot { what: RobotVerb::Import(args) } => robot::import(&args, out),
+        Verb::Robot { what: RobotVerb::Servos(args) } => servos::servos(&args, out),
         Verb::Fk(args) => batch::fk(&described_arm(&args)?, batch::open(&args.input)?, out),
         Verb::Ik(args) => {
             let chain = described_arm(&args)?.chain()?;

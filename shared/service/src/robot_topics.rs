@@ -85,6 +85,7 @@ impl RobotSide {
             Report::Endpoint(limb, state) => self.endpoints[*limb].send(state),
             Report::Gripper(limb, state) => self.grippers[*limb].send(state),
             Report::Properties(limb, own) => self.properties[*limb].send(own),
+            // It has no topic.
             Report::Own(_) => Ok(()),
         }
     }

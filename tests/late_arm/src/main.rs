@@ -32,11 +32,12 @@ static LATE: Driver = Driver {
         needs: None,
         sections: &[Registered::of::<Settings>()],
     },
-    configure: |settings| {
+    configure: |settings, _| {
         let Settings { delay } = settings.part()?;
         Ok(Configured::new(move |start| Box::new(LateArm::new(KinematicArm::at(start), delay))))
     },
     connect: None,
+    examine: None,
 };
 
 /// `[late]` of `arm.toml`.

@@ -6,7 +6,9 @@ use command_line::Outcome;
 use command_line::configuration;
 use command_line::output::{Ink, Output, note, table};
 use config::{Examined, ServiceConfig, Settings};
+use arm_driver::Drivers;
 use diagnostics::{Diagnostic, Diagnostics};
+use drivers::Shipped;
 use language::word_findings;
 use preflight::ArmSetup;
 use scene::Scene;
@@ -24,6 +26,8 @@ pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
     let mut examined = preflight::examine(&folder, profile, &args.config.set, None);
     let missing = examined.settings.iter().flat_map(|settings| missing_programs(settings, &folder));
     missing.for_each(|problem| examined.report.add(problem));
+    let unmet = examined.settings.as_ref().filter(|_| examined.arm_is_right).map(unmet_by_robot);
+    unmet.into_iter().flatten().for_each(|problem| examined.report.add(problem));
     verdict(examined, &folder, args.values, out)
 }
 
@@ -83,6 +87,15 @@ fn missing_programs(settings: &Settings, folder: &Path) -> Vec<Diagnostic> {
         Some(settings.diagnostic(&key, error.to_string(), help))
     };
     settings.group.services.iter().filter_map(missing).collect()
+}
+
+/// What the driver of the arm needs, of the robot and of this machine. Programs of others have drivers of their own.
+fn unmet_by_robot(settings: &Settings) -> Vec<Diagnostic> {
+    let driver = Shipped::LIST.iter().find(|driver| driver.about.name == settings.arm.driver);
+    let Some((driver, setup)) = driver.zip(ArmSetup::new(settings).ok()) else { return Vec::new() };
+    let wrong = (driver.configure)(settings, &setup.robot).err();
+    let wrong = wrong.iter().flat_map(Diagnostics::iter).cloned();
+    wrong.chain(driver.examine.iter().flat_map(|examine| examine(settings, &setup.robot))).collect()
 }
 
 fn refused(problems: &Diagnostics, out: &mut Output<'_>) -> Outcome {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use command_line::args::ConfigArgs;
 
 /// What `robot` does.
 #[derive(Debug, Subcommand)]
@@ -13,6 +14,25 @@ pub enum RobotVerb {
     /// arm and gripper are found by structure. Prints what was chosen, assumed and is missing; asks nothing.
     /// Writes robots/NAME.urdf, robots/NAME.srdf, scenes/NAME-blocks.toml and profiles/NAME.toml, and checks them.
     Import(ImportArgs),
+    /// Show the servos of the configured arm, calibrate them by its file, or switch them off, while no group uses them.
+    ///
+    /// Without an option it prints position, supply, temperature and errors of each servo, and where its registers
+    /// differ from the calibration.
+    Servos(ServosArgs),
+}
+
+/// Arguments of `robot servos`.
+#[derive(Debug, Args)]
+pub struct ServosArgs {
+    /// The configuration.
+    #[command(flatten)]
+    pub config: ConfigArgs,
+    /// Write the calibration file to the servos, where it outlasts a loss of power. They must not hold.
+    #[arg(long, conflicts_with = "release")]
+    pub write_calibration: bool,
+    /// Switch every servo off. The arm falls: support it.
+    #[arg(long)]
+    pub release: bool,
 }
 
 /// Arguments of `robot import`.

@@ -21,7 +21,7 @@ pub enum Report<'a> {
     Gripper(usize, MessageRef<'a, EndEffectorState>),
     /// `end_effector/<limb>_gripper/properties`.
     Properties(usize, MessageRef<'a, EndEffectorProperties>),
-    /// A report of a robot with messages of its own, which its driver encodes and reads.
+    /// A report that a driver's own port makes, in an encoding that only that driver reads.
     Own(Vec<u8>),
 }
 
@@ -36,6 +36,6 @@ pub enum Order<'a> {
     SpeedRatio(usize, SpeedRatio),
     /// `end_effector/<limb>_gripper/command`.
     Gripper(usize, MessageRef<'a, EndEffectorCommand>),
-    /// An order to a robot with messages of its own.
+    /// An order that only the driver's own port reads.
     Own(Vec<u8>),
 }
