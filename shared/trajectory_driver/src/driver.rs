@@ -4,7 +4,7 @@
 mod sequence;
 
 use arm_driver::{ArmDriver, Command, Fault, Fingers, Measured, Source, Start};
-use manipulation::{JOINTS, Joints, Limb, Robot, Trajectory};
+use manipulation::{Joints, Limb, Robot, Trajectory};
 use messages::MotionInhibit;
 use messages::robot::{Order, Report};
 use serde::{Deserialize, Serialize};
@@ -81,6 +81,14 @@ impl TrajectoryDriver {
             fresh: false,
         };
         Self { settings, robot: robot.clone(), limb, measured, state }
+    }
+
+    /// The joint that is measured furthest from a posture, and its distance, radians.
+    fn furthest(&self, from: &Joints) -> (String, f64) {
+        let measured = self.measured.posture.joints[self.limb];
+        let distances = from.iter().zip(measured).map(|(a, b)| (a - b).abs());
+        let named = self.robot.arm(self.limb).joint_names.iter().cloned().zip(distances);
+        named.max_by(|(_, x), (_, y)| x.total_cmp(y)).unwrap_or_default()
     }
 
     fn joints(&self) -> usize {
@@ -172,7 +180,7 @@ impl TrajectoryDriver {
     }
 
     fn begins_here(&self, motion: &Trajectory) -> bool {
-        let (_, off) = furthest(&motion.start(), &self.measured.posture.joints[self.limb]);
+        let (_, off) = self.furthest(&motion.start());
         off <= 4.0 * self.settings.goal_tolerance_rad
     }
 
@@ -292,12 +300,10 @@ impl ArmDriver for TrajectoryDriver {
             let why = "has not accepted a motion within 1 s; help: look at its log";
             return Some(Fault::Controller { limb, why });
         }
-        let (joint, error_rad) =
-            furthest(&self.state.commanded?, &self.measured.posture.joints[limb]);
+        let (joint, error_rad) = self.furthest(&self.state.commanded?);
         let tolerance_rad = self.settings.path_tolerance_rad;
         let setting = "arm.trajectory.path_tolerance_rad";
         (error_rad > tolerance_rad).then_some(Fault::Path {
-            limb,
             joint,
             error_rad,
             tolerance_rad,
@@ -307,7 +313,7 @@ impl ArmDriver for TrajectoryDriver {
 
     fn has_arrived(&mut self, command: &Command, late_s: f64) -> Result<bool, Fault> {
         let limb = command.limb;
-        let (joint, error_rad) = furthest(&command.q, &self.measured.posture.joints[limb]);
+        let (joint, error_rad) = self.furthest(&command.q);
         let tolerance_rad = self.settings.goal_tolerance_rad;
         let measured_there = error_rad <= tolerance_rad && self.velocity_is_low();
         let there = measured_there && self.is_confirmed();
@@ -318,7 +324,7 @@ impl ArmDriver for TrajectoryDriver {
             return Err(Fault::Controller { limb, why });
         } else if late_s > self.settings.goal_time_s {
             let settings = "arm.trajectory.goal_tolerance_rad, goal_time_s";
-            return Err(Fault::Goal { limb, joint, error_rad, tolerance_rad, late_s, settings });
+            return Err(Fault::Goal { joint, error_rad, tolerance_rad, late_s, settings });
         }
         if command.fingers == Fingers::Stay {
             return Ok(there);
@@ -386,11 +392,4 @@ fn log(condition: Condition) {
             "another client moves the arm; help: end its goal, which the bridge's log names"
         ),
     }
-}
-
-/// Returns the joint at which two postures differ most, and by how much, radians.
-fn furthest(a: &Joints, b: &Joints) -> (&'static str, f64) {
-    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
-    let named = JOINTS.into_iter().zip(differences);
-    named.max_by(|(_, x), (_, y)| x.total_cmp(y)).unwrap_or(("", 0.0))
 }

@@ -36,12 +36,13 @@ pub static DRIVER: Driver = Driver {
         needs: if cfg!(feature = "dds") { None } else { Some("dds") },
         sections: &[Registered::of::<Controllers>()],
     },
-    configure: |settings: &Settings| {
+    configure: |settings: &Settings, _| {
         let own: Controllers = settings.part()?;
         joint_names(settings, &own)?;
         Ok(Configured::new(move |start| Box::new(TrajectoryDriver::new(own.clone(), start))))
     },
     connect: Some(port::connect),
+    examine: None,
 };
 
 /// Returns the controller's names of the joints of the limb that fetches, shoulder first.

@@ -2,6 +2,7 @@
 
 use arm_driver::Port;
 use config::Settings;
+use manipulation::Robot;
 use messages::robot::{Order, Report};
 use service::bus::{Bus, EncodedReader, EncodedWriter, PortError};
 use service::exit::Failure;
@@ -15,7 +16,7 @@ struct BridgeTopics {
 }
 
 /// Opens the topics.
-pub(crate) fn connect(bus: &Bus, _: &Settings) -> Result<Box<dyn Port>, Failure> {
+pub(crate) fn connect(bus: &Bus, _: &Settings, _: &Robot) -> Result<Box<dyn Port>, Failure> {
     let (orders, reports) = (bus.encoded_writer(&ORDERS)?, bus.encoded_reader(&REPORTS)?);
     Ok(Box::new(BridgeTopics { orders, reports }))
 }
