@@ -13,8 +13,8 @@ pub enum Attribution {
     Mixture,
     /// It counts for the latest question that had been said when it began.
     Onset,
-    /// It counts for the question that is pending when the recogniser's result arrives. What naive
-    /// systems do; kept to be compared with.
+    /// Assigns the utterance to the question pending when the recogniser's result arrives, as naive
+    /// systems do; kept for comparison.
     Naive,
 }
 

@@ -1,14 +1,12 @@
-//! Seconds of single actions, where they were measured: what a question costs on this robot, in
-//! this scene.
+//! Measured durations of single actions, seconds, for this robot and scene.
 
 use scene::{ObjectId, Perceived, Question, Scene};
 use serde::{Deserialize, Serialize};
 
 use crate::{Action, Fault};
 
-/// Seconds that single actions take. A list that is empty was not measured: these questions cost
-/// what [`Costs`](crate::Costs) says of all of their kind, which is the special case in which all
-/// entries of a list are the same.
+/// Seconds that single actions take. An empty list was not measured: its questions have the cost
+/// that [`Costs`](crate::Costs) gives for their kind, as if all entries were equal.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Durations {
@@ -54,8 +52,8 @@ impl Durations {
         }
     }
 
-    /// Everything that does not fit the scene, or is no amount of seconds; empty if planners can
-    /// use it.
+    /// Returns a fault for each entry that does not fit the scene or is not a duration in seconds;
+    /// empty if planners can use the durations.
     pub fn check(&self, scene: &Scene) -> Vec<Fault> {
         let fits = |len: usize, of: usize| len == 0 || len == of;
         let values = |k: usize| scene.attributes()[k].values.len();

@@ -1,5 +1,5 @@
-//! Identifiers of the dialogue. Each is assigned once, by the service that owns it, and made durable
-//! before its first use, so that a restart never assigns one twice.
+//! Identifiers of the dialogue. Each is assigned once, by the service that owns it, and made
+//! durable before its first use, so that a restart never assigns one twice.
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ macro_rules! id {
         pub struct $name(pub u64);
 
         impl $name {
-            /// Returns the identifier that follows.
+            /// Returns the next identifier.
             #[must_use]
             pub fn next(self) -> Self {
                 Self(self.0.saturating_add(1))
@@ -54,7 +54,7 @@ id! {
 pub struct PickId {
     /// The interaction that decided it.
     pub interaction: InteractionId,
-    /// 1 for the first order. Another follows only where the previous one ended without a grasp,
+    /// 1 for the first order. Another follows only if the previous one ended without a grasp,
     /// because the scene changed or the user wants another object, or to put an object back.
     pub attempt: u32,
 }

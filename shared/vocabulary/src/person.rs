@@ -1,4 +1,4 @@
-//! Names that people give themselves.
+//! Names by which users introduce themselves.
 
 use std::fmt;
 
@@ -16,12 +16,12 @@ const GUEST: &str = "guest";
 #[serde(transparent)]
 pub struct PersonId(String);
 
-/// What is learned about people who give their name.
+/// Settings of learning about users who give their name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Acquaintance {
     /// Whether anything is.
     pub learns: bool,
-    /// Deliveries to a person from which on the prior over objects is by what they had fetched.
+    /// Deliveries to a person after which the prior over objects follows that person's deliveries.
     pub prior_from: u64,
 }
 
@@ -35,7 +35,7 @@ impl Default for Acquaintance {
 /// A text that is not the name of a person.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotAPerson {
-    /// It has so many bytes.
+    /// The name is too long: its length in bytes.
     TooLong(usize),
     /// It has a character that is not printed, or that changes how others are.
     NotPrintable(char),

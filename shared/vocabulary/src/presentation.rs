@@ -17,9 +17,9 @@ pub struct Presentation {
     pub question: Question,
     /// Key of the scene whose objects and attributes the question is about.
     pub scene: u64,
-    /// When its sound began.
+    /// Begin of the prompt's sound.
     pub began: Time,
-    /// When its sound ended or was interrupted; none while it lasts.
+    /// End or interruption of the prompt's sound; `None` while it plays.
     pub ended: Option<Time>,
     /// Whether it was said to its end.
     pub complete: bool,

@@ -7,7 +7,7 @@ pub struct Prior {
     pub objects: PriorObjects,
     /// Weight of each object in the Dirichlet distribution, in deliveries.
     pub smoothing: f64,
-    /// Probability that the wanted object is not here; 0 where that is not considered.
+    /// Probability that the wanted object is absent; 0 if absence is not considered.
     pub absent: f64,
 }
 
@@ -16,6 +16,6 @@ pub struct Prior {
 pub enum PriorObjects {
     /// All alike, as in the paper.
     Uniform,
-    /// Those delivered more often.
+    /// Objects delivered more often are likelier.
     History,
 }
