@@ -32,8 +32,8 @@ pub(crate) struct ByPlace {
 }
 
 impl Scene {
-    /// Returns the scene with an attribute of places where some objects have all other values in common, as the viewer
-    /// sees them; a scene whose objects are replaced has it anew. Without such objects nothing changes.
+    /// Returns the scene with an attribute of places, as the viewer sees them, if some objects
+    /// share all other values; otherwise the scene as it is. Replacing objects computes it again.
     #[must_use]
     pub fn by_place(mut self, view: View) -> Self {
         self.places = Some(ByPlace { view, words: self.words().len() });

@@ -3,7 +3,7 @@
 use crate::wording::{ASK_WHICH, ASK_YES_NO};
 use crate::{Role, Value};
 
-/// Words that stand for "the".
+/// Words that are determiners, as "the".
 const DETERMINERS: &[&str] =
     &["the", "my", "your", "his", "her", "its", "our", "their", "this", "that"];
 /// Owners in general: "the men's shoe".
@@ -56,7 +56,7 @@ fn is_determiner(word: &str) -> bool {
     DETERMINERS.iter().any(|it| word.eq_ignore_ascii_case(it))
 }
 
-/// "anna" of "anna's"; none of "men's".
+/// Returns the owner in a possessive: "anna" for "anna's"; `None` for "men's".
 fn owner(word: &str) -> Option<&str> {
     let owner = ["'s", "\u{2019}s"].iter().find_map(|ending| word.strip_suffix(ending))?;
     let is_one = !owner.is_empty() && !owner.contains(' ');

@@ -32,8 +32,8 @@ pub struct Object {
     pub name: String,
     /// The number under which it was perceived; none for an object of the scene file.
     pub number: Option<ObjectId>,
-    /// Value per attribute, in the scene's attribute order; an object may lack one. Of a value that is
-    /// in doubt it is the likeliest.
+    /// Value per attribute, in the scene's attribute order; an object may lack one. Of a value that
+    /// is in doubt it is the likeliest.
     pub values: Vec<Option<ValueId>>,
     /// Per attribute the probability of each value, where it is in doubt; empty if nothing is.
     pub chances: Vec<Option<Vec<f64>>>,
@@ -54,7 +54,7 @@ pub struct Placement {
     pub size: [f64; 3],
     /// Width that the gripper closes on, metres.
     pub grasp_width: f64,
-    /// Mass, kilograms, where it is known: the gripper may be too weak.
+    /// Mass, kilograms, if known: the gripper may be too weak.
     pub mass_kg: Option<f64>,
     /// Slope of a wall that is gripped at its rim, degrees from the vertical, outwards.
     pub wall_deg: f64,
@@ -65,10 +65,10 @@ pub struct Placement {
 /// Form of an object, as far as it decides how the fingers take it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Form {
-    /// The fingers span it.
+    /// Solid body that the fingers span.
     #[default]
     Solid,
-    /// A bowl, cup or box without a lid: where it is wider than the fingers open, they take its rim.
+    /// A bowl, cup or box without a lid: if it is wider than the fingers open, they take its rim.
     Hollow,
 }
 
@@ -107,7 +107,7 @@ pub struct Value {
     pub name: String,
     /// Other words and phrases for it, lower case.
     pub synonyms: Vec<String>,
-    /// Its form in questions, e.g. `in the dishwasher`; the name by default.
+    /// Form of the value in questions, e.g. `in the dishwasher`; the name by default.
     pub spoken: String,
     /// The same string in `V`.
     pub word: WordId,
@@ -157,7 +157,7 @@ struct Vocabularies {
 }
 
 impl Scene {
-    /// Puts checked parts together and computes what is looked up often.
+    /// Puts checked parts together and precomputes frequent look-ups.
     pub(crate) fn assemble(
         name: String,
         noun: String,
@@ -214,12 +214,12 @@ impl Scene {
         self.key
     }
 
-    /// The object of that name.
+    /// Returns the object of the given name.
     pub fn object_named(&self, name: &str) -> Option<ObjectId> {
         self.names.objects.get(name).copied()
     }
 
-    /// The attribute of that name.
+    /// Returns the attribute of the given name.
     pub fn attribute_named(&self, name: &str) -> Option<AttributeId> {
         self.names.attributes.get(name).copied()
     }

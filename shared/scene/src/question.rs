@@ -21,7 +21,7 @@ pub enum Question {
 }
 
 impl Question {
-    /// The attribute that it asks about.
+    /// Returns the attribute that the question asks about.
     pub fn attribute(self) -> Option<AttributeId> {
         match self {
             Self::Attribute(k, _) | Self::Which(k) | Self::Choice(k, _) => Some(k),

@@ -1,5 +1,5 @@
-//! Truth of relations in a scene: computed from the places, sizes and masses of its objects, graded by how plain
-//! it is.
+//! Truth of relations in a scene: computed from the places, sizes and masses of its objects, graded
+//! by how plain it is.
 
 use crate::{Measure, ObjectId, Placement, Relation, Scene, WordId};
 
@@ -17,8 +17,8 @@ const ASIDE_M: f64 = 0.1;
 /// Truth below which a relation to another object is true of none.
 const TRUE_MIN: f64 = 0.1;
 
-/// Names of sizes, from small to large: values that have these names are ordered by them where no measured
-/// size tells objects apart.
+/// Names of sizes, from small to large: values that have these names are ordered by them if no
+/// measured size tells the objects apart.
 const SIZES: [&[&str]; 5] = [
     &["tiny", "mini"],
     &["small", "little", "short", "thin", "narrow", "low"],
@@ -42,10 +42,10 @@ pub enum View {
     User([f64; 3]),
 }
 
-/// What a relation is about, besides the relation itself.
+/// Arguments of a relation: objects, reference and view.
 #[derive(Clone, Copy, Debug)]
 pub struct Related<'a> {
-    /// The objects that may be meant.
+    /// Candidate objects of the relation.
     pub among: &'a [ObjectId],
     /// The objects that it relates to; of each the objects that it may be.
     pub to: &'a [Vec<ObjectId>],
@@ -54,9 +54,9 @@ pub struct Related<'a> {
 }
 
 impl Scene {
-    /// Returns for each object how true a relation is of it, from 0 to 1 for the truest of those that may be meant;
-    /// none for an object of which it is not known. Returns none at all where the scene cannot tell: what is
-    /// measured is not known of two objects, or nothing is there that it relates to.
+    /// Returns for each object the degree to which a relation holds, from 0 to 1 for the best
+    /// candidate; `None` for an object for which it is unknown. Returns `None` as a whole if the
+    /// scene cannot tell: fewer than two objects have the measure, or there is no reference object.
     pub fn truths(&self, relation: Relation, about: &Related<'_>) -> Option<Vec<Option<f64>>> {
         let truths = match relation {
             Relation::Nth(measure, n) => self.ordered(measure, RATIO, about, |_| vec![n.into()]),
@@ -186,8 +186,8 @@ impl Scene {
         (!pairs.is_empty()).then(|| self.ids().map(truth).collect())
     }
 
-    /// Returns the measure of each object, and the difference that counts; none where it does not tell those apart
-    /// that may be meant.
+    /// Returns the measure of each object, and the smallest difference that counts; `None` if the
+    /// measure does not tell the candidates apart.
     fn measured(
         &self,
         measure: Measure,
