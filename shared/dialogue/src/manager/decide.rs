@@ -52,7 +52,7 @@ impl Manager {
         let open = state.open.as_mut()?;
         let step = Step { interaction: open.id.0, step: open.step };
         open.step += 1;
-        // What was said of values in doubt counts for the questions to come.
+        // Earlier statements about values in doubt apply to the coming questions.
         let model = self.learned(open.counting()).into_owned();
         let spent = open.spent();
         let problem = DecisionProblem {

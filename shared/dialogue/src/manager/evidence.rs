@@ -41,14 +41,14 @@ pub enum Mark {
         /// Of every other one.
         others: f64,
     },
-    /// The utterance is an answer that a later one has replaced. It counts no longer, but still teaches about the
-    /// person who gave it.
+    /// The utterance is an answer that a later one has replaced. It counts no longer, but still
+    /// teaches about the person who gave it.
     Replaced,
 }
 
-/// Factor of an object that was refused: beyond what any words can make up for.
+/// Factor of a refused object: beyond compensation by any words.
 const REFUSED: f64 = 1e-30;
-/// Factor of what is not pointed to: beyond what words of the scene can make up for in one utterance.
+/// Factor of objects that are not pointed to: beyond compensation by the words of one utterance.
 const NOT_MEANT: f64 = 1e-9;
 
 impl Mark {
@@ -92,7 +92,7 @@ impl Evidence {
         };
         let mut all: Vec<(f64, Question, Reading)> = self.interpretations.iter().map(of).collect();
         // The unknown word belongs to the best reading. Whether it was negated is not known, so it
-        // counts only where nothing was.
+        // counts only if nothing was.
         let unknown = self.unknown.as_ref().and_then(|unknown| scene.word_named(&unknown.text));
         if let (Some((_, _, best)), Some(word)) = (all.first_mut(), unknown)
             && best.response != Response::No

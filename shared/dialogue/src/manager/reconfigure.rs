@@ -1,8 +1,8 @@
 //! Other settings under an open interaction: it continues wherever possible.
 //!
-//! The evidence is scored again from the prior under the present scene, so that objects that are gone
-//! drop out and new ones count with everything said so far. The transition reads nothing of the
-//! former scene but the names in the state.
+//! The evidence is scored again from the prior under the present scene, so that objects that are
+//! gone drop out and new ones count with everything said so far. The transition reads nothing of
+//! the former scene but the names in the state.
 
 use scene::{ObjectId, Question};
 use vocabulary::time::Time;

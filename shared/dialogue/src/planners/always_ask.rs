@@ -13,9 +13,9 @@ pub(super) const ENTRY: Entry = Entry {
     make: || Box::new(AlwaysAsk),
 };
 
-/// Asks at least once, and until one object is very probable: present, it points at the most
-/// probable object; remotely, where it cannot, it asks the most informative question. Objects that
-/// no question can tell apart count as one.
+/// Asks at least once, and until one object is very probable: on site, it points at the most
+/// probable object; remotely, it asks the most informative question. Objects that no question can
+/// tell apart count as one.
 #[derive(Clone, Copy, Debug, Default)]
 struct AlwaysAsk;
 

@@ -1,4 +1,4 @@
-//! Planners where an announced pick can be denied.
+//! Planners with announced picks that can be denied.
 
 use std::collections::HashMap;
 
@@ -162,7 +162,7 @@ fn the_bowls_are_solved_where_picks_can_be_denied() {
 }
 
 /// Every planner's exact value is below the certified upper bound, on scenes with doubles, missing
-/// attributes, own costs, and where the wanted object may not be here.
+/// attributes, own costs, and with possibly absent objects.
 #[test]
 fn no_policy_beats_the_bounds() {
     let seed = 152;

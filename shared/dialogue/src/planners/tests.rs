@@ -90,7 +90,7 @@ fn choices_are_solved() {
     }
 }
 
-/// What is kept from one run to the next is what would be found again.
+/// A policy kept from one run to the next equals the recomputed one.
 #[test]
 fn a_kept_policy_is_the_policy() {
     let model = Model::new(&bowls(), Params::default());
@@ -292,7 +292,7 @@ fn one_object_is_picked_and_hopeless_cases_are_waited_out() {
     assert!((decision.value + 10.0).abs() < 1e-9);
 }
 
-/// A user wants what is not here, and says no to everything.
+/// A user wants an absent object, and says no to everything.
 #[test]
 fn what_is_not_here_is_concluded() {
     for scene in [bowls(), tools()] {
@@ -318,7 +318,7 @@ fn what_is_not_here_is_concluded() {
     }
 }
 
-/// What a decision expects against what following the policy comes to.
+/// Expectations of a decision, compared with the results of following the policy.
 #[test]
 fn expected_questions_come_true() {
     let scene = bowls();

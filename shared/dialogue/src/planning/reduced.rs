@@ -28,27 +28,27 @@ pub(crate) struct Reduced {
     pub(crate) share: Vec<f64>,
     /// Attributes that tell classes apart.
     pub(crate) partitions: Vec<Partition>,
-    /// Yes/no, open and choice questions about attributes, none the double of another; those about one
-    /// attribute together.
+    /// Yes/no, open and choice questions about attributes, none the double of another; those about
+    /// one attribute together.
     pub(crate) queries: Vec<Query>,
-    /// The class of what is not here.
+    /// Class of the absent object.
     pub(crate) absent: Option<usize>,
     /// Classes that are worth pointing at.
     pub(crate) pointed: Vec<u32>,
     /// How a pointing question is answered, per class.
     pub(crate) point: Channels,
-    /// What announcing a pick pays; none where picks are final.
+    /// Reward of announcing a pick; `None` if picks are final.
     pub(crate) announced: Option<Announced>,
     /// Runs of classes that nothing but announcing one tells apart.
     pub(crate) doubles: Vec<Range<usize>>,
-    /// Runs of classes that only pointing, or announcing one, tells apart, each at the same price, so that the problem
-    /// is the same however their probabilities are permuted. Each run is in order of falling
-    /// probability.
+    /// Runs of classes that only pointing, or announcing one, tells apart, each at the same price,
+    /// so that the problem is the same however their probabilities are permuted. Each run is in
+    /// order of falling probability.
     pub(crate) interchangeable: Vec<Range<usize>>,
 }
 
 impl Reduced {
-    /// The problem at that belief.
+    /// Reduces the problem at the given belief.
     ///
     /// # Panics
     /// If the belief is not about the problem's scene.
@@ -89,7 +89,7 @@ impl Reduced {
         reduced
     }
 
-    /// How many classes there are.
+    /// Number of classes.
     pub(crate) fn classes(&self) -> usize {
         self.mass.len()
     }
@@ -182,7 +182,7 @@ impl Reduced {
     }
 
     /// Collects the questions. Two yes/no questions are equal if they split the classes alike,
-    /// whichever half says yes; and, where the wanted object may not be here, if an unknown value leaves
+    /// whichever half says yes; and, if the wanted object may be absent, if an unknown value leaves
     /// the same answers open. A set of classes is identified by the exclusive or of random numbers,
     /// one per class. Of equal questions the cheapest is kept, of those the first.
     fn find_questions(&mut self, problem: &DecisionProblem<'_>) {

@@ -1,4 +1,4 @@
-//! What was said of values in doubt, against sums by hand.
+//! Evidence about values in doubt, compared with sums by hand.
 
 use scene::{ObjectId, Perceived, Scene};
 use vocabulary::{Params, Rng};
@@ -46,8 +46,7 @@ fn the_same_answer_again_tells_little_more() {
     }
 }
 
-/// What is believed after anything that is certain, against the sum over all that the user may
-/// take the object for.
+/// Belief after certain words, compared with the sum over all possible perceptions of the user.
 #[test]
 fn the_belief_is_the_sum_over_what_the_user_perceives() {
     let seed = 11;
@@ -72,8 +71,8 @@ fn the_belief_is_the_sum_over_what_the_user_perceives() {
     }
 }
 
-/// "Tomato ketchup", where the scene gives the ketchup no flavour: it and the tomato soup stay possible, however
-/// often it is said.
+/// "Tomato ketchup", if the scene gives the ketchup no flavour: it and the tomato soup stay
+/// possible, however often it is said.
 #[test]
 fn an_object_may_be_described_by_what_its_scene_does_not_state() {
     let scene = scene(

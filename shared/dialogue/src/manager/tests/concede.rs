@@ -48,7 +48,7 @@ fn an_attribute_that_the_user_cannot_tell_is_not_asked_about_again() {
     assert!(!asked.contains(&k) && end.act.kind == ActKind::Pick, "{asked:?}");
 }
 
-/// Where nothing else tells them apart, they are named, one is offered, and it is taken only if the
+/// If nothing else tells them apart, they are named, one is offered, and it is taken only if the
 /// user cannot tell once more.
 #[test]
 fn objects_that_the_user_cannot_tell_apart_are_named() {
@@ -72,7 +72,7 @@ fn objects_that_the_user_cannot_tell_apart_are_named() {
     assert!(["metal", "metal2"].contains(&name.as_str()), "{name}");
 }
 
-/// Words that tell nothing new, such as a late answer to another question, are no consent: the offer stands, once more.
+/// Words that tell nothing new, such as a late answer to another question, are not consent.
 #[test]
 fn an_offer_that_is_not_answered_is_repeated_and_not_taken() {
     let mut manager = manager();

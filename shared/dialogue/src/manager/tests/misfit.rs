@@ -92,7 +92,7 @@ fn no_misbelief_leads_round_in_circles() {
     }
 }
 
-/// Where what is said fits no object, none is fetched without a word.
+/// If the description fits no object, none is fetched without asking.
 #[test]
 fn what_fits_nothing_is_offered_before_it_is_fetched() {
     for Talks { settings, ends } in &*TALKS {
@@ -111,7 +111,7 @@ fn what_fits_nothing_is_offered_before_it_is_fetched() {
                 continue;
             }
             let picked = end.act.pick.expect("a pick").1;
-            // An attribute that was not asked about is no misfit.
+            // An attribute that was not asked about is not a misfit.
             let denies = asked(end).iter().any(|question| match question {
                 Question::Attribute(k, v) => {
                     (perceived(user, *k) == Some(*v)) != model.has(picked, *k, *v)

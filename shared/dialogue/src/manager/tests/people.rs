@@ -1,4 +1,4 @@
-//! What is learned about people who give their name.
+//! Learning about people who give their name.
 
 use super::fixture::{
     Settings, answer, at, belief, delivered, heard, reply, settings_with, typed, words,
@@ -25,8 +25,8 @@ fn from(name: &str, cause: Cause) -> Cause {
     }
 }
 
-/// Plays an interaction with a person who errs with that probability, to the delivery of what is wanted,
-/// and returns what happened.
+/// Plays an interaction with a person who errs with that probability, to the delivery of the wanted
+/// object, and returns its course.
 fn talk(manager: &mut Manager, state: &State, name: &str, errs: f64, seed: u64) -> Vec<Record> {
     let model = manager.model().clone();
     let mut rng = Rng::new(seed);
@@ -182,7 +182,7 @@ fn the_prior_is_by_what_a_person_had_fetched_after_some_deliveries() {
     assert!((belief(&manager.next(&state, &anybody, at(999)))[5] - 1.0 / 6.0).abs() < 1e-12);
 }
 
-/// A person can be forgotten at any moment; what is under way goes on as with anybody.
+/// A person can be forgotten at any moment; the interaction continues as with an unnamed user.
 #[test]
 fn forgetting_leaves_nothing() {
     let mut manager = manager();

@@ -1,4 +1,4 @@
-//! What is believed before anything is said: alike, by history, or that it may not be here.
+//! Priors of the belief: uniform, by history, or with a possibly absent object.
 
 use super::fixture::{
     Change, Settings, answer, asked, at, belief, delivered, manager, markers, remark, reply,

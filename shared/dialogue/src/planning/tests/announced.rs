@@ -15,7 +15,7 @@ fn for_many_announced(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Reduced, 
     });
 }
 
-/// What an announced pick is worth, from the equation, given what follows a denial.
+/// Value of an announced pick by the equation, given the value after a denial.
 fn announced(
     problem: &DecisionProblem<'_>,
     mass: &[f64],
