@@ -45,7 +45,7 @@ impl ClauseAnalysis<'_> {
         (0..self.clause.len()).find(orders)
     }
 
-    /// "put the clear bowl in front of me": to put a thing where the speaker is, is to bring it.
+    /// "put the clear bowl in front of me": putting a thing near the speaker means bringing it.
     fn brings_at(&self, at: usize) -> bool {
         const CARRYING: [&str; 8] =
             ["put", "place", "set", "move", "drop", "lay", "return", "putting"];
@@ -57,8 +57,8 @@ impl ClauseAnalysis<'_> {
                 .any(|place| self.is_at_speaker(place))
     }
 
-    /// "to me", "in my hand", "over here", "closer", but not "for me", "away from here", "out of my way",
-    /// nor "in my cabinet" of the scene.
+    /// "to me", "in my hand", "over here", "closer", but not "for me", "away from here", "out of my
+    /// way", nor "in my cabinet" of the scene.
     fn is_at_speaker(&self, at: usize) -> bool {
         const LEADS: &[Class] = classes![Preposition Destination Landmark];
         let tag = &self.clause[at];

@@ -55,7 +55,7 @@ pub(crate) fn is_own(name: &str) -> bool {
     !halting_words(&tokens).is_empty() || is_closed(&words(name)) || meaning(&tokens).is_some()
 }
 
-/// What the robot takes a whole name for, where the dialogue needs it.
+/// Returns the robot's reading of a whole name, if the dialogue uses the name.
 fn meaning(tokens: &Tokens<'_>) -> Option<&'static str> {
     tokens.words.first()?;
     let phrase = Lexicon::own().longest(&tokens.words, 0);

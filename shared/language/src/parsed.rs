@@ -65,8 +65,8 @@ impl ParsedUtterance<'_> {
         matches!(self.refers, Reference::Relation(_))
     }
 
-    /// How many beside the first, of what is described: "both cups", "two red mugs", "three bowls",
-    /// "all the cars", "the socks, both of them".
+    /// Number of further objects of the same description: "both cups", "two red mugs", "three
+    /// bowls", "all the cars", "the socks, both of them".
     fn more_of_them(&self) -> Option<usize> {
         let request = self.intent == Intent::Inform
             && matches!(self.asked, QuestionWords::Nothing)
@@ -113,7 +113,7 @@ impl ParsedUtterance<'_> {
         of.word == "of" && matches!(one.last, "one" | "either" | "any")
     }
 
-    /// Places of the first and the last word that describe what is wanted, or else of its noun.
+    /// Positions of the first and last word that describe the wanted object, or else of its noun.
     fn described(&self) -> Option<(usize, usize)> {
         if let [first, ..] = &self.content.base[..] {
             return Some((first.at, self.content.base.last()?.at));
@@ -165,7 +165,7 @@ impl ParsedUtterance<'_> {
         vec![(1.0, best)]
     }
 
-    /// "red or blue": each with what is said of both; none if nothing is to be chosen from.
+    /// "red or blue": each with the words about both; empty without a choice.
     fn choices(&self) -> Vec<Vec<Asserted<'_>>> {
         let base = &self.content.base;
         let Some(at) = base.windows(2).position(|pair| pair[0].choice != pair[1].choice) else {

@@ -1,4 +1,4 @@
-//! What the judge is trained on, as one number.
+//! Hash of the judge's training inputs.
 
 use std::fs;
 use std::path::Path;

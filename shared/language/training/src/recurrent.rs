@@ -25,7 +25,7 @@ const GATES: usize = 3 * UNITS;
 /// An utterance with the label of each of its value words that has one, and how much they count.
 #[derive(Clone, Debug)]
 pub struct Utterance {
-    /// What the judge reads.
+    /// Input of the recurrent judge.
     pub sequence: Sequence,
     /// By value word.
     pub labels: Vec<Option<usize>>,
@@ -83,7 +83,7 @@ impl Training {
             return;
         }
         let seen = |rows: &Vec<u32>, random: &mut Rng| -> Vec<u32> {
-            // The first row, what kind of element it is, is always seen.
+            // The first row, the kind of the element, is always seen.
             let is_hidden = random.uniform() < UNSEEN;
             rows.iter().take(if is_hidden { 1 } else { rows.len() }).copied().collect()
         };
@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     fn gradient_is_that_of_the_loss() {
-        // One row an element: none of it can be hidden.
+        // With one row per element, nothing can be hidden.
         let elements = vec![vec![3], vec![70], vec![500], vec![3]];
         let sequence = Sequence { elements, values: vec![(1, vec![9, 11]), (3, vec![12])] };
         let labels = vec![Some(1), Some(0)];

@@ -17,7 +17,7 @@ impl Scenes {
     /// Loads the scenes of the project.
     ///
     /// # Errors
-    /// A file that cannot be read, or is no scene.
+    /// A file that cannot be read, or is not a scene.
     pub fn load() -> Result<Self, String> {
         let here = Path::new(env!("CARGO_MANIFEST_DIR"));
         let folders = [
@@ -58,7 +58,7 @@ impl Scenes {
     /// Returns a scene and its reader.
     ///
     /// # Errors
-    /// There is no scene of that name.
+    /// There is no scene with that name.
     pub fn get(&self, name: &str) -> Result<&(Scene, Reader), String> {
         self.0.get(name).ok_or_else(|| format!("scene {name} does not exist"))
     }
