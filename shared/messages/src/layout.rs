@@ -11,8 +11,8 @@ use std::mem::MaybeUninit;
 /// A message of fixed layout.
 ///
 /// # Safety
-/// It is made of numbers and codes, so that any bytes of its size are a value of it until its codes are checked, and
-/// has no padding, so that all of its bytes are written.
+/// It is made of numbers and codes, so that any bytes of its size are a value of it until its codes
+/// are checked, and has no padding, so that all of its bytes are written.
 #[allow(unsafe_code)]
 pub unsafe trait WireMessage:
     Schema + WireField + ZeroCopySend + Copy + PartialEq + Debug + 'static
@@ -68,7 +68,7 @@ impl<'a> FixedMessage<'a> {
         layout.check(bytes).map(|()| Self { name: layout.name, bytes })
     }
 
-    /// Returns its bytes.
+    /// Returns the message's bytes.
     pub fn bytes(&self) -> &'a [u8] {
         self.bytes
     }
@@ -107,8 +107,8 @@ pub fn slot<T: WireMessage>(bytes: &mut [MaybeUninit<u8>]) -> Option<&mut MaybeU
 
 /// Returns the bytes of a message.
 pub fn bytes<T: WireMessage>(message: &T) -> &[u8] {
-    // SAFETY: a message of fixed layout has no padding (the test of the wire layout checks each), so that
-    // every byte of it is initialised.
+    // SAFETY: a message of fixed layout has no padding (the test of the wire layout checks each),
+    // so that every byte of it is initialised.
     #[allow(unsafe_code)]
     unsafe {
         std::slice::from_raw_parts(std::ptr::from_ref(message).cast(), size_of::<T>())
