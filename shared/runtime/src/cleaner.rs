@@ -67,7 +67,7 @@ impl CleanupLock {
     }
 }
 
-/// A cleanup that ends with it.
+/// A cleanup that ends when dropped.
 struct Begun<'a>(&'a CleanupLock);
 
 impl Drop for Begun<'_> {
@@ -77,10 +77,10 @@ impl Drop for Begun<'_> {
 }
 
 impl Cleaner {
-    /// Starts the thread, which removes what `config` finds.
+    /// Starts the thread, which removes the leftovers that `config` finds.
     ///
     /// # Errors
-    /// The lock's file cannot be written, or there is no thread.
+    /// The lock's file cannot be written, or the thread cannot start.
     pub(crate) fn start(lock: PathBuf, config: Config) -> io::Result<Self> {
         let file = safe_files::open_lock(&lock)?;
         let (begun, ended) = (Mutex::default(), Condvar::default());

@@ -1,5 +1,5 @@
-//! Exit codes, the failures that lead to them, and the exits of other processes: part of the contract
-//! with the supervisor and with scripts.
+//! Exit codes, the failures that lead to them, and the exits of other processes: part of the
+//! contract with the supervisor and with scripts.
 
 use std::fmt;
 use std::io::{self, ErrorKind};
@@ -132,9 +132,9 @@ impl From<StopError> for Failure {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProcessExit {
-    /// It exited with this code.
+    /// Exit with this code.
     Code(i32),
-    /// This signal ended it.
+    /// End by this signal.
     Signal(i32),
     /// It could not be started; a retry may succeed (e.g. no process slot).
     NotStarted,

@@ -199,12 +199,12 @@ impl GroupPaths {
         self.root.join("recordings")
     }
 
-    /// Flights: what the services were given and what they stated.
+    /// Flights: the inputs and statements of the services.
     pub fn flights(&self) -> PathBuf {
         self.root.join("flight")
     }
 
-    /// The data of studies with people, where no other folder is set; never deleted.
+    /// The data of studies with people, if no other folder is set; never deleted.
     pub fn study(&self) -> PathBuf {
         self.root.join("study")
     }
@@ -239,8 +239,8 @@ impl GroupPaths {
         self.root.join("alive.lock")
     }
 
-    /// Held by the supervisor while it removes what a dead service left in shared memory, for which its successor
-    /// waits.
+    /// Held by the supervisor while it removes a dead service's shared memory; the successor waits
+    /// for it.
     pub fn cleanup_lock(&self) -> PathBuf {
         self.run().join("cleanup.lock")
     }
@@ -281,8 +281,8 @@ impl GroupPaths {
         self.run().join("wakes")
     }
 
-    /// What every name of the group in shared memory begins with, at each of its starts: two groups
-    /// differ even where they share a name in different homes.
+    /// Prefix of every name of the group in shared memory, at each start: two groups differ even if
+    /// they share a name in different homes.
     pub fn shm_stem(&self) -> String {
         let mut hash = scene::StableHash::default();
         hash.bytes(self.root.as_os_str().as_encoded_bytes());
@@ -316,9 +316,9 @@ impl GroupPaths {
     }
 }
 
-/// Name of a group's shared memory for one start: prefix of all its segments, and name of the folder
-/// beside them that holds iceoryx2's other files. The folder is here because sockets lie in it, whose
-/// paths must be short.
+/// Name of a group's shared memory for one start: prefix of all its segments, and name of the
+/// folder beside them that holds iceoryx2's other files. The folder is here because sockets lie in
+/// it, whose paths must be short.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShmName(String);
 

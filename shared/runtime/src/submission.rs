@@ -11,7 +11,7 @@ use crate::{Span, Time};
 /// Time between two transmissions of an unanswered request.
 const RESEND_EVERY: Span = Span::from_ms(250);
 
-/// One request on its way. Pure: the caller sends what [`Submission::due`] returns and feeds every
+/// One request on its way. Pure: the caller sends the result of [`Submission::due`] and feeds every
 /// receipt of the topic to [`Submission::on_receipt`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Submission {
@@ -40,7 +40,7 @@ impl Submission {
         self
     }
 
-    /// Notes the latest prompt that the user was shown before; 0 where that is not known.
+    /// Notes the latest prompt that the user was shown before; 0 if unknown.
     #[must_use]
     pub fn after(mut self, seen: PromptId) -> Self {
         self.injection.seen_prompt = seen.0;
@@ -90,8 +90,8 @@ impl Submission {
         }
     }
 
-    /// Returns the receipts once all of them have arrived: one for text, one for each utterance of a
-    /// sound file, in order.
+    /// Returns the receipts once all of them have arrived: one for text, one for each utterance of
+    /// a sound file, in order.
     pub fn receipts(&self) -> Option<&[Receipt]> {
         let first = self.receipts.first()?;
         (self.receipts.len() >= first.segments as usize).then_some(&self.receipts)

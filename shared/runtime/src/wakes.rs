@@ -20,7 +20,7 @@ impl Wakes {
         Self(pairs.map(|(service, topic)| (topic.to_owned(), Service::named(service))).collect())
     }
 
-    /// Reads what the supervisor has written; nothing without a supervisor, in tests of topics.
+    /// Reads the supervisor's file; empty without a supervisor, in tests of topics.
     pub fn load(paths: &GroupPaths) -> Self {
         let text = fs::read_to_string(paths.wakes_file()).unwrap_or_default();
         Self::new(text.lines().filter_map(|line| line.split_once(' ')))

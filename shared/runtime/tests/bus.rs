@@ -251,8 +251,8 @@ fn writers_are_read_in_turn_and_one_that_keeps_sending_does_not_hold_the_reader(
     assert!(left > 0, "what arrived meanwhile comes next");
 }
 
-/// A service whose pass took longer than the interval of some topic's messages never ended that pass, and was
-/// killed for a missed heartbeat.
+/// A service whose pass took longer than the interval of some topic's messages never ended that
+/// pass, and was killed for a missed heartbeat.
 #[test]
 fn writer_that_sends_as_fast_as_it_is_read_does_not_hold_the_reader() {
     let shm = Shm::new();

@@ -43,7 +43,7 @@ pub(super) fn with_layout(
     );
     let payload = payload.map_err(|error| format!("{error:?}"))?;
     let stamp = TypeDetail::new::<Stamp>(TypeVariant::FixedSize);
-    // SAFETY: what is made of header and payload is only what these describe, below and in [`messages::layout`].
+    // SAFETY: header and payload are only converted to these types and those in `layout`.
     #[allow(unsafe_code)]
     Ok(unsafe {
         builder
@@ -52,7 +52,7 @@ pub(super) fn with_layout(
     })
 }
 
-/// A message where it lies in shared memory.
+/// A message borrowed from shared memory.
 #[derive(Debug)]
 pub(super) struct Received(Sample<Ipc, [CustomPayloadMarker], CustomHeaderMarker>);
 
@@ -88,7 +88,7 @@ pub(super) struct Loan(
 impl Loan {
     /// Takes memory: one slot of a fixed layout, or so many bytes.
     pub(super) fn take(port: &SendPort, slots: usize) -> Result<Self, LoanError> {
-        // SAFETY: more than one slot is only taken of bytes, and the memory's size is what its length says.
+        // SAFETY: more than one slot is only taken of bytes, and the memory's size is its length.
         #[allow(unsafe_code)]
         unsafe {
             port.loan_custom_payload(slots).map(Self)

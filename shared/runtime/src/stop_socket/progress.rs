@@ -90,15 +90,15 @@ impl Progress {
         self.since
     }
 
-    /// The same order is given again, at `given`. Deadline and warnings count from the first time, so that a flood
-    /// of orders puts off neither.
+    /// The same order is given again, at `given`. Deadline and warnings count from the first time,
+    /// so that a flood of orders puts off neither.
     pub fn renew(&mut self, given: Time) {
         self.given = given;
         self.sent = None;
         self.forget_answers();
     }
 
-    /// Repeats the order where that is due, and takes in the answers.
+    /// Repeats the order if due, and processes the answers.
     pub fn advance(&mut self, client: &StopClient, now: Time) {
         if self.due(now) {
             self.on_sent(&client.send(self.order, self.given));
@@ -122,8 +122,8 @@ impl Progress {
         }
     }
 
-    /// Keeps a stop that no arm is known to have for the arm's return, because its giver ends. A group that was never
-    /// started has no arm.
+    /// Keeps a stop that no arm is known to have for the arm's return, because its giver ends. A
+    /// group that was never started has no arm.
     /// # Errors
     /// It cannot be kept: nothing repeats it any more.
     pub fn leave(&self, client: &StopClient) -> io::Result<()> {
@@ -148,7 +148,7 @@ impl Progress {
         is_due
     }
 
-    /// Notes the outcome of sending. A process that has ended may have lost what it answered.
+    /// Notes the outcome of sending. After its end, the answers of a process do not count.
     pub fn on_sent(&mut self, sent: &Result<(), StopError>) {
         self.is_absent = matches!(sent, Err(StopError::Absent));
         match sent {
@@ -175,8 +175,8 @@ impl Progress {
         (self.state, self.rests_since, self.unheard_since) = (None, None, None);
     }
 
-    /// Returns the result once there is one: a stop is latched, at rest and durable, or cannot become durable; a
-    /// release is in force.
+    /// Returns the result once there is one: a stop is latched, at rest and durable, or cannot
+    /// become durable; a release is in force.
     ///
     /// # Errors
     /// As [`super::give`].
@@ -224,8 +224,8 @@ impl Progress {
         is_contrary && state.in_force_ns > self.given.ns()
     }
 
-    /// Returns a warning for the giver where one is due: soon after the order, and every few seconds while it is not
-    /// confirmed.
+    /// Returns a warning for the giver if one is due: soon after the order, and every few seconds
+    /// while it is not confirmed.
     pub fn warning(&mut self, now: Time) -> Option<StopError> {
         let is_due = match self.warned {
             Some(warned) => now >= warned + WARN_EVERY,
@@ -258,7 +258,7 @@ impl Progress {
 }
 
 impl StopState {
-    /// Returns false where the robot is not heard: that it rests is a belief then.
+    /// Returns false if the robot is silent: its being at rest is then an assumption.
     pub fn is_heard(&self) -> bool {
         !matches!(self.inhibit, MotionInhibit::Unheard | MotionInhibit::Stale)
     }

@@ -127,7 +127,7 @@ fn stop_that_its_giver_leaves_waits_for_the_arm() {
     assert!(kept.pass() && !is_kept(&paths));
     assert!(KeptStop::find(&paths).unwrap().is_none());
 
-    // What has no time is a stop as well, given now.
+    // A file without a time is a stop as well, given now.
     let before = clock::now().ns();
     let given = || KeptStop::find(&paths).unwrap().unwrap().order().given_ns;
     std::fs::write(paths.kept_stop(), "").unwrap();
