@@ -1,4 +1,4 @@
-//! Journal records for programs: what `whichone journal --json` prints.
+//! Journal records for programs: the output of `whichone journal --json`.
 //!
 //! Each service translates its own records into these types, with the scene's names in place of numbers.
 //! A number's key ends with its unit (`_ns`, `_ms`, `_s`, `_m`, `_rad`, `_db`); without one it is a
@@ -28,7 +28,7 @@ pub struct JournalLine {
     pub seq: u64,
     /// When it was written, nanoseconds of the machine's monotonic clock.
     pub at_ns: u64,
-    /// The same, milliseconds since 1970 by the wall clock; none where that is not known.
+    /// Milliseconds since 1970 by the wall clock; `None` if unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unix_ms: Option<u64>,
     /// The record as a sentence.

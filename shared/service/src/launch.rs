@@ -23,7 +23,7 @@ use crate::log_file;
 /// The program that may contain all others.
 const HOST: &str = "whichone";
 
-/// What the name of a service's program begins with.
+/// Prefix of the names of services' programs.
 pub const PREFIX: &str = "whichone-";
 
 /// Interval at which a starting supervisor is polled.
@@ -42,7 +42,7 @@ pub struct Options {
     pub group: GroupName,
     /// Folder of the configuration.
     pub config: PathBuf,
-    /// Name of a profile in it.
+    /// Name of a profile in the configuration.
     pub profile: Option<String>,
     /// Overrides of configuration values: dotted key and TOML value.
     pub set: Vec<(String, String)>,
@@ -123,8 +123,8 @@ pub fn program() -> PathBuf {
     program_of(SUPERVISOR)
 }
 
-/// Returns the program of a service: beside the running one, where an installed `whichone` may stand in for
-/// it ([`host_of`]), else from `PATH`. Start it with [`command`].
+/// Returns the program of a service: next to the running one, where an installed `whichone` may
+/// replace it ([`host_of`]), else from `PATH`. Start it with [`command`].
 pub fn program_of(service: &str) -> PathBuf {
     let name = format!("{PREFIX}{service}");
     let beside = env::current_exe().ok().and_then(|own| Some(own.parent()?.join(&name)));

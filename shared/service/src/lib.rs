@@ -1,6 +1,6 @@
 //! The shell: the only place that opens topics, reads clocks, takes signals and writes files for
-//! the services. What every process of a group needs, also one from outside, is in `runtime`, whose modules
-//! appear here, too.
+//! the services. Parts for every process of a group, also one from outside, are in `runtime`, whose
+//! modules are re-exported here.
 //!
 //! A service is a [`Node`]: a reducer from events to effects, which the main loop of [`service_loop`] recovers from
 //! its journal, feeds from its topics, and whose effects it carries out. Clients of a group are in [`client`].

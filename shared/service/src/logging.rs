@@ -1,9 +1,9 @@
 //! Structured logs on standard error, which the supervisor has pointed at the service's log file.
 //!
-//! Logging never ends or delays a process. A thread writes the lines: a write to a file waits while others
-//! keep its disk busy, and the main loop of an arm that is to stop must not. A line that finds no room in
-//! the thread's queue, or in a pipe that nobody reads, is dropped, and the next one that can be written is
-//! preceded by the number of lost lines.
+//! Logging never ends or delays a process. A thread writes the lines: a write to a file waits while
+//! others keep its disk busy, and the main loop of an arm that is to stop must not. A line that
+//! finds no room in the thread's queue, or in a pipe that nobody reads, is dropped, and the next
+//! one that can be written is preceded by the number of lost lines.
 
 use crate::group::{ENV_LOG, ENV_LOG_FORMAT};
 use crossbeam_channel::{Receiver, Sender, bounded};
@@ -60,8 +60,8 @@ pub fn init() -> LogFlush {
     flush
 }
 
-/// Changes the format of the lines that follow to what the configuration says: one JSON object a line, or text.
-/// `WHICHONE_LOG_FORMAT`, where it is set, counts more.
+/// Changes the format of later lines as configured: one JSON object a line, or text.
+/// `WHICHONE_LOG_FORMAT`, if set, has precedence.
 pub fn set_json(json: bool) {
     if std::env::var_os(ENV_LOG_FORMAT).is_none() {
         JSON.store(json, Ordering::Relaxed);
@@ -184,7 +184,7 @@ fn standard_error() -> io::Result<File> {
     Ok(own.unwrap_or(shared).into())
 }
 
-/// A log that drops what cannot be written, and counts it.
+/// A log that drops lines that cannot be written, and counts them.
 struct LossyLog {
     file: File,
     lost: Option<Lost>,

@@ -1,5 +1,5 @@
 //! Blocking sources (a recogniser, a voice, a microphone) live on threads of their own and hand
-//! what they have to the main loop through a bounded channel that wakes it.
+//! their results to the main loop through a bounded channel that wakes it.
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use rustix::event::{EventfdFlags, eventfd};
@@ -57,7 +57,7 @@ impl<T> DeviceSender<T> {
     /// Sends `message` if the channel is not full.
     ///
     /// # Errors
-    /// The message, where the channel is full. Once the loop has ended, nothing is ever full.
+    /// The message, if the channel is full. Once the loop has ended, it never is.
     pub fn offer(&self, message: T) -> Result<(), T> {
         match self.sender.try_send(message) {
             Err(TrySendError::Full(message)) => Err(message),
