@@ -9,10 +9,10 @@ use crate::driver;
 pub struct Arm {
     /// Name of the driver of its joints.
     pub driver: String,
-    /// The limb that fetches, by its name in the robot's description; `None`: the one that reaches the
-    /// object better.
+    /// The limb that fetches, by its name in the robot's description; `None`: the one that reaches
+    /// the object better.
     pub limb: Option<String>,
-    /// Settings of its motions.
+    /// Settings of the arm's motions.
     pub motion: Motion,
     /// Simulated seconds per second.
     pub time_scale: f64,

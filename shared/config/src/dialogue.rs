@@ -40,7 +40,7 @@ pub struct Dialogue {
     pub turns: TurnTaking,
     /// Prior belief.
     pub prior: Prior,
-    /// What to learn about people who give their name; nothing with [`Language::Paper`].
+    /// Settings of learning about people who give their name; none with [`Language::Paper`].
     pub people: Acquaintance,
     /// Pointing gestures.
     pub gesture: Gesture,
@@ -68,8 +68,8 @@ pub struct Gesture {
 }
 
 impl Dialogue {
-    /// Returns the scene in which objects that are alike are told apart by place, as the user sees them where the
-    /// user's place is known; in the paper's language the scene as it is.
+    /// Returns the scene in which objects that are alike are told apart by place, as the user sees
+    /// them if the user's place is known; in the paper's language the unchanged scene.
     pub fn by_place(&self, scene: Scene) -> Scene {
         let view = match self.gesture.enabled {
             true => View::User(self.gesture.person_xyz_m),

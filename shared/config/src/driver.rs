@@ -6,16 +6,16 @@ use diagnostics::Fields;
 
 use crate::part::Registered;
 
-/// A driver of the arm. What it does is known to the programs that move an arm alone.
+/// A driver of the arm. Only the programs that move an arm know its functions.
 #[derive(Debug)]
 pub struct Driver {
-    /// Its name in `arm.driver`.
+    /// Name of the driver in `arm.driver`.
     pub name: &'static str,
     /// It moves a robot, which knows no other time than the real one.
     pub in_real_time: bool,
     /// The feature of `whichone` that this build lacks for it, if it lacks one.
     pub needs: Option<&'static str>,
-    /// Its sections.
+    /// Sections of the driver's configuration.
     pub sections: &'static [Registered],
 }
 

@@ -5,8 +5,8 @@ use messages::Service;
 use crate::Settings;
 use crate::part::{self, DURATIONS, Reads};
 
-/// Services of the core. Speech rejects utterances that the dialogue would not understand. The console has the sections
-/// that its pages show, and its live view has sound where recordings have.
+/// Services of the core. Speech rejects utterances that the dialogue would not understand. The
+/// console has the sections that its pages show, and its live view has sound where recordings have.
 const CORE: [(Service, Reads); 5] = [
     (Service::Speech, &["speech", "dialogue"]),
     (Service::Grounding, &["dialogue"]),

@@ -9,11 +9,11 @@ use crate::{arm, console, dialogue, group, part, services, speech, study};
 /// A section with its schema.
 #[derive(Clone, Debug)]
 pub struct SectionSchema {
-    /// Its name.
+    /// Name of the section.
     pub name: &'static str,
     /// Its shipped file, whose comments describe its keys.
     pub shipped: &'static str,
-    /// What its reader accepts.
+    /// Schema of the values that the section's reader accepts.
     pub schema: Json,
 }
 

@@ -35,8 +35,8 @@ const SRDF: &str = "robot_srdf";
 /// which its decisions were made.
 const DURATIONS: &str = "durations";
 
-/// Settings that snapshots of earlier versions do not state, with the values that they had then: answers
-/// of all kinds came through alike, and typed words were doubted by a smoothing alone.
+/// Settings that snapshots of earlier versions do not state, with the values that they had then:
+/// answers of all kinds came through alike, and typed words were doubted by a smoothing alone.
 fn unstated(layer: &Table) -> String {
     let dialogue = layer.get("dialogue").and_then(Node::as_table);
     let number = |key| dialogue.and_then(|it| it.get(key)).and_then(Node::as_number);
@@ -51,8 +51,8 @@ fn unstated(layer: &Table) -> String {
 }
 
 impl Settings {
-    /// The snapshot's text: every value of every section, the scene's and the robot's files as
-    /// they were read, and how long the robot takes for what it does.
+    /// The snapshot's text: every value of every section, the scene's and the robot's files as they
+    /// were read, and the durations of the robot's actions.
     pub fn snapshot(&self) -> String {
         let Resolved { tree, scene, robot, snapshot, warnings: _ } = &self.resolved;
         if let Some(text) = snapshot {
@@ -77,8 +77,8 @@ impl Settings {
         safe_files::replace_private(&run_dir.join(SNAPSHOT_FILE), text)
     }
 
-    /// Writes the scene's key (16 hexadecimal digits) and its words into a group's run folder, each on a line of its
-    /// own; the number of a word in messages is its place, from 0.
+    /// Writes the scene's key (16 hexadecimal digits) and its words into a group's run folder, each
+    /// on a line of its own; the number of a word in messages is its place, from 0.
     ///
     /// # Errors
     /// The folder cannot be written.

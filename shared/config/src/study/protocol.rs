@@ -16,7 +16,7 @@ pub struct Protocol {
     /// Interactions that count: of a participant, within a design that compares within, of a
     /// participant and policy.
     pub interactions: u32,
-    /// Practice interactions before them.
+    /// Practice interactions before the trials.
     pub warmup: u32,
     /// Draw of the desired object.
     pub objects: Objects,
