@@ -64,7 +64,7 @@ pub(crate) fn encode(
 /// Reads the header at the start of a file.
 ///
 /// # Errors
-/// `Empty`, `NotAJournal`, `Foreign`, or `Corrupt { at: 0 }` where the checksum does not match.
+/// `Empty`, `NotAJournal`, `Foreign`, or `Corrupt { at: 0 }` if the checksum does not match.
 pub(crate) fn decode(bytes: &[u8]) -> Result<StoredHeader, JournalOpenError> {
     let corrupt = || JournalOpenError::Corrupt { at: 0, seq: 1 };
     if bytes.is_empty() {
