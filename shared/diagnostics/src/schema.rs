@@ -24,7 +24,7 @@ pub fn schema_of<T>(defaults: &Table, read: impl FnOnce(&mut Fields<'_>) -> T) -
     record(Some(defaults), read).1
 }
 
-/// Reads a table, or an empty one, and returns what was read with the schema.
+/// Reads a table, or an empty one, and returns the result with the schema.
 pub(crate) fn record<T>(
     table: Option<&Table>,
     read: impl FnOnce(&mut Fields<'_>) -> T,
@@ -116,8 +116,8 @@ fn is_blank(node: &Node) -> bool {
 }
 
 impl<'a> Fields<'a> {
-    /// Adds to the schema of `key`, where one is made: a rule that the reader enforces by other means
-    /// than a method of this type.
+    /// Adds to the schema of `key`, if one is being made: a rule that the reader enforces by other
+    /// means than a method of this type.
     pub fn note(&mut self, key: &'a str, rule: impl FnOnce() -> Json) {
         if let Some(schema) = &mut self.schema {
             schema.add(key, rule());
