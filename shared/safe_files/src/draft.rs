@@ -27,7 +27,7 @@ const PUBLIC: u32 = 0o666;
 /// Who may read the new file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Readers {
-    /// Its owner alone.
+    /// Readable by the owner alone.
     Owner,
     /// Those who may read the own file that it replaces; for a new one those whom the umask lets.
     AsBefore,
@@ -66,7 +66,7 @@ impl Draft {
         Ok(Self { file, path: path.to_owned() })
     }
 
-    /// Writes to the disk what has been written so far.
+    /// Syncs the draft's content to the disk.
     ///
     /// # Errors
     /// The disk is full or broken.
@@ -132,7 +132,7 @@ pub fn replace_private_synced(path: &Path, content: impl AsRef<[u8]>) -> io::Res
     File::open(folder_of(path))?.sync_all()
 }
 
-/// Creates an empty file for its owner alone in the place of what has this name, for a program that writes to it.
+/// Creates an empty file for its owner alone, in place of any other, for a program to write to.
 ///
 /// # Errors
 /// The folder cannot be written.
@@ -141,7 +141,7 @@ pub fn create_private(path: &Path) -> io::Result<File> {
     draft.file.persist(path).map_err(|error| error.error)
 }
 
-/// Opens a file that processes lock; it is created where it is missing, and never replaced.
+/// Opens a file that processes lock; it is created if missing, and never replaced.
 ///
 /// # Errors
 /// It cannot be opened, or is a link.
