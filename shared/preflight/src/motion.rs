@@ -107,8 +107,8 @@ impl Motions {
         Ok(motions)
     }
 
-    /// Adds what follows from one posture of aiming. Where the arm cannot do it from there, it goes
-    /// to rest first.
+    /// Adds the durations from one posture of aiming. If the arm cannot continue from there, it
+    /// goes to rest first.
     fn add_from(&mut self, planner: &Planner<'_>, aimed: &Posture) -> Result<(), Refusal> {
         let count = self.picks[0].len();
         let tried = count <= OBJECTS_MAX;
@@ -133,14 +133,14 @@ impl Motions {
         self.picks.get(row).unwrap_or(&self.picks[0])[object.index()]
     }
 
-    /// Seconds from the decision to pick `object` until the fingers close on it: until then it can be
-    /// called off. From rest or from aiming at `aimed`.
+    /// Seconds from the decision to pick `object` until the fingers close on it: until then it can
+    /// be called off. From rest or from aiming at `aimed`.
     pub fn grip_s(&self, aimed: Option<ObjectId>, object: ObjectId) -> f64 {
         let row = aimed.map_or(0, |i| i.index() + 1);
         self.grips.get(row).unwrap_or(&self.grips[0])[object.index()]
     }
 
-    /// Seconds until the arm aims at `object`, from rest or from aiming at `aimed`; none where
+    /// Seconds until the arm aims at `object`, from rest or from aiming at `aimed`; `None` if
     /// pointing was not planned.
     pub fn point_s(&self, aimed: Option<ObjectId>, object: ObjectId) -> Option<f64> {
         if aimed == Some(object) {

@@ -12,8 +12,8 @@ pub struct Voice {
 
 /// Seconds of a sentence at [`REFERENCE_WPM`], whatever its length: onset and final fall.
 const SENTENCE_S: f64 = 0.55;
-/// Seconds per letter at [`REFERENCE_WPM`]. Letters predict the length of an English sentence better
-/// than words.
+/// Seconds per letter at [`REFERENCE_WPM`]. Letters predict the length of an English sentence
+/// better than words.
 const LETTER_S: f64 = 0.055;
 /// The speed at which the two were measured.
 const REFERENCE_WPM: f64 = 165.0;
@@ -26,8 +26,8 @@ impl Default for Voice {
 }
 
 impl Voice {
-    /// Returns the seconds that the voice takes for `text`: a fit to espeak-ng's voice `en-us` on the
-    /// questions of the bowls, with an error of at most a fifth.
+    /// Returns the seconds that the voice takes for `text`: a fit to espeak-ng's voice `en-us` on
+    /// the questions of the bowls, with an error of at most a fifth.
     pub fn seconds(&self, text: &str) -> f64 {
         let letters = text.chars().filter(|c| c.is_alphanumeric()).count();
         if letters == 0 {

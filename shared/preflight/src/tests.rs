@@ -27,7 +27,7 @@ grasp_width = 0.004
 form = "hollow"
 "#;
 
-/// The folder that is shipped.
+/// Returns the shipped configuration folder.
 fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config")
 }
