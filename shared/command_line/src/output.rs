@@ -52,7 +52,7 @@ pub struct Painted<T> {
 }
 
 impl Output<'static> {
-    /// Standard output. What is printed appears when a line is complete.
+    /// Standard output, which appears when a line is complete.
     pub fn standard(json: bool) -> Self {
         let terminal = io::stdout().is_terminal();
         let sink = Box::new(BufWriter::with_capacity(1 << 16, io::stdout().lock()));
@@ -136,7 +136,7 @@ impl<'a> Output<'a> {
 }
 
 impl Style {
-    /// `text` in `ink`, where that is understood.
+    /// Returns `text` in `ink`, if the output understands colours.
     pub fn paint<T: Display>(self, ink: Ink, text: T) -> Painted<T> {
         Painted { text, ink: self.colour.then_some(ink) }
     }
