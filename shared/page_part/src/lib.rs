@@ -1,7 +1,7 @@
 //! The interface of optional parts of the console's page: their commands, their section, their files.
 //!
-//! The console knows a [`Part`] by this trait alone. It lives on the main thread, which it may not keep waiting; its
-//! [`Files`] are read on threads of the web server.
+//! The console knows a [`Part`] by this trait alone. It lives on the main thread, which it may not
+//! keep waiting; its [`Files`] are read on threads of the web server.
 
 use std::fmt::Debug;
 
@@ -27,24 +27,24 @@ pub struct Robot<'a> {
     pub now: Now,
     /// The scene of the dialogue.
     pub scene: &'a Scene,
-    /// State of the dialogue; none until the policy has published one.
+    /// State of the dialogue; `None` until the policy has published one.
     pub view: Option<&'a PolicyView>,
-    /// State of the arm; none where it is not known.
+    /// State of the arm; `None` if unknown.
     pub arm: Option<&'a ArmStatus>,
     /// A service that the dialogue needs and that is not ready.
     pub missing: Option<&'a str>,
 }
 
-/// Something that was said; reported once.
+/// An event of the dialogue; reported once.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DialogueEvent {
     /// A question of the robot has begun.
     Asked {
-        /// Its number.
+        /// Number of the prompt.
         prompt: u64,
-        /// How often it has been presented.
+        /// Number of times the prompt has been presented.
         presentation: u32,
-        /// Its words.
+        /// Words of the prompt.
         words: String,
     },
     /// An utterance was accepted.
@@ -67,7 +67,7 @@ pub trait Part: Debug {
         robot: &Robot<'_>,
     ) -> Result<Fields, String>;
 
-    /// Takes in what was said.
+    /// Handles an event of the dialogue.
     fn on_event(&mut self, event: &DialogueEvent, robot: &Robot<'_>);
 
     /// Takes in the robot's state, in each pass of the main loop; returns words that are to be said to the robot.
