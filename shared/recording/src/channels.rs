@@ -9,7 +9,7 @@ use crate::foxglove::{FrameTransforms, JointStates, Log, RawAudio, SceneUpdate};
 /// A channel as MCAP describes it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
-    /// Its name in the file.
+    /// Name of the channel in the file.
     pub topic: String,
     /// Name of the schema.
     pub schema: String,
@@ -44,7 +44,7 @@ pub enum Picture {
     Scene,
     /// Frames of the objects.
     Frames,
-    /// What was said.
+    /// Lines of the dialogue.
     Dialogue,
     /// The services' logs.
     Log,
@@ -53,7 +53,7 @@ pub enum Picture {
 }
 
 impl Picture {
-    /// All of them.
+    /// All channels.
     pub const ALL: [Self; 7] = [
         Self::RobotDescription,
         Self::Joints,
@@ -64,7 +64,7 @@ impl Picture {
         Self::Sound,
     ];
 
-    /// Its name in the file.
+    /// Returns the channel's name in the file.
     pub fn topic(self) -> &'static str {
         match self {
             Self::RobotDescription => "/robot_description",

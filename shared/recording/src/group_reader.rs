@@ -86,8 +86,8 @@ impl GroupReader {
         Ok(reader)
     }
 
-    /// As [`GroupReader::open`], with every topic still to be opened by [`GroupReader::open_next`]: each takes
-    /// a while.
+    /// As [`GroupReader::open`], with every topic still to be opened by [`GroupReader::open_next`]:
+    /// each takes a while.
     ///
     /// # Errors
     /// The robot's description is invalid.
@@ -130,8 +130,8 @@ impl GroupReader {
         painter.begin(now, clock, &mut |shown| picture(&shown, numbers, show));
     }
 
-    /// Takes what has arrived on all topics. Returns whether a buffer was more than an eighth full: then the next look should
-    /// come soon.
+    /// Takes the new messages of all topics. Returns whether a buffer was more than an eighth full:
+    /// then the next look should come soon.
     pub fn look(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) -> bool {
         let Self { topics, painter, numbers, buffer, .. } = self;
         let (mut failure, mut is_filling) = (None, false);
@@ -176,7 +176,7 @@ impl GroupReader {
         painter.show_logs(now, clock, &mut |shown| picture(&shown, numbers, show));
     }
 
-    /// Drops what has arrived on all topics.
+    /// Drops the new messages of all topics.
     pub fn skip(&mut self) {
         let drop_all = |source: &Source| source.reader.drain(&mut |_, _| {}).err();
         let failure = self.topics.iter().filter_map(drop_all).next();

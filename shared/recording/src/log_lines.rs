@@ -1,4 +1,4 @@
-//! The services' logs as they grow.
+//! Follower of the services' growing logs.
 
 use std::path::Path;
 
@@ -44,7 +44,7 @@ impl LogLines {
             }
             let mut file = LogFile::new(name, path.clone());
             if !self.has_begun {
-                // What was written before belongs to no recording.
+                // Lines written before belong to no recording.
                 let _ = file.last_lines(0);
             }
             self.files.push(file);

@@ -32,7 +32,7 @@ fn clock() -> WallClock {
     WallClock { offset_ns: 2 * 86_400 * 1_000_000_000 }
 }
 
-/// A ring whose free space is what the cell holds.
+/// Makes a ring with the free space of the cell.
 fn ring(folder: &Path, limits: Recorder) -> (Ring, Rc<Cell<u64>>) {
     let free = Rc::new(Cell::new(1000 * MIB));
     let asked = Rc::clone(&free);
