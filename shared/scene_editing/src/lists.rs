@@ -8,7 +8,7 @@ use crate::keys::arranged;
 
 /// An entry that may be of the file that is edited.
 pub(crate) trait Entry {
-    /// Its position in the file.
+    /// Returns the entry's position in the file.
     fn from(&self) -> Option<usize>;
     /// Writes its keys into a table that has those of the file, or none.
     fn write(&self, table: &mut dyn TableLike);
@@ -16,8 +16,8 @@ pub(crate) trait Entry {
     fn plain(&self) -> Option<Value>;
 }
 
-/// Replaces the list at `key` by entries. Returns the comments of removed entries that belong to no single
-/// entry, where no entry follows that could keep them.
+/// Replaces the list at `key` by entries. Returns the comments of removed entries that belong to no
+/// single entry, if no entry follows that could keep them.
 pub(crate) fn set_entries<T: Entry>(
     parent: &mut dyn TableLike,
     key: &str,
@@ -108,7 +108,7 @@ fn set_tables<T: Entry>(tables: &mut ArrayOfTables, entries: &[T]) -> String {
     let old = mem::take(tables);
     let position = old.iter().find_map(Table::position);
     let is_kept = |n: usize| entries.iter().any(|entry| entry.from() == Some(n));
-    // What stood before a removed entry and belongs to no single one goes to the next that stays.
+    // Comments before a removed entry that belong to no single one go to the next that stays.
     let mut loose = String::new();
     let mut before: Vec<String> = Vec::new();
     for (n, table) in old.iter().enumerate() {
