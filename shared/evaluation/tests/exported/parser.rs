@@ -13,7 +13,7 @@ pub(crate) struct Parsed {
     pub(crate) transition: Vec<Vec<Vec<f64>>>,
     /// `O(s', a, o)` as `[a][s'][o]`.
     pub(crate) observation: Vec<Vec<Vec<f64>>>,
-    /// `R(s, a)` as `[a][s]`: expected, where it depends on `s'`.
+    /// `R(s, a)` as `[a][s]`: its expectation if it depends on `s'`.
     pub(crate) reward: Vec<Vec<f64>>,
 }
 

@@ -64,7 +64,7 @@ impl Rules {
         "open+mixture+hold+same+fast+w2.5",
     ];
 
-    /// The rules of that name: parts joined by `+`, in any order. What is not named is as in the
+    /// Parses the name of rules: parts joined by `+`, in any order. Other rules are as in the
     /// paper.
     ///
     /// # Errors

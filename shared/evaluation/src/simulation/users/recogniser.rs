@@ -8,7 +8,7 @@ use crate::simulation::draw::{chance, one_of};
 
 /// Words that replace others, besides the scene's own.
 const FILLERS: [&str; 8] = ["the", "a", "uh", "it", "one", "and", "to", "ball"];
-/// Weight of the first hypothesis, where the recogniser wavers between it and the words said.
+/// Weight of the first hypothesis, if the recogniser wavers between it and the words said.
 const PREFERRED: f64 = 0.65;
 
 /// A channel from words to words.
