@@ -5,7 +5,7 @@ use config::study::{Item, Kind};
 /// A column of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Its name.
+    /// Name of the column.
     pub name: &'static str,
     /// Type of its values: `text`, `number`, `0/1` or `UTC`.
     pub kind: &'static str,

@@ -14,7 +14,7 @@ use crate::trial::Trial;
 pub struct Paired {
     /// Policy.
     pub policy: String,
-    /// Policy that it is compared with.
+    /// Policy of the comparison.
     pub with: String,
     /// Share of successes.
     pub success: Mean,

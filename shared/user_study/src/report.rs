@@ -193,8 +193,7 @@ impl Report {
     }
 }
 
-/// Returns a mean with its interval by Student's distribution; null where there are too few
-/// numbers.
+/// Returns a mean with its interval by Student's distribution; null if there are too few numbers.
 pub(crate) fn mean_json(mean: &Mean) -> Json {
     let interval = mean.student_interval();
     json!({
