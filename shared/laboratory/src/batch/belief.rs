@@ -108,7 +108,7 @@ impl PaperReader<'_> {
             _ => Reading::default(),
         };
         if let Some(words) = &turn.l_b {
-            // Words outside V are no base words: the model has no factor for them.
+            // Words outside V are not base words: the model has no factor for them.
             reading.base = words.iter().filter_map(|w| self.scene.word_named(w)).collect();
         }
         if let Some(response) = turn.l_r {

@@ -126,7 +126,7 @@ impl Subject {
         })
     }
 
-    /// Waits for its end.
+    /// Waits for the process's end.
     pub(super) fn await_exit(&mut self, patience: Duration) -> Option<ProcessExit> {
         let until = Instant::now() + patience;
         loop {
@@ -140,7 +140,7 @@ impl Subject {
         }
     }
 
-    /// Asks it to end.
+    /// Asks the process to end.
     pub(super) fn terminate(&self) {
         self.signal(Signal::TERM);
     }

@@ -10,7 +10,7 @@ use super::setup::Setup;
 /// Most rows of a table for people; the data has all.
 const ROWS_MAX: usize = 24;
 
-/// Tables of questions and objects, below a line on what questions cost in this study.
+/// Tables of questions and objects, below a line on the costs of questions in this study.
 pub(super) fn lines(setup: &Setup) -> Vec<String> {
     let durations = setup.durations();
     let room = setup.room();
@@ -47,7 +47,7 @@ pub(super) fn lines(setup: &Setup) -> Vec<String> {
     lines
 }
 
-/// Returns the same with names: where the arm's motions are not known, its seconds are null.
+/// Returns the tables with names: if the arm's motions are unknown, its seconds are null.
 pub(super) fn to_json(setup: &Setup) -> Json {
     let durations = setup.durations();
     let room = setup.room();
