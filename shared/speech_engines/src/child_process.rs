@@ -1,8 +1,8 @@
 //! Child processes with a deadline.
 //!
 //! Invariant: no call waits longer than its deadline, and no child outlives its [`ChildProcess`],
-//! except when this process is killed; the supervisor then ends the process group, which contains the
-//! children.
+//! except when this process is killed; the supervisor then ends the process group, which contains
+//! the children.
 
 use std::fmt::Display;
 use std::io::{ErrorKind, Read};

@@ -20,8 +20,8 @@ pub fn lower_priority(niceness: i32) {
     let _ = rustix::process::nice(niceness);
 }
 
-/// Returns what `work` returns, which is done at a lower priority. It must start no thread or process that lasts:
-/// a priority is not raised again.
+/// Runs `work` at a lower priority and returns its result. It must start no lasting thread or
+/// process: a priority is not raised again.
 pub fn in_background<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let quietly = || {
         lower_priority(LOADING);

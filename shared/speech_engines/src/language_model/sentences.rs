@@ -6,8 +6,8 @@ use super::templates::{COVERAGE, PREPOSITIONS, shapes};
 use super::words;
 use crate::random::{Rng, below};
 
-/// Sentences that are drawn besides those that cover every word. More do not help: the model's counts
-/// are stable to a few percent.
+/// Sentences that are drawn besides those that cover every word. More do not help: the model's
+/// counts are stable to a few percent.
 const DRAWN: usize = 4000;
 
 /// Returns sentences about the scene, each a line of words as [`words`] writes them. Equal scenes

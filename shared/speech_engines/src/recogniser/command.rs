@@ -1,5 +1,5 @@
-//! A recogniser that is a separate program, kept running: samples to its standard input, one line of
-//! JSON back for each utterance. `docs/speech.md` describes the protocol.
+//! A recogniser that is a separate program, kept running: samples to its standard input, one line
+//! of JSON back for each utterance. `docs/speech.md` describes the protocol.
 //!
 //! Invariant: an utterance waits at most for the deadline, an answer is never attributed to another
 //! utterance, and the program's output is bounded. A program that exits or is late is killed and
@@ -128,7 +128,7 @@ fn hypotheses(answers: Vec<AnswerHypothesis>) -> Vec<Hypothesis> {
 
 /// The running program.
 struct Program {
-    /// Killed when it is dropped.
+    /// The program's process, killed on drop.
     _process: ChildProcess,
     samples: Sender<Vec<u8>>,
     lines: Receiver<std::io::Result<String>>,
@@ -194,7 +194,7 @@ impl Program {
     }
 }
 
-/// Reads a line; without its end where the program exited or the line is too long.
+/// Reads a line; without its end if the program exited or the line is too long.
 fn next_line(from: &mut impl BufRead) -> std::io::Result<String> {
     let mut line = String::new();
     from.take(LINE_MAX).read_line(&mut line)?;

@@ -57,19 +57,19 @@ impl RecogniserUnavailable {
         }
     }
 
-    /// The library rejected its model.
+    /// Returns the error of a rejected model.
     fn rejected(reason: &str) -> Self {
         Self::Missing(format!("pocketsphinx rejected its model: {reason}"))
     }
 }
 
-/// What a recogniser thinks of an utterance.
+/// Result of recognising an utterance.
 pub type Recognition = Result<FirstView, RecogniseError>;
 
 /// A recogniser of whole utterances.
 pub trait Recogniser: Send {
-    /// Decodes one whole utterance, 16 kHz mono, in which `speech` are the samples of the voice; the
-    /// noise is estimated around it.
+    /// Decodes one whole utterance, 16 kHz mono, in which `speech` are the samples of the voice;
+    /// the noise is estimated around it.
     ///
     /// # Errors
     /// If the backend fails on these samples.
@@ -80,14 +80,14 @@ pub trait Recogniser: Send {
         false
     }
 
-    /// Returns a function that opens a decoder of the same words for utterances in progress, if there
-    /// is one. It may be called on another thread.
+    /// Returns a function that opens a decoder of the same words for utterances in progress, if
+    /// there is one. It may be called on another thread.
     fn interim_decoder(&self) -> Option<InterimDecoderOpener> {
         None
     }
 }
 
-/// Opens an [`InterimDecoder`]; logs the error and returns `None` where that fails.
+/// Opens an [`InterimDecoder`]; logs the error and returns `None` if that fails.
 pub type InterimDecoderOpener = Box<dyn FnOnce() -> Option<Box<dyn InterimDecoder>> + Send>;
 
 /// A rough decoder of speech in progress.
@@ -128,7 +128,7 @@ impl Backend {
     ) -> Result<(Box<dyn Recogniser>, Vec<String>), RecogniserUnavailable> {
         Ok(match self {
             Self::PocketSphinx(options) => {
-                // A good part of what a start of the group costs; what is said meanwhile waits.
+                // A good part of the cost of starting the group; utterances wait meanwhile.
                 let recogniser = in_background(|| PocketSphinx::open(scene, options))?;
                 let unpronounceable = recogniser.unpronounceable().to_vec();
                 (Box::new(recogniser), unpronounceable)

@@ -46,7 +46,7 @@ pub struct PocketSphinx {
     opener: Opener,
 }
 
-/// What is needed to open a decoder.
+/// Parts needed to open a decoder.
 #[derive(Clone)]
 struct Opener {
     library: PathBuf,
@@ -126,8 +126,8 @@ impl PocketSphinx {
     }
 }
 
-/// Audio before the voice that is decoded: 0.2 s. The rest of the lead serves to estimate the noise; to
-/// decode it too costs an eighth of the time, and no accuracy is gained.
+/// Audio before the voice that is decoded: 0.2 s. The rest of the lead serves to estimate the
+/// noise; to decode it too costs an eighth of the time, and no accuracy is gained.
 const LEAD: usize = RATE_HZ as usize / 5;
 /// Paths through the lattice that are examined: the same words recur with other times.
 const PATHS_MAX: usize = 100;
@@ -186,9 +186,9 @@ impl InterimDecoder for FirstPass {
     }
 }
 
-/// Divisor of a path's score before it becomes a weight: path scores are overconfident because frames
-/// are not independent. It is the library's own (its option `-ascale`), and with it the words'
-/// confidences are calibrated.
+/// Divisor of a path's score before it becomes a weight: path scores are overconfident because
+/// frames are not independent. It is the library's own (its option `-ascale`), and with it the
+/// words' confidences are calibrated.
 const SCORE_SCALE: f64 = 20.0;
 
 fn weighed(decoded: &Decoded) -> Vec<Hypothesis> {

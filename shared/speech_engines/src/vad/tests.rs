@@ -10,8 +10,8 @@ fn track(frames: &str, options: &SegmenterOptions) -> Vec<VadEvent> {
     events
 }
 
-/// Returns settings by which three frames open and two close, with one frame of pre-roll and eight frames
-/// at most.
+/// Returns settings by which three frames open and two close, with one frame of pre-roll and eight
+/// frames at most.
 fn short() -> SegmenterOptions {
     let frame_s = FRAME as f64 / f64::from(RATE_HZ);
     SegmenterOptions {

@@ -39,14 +39,14 @@ pub use synthesis::{SynthesisError, Synthesiser};
 pub struct PlaybackEvent {
     /// Number of the playback.
     pub playback: u64,
-    /// Its new state.
+    /// New state of the playback.
     pub state: PlaybackState,
 }
 
 /// State of a playback.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PlaybackState {
-    /// Its sound began.
+    /// The sound began.
     Started,
     /// Its sound was played to the end.
     Ended,
@@ -59,7 +59,7 @@ pub enum PlaybackState {
 /// Output of the voice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum VoiceOutput {
-    /// Prompts are played by this program, or by none for as long as they would take.
+    /// Prompts are played by this program, or silently for their duration.
     Aloud(Player),
     /// Prompts are shown as text only.
     Text {
@@ -71,7 +71,7 @@ pub enum VoiceOutput {
 /// An event of the voice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum VoiceEvent {
-    /// Its output; the first event.
+    /// The output of the voice; the first event.
     Output(VoiceOutput),
     /// Progress of a playback.
     Playback(PlaybackEvent),
@@ -90,7 +90,7 @@ pub struct Voice {
 struct Prompt {
     playback: u64,
     generation: u64,
-    /// Its file in the cache.
+    /// File of the prompt in the cache.
     file: SoundFile,
     text: String,
 }
@@ -193,8 +193,8 @@ impl Speaker {
         }
     }
 
-    /// Returns the next prompt. Meanwhile foreseen prompts are synthesised, one at a time, so that a prompt
-    /// waits for one at most.
+    /// Returns the next prompt. Meanwhile foreseen prompts are synthesised, one at a time, so that
+    /// a prompt waits for one at most.
     fn next(&mut self, prompts: &Receiver<Prompt>) -> Option<Prompt> {
         loop {
             match prompts.try_recv() {
@@ -210,7 +210,7 @@ impl Speaker {
             match self.synthesiser.speak(&text, is_cancelled) {
                 Ok(_) => {}
                 Err(SynthesisError::Cancelled) => self.foreseen.push(text),
-                // A prompt reports what fails when it is spoken.
+                // A failing prompt reports its error when it is spoken.
                 Err(error) => {
                     tracing::debug!(%error, "prompts are not synthesised in advance");
                     self.foreseen.clear();

@@ -10,7 +10,7 @@ pub enum VoiceMode {
     /// Aloud where synthesis and a player work, otherwise as text.
     #[default]
     Auto,
-    /// Aloud; where that is impossible every prompt fails.
+    /// Aloud; if that is impossible, every prompt fails.
     Aloud,
     /// As text: a prompt ends as soon as it starts.
     Print,

@@ -14,7 +14,7 @@ const SOUND_SAMPLES: usize = 3_200;
 /// The same.
 const SOUND: Duration = Duration::from_millis(200);
 
-/// The file of a prompt where it does not matter.
+/// An arbitrary file of a prompt.
 const FILE: SoundFile = SoundFile { prompt: 1, presentation: 1 };
 
 /// Programs that stand in for espeak-ng and a player.
@@ -24,8 +24,8 @@ struct Stage {
 }
 
 impl Stage {
-    /// The stand-in for espeak-ng copies a fifth of a second of audio to its output file; the player is
-    /// the given script.
+    /// The stand-in for espeak-ng copies a fifth of a second of audio to its output file; the
+    /// player is the given script.
     fn new(mode: VoiceMode, player: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
