@@ -24,8 +24,8 @@ pub struct LanguageModel {
     pub calibration: Calibration,
 }
 
-/// How weights of the model become probabilities: `p ∝ (1 − built_in) w^power + built_in b`, where `b` is the
-/// built-in reader's probability of the same reading.
+/// How weights of the model become probabilities: `p ∝ (1 − built_in) w^power + built_in b`, where
+/// `b` is the built-in reader's probability of the same reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibration {
     /// Exponent of the model's weights: above 1 sharpens them, below 1 flattens them.
@@ -37,7 +37,7 @@ pub struct Calibration {
 impl Calibration {
     /// Bounds of `power`.
     pub const POWER: std::ops::RangeInclusive<f64> = 0.05..=20.0;
-    /// The model's weights as they are.
+    /// The model's unchanged weights.
     pub const NONE: Self = Self { power: 1.0, built_in: 0.0 };
 }
 
