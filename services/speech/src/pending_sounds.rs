@@ -11,14 +11,14 @@ use speech_engines::stream::Began;
 pub(crate) struct PendingSound {
     /// The request or stream that it belongs to.
     pub(crate) key: RequestKey,
-    /// Number and total of its segment; none for a recording, which may contain several. The total of a
-    /// stream is unknown: 0.
+    /// Number and total of its segment; `None` for a recording, which may contain several. The
+    /// total of a stream is unknown: 0.
     pub(crate) segment: Option<(u32, u32)>,
-    /// Its source.
+    /// Source of the sound.
     pub(crate) source: Source,
-    /// When it began.
+    /// Begin of the sound.
     pub(crate) onset: Time,
-    /// When a live one ended; none while it lasts.
+    /// End of a live sound; `None` while it lasts.
     pub(crate) end: Option<Time>,
     /// `true` if its speaker can interrupt the robot.
     pub(crate) interrupts: bool,
@@ -45,7 +45,7 @@ impl PendingSound {
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ClosedStream {
     pub(crate) key: RequestKey,
-    /// Number of its utterances.
+    /// Number of utterances.
     pub(crate) utterances: u32,
     /// Samples lost in transit.
     pub(crate) lost: u64,

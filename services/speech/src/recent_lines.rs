@@ -17,9 +17,9 @@ pub(crate) struct RecentLines(VecDeque<Line>);
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Line {
     text: String,
-    /// `None` before it sounds.
+    /// Begin of the sound; `None` before.
     began: Option<Time>,
-    /// `None` while it sounds.
+    /// End of the sound; `None` before.
     ended: Option<Time>,
 }
 

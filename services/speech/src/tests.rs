@@ -296,7 +296,7 @@ fn words_whose_beginning_the_robot_covers_are_not_acted_on_and_its_question_is_r
     }
 }
 
-/// Returns the receipt of what is heard some seconds after the robot has asked "Is it white?".
+/// Returns the receipt of a text heard some seconds after the robot has asked "Is it white?".
 fn heard_after_a_question(after_s: f64, text: &str) -> (Receipt, Outputs) {
     let mut speech = Speech::new();
     speech.take(0.0, ask(7));

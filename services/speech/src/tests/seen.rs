@@ -1,4 +1,4 @@
-//! What a client has shown is what its user answers.
+//! A client's user answers the prompt that the client has shown.
 
 use super::*;
 
@@ -18,7 +18,7 @@ fn said(text: &str, key: u8, seen: u64, onset: Time) -> In<'static> {
     })
 }
 
-/// Puts a question to its end.
+/// Presents a question to its end.
 fn put(speech: &mut Speech, prompt: u64) {
     let playback = speech.take(0.1, ask(prompt)).spoken().unwrap().playback;
     speech.playback(0.1, playback, PlaybackState::Started);

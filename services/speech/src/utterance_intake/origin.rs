@@ -23,11 +23,11 @@ pub(super) struct Origin {
     pub(super) from: PersonId,
     /// Beginning and end of the speech, 0 without speech.
     pub(super) span: (Time, Time),
-    /// The latest prompt that the user was shown before; 0 where that is not known.
+    /// The latest prompt that the user was shown before; 0 if unknown.
     pub(super) seen: PromptId,
     /// Signal-to-noise ratio, decibels; 0 for text.
     pub(super) snr_db: f32,
-    /// What each recogniser thought, where sound was recognised.
+    /// Result of each recogniser, if sound was recognised.
     pub(super) heard: Option<Heard>,
 }
 
@@ -59,8 +59,8 @@ impl Origin {
         Self { key, segment, source, from, span, seen, snr_db: 0.0, heard: None }
     }
 
-    /// Adds what the recogniser measured. The times of a live sound are known; those of a recording
-    /// count from its beginning.
+    /// Adds the recogniser's measurements. The times of a live sound are known; those of a
+    /// recording count from its beginning.
     pub(super) fn measured(self, segment: &RecognisedSegment, now: Time) -> Self {
         let at = |s: f64| (self.span.0 + Span::from_s(s)).min(now);
         let recorded = (at(segment.span_s.0), at(segment.span_s.1));
@@ -68,7 +68,7 @@ impl Origin {
         Self { span, snr_db: segment.snr_db, heard: Some(segment.heard.clone()), ..self }
     }
 
-    /// Adds what each recogniser thought to the receipt.
+    /// Adds each recogniser's result to the receipt.
     pub(super) fn with_views(&self, receipt: Receipt) -> Receipt {
         let Some(Heard { first, second }) = &self.heard else { return receipt };
         let first = first.hypotheses.first().map_or("", |best| best.text.as_str());
