@@ -1,7 +1,7 @@
 //! Cache of the planner's decisions on disk, between runs.
 //!
-//! Decisions are the same with and without it: a file that is missing, torn or of another problem is
-//! computed again.
+//! Decisions are the same with and without it: a file that is missing, torn or of another problem
+//! is computed again.
 
 use std::fs;
 use std::io;
@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use dialogue::PolicyTable;
 use dialogue::manager::Manager;
 
-/// Lets the planner precompute its decisions from a dialogue's usual beginning, or adopts those that an
-/// earlier run left in `folder` for the same scene and settings.
+/// Lets the planner precompute its decisions from a dialogue's usual beginning, or adopts those
+/// that an earlier run left in `folder` for the same scene and settings.
 pub(crate) fn precompute(manager: &mut Manager, folder: &Path) {
     let path = file(folder, manager.problem().key());
     if let Some(table) = read(&path)
