@@ -34,8 +34,8 @@ use crate::server::web::Web;
 use crate::server::{Access, App};
 use crate::viewer;
 
-/// Longest sleep with and without viewers. Prompts, acts and phases of the arm wake the console; it polls
-/// the other topics.
+/// Longest sleep with and without viewers. Prompts, acts and phases of the arm wake the console; it
+/// polls the other topics.
 const LOOK_EVERY: (Span, Span) = (Span::from_ms(10), Span::from_ms(250));
 /// Most restarts that wait for the supervisor.
 const RESTARTS_MAX: usize = 8;
@@ -154,8 +154,8 @@ fn http(access: &Arc<Access>, hub: &Hub, paths: &GroupPaths) -> std::io::Result<
     http_api::open(paths, Rules { is_owner, is_stop, ending })
 }
 
-/// Raises the limit of descriptors as far as allowed, and divides it: first to pages, then to the live view.
-/// Returns whether enough is left for that.
+/// Raises the limit of descriptors as far as allowed, and divides it: first to pages, then to the
+/// live view. Returns whether enough is left for that.
 fn limits(viewers_max: usize) -> (Limits, bool) {
     let Rlimit { maximum, .. } = getrlimit(Resource::Nofile);
     let raised = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });

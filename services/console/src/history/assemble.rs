@@ -41,8 +41,8 @@ struct Begun {
 }
 
 impl Assembler {
-    /// Takes in records of one journal, oldest first. Those of speech come before those of the policy, and
-    /// these before the arm's.
+    /// Takes in records of one journal, oldest first. Those of speech come before those of the
+    /// policy, and these before the arm's.
     pub(super) fn take_in(&mut self, lines: Vec<JournalLine>) {
         for JournalLine { seq, at_ns, unix_ms, record, .. } in lines {
             let at = At { seq, ns: at_ns, unix_ms };
@@ -59,7 +59,7 @@ impl Assembler {
         self.recent.values().map(|begun| &begun.interaction)
     }
 
-    /// Returns the interaction of that number.
+    /// Returns the interaction with the given number.
     pub(super) fn get(&self, interaction: u64) -> Option<&Interaction> {
         self.recent.get(&interaction).map(|begun| &begun.interaction)
     }
@@ -192,8 +192,8 @@ impl Assembler {
     }
 }
 
-/// Returns whether a step of the arm is part of the interaction of its pick. That the fetch has ended is known
-/// from the policy; the limbs also come to rest before they set out.
+/// Returns whether a step of the arm is part of the interaction of its pick. That the fetch has
+/// ended is known from the policy; the limbs also come to rest before they set out.
 fn is_shown(cause: ArmCause, pick: &PickRecord) -> bool {
     let is_done = pick.phase == PickPhase::Done;
     match cause {

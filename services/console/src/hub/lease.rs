@@ -21,7 +21,7 @@ pub struct Lease {
 struct Holder {
     viewer: ViewerId,
     session: String,
-    /// When its connection was lost.
+    /// Time at which the connection was lost.
     away: Option<Time>,
 }
 

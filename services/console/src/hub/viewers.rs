@@ -26,7 +26,7 @@ const QUEUE_MAX: usize = 64;
 /// The role that a page asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The operator, if there is none.
+    /// Operator, while there is no other.
     Operator,
     /// A viewer, who may ask for control.
     Viewer,
@@ -70,8 +70,8 @@ impl Viewers {
         (ViewerId(self.last), frames)
     }
 
-    /// Ends the connection that a session still has: a broken one that was not noticed, or that of a
-    /// duplicated page.
+    /// Ends the connection that a session still has: a broken one that was not noticed, or that of
+    /// a duplicated page.
     fn replace(&mut self, session: &str) {
         self.open.retain(|_, open| {
             let replaced = open.session == session;

@@ -9,7 +9,7 @@ use serde_json::json;
 use crate::hub::command::{Words, typed};
 use crate::server::message::spoken_text;
 
-/// Its number among the services.
+/// Number among the services.
 pub const NUMBER: u32 = 1;
 /// Longest key, bytes.
 const KEY_MAX: usize = 256;
@@ -64,8 +64,8 @@ pub fn read(request: &[u8]) -> Result<Words, String> {
     Ok(words)
 }
 
-/// Returns the key of the submission, the same for every connection and every start of the console. All live
-/// viewers are one client of the speech service.
+/// Returns the key of the submission, the same for every connection and every start of the console.
+/// All live viewers are one client of the speech service.
 fn request_key(key: &str) -> RequestKey {
     let hash = |text: &str| {
         let mut hash = StableHash::default();

@@ -1,5 +1,5 @@
-//! The scene editor's half in the console: scene files of the group's configuration are read, checked, written
-//! and put into force for operators.
+//! The scene editor's half in the console: scene files of the group's configuration are read,
+//! checked, written and put into force for operators.
 //!
 //! Checks plan motions, which takes up to seconds, so that all of it runs on one thread of low priority. Neither
 //! the main loop nor the server waits for it; a request that its page has given up is skipped.
@@ -26,7 +26,7 @@ const BODIES_MAX: usize = 2;
 /// Lower priority than the robot's services.
 const NICENESS: i32 = 10;
 
-/// Whose request it is: what the operator asks for goes ahead of what viewers do.
+/// Rank of a request: the operator's go ahead of viewers'.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Rank {
     Operator,

@@ -32,8 +32,8 @@ impl Access {
         Self(None)
     }
 
-    /// Makes the rules for those who have the token. A file that others can read, or that has no token, is
-    /// replaced by one with a new token.
+    /// Makes the rules for those who have the token. A file that others can read, or that has no
+    /// token, is replaced by one with a new token.
     ///
     /// # Errors
     /// The file of the token cannot be written.
@@ -73,8 +73,8 @@ impl Access {
         }
     }
 
-    /// Returns why a request is refused that is not known: it carries no token, or a wrong one, be it in its
-    /// address.
+    /// Returns why a request is refused that is not known: it carries no token, or a wrong one, be
+    /// it in its address.
     pub fn refusal(headers: &HeaderMap, has_token_in_address: bool) -> &'static str {
         match has_token_in_address || bearer(headers).is_some() {
             true => "wrong token",
@@ -82,7 +82,7 @@ impl Access {
         }
     }
 
-    /// Returns whether this is the token. Without one, any word is.
+    /// Returns whether `said` is the token. Without one, any word is.
     pub fn is_token(&self, said: &str) -> bool {
         self.0.as_ref().is_none_or(|guard| guard.is_token(said))
     }

@@ -169,7 +169,7 @@ pub(crate) fn spoken_text(text: &str) -> Result<String, String> {
     }
 }
 
-/// Returns a text without the characters that steer what shows it, such as a terminal.
+/// Returns a text without the characters that control a display, such as a terminal.
 fn plain(text: &str) -> String {
     text.replace(char::is_control, " ").trim().to_owned()
 }

@@ -150,8 +150,8 @@ async fn address(State(app): State<Arc<App>>, request: Request, next: Next) -> R
     response
 }
 
-/// Adds security headers to an answer to a request that was addressed to `host`: no foreign scripts, no
-/// framing, and no foreign pictures but those of the camera's origin.
+/// Adds security headers to an answer to a request that was addressed to `host`: no foreign
+/// scripts, no framing, and no foreign pictures but those of the camera's origin.
 pub fn secure(headers: &mut HeaderMap, host: Option<&str>, camera: Option<&str>) {
     // `'self'` covers sockets of the same host in newer browsers only.
     let plain =

@@ -75,11 +75,11 @@ pub(crate) enum Ended {
     Slow,
     /// No frame arrived, not even a pong.
     Silent,
-    /// It sent a message above [`FRAME_BYTES_MAX`].
+    /// The page sent a message above [`FRAME_BYTES_MAX`].
     TooLong,
     /// It sent a text that is not UTF-8.
     NotText,
-    /// It broke the protocol.
+    /// The page broke the protocol.
     Protocol,
     Console,
 }

@@ -1,5 +1,5 @@
-//! The objects that pages list: those that have a place; of the others all of a small scene, and of a
-//! large one those that the dialogue is about at the moment.
+//! The objects that pages list: those that have a place; of the others all of a small scene, and of
+//! a large one those that the dialogue is about at the moment.
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -31,7 +31,7 @@ impl Labels {
         Self(scene.objects().iter().map(|_| OnceCell::new()).collect())
     }
 
-    /// Returns the words for an object of the scene; none if it has no such object.
+    /// Returns the words for an object of the scene; `None` if it has no such object.
     pub(super) fn of(&self, scene: &Scene, object: ObjectId) -> Option<&Label> {
         let cell = self.0.get(object.index())?;
         Some(cell.get_or_init(|| Label::new(scene, object)))

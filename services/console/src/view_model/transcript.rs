@@ -218,7 +218,7 @@ impl Transcript {
     }
 }
 
-/// Returns what each recogniser thought, where two were asked.
+/// Returns each recogniser's result, if two were asked.
 fn recognisers(receipt: &Receipt) -> Option<Recognisers> {
     let text = |text: Result<&str, _>| text.unwrap_or_default().to_owned();
     let second = match receipt.second.get() {

@@ -1,4 +1,4 @@
-//! The audio streams, and where a frame belongs among them.
+//! The audio streams, and the assignment of frames to them.
 
 use crate::hub::ViewerId;
 
@@ -13,7 +13,7 @@ pub(super) type Name = (ViewerId, u32);
 /// A frame's relation to its stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FrameKind {
-    /// It begins a stream.
+    /// The frame begins a stream.
     Begin,
     /// It continues its stream after this many lost samples.
     Next(u64),
