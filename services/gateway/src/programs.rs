@@ -22,7 +22,7 @@ use crate::robots::Console;
 const BODY_MAX: usize = 16 << 10;
 const BODY_PATIENCE: Duration = Duration::from_secs(10);
 
-/// Who asks for what.
+/// A program that makes a request.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Visitor<'a> {
     pub(crate) person: &'a Name,
@@ -137,7 +137,7 @@ struct Order<'a> {
     gateway: &'a Gateway,
     visitor: Visitor<'a>,
     what: &'a str,
-    /// Its entries have the same.
+    /// Number of the request; its entries have the same.
     number: u64,
 }
 

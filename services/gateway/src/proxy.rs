@@ -24,7 +24,7 @@ const STATE_MAX: usize = 4 << 20;
 
 /// Headers of a request that matter to a console. Whatever else a browser sends, cookies first of all, stays here.
 const PASSED: [&str; 4] = ["accept", "accept-encoding", "if-none-match", "host"];
-/// Those of a program.
+/// Headers that a program may set.
 const PROGRAMS: [&str; 5] = ["accept", "content-type", "host", "idempotency-key", "last-event-id"];
 /// Tells the console for whom the gateway asks.
 const PERSON: &str = "whichone-person";
@@ -64,7 +64,7 @@ pub(crate) fn denied(path: &str, right: Right) -> Option<&'static str> {
 /// Passes a request to read on to a console.
 ///
 /// # Errors
-/// The status and the reason for which there is no answer.
+/// The status of the refusal, and its reason.
 pub(crate) async fn pass(
     console: &Console,
     path_and_query: &str,
@@ -105,7 +105,7 @@ pub(crate) struct ProgramRequest<'a> {
 /// Passes a program's request on to a console, in the name of its person.
 ///
 /// # Errors
-/// The reason for which there is no answer.
+/// The reason for the missing answer.
 pub(crate) async fn pass_program(
     console: &Console,
     ProgramRequest { method, path, headers, person, body }: ProgramRequest<'_>,
@@ -125,7 +125,7 @@ pub(crate) async fn pass_program(
     Ok(response)
 }
 
-/// Reads something small from a console; `None` where that fails.
+/// Reads something small from a console; `None` on failure.
 pub(crate) async fn get(console: &Console, path: &str) -> Option<Vec<u8>> {
     let read = async {
         let request = Request::get(path).header(header::HOST, &console.place);

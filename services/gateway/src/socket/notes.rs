@@ -1,4 +1,4 @@
-//! What the audit has of a page.
+//! Entries of the audit about a page.
 
 use std::sync::PoisonError;
 use std::sync::atomic::Ordering;
