@@ -1,4 +1,4 @@
-//! The robots that are there.
+//! Registry of the connected robots.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -20,9 +20,9 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// A robot in the list.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Listed {
-    /// Its name.
+    /// Name of the robot.
     pub robot: Name,
-    /// What it says of itself; `None` if it is connected and does not answer.
+    /// Its presence; `None` if it is connected and does not answer.
     pub presence: Option<Presence>,
 }
 

@@ -10,9 +10,9 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use service::Span;
 
-/// A message that is mirrored: what its topic's reader needs to know of it.
+/// A mirrored message, with the properties that its topic's reader needs.
 pub trait Mirrored: Schema + Serialize + DeserializeOwned + Clone + PartialEq + 'static {
-    /// Its topic.
+    /// Topic of the message.
     const TOPIC: Topic;
     /// Messages of which each counts, so that as many are sent again; 1 for a state.
     const KEPT: usize = 1;
@@ -69,7 +69,7 @@ impl Mirrored for TableView {
     }
 }
 
-/// Encoded it is as long as what was understood, a few hundred bytes.
+/// Encoded, an observation takes a few hundred bytes.
 impl Mirrored for Observation {
     const TOPIC: Topic = topics::OBSERVATION;
     const KEPT: usize = 2;

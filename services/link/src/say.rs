@@ -17,7 +17,7 @@ use crate::offset::{age_ns, time_ns};
 pub const PATIENCE: Span = Span::from_ms(2_000);
 /// As [`PATIENCE`], for a sound file: it travels for a while, and is then understood.
 pub const FILE_PATIENCE: Span = Span::from_ms(60_000);
-/// Time beyond these at which the mirror asks again when there was no answer at all.
+/// Additional time after which the mirror asks again without any answer.
 const GRACE: Span = Span::from_ms(500);
 /// Shortest interval at which the mirror asks again.
 const ASK_AGAIN: Span = Span::from_ms(250);
@@ -43,7 +43,7 @@ pub struct Said {
     pub seen_prompt: u64,
     /// See [`Injection`].
     pub from: String,
-    /// What was said. A file is its contents.
+    /// The sound said. A file is sent as its contents.
     pub sound: Sent,
 }
 
@@ -69,7 +69,7 @@ impl Sent {
 /// The robot's answer: the receipts, and when they were sent by the robot's clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Receipts {
-    /// When they were sent.
+    /// Time of sending.
     pub sent_ns: u64,
     /// One for text, one for every utterance in a sound file.
     pub receipts: Vec<Receipt>,
@@ -95,8 +95,8 @@ impl<Q> Default for Asked<Q> {
 }
 
 impl<Q> Asked<Q> {
-    /// Takes a request, whose sound is `sound` on this machine. Returns the caller with the receipts where they
-    /// are known already; one for whom there is no room is dropped, and asks again.
+    /// Takes a request, whose sound is `sound` on this machine. Returns the caller with the
+    /// receipts if they are known already; a caller without room is dropped, and asks again.
     pub fn take(
         &mut self,
         said: &Said,
@@ -191,12 +191,12 @@ struct Pending {
     injection: Injection,
     arrived: Time,
     repeated: Time,
-    /// When it is asked next.
+    /// Time of the next request.
     due: Time,
 }
 
 impl Outbound {
-    /// Takes an injection of a local client, and each of its repetitions. Returns the receipts where they are known.
+    /// Takes an injection of a local client, and each repetition. Returns the receipts, if known.
     pub fn take(&mut self, injection: Injection, now: Time) -> Option<&[Receipt]> {
         let key = injection.key;
         if let Some(place) = self.answered.iter().position(|(known, _)| *known == key) {
@@ -218,7 +218,7 @@ impl Outbound {
         let due = self.waiting.iter_mut().filter(is_due).map(|pending| {
             let Pending { injection, arrived, due, .. } = pending;
             let Injection { key, onset_ns, end_ns, seen_prompt, ref from, ref sound } = *injection;
-            // What was said when it arrived was not said when it is sent again.
+            // Words are old by the time they are sent again.
             let age = |at_ns| age_ns(at_ns, now).or_else(|| age_ns(arrived.ns(), now));
             let sent = Sent::Sound(sound.clone());
             *due = now + sent.patience() + GRACE;

@@ -25,7 +25,7 @@ const EVENTS_MAX: usize = 64;
 /// Timeout of the robot's answer; a request is repeated much sooner.
 const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 
-/// What other threads give to this one.
+/// Events from other threads to this one.
 pub(super) enum Event {
     /// The motion stop's state, as the robot shows it.
     Seen(Seen),
@@ -141,7 +141,7 @@ impl Worker {
                 }
                 self.caller = Some((given_ns, caller));
             }
-            // Its client is told by the silence, which says what to do.
+            // The silence tells the client, which then advises its user.
             Err(why) => tracing::warn!(why, "order not passed on"),
         }
     }

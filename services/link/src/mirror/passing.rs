@@ -103,7 +103,7 @@ struct Passing<'a> {
     audio: Reader<AudioChunk>,
     wake_listener: WakeListener,
     bus: Bus,
-    /// Dropped last: it removes what the others use.
+    /// Dropped last: it removes files that the others use.
     local: Local,
     offset: Offset,
     outbound: Outbound,
@@ -282,8 +282,8 @@ impl<'a> Passing<'a> {
         }
     }
 
-    /// A line that has begun is shown once its sound is there, so that pages play it. The robot sends it before; it is
-    /// asked for where that was lost, or before this mirror's time.
+    /// A line that has begun is shown once its sound is there, so that pages play it. The robot
+    /// sends it before; it is requested if that was lost, or before this mirror's time.
     fn on_presented(&mut self, presented: Presented, now: Time) {
         let file = SoundFile::of(&presented);
         let has_sound = self.voice_dir.is_none() || self.lines.contains(&file);

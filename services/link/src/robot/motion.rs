@@ -19,7 +19,7 @@ use crate::names::Call;
 const RESEND_EVERY: Span = Span::from_ms(10);
 /// Requests of one pass, and requests that wait for the arm.
 const REQUESTS_MAX: usize = 64;
-/// Time for the arm to be at rest, before a request is answered with what is known.
+/// Time for the arm to be at rest, before a request is answered with the present state.
 const ANSWER_WITHIN: Span = Span::from_ms(400);
 /// Interval at which the arm is asked for its state while somebody watches.
 const LOOK_EVERY: Span = Span::from_ms(500);
@@ -152,7 +152,7 @@ impl Worker {
         }
     }
 
-    /// Answers what is carried out, or has waited long enough.
+    /// Answers orders that are carried out, or have waited long enough.
     fn finish(&mut self, now: Time) {
         let is_over = |waiting: &mut Waiting| {
             let is_late = now >= waiting.since + ANSWER_WITHIN;
