@@ -15,7 +15,7 @@ use vocabulary::{ActKind, Action, Outcome, PickOutcome};
 
 use crate::planner_program;
 
-/// Renders a record as one line. Without the scene that it is about, the robot's words are left out.
+/// Renders a record as one line. Without its scene, the robot's words are left out.
 pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
     let Record { cause, state, .. } = record;
     let open = state.open.as_ref().map(|open| {
@@ -243,7 +243,7 @@ impl<'a> Managers<'a> {
         Self { settings, newest, known: BTreeMap::new() }
     }
 
-    /// Whether a planner decided that is a program (`--planner-program`): only that program can repeat it.
+    /// Whether a planner program (`--planner-program`) decided: only it can repeat decisions.
     fn is_program(&self, key: u64) -> bool {
         self.settings.iter().any(|settings| settings.manager_key(planner_program::NAME) == key)
     }

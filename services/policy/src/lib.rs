@@ -281,7 +281,7 @@ impl PolicyNode {
         self.apply(Cause::Forget(person), now, fx);
     }
 
-    /// Reports the effect of a stop that a user ordered: only a status that is younger than the order shows it.
+    /// Reports the effect of a user's stop, which only a status younger than the order shows.
     fn report_stop(&mut self, now: Time, fx: &mut Fx) {
         let Some(order) = self.state.stop.order else { return };
         // A time in the future is of a clock before a restart of the machine.

@@ -1,9 +1,8 @@
-//! A planner that is a program in any language: `whichone-policy --planner-program PROGRAM [ARGUMENT…]`.
+//! A planner as a program in any language: `whichone-policy --planner-program PROGRAM [ARGUMENT…]`.
 //!
 //! The program writes the line `ready` once it is. Then it reads a line of JSON on standard input
 //! for each decision, a [`Request`], and answers with a line on standard output, a [`Reply`]. It
-//! ends with its input. Its standard error is logged. It must decide by the request alone, so that
-//! decisions can be repeated from the journal.
+//! ends with its input; its standard error is logged. It decides by the request alone.
 
 use std::io::{self, BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
@@ -57,7 +56,7 @@ struct Request {
     step: u32,
     /// Probability of each object, in the order of the scene, and of an absent one if allowed.
     belief: Vec<f64>,
-    /// Value of a right pick and of a wrong one (negative), of waiting, and the discount per action.
+    /// Values of a right pick, a wrong one (negative) and waiting, and the discount per action.
     correct: f64,
     wrong: f64,
     wait: f64,
@@ -244,7 +243,7 @@ fn chosen(known: Decision, action: Action, value: Option<f64>, wait: f64) -> Dec
     }
 }
 
-/// The running program. A thread each writes to it and reads from it, so that a program that does neither cannot stop the service.
+/// The running program. Two threads write to it and read from it, lest it stop the service.
 struct Running {
     program: Child,
     requests: Sender<String>,

@@ -37,7 +37,7 @@ fn read(path: &Path) -> Option<PolicyTable> {
     postcard::from_bytes(body).ok()
 }
 
-/// Replaces the file atomically. A group has one scene at a time, so the tables of others are removed.
+/// Replaces the file atomically. A group has one scene at a time: other tables are removed.
 fn write(path: &Path, table: &PolicyTable) -> io::Result<()> {
     let mut bytes = postcard::to_stdvec(table).map_err(io::Error::other)?;
     bytes.extend(crc32c::crc32c(&bytes).to_le_bytes());
