@@ -52,7 +52,7 @@ const SNR_MIN_DB: f32 = 15.0;
 
 impl Endpointing {
     /// Returns how complete an utterance is that follows `question`: that of its least complete
-    /// hypothesis, and not complete before all recognisers have been heard. A stop waits for nothing.
+    /// hypothesis, and not complete before all recognisers' results. A stop waits for nothing.
     pub fn judge(&self, result: &RecognisedSegment, question: Question) -> Completeness {
         if result.text().is_some_and(language::is_stop) {
             return Completeness::Complete;

@@ -117,7 +117,7 @@ impl PendingSounds {
         self.sounds.remove(&sound)
     }
 
-    /// Adds an ended stream. Clients repeat the end until it is confirmed; only the first end counts.
+    /// Adds an ended stream. Clients repeat the end until confirmed; only the first end counts.
     pub(crate) fn close(&mut self, stream: ClosedStream) {
         if self.closed.iter().any(|closed| closed.key == stream.key) {
             return;

@@ -108,7 +108,7 @@ impl PromptPlayer {
         asked
     }
 
-    /// Notes that a user was shown a question that does not sound yet: it can be answered from now on.
+    /// Notes that a user was shown a question that is not sounding yet: it can be answered now.
     fn note_shown(&mut self, seen: PromptId, now: Time, fx: &mut Fx) {
         let silent = self.playing.as_ref().filter(|playing| !playing.has_begun);
         let playing = silent.map(|playing| playing.presentation);

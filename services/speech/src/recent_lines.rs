@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use service::{Span, Time};
 
-/// How long after its end a line may sound again: another device repeats it, or a network delays the sound.
+/// Time after its end in which a line may sound again: by another device, or a network's delay.
 const ECHO_WITHIN: Span = Span::from_ms(15_000);
 /// Greatest delay of the report that a line sounds.
 const REPORTED_WITHIN: Span = Span::from_ms(500);

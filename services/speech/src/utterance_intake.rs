@@ -148,7 +148,7 @@ impl UtteranceIntake {
         }
     }
 
-    /// Takes the next request. One whose user was shown a later prompt than the `newest` waits for it.
+    /// Takes the next request. One whose user saw a later prompt than the `newest` waits for it.
     fn next_request(&mut self, newest: PromptId, now: Time) -> Option<Request> {
         self.waiting.take(|Request { origin, received, .. }| {
             let is_known = origin.seen <= newest || now >= *received + PROMPT_WAIT;

@@ -23,7 +23,7 @@ pub struct Rejected {
 
 /// Share of a meaning in the scene's words alone from which it is accepted whatever else was heard.
 const PLAIN: f64 = 0.5;
-/// Share of a meaning from which it is clear: second opinions on it change nothing (docs/speech.md).
+/// Share of a clear meaning, which second opinions do not change (docs/speech.md).
 const CLEAR: f64 = 0.9;
 /// A yes or no has a meaning only as an answer.
 const ANY_QUESTION: Question = Question::Point(ObjectId(0));
@@ -95,7 +95,7 @@ impl Gate {
         share.powi(6) * meanings.iter().map(|(_, weight)| *weight).fold(0.0, f64::max) / total
     }
 
-    /// Returns whether the hypotheses leave so little doubt that another opinion would hardly matter.
+    /// Returns whether the hypotheses are so certain that another opinion would hardly matter.
     pub fn is_clear(&self, hypotheses: &[Hypothesis]) -> bool {
         self.score(hypotheses).max(self.plain_content(hypotheses)) >= CLEAR
     }

@@ -46,7 +46,7 @@ impl Origin {
         Self::new(key, (u32::MAX, utterances), Source::Microphone)
     }
 
-    /// Returns the origin of segment `number` of `count` in a sound; a live sound is a segment itself.
+    /// Returns the origin of segment `number` of `count` in a sound; a live sound is one segment.
     pub(super) fn of(sound: &PendingSound, number: u32, count: u32) -> Self {
         let segment = sound.segment.unwrap_or((number, count));
         let span = (sound.onset, sound.end.unwrap_or(Time(0)));

@@ -62,7 +62,7 @@ impl WaitingRequests {
         has_room
     }
 
-    /// Takes the next client's oldest request, if it `may` be accepted; afterwards it is the others' turn.
+    /// Takes the next client's oldest request, if it `may` be accepted; then others follow.
     pub(super) fn take(&mut self, may: impl Fn(&Request) -> bool) -> Option<Request> {
         let mut oldest = self.clients.iter().map(|(_, requests)| requests.front());
         let next = oldest.position(|request| request.is_some_and(&may))?;
