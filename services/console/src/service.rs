@@ -40,7 +40,7 @@ const LOOK_EVERY: (Span, Span) = (Span::from_ms(10), Span::from_ms(250));
 /// Most restarts that wait for the supervisor.
 const RESTARTS_MAX: usize = 8;
 
-/// Runs the service until it is shut down; with the arguments `view FILE`, the page for a shared interaction.
+/// Runs the service until it is shut down; with `view FILE`, the page for a shared interaction.
 pub fn run() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if let [verb, file] = &arguments[..]

@@ -164,7 +164,7 @@ impl Assembler {
             return;
         }
         let Some(begun) = self.recent.get_mut(&pick.interaction) else { return };
-        // The arm knows perceived objects by their numbers; the policy has named the order's object.
+        // The arm knows perceived objects by number; the policy has named the order's object.
         if let Some(name) = begun.interaction.ordered(pick.attempt) {
             pick.object = name;
         }
@@ -225,7 +225,7 @@ impl Begun {
         moments.insert(place, Moment { after_ms, event, thought });
     }
 
-    /// Time since the first words. The monotonic clock restarts with the machine, the wall clock does not.
+    /// Time since the first words. The monotonic clock restarts with the machine; this does not.
     fn after_ms(&self, at: At) -> u64 {
         let by_wall = at.unix_ms.zip(self.interaction.unix_ms);
         let by_wall = by_wall.map(|(now, began)| now.saturating_sub(began));

@@ -1,4 +1,4 @@
-//! The history: past interactions, put together from the group's journals and kept in a bounded store.
+//! The history: past interactions, assembled from the group's journals and kept in a bounded store.
 //!
 //! The journals are the only source, so the history is the same whether the console was running or
 //! not. They are read when someone looks at the history and when an interaction has ended, by a
@@ -22,7 +22,7 @@ pub use interaction::{Interaction, Summary};
 use journals::Journals;
 use store::Store;
 
-/// Interactions that stay with the journals: a refusal or the way back to rest may still be added to them.
+/// Interactions left to the journals: a refusal or the way back to rest may be added to them.
 const SETTLED_AFTER: usize = 2;
 /// Interactions of one answer.
 pub const PAGE_MAX: usize = 200;

@@ -126,7 +126,7 @@ impl Store {
 }
 
 impl StoreFile {
-    /// Lists the interactions of a file. Damaged lines are skipped, and a torn one at the end is cut off.
+    /// Lists the interactions of a file. Damaged lines are skipped, and a torn end is cut off.
     fn read(path: PathBuf) -> io::Result<Self> {
         let text = fs::read(&path)?;
         let (mut entries, mut offset): (Vec<Entry>, u64) = (Vec::new(), 0);

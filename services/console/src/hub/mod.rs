@@ -59,7 +59,7 @@ pub struct Channels {
 struct ControlSection<'a> {
     operator: Option<String>,
     name: Option<&'a String>,
-    /// Whether the operator's page is gone: nobody is in control, until it is back or the lease ends.
+    /// Whether the operator's page is gone: nobody is in control until its return or the end.
     away: bool,
     viewers: usize,
     asked_by: Option<String>,
@@ -305,8 +305,8 @@ impl Hub {
         Err("this is for the page of the operator; help: take control first".to_owned())
     }
 
-    /// Checks that a viewer may release the motion stop: the operator may. A participant of a study may not;
-    /// while one is in control, every other page may, so that the experimenter need not take control.
+    /// Checks that a viewer may release the motion stop: the operator may. A participant of a study
+    /// may not; meanwhile every other page may, so that the experimenter need not take control.
     fn must_release(&self, viewer: ViewerId) -> Result<(), String> {
         {
             let Control { viewers, lease } = &*self.control();

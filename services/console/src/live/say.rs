@@ -46,7 +46,7 @@ pub fn service() -> Service {
     }
 }
 
-/// Reads a request. Requests with the same key are one utterance; one without a key is always a new one.
+/// Reads a request. Requests with the same key are one utterance; one without a key is a new one.
 ///
 /// # Errors
 /// It is not JSON with a text, or the text is too long.

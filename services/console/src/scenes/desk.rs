@@ -20,7 +20,7 @@ const REACH: Duration = Duration::from_millis(700);
 /// Most places of one request about the reach.
 const PLACES_MAX: usize = 256;
 
-/// Most objects, and values of all attributes, of a scene in the editor: a check of it takes seconds.
+/// Most objects, and values of all attributes, in the editor: checks of more take seconds.
 const OBJECTS_MAX: usize = 1_024;
 const VALUES_MAX: usize = 4_096;
 
@@ -160,7 +160,7 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// A desk for a group: its control socket, the text of the scene in force, and why scenes are not changed.
+    /// A desk for a group: its control socket, the scene in force, and the reason for any lock.
     pub fn new(socket: PathBuf, in_force: String, locked: Option<String>) -> Self {
         Self { socket, in_force_hash: fingerprint(&in_force), locked, reach: None }
     }

@@ -1,8 +1,8 @@
 //! The scene editor's half in the console: scene files of the group's configuration are read,
 //! checked, written and put into force for operators.
 //!
-//! Checks plan motions, which takes up to seconds, so that all of it runs on one thread of low priority. Neither
-//! the main loop nor the server waits for it; a request that its page has given up is skipped.
+//! Checks plan motions, which takes up to seconds, so that all of it runs on one thread of low
+//! priority. Neither the main loop nor the server waits for it; abandoned requests are skipped.
 
 mod desk;
 mod http;

@@ -1,6 +1,6 @@
-//! Access rules: the console's own pages, the token, and the sessions of browsers that have shown it.
+//! Access rules: the console's own pages, the token, and the sessions of authorised browsers.
 //!
-//! Decided by a request's headers. The token's file belongs to the owner of the group, the sessions' one to the console.
+//! Decided by a request's headers. The token's file is the owner's, the sessions' the console's.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -64,7 +64,7 @@ impl Access {
         }
     }
 
-    /// Returns whether the request carries the token as a bearer, or without a bearer the cookie of a session.
+    /// Returns whether the request carries the token as a bearer, or else the cookie of a session.
     pub fn is_known(&self, headers: &HeaderMap, now_s: u64) -> bool {
         let Some(guard) = &self.0 else { return true };
         match bearer(headers) {

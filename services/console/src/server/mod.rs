@@ -104,8 +104,8 @@ fn router(app: Arc<App>) -> Router {
         .with_state(app)
 }
 
-/// Requires the token or a session, except for the files of the login page, which hold no data of this
-/// robot. A link with the token is exchanged for a session: the token does not stay in the address.
+/// Requires the token or a session, except for the files of the login page, which hold no data of
+/// this robot. A link with the token gets a session: the token leaves the address.
 async fn admit(
     State(app): State<Arc<App>>,
     ConnectInfo(Of(connection)): ConnectInfo<Of>,

@@ -278,7 +278,7 @@ pub(super) async fn enter(
             if !from_elsewhere {
                 return (unseen, cookie, Redirect::to(page)).into_response();
             }
-            // A redirect of another site's link would not carry the cookie; the page's own one does.
+            // A redirect of another site's link would lack the cookie; the page's own one has it.
             let go_on = stepping_stone(page, "icon.svg");
             let kind = [(header::CONTENT_TYPE, "text/html; charset=utf-8")];
             (unseen, cookie, kind, go_on).into_response()

@@ -41,7 +41,7 @@ use services::missing;
 /// Utterances whose readings are remembered.
 const READINGS_MAX: usize = 16;
 
-/// Silence of the arm's service, which publishes three to four times a second, after which the arm's state is unknown.
+/// Silence of the arm's service, which normally publishes at 3 to 4 Hz, to call its state unknown.
 const ARM_SILENCE: Span = Span::from_ms(2_000);
 
 /// Everything that pages show, at one moment.

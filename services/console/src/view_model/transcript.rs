@@ -133,7 +133,7 @@ impl Transcript {
             return;
         }
         self.ended = ended.interaction.0;
-        // One that ended before this console started is not new, nor one that its predecessor noted.
+        // A pick that ended before this console, or that its predecessor noted, is not new.
         if is_first && self.lines.iter().any(|line| line.outcome.is_some()) {
             return;
         }
