@@ -74,7 +74,7 @@ enum By {
 }
 
 impl Known {
-    /// Returns the person who makes a request, by the secret as a bearer or by the cookie of a session.
+    /// Returns the person who makes a request, by a bearer secret or by the cookie of a session.
     pub(crate) fn of(
         headers: &HeaderMap,
         people: &People,
@@ -89,7 +89,7 @@ impl Known {
         Some(Self { person, by: By::Session(session) })
     }
 
-    /// Returns whether the person is still known by it: the secret is the same, and the session has not ended.
+    /// Returns whether the proof holds: the secret is the same, and the session has not ended.
     pub(crate) fn lasts(&self, people: &People, sessions: &Sessions<Name>) -> bool {
         match &self.by {
             By::Secret(secret) => people.has_secret(&self.person, secret),

@@ -1,4 +1,4 @@
-//! The people of a gateway and their rights: a file of the administrator, read again when it has changed.
+//! The people of a gateway and their rights: an administrator's file, read again when changed.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -132,7 +132,7 @@ impl People {
     }
 }
 
-/// Adds a person, or changes the rights of one; returns the secret of a new one, or of one whose secret is renewed.
+/// Adds a person, or changes the rights of one; returns a new or renewed secret.
 ///
 /// # Errors
 /// A robot's name is invalid, or the file cannot be read or written.

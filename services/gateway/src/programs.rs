@@ -1,4 +1,4 @@
-//! Programs at a robot's console: `/ROBOT/api/v1/…` (docs/http.md), with the rights of the person whose secret they have.
+//! Programs at a robot's console: `/ROBOT/api/v1/…` (docs/http.md), with the rights of a person.
 
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -59,7 +59,7 @@ fn coded(status: StatusCode, code: &str, why: &str) -> Response<Body> {
     response
 }
 
-/// Passes a request on to a console, if the person may make it; orders are recorded before, a stop afterwards.
+/// Passes a permitted request on to a console; orders are recorded before, a stop afterwards.
 pub(crate) async fn serve(
     gateway: &Gateway,
     visitor: Visitor<'_>,

@@ -22,7 +22,7 @@ const LOOK_PATIENCE: Duration = Duration::from_millis(1_500);
 /// Largest state for the list of robots, bytes.
 const STATE_MAX: usize = 4 << 20;
 
-/// Headers of a request that matter to a console. Whatever else a browser sends, cookies first of all, stays here.
+/// Headers of a request that matter to a console. All others, such as cookies, stay here.
 const PASSED: [&str; 4] = ["accept", "accept-encoding", "if-none-match", "host"];
 /// Headers that a program may set.
 const PROGRAMS: [&str; 5] = ["accept", "content-type", "host", "idempotency-key", "last-event-id"];
@@ -48,7 +48,7 @@ const VIEWERS: [&str; 12] = [
     "robot.urdf",
 ];
 
-/// Returns why a path of a console, from its `/` on, is not for someone with this right; `None` if it is.
+/// Returns why someone with this right may not read a console's path, from `/` on, if so.
 pub(crate) fn denied(path: &str, right: Right) -> Option<&'static str> {
     let mut parts = path.trim_start_matches('/').split('/');
     let first = parts.next().unwrap_or_default();

@@ -30,7 +30,7 @@ mod notes;
 
 /// Largest frame of a page, bytes: the console's own limit.
 pub(crate) const FRAME_BYTES_MAX: usize = 64 << 10;
-/// Frames that wait in one direction. A console sends the newest of everything to a page that is slow.
+/// Frames that wait in one direction. A console sends only the newest state to a slow page.
 const QUEUE: usize = 8;
 /// Orders that wait for the audit.
 const ORDERS: usize = 16;
