@@ -1,7 +1,7 @@
 //! Messages of one topic on their way to a mirror.
 //!
-//! A frame says everything that is to be known of its topic: the latest message of a state, the last few of
-//! others. It is sent when that has changed, and once a second; a lost frame costs no more than that.
+//! A frame is complete for its topic: the latest message of a state, the last few of others. It is
+//! sent on changes, and once a second; a lost frame costs no more than that.
 
 use std::collections::VecDeque;
 

@@ -1,5 +1,5 @@
-//! The folder from which all keys come: an authority of one's own, a certificate and a password for the router and for each
-//! robot and person, and the router's configuration, which denies everything else.
+//! The folder from which all keys come: an own authority, a certificate and a password for the
+//! router and each robot and person, and the router's configuration, which denies everything else.
 
 use std::fs;
 use std::io::ErrorKind;

@@ -1,7 +1,7 @@
 //! A line of the robot on its way to mirrors: its sound, at a quarter of the file's size.
 //!
-//! At 2 Mbit/s a question's file takes a quarter of a second, for which its listener would wait. IMA ADPCM (IMA Digital Audio
-//! Focus and Technical Working Groups, Recommended Practices, revision 3.00, 1992) needs four bits a sample and no look ahead.
+//! A question's file takes 0.25 s at 2 Mbit/s. IMA ADPCM (IMA Digital Audio Focus and Technical
+//! Working Groups, Recommended Practices 3.00, 1992): four bits a sample, no look-ahead.
 
 use std::io::Cursor;
 use std::ops::RangeInclusive;

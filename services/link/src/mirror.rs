@@ -1,5 +1,5 @@
-//! The operator's side: a robot elsewhere as a group of this machine. `watch`, `status`, `say`, `chat`, `await` and the console
-//! find the topics, sockets and settings of a group, and behind them this one process.
+//! The operator's side: a remote robot as a group here. `watch`, `status`, `say`, `chat`, `await`
+//! and the console find a group's topics, sockets and settings, all of this process.
 
 mod console;
 mod control;

@@ -1,11 +1,11 @@
 //! Orders to the motion stop over a link, exactly as safe as on the robot.
 //!
-//! A stop is stamped with the robot's own clock when it first arrives there, and keeps that stamp however often it is
-//! repeated; so is a release. A release names the stop that it lifts, by that stop's stamp, and the state that the person
-//! saw, which is younger than [`RELEASE_AGE_MAX`]: a later stop is younger still, and the arm ignores a release that was
-//! stamped less than [`RESUME_AFTER`] after a stop, and orders older than the last one obeyed. So no release lifts another
-//! stop than the one it names, whichever order messages arrive in. Both machines' clocks are never compared: how
-//! old the seen state is, is the robot's own time since it sent it.
+//! A stop is stamped with the robot's clock when it first arrives there, and keeps that stamp; so
+//! is a release. A release names the stop that it lifts, by that stop's stamp, and the state that
+//! the person saw, which is younger than [`RELEASE_AGE_MAX`]: a later stop is younger still, and
+//! the arm ignores a release that was stamped less than [`RESUME_AFTER`] after a stop, and orders
+//! older than the last one obeyed. So a release lifts only the stop it names, in any order of
+//! messages. Clocks are never compared: the seen state's age is the robot's time since it sent it.
 
 use std::collections::VecDeque;
 
@@ -204,7 +204,7 @@ const COPY_AFTER: Span = Span::from_ms(10);
 /// Time after which an order that its client no longer repeats is given up.
 const GIVEN_UP: Span = Span::from_ms(1_000);
 
-/// Priority under which a request travels. Each has a stream of its own, so that a lost packet holds up one of two copies.
+/// Priority of a request. Each has its own stream: a lost packet delays one of two copies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// Ahead of everything.

@@ -76,7 +76,7 @@ impl Keys {
         format!("{}/presence", self.0)
     }
 
-    /// Token that exists while the robot's link runs; `start` is its number ([`crate::frame::Frame::start`]).
+    /// Token while the link runs; `start` is its number ([`crate::frame::Frame::start`]).
     pub fn alive(&self, start: &str) -> String {
         format!("{}/alive/{start}", self.0)
     }

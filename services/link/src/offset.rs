@@ -31,7 +31,7 @@ impl Offset {
         self.least[0] = Some(least);
     }
 
-    /// Translates a time; 0, which stands for none, and every time before the first frame stay as they are.
+    /// Translates a time; 0, for none, and every time before the first frame stay as they are.
     pub fn here(&self, there_ns: u64) -> u64 {
         let Some(least) = self.least.into_iter().flatten().min().filter(|_| there_ns > 0) else {
             return there_ns;

@@ -1,4 +1,4 @@
-//! The robot's side: a service of its group that shows it to mirrors, and takes words and orders from them.
+//! The robot's side: a service that shows its group to mirrors, and takes words and orders.
 //!
 //! The main loop reads topics, submits words and chooses messages; it never touches the network.
 //! Threads of their own send states, joints and answers, and one only orders motion stops.

@@ -1,8 +1,8 @@
 //! Words of people over a link, applied exactly once.
 //!
-//! Nothing is added to the group's own protocol: a client repeats its [`Injection`] under one key until its receipts arrive,
-//! and the speech service applies a key once. The mirror repeats the request under the same key, the robot's link repeats
-//! the injection, and an answer that was lost is given again. Times travel as ages.
+//! The group's protocol is unchanged: a client repeats its [`Injection`] under one key until its
+//! receipts arrive, and the speech service applies a key once. The mirror repeats the request under
+//! that key, the link the injection; lost answers are repeated. Times travel as ages.
 
 use std::collections::VecDeque;
 
@@ -211,7 +211,7 @@ impl Outbound {
         None
     }
 
-    /// Returns the requests that are due at `now`, and drops those that their clients no longer repeat.
+    /// Returns the requests due at `now`, and drops those that their clients no longer repeat.
     pub fn due(&mut self, now: Time) -> Vec<Said> {
         self.waiting.retain(|pending| now < pending.repeated + GIVEN_UP);
         let is_due = |pending: &&mut Pending| now >= pending.due;
@@ -292,8 +292,8 @@ mod tests {
         }
     }
 
-    /// Runs one client's words through mirror, network and robot until `end_ms`; half of all messages are lost, and each may
-    /// be late by up to half a second. Returns when the client had its receipt.
+    /// Runs one client's words through mirror, network and robot until `end_ms`; half of all
+    /// messages are lost, and each may be half a second late. Returns the receipt's time.
     fn run(seed: u64) -> (Option<u64>, Speech) {
         let (mut dice, mut speech) = (Dice(seed), Speech::default());
         let (mut mirror, mut robot) = (Outbound::default(), Asked::<()>::default());

@@ -167,7 +167,7 @@ pub(crate) fn request_at(
     }
 }
 
-/// Answers a request. It may wait for room, so that only a thread that does nothing else may answer.
+/// Answers a request. It may wait for room, so only a thread with no other work may answer.
 pub(crate) fn reply(query: &Query, bytes: Vec<u8>, keys: &Keys, call: Call) {
     if let Err(error) = query.reply(keys.call(call), bytes).wait() {
         tracing::debug!(%error, ?call, "not answered; it is asked again");

@@ -1,4 +1,4 @@
-//! Reports of frames that cannot be shown, at a bounded rate: who sends nonsense among good frames does not fill the log.
+//! Reports of frames that cannot be shown, at a bounded rate, so that nonsense cannot fill the log.
 
 use service::{Span, Time};
 

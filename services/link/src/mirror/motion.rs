@@ -1,4 +1,4 @@
-//! The motion stop of a mirrored group: a thread that does nothing else, so that an order waits for nothing.
+//! The motion stop of a mirrored group: a thread of its own, so that an order waits for nothing.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,4 +1,4 @@
-//! The main loop of a mirror: passes the robot's states to the local topics, and local words and sound to the robot.
+//! The main loop of a mirror: passes states to local topics, local words and sound to the robot.
 
 use std::collections::VecDeque;
 use std::io::Read;

@@ -1,4 +1,4 @@
-//! Orders to the motion stop: a thread of its own, which waits for nothing but orders and the arm's answers.
+//! Orders to the motion stop: a thread of its own, for orders and the arm's answers alone.
 
 use std::sync::mpsc::SyncSender;
 use std::thread;
@@ -15,7 +15,7 @@ use super::senders::{Answer, Outlet};
 use crate::motion::{self, Register, Request, Seen, Stamped, StandingStop};
 use crate::names::Call;
 
-/// Interval at which an order is repeated to the arm while its request waits; a stop is repeated beyond that.
+/// Interval of repeating an order to the arm while its request waits; a stop continues after.
 const RESEND_EVERY: Span = Span::from_ms(10);
 /// Requests of one pass, and requests that wait for the arm.
 const REQUESTS_MAX: usize = 64;
