@@ -47,7 +47,7 @@ id! {
     PromptId
 }
 
-/// One attempt to fetch one object, or to put it back. The pair is the idempotency key of the motion.
+/// One attempt to fetch one object, or to put it back. The pair is the motion's idempotency key.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]

@@ -1,4 +1,4 @@
-//! Moments and lengths of time on the monotonic clock, as numbers: reading the clock is the caller's part.
+//! Moments and durations on the monotonic clock, as numbers; callers read the clock.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, Sub};
