@@ -1,4 +1,4 @@
-//! An attribute of places in a row, for objects that no attribute of the scene tells apart: "Is it on the left?"
+//! An attribute of places in a row, for otherwise identical objects: "Is it on the left?"
 
 use crate::relation_truth::dot;
 use crate::{Attribute, Object, Role, Scene, Value, ValueId, View, WordId};
@@ -40,7 +40,7 @@ impl Scene {
         self.told_apart()
     }
 
-    /// Returns the scene about other objects, whose values are of the attributes without that of places.
+    /// Returns the scene about other objects, with values of the attributes other than places.
     pub(crate) fn with(&self, objects: Vec<Object>) -> Self {
         let (name, noun, asks) =
             (self.name().to_owned(), self.noun().to_owned(), self.asks().clone());

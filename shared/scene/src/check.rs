@@ -213,7 +213,7 @@ fn check_roles(attribute: &DraftAttribute, report: &mut Checks<'_>) {
     }
 }
 
-/// The last word of the `spoken` forms of an attribute's values, if they have one in common; else the attribute's name.
+/// The last word of the `spoken` forms of an attribute's values, if shared; or else its name.
 fn shared_word(attribute: &DraftAttribute) -> String {
     let mut last = attribute.values.iter().map(|value| {
         let spoken = value.spoken.as_ref().unwrap_or(&value.name);

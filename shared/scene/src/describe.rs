@@ -160,7 +160,7 @@ impl Scene {
         self.compose_around(kind.map_or(self.noun(), Value::bare), values)
     }
 
-    /// Returns these values around a noun: owners, then qualities, then numbers, the noun, then parts and places.
+    /// Returns values around a noun: owners, qualities, numbers, the noun, then parts and places.
     pub fn compose_around(&self, noun: &str, values: &[(AttributeId, ValueId)]) -> String {
         let valued = |&(k, v): &(AttributeId, ValueId)| (k, self.value(k, v));
         let all: Vec<(AttributeId, &Value)> = values.iter().map(valued).collect();

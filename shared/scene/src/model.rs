@@ -128,7 +128,7 @@ impl Value {
         without_article(&self.spoken).filter(|_| self.role == Role::Kind).unwrap_or(&self.spoken)
     }
 
-    /// The value as it stands after a noun: "in the dishwasher", "with a green handle", "with no handle".
+    /// The value after a noun: "in the dishwasher", "with a green handle", "with no handle".
     pub fn after_noun(&self) -> String {
         let spoken = &self.spoken;
         let is_noun = self.role == Role::Part && self.is_noun;

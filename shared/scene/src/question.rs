@@ -1,4 +1,4 @@
-//! The robot's questions: `(Q_t, Q_v)` of section 3.3, and the open and choice questions that extend it.
+//! The robot's questions: `(Q_t, Q_v)` of section 3.3, extended by open and choice questions.
 
 use crate::{AttributeId, ObjectId, Options, ValueId};
 

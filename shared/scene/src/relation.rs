@@ -1,7 +1,7 @@
-//! Relations of an object to others by place, order and size, as people name them: "the leftmost", "the second
-//! from the right", "longer than the red one". [`truths`](crate::Scene::truths) says of which objects they hold.
+//! Relations of an object to others by place, order and size: "the leftmost", "the second from the
+//! right", "longer than the red one". [`truths`](crate::Scene::truths) evaluates them.
 
-/// A quantity by which objects are compared; more of it is said of the one that is further that way.
+/// A quantity for comparing objects; an object further that way has more of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {

@@ -11,7 +11,7 @@ const RATIO: f64 = 0.03;
 const RATIO_LOOSE: f64 = 0.1;
 /// Distance beyond the nearest at which "next to" is said `e` times less often, metres.
 const BESIDE_M: f64 = 0.04;
-/// Distance from the line between two objects at which "between" is said `e` times less often, metres.
+/// Distance from the line between two objects that makes "between" `e` times rarer, metres.
 const ASIDE_M: f64 = 0.1;
 
 /// Truth below which a relation to another object is true of none.
@@ -76,7 +76,7 @@ impl Scene {
         (known > 1 && most > least).then(|| truths.into_iter().map(scaled).collect())
     }
 
-    /// Returns whether a word is a value that stands for more of a measure: "long" for [`Measure::Long`].
+    /// Returns whether a word is a value for more of a measure: "long" for [`Measure::Long`].
     pub fn is_value_of(&self, word: WordId, measure: Measure) -> bool {
         let values = self.attributes().iter().flat_map(|attribute| &attribute.values);
         let names = values
@@ -88,7 +88,7 @@ impl Scene {
             && ranks.any(|rank| if measure.is_positive() { rank > middle } else { rank < middle })
     }
 
-    /// The probability of each object to be at one of these places in the order of those that may be meant.
+    /// The probability of each object to be at one of these places among the candidates.
     fn ordered(
         &self,
         measure: Measure,

@@ -27,8 +27,8 @@ impl Role {
         ("part", Self::Part),
     ];
 
-    /// Guesses the role of a value from its name and its `spoken` form; `shared` is the last word of the `spoken` forms
-    /// of its attribute, if they have one in common, or else the attribute's name.
+    /// Guesses the role of a value from its name and its `spoken` form; `shared` is the last word
+    /// of the `spoken` forms of its attribute, if common to all, or else the attribute's name.
     pub(crate) fn guess(attribute: &str, name: &str, spoken: &str, shared: &str) -> Self {
         let starts = |relation: &&str| {
             spoken.strip_prefix(*relation).is_some_and(|rest| rest.starts_with(' '))

@@ -138,7 +138,7 @@ pub(crate) fn object(f: &mut Fields<'_>) -> DraftObject {
     }
 }
 
-/// Greatest slope of a wall that the fingers, coming from above, enclose: degrees from the vertical.
+/// Greatest slope of a wall that fingers from above can enclose: degrees from the vertical.
 const WALL_DEG_MAX: f64 = 30.0;
 
 /// Lengths above these are taken for other units than metres.

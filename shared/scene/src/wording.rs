@@ -79,7 +79,7 @@ impl Scene {
         }
     }
 
-    /// Returns a wording as it continues after a colon; a value at its beginning keeps its own capital.
+    /// Returns a wording as it continues after a colon; a value at the start keeps its capital.
     fn continued(&self, question: Question, wording: &str) -> String {
         let values = question.attribute().map(|k| &self.attributes()[k.index()].values);
         let mut values = values.into_iter().flatten();
