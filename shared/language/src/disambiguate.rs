@@ -121,7 +121,7 @@ impl<'a> Place<'_, 'a> {
         self.before().is_some_and(|before| before.is(Class::Determiner))
     }
 
-    /// "the clear one, hang on, the white one": a moment to think, and the words before are replaced.
+    /// "the clear one, hang on, the white one": after a pause to think, earlier words are replaced.
     fn is_pause_to_think(&self) -> bool {
         const REACH: usize = 4;
         let names = |tag: &Tag<'_>| tag.is_value() || tag.is_any(classes![Yes No]);

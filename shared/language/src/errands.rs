@@ -82,7 +82,7 @@ impl ClauseAnalysis<'_> {
             && self.clause[at..].iter().any(|tag| tag.word == "away")
     }
 
-    /// "wash the clear bowl", "I want you to fill the mug", "wash it": an errand with one of our things.
+    /// "wash the clear bowl", "I want you to fill the mug", "wash it": an errand with our things.
     pub(crate) fn is_chore(&self) -> bool {
         const LEADS: &[Class] = classes![
             Filler Courtesy And But Join Yes WeakYes Repair Plain Auxiliary First Second Want Destination

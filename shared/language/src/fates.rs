@@ -50,7 +50,7 @@ impl Fates {
         Self(tags.iter().map(fate).collect())
     }
 
-    /// The same without places, if there are things: "put the clear bowl on the table", "put it on the table".
+    /// Without places if there are things: "put the bowl on the table", "put it on the table".
     pub(crate) fn named_things(tags: &[Tag<'_>]) -> Self {
         let mut fates = Self::named(tags);
         if !tags.iter().any(|tag| tag.is_value() && !tag.is_role(Role::Place)) {
@@ -189,7 +189,7 @@ fn ways(phrases: &[Phrase]) -> Vec<(f64, Vec<usize>)> {
     ways
 }
 
-/// Whether a phrase is denied all of whose words are wanted elsewhere: "the red mug, no wait, the red cup".
+/// Whether a denied phrase has only words wanted elsewhere: "the red mug, no wait, the red cup".
 fn contradicts(phrases: &[Phrase], way: &[usize]) -> bool {
     let of = |polarity: Polarity| {
         let has = move |it: &(&Phrase, &usize)| POLARITIES[*it.1] == polarity;

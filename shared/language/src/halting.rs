@@ -195,7 +195,7 @@ impl<'t, 'a> Utterance<'t, 'a> {
         found
     }
 
-    /// Returns whether something is asked for, or told of another day: no danger then, whatever it names.
+    /// Returns whether something is requested, or told of another day: no danger in either case.
     fn asks_or_tells(&self) -> bool {
         let mut at = 0;
         while at < self.tokens.len() {

@@ -1,4 +1,4 @@
-//! The judge: how probable it is that a value word is wanted, denied, or neither, by the words around it.
+//! The judge: probabilities that a value word is wanted, denied, or neither, by nearby words.
 //!
 //! The sum of a linear model over hashed features ([`crate::features`]) and two recurrent ones
 //! ([`crate::recurrent`]), trained by `reader_training` on labelled lines; unsure of new cases.
@@ -13,7 +13,7 @@ use crate::recurrent::{PARTS, Recurrent, Sequence};
 const FILE: &[u8] = include_bytes!("vocabulary/judge.bin");
 /// Length of the hash, bytes.
 const HASH: usize = 8;
-/// Probability that a value word says nothing, whatever the judge states: it has not seen all that people say.
+/// Probability that a value word says nothing, whatever the judge states: training is incomplete.
 pub const FLOOR: f64 = 0.01;
 
 /// Recurrent networks, each trained from another start: others seldom share a chance error.

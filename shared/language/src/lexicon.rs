@@ -356,7 +356,7 @@ impl Lexicon {
         }
     }
 
-    /// "light" for a flashlight: the thing at the end of a compound, if no other value ends with it.
+    /// "light" for a flashlight: the end of a compound, if no other value ends with it.
     fn add_heads(&mut self, scene: &Scene) {
         let values = || scene.attributes().iter().flat_map(|attribute| &attribute.values);
         let compounds: Vec<String> =

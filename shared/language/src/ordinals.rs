@@ -1,4 +1,4 @@
-//! "The first one", in answer to a choice: the option at that place, in the order in which they were said.
+//! "The first one", in answer to a choice: the option at that place, in the spoken order.
 
 use scene::WordId;
 

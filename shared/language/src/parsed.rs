@@ -126,7 +126,7 @@ impl ParsedUtterance<'_> {
 
     fn reading_of(&self, base: &[Asserted<'_>]) -> Reading {
         let (response, doubt) = self.response;
-        // To nothing it is an answer only if no more was said: "great, thanks" and "okay, get it" are not.
+        // Without a question an answer must be alone: "great, thanks" and "okay, get it" are not.
         let is_asked = !matches!(self.asked, QuestionWords::Nothing);
         let may_answer = is_asked || response == Response::DoesNotMatter;
         let requests = self.clauses.iter().any(|clause| clause.requests);

@@ -48,7 +48,7 @@ pub(crate) fn question<'a>(
     (Intent::AskWhich, content)
 }
 
-/// "what colour is the wrench", "how long is it": the values of the attribute, if it has more than one.
+/// "what colour is the wrench", "how long is it": the attribute's values, if more than one.
 fn asked_values<'s>(
     tags: &[Tag<'_>],
     lexicon: &Lexicon,

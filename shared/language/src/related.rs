@@ -161,7 +161,7 @@ impl Said<'_, '_> {
         }
     }
 
-    /// The objects that are named from a tag on, each by its words, and the tag after them: of "it" no words.
+    /// The objects named from a tag on, each by its words, and the tag after them: "it" has none.
     fn objects(&self, from: usize) -> Option<(Vec<Vec<WordId>>, usize)> {
         const PHRASE: &[Class] = classes![Determiner Pointer Possessive Quantifier Head One];
         let (mut to, mut group, mut at) = (Vec::new(), Vec::new(), from);
@@ -208,7 +208,7 @@ impl Said<'_, '_> {
         self.alone(Relation::Nth(measure, 1), at..end)
     }
 
-    /// The side that is named within a few words, whether an order is counted from there, and the tag after it.
+    /// The side named within a few words, whether an order counts from it, and the tag after.
     fn side_after(&self, at: usize) -> Option<(Measure, bool, usize)> {
         let end = self.tags.len().min(at + 1 + ORDER_MAX);
         (at + 1..end).find_map(|place| {

@@ -88,7 +88,7 @@ pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>)
     forms
 }
 
-/// Returns whether a phrase for a place or a part that begins with this word names the relation as well.
+/// Returns whether a phrase for a place or a part beginning with this word names the relation.
 pub(crate) fn begins_relation(word: &str) -> bool {
     const HAVING: &[&str] =
         &["with", "without", "of", "for", "made", "full", "filled", "containing"];

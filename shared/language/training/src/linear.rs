@@ -1,6 +1,6 @@
 //! A linear model over hashed features, trained with AdaGrad: steps shrink with past gradients.
 //!
-//! Everything happens in a fixed order, so that the same lines give the same weights on every machine.
+//! The order is fixed, so that the same lines give the same weights on every machine.
 
 use language::ROWS;
 use vocabulary::Rng;

@@ -1,4 +1,4 @@
-//! Training of the recurrent judge: steps against the gradient (Adam; Kingma and Ba 2015), in a fixed order.
+//! Training of the recurrent judge: gradient steps (Adam; Kingma and Ba 2015) in a fixed order.
 
 use language::recurrent::{
     EMBEDDINGS, HIDDEN, JOINED, PARTS, Recurrent, Sequence, Stated, Step, UNITS, WIDTH, add,
@@ -204,7 +204,7 @@ impl Training {
     }
 }
 
-/// The gradients of the sums of a step by input, of those by state, and of the state before it without the gates.
+/// The gradients of a step's sums by input and by state, and of the earlier state without gates.
 fn gates(
     step: &Step,
     before: &[f32; UNITS],

@@ -12,7 +12,7 @@ const ATTEMPTS: usize = 8;
 /// attribute, then of one about a value.
 const SLOTS: [&str; 8] = ["", "q", "k", "p", "b", "other", "rival", "asked"];
 
-/// Returns lines made of the templates in a file's text about one scene, `times` of each; the same ones every time.
+/// Returns lines from the templates of a file about one scene, `times` each; reproducible.
 ///
 /// # Errors
 /// The first template that is not of this form, in a sentence.
@@ -59,7 +59,7 @@ fn check(question: &str, template: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Replaces each `(a|b)` by one of its parts, the innermost first, and each `{group}` by a word of the group.
+/// Replaces each `(a|b)` by one part, the innermost first, and each `{group}` by one of its words.
 fn choose(template: &str, random: &mut Rng) -> String {
     let mut chosen = template.to_owned();
     while let Some(end) = chosen.find(')')
