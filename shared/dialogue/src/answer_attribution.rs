@@ -5,11 +5,11 @@
 //! does not know, and the belief sums over it: `P(o | D) = Σ_j w_j P(o | D, Q_j)`
 //! ([`Belief::update_mixture`](crate::Belief::update_mixture)).
 //!
-//! The weights are rates of competing events: when the user begins to speak, each question that waits
-//! for its answer draws one at its hazard, `p f(t) / (1 − p F(t))` with the reaction time's density
-//! `f` and distribution `F` and the share `p` of questions that are answered at all. A density alone
-//! would give up a slow answer to the only question there is. A question that was answered draws
-//! second thoughts only, and one that is still being said hardly anything before its last words.
+//! The weights are rates of competing events: when the user begins to speak, each question that
+//! waits for its answer draws one at its hazard, `p f(t) / (1 − p F(t))` with the reaction time's
+//! density `f` and distribution `F` and the share `p` of questions that are answered at all. A
+//! density alone would give up a slow answer to the only question there is. A question that was
+//! answered draws second thoughts only, and one still being said hardly anything before its end.
 
 /// A presentation of a question that may be answered. Times are seconds on any one clock.
 #[derive(Clone, Copy, Debug, PartialEq)]

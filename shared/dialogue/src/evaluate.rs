@@ -209,7 +209,7 @@ mod tests {
         assert!(found.cut < 1e-8 && found.waiting == 0.0);
     }
 
-    /// "Red, blue or green?" until answered, then a pick: `V = −4.7 + 0.99 (0.9 (0.98·50 − 0.02·100) + 0.1 V)`.
+    /// "Red, blue or green?", then a pick: `V = −4.7 + 0.99 (0.9 (0.98·50 − 0.02·100) + 0.1 V)`.
     #[test]
     fn a_choice_among_three_by_hand() {
         let scene = scene(

@@ -289,7 +289,7 @@ fn of_word(model: &Model, word: WordId, doubt: f64) -> Option<(AttributeId, Said
     Some((k, said(model, k, (channel, doubt), of)))
 }
 
-/// The attribute and the value that a group of words is about, if it is one word that means nothing else.
+/// The attribute and value of a group of words, if it is one word with no other meaning.
 fn only_meaning(model: &Model, group: &[WordId]) -> Option<(AttributeId, usize)> {
     let [word] = group else { return None };
     match model.meanings(*word) {

@@ -76,11 +76,11 @@ impl Model {
         same.with_misperceptions(&rates).with_confusion(confusion)
     }
 
-    /// The model with another smoothing for words that are certain ([`CERTAIN_DOUBT`](crate::CERTAIN_DOUBT)).
-    /// Without it they have `α` like all others, as in the paper.
+    /// The model with another smoothing for words that are certain
+    /// ([`CERTAIN_DOUBT`](crate::CERTAIN_DOUBT)). By default they have `α`, as in the paper.
     ///
     /// # Panics
-    /// If `alpha` is not a number above 0, or the model has a hypothesis beyond the objects already.
+    /// If `alpha` is not above 0, or the model already has a hypothesis beyond the objects.
     #[must_use]
     pub fn with_certain_words(mut self, alpha: f64) -> Self {
         assert!(alpha > 0.0 && alpha.is_finite(), "{alpha} is not a smoothing weight");
@@ -241,7 +241,7 @@ impl Model {
         &self.tables.columns[k.index()].lacking
     }
 
-    /// Multiplies the probabilities of values in doubt by their likelihoods; that of lacking the attribute comes last.
+    /// Multiplies probabilities of values in doubt by likelihoods; the missing value comes last.
     pub(crate) fn weigh_doubts(&mut self, k: AttributeId, likelihood: &[f64]) {
         self.is_of_interaction = true;
         let column = &mut Arc::make_mut(&mut self.tables).columns[k.index()];

@@ -138,7 +138,7 @@ impl ValueEvidence {
         chances.iter().zip(&self.by_value).map(|(p, it)| p * it).sum()
     }
 
-    /// Of an object that lacks the attribute, which the user takes for one of a value with these probabilities.
+    /// Likelihood for an object without the attribute, seen with a value of these probabilities.
     fn of_lacking(&self, chances: &[f64]) -> f64 {
         chances
             .split_last()

@@ -1,4 +1,4 @@
-//! Learning who speaks: from deliveries that are not refused, and only of people who gave their name.
+//! Learning who speaks: from deliveries that are not refused, and only of named people.
 
 use scene::ObjectId;
 use vocabulary::PersonId;

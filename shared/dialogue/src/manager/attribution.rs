@@ -210,7 +210,7 @@ pub(super) fn content(reading: &Reading) -> std::borrow::Cow<'_, Reading> {
     }
 }
 
-/// Returns the question of a prompt after a hand-over: that this object was handed over can be denied.
+/// Returns the question of a prompt after a hand-over: this hand-over can be denied.
 fn answered_after(state: &State, prompt: PromptId) -> Option<Question> {
     let handed_over = state.handed_over.as_ref()?;
     let earlier = || handed_over.interaction.prompt(prompt).map(|prompt| prompt.question);

@@ -64,8 +64,8 @@ impl Manager {
     /// Returns the response window: the one configured, or, once the user has answered a few times,
     /// the one in which this user does. Seconds.
     ///
-    /// A question that was met with silence is asked again after the adapted window, but from then on
-    /// nobody is given up sooner than configured: the user, or the client, may be away for a moment.
+    /// A question met with silence is repeated after the adapted window, but from then on users get
+    /// at least the configured time: the user, or the client, may be away for a moment.
     pub fn response_window_s(&self, state: &State) -> f64 {
         /// Answers after which a user's reaction time counts as known.
         const ACQUAINTED: u32 = 5;

@@ -51,7 +51,7 @@ pub enum Preface {
     Left(Vec<String>),
 }
 
-/// A remark that answers the user without a decision. Journals hold its position in this list: new ones come last.
+/// A remark that answers the user without a decision. Journals hold positions: new ones come last.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Remark {
     /// The motion stop is latched, and the arm is at rest.
@@ -187,7 +187,7 @@ pub enum Content {
     SceneReplaced,
     /// Putting back is called off at the user's request.
     Keeping,
-    /// The object of that description was called off and cannot go back: asks whether to hand it over.
+    /// The object of that description was cancelled and cannot go back: offers to hand it over.
     Kept(String),
     /// Asks whether the first of the objects of these descriptions is wanted; the others come next.
     Offered(Vec<String>),

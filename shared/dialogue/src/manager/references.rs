@@ -63,7 +63,7 @@ impl Manager {
         }
     }
 
-    /// Returns whether nothing is said beside the reference: "bigger" may be a name of a value as well.
+    /// Returns whether nothing is said beside the reference: "bigger" may also name a value.
     fn says_no_more(&self, reading: &Reading) -> bool {
         let measure = match reading.refers {
             Reference::Relation(Relation::More(measure) | Relation::Nth(measure, 1)) => measure,
@@ -97,7 +97,7 @@ impl Manager {
         Mark::OneOf(objects.iter().map(name).collect())
     }
 
-    /// Returns the objects whose size compares so with that of `object`; all where sizes are not known.
+    /// Returns the objects whose size compares so with that of `object`; all if sizes are unknown.
     fn of_other_size(
         &self,
         object: ObjectId,

@@ -1,5 +1,5 @@
-//! The rules for an utterance, in order: the first one whose conditions hold handles it. [`INTENTS`] go by the user's
-//! intent, [`CONTENT`] by the stage of the dialogue and by the words about the wanted object.
+//! The rules for an utterance, in order: the first one whose conditions hold handles it.
+//! [`INTENTS`] go by the user's intent, [`CONTENT`] by the dialogue's stage and the words.
 
 use scene::{Intent, Response, Role};
 

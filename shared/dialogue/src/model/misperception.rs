@@ -38,8 +38,8 @@ impl Model {
         tables.find_what_splits();
     }
 
-    /// The model of a person with these parameters, with that `α` of words and of words that are certain, and
-    /// these rates of misperception, if a user may take a value for another one at all.
+    /// The model of a person with these parameters, with that `α` of words and of words that are
+    /// certain, and these rates of misperception, if users mistake values at all.
     #[must_use]
     pub(crate) fn of_person(
         &self,

@@ -84,7 +84,7 @@ fn the_value_answers_an_open_question() {
     assert_likelihood(which, &["red", "blue"], Response::None, neither);
 }
 
-/// "Red or blue?", with "neither" for the green one; "lidded or open?" of which the green one is neither.
+/// "Red or blue?": "neither" for the green one; "lidded or open?": neither for the green one.
 #[test]
 fn options_and_neither_answer_a_choice() {
     let third = 1.0 / 3.0;

@@ -45,8 +45,8 @@ impl Default for Optimal {
     }
 }
 
-/// How much work the search for one decision may be, and that for a better plan as much again, in classes looked at
-/// times attributes: under two seconds of one core each, most of it spent on scenes of 20 objects and more.
+/// Limit on the work of the search for one decision, and again for a better plan, in classes times
+/// attributes: under two seconds of one core each, mostly for scenes of 20 objects and more.
 const WORK_MAX: usize = 150_000_000;
 /// Fewest beliefs that are looked at, however large the scene.
 const BELIEFS_MIN: usize = 200;

@@ -39,7 +39,7 @@ impl Announced {
         price.pay(denied * after)
     }
 
-    /// Value of announcing the same until it is not denied, at a belief that denials leave as it is.
+    /// Value of announcing the same until not denied, at a belief that denials leave as it is.
     fn insisting(&self, right: f64) -> f64 {
         let (price, denied) = self.price(right);
         -price.cost / (1.0 - price.discount * denied)
@@ -60,11 +60,11 @@ impl Announced {
     /// Upper bound on the value of knowing that one of some objects is wanted which nothing but
     /// announcing tells apart, times their probability: `U(m)` for their probabilities `m`.
     ///
-    /// Easier than the real problem, an erroneous denial is known to be one. An object that was denied
-    /// is then out or known, and the rest is announced in the order of falling probability, as an
-    /// exchange of neighbours shows: `U(m) = m_i v − (M−m_i) w + γ·other·U(m without i)`, where `v` is
-    /// the value of knowing the object, `w` the cost of announcing a wrong one, and `M = Σ m`. Waiting
-    /// and announcing something else are worth no less than `M` times the greater of two constants.
+    /// An easier problem: an erroneous denial is known as such. An object that was denied is then
+    /// out or known, and the rest is announced in the order of falling probability, as an exchange
+    /// of neighbours shows: `U(m) = m_i v − (M−m_i) w + γ·other·U(m without i)`, where `v` is the
+    /// value of knowing the object, `w` the cost of announcing a wrong one, and `M = Σ m`. Waiting
+    /// and other announcements are worth at least `M` times the greater of two constants.
     pub(super) fn among(&self, mass: &[f64]) -> f64 {
         let mut mass = mass.to_vec();
         mass.sort_unstable_by(f64::total_cmp);

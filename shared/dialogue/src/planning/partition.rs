@@ -283,7 +283,7 @@ impl Partition {
         self.chances(block).is_some()
     }
 
-    /// Tells apart questions about the same blocks that are answered differently about classes in doubt.
+    /// Distinguishes questions about the same blocks with different answers about classes in doubt.
     pub(super) fn doubt_code(&self, asked: u16) -> u64 {
         let code = |(place, chances): (u64, &Vec<f64>)| {
             let place = place.wrapping_mul(0x9e37_79b9_7f4a_7c15);

@@ -36,7 +36,7 @@ pub(crate) struct Revealed<'a> {
     beliefs_max: usize,
     /// Whether there was more to look into.
     is_cut: bool,
-    /// How far apart bounds may be, weighed with their probability; a search that goes on begins lower.
+    /// Gap allowed between bounds, weighed with their probability; a continued search begins lower.
     threshold: f64,
 }
 

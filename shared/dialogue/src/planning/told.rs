@@ -102,7 +102,7 @@ impl Told {
         let (cost, discount) = (channel.price.cost, channel.price.discount);
         let price = (cost + (1.0 - discount) * AHEAD * costs.correct) / channel.capacity;
         let worth = |kind: &Kind| costs.pick_value(kind.share);
-        // The stake of those who know the class: whoever is told of it gains nothing by picking another.
+        // The stake of those who know the class: once told, they gain nothing by another pick.
         let credit = |kind: &Kind| {
             worth(kind).max(costs.wait_value()).max(-costs.wrong) + costs.wrong - SHORT * cost
         };

@@ -16,7 +16,7 @@ fn any(said: &[&str]) -> Reading {
     Reading { response: Response::DoesNotMatter, ..words(said) }
 }
 
-/// Answers truthfully for that object until the robot picks, and returns the attributes asked about.
+/// Answers truthfully for the object until the robot picks; returns the attributes asked about.
 fn until_pick(manager: &mut Manager, mut state: State, wanted: &str) -> (State, Vec<AttributeId>) {
     let scene = settings().scene;
     let object = scene.object_named(wanted).unwrap();

@@ -283,7 +283,7 @@ fn wrong_words_are_told_from_right_ones() {
     assert!(count(&wrong).wrong > 0.99, "{:?}", count(&wrong));
 }
 
-/// A person's name travels with the utterance, in journals too; without one the bytes are those of before.
+/// A person's name travels with the utterance, in journals too; without one nothing changes.
 #[test]
 fn an_utterance_of_nobody_has_the_bytes_of_before() {
     let said = typed(1, PromptId(0), Reading::default());

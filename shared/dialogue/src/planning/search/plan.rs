@@ -61,7 +61,7 @@ impl Search<'_> {
         }
     }
 
-    /// Looks for a better plan than the one that was rolled out. Looks at `beliefs_max` beliefs in all at most.
+    /// Looks for a better plan than the one rolled out, at `beliefs_max` beliefs at most.
     pub(crate) fn improve(&mut self, beliefs_max: usize) {
         let mut work = Work::new(beliefs_max);
         for compared in COMPARED {
