@@ -1,4 +1,4 @@
-//! Settings put into effect: the dialogue manager and the observation model that a configuration describes.
+//! Settings in effect: the dialogue manager and the observation model of a configuration.
 //!
 //! `config` parses and checks values and knows no planner; this crate knows them all.
 
