@@ -89,10 +89,10 @@ pub fn checked<T: WireMessage>(bytes: &[u8]) -> Result<&T, WireError> {
     message.check().map(|()| message)
 }
 
-/// Returns the message that these bytes are, unless their size or alignment is another one; its codes are unchecked.
+/// Returns these bytes as a message, if size and alignment are right; codes are unchecked.
 fn view<T: WireMessage>(bytes: &[u8]) -> Option<&T> {
     let start = bytes.as_ptr().cast::<T>();
-    // SAFETY: size and alignment are those of a `T`, of which any bytes are a value ([`WireMessage`]).
+    // SAFETY: size and alignment are those of `T`, and any bytes are a `T` ([`WireMessage`]).
     #[allow(unsafe_code)]
     (bytes.len() == size_of::<T>() && start.is_aligned()).then(|| unsafe { &*start })
 }

@@ -7,7 +7,7 @@
 //!
 //! # Example
 //!
-//! An utterance as speech hands it to grounding, and the receiver's half of "in order, exactly once":
+//! An utterance from speech to grounding, and the receiver's half of "in order, exactly once":
 //!
 //! ```
 //! use messages::inbox::{Inbox, Verdict};

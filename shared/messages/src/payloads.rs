@@ -127,7 +127,7 @@ pub struct PolicyView {
 }
 
 impl PolicyView {
-    /// Returns prompt and presentation of the question in force, once it has been presented completely.
+    /// Returns prompt and presentation of the question in force, once presented completely.
     pub fn open_question(&self, presented: &Presented) -> Option<(u64, u32)> {
         let Presented { prompt, presentation, state, .. } = *presented;
         // "Say yes, and I will get the white bowl."
