@@ -165,8 +165,8 @@ pub(crate) fn config(name: &ShmName) -> Result<Config, BusError> {
     config.global.node.cleanup_dead_nodes_on_creation = false;
     config.global.node.cleanup_dead_nodes_on_destruction = false;
     config.global.service.cleanup_dead_nodes_on_open = false;
-    // As many writers of a topic as can end between two looks of a reader, whose last messages it still gets.
-    // Each reader initialises this room, 1.5 kB a writer: with iceoryx2's 128 that was most of its start.
+    // Writers of a topic that may end between two looks of a reader without loss. Each reader
+    // initialises this room, 1.5 kB a writer: iceoryx2's 128 took most of its start.
     config.defaults.publish_subscribe.subscriber_expired_connection_buffer = topics::CLIENTS_MAX;
     Ok(config)
 }

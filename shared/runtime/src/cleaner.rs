@@ -1,6 +1,6 @@
-//! The supervisor's thread that removes shared memory of dead processes, beside the start of their successors.
+//! The supervisor's thread that removes shared memory of dead processes while successors start.
 //!
-//! Services that start wait for a locked file, which is unlocked when no cleanup goes on, even after a panic.
+//! Starting services wait for a locked file, which a finished cleanup unlocks, even by a panic.
 
 use crate::bus::Ipc;
 use crate::group::GroupPaths;

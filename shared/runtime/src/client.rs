@@ -17,7 +17,7 @@ use vocabulary::PERSON_BYTES_MAX;
 /// First and longest pause of a client that polls.
 const POLL_EVERY: (Duration, Duration) = (Duration::from_micros(100), Duration::from_millis(2));
 
-/// Most bytes of an [`Injection`] beside its sound: a key, two times, a number and a name with its length.
+/// Most bytes of an [`Injection`] besides its sound: key, two times, number, name with length.
 const INJECTION_BYTES: usize = 16 + 3 * 10 + 1 + PERSON_BYTES_MAX;
 
 /// Pauses of a client that polls topics: short at first, because services answer within a
@@ -108,7 +108,7 @@ impl Client {
         self.submissions_of(None)
     }
 
-    /// Opens the topics by which [`deliver`] submits this sound alone, which takes half a millisecond less.
+    /// Opens the topics by which [`deliver`] submits this sound alone, half a millisecond faster.
     ///
     /// # Errors
     /// They cannot be opened.

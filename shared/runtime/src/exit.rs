@@ -154,7 +154,7 @@ impl ProcessExit {
     }
 
     /// Returns true if it ended for want of a resource: storage, shared memory (a page that cannot
-    /// be had kills with SIGBUS), descriptors, process slots. Nothing is wrong with the service then.
+    /// be had kills with SIGBUS), descriptors, process slots. The service is not at fault.
     pub fn is_shortage(self) -> bool {
         match self {
             Self::Code(code) => Exit::of_process(Some(code)) == Exit::Storage,
@@ -190,7 +190,7 @@ impl fmt::Display for ProcessExit {
 /// Ends a process that touches a page of a file or of shared memory which cannot be had.
 const SIGBUS: i32 = 7;
 
-/// Names of the signals that end services in practice; the same numbers on every Linux this runs on.
+/// Names of the signals that end services in practice; the same numbers on every Linux.
 fn signal_name(signal: i32) -> Option<&'static str> {
     Some(match signal {
         1 => "HUP",

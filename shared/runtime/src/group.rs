@@ -255,7 +255,7 @@ impl GroupPaths {
         self.run().join("stop.sock")
     }
 
-    /// A motion stop that no arm has confirmed. It outlives the group, because the next one's arm must not move either.
+    /// A motion stop that no arm has confirmed. It outlives the group and holds for the next arm.
     pub fn kept_stop(&self) -> PathBuf {
         self.root.join("stop.kept")
     }
@@ -276,7 +276,7 @@ impl GroupPaths {
         self.run().join("shm")
     }
 
-    /// The file that names the services which topics wake beyond their own table ([`crate::wakes`]).
+    /// File with the services that topics wake beyond their own table ([`crate::wakes`]).
     pub fn wakes_file(&self) -> PathBuf {
         self.run().join("wakes")
     }

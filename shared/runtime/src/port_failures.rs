@@ -1,4 +1,4 @@
-//! Topics that fail for a while: shared memory or descriptors may be short, which is not the service's failure.
+//! Topics that fail for a while: shared memory or descriptors may be short for now.
 
 use crate::bus::PortError;
 use crate::exit::{Exit, Failure};

@@ -115,7 +115,7 @@ impl Admin {
         self.cleaner.begin()
     }
 
-    /// Returns the number of processes that have joined the group and not left it, dead ones included.
+    /// Returns the number of processes that have joined the group and not left, even if dead.
     pub fn joined(&self) -> usize {
         let nodes = fs::read_dir(self.place.folder().join("nodes")).into_iter().flatten().flatten();
         let is_monitor = |name: &OsStr| name.as_bytes().ends_with(b".node_monitor");

@@ -50,7 +50,7 @@ const DATAGRAMS_MAX: usize = 64;
 pub struct StopOrder {
     /// Stop or release.
     pub order: MotionOrder,
-    /// Time at which it was given, nanoseconds of the monotonic clock; an older one than the last obeyed is ignored.
+    /// Time at which it was given, nanoseconds (monotonic); older than the last is ignored.
     pub given_ns: u64,
 }
 
@@ -283,8 +283,8 @@ impl StopClient {
 ///
 /// A stop that is returned unconfirmed is kept for the arm's return ([`KeptStop`]).
 /// # Errors
-/// Not confirmed within `patience` ([`default_patience`]), which no error exceeds; without one a stop ends
-/// unconfirmed only if it is overruled, if the group ends, or if the robot is not heard; see [`StopError`].
+/// Not confirmed within `patience` ([`default_patience`]); without one a stop ends unconfirmed only
+/// if overruled, or if the group ends or the robot is silent; see [`StopError`].
 pub fn give(
     paths: &GroupPaths,
     order: MotionOrder,

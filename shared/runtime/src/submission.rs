@@ -97,8 +97,8 @@ impl Submission {
         (self.receipts.len() >= first.segments as usize).then_some(&self.receipts)
     }
 
-    /// Returns true if the receipt accepts other words than those of this request: its key was used for them
-    /// before. Words are compared as far as a receipt holds them; sounds and gestures are not compared.
+    /// Returns true if the receipt accepts other words than this request's: its key was used for
+    /// them. Words are compared as far as a receipt holds them; sounds and gestures are not.
     pub fn conflicts_with(&self, receipt: &Receipt) -> bool {
         let Sound::Text(text) = &self.injection.sound else { return false };
         receipt.request() == self.key()

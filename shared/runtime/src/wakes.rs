@@ -1,5 +1,5 @@
-//! Services that are woken by a topic beyond those of its own table: the configuration of the group names them
-//! (`reads` of `[services.NAME]`), and the supervisor writes them down for every process, one line each.
+//! Services woken by a topic beyond its own table: the configuration of the group names them
+//! (`reads` of `[services.NAME]`), and the supervisor lists them for every process, one line each.
 
 use std::fs;
 use std::io;

@@ -1,7 +1,6 @@
 //! Readers and writers of fixed-layout topics.
 //!
-//! A writer never blocks: a slow or stopped reader loses the oldest message, and important ones are
-//! resent.
+//! A writer never blocks: a slow reader loses the oldest message, and important ones are resent.
 
 use super::gate::reject;
 use super::open::has_messages;
@@ -25,7 +24,8 @@ impl Bus {
     pub fn writer<T: WireMessage>(&self, topic: &Topic) -> Result<Writer<T>, BusError> {
         has_messages::<T>(topic)?;
         let sender = Sender::open(self, topic, None)?;
-        // A state of which only the latest message counts is repeated, and wakes when it has changed.
+        // A state of which only the latest message counts is repeated, and wakes readers if
+        // changed.
         let latest = (topic.buffer == 1 && sender.wakes()).then(Cell::default);
         Ok(Writer { sender, latest })
     }

@@ -36,7 +36,7 @@ pub(super) fn open_topic(bus: &Bus, topic: &Topic) -> Result<TopicPorts, BusErro
     builder.open_or_create_with_attributes(&required).map_err(|error| refused(topic, &error))
 }
 
-/// Fails unless the topic has messages of this type and layout: its ports would take their bytes for others.
+/// Fails unless the topic has messages of this type and layout: others would be misread.
 pub(super) fn has_messages<T: Schema>(topic: &Topic) -> Result<(), BusError> {
     let size = |layout: Option<Layout>| layout.map(|layout| layout.size);
     if topic.payload == T::NAME && size((topic.layout)()) == size(T::layout()) {

@@ -1,4 +1,4 @@
-//! Topics as bytes, for tests of services: written whatever the bytes mean, and read whoever sent them.
+//! Topics as bytes, for tests of services: written with any content, and read from any writer.
 
 use super::open::notifiers;
 use super::receiver::Receiver;

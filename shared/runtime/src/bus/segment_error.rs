@@ -8,7 +8,7 @@ use rustix::process::{Resource, getrlimit};
 
 use crate::group::SHM;
 
-/// Descriptors that one port needs at most: its own files, and those of the peers that it connects to.
+/// Most descriptors of one port: its own files, and those of the peers that it connects to.
 const DESCRIPTORS_OF_PORT: u64 = 64;
 
 /// Room of the smallest file, bytes.

@@ -15,7 +15,7 @@ use std::rc::Rc;
 
 /// First guess at the size of an encoded payload, bytes; it grows as needed.
 const BYTES: usize = 4096;
-/// The same for clients, of which most say a sentence and end: their memory has room for dozens of payloads.
+/// The same for clients, which mostly send a sentence and end: room for dozens of payloads.
 const CLIENT_BYTES: usize = 1024;
 
 /// The port of a writer, with the notifiers of the services that read its topic.

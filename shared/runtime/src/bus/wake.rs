@@ -135,7 +135,7 @@ fn sleep<const N: usize>(
     sources: &[Option<BorrowedFd<'_>>; N],
     longest: Span,
 ) -> Woken<N> {
-    // A source that is not there stands as the socket, asked for nothing, so that each keeps its place.
+    // A missing source is replaced by the socket, without events, so that each keeps its place.
     let source = |fd: &Option<_>| match fd {
         Some(fd) => PollFd::from_borrowed_fd(*fd, PollFlags::IN),
         None => PollFd::from_borrowed_fd(socket, PollFlags::empty()),

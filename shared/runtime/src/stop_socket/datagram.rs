@@ -21,7 +21,7 @@ pub(super) const BYTES_MAX: usize = 512;
 #[derive(Debug)]
 pub(super) struct Endpoint {
     socket: OwnedFd,
-    /// Datagrams that were ignored. Any user can send them to a client's address, so they are not logged one by one.
+    /// Datagrams that were ignored. Any user can send them, so they are not logged one by one.
     ignored: AtomicU64,
 }
 

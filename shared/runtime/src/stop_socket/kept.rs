@@ -66,7 +66,7 @@ pub struct KeptStop {
 }
 
 impl KeptStop {
-    /// Returns the group's kept stop, if there is one. One whose time cannot be read counts as given now.
+    /// Returns the group's kept stop, if any. One with an unreadable time counts as given now.
     /// # Errors
     /// The process or the system has no descriptor left.
     pub fn find(paths: &GroupPaths) -> io::Result<Option<Self>> {

@@ -25,13 +25,13 @@ const HEARD_GRACE: Span = Span::from_ms(1_000);
 /// Time for a release; a later one would surprise.
 pub const RELEASE_PATIENCE: Span = Span::from_ms(5_000);
 
-/// Returns how long an order is repeated unless its giver says otherwise: a stop for as long as the group's folder
-/// `run` exists, because no restart of the arm's service and no hold by an operator may outlast it.
+/// Returns the default time for which an order is repeated: a stop for as long as the group's
+/// folder `run` exists, so that no restart of the arm's service nor hold outlasts it.
 pub fn default_patience(order: MotionOrder) -> Option<Span> {
     (order == MotionOrder::Resume).then_some(RELEASE_PATIENCE)
 }
 
-/// Progress of one order. The caller passes the time: `advance`, then look at `result` and `warning`.
+/// Progress of one order. Callers pass the time: `advance`, then see `result` and `warning`.
 #[derive(Debug)]
 pub struct Progress {
     order: MotionOrder,
@@ -56,8 +56,8 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// An order that was given at `given` and is carried out within `patience`, or has failed; without `patience` it
-    /// is repeated until the arm confirms it, a later order overrules it, or the group ends.
+    /// An order given at `given` and carried out within `patience`, or failed; without `patience`
+    /// it is repeated until the arm confirms it, a later order overrules it, or the group ends.
     pub fn new(order: MotionOrder, given: Time, patience: impl Into<Option<Span>>) -> Self {
         Self {
             order,
@@ -139,7 +139,7 @@ impl Progress {
         self.order == MotionOrder::Stop && !is_taken
     }
 
-    /// Returns whether the order is due to be sent, with its time [`Progress::given`], which makes repetitions harmless.
+    /// Returns whether the order is due, with its time [`Progress::given`]: repeating is harmless.
     pub fn due(&mut self, now: Time) -> bool {
         let is_due = self.sent.is_none_or(|sent| now >= sent + RESEND_EVERY);
         if is_due {
@@ -210,7 +210,7 @@ impl Progress {
         is_late.then(|| Err(self.why(now)))
     }
 
-    /// Returns whether the order needs no repetition: it is carried out for good, or a later one is in force.
+    /// Returns whether the order needs no repetition: it is final, or a later one is in force.
     pub fn is_settled(&self, now: Time) -> bool {
         match self.result(now) {
             Some(Ok(state)) => state.durable,
