@@ -1,8 +1,8 @@
 //! Durability before visibility, without waiting for the disk.
 //!
-//! A thread owns the journal. The main loop hands it the records of each pass and keeps the pass's outputs
-//! until they are durable; the thread makes everything that waits durable with one sync. Order is kept:
-//! an output that follows records in the same or an earlier pass is published after them.
+//! A thread owns the journal. The main loop hands it the records of each pass and keeps the pass's
+//! outputs until they are durable; the thread makes all of them durable with one sync. Order is
+//! kept: an output that follows records in the same or an earlier pass is published after them.
 //!
 //! A full disk is a state and not an end. The thread keeps the records, retries, and reports the
 //! shortage; pending outputs are neither lost nor published.

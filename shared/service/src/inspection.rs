@@ -325,7 +325,7 @@ fn nothing_since(since: u64, last: Option<(u64, Time, Option<u64>)>) -> String {
     }
 }
 
-/// Checks the end of a journal: an interrupted write was never acknowledged; other damage is an error.
+/// Checks a journal's end: an interrupted write was never acknowledged; other damage is an error.
 fn check_ending<R>(part: &Part<R>) -> Result<(), Failure> {
     match part.reading.ending {
         Ending::Whole => Ok(()),

@@ -1,6 +1,6 @@
-//! Wall time of journal records. Records carry times of the monotonic clock, which restarts with the
-//! machine; a small file beside each journal says from which record on which offset to the wall clock
-//! holds. It is an aid for readers: no service depends on it, and a failed write is only logged.
+//! Wall time of journal records. Records carry times of the monotonic clock, which restarts with
+//! the machine; a small file beside each journal has the offsets to the wall clock by record. It is
+//! an aid for readers: no service depends on it, and a failed write is only logged.
 
 use std::fs;
 use std::path::{Path, PathBuf};

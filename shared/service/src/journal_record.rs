@@ -1,9 +1,9 @@
 //! Journal records for programs: the output of `whichone journal --json`.
 //!
-//! Each service translates its own records into these types, with the scene's names in place of numbers.
-//! A number's key ends with its unit (`_ns`, `_ms`, `_s`, `_m`, `_rad`, `_db`); without one it is a
-//! number of something, a count, a probability or a weight. Times in `_ns` are of the machine's monotonic
-//! clock. `docs/journals.md` has the table, `tests/golden/journal_*.jsonl` an example of each type.
+//! Each service translates its own records into these types, with the scene's names for numbers. A
+//! number's key ends with its unit (`_ns`, `_ms`, `_s`, `_m`, `_rad`, `_db`); without one it is an
+//! index, a count, a probability or a weight. Times in `_ns` are of the machine's monotonic clock.
+//! `docs/journals.md` has the table, `tests/golden/journal_*.jsonl` an example of each type.
 
 mod arm;
 pub mod golden;

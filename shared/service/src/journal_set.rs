@@ -7,8 +7,8 @@
 //! | per service: generation, exists | a journal that exists must be there, whole, and of this generation |
 //! | numbers over | no number up to here is ever given again |
 //!
-//! Invariant: a service appends its first record only after the file says that its journal exists. So a
-//! missing journal is either one that never held anything, or a loss, and never taken for the other.
+//! Invariant: a service appends its first record only after the file says that its journal exists.
+//! So a journal that never held anything and a lost one are never confused.
 //!
 //! The file has one writer at a time, by a lock: the supervisor before it starts a service, a
 //! service that makes its journal, and [`set_aside`] while the group is down. It is replaced

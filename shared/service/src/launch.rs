@@ -131,8 +131,8 @@ pub fn program_of(service: &str) -> PathBuf {
     beside.filter(|path| path.is_file() || host_of(path).is_some()).unwrap_or_else(|| name.into())
 }
 
-/// Returns the program that runs in place of `program`, if that is absent: a build of `whichone` contains the
-/// services, and runs as the one whose name it is started under. So an installation is one file.
+/// Returns the program that runs in place of `program`, if that is absent: a build of `whichone`
+/// contains the services, and runs as the one that names it. So an installation is one file.
 pub fn host_of(program: &Path) -> Option<PathBuf> {
     let name = program.file_name()?.to_str()?;
     let is_name_alone = program.parent().is_none_or(|folder| folder.as_os_str().is_empty());

@@ -2,12 +2,12 @@
 //! the services. Parts for every process of a group, also one from outside, are in `runtime`, whose
 //! modules are re-exported here.
 //!
-//! A service is a [`Node`]: a reducer from events to effects, which the main loop of [`service_loop`] recovers from
-//! its journal, feeds from its topics, and whose effects it carries out. Clients of a group are in [`client`].
+//! A service is a [`Node`], a reducer from events to effects. The main loop, [`service_loop`],
+//! recovers it from its journal, feeds it and applies its effects. Clients are in [`client`].
 //!
 //! # Example
 //!
-//! A reducer that counts what it hears. Nothing is published before the record that backs it is durable.
+//! A reducer that counts its inputs. Nothing is published before its record is durable.
 //!
 //! ```
 //! use service::{Effects, Event, Node, NodeError, Time};

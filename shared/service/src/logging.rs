@@ -68,7 +68,7 @@ pub fn set_json(json: bool) {
     }
 }
 
-/// Both formats of a line, of which [`JSON`] chooses one. Nothing opens spans, so neither writes any.
+/// Both formats of a line; [`JSON`] chooses one. Without spans, neither writes any.
 struct Lines {
     text: Format,
     json: Format<Json>,

@@ -1,4 +1,4 @@
-//! The serialisable view of a group: `whichone watch --json` prints it, the console's page shows it.
+//! The serialisable view of a group, shown by `whichone watch --json` and the console's page.
 //!
 //! One struct per section, made from the messages that arrived last. `tests/golden/view.json` holds
 //! an example, so that a change of a key is seen.

@@ -47,7 +47,7 @@ impl<T> Clone for DeviceSender<T> {
 }
 
 impl<T> DeviceSender<T> {
-    /// Sends `message`, blocking while the channel is full. Returns `false` once the loop has ended.
+    /// Sends `message`, blocking while the channel is full. Returns `false` after the loop's end.
     pub fn send(&self, message: T) -> bool {
         let sent = self.sender.send(message).is_ok();
         self.wake.raise();

@@ -106,7 +106,7 @@ pub struct Changed {
 /// settings (`("dialogue.planner", "entropy")`), open loop to its end: the recorded inputs stay.
 ///
 /// # Errors
-/// The file cannot be read or is of another build; a setting that does not exist or cannot be changed.
+/// The file cannot be read or is of another build; a setting is unknown or cannot change.
 pub fn replay<P: Program>(file: &Path, changes: &[(String, String)]) -> Result<Report, Failure> {
     let (flight, head, beginning) = reader::open::<P>(file)?;
     if let Some((key, _)) = changes.iter().find(|(key, _)| FIXED.contains(&key.as_str())) {

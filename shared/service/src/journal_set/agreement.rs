@@ -64,8 +64,8 @@ pub fn agree(set: &JournalSet, [speech, policy, arm]: [SharedFacts; 3]) -> Resul
     Ok(format!("nothing applied that was not accepted, {picks} as ordered, epoch {}", set.epoch))
 }
 
-/// Checks the journals of a group that is down, each read by its service's own program; all at once,
-/// because a start waits for it. A service that is not ours to read says nothing about the others.
+/// Checks the journals of a group that is down, each read by its service's own program; all at
+/// once, because a start waits for it. Services that are not ours say nothing about others.
 ///
 /// # Errors
 /// As [`agree`].

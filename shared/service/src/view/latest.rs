@@ -97,7 +97,7 @@ impl LatestTopics {
         table.scene().clone()
     }
 
-    /// Receives new messages. Pending utterances are read before the view, which is the newer of both.
+    /// Receives new messages. Pending utterances are read before the view, which is newer.
     pub fn take(&mut self) -> Arrived {
         let mut statuses = Vec::new();
         let receipts = drain(&self.receipts);
