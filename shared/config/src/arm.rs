@@ -50,7 +50,7 @@ pub struct Motion {
 pub struct Grasps {
     /// Attempts in all if the fingers close without an object.
     pub attempts: u32,
-    /// Standard deviation of the objects' positions across the fingers, metres; simulated worlds only.
+    /// Standard deviation of objects' positions across the fingers, metres; simulated worlds only.
     pub error_m: f64,
 }
 

@@ -130,8 +130,8 @@ const ALPHA_TYPED_RANGE: RangeInclusive<f64> = 1e-6..=100.0;
 
 /// Replaces `alpha_typed` in a layer, and returns a warning of it.
 ///
-/// `alpha_typed = A` doubted typed words by `A : 1`. It becomes the misperception `A / (1 + A)`, which gives the
-/// same odds for an attribute of two values, unless the layer states a rate itself or `below` has a higher one.
+/// `alpha_typed = A` doubted typed words by `A : 1`. It becomes the misperception `A / (1 + A)`,
+/// with the same odds for two values, unless the layer states a rate or `below` has a higher one.
 pub(crate) fn replace_former_key(layer: &mut Table, below: &Table) -> Option<Diagnostic> {
     const RATE: &str = "misperception";
     let rate_of = |dialogue: &Table| dialogue.get(RATE).and_then(Node::as_number);

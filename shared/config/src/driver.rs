@@ -44,9 +44,9 @@ pub(crate) fn sections() -> impl Iterator<Item = &'static Registered> {
     DRIVERS.get().into_iter().flatten().flat_map(|driver| driver.sections)
 }
 
-/// Reads `driver`, and returns it with its name if it is a registered one. Any name is right in a program that has
-/// registered none, which reads checked snapshots, and for an arm with a program of its own (`is_own`), which may have
-/// drivers of its own: their table, of the same name, is theirs to read.
+/// Reads `driver`, and returns it with its name if it is a registered one. Any name is right in a
+/// program that has registered none, which reads checked snapshots, and for an arm with a program
+/// of its own (`is_own`), which may have drivers of its own, with tables of their own.
 pub(crate) fn read(f: &mut Fields<'_>, is_own: bool) -> (String, Option<&'static Driver>) {
     let known = DRIVERS.get().map_or(&[][..], Vec::as_slice);
     let names: Vec<&str> = known.iter().map(|driver| driver.name).collect();

@@ -128,7 +128,7 @@ pub fn one_of<'a>(known: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// Reads a text file that a person has written: a regular one of at most 16 MiB, judged before it is read.
+/// Reads a person's text file: a regular one of at most 16 MiB, checked before it is read.
 ///
 /// # Errors
 /// It cannot be read; it is too large ([`ErrorKind::FileTooLarge`]), no file, or no text

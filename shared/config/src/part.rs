@@ -1,8 +1,8 @@
 //! Optional parts of the group, each of which registers its sections of the configuration and its
 //! service. Drivers of the arm register theirs beside them ([`Driver`]).
 //!
-//! The program that loads configurations names the parts that it knows ([`register`]). Any other program reads
-//! snapshots alone, and of these the sections that it asks for ([`Settings::part`](crate::Settings::part)).
+//! A program that loads configurations names its parts ([`register`]). Others read sections of
+//! snapshots on request ([`Settings::part`](crate::Settings::part)).
 
 use std::sync::OnceLock;
 
@@ -13,11 +13,11 @@ use crate::driver::{self, Driver};
 use crate::resolved::{self, CORE, CORE_DEFAULTS};
 use crate::{Arm, Group};
 
-/// A section of the configuration that belongs to an optional part: its place, its reader and its checks.
+/// A section of the configuration for an optional part: its place, its reader and its checks.
 pub trait Section: Sized + 'static {
     /// Place of the table: `["ros2"]` for an own file, `["arm", "ros1"]` in another section's.
     const KEY: &'static [&'static str];
-    /// The shipped text of its own file, which holds the defaults; `None` for a table in another section's file.
+    /// The shipped text of its own file, with defaults; `None` for a table in another section's.
     const FILE: Option<&'static str> = None;
 
     /// Reads the section's values.
@@ -115,8 +115,8 @@ impl Registered {
 
 static PARTS: OnceLock<&'static [&'static Part]> = OnceLock::new();
 
-/// Names the optional parts whose sections and services configurations may have, and the drivers of the arm that
-/// they may choose beside the built-in one, once and before the first is loaded. Later calls change nothing.
+/// Names the optional parts whose sections and services configurations may have, and the further
+/// drivers of the arm, once and before the first is loaded. Later calls change nothing.
 pub fn register(
     parts: &'static [&'static Part],
     drivers: impl IntoIterator<Item = &'static Driver>,
@@ -150,7 +150,7 @@ pub fn part_service(name: &str) -> Option<&'static PartService> {
     parts().find(|part| part.name == name)?.service.as_ref()
 }
 
-/// Returns whether a service may go without a command. A program without parts reads snapshots, which were checked.
+/// Returns whether a service may lack a command. Snapshots, without parts, were checked before.
 pub(crate) fn has_program(name: &str) -> bool {
     PARTS.get().is_none() || part_service(name).is_some()
 }

@@ -19,7 +19,7 @@ const CORE: [(Service, Reads); 5] = [
 const ANY: Reads = &["speech", "dialogue", "arm", DURATIONS];
 
 impl Settings {
-    /// The text of everything that a service reads: it differs exactly if the service has to restart to take notice.
+    /// The text of everything that a service reads: it differs exactly if a restart is needed.
     pub fn read_by(&self, service: &str) -> String {
         let core = CORE.iter().find(|(core, _)| core.name() == service).map(|(_, reads)| *reads);
         let reads = core.or_else(|| Some(part::part_service(service)?.reads)).unwrap_or(ANY);

@@ -20,7 +20,7 @@ pub const SNAPSHOT_FILE: &str = "settings.toml";
 /// First line of the file.
 const HEADER: &str = "# The settings in force. Edit the configuration folder instead.\n";
 
-/// Name of the file beside it that holds the scene's key and words, for languages without a reader of TOML.
+/// Name of the file with the scene's key and words, for languages without a TOML reader.
 pub const WORDS_FILE: &str = "scene.words";
 
 /// Largest snapshot, bytes: three files and the values of every section, with escapes.
@@ -110,8 +110,8 @@ impl Settings {
         Ok(settings)
     }
 
-    /// Reads a snapshot's text, which is called `label` in problems, with changes as in [`Settings::load`],
-    /// which were given with the option of that name. The scene, the robot and the durations stay those of the snapshot.
+    /// Reads a snapshot's text, called `label` in problems, with changes as in [`Settings::load`].
+    /// The scene, the robot and the durations stay those of the snapshot.
     ///
     /// # Errors
     /// Every problem at once.

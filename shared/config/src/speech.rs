@@ -20,14 +20,14 @@ pub struct Speech {
     /// Folder in which the sound of the latest sentences is kept, if the operator names one
     /// ([`Settings::voice_dir`](crate::Settings::voice_dir)).
     pub voice_dir: Option<PathBuf>,
-    /// Program, with its arguments before the file, that plays a WAV file; `None` to detect it. `none` plays nothing for as long as it would take.
+    /// Program with arguments before the file, to play WAV; `None` to detect it. `none` is silent.
     pub player: Option<Vec<String>>,
     /// The recogniser.
     pub recogniser: Recogniser,
     /// The program, with its arguments, that turns audio into words; there if `recogniser` is
     /// [`Recogniser::Command`].
     pub recogniser_command: Option<Vec<String>>,
-    /// The model file of a second recogniser, whisper.cpp, in builds that have it; `None`: there is none.
+    /// The model file of a second recogniser, whisper.cpp, in builds that have it, if any.
     pub whisper_model: Option<PathBuf>,
     /// Folder of the recogniser's acoustic model; `None` to detect it.
     pub model_dir: Option<PathBuf>,
