@@ -80,7 +80,7 @@ pub enum AppendError {
 /// Failure to make appended records durable.
 #[derive(Debug, thiserror::Error)]
 pub enum SyncError {
-    /// No space left. The file is unchanged and the records stay in memory: free space and sync again.
+    /// No space left. The file is unchanged and records stay in memory: free space and sync again.
     #[error("no space for the journal: {0}; help: free some space")]
     Full(io::Error),
     /// Failed write. The file is unchanged and the records stay in memory.

@@ -68,8 +68,8 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
         Self::open_with(path, header, |_| Err(JournalOpenError::Missing))
     }
 
-    /// As [`Journal::open`], but also takes over a journal of one of the `older` kinds, whose records decode as
-    /// records of the present one. The file states the present kind from its next rotation on.
+    /// As [`Journal::open`], but also takes over a journal of one of the `older` kinds, whose
+    /// records decode as present ones. The file states the present kind from its next rotation on.
     ///
     /// # Errors
     /// See [`JournalOpenError`]; the file is left as it is.

@@ -69,8 +69,8 @@ pub(crate) fn parse(at: u64, bytes: &[u8], plausible: impl Fn(u64) -> bool) -> O
     is_valid.then_some(Frame { crc, seq, prev_crc, body, len: frame_len })
 }
 
-/// Returns whether `bytes`, the invalid end of a file from offset `at` on, are a frame that was once
-/// written to its last byte: it is damaged, and not torn. A torn one lacks its end or a sector.
+/// Returns whether `bytes`, the invalid end of a file from offset `at` on, are a frame that was
+/// once written to its last byte: it is damaged, not torn. A torn one lacks its end or sectors.
 pub(crate) fn was_complete(at: u64, bytes: &[u8]) -> bool {
     if sectors(at, bytes).any(|part| part.iter().all(|byte| *byte == 0)) {
         return false;

@@ -8,7 +8,7 @@ use crate::frame::words;
 
 /// Format number of the file layout that this version writes.
 ///
-/// Format 1 had two more numbers in its header; format 2 had no generation, and frames without an end.
+/// Format 1 had two more numbers in its header; format 2 lacked generation and frame ends.
 pub const FORMAT: u32 = 3;
 
 /// Magic, format, length and checksum before the header's body.
