@@ -1,5 +1,5 @@
-//! JSON Schema of the tables that a reader accepts, made by the reader itself: [`Fields`] notes each key
-//! that is read, with its type and range, so that a schema never says anything else than the program.
+//! JSON Schema of the tables that a reader accepts, made by the reader itself: [`Fields`] notes
+//! each key that is read, with its type and range, so that a schema always matches the program.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -42,7 +42,7 @@ pub(crate) fn text() -> Json {
     json!({ "type": "string", "pattern": "\\S" })
 }
 
-/// Returns whether a table of this schema needs no key but `name`, so that a string can stand for it.
+/// Returns whether a table of this schema needs no key but `name`, so that a string can replace it.
 pub(crate) fn is_named_alone(item: &Json) -> bool {
     item["required"] == json!(["name"])
 }
