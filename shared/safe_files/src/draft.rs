@@ -120,7 +120,7 @@ pub fn replace_private(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()>
     replace(path, content, Readers::Owner)
 }
 
-/// As [`replace_private`], and a power loss leaves the old or the new content: the new one is on the disk first.
+/// As [`replace_private`], and a power loss leaves the old or the new content, whole.
 ///
 /// # Errors
 /// As [`replace`].

@@ -1,6 +1,6 @@
 //! Files and folders that a user names for output, wherever they are.
 //!
-//! Another user may have put a link on the way, so as to have a file of this user overwritten. Links are therefore
+//! Another user may have placed a link to have a file of this user overwritten. Links are therefore
 //! followed one by one, each through its own descriptor, and only those of this user and of root.
 
 use std::collections::VecDeque;
