@@ -23,7 +23,7 @@ const GAP_M: f64 = 0.02;
 /// spacing leaves room for the next object.
 const LOOSE_M: [f64; 3] = [0.10, 0.05, GAP_M];
 
-/// Spacing of the places that are tried on a free table, and how far they reach from its middle, metres.
+/// Spacing of the places tried on a free table, and their extent from its middle, metres.
 const GRID_M: f64 = 0.05;
 const GRID_STEPS: i32 = 20;
 

@@ -47,7 +47,7 @@ fn owned(overrides: &[(&str, &str)]) -> Vec<(String, String)> {
     overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect()
 }
 
-/// Every problem of a configuration with such files, one per line, with files named from its folder.
+/// Every problem of a configuration with such files, one per line, with file names from there.
 fn complaints(files: &[(&str, &str)], overrides: &[(&str, &str)]) -> Vec<String> {
     let folder = folder(files);
     let found = load(folder.path(), None, &owned(overrides)).err();
