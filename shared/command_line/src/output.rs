@@ -1,8 +1,8 @@
 //! Output of the verbs.
 //!
 //! Invariant: results go to standard output, as text or as JSON; progress and errors go to standard
-//! error, with `--json` errors also to standard output as `{"error","exit"}`. Colour appears on terminals only, and never where `NO_COLOR` is set. Whatever is printed
-//! passes [`printable`], so that no foreign text steers the terminal.
+//! error, with `--json` errors also to standard output as `{"error","exit"}`. Colour needs a
+//! terminal, without `NO_COLOR`. All output passes [`printable`], so that texts are harmless.
 
 use service::exit::Failure;
 use service::printable::{printable, printable_json};

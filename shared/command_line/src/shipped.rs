@@ -91,7 +91,7 @@ fn was_first(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::AlreadyExists | ErrorKind::DirectoryNotEmpty)
 }
 
-/// Returns true for the folder of a built-in configuration, in which new files would be out of sight.
+/// Returns true for the folder of a built-in configuration, where new files would be hidden.
 pub fn is_built_in(folder: &Path) -> bool {
     let name = folder.file_name().and_then(|name| name.to_str());
     name.is_some_and(|name| name.starts_with(FOLDER))
