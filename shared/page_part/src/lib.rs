@@ -1,4 +1,4 @@
-//! The interface of optional parts of the console's page: their commands, their section, their files.
+//! Interface of optional parts of the console's page: their commands, section, and files.
 //!
 //! The console knows a [`Part`] by this trait alone. It lives on the main thread, which it may not
 //! keep waiting; its [`Files`] are read on threads of the web server.
@@ -56,7 +56,7 @@ pub type Fields = Map<String, Json>;
 
 /// An optional part of the page.
 pub trait Part: Debug {
-    /// Carries out a command of a page, without the part's prefix; returns the fields of its answer.
+    /// Carries out a page's command, without the part's prefix; returns the answer's fields.
     ///
     /// # Errors
     /// The words that the page shows.
@@ -70,7 +70,7 @@ pub trait Part: Debug {
     /// Handles an event of the dialogue.
     fn on_event(&mut self, event: &DialogueEvent, robot: &Robot<'_>);
 
-    /// Takes in the robot's state, in each pass of the main loop; returns words that are to be said to the robot.
+    /// Takes the robot's state, in each pass of the main loop; returns words to say to the robot.
     fn pass(&mut self, robot: &Robot<'_>) -> Option<String>;
 
     /// Returns the text of the part's section.
