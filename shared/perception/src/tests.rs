@@ -135,7 +135,7 @@ fn a_small_motion_is_estimated_and_not_reported_and_a_larger_one_is() {
     assert_eq!(it.numbers(), [6]);
 }
 
-/// Looks at an object that stands as far away as a detection may be err to both sides of that distance.
+/// Looks at an object that is as far away as a detection may err to both sides of it.
 #[test]
 fn an_object_that_was_moved_as_far_as_the_gate_keeps_its_number() {
     let mut it = Scenery::new();

@@ -217,7 +217,7 @@ impl Tracker {
     }
 }
 
-/// Checks that the scene file has the attributes and values. Cameras may report others, which do not count.
+/// Checks that the scene file has the attributes and values. Others, from cameras, do not count.
 fn check_values(detection: &Detection, file: &Scene) -> Result<(), Refusal> {
     for (name, values) in &detection.attributes {
         let Some(k) = file.attribute_named(name) else {

@@ -58,7 +58,7 @@ impl Tracker {
         Ok(())
     }
 
-    /// Drops the candidates that were not seen again, and those in whose place a known object was seen instead.
+    /// Drops the candidates not seen again, and those replaced by a sighting of a known object.
     fn drop_candidates(&mut self, at: Time) {
         let moved_m = self.settings.moved_m;
         let is_known = |candidate: &Candidate| {
