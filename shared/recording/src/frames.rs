@@ -7,7 +7,7 @@ use std::os::unix::fs::FileExt;
 use mcap::MAGIC;
 use mcap::records::op;
 
-/// A record that claims more has a damaged length; one that claims less and does not fit is cut off.
+/// A record that claims more has a damaged length; one that claims less but too much is cut off.
 const FRAME_BYTES_MAX: u64 = 1 << 40;
 
 /// Bytes of a record's kind and length.

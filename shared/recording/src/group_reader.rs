@@ -21,7 +21,7 @@ use crate::settings::Recorder;
 pub struct Sample<'a> {
     /// The channel.
     pub channel: ChannelId,
-    /// Number of the message among those of its writer, or of the picture's channel since its reader was made.
+    /// Number of the message among its writer's, or the picture channel's since its reader's start.
     pub sequence: u32,
     /// When it was sent, nanoseconds since 1970.
     pub at_ns: u64,
@@ -70,8 +70,8 @@ pub struct GroupReader {
 }
 
 impl GroupReader {
-    /// Opens the channels of [`channels::shown`](crate::channels::shown). Of topics that keep more than their latest message, those
-    /// sent before `since` are left out. The services' logs are in `log_folder`.
+    /// Opens the channels of [`channels::shown`](crate::channels::shown). Messages before `since`
+    /// are left out, except latest ones. The services' logs are in `log_folder`.
     ///
     /// # Errors
     /// A topic cannot be read, or the robot's description is invalid.

@@ -153,7 +153,7 @@ pub fn advertise<'a>(channels: impl Iterator<Item = (ChannelId, &'a Channel)>) -
     json!({ "op": "advertise", "channels": channels }).to_string()
 }
 
-/// A service as it is listed: its number, name and type, with the JSON Schemas of request and response.
+/// A listed service: its number, name and type, with the JSON Schemas of request and response.
 #[derive(Clone, Debug)]
 pub struct Service {
     /// Number of the service.

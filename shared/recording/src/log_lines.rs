@@ -18,7 +18,7 @@ pub(crate) struct LogLines {
 }
 
 impl LogLines {
-    /// Takes the lines that were completed since the last look, with their times in nanoseconds since
+    /// Takes the lines completed since the last look, with their times in nanoseconds since
     /// 1970. A line without one has that of the look, `now_ns`.
     pub(crate) fn take(&mut self, folder: &Path, now_ns: u64) -> Vec<(u64, Log)> {
         self.find(folder);

@@ -1,4 +1,4 @@
-//! The group as viewers draw it: robot, objects with the belief as colour, planned path, dialogue, logs.
+//! The group as viewers draw it: robot, objects with belief as colour, path, dialogue, logs.
 
 use std::path::PathBuf;
 

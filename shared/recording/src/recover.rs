@@ -23,7 +23,7 @@ pub struct Recovered {
     pub left_out: LeftOut,
 }
 
-/// Completes unfinished recordings, and removes those without a message. One that fails is left as it is.
+/// Completes unfinished recordings, and removes those without a message. A failing one is kept.
 pub fn recover_all(unfinished: &[PathBuf]) {
     for path in unfinished {
         match recover(path) {

@@ -225,7 +225,7 @@ fn new_file_begins_when_the_wall_clock_is_set() {
     assert_eq!(entries(folder.path()).len(), 2);
 }
 
-/// Writes a message each minute for `minutes`, while the wall clock is `clock`. Returns when it ends.
+/// Writes a message each minute for `minutes`, with the wall clock at `clock`. Returns the end.
 fn record(ring: &mut Ring, from_s: u64, minutes: u64, clock: WallClock) -> u64 {
     for s in (from_s..from_s + minutes * 60).step_by(60) {
         ring.tend(at(s), clock);
