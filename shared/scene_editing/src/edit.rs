@@ -54,7 +54,7 @@ impl SceneEdit {
     /// they are written.
     ///
     /// # Errors
-    /// The file is written in a form that would say something else afterwards; it is unchanged then.
+    /// The file is in a form that would have another meaning afterwards; it is unchanged then.
     pub fn apply(&mut self, document: &Document) -> Result<(), Diagnostics> {
         let before = self.toml.clone();
         write(&mut self.toml, document);

@@ -151,7 +151,7 @@ impl Reach {
         Ok(Self { configuration: configuration.clone(), setup: ArmSetup::new(&settings)? })
     }
 
-    /// Returns whether it is of this configuration. A changed file is noticed by [`Reach::new`] alone.
+    /// Returns whether it is of this configuration. Only [`Reach::new`] notices a changed file.
     pub fn is_of(&self, configuration: &Configuration) -> bool {
         self.configuration == *configuration
     }
@@ -174,9 +174,9 @@ impl Reach {
         }
     }
 
-    /// Returns the name of the limb that can fetch an object that stands alone with its centre at each of these
-    /// places (x and y, metres, at the height of the object), or why none can. Stops at `until`, after the first
-    /// at least; `None` if the object has no place, or a size that no object has.
+    /// Returns the name of the limb that can fetch an object that stands alone with its centre at
+    /// each of these places (x and y, metres, at the height of the object), or why none can. Stops
+    /// at `until`, after the first at least; `None` without a place, or with an impossible size.
     pub fn limbs(
         &self,
         object: &ObjectEntry,

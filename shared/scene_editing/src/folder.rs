@@ -1,4 +1,4 @@
-//! The scene files of a configuration: read and replaced by their names, and nothing outside the folder.
+//! The scene files of a configuration: read and replaced by name, only within the folder.
 
 use std::fs;
 use std::io::{self, ErrorKind, Write};
@@ -113,7 +113,7 @@ impl ScenesFolder {
     /// replaces, `None` for a new scene.
     ///
     /// # Errors
-    /// The name is not one; the file is not the one of `known`; it cannot be written. The old file is there then.
+    /// The name is invalid; the file is not that of `known`; it cannot be written and is unchanged.
     pub fn write(&self, name: &str, text: &str, known: Option<&str>) -> Result<(), FileError> {
         let path = self.file(name)?;
         let mode = match fs::symlink_metadata(&path) {

@@ -55,7 +55,7 @@ pub(crate) fn set_triple(table: &mut dyn TableLike, key: &str, numbers: Option<[
     }
 }
 
-/// Sets a list of texts. Where `is_one_or_more`, a single one is written as a text, and none leaves the key out.
+/// Sets a list of texts. With `is_one_or_more`, a single one is a text, and none leaves no key.
 pub(crate) fn set_texts(
     table: &mut dyn TableLike,
     key: &str,

@@ -146,7 +146,7 @@ fn prefix(table: &Table) -> String {
     prefix.unwrap_or_default().to_owned()
 }
 
-/// Divides the text before a table at its last empty line: comments before it belong to no single entry.
+/// Divides the text before a table at its last empty line: comments before belong to no entry.
 fn split(prefix: &str) -> (&str, &str) {
     let at = prefix.rfind("\n\n").map_or(0, |at| at + 1);
     match prefix[..at].trim().is_empty() {
@@ -155,7 +155,7 @@ fn split(prefix: &str) -> (&str, &str) {
     }
 }
 
-/// Puts a table and those in it at one position, so that they follow one another in the order of their list.
+/// Puts a table and those in it at one position, so that they follow the order of their list.
 fn place(table: &mut Table, position: Option<isize>) {
     table.set_position(position);
     for (_, item) in table.iter_mut() {

@@ -8,8 +8,8 @@ const TEMPLATE: &str = include_str!("template.toml");
 /// The schema of scene files, in a configuration folder.
 const SCHEMA: &str = "schemas/scene.json";
 
-/// Returns the text of a new scene: two attributes and four objects without places, with comments that explain
-/// every key. `schema` is the line by which editors find the schema ([`schema_line`]), or empty.
+/// Returns the text of a new scene: two attributes and four objects without places, with a comment
+/// on every key. `schema` is the line with the schema for editors ([`schema_line`]), or empty.
 pub fn new_scene(name: &str, schema: &str) -> String {
     let name = toml_edit::Value::from(name).to_string();
     TEMPLATE.replace("@NAME@", &name).replace("@SCHEMA@", schema)
