@@ -162,7 +162,7 @@ impl<'r, 'a> Play<'r, 'a> {
         }
     }
 
-    /// Returns the presentation of the standing line, as that question, which began then and ends now.
+    /// Returns the presentation of the standing line, as that question, from then until now.
     fn presentation(&self, question: Question, began: Time) -> Presentation {
         Presentation {
             prompt: self.state.act.prompt,

@@ -31,7 +31,7 @@ pub struct Room<'a> {
     pub people: Acquaintance,
     /// `true` if people begin with a request; else the robot begins without knowledge.
     pub request: bool,
-    /// Whether people deny a wrong object that the robot announces, as they can until it is gripped.
+    /// Whether people deny a wrong announced object, as they can until it is gripped.
     pub denials: bool,
 }
 
