@@ -1,4 +1,4 @@
-//! `conform`: tests a service, from wherever it is, against the contract of its kind, in a group of its own.
+//! `conform`: tests a service against the contract of its kind, in a group of its own.
 
 use std::time::{Duration, Instant};
 

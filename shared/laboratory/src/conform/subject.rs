@@ -97,7 +97,7 @@ impl Subject {
         }
     }
 
-    /// Looks at it until `fact` is true. Returns whether that was within `patience` and before its end.
+    /// Waits until `fact` is true. Returns whether that was within `patience` and before its end.
     pub(super) fn wait(
         &mut self,
         patience: Duration,

@@ -76,7 +76,7 @@ pub(super) fn to_json(setup: &Setup) -> Json {
     })
 }
 
-/// Seconds of a question in words up to its answer; of a choice, which has no cost of its own, by its words.
+/// Seconds of a question in words up to its answer; of a choice, without own costs, by its words.
 fn whole_s(setup: &Setup, durations: &Durations, question: Question) -> f64 {
     let said_s = || setup.room().voice.seconds(&setup.room().scene.phrase(question));
     durations.question_s(question).unwrap_or_else(|| said_s() + setup.answer_s())
