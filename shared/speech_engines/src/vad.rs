@@ -134,7 +134,7 @@ impl Segmenter {
         events
     }
 
-    /// Sets the pause that closes the open segment, unless speech has continued since it was judged.
+    /// Sets the pause that closes the open segment, unless speech has continued in the meantime.
     pub fn set_closing(&mut self, closing: Closing) {
         if let Some(open) = &mut self.track.open
             && open.speech_end - open.onset == closing.speech
@@ -196,8 +196,8 @@ struct Open {
 }
 
 impl Open {
-    /// Returns the range to decode at sample `at`, and the speech in it. The range is that of a pause that
-    /// was reported: of the last one, or of the one that was judged if it is closed by that.
+    /// Returns the range to decode at sample `at`, and the speech in it. The range is that of a
+    /// reported pause: the last one, or the judged one if that closes it.
     fn cut(
         &self,
         speech_end: usize,

@@ -11,7 +11,7 @@ pub struct WorkerThread<T> {
     thread: Option<JoinHandle<()>>,
 }
 
-/// Niceness of loading beside services that start: a third of their share of a processor where both want it all.
+/// Niceness of loading beside starting services: a third of their share of a contended processor.
 const LOADING: i32 = 5;
 
 /// Lowers the priority of this thread, and of the threads and processes that it starts from now on.

@@ -164,7 +164,7 @@ impl<'a> Generator<'a> {
         format!("{article} {} {head} {}", adjectives.join(" "), place.unwrap_or_default())
     }
 
-    /// Returns a phrase like "the white one": one or two values before the noun, or a place after it.
+    /// Returns a phrase like "the white one": one or two values before the noun, or a place after.
     fn short_phrase(&mut self) -> String {
         let Some((k, value)) = self.any_value() else { return format!("the {}", self.head()) };
         let form = self.form(value);

@@ -1,7 +1,7 @@
 //! A pronouncing dictionary with the words of a language model.
 //!
-//! Invariant: every requested word is either in the dictionary or among the missing ones. (The decoder
-//! silently drops words without a pronunciation, and takes seconds to load the whole dictionary.)
+//! Invariant: every requested word is either in the dictionary or among the missing ones. (The
+//! decoder silently drops words without one, and takes seconds to load the whole dictionary.)
 
 mod phones;
 mod variants;
@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use crate::child_process;
 
-/// Returns the phones of a word that is not in the dictionary, separated by blanks, if they are known.
+/// Returns the known phones of a word that is not in the dictionary, separated by blanks.
 type LetterToSound = dyn Fn(&str) -> Option<String>;
 
 /// Words with their pronunciations, each a list of phones separated by blanks.

@@ -205,7 +205,7 @@ fn next_line(from: &mut impl BufRead) -> std::io::Result<String> {
 mod tests {
     use super::*;
 
-    /// Starts a shell that reads each utterance whole, then runs `answer`; `$samples` is its length.
+    /// Starts a shell that reads an utterance whole, then runs `answer`; `$samples` is its length.
     fn shell(answer: &str) -> Command {
         let script = format!(
             "while read -r head; do samples=${{head##*:}}; samples=${{samples%\\}}}}; \

@@ -75,7 +75,7 @@ pub trait Recogniser: Send {
     /// If the backend fails on these samples.
     fn recognise(&mut self, pcm: &[i16], speech: Range<usize>) -> Recognition;
 
-    /// Returns whether decoding is cheap enough to begin before the end of the utterance is certain.
+    /// Returns whether decoding is cheap enough to begin before the utterance's end is certain.
     fn is_quick(&self) -> bool {
         false
     }
@@ -118,7 +118,7 @@ pub enum Backend {
 }
 
 impl Backend {
-    /// Opens the recogniser for a scene. Also returns the words of the scene that it cannot recognise.
+    /// Opens the recogniser for a scene. Also returns the scene's words that it cannot recognise.
     ///
     /// # Errors
     /// If a dependency is missing.

@@ -120,7 +120,7 @@ impl PocketSphinx {
         Ok(Self { decoder, unpronounceable, opener })
     }
 
-    /// Returns the words of the scene that cannot be recognised because their pronunciation is unknown.
+    /// Returns the scene's words that cannot be recognised, as their pronunciation is unknown.
     pub fn unpronounceable(&self) -> &[String] {
         &self.unpronounceable
     }
@@ -164,7 +164,7 @@ fn failed() -> RecogniseError {
     RecogniseError("pocketsphinx rejected the samples".to_owned())
 }
 
-/// A decoder with a single pass while the audio arrives: less accurate than one of whole utterances.
+/// A single-pass decoder while the audio arrives: less accurate than one of whole utterances.
 struct FirstPass {
     decoder: Decoder,
     samples: Vec<i16>,
@@ -207,7 +207,7 @@ fn weighed(decoded: &Decoded) -> Vec<Hypothesis> {
 /// The acoustic model's name for speech without words, such as the end of a drawn-out "nah".
 const SPEECH: &str = "[SPEECH]";
 
-/// Returns the length of the words of a path and of the speech between them, seconds; 0 without a word.
+/// Returns the length of the words of a path and the speech between, seconds; 0 without a word.
 fn words_s(path: &[(String, u32)]) -> f32 {
     let is_word = |word: &str| spelling(word).is_some();
     if !path.iter().any(|(word, _)| is_word(word)) {
@@ -222,7 +222,7 @@ fn plain(text: &str) -> String {
     text.split(' ').filter_map(spelling).collect::<Vec<_>>().join(" ")
 }
 
-/// Returns the word without its pronunciation marker; `None` for silence, noise and sentence markers.
+/// Returns the word without its pronunciation marker; `None` for silence, noise and markers.
 fn spelling(word: &str) -> Option<String> {
     if word.starts_with(['<', '[', '+']) {
         return None;

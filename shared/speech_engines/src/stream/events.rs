@@ -28,7 +28,7 @@ pub enum StreamEvent {
         /// The utterance so far.
         segment: SpeechSegment,
     },
-    /// The robot's own voice covers a part of the utterance, which may mean something else without it.
+    /// The robot's own voice covers a part of the utterance, which may change its meaning.
     Cut {
         /// The utterance.
         sound: u64,

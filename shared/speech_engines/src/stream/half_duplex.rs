@@ -166,7 +166,7 @@ impl MaskedStream {
     }
 }
 
-/// Returns the first sample of the pause after which a user begins to speak, if there is such a pause.
+/// Returns the first sample of the pause after which a user begins to speak, if any.
 fn beginning(tail: &[i16]) -> Option<usize> {
     let levels: Vec<f32> = tail.chunks_exact(BLOCK).map(level_db).collect();
     let loudest = |levels: &[f32]| levels.iter().copied().fold(f32::MIN, f32::max);

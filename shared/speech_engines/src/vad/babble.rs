@@ -125,7 +125,7 @@ mod tests {
     /// Level of the user's voice, decibels.
     const USER_DB: f32 = -25.0;
 
-    /// Takes seconds of a background whose levels are spread evenly around `level_db`; this share is speech.
+    /// Takes seconds of a background with levels spread evenly around `level_db`, partly speech.
     fn background(babble: &mut Babble, seconds: f64, level_db: f32, spread_db: f32, share: f32) {
         let mut rng = Rng::new(7);
         for n in 0..(seconds / 0.016) as usize {

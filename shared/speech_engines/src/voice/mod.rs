@@ -1,12 +1,12 @@
 //! The robot's voice: prompts are synthesised by one program and played by another, one after the
 //! other; each can be interrupted.
 //!
-//! Invariant: every accepted prompt yields `Started` and then exactly one of `Ended`, `Interrupted` and
-//! `Failed` (which may also come alone), in order, within a deadline that depends on its length only.
+//! Invariant: every accepted prompt yields `Started` and then exactly one of `Ended`, `Interrupted`
+//! and `Failed` (which may also come alone), in order, within a deadline by its length only.
 //!
-//! `Started` comes when the player has begun; the audio was synthesised before. `Ended` comes when the
-//! player has exited, and not before the duration of the audio has passed since `Started`: some players
-//! return early, and a null device at once. The duration covers the audible part (`trim.rs`).
+//! `Started` comes when the player has begun; the audio was synthesised before. `Ended` comes when
+//! the player has exited, and at least the audio's duration after `Started`: some players return
+//! early, and a null device at once. The duration covers the audible part (`trim.rs`).
 
 mod options;
 mod player;

@@ -17,8 +17,8 @@ const UNHEARD: f64 = 0.01;
 /// Largest share of words that only the second recogniser heard.
 const ALONE_MAX: f64 = 0.5;
 
-/// Returns the hypotheses of both, heaviest first. The second recogniser never acts alone: without any of
-/// the first one there is none, and words that it alone heard are at least as doubtful as a coin.
+/// Returns the hypotheses of both, heaviest first. The second recogniser never acts alone: without
+/// any of the first one there is none, and words of its own are at least as doubtful as a coin.
 pub(super) fn combined(first: &[Hypothesis], opinion: &Opinion) -> Vec<Hypothesis> {
     let total: f64 = first.iter().map(|hypothesis| hypothesis.weight).sum();
     let mut texts: Vec<(String, f64)> = (first.iter().zip(&opinion.ln_likelihood))

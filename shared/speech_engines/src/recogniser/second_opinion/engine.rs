@@ -23,7 +23,7 @@ const FRAMES_PER_S: usize = 50;
 const SILENCE_S: usize = 2;
 /// Tokens of its own words, for each second of sound; more is a repetition.
 const TOKENS_PER_S: usize = 8;
-/// The library rejects sound shorter than 0.1 s; shorter sound is padded with silence to this length.
+/// The library rejects sound shorter than 0.1 s; such sound is padded with silence to this length.
 const SAMPLES_MIN: usize = RATE_HZ as usize / 5;
 /// Tokens of the prompt: it may use half of the network's text, and costs time.
 const PROMPT_MAX: usize = 96;
