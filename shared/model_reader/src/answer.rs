@@ -55,8 +55,8 @@ struct Entry {
 /// were in the request.
 ///
 /// # Errors
-/// The first thing that is not as agreed: other text than one JSON object, an unknown or missing key, a value that
-/// the scene does not have, a question that was not asked, a weight that is not above 0, or no readings.
+/// The first fault: other text than one JSON object, an unknown or missing key, a value that the
+/// scene does not have, an unasked question, a weight of 0 or less, or no readings.
 pub fn parse(
     scene: &Scene,
     asked: &[usize],

@@ -140,7 +140,7 @@ fn described(scene: &Scene) -> Json {
     json!({ "noun": scene.noun(), "objects": objects, "attributes": attributes })
 }
 
-/// JSON Schema of the answer. Bounds are checked by [`parse`](crate::parse): services support few of them.
+/// JSON Schema of the answer. [`parse`](crate::parse) checks bounds: services support few of them.
 fn schema(scene: &Scene) -> Json {
     let words = json!({ "type": "array", "items": { "type": "string", "enum": scene.words() } });
     let groups = json!({ "type": "array", "items": words });
