@@ -22,7 +22,7 @@ struct Checkpoint {
 }
 
 impl PolicyNode {
-    /// Returns the state; `None` where objects are followed, which is not described.
+    /// Returns the state; `None` if objects are tracked, which checkpoints do not cover.
     pub(crate) fn whole_state(&self) -> Option<Vec<u8>> {
         let Self { manager: _, state, perceived, floor, said, heard_of_speech, .. } = self;
         let Self { rested, rejected, waiting_since, next_send, forgot, .. } = self;

@@ -242,7 +242,7 @@ fn an_empty_table_is_said() {
     bench.check();
 }
 
-/// One is surely white. Of the other the camera cannot tell: it is asked about.
+/// One is surely white. The camera is unsure of the other, which is asked about.
 #[test]
 fn a_doubtful_detection_is_asked_about() {
     let color = |white: f64| {
