@@ -32,7 +32,7 @@ pub(crate) struct PromptPlayer {
     waiting: Option<Waiting>,
     /// Number of the last playback.
     last_playback: u64,
-    /// Behind the rest of a checkpoint, where earlier builds have nothing.
+    /// Last in a checkpoint, absent in those of earlier builds.
     #[serde(skip)]
     lines: RecentLines,
     /// The policy's latest prompt. Behind the lines in a checkpoint.
@@ -87,7 +87,7 @@ impl PromptPlayer {
 
     /// Returns the questions that may be answered by words whose user began at `onset` and was
     /// shown the prompt `seen` before, newest first: that prompt alone if it is a question, whether
-    /// or not it sounds, otherwise those before it; all where `seen` is 0.
+    /// or not it sounds, otherwise those before it; all if `seen` is 0.
     pub(crate) fn answerable(
         &mut self,
         seen: PromptId,

@@ -60,7 +60,7 @@ impl UtteranceContent {
         Ok(Self::words(hypotheses))
     }
 
-    /// Returns whether the words tell the robot to stop.
+    /// Returns whether the words are an order to stop.
     pub(crate) fn is_stop(&self) -> bool {
         self.hypotheses.first().is_some_and(|best| language::is_stop(&best.text))
     }

@@ -222,8 +222,7 @@ impl Worker {
         Ok(segments)
     }
 
-    /// Decodes one utterance of a file. The second recogniser is not waited for where something is
-    /// said.
+    /// Decodes one utterance of a file. The second recogniser is not awaited while someone speaks.
     fn recognise_range(
         &mut self,
         samples: &[i16],

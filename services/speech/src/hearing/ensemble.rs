@@ -72,8 +72,8 @@ impl Ensemble {
         self.second.as_ref()?.begin(&pcm[speech.start.saturating_sub(AROUND)..end], until)
     }
 
-    /// Asks all recognisers that are needed. `wait` waits for the second one's opinion until a time
-    /// and returns whether it is there.
+    /// Asks all recognisers needed. `wait` waits for the second one's opinion until a time and
+    /// returns whether it has come.
     ///
     /// # Errors
     /// If the first one fails on these samples.

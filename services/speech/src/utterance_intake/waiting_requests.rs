@@ -1,4 +1,4 @@
-//! Requests that wait for their turn, so that a client that asks for much delays no other.
+//! Requests that wait for their turn, so that a client with many delays no other.
 //!
 //! Each client has a share of the utterances that are accepted and not yet applied. Its further
 //! requests wait here, in order, and the clients take turns. A request that does not fit is not
