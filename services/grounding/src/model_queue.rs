@@ -1,5 +1,5 @@
-//! Utterances whose readings the model is asked for: observations leave in the order of the
-//! utterances, each at the latest when its time is up, then with the built-in reader's readings.
+//! Utterances for which the model is asked: observations leave in the order of the utterances, each
+//! at the latest when its time is up, then with the built-in reader's readings.
 
 use std::collections::VecDeque;
 

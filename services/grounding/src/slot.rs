@@ -29,7 +29,7 @@ impl Slot {
     }
 }
 
-/// Most readings for one of so many questions, none counted as one.
+/// Most readings for one of `slots` questions, none counted as one.
 pub(crate) fn at_most(slots: usize) -> usize {
     READINGS_MAX / slots
 }
