@@ -1,4 +1,4 @@
-//! "Not that" and "start over" with one click: the utterance that each stands for.
+//! "Not that" and "start over" with one click: the utterances behind them.
 //!
 //! Pure. Both become words that a user could say too, so that they are in the transcript and in the
 //! journal, and do nothing that a dialogue could not.

@@ -64,7 +64,7 @@ pub struct Bridge {
     submissions: Submissions,
     motions: Motions,
     lines: LineStore,
-    /// The interaction that ended last, and how: so much is known to be in the history.
+    /// The interaction that ended last, with its outcome: the history has those up to it.
     ended: Option<(InteractionId, Outcome)>,
     voice_dir: Option<PathBuf>,
     /// The joints that were sent last, and when.

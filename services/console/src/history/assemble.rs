@@ -158,7 +158,7 @@ impl Assembler {
     fn on_arm(&mut self, at: At, record: ArmRecord) {
         let ArmRecord { cause, pick, offered, .. } = record;
         let Some(mut pick) = pick.filter(|pick| is_shown(cause, pick)) else { return };
-        // The gripper opens for the user: the end of the pick tells of it.
+        // The gripper opens for the user: the end of the pick shows it.
         let opens = pick.phase == PickPhase::Holding && offered.is_some();
         if cause == ArmCause::Phase && opens {
             return;

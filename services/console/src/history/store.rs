@@ -161,7 +161,7 @@ impl StoreFile {
     }
 }
 
-/// Folder of the store beside the journals: a fresh start moves it with them.
+/// Folder of the store next to the journals: a fresh start moves it with them.
 pub(super) fn folder(journals: &Path) -> PathBuf {
     journals.join("history")
 }

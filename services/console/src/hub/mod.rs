@@ -126,7 +126,7 @@ impl Hub {
     ) -> Result<(ViewerId, mpsc::Receiver<OutboundFrame>), String> {
         let mut control = self.control();
         let Control { viewers, lease } = &mut *control;
-        // The server does so only once a second while nobody is connected.
+        // The server does so only once a second without connections.
         lease.tick(now, |viewer| viewers.session(viewer));
         if !viewers.has_session(session) {
             let places = match role {

@@ -95,7 +95,7 @@ pub enum Answer {
     Motion {
         stopped: bool,
     },
-    /// The viewer has control, or asks for it.
+    /// The viewer has control, or requests it.
     Control {
         granted: bool,
         /// When it gets control unless the operator keeps it, milliseconds.

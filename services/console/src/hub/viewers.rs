@@ -23,7 +23,7 @@ pub enum OutboundFrame {
 /// Frames that wait for a viewer; one with more does not read and is disconnected.
 const QUEUE_MAX: usize = 64;
 
-/// The role that a page asks for.
+/// The role that a page requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Operator, while there is no other.

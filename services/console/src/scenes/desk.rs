@@ -15,7 +15,7 @@ use service::control::{CallError, Reply, Request, call};
 
 /// Timeout of the supervisor's answer.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Time of one answer about the reach: the page asks for the rest.
+/// Time of one answer about the reach: the page requests the rest.
 const REACH: Duration = Duration::from_millis(700);
 /// Most places of one request about the reach.
 const PLACES_MAX: usize = 256;

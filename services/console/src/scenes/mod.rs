@@ -90,7 +90,7 @@ impl Scenes {
     }
 }
 
-/// Waits for the next task, the operator's first; an error once nobody can give one.
+/// Waits for the next task, the operator's first; an error once no sender is left.
 fn next(first: &Receiver<Task>, then: &Receiver<Task>) -> Result<Task, RecvError> {
     if let Ok(task) = first.try_recv() {
         return Ok(task);

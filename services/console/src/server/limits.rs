@@ -17,7 +17,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Returns the descriptors that are ever used with so many pages.
+    /// Returns the most descriptors used with a number of pages.
     pub fn most(viewers_max: usize) -> usize {
         RESERVE + viewers_max + OTHERS_MAX
     }

@@ -150,7 +150,7 @@ fn words(json: &Json, now: Time) -> Result<Words, String> {
     Ok(Words { text, alternatives, spoken, began, ended, seen, from: person(json)?, key: None })
 }
 
-/// Returns the person who speaks; a page without a name speaks for nobody in particular.
+/// Returns the person who speaks; a page without a name speaks for an unnamed user.
 fn person(json: &Json) -> Result<PersonId, String> {
     let name = match &json["from"] {
         Json::Null => "",

@@ -35,7 +35,7 @@ use crate::scenes::Scenes;
 pub use access::Access;
 pub use routes::page_asset;
 
-/// Intervals of the server's progress reports while somebody is connected, and otherwise.
+/// Intervals of the server's progress reports with connected pages, and without.
 const PROGRESS_EVERY: (Duration, Duration) = (Duration::from_millis(250), Duration::from_secs(1));
 
 /// State and files that the server serves.

@@ -112,7 +112,7 @@ pub(super) async fn state(State(app): State<Arc<App>>) -> Response<Body> {
     (json, app.hub.board.all()).into_response()
 }
 
-/// The part of the history that is asked for: at most `limit` interactions before number `before`.
+/// The requested part of the history: at most `limit` interactions before number `before`.
 #[derive(Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Part {
