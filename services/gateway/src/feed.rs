@@ -64,7 +64,7 @@ impl Feed {
 impl Drop for Feed {
     fn drop(&mut self) {
         if let Some(child) = lock(&self.child).as_mut() {
-            // A child that cannot be killed ends by itself: nobody reads it any more.
+            // A child that cannot be killed ends by itself: it has no reader any more.
             let _ = child.kill();
         }
     }

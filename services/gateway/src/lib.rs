@@ -2,7 +2,7 @@
 //! robot and an audit (docs/fleet.md).
 //!
 //! A robot is a group of this machine, or a mirror of one elsewhere, whose console knows no people:
-//! it has one token, which the gateway keeps. The gateway stands before the consoles, knows people
+//! it has one token, which the gateway keeps. The gateway is in front of the consoles, knows people
 //! by their secrets, and judges every frame of their pages ([`rules`]). It needs no transport: the
 //! link's program is started for the list of robots ([`feed`]) and for mirrors ([`mirrors`]).
 

@@ -1,5 +1,5 @@
-//! Mirrors of robots elsewhere: child processes, one for each robot that somebody uses, each a
-//! group in the gateway's folder with a console on a port of its own.
+//! Mirrors of robots elsewhere: child processes, one for each robot in use, each a group in the
+//! gateway's folder with a console on a port of its own.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -135,7 +135,7 @@ impl Mirrors {
         command.spawn().map_err(|error| missing(&program, &error))
     }
 
-    /// Ends those that nobody has used for a while.
+    /// Ends those that have been unused for a while.
     pub(crate) async fn end_idle(&self) {
         let is_idle = |mirror: &Mirror| mirror.pages == 0 && mirror.used.elapsed() > IDLE_MAX;
         let mut idle = Vec::new();

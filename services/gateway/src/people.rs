@@ -59,7 +59,7 @@ pub struct Person {
 pub struct People(BTreeMap<Name, Person>);
 
 impl People {
-    /// Reads the file; a missing one has nobody in it.
+    /// Reads the file; a missing one has no people.
     ///
     /// # Errors
     /// Others could read or change the file, or it is not one of people.

@@ -1,5 +1,5 @@
 //! The robots of a gateway: groups of this machine, and those that a router connects, each of which
-//! is mirrored while somebody uses its page. Both are groups with a console.
+//! is mirrored while its page is in use. Both are groups with a console.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -49,7 +49,7 @@ pub(crate) struct Listed {
     pub(crate) robot: Name,
     /// Right of the person on the robot.
     pub(crate) right: Right,
-    /// Whether it is there: `false` for one that the rights name and that is not connected.
+    /// Whether it is connected: `false` for one that only the rights name.
     pub(crate) connected: bool,
     /// Report of the robot; `None` while it is silent.
     pub(crate) presence: Option<Presence>,
@@ -111,7 +111,7 @@ impl Robots {
         self.remote.as_ref().map(|(_, mirrors)| mirrors.used(robot))
     }
 
-    /// Ends mirrors that nobody has used for a while.
+    /// Ends mirrors that have been unused for a while.
     pub(crate) async fn tidy(&self) {
         if let Some((_, mirrors)) = &self.remote {
             mirrors.end_idle().await;

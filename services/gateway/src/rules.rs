@@ -155,7 +155,7 @@ fn order(frame: Value) -> Option<Order> {
 
 /// Reads the parts of a console's frame that the audit records.
 pub fn answered(text: &str) -> Option<Answered> {
-    // Most frames are states and joints, which nobody needs to read here.
+    // Most frames are states and joints, which need not be read here.
     let is_one = ["{\"t\":\"done\"", "{\"t\":\"receipt\""].iter().any(|it| text.starts_with(it));
     let frame: Value = is_one.then(|| serde_json::from_str(text).ok())??;
     if frame["t"] == "receipt" {

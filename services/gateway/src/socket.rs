@@ -241,7 +241,7 @@ impl<'a> Visit<'a> {
         Ok(())
     }
 
-    /// Passes a stop on, and hands other orders to the audit; returns whether the page goes on.
+    /// Passes a stop on, and hands other orders to the audit; returns whether the page continues.
     async fn order(
         &self,
         order: Order,
