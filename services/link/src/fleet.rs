@@ -53,7 +53,7 @@ pub fn list(keys: &Path) -> Result<Vec<Listed>, Failure> {
     let (sender, presences) = mpsc::channel();
     for robot in robots.keys() {
         let sender = sender.clone();
-        // The list is complete when nobody listens any more.
+        // The list is complete when it has no listener any more.
         let take = move |bytes: Vec<u8>| drop(sender.send(bytes));
         // Each by its own key: the router lets no request for all robots through to one.
         request(&session, &Keys::of(robot), Call::Presence, Vec::new(), PATIENCE, take);

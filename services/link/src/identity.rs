@@ -50,12 +50,12 @@ pub struct Identity {
     pub robots: Vec<Name>,
     /// Host and port of the router.
     pub router: String,
-    /// The password beside the certificate.
+    /// The password in addition to the certificate.
     pub password: String,
 }
 
 impl Identity {
-    /// Reads the folder's `link.json`, and checks that the other files are there.
+    /// Reads the folder's `link.json`, and checks that the other files exist.
     ///
     /// # Errors
     /// The file and its fault.

@@ -68,7 +68,7 @@ impl Member {
     }
 }
 
-/// Everything that the folder holds beside keys.
+/// Content of the folder other than keys.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Ring {
     /// Host and port.

@@ -27,7 +27,7 @@ use crate::presence::Hello;
 use crate::session::{close, connect_patiently, request};
 use local::Local;
 
-/// Timeout of the robot's settings, after which they are asked for again.
+/// Timeout of the robot's settings, after which they are requested again.
 const HELLO_PATIENCE: Duration = Duration::from_secs(3);
 
 /// Folder of the sound of the robot's lines, in the group's folder `run/`.
@@ -68,7 +68,7 @@ enum Inbound {
 enum End {
     /// The mirror was asked to end.
     Asked,
-    /// The robot's group was started anew, or its settings have changed: the mirror follows.
+    /// The robot's group was restarted, or its settings have changed: the mirror follows.
     Changed,
 }
 
@@ -168,7 +168,7 @@ impl Link {
     }
 }
 
-/// Subscribes to everything that the robot shows, and to its voice where somebody may listen.
+/// Subscribes to everything that the robot shows, and to its voice if somebody may listen.
 fn subscribe(
     session: &Session,
     keys: &Keys,

@@ -19,7 +19,7 @@ pub trait Mirrored: Schema + Serialize + DeserializeOwned + Clone + PartialEq + 
     /// Shortest time between two frames.
     const PAUSE: Span = Span::from_ms(50);
 
-    /// Visits every time of the monotonic clock in it; 0 stands for none.
+    /// Visits every time of the monotonic clock in it; 0 means none.
     fn times(&mut self, visit: &mut dyn FnMut(&mut u64));
 }
 

@@ -42,7 +42,7 @@ impl Offset {
     }
 }
 
-/// Age of a time at `now`, nanoseconds; `None` for 0, which stands for none.
+/// Age of a time at `now`, nanoseconds; `None` for 0, which means none.
 pub fn age_ns(at_ns: u64, now: Time) -> Option<u64> {
     (at_ns > 0).then(|| now.ns().saturating_sub(at_ns))
 }

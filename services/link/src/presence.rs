@@ -6,7 +6,7 @@ use scene::Scene;
 use serde::{Deserialize, Serialize};
 use service::Span;
 
-/// Interval at which a robot says that it is there.
+/// Interval of a robot's presence messages.
 pub const PRESENCE_EVERY: Span = Span::from_ms(5_000);
 
 /// First message to a mirror.

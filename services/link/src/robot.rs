@@ -35,7 +35,7 @@ use crate::session::close;
 use senders::Senders;
 use sources::TopicSources;
 
-/// Longest sleep: while words wait for their receipts, while somebody watches, and else.
+/// Longest sleep: while words wait for their receipts, while the robot is watched, and else.
 const LOOK_EVERY: [Span; 3] = [Span::from_ms(2), Span::from_ms(15), Span::from_ms(250)];
 /// Messages of one pass: a peer that sends without end does not keep the loop.
 const INBOUND_MAX: usize = 256;

@@ -140,7 +140,7 @@ impl<Q> Asked<Q> {
         due.collect()
     }
 
-    /// Takes a receipt of any client; returns those who wait for it once all of theirs are there.
+    /// Takes a receipt of any client; returns those who wait for it once they have all of theirs.
     pub fn on_receipt(&mut self, receipt: &Receipt) -> Option<(Vec<Q>, Vec<Receipt>)> {
         let place = self
             .waiting

@@ -13,8 +13,8 @@ pub struct Trouble {
 }
 
 impl Trouble {
-    /// Counts a frame that is not shown. Returns the number of those that a report at `now` stands
-    /// for, or `None` if none is due.
+    /// Counts a frame that is not shown. Returns the number of those that a report at `now` covers,
+    /// or `None` if none is due.
     pub fn count(&mut self, now: Time) -> Option<u64> {
         self.unreported += 1;
         if self.reported.is_some_and(|reported| now < reported + REPORT_EVERY) {

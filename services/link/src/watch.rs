@@ -24,7 +24,7 @@ const BEAT_EVERY: Duration = Duration::from_secs(2);
 const PATIENCE: Duration = Duration::from_secs(10);
 /// News that wait.
 const QUEUE: usize = 16_384;
-/// Robots that are asked at a time: each is asked once it is there, and says the rest unasked.
+/// Robots asked at a time: each is asked once it is connected, and reports the rest unasked.
 const ASKED_MAX: usize = 64;
 
 /// Events from the library's threads to the main one.
@@ -105,7 +105,7 @@ pub fn run(folder: &Path, out: &mut impl Write) -> Result<(), Failure> {
             Err(RecvTimeoutError::Disconnected) => break,
         };
         let line = change.and_then(|change| serde_json::to_string(&change).ok());
-        // Nobody reads any more.
+        // The channel has no reader any more.
         if line.is_some_and(|line| write(&line).is_err()) {
             break;
         }

@@ -97,7 +97,7 @@ impl Local {
         JournalSet::new(hello.epoch).save(paths).map_err(stored(paths.epoch_file()))?;
         settings.write_snapshot(&run).map_err(stored(run.clone()))?;
         let admin = Admin::open(paths, epoch)?;
-        // Readers believe a service's start only while the supervisor's socket for it is there.
+        // Readers accept a service's start only with the supervisor's socket for it.
         for service in Service::DIALOGUE {
             let socket = paths.notify_socket(service.name(), INCARNATION.0);
             safe_files::create_private(&socket).map_err(stored(socket.clone()))?;

@@ -21,10 +21,10 @@ const RESEND_EVERY: Span = Span::from_ms(10);
 const REQUESTS_MAX: usize = 64;
 /// Time for the arm to be at rest, before a request is answered with the present state.
 const ANSWER_WITHIN: Span = Span::from_ms(400);
-/// Interval at which the arm is asked for its state while somebody watches.
+/// Interval at which the arm is asked for its state while watched.
 const LOOK_EVERY: Span = Span::from_ms(500);
 
-/// Starts the thread; returns where requests go.
+/// Starts the thread; returns the channel for requests.
 pub(super) fn start(
     paths: &GroupPaths,
     states: Outlet,

@@ -29,7 +29,7 @@ use crate::session::{connect_patiently, reply};
 const QUEUE: usize = 64;
 /// Interval at which it is found out who watches.
 const WATCHED_EVERY: Duration = Duration::from_millis(250);
-/// States beside the topics.
+/// States other than the topics.
 const GROUP: &str = "group";
 const MOTION: &str = "motion";
 const PRESENCE: &str = "presence";
@@ -86,7 +86,7 @@ impl Connecting {
         });
         let mut states = states.collect::<zenoh::Result<Vec<_>>>()?;
         states.push((PRESENCE, publisher(&session, keys.presence(), Priority::DataLow)?));
-        // In one stream with the state that shows the line, so that it is there before it is shown.
+        // In one stream with the state that shows the line, so that it arrives before.
         states.push((LINE, publisher(&session, keys.line(), Priority::Data)?));
         let joints = publisher(&session, keys.joints(), Priority::DataLow)?;
         let states = Outlet::start("states", states)?;
@@ -144,7 +144,7 @@ fn answers_of_motion(keys: &Keys) -> zenoh::Result<SyncSender<Answer>> {
 }
 
 impl Senders {
-    /// Returns whether anybody sees any state.
+    /// Returns whether any state has watchers.
     pub(super) fn is_watched(&self) -> bool {
         self.states
             .is_watched
@@ -227,7 +227,7 @@ impl Outlet {
         self.send(MOTION, bytes);
     }
 
-    /// Returns whether anybody sees the motion stop's state.
+    /// Returns whether the motion stop's state has watchers.
     pub(super) fn is_motion_watched(&self) -> bool {
         self.is_watched_at(MOTION)
     }
