@@ -18,8 +18,8 @@ pub struct Durations {
     pub point: Vec<f64>,
     /// Of fetching an object, per object: from the decision to its hand-over.
     ///
-    /// No reward holds them (section 3.5): they are paid for the wanted object whatever is asked
-    /// before, so they cannot tell one question from another. Among objects that are equally
+    /// They are not part of any reward (section 3.5): they are paid for the wanted object in any
+    /// case, so they do not affect the choice of questions. Among objects that are equally
     /// probable, and that no question can tell apart, the quickest is picked.
     pub pick: Vec<f64>,
 }

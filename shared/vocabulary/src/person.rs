@@ -11,7 +11,7 @@ pub const PERSON_BYTES_MAX: usize = 64;
 const GUEST: &str = "guest";
 
 /// The name under which a person speaks: printable, without spaces around it, of at most
-/// [`PERSON_BYTES_MAX`] bytes. Empty: nobody in particular, of whom nothing is learned.
+/// [`PERSON_BYTES_MAX`] bytes. Empty for an unnamed person, about whom nothing is learned.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct PersonId(String);
@@ -59,7 +59,7 @@ impl fmt::Display for NotAPerson {
 impl std::error::Error for NotAPerson {}
 
 impl PersonId {
-    /// Returns the person of that name, without the spaces around it. "guest" is nobody.
+    /// Returns the person of that name, without the spaces around it. "guest" is unnamed.
     ///
     /// # Errors
     /// A text that is too long or not printable.
@@ -75,12 +75,12 @@ impl PersonId {
         Ok(Self(if is_guest { String::new() } else { name.to_owned() }))
     }
 
-    /// Returns whether it is nobody in particular.
+    /// Returns whether the person is unnamed.
     pub fn is_nobody(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Returns the name; empty for nobody in particular.
+    /// Returns the name; empty for an unnamed person.
     pub fn as_str(&self) -> &str {
         &self.0
     }
