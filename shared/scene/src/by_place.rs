@@ -20,10 +20,10 @@ const ROWS: [&[&str]; 4] = [
 ];
 /// Places of two objects of which one is behind the other.
 const DEPTH: &[&str] = &["in front", "at the back"];
-/// Distance from which people tell neighbours in a row apart, metres.
+/// Distance at which people distinguish neighbours in a row, metres.
 const APART_M: f64 = 0.04;
 
-/// How objects are told apart by their places.
+/// Distinction of objects by their places.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ByPlace {
     view: View,

@@ -243,7 +243,7 @@ fn build_attribute(attribute: DraftAttribute, ids: &HashMap<String, WordId>) -> 
             }
         })
         .collect();
-    // "scissors" and "milk" beside "a wrench".
+    // "scissors" and "milk" in contrast to "a wrench".
     if values.iter().any(|value| value.role == Role::Kind) {
         let guessed = values.iter_mut().zip(is_guessed).filter(|(_, is_guessed)| *is_guessed);
         let qualities = guessed.filter(|(value, _)| value.role == Role::Quality);

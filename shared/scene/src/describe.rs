@@ -20,7 +20,7 @@ impl Scene {
         self.describe_among(object, &all)
     }
 
-    /// The object in words that tell it from these others; itself among them does not count.
+    /// Describes the object in words that fit none of these others; itself does not count.
     pub fn describe_among(&self, object: ObjectId, others: &[ObjectId]) -> String {
         let kind = self.kind(object);
         let alike = |&i: &ObjectId| i != object && kind.is_none_or(|(k, v)| self.has(i, k, v));
@@ -55,8 +55,8 @@ impl Scene {
         self.compose(&chosen)
     }
 
-    /// The objects as a choice or an enumeration, each told from the others: `the red mug, the blue
-    /// mug or the white cup` for "or". Objects that no words tell apart are named once.
+    /// The objects as a choice or an enumeration, each distinct from the others: `the red mug, the
+    /// blue mug or the white cup` for "or". Objects that no words distinguish are named once.
     pub fn list(&self, objects: &[ObjectId], conjunction: &str) -> String {
         let mut names: Vec<String> = Vec::new();
         for &object in objects {

@@ -63,7 +63,7 @@ fn owner(word: &str) -> Option<&str> {
     (is_one && !OWNERS_IN_GENERAL.contains(&owner)).then_some(owner)
 }
 
-/// Returns whether a form tells whose a thing is, so that it stands first and for "the".
+/// Returns whether a form names an owner, so that it comes first and replaces "the".
 pub(crate) fn is_owner(spoken: &str) -> bool {
     let (first, rest) = spoken.split_once(' ').unwrap_or((spoken, ""));
     owner(spoken).is_some() || is_determiner(first) && (rest.is_empty() || owner(rest).is_some())
@@ -76,7 +76,7 @@ pub(crate) fn is_number(spoken: &str) -> bool {
     is_digits && !is_year || NUMBERS.contains(&spoken)
 }
 
-/// Returns a measure as it stands before a noun: "two-year-old" of "two years old".
+/// Returns a measure in its form before a noun: "two-year-old" for "two years old".
 pub(crate) fn measured(spoken: &str) -> Option<String> {
     let words: Vec<&str> = spoken.split(' ').collect();
     let [number, units, what] = words[..] else { return None };

@@ -1,7 +1,7 @@
 //! The scene as JSON, for batch tools and tests:
 //! `{"objects":[{"name":ID,"attributes":{K:V,…}},…],"values":{K:[V,…],…}}`.
 //!
-//! Optional beside these: `name`, `noun`, `synonyms` (`{K:{V:[…],…},…}`), and an object's `xyz`,
+//! Further optional keys: `name`, `noun`, `synonyms` (`{K:{V:[…],…},…}`), and an object's `xyz`,
 //! `yaw`, `size`, `grasp_width`, `mass_kg`, `wall_deg` and `form` as in the scene file. Without
 //! `values`, every value is listed in the order in which the objects bring it up.
 

@@ -122,7 +122,7 @@ impl Value {
         self.role
     }
 
-    /// The value without an article, as it stands beside a noun or for one: "felt tip" of "a felt
+    /// The value without an article, as used with a noun or instead of one: "felt tip" of "a felt
     /// tip".
     pub fn bare(&self) -> &str {
         without_article(&self.spoken).filter(|_| self.role == Role::Kind).unwrap_or(&self.spoken)

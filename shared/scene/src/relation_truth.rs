@@ -7,7 +7,7 @@ use crate::{Measure, ObjectId, Placement, Relation, Scene, WordId};
 const PLACE_M: f64 = 0.02;
 /// The same of sizes and masses, as the logarithm of their ratio.
 const RATIO: f64 = 0.03;
-/// The same where things are compared loosely: "a bigger one".
+/// The same for a loose comparison: "a bigger one".
 const RATIO_LOOSE: f64 = 0.1;
 /// Distance beyond the nearest at which "next to" is said `e` times less often, metres.
 const BESIDE_M: f64 = 0.04;
@@ -49,7 +49,7 @@ pub struct Related<'a> {
     pub among: &'a [ObjectId],
     /// The objects that it relates to; of each the objects that it may be.
     pub to: &'a [Vec<ObjectId>],
-    /// Where left and right are seen from.
+    /// Viewpoint for left and right.
     pub view: View,
 }
 

@@ -47,7 +47,7 @@ impl Role {
         }
         match without_article(spoken) {
             Some(noun) => {
-                // "a green handle", where another one is "a black handle".
+                // "a green handle", if another one is "a black handle".
                 let rest = noun.strip_prefix(name).unwrap_or_default();
                 if rest.trim_start() == shared && rest != shared { Self::Part } else { Self::Kind }
             }

@@ -77,7 +77,7 @@ impl Scene {
         }
     }
 
-    /// Returns the phrase that asks for a thing with these values.
+    /// Returns the phrase that requests a thing with these values.
     pub fn request_for(&self, values: &[(AttributeId, ValueId)]) -> String {
         format!("get me {}", definite(&self.compose(values)))
     }

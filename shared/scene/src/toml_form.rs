@@ -146,7 +146,7 @@ const EXTENT_MAX_M: f64 = 2.0;
 const GRASP_MAX_M: f64 = 0.5;
 const DISTANCE_MAX_M: f64 = 5.0;
 
-/// The place and size of an object: all of it or nothing; nothing either where something is wrong.
+/// The place and size of an object: all of it or nothing; nothing if a part is wrong.
 fn placement(f: &mut Fields<'_>) -> Option<Placement> {
     const KEYS: [&str; 7] = ["xyz", "yaw", "size", "grasp_width", "mass_kg", "wall_deg", "form"];
     let placement = f.together(&KEYS, |f| Placement {
