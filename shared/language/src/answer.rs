@@ -64,8 +64,8 @@ impl Answers {
         self.given.last().is_some_and(|given| given.at.is_some_and(|given| given < at))
     }
 
-    /// The answer that stands: the last one, unless it is tied to its opposite ("yes and no"); and
-    /// its doubt. An answer that was given twice is doubted as the surer one is.
+    /// The valid answer: the last one, unless it is tied to its opposite ("yes and no"); and its
+    /// doubt. An answer given twice has the smaller doubt.
     fn standing(&self, tags: &[Tag<'_>]) -> Option<(Answer, f64)> {
         let last = *self.given.last()?;
         if let [.., before, _] = self.given[..]

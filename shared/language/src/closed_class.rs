@@ -73,7 +73,7 @@ fn words() -> &'static HashMap<&'static str, Class> {
     &WORDS
 }
 
-/// Returns whether words that stand alone are an answer, whatever else they name in a scene.
+/// Returns whether lone words are an answer, whatever else they name in a scene.
 pub(crate) fn is_answer(class: Class) -> bool {
     matches!(class, Class::Yes | Class::No | Class::WeakYes | Class::WeakNo)
 }

@@ -1,4 +1,4 @@
-//! How complete an utterance in progress is: whether its speaker will go on after a pause.
+//! How complete an utterance in progress is: whether its speaker will continue after a pause.
 //!
 //! The judgement is about words alone, and cautious: a text that may continue is not complete.
 

@@ -55,7 +55,7 @@ pub(crate) struct Content<'a> {
 impl Content<'_> {
     /// Adds a group that is ruled out.
     pub(crate) fn exclude(&mut self, group: Excluded) {
-        // "the red one, no, not the red one": the scope stands.
+        // "the red one, no, not the red one": the scope remains valid.
         if let [word] = group.words[..] {
             self.base.retain(|value| value.word != word);
         }

@@ -95,7 +95,7 @@ impl ClauseAnalysis<'_> {
             let is_it = at == 1 && tag.is(Class::It);
             is_it || tag.is(Class::Head) || is_thing
         };
-        // "I put it in the cabinet" is told, "I want you to put it there" is ordered.
+        // "I put it in the cabinet" is a report, "I want you to put it there" an order.
         lead.iter().all(|tag| tag.is_any(LEADS))
             && (says(Class::Second) || !says(Class::First) && !says(Class::Want))
             && rest.iter().enumerate().any(is_ours)

@@ -33,7 +33,7 @@ pub(crate) fn halting_words(tokens: &Tokens<'_>) -> Vec<Range<usize>> {
     Utterance::new(tokens).halting_words()
 }
 
-/// Returns whether the words ask to go on after a stop, and nothing else.
+/// Returns whether the words ask to continue after a stop, and nothing else.
 pub(crate) fn asks_to_go_on(tokens: &Tokens<'_>) -> bool {
     let beside = classes![Filler Courtesy Yes WeakYes And But Plain];
     Utterance::new(tokens).is_alone(Place::Resuming, beside)

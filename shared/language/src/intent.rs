@@ -58,8 +58,8 @@ pub(crate) fn intent(
     }
 }
 
-/// Returns whether the clause gives this command to the robot: nothing unrelated is said beside it,
-/// and it is not negated.
+/// Returns whether the clause gives this command to the robot: it says nothing unrelated, and it is
+/// not negated.
 pub(crate) fn commands(tags: &[Tag<'_>], clause: &Clause, class: Class) -> bool {
     let range = clause.span.clone();
     let Some(at) = range.clone().find(|&at| tags[at].is(class)) else { return false };
@@ -162,7 +162,7 @@ pub(crate) fn is_remark(tags: &[Tag<'_>], fates: &Fates) -> bool {
     fates.are_neither() && !tags.iter().any(|tag| tag.is_any(classes![Fetch Want]))
 }
 
-/// "don't get me the clear bowl", "I don't want the white ones": nothing is asked for.
+/// "don't get me the clear bowl", "I don't want the white ones": nothing is requested.
 fn refuses(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     let is_denied = |clause: &Clause| {
         let tags = &tags[clause.span.clone()];
@@ -180,7 +180,7 @@ fn after_leads<'t, 'a>(tags: &'t [Tag<'a>]) -> &'t [Tag<'a>] {
     &tags[leads..]
 }
 
-/// A greeting, a farewell or thanks, and nothing that asks for anything.
+/// A greeting, a farewell or thanks, without any request.
 fn courtesy(tags: &[Tag<'_>]) -> Option<Intent> {
     const BESIDE: &[Class] = classes![
         Courtesy Filler WeakYes Reply Plain Second It Be First Determiner Preposition Pointer Head

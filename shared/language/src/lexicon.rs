@@ -156,7 +156,7 @@ impl Lexicon {
         })
     }
 
-    /// The sense of a word that stands alone.
+    /// Returns the sense of a lone word.
     pub(crate) fn word(&self, word: &str) -> Option<Sense<'_>> {
         let shortest = self.phrases.get(word)?.last()?;
         shortest.rest.is_empty().then(|| self.sense(shortest))
@@ -435,7 +435,7 @@ impl Lexicon {
     }
 }
 
-/// Returns the number of words that the rest of a phrase takes, if it matches. Adverbs may stand
+/// Returns the number of words that the rest of a phrase takes, if it matches. Adverbs may be
 /// inside: "I don't really care".
 fn matched(rest: &[Box<str>], after: &[Token<'_>]) -> Option<usize> {
     const ADVERBS: &[&str] =

@@ -11,7 +11,7 @@ use crate::reader::Reader;
 /// A value word of an utterance, and the probabilities of its polarities; they sum to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mention {
-    /// The scene's word that it stands for.
+    /// The scene's word behind the value word.
     pub word: WordId,
     /// The words as they were said, in plain lower case.
     pub surface: String,

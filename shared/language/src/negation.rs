@@ -49,8 +49,8 @@ pub(crate) fn is_whole_answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> b
     }
 }
 
-/// "it isn't it is in the cabinet", "it isn't get me the clear one": nobody hears the comma behind
-/// the "not".
+/// "it isn't it is in the cabinet", "it isn't get me the clear one": the comma after the "not" is
+/// not heard.
 fn begins_anew(tags: &[Tag<'_>], at: usize) -> bool {
     let [next, then, ..] = &tags[at + 1..] else { return false };
     // "don't get me the clear one" negates the words after it.

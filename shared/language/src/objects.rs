@@ -28,7 +28,7 @@ struct Part<'a> {
 /// How two values are joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Joint {
-    /// By nothing that tells two things apart.
+    /// Nothing that distinguishes two things.
     None,
     /// By a comma, as in a list.
     Comma,
@@ -36,7 +36,7 @@ enum Joint {
     And,
 }
 
-/// Splits the values said into those of each object that is asked for, at least one.
+/// Splits the values said into those of each requested object, at least one.
 pub(crate) fn objects<'a>(
     tags: &[Tag<'a>],
     content: &Content<'a>,

@@ -12,7 +12,7 @@ use crate::token_class::{Class, classes};
 
 /// Most readings of one utterance.
 pub const READINGS_MAX: usize = 4;
-/// Most further objects that "all" stands for, and most values that a question is about.
+/// Most further objects that "all" means, and most values in a question.
 const MORE_MAX: usize = 4;
 /// Weight as a yes of a "maybe" that is not an answer, judged. That yes is doubted as well, so that
 /// it moves the odds little.

@@ -140,7 +140,7 @@ impl ReadBack<'_> {
         }
     }
 
-    /// Returns whether another value has the name too; `Scene::ambiguities` tells of it.
+    /// Returns whether another value has the name too; `Scene::ambiguities` reports that.
     fn is_shared(&self, value: &Value, name: &str) -> bool {
         let others = self.scene.attributes().iter().flat_map(|attribute| &attribute.values);
         let mut others = others.filter(|other| other.word != value.word);

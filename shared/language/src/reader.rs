@@ -36,7 +36,7 @@ pub struct Reader {
     questions: SceneQuestions,
     /// Another judge than the built-in one.
     judge: Option<Arc<Judge>>,
-    /// The scene knows where objects are.
+    /// Whether the scene knows the places of objects.
     placed: bool,
 }
 
@@ -144,7 +144,7 @@ impl Reader {
         let mut readings: Vec<(f64, Reading)> = Vec::new();
         for (weight, fates) in fates(self.judge(), &heard.tags, heard.asked) {
             for (share, reading) in self.parse(tokens, &heard, &fates).readings() {
-                // Doubts say how well words were heard: they tell no readings apart.
+                // Doubts say how well words were heard: they do not distinguish readings.
                 match readings.iter_mut().find(|(_, known)| known.says_the_same(&reading)) {
                     Some((known, _)) => *known += weight * share,
                     None => readings.push((weight * share, reading)),

@@ -85,7 +85,7 @@ impl<'a> Tag<'a> {
         self.doubt = 1.0 - (1.0 - self.doubt) * (1.0 - doubt);
     }
 
-    /// Probability that a scene word that it stands for was not meant.
+    /// Probability that the scene word behind the tag was not meant.
     pub(crate) fn word_doubt(&self) -> f64 {
         1.0 - (1.0 - self.doubt) * self.sure
     }
@@ -277,7 +277,7 @@ fn heard_apart<'a>(
     })
 }
 
-/// A word that the lexicon does not have as it stands: lengthened, misspelt, or two run together.
+/// A word that the lexicon lacks in this form: lengthened, misspelt, or two run together.
 fn guessed<'a>(lexicon: &'a Lexicon, word: &str) -> Option<Found<'a>> {
     let lookalikes = lexicon.lookalikes();
     let short = if lookalikes.is_common(word) { None } else { shortened(word) };

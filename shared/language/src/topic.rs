@@ -87,7 +87,7 @@ impl<'a> ClauseAnalysis<'a> {
         if self.describes_something_else() || self.is_strange() { Topic::Off } else { Topic::On }
     }
 
-    /// "get me the white one": a person asks for a thing, whatever else the text says.
+    /// "get me the white one": a person requests a thing, whatever else the text says.
     fn is_plain_request(&self) -> bool {
         self.clause.iter().any(|tag| matches!(tag.word, "me" | "i"))
             && self.values > 0
@@ -159,7 +159,7 @@ impl<'a> ClauseAnalysis<'a> {
         pairs.any(|pair| pair[0].is(Class::Possessive) && pair[1].is(Class::Unlisted))
     }
 
-    /// "my shirt is white": nothing is said of our things, and nothing is asked for.
+    /// "my shirt is white": it says nothing about our things, and requests nothing.
     fn describes_something_else(&self) -> bool {
         // "wrong spoon", "too big"
         let is_refused =

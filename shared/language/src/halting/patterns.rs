@@ -13,7 +13,7 @@ pub(super) enum Place {
     Command,
     /// As the only words.
     Alone,
-    /// The same, of words that ask to go on.
+    /// As the only words, of a request to continue.
     Resuming,
     /// Anywhere.
     Danger,

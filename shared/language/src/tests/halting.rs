@@ -136,7 +136,7 @@ fn no_scene_takes_a_halting_word_away() {
     }
 }
 
-/// A misspelt set or section would be a hole that nobody sees.
+/// A misspelt set or section would be an undetected gap.
 #[test]
 fn patterns_are_written_in_known_sections_and_sets() {
     let lines: Vec<(&str, &str)> = crate::vocabulary::halting().collect();

@@ -20,7 +20,7 @@ pub struct Line {
 /// A labelled value word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Marked {
-    /// The words as they stand in the text.
+    /// The words as written in the text.
     pub surface: String,
     /// Polarity of the value: wanted, denied or neither.
     pub polarity: Polarity,
@@ -68,7 +68,7 @@ impl Marked {
     }
 }
 
-/// Returns the polarity that a sign stands for.
+/// Returns the polarity denoted by a sign.
 pub(crate) fn polarity(sign: char) -> Option<Polarity> {
     match sign {
         '+' => Some(Polarity::Wanted),

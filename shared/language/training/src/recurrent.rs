@@ -273,7 +273,7 @@ mod tests {
             };
             let slope = (at_distance(0.01) - at_distance(-0.01)) / 0.02;
             let found = f64::from(training.gradient[at]);
-            // The functions of the gates have about the slope of those that they stand for.
+            // The gates' functions have about the slope of the functions that they approximate.
             assert!((slope - found).abs() < 0.02 + 0.15 * slope.abs(), "{part}: {slope} {found}");
         }
     }

@@ -24,7 +24,7 @@ struct Listed {
 }
 
 impl Listed {
-    /// Whether one of the words of both may stand for either.
+    /// Returns whether a word of both may replace either.
     fn is_like(&self, other: &Self) -> bool {
         let words = |it: &Self| it.said.iter().copied().chain([it.name]).collect::<Vec<_>>();
         let others = words(other);
