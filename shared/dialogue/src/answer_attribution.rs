@@ -84,8 +84,8 @@ impl Shares {
     }
 
     /// Returns the shares of an utterance typed at `at_s`. Typed words are meant for the robot and
-    /// answer what is on the screen, where a question appears as soon as it is asked: an unanswered
-    /// one if there is any, else the latest.
+    /// answer the question on the screen, which appears as soon as it is asked: an unanswered one
+    /// if any, else the latest.
     pub fn typed(asked: &[Candidate], at_s: f64, rate: impl Fn(f64) -> f64) -> Self {
         let open = |asked: &Candidate| asked.answered_s.is_none() && asked.began_s <= at_s;
         let weight = |asked: &Candidate| if open(asked) { rate(at_s - asked.began_s) } else { 0.0 };

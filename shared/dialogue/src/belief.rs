@@ -15,12 +15,12 @@ use crate::observation::{log_mixture, weigh, weighty};
 /// hundreds of objects can under- or overflow, and an object that was all but ruled out can always
 /// come back. An update is one pass over them; the normalising constant is computed when a
 /// probability is requested. The logarithms are the whole state: stored and restored by
-/// [`Belief::log_weights`] and [`Belief::from_log`], it goes on bit for bit as before.
+/// [`Belief::log_weights`] and [`Belief::from_log`], it continues bit for bit as before.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
 pub struct Belief {
     log: Vec<f64>,
-    /// Logarithm of the sum of the weights, once it was asked for.
+    /// Logarithm of the sum of the weights, once computed.
     log_sum: OnceLock<f64>,
 }
 
@@ -144,7 +144,7 @@ impl Belief {
         key.extend(self.log.iter().map(|l| ((l - log_sum).exp() * KEY_UNITS).round() as i64));
     }
 
-    /// The belief that stands for all that have this key.
+    /// The belief that represents all with the given key.
     ///
     /// # Errors
     /// If the key is not the key of a belief.

@@ -11,7 +11,7 @@ use crate::{Belief, Model};
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Concessions {
-    /// Attributes that the user cannot tell: nothing is asked about them, by value or openly.
+    /// Attributes that the user does not know: no question is about them.
     pub unknown: Vec<AttributeId>,
     /// Attributes that do not matter to the user: nothing is asked about them, and objects that
     /// agree in all other attributes are equally right.
@@ -32,9 +32,9 @@ impl Concessions {
         self.unknown.contains(&k) || self.indifferent.contains(&k)
     }
 
-    /// The wish that each hypothesis stands for: those of one number are equally right. Numbered in
-    /// the model's order; every hypothesis has its own if nothing is indifferent. The absent object
-    /// agrees with no other.
+    /// The wish of each hypothesis: those of one number are equally right. Numbered in the model's
+    /// order; every hypothesis has its own if nothing is indifferent. The absent object agrees with
+    /// no other.
     pub fn wishes(&self, model: &Model) -> Vec<usize> {
         if self.indifferent.is_empty() {
             return (0..model.hypotheses()).collect();
@@ -97,7 +97,7 @@ mod tests {
         Actions { mode: Mode::Present, attribute: true, which: true, choice: false },
     ];
 
-    /// The scene without an attribute and its doubles, with how many objects each one stands for.
+    /// The scene without an attribute and its doubles, with the number of objects behind each one.
     fn without(scene: &Scene, k: AttributeId) -> (Scene, Vec<f64>) {
         let mut kept: Vec<(serde_json::Map<_, _>, f64)> = Vec::new();
         for object in scene.objects() {

@@ -34,7 +34,7 @@ impl Model {
     pub const LACKS: u16 = u16::MAX;
     /// Value in every column for the absent object: its values are unknown.
     pub const UNKNOWN: u16 = u16::MAX - 1;
-    /// Entries of a column from this one up to [`Model::UNKNOWN`] stand for values in doubt
+    /// Entries of a column from this one up to [`Model::UNKNOWN`] denote values in doubt
     /// ([`Model::chances`]): equal entries for equal doubts.
     pub const DOUBTFUL: u16 = 1 << 15;
 
@@ -64,8 +64,8 @@ impl Model {
         Self { params, objects, absent: false, plain: None, is_of_interaction: false, tables }
     }
 
-    /// The same model of a scene with other objects and the same words, but for those of the places
-    /// by which objects that are alike are told apart: they come last.
+    /// The same model of a scene with other objects and the same words, except for those of the
+    /// places that distinguish like objects: they come last.
     #[must_use]
     pub fn with_objects(&self, scene: &Scene) -> Self {
         let same = Self::new(scene, self.params).with_certain_words(self.tables.certain.alpha);
@@ -175,7 +175,7 @@ impl Model {
         self.tables.columns[k.index()].words[v.index()]
     }
 
-    /// The attributes and values that a word stands for: one, or more where attributes share it.
+    /// The attributes and values that a word denotes: one, or more if attributes share it.
     pub fn meanings(&self, word: WordId) -> &[(AttributeId, ValueId)] {
         &self.tables.words[word.index()].meanings
     }
@@ -214,7 +214,7 @@ impl Model {
         entry == v.0 || entry >= Self::DOUBTFUL && self.value(i, k) == Some(v)
     }
 
-    /// Probability of each value of attribute `k`, if that entry of its column stands for a doubt.
+    /// Probability of each value of attribute `k`, if that entry of its column denotes a doubt.
     pub fn chances(&self, k: AttributeId, entry: u16) -> Option<&[f64]> {
         let doubt = entry.checked_sub(Self::DOUBTFUL).filter(|_| entry < Self::UNKNOWN)?;
         self.tables.columns[k.index()].doubtful.get(usize::from(doubt)).map(Vec::as_slice)

@@ -166,7 +166,7 @@ impl Naming {
         if self.options.is_some() { Channel::Choice } else { Channel::Open }
     }
 
-    /// The same where another answer may have been given with probability `doubt`.
+    /// The same if another answer may have been given with probability `doubt`.
     pub(crate) fn doubted(self, doubt: f64) -> Self {
         let any = 1.0 / self.answers as f64;
         let blend = |p: f64| if doubt > 0.0 { (1.0 - doubt) * p + doubt * any } else { p };
@@ -371,7 +371,7 @@ fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut 
         }
         Question::Attribute(k, v) => {
             let known = |value| if value == v.0 { if_true } else { if_false };
-            // The words beside an answer are about the same value.
+            // The other words of an answer are about the same value.
             let said = ValueEvidence::of_words(model, k, question, reading);
             add_by_value(model, k, log, known, |chances| {
                 let chance =

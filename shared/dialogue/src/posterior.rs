@@ -47,7 +47,7 @@ impl Posterior {
         Self::Of(speaker, Box::new(self))
     }
 
-    /// The same of nobody in particular.
+    /// The same for an unnamed person.
     #[must_use]
     pub(crate) fn of_anybody(self) -> Self {
         match self {

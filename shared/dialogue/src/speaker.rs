@@ -6,7 +6,7 @@ use vocabulary::{Params, PersonId, Reliability};
 use crate::Model;
 use scene::AttributeId;
 
-/// A way in which a person tells something; each has errors of its own.
+/// Kind of a person's statements; each has errors of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
     /// Answers with yes or no, and denials.
@@ -54,7 +54,7 @@ pub(crate) fn steps(from: f64, to: f64) -> i8 {
     if steps.is_finite() { steps.clamp(-100.0, 100.0) as i8 } else { 0 }
 }
 
-/// Returns the rate so many steps from another one.
+/// Returns the rate some steps from another one.
 fn stepped(rate: f64, steps: i8) -> f64 {
     match steps {
         0 => rate,

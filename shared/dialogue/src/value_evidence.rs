@@ -211,7 +211,7 @@ impl ValueLikelihoods {
         }
     }
 
-    /// The likelihoods that stand for all of one key.
+    /// The likelihoods that represent all of one key.
     pub(crate) fn rounded(&self) -> Self {
         let whole = |log: &f64| ((log.exp() * KEY_UNITS).round().max(0.1) / KEY_UNITS).ln();
         let of = |(k, log): &(AttributeId, Vec<f64>)| (*k, log.iter().map(whole).collect());

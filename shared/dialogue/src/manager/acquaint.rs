@@ -56,7 +56,7 @@ impl Manager {
         });
     }
 
-    /// Forgets a person. An open interaction of theirs goes on as anybody's.
+    /// Forgets a person. Their open interaction continues as an unnamed user's.
     pub(super) fn forget_person(&mut self, state: &mut State, id: &PersonId, at: Time) {
         state.users.people.forget(id);
         let is_theirs = |open: &Interaction| open.from() == *id;

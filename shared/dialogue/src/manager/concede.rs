@@ -1,4 +1,4 @@
-//! Attributes that the user cannot tell or does not care about.
+//! Attributes that the user does not know or does not care about.
 
 use scene::{AttributeId, Question, Reading, Reference, Response, Scene};
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use crate::Concessions;
 /// Statements of the user about attributes, by name so that they outlive a change of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Conceded {
-    /// Attributes that the user cannot tell.
+    /// Attributes that the user does not know.
     pub unknown: Vec<String>,
     /// Attributes that do not matter to the user.
     pub indifferent: Vec<String>,

@@ -111,7 +111,7 @@ impl Manager {
         }
     }
 
-    /// Names the objects that the user cannot tell apart before one of them is picked.
+    /// Names the objects that the user cannot distinguish before one of them is picked.
     fn left_over(&mut self, state: &State, object: ObjectId) -> Preface {
         let Some(open) = &state.open else { return Preface::None };
         let left = self.left(&open.belief());

@@ -18,7 +18,7 @@ impl History {
         self.count_within(name, NAMES_MAX);
     }
 
-    /// Counts a delivery, and at most so many names.
+    /// Counts a delivery, up to the given number of names.
     pub fn count_within(&mut self, name: &str, names_max: usize) {
         if !self.delivered.contains_key(name) && self.delivered.len() >= names_max {
             // Of several the last by name, so that a replay drops the same.

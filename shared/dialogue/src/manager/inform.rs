@@ -47,7 +47,7 @@ impl Manager {
     }
 
     /// Scores an utterance against the questions that it may answer, and decides again. The preface
-    /// stands in the place of a remark on the utterance.
+    /// replaces a remark on the utterance.
     pub(super) fn consider(&mut self, state: &mut State, said: Statement<'_>, preface: Preface) {
         self.note_said(state, said.utterance);
         let (preference, mut remark) = self.note_concessions(state, &said.heard);

@@ -81,7 +81,7 @@ impl Manager {
         is_over && utterance.interpretations.iter().any(is_again)
     }
 
-    /// Forgets the words about the wanted object, and asks for it unless the same utterance tells
+    /// Forgets the words about the wanted object, and asks for it unless the same utterance names
     /// it.
     pub(super) fn start_over(&mut self, state: &mut State, utterance: &Utterance, at: Time) {
         self.forget(state, at);

@@ -47,7 +47,7 @@ pub enum Preface {
     Sorry,
     /// Putting back the object of that description is over.
     PutBackEnded(String, PickOutcome),
-    /// These objects are left, which the user cannot tell apart; descriptions.
+    /// These objects are left, which the user cannot distinguish; descriptions.
     Left(Vec<String>),
 }
 
@@ -124,7 +124,7 @@ pub enum AboutObjects {
 /// Reason for an action of the robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Reason {
-    /// A question tells these objects apart; descriptions.
+    /// A question distinguishes these objects; descriptions.
     Between(Vec<String>),
     /// The user said these words.
     Said(Vec<String>),

@@ -27,9 +27,9 @@ pub(super) type Offered = (ObjectId, Line);
 
 impl Manager {
     /// Returns the offer of the object to be fetched now, if the description does not fit it, or if
-    /// the user cannot tell it from others, which `alike` names: then a second time, if the user
-    /// has said neither which one nor, by `preference`, that either will do. Only users who may
-    /// mistake values get offers.
+    /// the user cannot distinguish it from others, which `alike` names: then a second time, if the
+    /// user has said neither which one nor, by `preference`, that either will do. Only users who
+    /// may mistake values get offers.
     pub(super) fn offer_first(
         &mut self,
         state: &State,

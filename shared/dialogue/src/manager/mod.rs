@@ -265,7 +265,7 @@ impl Manager {
             return self.keep_hold(state, object, at);
         }
         if outcome == PickOutcome::Cancelled {
-            // The order still stands: the arm gave it up before a grasp, because it was restarted
+            // The order is still valid: the arm gave it up before a grasp, because it was restarted
             // with another scene.
             if state.act.kind == ActKind::Pick {
                 return order_again(state, at);

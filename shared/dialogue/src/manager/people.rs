@@ -131,8 +131,8 @@ impl People {
     }
 }
 
-/// The rate that is expected of a person. Nobody is taken to err less than configured: who has not
-/// erred in a few dialogues may yet, and would be asked too little.
+/// The rate that is expected of a person. At least as configured: a person without errors in a few
+/// dialogues may still err, and would be asked too little.
 fn expected(known: &Count, configured: f64) -> f64 {
     known.mean(configured, STRENGTH).max(configured)
 }

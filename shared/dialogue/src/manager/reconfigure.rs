@@ -51,8 +51,8 @@ impl Manager {
         let changes = if same_scene { Preface::None } else { changes(&open.objects, &known) };
         open.objects = known;
         self.translate(state, open);
-        // Where neither belief nor objects have changed, the standing question still stands; other
-        // costs count from the next utterance on.
+        // If neither belief nor objects have changed, the pending question remains; new costs count
+        // from the next utterance on.
         let is_ordered = state.ordered().is_some();
         if is_ordered || (same_scene && same_belief) {
             return;

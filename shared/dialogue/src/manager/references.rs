@@ -154,7 +154,7 @@ impl Manager {
     }
 
     /// Returns the size of each object as far as it is known: in cubic metres if they differ, else
-    /// the rank of its value in an attribute of sizes; `None` if neither tells them apart.
+    /// the rank of its value in an attribute of sizes; `None` if neither distinguishes them.
     fn sizes(&self, objects: &[ObjectId]) -> Option<Vec<Option<f64>>> {
         let scene = &self.setup.scene;
         let volume = |i: &ObjectId| {

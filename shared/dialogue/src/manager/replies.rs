@@ -45,7 +45,7 @@ impl Manager {
 
     /// Returns the robot's current activity.
     pub(super) fn status(&mut self, state: &State) -> Remark {
-        // A question that stands is still to be answered; anything else waits for the release.
+        // A pending question still needs an answer; anything else waits for the release.
         if state.stop.motion.is_latched()
             && (state.act.kind != ActKind::Ask || state.open.is_none())
         {

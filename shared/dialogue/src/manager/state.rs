@@ -43,7 +43,7 @@ pub struct State {
     pub last_prompt: PromptId,
     /// The open interaction.
     pub open: Option<Interaction>,
-    /// Words of each further object that was asked for, in order.
+    /// Words of each further requested object, in order.
     pub queue: Vec<Vec<String>>,
     /// The standing decision.
     pub act: Act,
@@ -101,7 +101,7 @@ pub struct Timing {
     pub typed: Option<Reaction>,
 }
 
-/// Questions and lines of an interaction that are remembered: nobody answers older ones.
+/// Questions and lines of an interaction that are remembered: older ones get no answers.
 pub const PROMPTS_MAX: usize = 64;
 
 /// How often a question is asked in an interaction, repetitions after silence not counted.

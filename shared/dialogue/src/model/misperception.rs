@@ -97,7 +97,7 @@ impl Model {
         self.plain.is_some()
     }
 
-    /// The value that an entry stands for which only the user may take for another one.
+    /// The value of an entry that only the user may take for another one.
     pub(crate) fn known(&self, k: AttributeId, entry: u16) -> Option<ValueId> {
         let doubt = entry.checked_sub(Self::DOUBTFUL).filter(|_| entry < Self::UNKNOWN)?;
         self.tables.columns[k.index()].known.get(usize::from(doubt)).copied().flatten()

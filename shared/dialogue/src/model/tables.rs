@@ -101,7 +101,7 @@ impl Tables {
         (0..objects).map(|i| certain(i) + in_doubt(i)).collect()
     }
 
-    /// Notes which words and values tell hypotheses apart.
+    /// Notes which words and values distinguish hypotheses.
     pub(super) fn find_what_splits(&mut self) {
         for column in &mut self.columns {
             let unsure = column.values.len() > 1

@@ -73,7 +73,7 @@ fn the_value_answers_an_open_question() {
     assert_likelihood(which, &["red", "red"], Response::None, answer);
     assert_likelihood(which, &["red"], Response::Yes, answer);
     assert_likelihood(which, &[], Response::No, [(1.0 - P_L) * third; 3]);
-    // A word of another attribute keeps its own factor beside the answer.
+    // A word of another attribute keeps its own factor next to the answer.
     let lidded = [1.5 / 4.5, 0.5 / 4.5, 0.5 / 3.5];
     let both = [0, 1, 2].map(|i| answer[i] * lidded[i]);
     assert_likelihood(which, &["lidded", "red"], Response::None, both);

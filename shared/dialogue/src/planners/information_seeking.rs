@@ -23,7 +23,7 @@ pub(super) const ENTRY: Entry = Entry {
 ///
 /// After each answer the rest of the dialogue is valued with the expected person model, so an
 /// answer that contradicts the belief is worth one more question to a user who errs, and a question
-/// that tells a careful person from a careless one has a value of its own. For an unknown person,
+/// that distinguishes careful from careless people has a value of its own. For an unknown person,
 /// `ε` and `p_l` are as configured, but uncertain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct InformationSeeking;
@@ -75,7 +75,7 @@ fn expected(model: &Model, person: &Person) -> Model {
     model.with_params(person.params(model.params()))
 }
 
-/// How the dialogue goes on if the person is taken to be as expected.
+/// Continues the dialogue with a person as expected.
 fn follow(problem: &DecisionProblem<'_>, belief: &Belief) -> Decision {
     let stake = problem.costs.correct + problem.costs.wrong;
     searched(problem, belief, |reduced| Effort {

@@ -38,8 +38,8 @@ impl Default for Lookahead {
 /// How much work one decision may be on large scenes, in classes looked at times attributes: about
 /// 4 ms of one core.
 const WORK_MAX: usize = 600_000;
-/// The same with few classes, where more work still finds the best policy: a tenth of a second at
-/// the most doubtful beliefs of 20 objects, and far less once something was answered.
+/// The same with few classes, for which more work still finds the best policy: a tenth of a second
+/// at the most doubtful beliefs of 20 objects, and far less once something was answered.
 const WORK_MAX_FEW: usize = 2_400_000;
 /// Up to how many classes are few.
 const FEW: usize = 32;

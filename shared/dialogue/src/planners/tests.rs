@@ -380,7 +380,7 @@ fn uniform_costs_are_the_special_case() {
     }
 }
 
-/// Objects stand ever farther away; nothing but pointing tells them apart.
+/// Objects are ever farther away; only pointing distinguishes them.
 #[test]
 fn what_is_far_is_pointed_at_later() {
     let object = |i: usize| json!({"name": format!("o{i}"), "attributes": {"shape": "round"}});

@@ -57,8 +57,8 @@ impl Announced {
         self.insisting(1.0).min(self.insisting(1.0 / classes as f64))
     }
 
-    /// Upper bound on the value of knowing that one of some objects is wanted which nothing but
-    /// announcing tells apart, times their probability: `U(m)` for their probabilities `m`.
+    /// Upper bound on the value of knowing that the wanted object is among some that only
+    /// announcing distinguishes, times their probability: `U(m)` for their probabilities `m`.
     ///
     /// An easier problem: an erroneous denial is known as such. An object that was denied is then
     /// out or known, and the rest is announced in the order of falling probability, as an exchange
@@ -84,8 +84,8 @@ impl Announced {
     }
 
     /// The least `δ` for which announcing does not beat `ψ(b) = Σ_g U_g + δ − B·H(b)` at any belief
-    /// over that many groups of objects that only announcing tells apart, where `H` is the entropy
-    /// over groups and `U_g ≥ b_g u` bounds the worth of knowing a group ([`Self::among`]).
+    /// over that many groups of objects that only announcing distinguishes, where `H` is the
+    /// entropy over groups and `U_g ≥ b_g u` bounds the worth of knowing a group ([`Self::among`]).
     ///
     /// Let the announced object be of group `g` with probability `y`, `P` the probability of its
     /// denial, `a` that of a denial and `g`, and `b⁻` the belief after it. Since `U_g` is not

@@ -14,11 +14,11 @@
 //!
 //! **Announced picks.** If a pick can be denied, `r_c` is the value of announcing an object known
 //! to be wanted, and `δ` the least constant for which announcing does not beat `ψ`
-//! ([`Announced::offset`]). Classes that only announcing tells apart count as one:
+//! ([`Announced::offset`]). Classes that only announcing distinguishes count as one:
 //! [`Announced::among`] replaces their sum of `b_c r_c`, and `H` is the entropy over such groups.
 //!
 //! **The doubt about one class.** Near certainty a nat costs far more than `B`, because answers
-//! rarely tell anything new. There [`Doubt`] is the tighter bound.
+//! rarely bring anything new. There [`Doubt`] is the tighter bound.
 
 use std::ops::Range;
 
@@ -33,7 +33,7 @@ use super::reduced::Reduced;
 #[derive(Clone, Debug)]
 pub(crate) struct Bound {
     pub(crate) costs: Costs,
-    /// `r_c` per class, that of a group of one where picks are announced.
+    /// `r_c` per class, that of a group of one if picks are announced.
     pub(crate) worth: Vec<f64>,
     /// `δ`.
     offset: f64,
@@ -56,7 +56,7 @@ const INEFFICIENCY: f64 = 2.0;
 pub(crate) struct Value {
     pub(crate) lower: f64,
     pub(crate) upper: f64,
-    /// Where between the bounds it is expected to be.
+    /// Expected value, between the bounds.
     pub(crate) estimate: f64,
 }
 

@@ -18,8 +18,7 @@ pub(crate) enum Query {
     Point { class: u32 },
 }
 
-/// How a question is answered, given that the answer tells something. Answers that leave every
-/// belief as it is are folded into the price.
+/// Distribution of a question's informative answers. Uninformative ones are folded into the price.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Channel {
     /// Cost until an answer is informative.
@@ -132,7 +131,7 @@ impl Channel {
     }
 
     /// A question that is answered by naming: with one of `named` answers that are true of classes,
-    /// or of `absent` ones that are true of none. An answer of the latter kind tells nothing,
+    /// or of `absent` ones that are true of none. An answer of the latter kind is uninformative,
     /// unless there are classes whose true answer is not known (`lacking`).
     pub(crate) fn naming(
         problem: &DecisionProblem<'_>,

@@ -5,11 +5,11 @@
 //! the one class. It is nearly exact when one class is nearly certain, which matters most: whether
 //! to make sure or to pick is the last decision of every dialogue.
 //!
-//! An announced pick of a third class tells the two apart no more than silence does, and is paid as
-//! a wrong one.
+//! An announced pick of a third class distinguishes the two no more than silence, and is paid as a
+//! wrong one.
 //!
 //! Between two classes every question is a symmetric channel: an open one at best confuses two of
-//! its values, and its other answers tell the two apart no more than silence does.
+//! its values, and its other answers distinguish the two no more than silence.
 
 use vocabulary::Costs;
 

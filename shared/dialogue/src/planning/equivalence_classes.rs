@@ -1,4 +1,4 @@
-//! The objects that matter, merged if no question can tell them apart.
+//! The objects that matter, merged if no question can distinguish them.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;

@@ -26,7 +26,7 @@ pub(crate) struct OneStepLookahead {
     pub(crate) entropy: f64,
     /// Probability of the most probable class.
     pub(crate) peak: f64,
-    /// Every question that can tell anything, but for pointing at improbable classes.
+    /// Every informative question, except for pointing at improbable classes.
     pub(crate) choices: Vec<Choice>,
     /// Picks that can be denied, except for improbable classes; none if picks are final.
     pub(crate) picks: Vec<AnnouncedPick>,
@@ -51,7 +51,7 @@ pub(crate) struct Choice {
     pub(crate) information: f64,
 }
 
-/// Most classes that are looked at to point at or to announce: the most probable ones tell most.
+/// Most classes examined for pointing or announcing: the most probable ones are most informative.
 const LIKELIEST_MAX: usize = 24;
 
 /// Looks one step ahead from beliefs about one reduced problem.
@@ -105,7 +105,7 @@ impl<'a> OneStepEvaluator<'a> {
         }
     }
 
-    /// Counts classes that only announcing tells apart as one: each has its part of their joint
+    /// Counts classes that only announcing distinguishes as one: each has its part of their joint
     /// bound.
     fn group_doubles(&mut self, mass: &[f64]) {
         let Some(announced) = &self.reduced.announced else { return };
@@ -121,8 +121,8 @@ impl<'a> OneStepEvaluator<'a> {
         }
     }
 
-    /// The best that ends the dialogue, and the class to pick then. Where picks are announced, only
-    /// the conclusion that the object is not here is final.
+    /// The best move that ends the dialogue, and the class to pick. If picks are announced, only
+    /// the conclusion that the object is absent is final.
     fn stop(&self, value: &Value) -> (f64, usize) {
         if self.reduced.announced.is_none() {
             let likeliest = self.classes.iter().position(|class| class.top >= self.all.top);

@@ -6,7 +6,7 @@ use super::channel::{Channel, Channels};
 use crate::decision::choices;
 use crate::{DecisionProblem, Model, Naming};
 
-/// An attribute that tells classes apart: those of one block have the same value.
+/// An attribute that distinguishes classes: those of one block have the same value.
 #[derive(Debug)]
 pub(crate) struct Partition {
     pub(crate) attribute: AttributeId,
@@ -207,7 +207,7 @@ impl Partition {
         Some(sets)
     }
 
-    /// Whether a choice tells no more than a yes/no question that costs no more.
+    /// Whether a choice is no more informative than a yes/no question that costs no more.
     pub(super) fn is_plain(&self, offer: &Offer) -> bool {
         let two = self.doubtful.is_empty() && self.unknown.is_none();
         let mut plainly = offer.blocks.iter().map(|block| self.yes_no.of(usize::from(*block)));
@@ -307,7 +307,7 @@ impl Partition {
         self.named().map(move |block| (block, sets[usize::from(block)]))
     }
 
-    /// Whether its open question tells anything: not if there is one value to name.
+    /// Whether its open question is informative: not if there is one value to name.
     pub(super) fn tells(&self) -> bool {
         self.open.capacity > 0.0
     }

@@ -2,10 +2,10 @@
 //! was right is revealed, for the compensation of [`Told`].
 //!
 //! Each revelation leaves a set of classes with the same proportions, since all of them answered
-//! alike. The robot's own belief goes on as ever: it gives the probabilities of answers, and so the
-//! compensation. A right answer leads on; a wrong one, which is rare, is worth no more than telling
-//! the class. The questions available, how evenly they split, and the doubt left by a verification
-//! all count as they are, so this bound is tighter than any price of information.
+//! alike. The robot's own belief continues as ever: it gives the probabilities of answers, and so
+//! the compensation. A right answer leads on; a wrong one, which is rare, is worth no more than
+//! telling the class. The questions available, how evenly they split, and the doubt left by a
+//! verification all count as they are, so this bound is tighter than any price of information.
 //!
 //! The search is depth-first, the most promising question first. It passes over the questions that
 //! are bounded by the best one, and leaves a belief as soon as its bound is low enough for the
@@ -57,7 +57,7 @@ struct Question<'a> {
     channel: &'a Channel,
     /// Logarithms of the probabilities of a right and of a wrong answer.
     log: [f64; 2],
-    /// Sums of these, less those of denied questions, tell beliefs apart.
+    /// Sums of these, less those of denied questions, identify beliefs.
     code: u128,
 }
 

@@ -61,7 +61,7 @@ pub(crate) struct Node {
     rest: f64,
 }
 
-/// Something to do that a dialogue can go on after.
+/// Move after which a dialogue can continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Move {
     /// A question.
@@ -147,7 +147,7 @@ impl<'a> Search<'a> {
     }
 
     /// Goes down along the leading questions and the most doubtful answers to a question that has
-    /// not been followed, follows it, and tells the beliefs on the way. False if there was none.
+    /// not been followed, follows it, and updates the beliefs on the way. False if there was none.
     fn descend(&mut self, lead: Lead, focus: f64) -> bool {
         let mut path = Vec::new();
         let mut node = 0;

@@ -106,8 +106,8 @@ fn objects_that_nothing_tells_apart_are_one_class() {
     assert_eq!(present.interchangeable[0], 0..3);
 }
 
-/// Equally probable objects that no question tells apart are picked by the seconds of the pick, and
-/// may be permuted only if pointing at them costs the same.
+/// Equally probable objects that no question distinguishes are picked by the seconds of the pick,
+/// and may be permuted only if pointing at them costs the same.
 #[test]
 fn objects_that_differ_in_seconds_alone() {
     let scene = scene(
@@ -230,7 +230,7 @@ fn nothing_better_is_dropped() {
                 continue;
             }
             let value = ask_once(problem, belief, question);
-            // A question that tells nothing is asked for ever here, which is never worth it.
+            // An uninformative question is asked for ever here, which is never worth it.
             assert!(value <= best + 1e-6, "{label} {question:?}: {value} above {best}");
         }
     });

@@ -1,4 +1,4 @@
-//! The value for a planner that is told the wanted class, but plays for compensated stakes.
+//! The value for a planner that learns the wanted class, but plays for compensated stakes.
 //!
 //! **Compensation.** To a policy's rewards anything may be added that is zero on average given what
 //! the policy knows: its value stays. A planner that knows more does better all the same, but the

@@ -225,7 +225,7 @@ fn joined_with(items: &[String], conjunction: &str) -> String {
     }
 }
 
-/// A number in words where people say it so.
+/// Returns a number as people say it, in words if small.
 pub(super) fn number(n: usize) -> String {
     const WORDS: [&str; 13] = [
         "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
@@ -244,7 +244,7 @@ pub(super) fn capitalised(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Returns the remark about `count` mugs that nothing tells apart.
+    /// Returns the remark about `count` identical mugs.
     fn counted(count: usize) -> String {
         let mug =
             |n| format!("[[objects]]\nname = \"m{n}\"\nattributes = {{ colour = \"red\" }}\n");

@@ -7,7 +7,7 @@ use super::*;
 use crate::testing::{bowls, heard, markers, random_scene, scene, tools};
 use crate::{Belief, Posterior};
 
-/// Two objects of which one may be red: asking the same again tells no more than a person's error.
+/// Two objects of which one may be red: asking again reveals no more than a person's error.
 #[test]
 fn the_same_answer_again_tells_little_more() {
     let file = markers();
@@ -94,7 +94,7 @@ fn an_object_may_be_described_by_what_its_scene_does_not_state() {
     }
 }
 
-/// An answer, some with a word beside it, a request, or a denial.
+/// An answer, some with a further word, a request, or a denial.
 fn random_reading(rng: &mut Rng, scene: &Scene, model: &Model) -> (f64, Question, Reading) {
     let k = AttributeId::from(rng.below(scene.attributes().len()));
     let v = ValueId::from(rng.below(model.values(k)));

@@ -48,8 +48,8 @@ fn an_attribute_that_the_user_cannot_tell_is_not_asked_about_again() {
     assert!(!asked.contains(&k) && end.act.kind == ActKind::Pick, "{asked:?}");
 }
 
-/// If nothing else tells them apart, they are named, one is offered, and it is taken only if the
-/// user cannot tell once more.
+/// If nothing else distinguishes them, they are named, one is offered, and it is taken only if the
+/// user again does not know.
 #[test]
 fn objects_that_the_user_cannot_tell_apart_are_named() {
     let mut manager = manager();

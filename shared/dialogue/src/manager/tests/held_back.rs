@@ -25,7 +25,7 @@ fn a_pick_while_stopped_is_announced_and_not_ordered() {
     let confirmed = reply(&mut manager, &resumed, answer(Response::Yes));
     assert_eq!(confirmed.act.kind, ActKind::Pick);
     assert_eq!(text(&confirmed), "I will get the clear bowl.");
-    // Whoever says it again means it, too.
+    // A repetition means it, too.
     let again = remark(&mut manager, &resumed, words(&["clear"]));
     assert_eq!(again.act.kind, ActKind::Pick);
 }

@@ -91,7 +91,7 @@ fn people_who_err_are_told_from_those_who_do_not() {
     assert_eq!(known, [("Ann", 20), ("Bob", 20)]);
 }
 
-/// Who gives no name is treated as ever, bit for bit, whoever is known.
+/// Unnamed users are treated as ever, bit for bit, whoever is known.
 #[test]
 fn of_nobody_nothing_is_learned() {
     let mut manager = manager();

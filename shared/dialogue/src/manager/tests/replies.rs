@@ -38,7 +38,7 @@ fn cancels(intent: Intent) -> bool {
     matches!(intent, Intent::Cancel | Intent::StopAndCancel)
 }
 
-/// At rest, while a question stands, while the arm fetches, and while a pick is called off.
+/// At rest, with a pending question, while the arm fetches, and while a pick is cancelled.
 fn situations(manager: &mut Manager) -> Vec<State> {
     let rest = manager.first();
     let asking = first(manager, words(&["white"]));
@@ -63,7 +63,7 @@ fn everything_typed_is_answered() {
     }
 }
 
-/// The arm's order stands whatever is said about other things.
+/// The arm's order remains valid whatever is said about other things.
 #[test]
 fn an_answer_changes_no_order() {
     let mut manager = manager();

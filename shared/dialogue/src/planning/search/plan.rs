@@ -110,7 +110,7 @@ impl Search<'_> {
         (node.branches[leading].value.estimate > node.stop).then_some(leading)
     }
 
-    /// Makes a move, goes on after each answer, and takes the move's value from there.
+    /// Makes a move, continues after each answer, and takes the move's value from there.
     fn take(
         &mut self,
         at: Reached,

@@ -140,7 +140,7 @@ fn revealed_errors_bound_the_value() {
     });
 }
 
-/// No question improves on the value of being told the class, whatever it splits.
+/// No question improves on the value of learning the class, whatever it splits.
 #[test]
 fn no_question_beats_being_told_the_class() {
     let (seed, mut rng) = (83, Rng::new(83));
