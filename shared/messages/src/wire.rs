@@ -28,7 +28,7 @@ impl WireError {
 pub trait WireCode: Copy + 'static {
     /// Name of the enum.
     const NAME: &'static str;
-    /// Variants with their names and codes, all of them; the first stands for an unset field.
+    /// Variants with their names and codes, all of them; the first is an unset field.
     const CODES: &'static [(Self, &'static str, u8)];
 
     /// Returns the code in a message.

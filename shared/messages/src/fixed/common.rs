@@ -139,7 +139,7 @@ impl TryFrom<&AskedQuestion> for Presentation {
     }
 }
 
-/// Farthest coordinate that anybody points at, metres. It keeps a mistyped number out.
+/// Greatest coordinate of a pointing gesture, metres; rejects mistyped numbers.
 pub const POINTED_AT_MAX_M: f64 = 100.0;
 
 wire_struct! {
