@@ -119,8 +119,8 @@ impl BusError {
     }
 }
 
-/// Creates a port. iceoryx2 also returns one that reaches only some of its peers, for want of a
-/// segment; here that is an error.
+/// Creates a port. For lack of a segment, iceoryx2 may return one that reaches only some of its
+/// peers; here that is an error.
 fn create<T, E: std::fmt::Debug>(
     what: &str,
     create: impl FnOnce() -> Result<T, E>,

@@ -32,7 +32,7 @@ pub(crate) struct Cleaner {
     thread: Option<JoinHandle<()>>,
 }
 
-/// A file that is locked while any cleanup goes on.
+/// A file that is locked during any cleanup.
 #[derive(Debug)]
 struct CleanupLock {
     path: PathBuf,
@@ -50,7 +50,7 @@ impl CleanupLock {
     fn hold_back(&self) -> bool {
         let mut begun = self.begun();
         let inode = |found: io::Result<fs::Metadata>| found.map(|file| file.ino()).ok();
-        // Nobody waits for a file that somebody has removed.
+        // A removed file has no waiters.
         let is_locked = inode(self.file.metadata()) == inode(fs::metadata(&self.path))
             && flock(&self.file, FlockOperation::NonBlockingLockExclusive).is_ok();
         *begun += usize::from(is_locked);
@@ -153,7 +153,7 @@ pub(crate) fn clean(config: &Config) {
     }
 }
 
-/// Waits, as a service that starts, until no cleanup goes on.
+/// Waits, as a service that starts, until no cleanup is in progress.
 pub(crate) fn await_cleanup(paths: &GroupPaths) {
     // A group without a supervisor has no such file. A lock ends with its holder.
     let Ok(file) = File::open(paths.cleanup_lock()) else { return };

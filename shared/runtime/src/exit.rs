@@ -153,7 +153,7 @@ impl ProcessExit {
         }
     }
 
-    /// Returns true if it ended for want of a resource: storage, shared memory (a page that cannot
+    /// Returns true if it ended for lack of a resource: storage, shared memory (a page that cannot
     /// be had kills with SIGBUS), descriptors, process slots. The service is not at fault.
     pub fn is_shortage(self) -> bool {
         match self {

@@ -28,7 +28,7 @@ pub const SHM: &str = "/dev/shm";
 
 /// Letters of names in shared memory: one for each six bits.
 const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
-/// Letters that stand for the group; equal at each of its starts.
+/// Letters that identify the group; equal at each of its starts.
 const STABLE_LETTERS: usize = 6;
 /// Letters drawn at each start: 96 bits, which another user can neither guess nor occupy. More do
 /// not fit into the path of a socket.
@@ -289,7 +289,7 @@ impl GroupPaths {
         format!("wo{}", letters(&hash.value().to_le_bytes()[..STABLE_LETTERS]))
     }
 
-    /// Draws a name for shared memory that nobody can foresee.
+    /// Draws an unpredictable name for shared memory.
     ///
     /// # Errors
     /// The operating system has no random numbers.
@@ -317,8 +317,8 @@ impl GroupPaths {
 }
 
 /// Name of a group's shared memory for one start: prefix of all its segments, and name of the
-/// folder beside them that holds iceoryx2's other files. The folder is here because sockets lie in
-/// it, whose paths must be short.
+/// folder with iceoryx2's other files. The folder is here because of its sockets, whose paths must
+/// be short.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShmName(String);
 

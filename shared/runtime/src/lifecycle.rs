@@ -100,8 +100,8 @@ pub struct Lifecycle {
     is_called: bool,
 }
 
-/// Takes over SIGXFSZ, which kills whoever writes a file beyond its limit of size (`ulimit -f`):
-/// the write fails then, as on a full disk.
+/// Takes over SIGXFSZ, which kills a process that writes a file beyond its limit of size (`ulimit
+/// -f`): the write fails then, as on a full disk.
 ///
 /// # Errors
 /// The operating system refuses it.
@@ -225,7 +225,7 @@ impl Lifecycle {
     }
 }
 
-/// Most descriptors that end the sleep of a service beside its wake-ups.
+/// Most descriptors, besides its wake-ups, that end the sleep of a service.
 pub const SOURCES_MAX: usize = 3;
 /// Descriptors that end the sleep of a service, the same for life; those that it lacks are `None`.
 pub type Sources<'a> = [Option<BorrowedFd<'a>>; SOURCES_MAX];

@@ -158,8 +158,8 @@ fn is_gone(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory | ErrorKind::InvalidData)
 }
 
-/// Creates the folder of iceoryx2's files under a name that nobody else has, and writes the name
-/// down for the group's processes.
+/// Creates the folder of iceoryx2's files under a unique name, and writes the name down for the
+/// group's processes.
 ///
 /// # Errors
 /// The operating system refuses.
@@ -265,7 +265,7 @@ mod tests {
             scope.spawn(|| join(1)).join().unwrap();
             assert_eq!(news.recv(), Ok(1), "nobody is held back");
             assert_eq!(admin.joined(), 1, "the supervisor");
-            // Two cleanups: the thread ends its own, the other one goes on.
+            // Two cleanups: the thread ends its own, the other one continues.
             assert!(admin.cleaner.hold_back() && admin.begin_cleanup());
             scope.spawn(|| join(2));
             // Clients do not wait for a service that starts.

@@ -38,7 +38,7 @@ pub use kept::{KeptStop, is_kept};
 pub use repeated::RepeatedStop;
 
 /// Time after a stop in which no release counts, whoever gives either: a frightened person presses
-/// again and again, and two people press at once.
+/// repeatedly, and two people press at once.
 pub const RESUME_AFTER: Span = Span::from_ms(2_000);
 
 /// Most datagrams of one pass.

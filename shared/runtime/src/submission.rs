@@ -47,7 +47,7 @@ impl Submission {
         self
     }
 
-    /// States who speaks, by a name that the speech service judges; empty: nobody in particular.
+    /// States who speaks, by a name that the speech service judges; empty for an unnamed person.
     #[must_use]
     pub fn by(mut self, from: impl Into<String>) -> Self {
         self.injection.from = from.into();

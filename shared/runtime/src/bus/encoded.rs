@@ -27,7 +27,7 @@ impl Bus {
         self.encoded_writer_of(topic, None)
     }
 
-    /// Writes a topic of encoded payloads of at most so many bytes each; a larger one is an error.
+    /// Opens a topic for writing encoded payloads of limited size; a larger one is an error.
     ///
     /// # Errors
     /// As [`Bus::writer`].
@@ -59,7 +59,7 @@ impl Bus {
 pub struct EncodedWriter<T: Schema> {
     /// Whether the payload is a view for clients; a later one replaces it.
     is_view: bool,
-    /// The last payload was dropped for want of shared memory.
+    /// The last payload was dropped for lack of shared memory.
     is_short: Cell<bool>,
     sender: Rc<Sender>,
     _payload: PhantomData<T>,

@@ -86,7 +86,7 @@ pub(super) struct Loan(
 );
 
 impl Loan {
-    /// Takes memory: one slot of a fixed layout, or so many bytes.
+    /// Takes memory: one slot of a fixed layout, or a number of bytes.
     pub(super) fn take(port: &SendPort, slots: usize) -> Result<Self, LoanError> {
         // SAFETY: more than one slot is only taken of bytes, and the memory's size is its length.
         #[allow(unsafe_code)]

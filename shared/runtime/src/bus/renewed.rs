@@ -1,7 +1,7 @@
 //! A port that is made again when iceoryx2 could not connect it.
 //!
-//! iceoryx2 tries each connection between two ports once: where memory or descriptors were short at
-//! that moment, the two stay deaf to one another although both live. A new port is a new try.
+//! iceoryx2 tries each connection between two ports once: if memory or descriptors were short at
+//! that moment, the two stay disconnected although both live. A new port is a new try.
 
 use std::cell::{Cell, RefCell};
 use std::fmt;

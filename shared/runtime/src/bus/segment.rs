@@ -2,7 +2,7 @@
 //! those do not give:
 //!
 //! - Every page is reserved before a segment can be opened. A lack of memory is an error of its
-//!   creator, with the figure, and not the death (SIGBUS) of whoever touches the page first.
+//!   creator, with the figure, and not the death (SIGBUS) of the first process to touch the page.
 //! - No segment is open to another user, and no segment of another user is used.
 //! - Every open ends within its timeout, whatever has become of the file.
 
@@ -181,7 +181,7 @@ impl<T: Content> Builder<'_, T> {
         let memory = SharedMemoryBuilder::new(&self.file())
             .creation_mode(CreationMode::CreateExclusive)
             .size(size_of::<Layout<T>>() + self.supplementary_size)
-            // Not readable: nobody opens it before it is complete.
+            // Not readable, so that it is not opened before it is complete.
             .permission(Permission::OWNER_WRITE)
             .zero_memory(false)
             // Removed again by any failure below.
@@ -366,8 +366,8 @@ impl<T: Content> NamedConceptMgmt for Segment<T> {
         Storage::does_exist_cfg(name, config)
     }
 
-    /// Lists the owner's segments only: iceoryx2 takes a name that begins like one and does not go
-    /// on like one, which any user can make, for a defect and panics.
+    /// Lists the owner's segments only: iceoryx2 panics on a name that only begins like a
+    /// segment's, which any user can make.
     fn list_cfg(config: &Configuration<T>) -> Result<Vec<FileName>, NamedConceptListError> {
         let (prefix, suffix) = (config.get_prefix().as_bytes(), config.get_suffix().as_bytes());
         let is_named = |name: &[u8]| name.starts_with(prefix) && name.ends_with(suffix);

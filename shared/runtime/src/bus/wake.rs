@@ -110,16 +110,16 @@ impl WakeListener {
 
     fn socket(&self) -> BorrowedFd<'_> {
         let descriptor = self.listener.file_descriptor();
-        // SAFETY: the listener holds the descriptor open as long as the result borrows it; nobody
-        // closes it through the result.
+        // SAFETY: the listener holds the descriptor open as long as the result borrows it; it is
+        // not closed through the result.
         #[allow(unsafe_code)]
         unsafe {
             BorrowedFd::borrow_raw(descriptor.native_handle())
         }
     }
 
-    /// Takes all pending wake-ups, to be called before topics are read. Returns who has joined, if
-    /// anybody: its readers wait for [`Bus::connect`].
+    /// Takes all pending wake-ups, to be called before topics are read. Returns new members, if
+    /// any: its readers wait for [`Bus::connect`].
     pub fn take(&self) -> Option<Joined> {
         let mut joined = None;
         let taken = self.listener.try_wait(|event| joined = joined.max(Joined::of_event(event.id)));

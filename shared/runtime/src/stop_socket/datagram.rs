@@ -96,7 +96,7 @@ impl ClockOffset {
         Self(offsets.ok().and_then(|text| parse(&text)).unwrap_or_default())
     }
 
-    /// Returns a time of this process in the machine's. 0 stays, because it stands for no time.
+    /// Returns a time of this process in the machine's. 0 stays, because it means no time.
     pub(super) fn machine_ns(self, ns: u64) -> u64 {
         shift(ns, self.0.saturating_neg())
     }

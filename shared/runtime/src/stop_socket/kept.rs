@@ -1,10 +1,10 @@
-//! A stop that outlives whoever gave it.
+//! A stop that outlives its giver.
 //!
 //! A giver repeats its stop only as long as it lives: a command line is interrupted, a page is
 //! closed, a service is killed. An unconfirmed stop is left as a file in the group's folder. The
-//! arm's service obeys the file when it starts, when it has stood still, and before any release; so
-//! it counts even if the arm's socket is full or gone. Its presence alone is the stop; its content,
-//! the time at which the stop was given, only keeps it from undoing a later release.
+//! arm's service obeys the file when it starts, when it has come to rest, and before any release;
+//! so it counts even if the arm's socket is full or gone. Its presence alone is the stop; its
+//! content, the time at which the stop was given, only keeps it from undoing a later release.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -21,7 +21,7 @@ pub fn is_kept(paths: &GroupPaths) -> bool {
     is_there(&paths.kept_stop())
 }
 
-/// A link that leads nowhere is there, too.
+/// A link that leads nowhere exists, too.
 fn is_there(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
