@@ -76,7 +76,7 @@ impl<R: Serialize + DeserializeOwned + 'static> Store<R> for Journal<R> {
 enum Job<R> {
     /// The records of one pass.
     Append { records: Vec<R>, vital: bool },
-    /// A snapshot that replaces everything before, which is kept beside it or erased.
+    /// A snapshot that replaces everything before, which is kept next to it or erased.
     Rotate { snapshot: Vec<R>, erases: bool },
 }
 
@@ -204,7 +204,7 @@ impl<Out, Record: Send + 'static> Commit<Out, Record> {
         self.durable == self.stated
     }
 
-    /// Returns whether so much waits that nothing more should be taken in.
+    /// Returns whether the backlog forbids further inputs.
     pub(crate) fn is_behind(&self) -> bool {
         self.held.len() >= WAITING_MAX || self.stated - self.durable >= WAITING_MAX as u64
     }

@@ -70,7 +70,7 @@ pub struct Finding {
     pub what: String,
     /// Condition of the journal.
     pub state: Condition,
-    /// Details, with help where something is missing.
+    /// Details, with help if something is missing.
     pub note: String,
 }
 

@@ -93,7 +93,7 @@ fn read(file: &Path) -> Vec<Entry> {
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
 }
 
-/// `policy.clock` beside `policy.journal`.
+/// The file `policy.clock` next to `policy.journal`.
 fn file_of(journal: &Path) -> PathBuf {
     journal.with_extension("clock")
 }

@@ -83,8 +83,8 @@ impl JournalSet {
     /// Reads the set; `None` before the first start.
     ///
     /// # Errors
-    /// The file cannot be read, is damaged or of another version, or is missing beside journals
-    /// (`InvalidData`).
+    /// The file cannot be read, is damaged or of another version, or is missing although there are
+    /// journals (`InvalidData`).
     pub fn load(paths: &GroupPaths) -> io::Result<Option<Self>> {
         let path = paths.epoch_file();
         let failed = |kind, what: &str| io::Error::new(kind, format!("{}: {what}", path.display()));

@@ -1,6 +1,6 @@
 //! The settings in force, which a group's services read, and those by which the journals were
-//! written, kept beside them: a journal can be listed and verified without saying how its group was
-//! started, and a start need not check again what the same program has checked before.
+//! written, kept next to them: a journal can be listed and verified without the options of its
+//! group's start, and a start need not repeat checks by the same program.
 
 use std::fs::{self, File};
 use std::io;
@@ -15,11 +15,11 @@ use crate::wakes::Wakes;
 
 /// Number of settings that are kept.
 const KEPT: usize = 8;
-/// The file beside kept settings that names the program which has checked them.
+/// The file next to kept settings that names the program that checked them.
 const CHECKED_FILE: &str = "checked";
 
-/// Writes everything that the services of a group read, and keeps the settings beside the journals.
-/// Those in force change last, when nothing can fail any more.
+/// Writes everything that the services of a group read, and keeps the settings next to the
+/// journals. Those in force change last, when nothing can fail any more.
 ///
 /// # Errors
 /// A folder cannot be written.

@@ -46,7 +46,7 @@ pub struct Options {
     pub profile: Option<String>,
     /// Overrides of configuration values: dotted key and TOML value.
     pub set: Vec<(String, String)>,
-    /// True to start a new epoch and keep the old journals beside it.
+    /// True to start a new epoch and keep the old journals next to it.
     pub fresh: bool,
 }
 

@@ -34,7 +34,7 @@ const FLUSH_MAX: Duration = Duration::from_secs(1);
 static JSON: AtomicBool = AtomicBool::new(false);
 
 /// Begins logging. `WHICHONE_LOG` holds the filter (`info`, `policy=debug`, …) and
-/// `WHICHONE_LOG_FORMAT=json` asks for one JSON object a line.
+/// `WHICHONE_LOG_FORMAT=json` requests one JSON object a line.
 ///
 /// The program must keep the result to its end, so that its last lines are written.
 pub fn init() -> LogFlush {
@@ -194,7 +194,7 @@ struct LossyLog {
 struct Lost {
     lines: u64,
     error: io::Error,
-    /// True if a part of a line stands at the log's end.
+    /// Whether a partial line is at the log's end.
     torn: bool,
 }
 
@@ -280,7 +280,7 @@ mod tests {
         let (reader, writer) = pipe().unwrap();
         let mut lossy = LossyLog::new(writer.into());
         let line = format!("{}\n", "x".repeat(999));
-        // Far more than a pipe holds: each call returns although nobody reads.
+        // Far more than a pipe holds: each call returns although there is no reader.
         (0..1_000).for_each(|_| lossy.write(line.as_bytes()));
         let mut reader = File::from(reader);
         let mut full = vec![0; 1 << 20];

@@ -136,7 +136,7 @@ impl<P: Program> Loop<P> {
         }
     }
 
-    /// Returns whether new inputs are taken, beside urgent ones.
+    /// Returns whether new inputs are taken, other than urgent ones.
     fn takes_inputs(&self) -> bool {
         !self.commit.is_behind() && !self.effects.exits()
     }

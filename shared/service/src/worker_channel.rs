@@ -22,7 +22,7 @@ impl Wake {
     fn raise(&self) {
         // The counter only fails to grow when it is full, and then the loop is awake anyway.
         let _ = rustix::io::write(&self.counter, &1_u64.to_ne_bytes());
-        // Afterwards: whoever sees this finds the counter raised.
+        // Afterwards: every reader of this finds the counter raised.
         self.is_raised.store(true, Ordering::Release);
     }
 

@@ -115,7 +115,7 @@ enum Beginning<R, B> {
 enum Entry<E, F> {
     /// The node was given this event at this time.
     Event(Time, E),
-    /// The node was told that every record so far is durable.
+    /// The node learned that every record so far is durable.
     Durable,
     /// The statements of the node since the previous such entry: the end of a pass.
     Stated(F),

@@ -57,7 +57,7 @@ pub struct Report {
     pub other_difference: Option<Difference>,
 }
 
-/// Where records or outputs differ.
+/// Difference of records or outputs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
     /// Number of the pass, from 1.

@@ -99,7 +99,7 @@ impl Tap {
         self.add(&Entry::<_, ()>::Event(now, event));
     }
 
-    /// Records that the node was told of durable records.
+    /// Records that the node learned of durable records.
     pub fn durable(&mut self) {
         self.add(&Entry::<(), ()>::Durable);
     }

@@ -1,4 +1,4 @@
-//! A small reducer through recorder and replay, and the recorder where space is short.
+//! A small reducer through recorder and replay, and the recorder when space is short.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -80,7 +80,7 @@ impl Ring {
     }
 }
 
-/// Writes a flight anew in as little space as possible: one frame.
+/// Rewrites a flight in as little space as possible: one frame.
 ///
 /// # Errors
 /// The file is not a flight, or cannot be written.

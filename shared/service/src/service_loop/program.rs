@@ -116,7 +116,7 @@ pub trait Shell<N: Node>: Sized {
         Ok(())
     }
 
-    /// Returns the descriptor that is readable while an urgent message waits, beside the topics.
+    /// Returns a descriptor, besides the topics, that is readable while an urgent message waits.
     fn urgent_fd(&self) -> Option<BorrowedFd<'_>> {
         None
     }

@@ -11,7 +11,7 @@ use crate::Time;
 pub struct DialogueView<'a> {
     /// The open interaction, 0 for none.
     pub interaction: u64,
-    /// Name of the person whose interaction it is; empty where nobody in particular speaks.
+    /// Name of the person whose interaction it is; empty if the speaker is unnamed.
     pub from: &'a str,
     /// Highest utterance that is part of it.
     pub applied: u64,
