@@ -20,7 +20,7 @@ pub enum Access {
 pub struct Console {
     /// Address and port; port 0 for any free one.
     pub listen: SocketAddr,
-    /// Who may use the page; [`Access::Open`] only where `listen` accepts this machine alone.
+    /// Who may use the page; [`Access::Open`] only if `listen` accepts this machine alone.
     pub access: Access,
     /// Maximum number of open pages; one place is reserved for an operator.
     pub viewers_max: usize,

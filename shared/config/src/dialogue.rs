@@ -19,7 +19,7 @@ pub struct Dialogue {
     pub language: Language,
     /// Parameters of the observation model (section 3.6 of the paper).
     pub params: Params,
-    /// Smoothing of words that are certain beside misperception, in snapshots of earlier versions.
+    /// Smoothing of certain words besides misperception, in snapshots of earlier versions.
     pub alpha_typed: Option<f64>,
     /// Probability that a user takes a value for another one, and sticks to it; 0 with
     /// [`Language::Paper`].
@@ -68,8 +68,8 @@ pub struct Gesture {
 }
 
 impl Dialogue {
-    /// Returns the scene in which objects that are alike are told apart by place, as the user sees
-    /// them if the user's place is known; in the paper's language the unchanged scene.
+    /// Returns the scene in which like objects are distinguished by place, as the user sees them if
+    /// the user's place is known; in the paper's language the unchanged scene.
     pub fn by_place(&self, scene: Scene) -> Scene {
         let view = match self.gesture.enabled {
             true => View::User(self.gesture.person_xyz_m),

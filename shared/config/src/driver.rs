@@ -34,7 +34,7 @@ impl Driver {
 
 static DRIVERS: OnceLock<Vec<&'static Driver>> = OnceLock::new();
 
-/// Names the drivers that configurations may choose, beside the built-in one.
+/// Names the drivers, besides the built-in one, that configurations may choose.
 pub(crate) fn register(drivers: impl IntoIterator<Item = &'static Driver>) {
     DRIVERS.get_or_init(|| std::iter::once(&KINEMATIC).chain(drivers).collect());
 }

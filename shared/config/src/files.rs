@@ -30,7 +30,7 @@ const BUILT_IN: &str = "baxter";
 
 impl Files {
     /// Reads the files that `group.scene` and `arm.robot` name, the scene's unless it is given. The
-    /// SRDF lies beside the URDF.
+    /// SRDF is next to the URDF.
     pub(crate) fn find(
         dir: &Path,
         tree: &Table,

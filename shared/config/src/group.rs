@@ -72,7 +72,7 @@ pub struct Log {
     pub json: bool,
     /// Size at which a log is rotated, bytes.
     pub file_bytes_max: u64,
-    /// Rotated logs kept beside the current one.
+    /// Number of rotated logs kept.
     pub files_kept: u32,
 }
 

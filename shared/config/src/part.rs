@@ -1,5 +1,5 @@
 //! Optional parts of the group, each of which registers its sections of the configuration and its
-//! service. Drivers of the arm register theirs beside them ([`Driver`]).
+//! service. Drivers of the arm register theirs likewise ([`Driver`]).
 //!
 //! A program that loads configurations names its parts ([`register`]). Others read sections of
 //! snapshots on request ([`Settings::part`](crate::Settings::part)).

@@ -6,7 +6,7 @@ use crate::Settings;
 use crate::part::{self, DURATIONS, Reads};
 
 /// Services of the core. Speech rejects utterances that the dialogue would not understand. The
-/// console has the sections that its pages show, and its live view has sound where recordings have.
+/// console has the sections that its pages show, and its live view has sound if recordings have.
 const CORE: [(Service, Reads); 5] = [
     (Service::Speech, &["speech", "dialogue"]),
     (Service::Grounding, &["dialogue"]),
@@ -25,7 +25,7 @@ impl Settings {
         let reads = core.or_else(|| Some(part::part_service(service)?.reads)).unwrap_or(ANY);
         let everywhere =
             [self.scene_file().text.clone(), self.resolved.value_text("group.perception")];
-        // They tell objects apart by place.
+        // Services that distinguish objects by place.
         let view = ["dialogue.language", "dialogue.gesture"];
         let everywhere =
             everywhere.into_iter().chain(view.map(|key| self.resolved.value_text(key)));

@@ -14,8 +14,8 @@ pub struct Speech {
     pub voice_name: String,
     /// Speed of the voice.
     pub voice_words_per_minute: u32,
-    /// Program that speaks under [`Voice::Command`], with its arguments, in which `{text}` and
-    /// `{wav}` stand for the text and the file to write.
+    /// Program that speaks under [`Voice::Command`], with its arguments, with `{text}` and `{wav}`
+    /// for the text and the file to write.
     pub voice_command: Option<Vec<String>>,
     /// Folder in which the sound of the latest sentences is kept, if the operator names one
     /// ([`Settings::voice_dir`](crate::Settings::voice_dir)).

@@ -143,7 +143,7 @@ fn a_scene_may_be_a_path() {
 }
 
 /// The key of earlier versions becomes the rate that replaces it, with a warning, unless that rate
-/// is stated beside it or as high by default.
+/// is stated too or as high by default.
 #[test]
 fn former_keys_are_replaced_with_a_warning() {
     let read = |text: &str| {
