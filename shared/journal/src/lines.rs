@@ -50,7 +50,7 @@ impl Lines {
     /// They cannot be written.
     ///
     /// # Panics
-    /// Where `lines` does not end with the end of a line: a bug.
+    /// If `lines` does not end with a line end: a bug.
     pub fn append(&mut self, lines: &str) -> io::Result<()> {
         assert!(lines.ends_with('\n'), "only whole lines are appended");
         let written = self.file.write_all(lines.as_bytes()).and_then(|()| self.file.sync_data());
