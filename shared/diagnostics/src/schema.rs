@@ -5,7 +5,7 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::{Fields, Node, Report, Scalar, Source, Table};
 
-/// The name that stands for every name of the user's in a table whose keys are names.
+/// The placeholder for the user's names in a table whose keys are names.
 pub(crate) const ANY: &str = "*";
 
 /// The schema of one table, as far as it has been read.
