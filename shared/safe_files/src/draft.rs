@@ -35,7 +35,7 @@ pub enum Readers {
     Mode(u32),
 }
 
-/// A new file beside the one whose place it will take, under a random name. Dropping it removes it.
+/// A new file next to the one that it will replace, under a random name. Dropping it removes it.
 #[derive(Debug)]
 pub struct Draft {
     file: NamedTempFile<File>,
@@ -105,7 +105,7 @@ impl Write for Draft {
 /// loss either may be there, or neither.
 ///
 /// # Errors
-/// The file cannot be written; the old content is there then.
+/// The file cannot be written; the old content remains.
 pub fn replace(path: &Path, content: impl AsRef<[u8]>, readers: Readers) -> io::Result<()> {
     let mut draft = Draft::of(path, readers)?;
     draft.write_all(content.as_ref())?;
