@@ -36,7 +36,7 @@ const NEIGHBOURS_MAX: usize = 12;
 pub struct Arrangement<'a> {
     setup: &'a ArmSetup,
     poses: Vec<ObjectPose>,
-    /// Whether the object stands there, so that others must not touch it.
+    /// Whether the object is in its place, so that others must not touch it.
     stands: Vec<bool>,
     /// When searches are given up.
     until: Option<Instant>,
@@ -59,7 +59,7 @@ impl<'a> Arrangement<'a> {
         self.until.is_some_and(|until| Instant::now() >= until)
     }
 
-    /// Returns the limb that can fetch an object among those that stand.
+    /// Returns the limb that can fetch an object among those in place.
     ///
     /// # Errors
     /// [`PlanError`] of the attempt that came furthest.

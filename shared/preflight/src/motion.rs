@@ -168,7 +168,7 @@ impl Planner<'_> {
         Ok((released_s, closing_s))
     }
 
-    /// Seconds until the arm aims, with which limb, and where both are then.
+    /// Seconds until the arm aims, the limb, and the final postures of both.
     fn aim(&self, from: &Posture, i: usize) -> Result<(f64, Limb, [Joints; 2]), Refusal> {
         let (others, at) = (self.others(None), self.places[i].xyz_m);
         let plan = plan_point(self.robot, at, self.limb, &from.arms, &others, self.settings)?;

@@ -21,7 +21,7 @@ const NICENESS: i32 = 10;
 const PLACED_MAX: usize = 256;
 
 /// Time for which the other objects are looked at, and better places searched, after the first
-/// object that cannot be fetched: where robot and scene do not fit, each look takes long.
+/// object that cannot be fetched: if robot and scene do not fit, each look takes long.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Reports every object with a place that the arm cannot bring, and settings that need the places
@@ -148,7 +148,7 @@ fn reachable(
 const SEARCHED_MAX: usize = 8;
 
 /// Returns why object `i` cannot be fetched, with the other object that is in the way, and a move
-/// that helps, both where `is_searched`.
+/// that helps, both if `is_searched`.
 fn move_help(
     i: usize,
     error: &PlanError,

@@ -68,7 +68,7 @@ impl Pace {
         rng.log_normal(self.reaction_s.0, self.reaction_s.1)
     }
 
-    /// Draws how long a person takes to say so many words, seconds.
+    /// Draws the time in which a person says a number of words, seconds.
     pub fn speech_s(&self, rng: &mut Rng, words: usize) -> f64 {
         let factor = rng.log_normal(1.0, self.word_s.1);
         factor * (self.word_s.0 + self.further_word_s * words.saturating_sub(1) as f64)

@@ -278,7 +278,7 @@ fn places_are_checked_in_the_same_round_as_everything_else() {
     assert!(found.contains("hover_m") && !found.contains("out of reach"), "{found}");
 }
 
-/// The shipped arm, and bowls that stand nowhere yet.
+/// The shipped arm, and bowls that have no place yet.
 fn unplaced(count: usize) -> (ArmSetup, Vec<manipulation::ObjectPose>) {
     let settings = Settings::load(&shipped(), None, &[]).unwrap();
     let setup = ArmSetup::new(&settings).unwrap();
