@@ -66,7 +66,7 @@ impl<'a> Output<'a> {
         Self { sink: Box::new(sink), json, terminal: false, style: Style::default() }
     }
 
-    /// Returns true if JSON is asked for.
+    /// Returns true if JSON was requested.
     pub fn is_json(&self) -> bool {
         self.json
     }
@@ -141,7 +141,7 @@ impl Style {
         Painted { text, ink: self.colour.then_some(ink) }
     }
 
-    /// Returns the text with nothing left that steers a terminal, except for its own inks.
+    /// Returns the text without controls of a terminal, except for its own inks.
     pub fn clean(self, text: &str) -> Cow<'_, str> {
         let mut kept = Ink::ALL.map(Ink::sequence).to_vec();
         kept.push(Ink::END);
@@ -175,7 +175,7 @@ impl Ink {
     }
 }
 
-/// Prints a note beside the verb's result, on standard error.
+/// Prints a note on standard error, apart from the verb's result.
 pub fn note(text: impl Display) {
     note_in(Style::default(), &text.to_string());
 }

@@ -51,8 +51,8 @@ fn write_files(files: Files, folder: &Path) -> Result<usize, Failure> {
 }
 
 /// Returns the folder of the built-in configuration below the folder of the groups, `home`; it is
-/// written when it is first asked for. Each build has a folder of its own, so that user changes in
-/// one are never replaced. `None` if nothing is built in.
+/// written at the first request. Each build has a folder of its own, so that user changes in one
+/// are never replaced. `None` if nothing is built in.
 ///
 /// # Errors
 /// It cannot be written.
