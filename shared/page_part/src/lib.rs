@@ -51,7 +51,7 @@ pub enum DialogueEvent {
     Heard(Box<Receipt>),
 }
 
-/// Fields of an answer, which stand beside those of the console.
+/// Fields of an answer, in addition to the console's.
 pub type Fields = Map<String, Json>;
 
 /// An optional part of the page.
