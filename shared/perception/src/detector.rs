@@ -56,7 +56,7 @@ pub struct Reported {
     pub track: String,
     /// Possible objects.
     pub hypotheses: Vec<Hypothesis>,
-    /// Pose of the object's centre, if it is stated beside those of the hypotheses.
+    /// Pose of the object's centre, if it is stated in addition to those of the hypotheses.
     pub center: Option<Pose>,
 }
 
@@ -85,7 +85,7 @@ pub struct UnusedCounts {
 pub struct Detector {
     source: String,
     labels: Vec<Label>,
-    /// Names that stand for themselves without a label.
+    /// Names that need no label.
     names: Vec<String>,
     frames: Vec<Frame>,
     counts: UnusedCounts,

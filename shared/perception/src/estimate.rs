@@ -76,7 +76,7 @@ impl Estimate {
         true
     }
 
-    /// Moves it to where another estimate of the same object is.
+    /// Moves it to the place of another estimate of the same object.
     pub fn move_to(&mut self, other: &Self) {
         self.away.clear();
         (self.place, self.variance) = (other.place, other.variance);
@@ -94,7 +94,7 @@ impl Estimate {
         self.place[3] = wrapped(self.place[3]);
     }
 
-    /// Puts it where somebody says that it is.
+    /// Puts it at the place that a person states.
     pub fn put(&mut self, xyz: [f64; 3], yaw: f64) {
         self.away.clear();
         self.place = [xyz[0], xyz[1], xyz[2], wrapped(yaw)];

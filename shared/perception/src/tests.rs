@@ -165,7 +165,7 @@ fn an_object_that_was_seen_beside_another_one_is_not_it() {
     it.looks(3, &[seen("white", 0.7, 0.19), seen("white", 0.7, -0.3)]);
     assert_eq!(it.numbers(), [6, 7]);
     assert!((it.tracker.objects()[0].xyz[1] - 0.19).abs() < 0.01, "{:?}", it.tracker.objects());
-    // The slid one is missed in the look in which the new one is there.
+    // The slid one is missed in the look that shows the new one.
     let mut it = Scenery::new();
     it.looks(3, &[seen("white", 0.7, 0.1)]);
     for y in [0.13, 0.16] {

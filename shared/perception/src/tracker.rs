@@ -19,13 +19,13 @@ const CHANCE_STEP: f64 = 0.1;
 /// Settings of the tracker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Detections after which an object is there.
+    /// Consecutive detections before an object is added.
     pub appear: u32,
     /// Distance up to which an object has not moved, metres.
     pub moved_m: f64,
     /// Distance up to which a detection may be of an object, metres.
     pub gate_m: f64,
-    /// Time for which an object is looked for in vain before it is gone.
+    /// Time without a detection before an object is removed.
     pub vanish: Span,
     /// Greatest age of a look.
     pub age_max: Span,
@@ -53,7 +53,7 @@ pub struct Live {
     pub sd: [f64; 4],
     /// Time of the last sighting.
     pub seen: Time,
-    /// Whether it was looked for in vain for so long that it is gone.
+    /// Whether it went without a detection for so long that it is gone.
     pub gone: bool,
 }
 
