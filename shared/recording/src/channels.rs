@@ -17,7 +17,7 @@ pub struct Channel {
     pub schema_encoding: &'static str,
     /// The schema.
     pub definition: String,
-    /// Whether the latest message stands until the next one: a viewer that joins needs it.
+    /// Whether late joiners need the latest message, which is valid until the next one.
     pub is_state: bool,
 }
 
@@ -121,7 +121,7 @@ impl ChannelId {
         Self(place)
     }
 
-    /// Returns whether it carries sound, which is shown only where `recorder.sound` allows it.
+    /// Returns whether it carries sound, which is shown only if `recorder.sound` allows it.
     pub fn is_sound(self) -> bool {
         let topic = group_topics().nth(self.0);
         topic.map_or(self == Picture::Sound.into(), |topic| topic.name == topics::AUDIO.name)

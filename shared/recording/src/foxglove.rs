@@ -125,7 +125,7 @@ pub struct FrameTransform {
 pub struct SceneUpdate {
     /// Entities that are gone.
     pub deletions: Vec<SceneEntityDeletion>,
-    /// Entities that are there; each replaces the one of its name.
+    /// Present entities; each replaces the one of its name.
     pub entities: Vec<SceneEntity>,
 }
 

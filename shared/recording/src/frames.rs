@@ -13,7 +13,7 @@ const FRAME_BYTES_MAX: u64 = 1 << 40;
 /// Bytes of a record's kind and length.
 pub(crate) const HEAD_BYTES: u64 = 9;
 
-/// Whole records that follow one another at a place where reading continues after damage.
+/// Number of consecutive whole records at which reading continues after damage.
 const CHAIN: usize = 3;
 
 /// Bytes that are searched at once for such a place.
@@ -69,7 +69,7 @@ impl Frames<'_> {
         Ok(content)
     }
 
-    /// The next place from `at` on where whole records follow one another.
+    /// The next position from `at` on with consecutive whole records.
     pub(crate) fn next(self, mut at: u64) -> io::Result<Option<u64>> {
         let mut window = vec![0; WINDOW_BYTES];
         while self.size.saturating_sub(at) >= HEAD_BYTES {

@@ -23,7 +23,7 @@ use crate::settings::Recorder;
 pub const TEND_EVERY: Span = Span::from_ms(1_000);
 /// Pause after a failure to write.
 const RETRY_AFTER: Span = Span::from_ms(5_000);
-/// Interval between two searches for old files, beside the one before each new file.
+/// Interval between two searches for old files, in addition to those before new files.
 const DELETE_EVERY: Span = Span::from_ms(600_000);
 /// Files that share the space of the ring at least: a full one is a small part of it.
 const FILES_MIN: u64 = 8;
