@@ -108,7 +108,7 @@ pub struct RobotSummary {
     pub limbs: Vec<LimbSummary>,
     /// Height of the table, metres.
     pub table_z_m: f64,
-    /// Where objects are handed over, metres.
+    /// Place for handing over objects, metres.
     pub hand_over_xyz_m: [f64; 3],
 }
 
@@ -130,7 +130,7 @@ pub struct Reach {
     setup: ArmSetup,
 }
 
-/// Ranges of an object whose reach is asked for, metres and kg: as those of scene files.
+/// Ranges of an object in requests about the reach, metres and kg: as those of scene files.
 const DISTANCE_MAX_M: f64 = 5.0;
 const EXTENT_MAX_M: f64 = 2.0;
 
@@ -174,9 +174,9 @@ impl Reach {
         }
     }
 
-    /// Returns the name of the limb that can fetch an object that stands alone with its centre at
-    /// each of these places (x and y, metres, at the height of the object), or why none can. Stops
-    /// at `until`, after the first at least; `None` without a place, or with an impossible size.
+    /// Returns the name of the limb that can fetch a lone object with its centre at each of these
+    /// places (x and y, metres, at the height of the object), or why none can. Stops at `until`,
+    /// after the first at least; `None` without a place, or with an impossible size.
     pub fn limbs(
         &self,
         object: &ObjectEntry,

@@ -15,8 +15,8 @@ pub fn new_scene(name: &str, schema: &str) -> String {
     TEMPLATE.replace("@NAME@", &name).replace("@SCHEMA@", schema)
 }
 
-/// Returns the line by which editors find the schema of the scene file at `path`: beside its
-/// folder, else in the configuration folder `config`; empty where neither has it.
+/// Returns the line by which editors find the schema of the scene file at `path`: next to its
+/// folder, else in the configuration folder `config`; empty if neither has it.
 pub fn schema_line(path: &Path, config: &Path) -> String {
     let folder = path.parent().unwrap_or(Path::new(""));
     if folder.join("..").join(SCHEMA).is_file() {
