@@ -32,7 +32,7 @@ pub fn acquainted(
     tally
 }
 
-/// Plays so many dialogues with a person, and tells of each its number and its end.
+/// Plays a number of dialogues with a person, and reports each with its number and end.
 fn play(
     room: &Room<'_>,
     manager: &mut Manager,

@@ -24,7 +24,7 @@ use crate::simulation::{Room, UserKind, interactions};
 const RIGHT_MIN: usize = 59;
 /// Share of the likeliest object's probability from which another one is meant as well.
 const MEANT_SHARE: f64 = 0.5;
-/// Probability of all objects that are meant, from which they are told from the others.
+/// Total probability of the meant objects from which they count as distinguished.
 const TOLD: f64 = 0.8;
 
 /// A robot that asks one question.

@@ -33,7 +33,7 @@ impl Names {
         Self(by_name)
     }
 
-    /// The numbers that a name or `*` stands for.
+    /// The numbers denoted by a name or `*`.
     fn all(&self, name: &str) -> Vec<usize> {
         if name == "*" { (0..self.0.len()).collect() } else { vec![self.0[name]] }
     }

@@ -95,7 +95,7 @@ impl Talk<'_> {
         }
     }
 
-    /// Spends the time that planning takes; returns whether its decision still stands. A naive
+    /// Spends the time that planning takes; returns whether its decision is still valid. A naive
     /// robot does not listen meanwhile.
     fn plan(&mut self) -> bool {
         let planned = self.state.act.id;

@@ -28,7 +28,7 @@ impl Recogniser {
     /// One word in ten is lost or wrong: a far microphone.
     pub(super) const BAD: Self = Self { drop: 0.05, confuse: 0.05 };
 
-    /// Returns the hypotheses for `text`. Where words were confused, the second one is right.
+    /// Returns the hypotheses for `text`. If words were confused, the second one is right.
     pub(super) fn hear(&self, text: &str, scene: &Scene, rng: &mut Rng) -> Reply {
         let mut heard: Vec<&str> = Vec::new();
         let mut confused = false;

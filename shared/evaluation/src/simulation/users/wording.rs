@@ -33,7 +33,7 @@ impl<'a> Wording<'a> {
         value.spoken.replace(&value.name, &word)
     }
 
-    /// The value as it stands after a noun.
+    /// The value in its form after a noun.
     fn after_noun(&self, (k, v): (AttributeId, ValueId), rng: &mut Rng) -> String {
         let value = self.of((k, v));
         let word = self.value((k, v), rng);
