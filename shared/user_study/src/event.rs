@@ -196,7 +196,7 @@ pub enum Fault {
     Scene,
     /// The policy could not be switched, or decides by another planner.
     Planner,
-    /// The robot was restarted, or the console was away for so long that its end was missed.
+    /// The robot was restarted, or the console was away and missed the end.
     Missed,
     /// The experimenter said so.
     Experimenter,
