@@ -68,7 +68,7 @@ where
     }
 }
 
-/// Opens the input that is asked for.
+/// Opens the requested input.
 ///
 /// # Errors
 /// The file does not exist.

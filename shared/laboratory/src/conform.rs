@@ -49,7 +49,7 @@ impl Broken {
     }
 }
 
-/// The test itself cannot go on.
+/// The test itself cannot continue.
 impl From<Failure> for Broken {
     fn from(failure: Failure) -> Self {
         let help = "free shared memory and descriptors, then test again";

@@ -72,8 +72,8 @@ fn answer(case: Case) -> Result<Json, String> {
     Ok(json!({ "id": case.id, "belief": belief }))
 }
 
-/// Parses a prior: `"uniform"`, the default, or `{object:weight}`, where objects that are not named
-/// have weight 0.
+/// Parses a prior: `"uniform"`, the default, or `{object:weight}`, where unnamed objects have
+/// weight 0.
 fn prior(scene: &Scene, json: &Json) -> Result<Belief, String> {
     let objects = scene.objects().len();
     let weights = match json {

@@ -30,14 +30,14 @@ pub(super) struct Bench {
     lifeline: OwnedFd,
     /// The supervisor's end.
     alive: Option<OwnedFd>,
-    /// Every topic, as whoever writes it has filled it.
+    /// Every topic, whoever writes to it.
     watched: Vec<Watched>,
     admin: Option<Admin>,
     /// Holds everything; removed last.
     _home: TemporaryFolder,
 }
 
-/// A topic that is read whoever writes it.
+/// A topic that is read from any writer.
 struct Watched {
     topic: Topic,
     reader: RawReader,

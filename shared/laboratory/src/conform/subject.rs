@@ -14,7 +14,7 @@ use service::group;
 
 use super::bench::{Bench, EPOCH};
 
-/// Maximum time between two heartbeats that the service is told, the group's default.
+/// Maximum time between two heartbeats, as given to the service: the group's default.
 pub(super) const WATCHDOG: Duration = Duration::from_secs(3);
 /// Interval at which it is looked at.
 const LOOK_EVERY: Duration = Duration::from_millis(5);
@@ -161,7 +161,7 @@ impl Subject {
     }
 }
 
-/// A program that ships with this one lies beside it; any other is found as a shell finds it.
+/// A program that ships with this one is next to it; any other is found as a shell finds it.
 fn program(name: &str) -> PathBuf {
     let beside = std::env::current_exe().ok().and_then(|own| Some(own.parent()?.join(name)));
     match beside.filter(|path| !name.contains('/') && path.is_file()) {

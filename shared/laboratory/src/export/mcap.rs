@@ -26,7 +26,7 @@ use crate::replay::service_of;
 
 /// End of the name of a journal.
 const JOURNAL: &str = "journal";
-/// Folder of kept settings beside the journals.
+/// Folder of kept settings next to the journals.
 const SETTINGS: &str = "settings";
 
 /// Writes the file.
@@ -165,8 +165,8 @@ fn journals_in(source: &Path) -> Vec<(Service, PathBuf)> {
     Service::JOURNALED.into_iter().filter_map(of).collect()
 }
 
-/// The records of a journal. Where their wall time is not known, the last record was written when
-/// the file last changed, which gives that of the others.
+/// The records of a journal. If their wall time is unknown, the last record gets the file's time of
+/// change, from which the others' follow.
 fn records_of(service: Service, file: &Path) -> Result<Vec<Entry>, Failure> {
     let mut program: Command = command(service.name(), "journal");
     program.arg(file).arg("--json").stderr(Stdio::inherit());

@@ -89,7 +89,7 @@ impl Setup {
         planner_of(&self.problem)
     }
 
-    /// Returns the arm's motions, where objects have places.
+    /// Returns the arm's motions, if objects have places.
     pub(super) fn motions(&self) -> Option<&Motions> {
         self.motions.as_ref()
     }
