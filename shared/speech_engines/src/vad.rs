@@ -143,7 +143,7 @@ impl Segmenter {
         }
     }
 
-    /// Ends the open segment with its voice: whoever lets go of the button has nothing to add.
+    /// Ends the open segment with its voice: a user who releases the button has nothing to add.
     /// Without a voice it ends with the next frame.
     pub fn release(&mut self) {
         if let Some(open) = &mut self.track.open {

@@ -39,7 +39,7 @@ pub(super) struct Recorder {
     stdout: ChildStdout,
     /// First byte of an incomplete sample.
     odd: Option<u8>,
-    /// The first line on its standard error, once that is closed or the line is there.
+    /// The first line on its standard error, once that is closed or has a line.
     complaint: Option<Receiver<String>>,
 }
 

@@ -116,7 +116,7 @@ impl Worker {
         (self.failures, self.retry_at) = (0, Instant::now());
     }
 
-    /// Reads once from the program, which is started where necessary.
+    /// Reads once from the program, which is started if necessary.
     fn record(&mut self, requests: &Receiver<Talk>) {
         if self.recorder.is_none() {
             if Instant::now() < self.retry_at {

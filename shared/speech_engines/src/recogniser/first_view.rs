@@ -11,7 +11,7 @@ pub struct FirstView {
     /// Length of the words on the best path and of other speech between them, without pauses and
     /// noises, seconds; 0 if there is no word on it.
     pub words_s: Option<f32>,
-    /// How much of the sound is a voice, where removing the noise has shown it.
+    /// Share of voice in the sound, if noise reduction has shown it.
     pub voice: Option<VoiceEvidence>,
 }
 

@@ -84,7 +84,7 @@ fn library(file: &Path) -> Result<Library, RecogniserUnavailable> {
 }
 
 impl PocketSphinx {
-    /// Opens a decoder with the scene's language model and dictionary, which it makes first where
+    /// Opens a decoder with the scene's language model and dictionary, which it makes first if
     /// necessary. Takes about 0.1 s.
     ///
     /// # Errors

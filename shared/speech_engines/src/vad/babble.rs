@@ -26,7 +26,7 @@ const ABOVE_SPREAD: f32 = 1.2;
 const ABOVE_DB: (f32, f32) = (4.0, 8.0);
 /// Frames over which the level is averaged: syllables of a voice differ by less than its frames.
 const SMOOTHED: usize = 3;
-/// Frames for which a voice goes on after its level has fallen: soft ends of words.
+/// Frames for which a voice continues after its level has fallen: soft ends of words.
 const HELD: usize = 6;
 /// Level of digital silence, e.g. in place of the robot's own voice, decibels: not background.
 const SILENCE_DB: f32 = -90.0;

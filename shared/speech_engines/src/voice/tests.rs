@@ -72,7 +72,7 @@ fn voice_synthesises_foreseen_prompts_while_it_is_silent_and_only_once() {
         assert!(begun.elapsed() < PATIENCE, "{}", spoken());
         thread::sleep(Duration::from_millis(5));
     }
-    // The third was begun, so the second is there.
+    // The third was begun, so the second exists.
     voice.speak(1, FILE, "Is it white?").unwrap();
     assert_eq!([events.next(), events.next()], [(1, Started), (1, Ended)]);
     assert_eq!(spoken().lines().filter(|words| *words == "Is it white?").count(), 1);

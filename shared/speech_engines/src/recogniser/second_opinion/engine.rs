@@ -27,7 +27,7 @@ const TOKENS_PER_S: usize = 8;
 const SAMPLES_MIN: usize = RATE_HZ as usize / 5;
 /// Tokens of the prompt: it may use half of the network's text, and costs time.
 const PROMPT_MAX: usize = 96;
-/// A candidate that is so much less likely than the likeliest one is abandoned, natural logarithm.
+/// Gap to the likeliest candidate at which one is abandoned, natural logarithm.
 const HOPELESS: f64 = 7.0;
 
 /// The network, and its state for one utterance.
@@ -35,7 +35,7 @@ pub(super) struct Engine {
     context: WhisperContext,
     state: WhisperState,
     threads: usize,
-    /// Earlier words, as far as the network is told.
+    /// Earlier words, as far as the network gets them.
     prompt: Vec<WhisperTokenId>,
     /// Length of the part before the text: a marker and the prompt.
     before: usize,
