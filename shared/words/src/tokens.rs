@@ -1,5 +1,5 @@
-//! Normalised text to words: contractions opened ("isn't" is "is not"), compounds taken apart at
-//! their hyphens, punctuation kept as the pause that it stands for.
+//! Normalised text to words: contractions opened ("isn't" is "is not"), compounds split at their
+//! hyphens, punctuation kept as a pause.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -158,7 +158,7 @@ fn hyphenated(text: &str) -> Option<&str> {
     text.strip_prefix('-').filter(|after| after.starts_with(char::is_alphanumeric))
 }
 
-/// The pause that a character stands for, and its length in bytes.
+/// Returns the pause for a character, and the character's length in bytes.
 fn pause(text: &str, c: char) -> (Gap, usize) {
     match c {
         '.' => {
