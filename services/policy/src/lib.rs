@@ -47,7 +47,7 @@ const STOP_CONFIRMATION_MAX: Span = Span::from_ms(1_000);
 /// Input of the policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum In<'a> {
-    /// From grounding.
+    /// An observation from grounding.
     Observation(MessageRef<'a, Observation>),
     /// From speech: the latest prompt said.
     Presented(Presented),
@@ -59,7 +59,7 @@ pub enum In<'a> {
     World(Box<WorldView>),
     /// From a camera, another source or a client.
     Sighting(Box<Sighting>),
-    /// From a client.
+    /// An order of a client to forget a person.
     Forget(Forget),
 }
 

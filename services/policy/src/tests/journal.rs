@@ -22,7 +22,7 @@ fn remarks_keep_their_numbers_in_journals() {
     }
 }
 
-/// Its journal folds again, and from any record on, or from a snapshot in the middle of an
+/// The journal folds again, and from any record on, or from a snapshot in the middle of an
 /// interaction, the policy has its former state.
 #[test]
 fn policy_is_recovered_from_any_record_and_from_any_snapshot() {
