@@ -124,7 +124,7 @@ pub struct PlaybackRequest {
     pub playback: u64,
     /// The prompt.
     pub prompt: PromptId,
-    /// Which presentation of the prompt.
+    /// Number of the prompt's presentation.
     pub presentation: u32,
     /// The words.
     pub text: String,

@@ -33,7 +33,7 @@ struct Speech {
 }
 
 impl Speech {
-    /// With the policy's mark, as when it is ready.
+    /// Makes a ready service, with the policy's mark.
     fn new() -> Self {
         let mut speech = Self::before_mark();
         speech.take(1.0, In::Mark(AppliedMark::default()));

@@ -19,7 +19,7 @@ pub(super) struct Origin {
     /// Number and total of the segment.
     pub(super) segment: (u32, u32),
     pub(super) source: Source,
-    /// Who typed or pointed.
+    /// Person who typed or pointed.
     pub(super) from: PersonId,
     /// Beginning and end of the speech, 0 without speech.
     pub(super) span: (Time, Time),
