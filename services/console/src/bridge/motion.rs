@@ -33,7 +33,7 @@ pub(super) struct Motions {
 #[derive(Debug)]
 struct Latest {
     progress: Progress,
-    /// It is a stop that pages warn about, with the reason.
+    /// Reason of a stop that pages warn about.
     late: Option<StopError>,
 }
 

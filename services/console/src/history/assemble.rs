@@ -23,7 +23,7 @@ const LIKELY_MAX: usize = 8;
 /// Interactions that are not finished with.
 #[derive(Debug, Default)]
 pub(super) struct Assembler {
-    /// By number.
+    /// Recent interactions by number.
     recent: BTreeMap<u64, Begun>,
     /// Accepted utterances by number.
     accepted: BTreeMap<u64, AcceptedRecord>,

@@ -92,7 +92,7 @@ pub struct Heard {
 /// Belief and decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Thought {
-    /// By object of the interaction; those that became likely later are missing at the end.
+    /// Probability of each object of the interaction; later ones are missing at the end.
     pub belief: Vec<f64>,
     /// Probability that the wanted object is not here.
     pub absent: f64,

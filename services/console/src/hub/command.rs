@@ -43,7 +43,7 @@ pub struct Words {
     pub ended: Option<Time>,
     /// The robot's latest prompt that the page had shown before; 0 if unknown.
     pub seen: PromptId,
-    /// Who speaks.
+    /// Speaker of the words.
     pub from: PersonId,
     /// Key of the request, the same for each repetition of it; `None` if nothing repeats it.
     pub key: Option<RequestKey>,

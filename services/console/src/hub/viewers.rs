@@ -46,7 +46,7 @@ pub(super) struct Viewer {
     pub(super) name: String,
     pub(super) session: String,
     pub(super) role: Role,
-    /// It is the page of a study's participant.
+    /// Whether it is the page of a study's participant.
     pub(super) is_participant: bool,
     pub(super) queue: mpsc::Sender<OutboundFrame>,
     /// When its user did something last, or when it was opened.

@@ -14,7 +14,7 @@ use web_server::sessions::{Rules, Sessions, hash};
 /// The rules of browsers' sessions.
 const SESSIONS: Rules = Rules { cookie: "whichone", most: 64, each: 64, life_s: 30 * 24 * 3_600 };
 
-/// Who may use the page.
+/// Rules about who may use the page.
 #[derive(Debug)]
 pub struct Access(Option<Guard>);
 

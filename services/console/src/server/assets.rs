@@ -5,7 +5,7 @@ use axum::http::{HeaderMap, Response, StatusCode, header};
 
 #[derive(Debug)]
 pub(super) struct Asset {
-    /// Its path without the first `/`.
+    /// Path of the file without the first `/`.
     pub(super) path: &'static str,
     mime: &'static str,
     tag: &'static str,

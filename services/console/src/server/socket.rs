@@ -77,7 +77,7 @@ pub(crate) enum Ended {
     Silent,
     /// The page sent a message above [`FRAME_BYTES_MAX`].
     TooLong,
-    /// It sent a text that is not UTF-8.
+    /// The page sent a text that is not UTF-8.
     NotText,
     /// The page broke the protocol.
     Protocol,

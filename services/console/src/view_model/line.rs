@@ -75,7 +75,7 @@ pub struct Recognisers {
 /// One way to understand an utterance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Meaning {
-    /// In words: `yes · small · not white`.
+    /// Meaning in words: `yes · small · not white`.
     pub text: String,
     pub weight: f64,
 }

@@ -20,7 +20,7 @@ pub(super) struct SceneSection<'a> {
     attributes: Vec<Attribute<'a>>,
     /// Number of objects in the scene.
     count: usize,
-    /// Those that have a place; the section `further` has others.
+    /// Objects that have a place; the section `further` has others.
     objects: Vec<ObjectSection<'a>>,
     /// Requests that the robot understands, as a help for users.
     examples: Vec<String>,

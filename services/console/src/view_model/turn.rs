@@ -24,7 +24,7 @@ pub enum Actor {
 pub enum TurnState {
     /// No request is open.
     Idle,
-    /// As idle, with a microphone open.
+    /// Idle, with a microphone open.
     Listening,
     Hearing,
     /// An utterance is being recognised and understood.

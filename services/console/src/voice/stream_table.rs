@@ -15,9 +15,9 @@ pub(super) type Name = (ViewerId, u32);
 pub(super) enum FrameKind {
     /// The frame begins a stream.
     Begin,
-    /// It continues its stream after this many lost samples.
+    /// The frame continues its stream after this many lost samples.
     Next(u64),
-    /// It is a repetition, or comes after the end of its stream.
+    /// The frame is a repetition, or comes after the end of its stream.
     Ignore,
 }
 
