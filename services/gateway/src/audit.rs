@@ -6,7 +6,7 @@ use roster::Name;
 use serde::Serialize;
 use serde_json::Value;
 
-/// Its name in the gateway's folder, without ending.
+/// Name of the audit in the gateway's folder, without ending.
 pub const NAME: &str = "audit";
 
 /// Outcome of the order.

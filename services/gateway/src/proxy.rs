@@ -97,7 +97,7 @@ pub(crate) struct ProgramRequest<'a> {
     pub(crate) method: &'a Method,
     pub(crate) path: &'a str,
     pub(crate) headers: &'a HeaderMap,
-    /// Whose secret the program has.
+    /// Person whose secret the program has.
     pub(crate) person: &'a Name,
     pub(crate) body: Bytes,
 }

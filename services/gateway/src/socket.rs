@@ -81,7 +81,7 @@ pub(crate) async fn open(
     }
 }
 
-/// Whose page it is, and of which robot.
+/// A page's person and robot.
 #[derive(Debug)]
 pub(crate) struct Visit<'a> {
     gateway: &'a Gateway,
@@ -94,7 +94,7 @@ pub(crate) struct Visit<'a> {
     sounds: Sounds,
     /// Stops that were given: a release that waits for the audit is void after one.
     stops: AtomicU64,
-    /// Those of them that have no entry in the audit yet.
+    /// Stops without an entry in the audit so far.
     uncounted_stops: AtomicU64,
     /// Why nothing more is passed on, once the person may not order any more.
     is_revoked: AtomicBool,
