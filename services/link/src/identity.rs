@@ -97,7 +97,7 @@ impl Identity {
     }
 }
 
-/// As [`Identity::user`].
+/// Returns the user name as [`Identity::user`] does.
 pub fn user(role: Role, name: &Name) -> String {
     // A viewer who becomes an operator keeps the certificate.
     let kind = if role == Role::Robot { "robot" } else { "person" };

@@ -11,7 +11,7 @@ use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
 use messages::SoundFile;
 use serde::{Deserialize, Serialize};
 
-/// Of the codes: the other end reads those of its own version alone.
+/// Version of the codes: the other end reads those of its own version alone.
 const VERSION: u8 = 3;
 /// Sample rates, hertz. Others, 0 among them, are of no sound.
 const RATES_HZ: RangeInclusive<u32> = 1_000..=192_000;

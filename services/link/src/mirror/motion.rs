@@ -80,7 +80,7 @@ struct Worker {
     events: DeviceSender<Event>,
     inbox: DeviceReceiver<Event>,
     orders: Orders,
-    /// Who gave the order under way.
+    /// Caller of the order under way.
     caller: Option<(u64, Caller)>,
     seen: Option<Seen>,
 }
