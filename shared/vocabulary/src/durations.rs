@@ -10,13 +10,14 @@ use crate::{Action, Fault};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Durations {
-    /// Of "is its k v?", per attribute and value: from the decision to the answer recognised.
+    /// Seconds of "is its k v?", per attribute and value: from the decision to the recognised
+    /// answer.
     pub attribute: Vec<Vec<f64>>,
-    /// Of "what is its k?", per attribute.
+    /// Seconds of "what is its k?", per attribute.
     pub which: Vec<f64>,
-    /// Of pointing at an object and asking, per object, the way of the arm there included.
+    /// Seconds of pointing at an object and asking, per object, including the arm's motion.
     pub point: Vec<f64>,
-    /// Of fetching an object, per object: from the decision to its hand-over.
+    /// Seconds of fetching, per object: from the decision to its hand-over.
     ///
     /// They are not part of any reward (section 3.5): they are paid for the wanted object in any
     /// case, so they do not affect the choice of questions. Among objects that are equally

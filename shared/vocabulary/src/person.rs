@@ -25,7 +25,7 @@ pub struct Acquaintance {
     pub prior_from: u64,
 }
 
-/// As shipped.
+/// The shipped settings.
 impl Default for Acquaintance {
     fn default() -> Self {
         Self { learns: true, prior_from: 5 }
@@ -37,7 +37,7 @@ impl Default for Acquaintance {
 pub enum NotAPerson {
     /// The name is too long: its length in bytes.
     TooLong(usize),
-    /// It has a character that is not printed, or that changes how others are.
+    /// The name has a character that is not printed, or that changes how others are.
     NotPrintable(char),
 }
 

@@ -11,7 +11,7 @@ use crate::time::Time;
 pub struct Presentation {
     /// The prompt.
     pub prompt: PromptId,
-    /// Which presentation of the prompt, from 1.
+    /// Number of the presentation of the prompt, from 1.
     pub number: u32,
     /// The question; [`Question::None`] for a remark.
     pub question: Question,

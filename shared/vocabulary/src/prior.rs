@@ -3,7 +3,7 @@
 /// Prior of a new interaction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prior {
-    /// Which objects are more probable.
+    /// Prior over the objects.
     pub objects: PriorObjects,
     /// Weight of each object in the Dirichlet distribution, in deliveries.
     pub smoothing: f64,
@@ -11,7 +11,7 @@ pub struct Prior {
     pub absent: f64,
 }
 
-/// Which objects are more probable before anything was said.
+/// Prior over the objects before any utterance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PriorObjects {
     /// All alike, as in the paper.

@@ -19,7 +19,7 @@ pub struct Reaction {
 
 /// Median of people's reaction to a spoken question, seconds, and the deviation of its logarithm.
 pub const SPOKEN: (f64, f64) = (0.9, 0.55);
-/// The same of typed answers, from when the question is on the screen. Judged, not measured.
+/// Reaction to a question on the screen with a typed answer. Estimated, not measured.
 pub const TYPED: (f64, f64) = (3.0, 0.9);
 /// Shape of the prior; its count is as large. Worth a handful of times seen.
 const SHAPE: f64 = 3.0;

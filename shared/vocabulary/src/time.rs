@@ -30,12 +30,12 @@ impl Time {
 }
 
 impl Span {
-    /// From seconds; negative and non-finite ones are zero.
+    /// Makes a span of seconds; negative and non-finite ones are zero.
     pub fn from_s(seconds: f64) -> Self {
         Self((seconds.max(0.0) * 1e9) as u64)
     }
 
-    /// From milliseconds.
+    /// Makes a span of milliseconds.
     pub const fn from_ms(ms: u64) -> Self {
         Self(ms * 1_000_000)
     }
