@@ -95,8 +95,8 @@ pub struct Attribute {
     pub ask_yes_no: Vec<String>,
     /// Open wordings, e.g. `What colour is it?`; at least one, the usual one first.
     pub ask_which: Vec<String>,
-    /// Of places in a row, and not of the scene file: people say them as relations
-    /// ([`Relation`](crate::Relation)).
+    /// Whether this is the attribute of places in a row, not of the scene file: people say them as
+    /// relations ([`Relation`](crate::Relation)).
     pub by_place: bool,
 }
 
@@ -109,7 +109,7 @@ pub struct Value {
     pub synonyms: Vec<String>,
     /// Form of the value in questions, e.g. `in the dishwasher`; the name by default.
     pub spoken: String,
-    /// The same string in `V`.
+    /// The value as a word of `V`.
     pub word: WordId,
     pub(crate) role: Role,
     /// Whether it is a part named without an article: "green handle".

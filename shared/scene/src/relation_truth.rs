@@ -5,7 +5,7 @@ use crate::{Measure, ObjectId, Placement, Relation, Scene, WordId};
 
 /// Difference of places at which people take one side to be meant with odds of `e`, metres.
 const PLACE_M: f64 = 0.02;
-/// The same of sizes and masses, as the logarithm of their ratio.
+/// The same for sizes and masses, as the logarithm of their ratio.
 const RATIO: f64 = 0.03;
 /// The same for a loose comparison: "a bigger one".
 const RATIO_LOOSE: f64 = 0.1;
