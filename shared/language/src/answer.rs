@@ -1,4 +1,4 @@
-//! From answers in the order given to the one that counts.
+//! Selection of the valid one from answers in the order given.
 
 use scene::Response;
 

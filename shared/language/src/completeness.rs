@@ -13,13 +13,13 @@ use crate::token_class::{Class, classes};
 /// How complete an utterance is, the most complete first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Completeness {
-    /// It answers the question, or describes one object: whatever follows hardly matters.
+    /// The utterance answers the question, or describes one object: the rest hardly matters.
     Complete,
-    /// It can stand alone, but people often add to it: "no", "get me the bowl".
+    /// The utterance can be whole, but people often add to it: "no", "get me the bowl".
     Sufficient,
     /// Neither.
     Unclear,
-    /// Its last words need others after them: "the big", "it is on", "um".
+    /// The last words need others after them: "the big", "it is on", "um".
     Open,
 }
 

@@ -50,7 +50,7 @@ impl Fates {
         Self(tags.iter().map(fate).collect())
     }
 
-    /// Without places if there are things: "put the bowl on the table", "put it on the table".
+    /// Returns the named things, except places among others: "put the bowl on the table".
     pub(crate) fn named_things(tags: &[Tag<'_>]) -> Self {
         let mut fates = Self::named(tags);
         if !tags.iter().any(|tag| tag.is_value() && !tag.is_role(Role::Place)) {

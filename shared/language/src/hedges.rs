@@ -51,7 +51,7 @@ const SURENESS: &[(f64, &str)] = &[
          feasibly plausibly",
     ),
 ];
-/// Of a phrase without any of these words.
+/// Sureness of a phrase without any of these words.
 const SURE_LEAST: f64 = 0.55;
 /// "maybe" as an answer.
 pub(crate) const MAYBE: f64 = 0.6;

@@ -39,7 +39,7 @@ pub(crate) struct ValueSense {
     /// The attributes that have the value; more than one if they share its name.
     pub(crate) attributes: Vec<AttributeId>,
     pub(crate) role: Role,
-    /// Its attribute has no more than two values.
+    /// Whether the attribute has no more than two values.
     pub(crate) one_of_two: bool,
 }
 

@@ -30,9 +30,9 @@ struct Part<'a> {
 enum Joint {
     /// Nothing that distinguishes two things.
     None,
-    /// By a comma, as in a list.
+    /// Joined by a comma, as in a list.
     Comma,
-    /// By "and", "then", "plus".
+    /// Joined by "and", "then" or "plus".
     And,
 }
 

@@ -1,4 +1,4 @@
-//! From one utterance's content to the ways in which it can be understood.
+//! Readings of one utterance's content.
 
 use scene::{Doubt, Intent, Reading, Reference, Response, WordId};
 

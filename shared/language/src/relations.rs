@@ -43,7 +43,7 @@ const ARTICLES: &[&str] = &["the", "a", "an", "my", "your", "our", "this", "that
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Form {
     pub(crate) words: Vec<String>,
-    /// As the scene has it, not one of those alike.
+    /// Whether the phrase is the scene's own, not a similar one.
     pub(crate) own: bool,
 }
 

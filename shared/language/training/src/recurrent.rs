@@ -27,7 +27,7 @@ const GATES: usize = 3 * UNITS;
 pub struct Utterance {
     /// Input of the recurrent judge.
     pub sequence: Sequence,
-    /// By value word.
+    /// Label of each value word.
     pub labels: Vec<Option<usize>>,
     /// How much each counts.
     pub weight: f64,

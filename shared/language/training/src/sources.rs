@@ -43,7 +43,7 @@ pub struct Taught {
     pub asked: Question,
     /// One for each value word with a label.
     pub lessons: Vec<Lesson>,
-    /// The same for the recurrent part.
+    /// The utterance for the recurrent part.
     pub utterance: Utterance,
     /// The same line with a typing error in a word that is not a value.
     pub slips: Vec<Taught>,
@@ -52,7 +52,7 @@ pub struct Taught {
 /// Examples from each author, the tables and the templates.
 #[derive(Clone, Debug)]
 pub struct Sources {
-    /// By name.
+    /// Utterances by name of the source.
     pub all: BTreeMap<String, Vec<Taught>>,
     /// Names of the authors.
     pub authors: Vec<String>,
