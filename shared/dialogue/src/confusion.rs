@@ -1,4 +1,4 @@
-//! Which of a scene's words are taken for one another.
+//! Probabilities of confusing a scene's words.
 
 use scene::WordId;
 

@@ -143,9 +143,9 @@ struct Said {
     share: f64,
     /// 1 less the doubt.
     understood: f64,
-    /// By the value that the person takes the object's for.
+    /// Chances by the value that the person perceives.
     by_value: Vec<Chance>,
-    /// Of an object that lacks the attribute.
+    /// Chance for an object that lacks the attribute.
     lacking: Chance,
 }
 
@@ -159,7 +159,7 @@ struct Chance {
 }
 
 impl Chance {
-    /// Of a yes, a no or a denial that is true or not.
+    /// Chance of a yes, a no or a denial that is true or not.
     fn of_answer(model: &Model, doubt: f64, is_true: bool) -> Self {
         let epsilon = model.error_rate(0.0);
         // With a doubt either may have been said.
@@ -172,7 +172,7 @@ impl Chance {
         Self { likelihood: own + any, slip }
     }
 
-    /// Of an answer that names a value, or none.
+    /// Chance of an answer that names a value, or none.
     fn of_name(law: Naming, doubt: f64, is_true: Option<bool>) -> Self {
         let (epsilon, answers) = (1.0 - law.own, law.answers as f64);
         let (own, own_slip) = match is_true {

@@ -166,7 +166,7 @@ impl Naming {
         if self.options.is_some() { Channel::Choice } else { Channel::Open }
     }
 
-    /// The same if another answer may have been given with probability `doubt`.
+    /// Returns the model if another answer may have been given with probability `doubt`.
     pub(crate) fn doubted(self, doubt: f64) -> Self {
         let any = 1.0 / self.answers as f64;
         let blend = |p: f64| if doubt > 0.0 { (1.0 - doubt) * p + doubt * any } else { p };

@@ -39,7 +39,7 @@ impl<'a> DecisionProblem<'a> {
         Self { model, costs, actions, durations: None, announce, concessions, spent: &[] }
     }
 
-    /// The same problem as a planner sees it that takes picks for final.
+    /// Returns the problem as seen by a planner that assumes final picks.
     #[must_use]
     pub fn with_final_picks(self) -> Self {
         Self { announce: Announce::FINAL, ..self }
@@ -78,11 +78,11 @@ impl DecisionProblem<'_> {
     }
 }
 
-/// Which decision of which interaction: all the randomness that a planner may use, so that a
-/// replay decides the same.
+/// Position of a decision: all the randomness that a planner may use, so that a replay decides the
+/// same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Step {
-    /// Which interaction, counted over the life of the group.
+    /// Index of the interaction over the life of the group.
     pub interaction: u64,
     /// Index of the decision in the interaction, from 0.
     pub step: u32,

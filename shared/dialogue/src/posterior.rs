@@ -22,7 +22,7 @@ pub enum Posterior {
     /// The user may take a value for another one ([`Model::with_misperceptions`]): belief about the
     /// object, and evidence about each attribute.
     Perceived(Box<Self>, ValueLikelihoods),
-    /// It is known who speaks: the observation model is that of the person.
+    /// The speaker is known: the observation model is that person's.
     Of(Speaker, Box<Self>),
 }
 
@@ -35,19 +35,19 @@ impl Posterior {
         }
     }
 
-    /// The same for a user who may take a value for another one.
+    /// Returns the posterior of a user who may take a value for another one.
     #[must_use]
     pub fn of_perceived(self) -> Self {
         Self::Perceived(Box::new(self), ValueLikelihoods::default())
     }
 
-    /// The same of a person; the posterior is as under the person's own model.
+    /// Returns the posterior of a known person, as under the person's own model.
     #[must_use]
     pub fn of_speaker(self, speaker: Speaker) -> Self {
         Self::Of(speaker, Box::new(self))
     }
 
-    /// The same for an unnamed person.
+    /// Returns the posterior of an unnamed person.
     #[must_use]
     pub(crate) fn of_anybody(self) -> Self {
         match self {

@@ -37,7 +37,7 @@ impl Channel {
 pub struct Speaker {
     /// The name.
     pub from: PersonId,
-    /// By [`Channel`].
+    /// Steps by [`Channel`].
     pub(crate) channels: [i8; Channel::ALL.len()],
     /// Rates of misperception, by attribute.
     pub(crate) attributes: Vec<i8>,

@@ -16,9 +16,9 @@ use crate::{CERTAIN_DOUBT, Model, Naming};
 /// Likelihood of the words about one attribute, by the object's value of it.
 #[derive(Clone, Debug)]
 pub(crate) struct ValueEvidence {
-    /// By value.
+    /// Likelihood by value.
     by_value: Vec<f64>,
-    /// Of an object that lacks the attribute.
+    /// Likelihood for an object that lacks the attribute.
     lacking: f64,
     /// Likelihood for the absent object.
     unknown: f64,

@@ -22,7 +22,7 @@ pub(super) const PLAIN: f64 = 0.8;
 /// Content of an utterance in the open interaction.
 #[derive(Default)]
 pub(super) struct Heard<'a> {
-    /// Its interpretations with their weights and the question that each answers, likeliest first.
+    /// Interpretations with their weights and the question that each answers, likeliest first.
     pub(super) interpretations: Vec<(f64, Question, Reading)>,
     /// A word that the scene does not have.
     pub(super) unknown: Option<&'a UnknownWord>,

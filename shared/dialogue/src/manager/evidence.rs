@@ -17,7 +17,7 @@ const ENTRY: usize = 4;
 /// Content of one utterance about the wanted object.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
-    /// Its interpretations with the question that each answers and its weight, the likeliest first.
+    /// Interpretations with the question that each answers and its weight, the likeliest first.
     pub interpretations: Vec<(f64, NamedQuestion, NamedReading)>,
     /// A word that the scene did not have. Another scene may have it.
     pub unknown: Option<UnknownWord>,
@@ -36,9 +36,9 @@ pub enum Mark {
     OneOf(Vec<String>),
     /// How likely a relation would be said of each, as the scene was then.
     Likely {
-        /// Of these objects.
+        /// Likelihoods for the named objects.
         named: Vec<(String, f64)>,
-        /// Of every other one.
+        /// Likelihood for every other one.
         others: f64,
     },
     /// The utterance is an answer that a later one has replaced. It counts no longer, but still

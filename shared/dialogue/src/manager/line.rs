@@ -117,7 +117,7 @@ pub enum AboutObjects {
     Where,
     /// Whether there are such objects.
     Whether,
-    /// Which of several values of an attribute they have; the words are these values.
+    /// The value of an attribute, out of several, of the objects; the words are these values.
     Either,
 }
 

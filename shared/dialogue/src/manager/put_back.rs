@@ -44,7 +44,7 @@ pub struct PuttingBack {
 pub enum Progress {
     /// The object being fetched is handed over first.
     InTurn,
-    /// It waits for the release of the motion stop.
+    /// The object waits for the release of the motion stop.
     HeldBack {
         /// Whether the user has confirmed the order.
         is_confirmed: bool,

@@ -95,9 +95,9 @@ impl State {
 /// Reaction times of the user. `None` until an answer was observed: the configured one holds then.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
-    /// From the end of a spoken question to the first sound of the answer.
+    /// Time from the end of a spoken question to the first sound of the answer.
     pub spoken: Option<Reaction>,
-    /// From a question's appearance to the answer typed.
+    /// Time from a question's appearance to the answer typed.
     pub typed: Option<Reaction>,
 }
 
@@ -263,7 +263,7 @@ pub struct Deferred {
 pub struct KnownObject {
     /// Name of the object.
     pub name: String,
-    /// Its description, unique in the scene, e.g. `small white bowl in the dishwasher`.
+    /// Description, unique in the scene, e.g. `small white bowl in the dishwasher`.
     pub description: String,
 }
 
@@ -291,7 +291,7 @@ pub struct Act {
     pub kind: ActKind,
     /// The line that goes with it, if any.
     pub prompt: PromptId,
-    /// Which presentation of the prompt.
+    /// Number of the prompt's presentation.
     pub presentation: u32,
     /// The question asked.
     pub question: Question,

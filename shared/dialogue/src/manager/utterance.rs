@@ -30,7 +30,7 @@ pub struct Utterance {
     pub gesture: Option<[f64; 3]>,
     /// Whether the user is still speaking, or more speech is being recognised.
     pub more: bool,
-    /// Who spoke, as far as the channel knows.
+    /// Speaker, as far as the channel knows.
     pub from: PersonId,
 }
 

@@ -11,9 +11,9 @@ pub(super) struct Tables {
     pub(super) confusion: Confusion,
     pub(super) columns: Vec<Column>,
     pub(super) words: Vec<Word>,
-    /// Of words that may have been something else.
+    /// Smoothing of uncertain words.
     pub(super) smoothing: Smoothing,
-    /// Of words that are certain.
+    /// Smoothing of certain words.
     pub(super) certain: Smoothing,
 }
 

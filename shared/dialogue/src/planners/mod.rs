@@ -26,7 +26,7 @@ use crate::{Belief, Decision, DecisionProblem};
 /// A planner in the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
-    /// Its name on the command line and in the configuration.
+    /// Name on the command line and in the configuration.
     pub name: &'static str,
     /// Description in one sentence.
     pub about: &'static str,

@@ -405,8 +405,8 @@ fn what_is_far_is_pointed_at_later() {
     }
 }
 
-/// With costs of their own the best questions are found all the same: the certified value is that
-/// of the policy, and no other planner beats it.
+/// With costs of their own, too, the best questions are found: the certified value is that of the
+/// policy, and no other planner beats it.
 #[test]
 fn the_best_policy_is_found_where_every_question_has_its_own_cost() {
     let seed = 88;

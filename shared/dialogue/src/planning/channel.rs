@@ -33,7 +33,7 @@ pub(crate) struct Channel {
     pub(crate) lacking: f64,
     /// Probability of an answer that is true of no class, about a class whose true answer is known.
     pub(crate) absent_other: f64,
-    /// The same about a class whose true answer is not known.
+    /// Probability of such an answer about a class whose true answer is not known.
     pub(crate) absent_lacking: f64,
     /// Entropy of the answers about one class, nats: the uncertainty left by all answers.
     pub(crate) noise: f64,
@@ -76,7 +76,7 @@ impl Price {
 /// The channels of questions that differ in their price alone.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Channels {
-    /// Of a question of uniform cost.
+    /// Channel of a question of uniform cost.
     alike: Channel,
     /// Channels of every question, if they have costs of their own.
     own: Vec<Channel>,

@@ -24,7 +24,7 @@ pub(crate) struct Reduced {
     pub(crate) mass: Vec<f64>,
     /// The most probable object of each class.
     pub(crate) best: Vec<ObjectId>,
-    /// That object's share of its class, for ever: nothing that is asked can change it.
+    /// Constant share of that object in its class: no question can change it.
     pub(crate) share: Vec<f64>,
     /// Attributes that distinguish classes.
     pub(crate) partitions: Vec<Partition>,

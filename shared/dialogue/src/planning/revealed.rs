@@ -86,7 +86,7 @@ struct Outlook {
 /// A side of a question, and the right answer of those who are on it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Side {
-    /// Its probability among the classes that are left.
+    /// Probability of the side among the classes that are left.
     share: f64,
     /// Upper bound on the value after the answer.
     right: f64,

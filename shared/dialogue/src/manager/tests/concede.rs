@@ -117,7 +117,7 @@ fn a_user_who_wants_any_gets_one_at_once() {
     assert_eq!((no_request.open.is_none(), no_request.act.kind), (true, ActKind::Say));
 }
 
-/// It is kept by names, and until the end of the interaction only.
+/// Concessions are kept by names, and until the end of the interaction only.
 #[test]
 fn concessions_end_with_the_interaction() {
     let mut manager = manager();

@@ -63,7 +63,7 @@ struct Talks {
     ends: Vec<(User, State)>,
 }
 
-/// Of the bowls and of the tools.
+/// Conversations about the bowls and about the tools.
 static TALKS: LazyLock<[Talks; 2]> = LazyLock::new(|| {
     [settings(), settings_of(TOOLS)].map(|settings| {
         let mut manager = settings.manager();

@@ -1,4 +1,4 @@
-//! Which question an answer counts for, and when the robot holds back.
+//! Attribution of answers to questions, and waiting for the user's turn.
 
 use super::fixture::{
     answer, asked, at, belief, first, manager, remark, settings, settings_with, typed, words,
