@@ -12,7 +12,7 @@ pub struct Inbox {
 /// Treatment of a numbered message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It is next: apply it, durably, then call [`Inbox::advance`].
+    /// The message is next: apply it, durably, then call [`Inbox::advance`].
     Apply,
     /// The message was applied before.
     Duplicate,

@@ -10,7 +10,7 @@ use std::ops::Deref;
 pub enum MessageRef<'a, T> {
     /// Borrowed from shared memory while being handled. A reader copies the parts that it keeps.
     Lent(&'a T),
-    /// On the heap.
+    /// Owned, on the heap.
     Owned(Box<T>),
 }
 

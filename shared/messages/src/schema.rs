@@ -17,7 +17,7 @@ use std::borrow::Cow;
 pub struct Field {
     /// Name of the field.
     pub name: Cow<'static, str>,
-    /// Its type: as written in a wire struct, as JSON of `serde-reflection` in a payload.
+    /// Type of the field: as written in a wire struct, as JSON of `serde-reflection` in a payload.
     pub ty: Cow<'static, str>,
     /// Bytes from the start of the struct.
     pub offset: usize,

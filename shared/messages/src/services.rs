@@ -38,7 +38,7 @@ impl Service {
     /// Services that keep a journal.
     pub const JOURNALED: [Self; 3] = [Self::Speech, Self::Policy, Self::Arm];
 
-    /// Its name in configuration, journals and status.
+    /// Returns the name in configuration, journals and status.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Speech => "speech",
