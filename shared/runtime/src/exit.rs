@@ -136,9 +136,9 @@ pub enum ProcessExit {
     Code(i32),
     /// End by this signal.
     Signal(i32),
-    /// It could not be started; a retry may succeed (e.g. no process slot).
+    /// The process could not be started; a retry may succeed (e.g. no process slot).
     NotStarted,
-    /// It could not be started; a retry cannot succeed (e.g. no such program).
+    /// The process could not be started; a retry cannot succeed (e.g. no such program).
     NotStartable,
 }
 

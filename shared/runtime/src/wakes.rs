@@ -9,7 +9,7 @@ use messages::topics::Topic;
 
 use crate::group::GroupPaths;
 
-/// Which services are woken by which topics, beyond [`Topic::readers`].
+/// Services woken by topics, beyond [`Topic::readers`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wakes(Vec<(String, Service)>);
 

@@ -21,7 +21,7 @@ pub fn lost() -> u64 {
 /// A message of any topic, borrowed from shared memory.
 #[derive(Clone, Copy, Debug)]
 pub enum AnyMessage<'a> {
-    /// Of fixed layout.
+    /// A message of fixed layout.
     Fixed(FixedMessage<'a>),
     /// A payload in postcard; nothing has decoded it yet.
     Encoded(&'a [u8]),

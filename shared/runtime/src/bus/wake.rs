@@ -27,11 +27,11 @@ pub struct WakeListener {
 pub struct Woken<const N: usize> {
     /// A wake-up.
     pub by_wake: bool,
-    /// Which of the sources are readable.
+    /// Whether each of the sources is readable.
     pub sources: [bool; N],
 }
 
-/// Who has joined the group and asks writers for their latest messages.
+/// New members of the group, which ask writers for their latest messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Joined {
     /// A client, which polls.

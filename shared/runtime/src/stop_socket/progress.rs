@@ -90,8 +90,8 @@ impl Progress {
         self.since
     }
 
-    /// The same order is given again, at `given`. Deadline and warnings count from the first time,
-    /// so that a flood of orders puts off neither.
+    /// Notes that the same order is given again, at `given`. Deadline and warnings count from the
+    /// first time, so that a flood of orders puts off neither.
     pub fn renew(&mut self, given: Time) {
         self.given = given;
         self.sent = None;
