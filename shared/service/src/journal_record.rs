@@ -41,11 +41,11 @@ pub struct JournalLine {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "service", rename_all = "snake_case")]
 pub enum JournalRecord {
-    /// Of the speech service.
+    /// Record of the speech service.
     Speech(Box<SpeechRecord>),
-    /// Of the policy.
+    /// Record of the policy.
     Policy(Box<PolicyRecord>),
-    /// Of the arm.
+    /// Record of the arm.
     Arm(Box<ArmRecord>),
 }
 

@@ -59,10 +59,10 @@ pub enum LaunchError {
     /// A folder of the group is not its owner's alone.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// It ended before it listened; its exit status and the end of its log.
+    /// The supervisor ended before it listened; its exit status and the end of its log.
     #[error("the supervisor ended with {}{}", .0, indented(.1))]
     Ended(ExitStatus, Vec<String>),
-    /// It did not listen within the timeout; its log.
+    /// The supervisor did not listen within the timeout; its log.
     #[error(
         "the supervisor is still starting after {} s; see {}; help: `whichone status` shows its state, `whichone down` \
          stops it",

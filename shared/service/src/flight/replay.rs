@@ -49,9 +49,9 @@ pub struct Report {
     pub damaged_at: Option<u64>,
     /// The first difference, at which a replay without changed settings ends.
     pub difference: Option<Difference>,
-    /// With changed settings: the decisions that differ.
+    /// Decisions that differ with changed settings.
     pub decisions: Vec<Changed>,
-    /// With changed settings: passes in which anything else differs.
+    /// Passes in which anything else differs with changed settings.
     pub other_passes: u64,
     /// The difference in the first of them.
     pub other_difference: Option<Difference>,
@@ -64,7 +64,7 @@ pub struct Difference {
     pub pass: u64,
     /// Time of its last event, nanoseconds of the monotonic clock.
     pub at_ns: u64,
-    /// The same from the start of the service on, seconds.
+    /// Time from the start of the service, seconds.
     pub after_s: f64,
     /// Field, e.g. `outputs[0].Act.prompt`; `panic` if the reducer panics.
     pub path: String,
@@ -94,7 +94,7 @@ pub struct Changed {
     pub pass: u64,
     /// Time of its last event, nanoseconds of the monotonic clock.
     pub at_ns: u64,
-    /// The same from the start of the service on, seconds.
+    /// Time from the start of the service, seconds.
     pub after_s: f64,
     /// The recorded decision.
     pub recorded: Option<Decision>,

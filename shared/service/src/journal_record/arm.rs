@@ -47,7 +47,7 @@ pub enum ArmCause {
     Ended,
     /// The motion stop was latched or released.
     Motion {
-        /// Which of both.
+        /// Kind of order.
         order: MotionOrder,
     },
     /// Progress of a motion.
@@ -65,7 +65,7 @@ pub enum ArmCause {
 pub struct PickRecord {
     /// Interaction of the order.
     pub interaction: u64,
-    /// Its attempt within the interaction, from 1.
+    /// Attempt within the interaction, from 1.
     pub attempt: u32,
     /// Name of the ordered object.
     pub object: String,
@@ -86,7 +86,7 @@ pub struct HeldRecord {
     pub limb: String,
     /// Position of the object in frame `<limb>_gripper`, metres.
     pub position_m: [f64; 3],
-    /// Its rotation there, quaternion x, y, z, w.
+    /// Rotation of the object there, quaternion x, y, z, w.
     pub rotation_xyzw: [f64; 4],
 }
 

@@ -70,7 +70,7 @@ pub enum PolicyCause {
         more: bool,
         /// A word that the scene does not have.
         unknown: Option<String>,
-        /// Its interpretations as an answer to each question, and to none.
+        /// Interpretations as an answer to each question, and to none.
         interpretations: Vec<InterpretationRecord>,
     },
     /// The response window passed in silence.
@@ -151,7 +151,7 @@ pub struct PresentationKey {
 pub struct PickKey {
     /// Interaction of the pick.
     pub interaction: u64,
-    /// Its attempt within the interaction, from 1.
+    /// Attempt within the interaction, from 1.
     pub attempt: u32,
     /// Name of the picked object.
     pub object: String,

@@ -48,7 +48,7 @@ pub struct AcceptedRecord {
     pub end_ns: u64,
     /// Signal-to-noise ratio, decibels; `None` for text.
     pub snr_db: Option<f32>,
-    /// Which part of the client's sound it is, from 0, and how many there are.
+    /// Index of the part of the client's sound, from 0, and the number of parts.
     pub segment: u32,
     /// Number of parts of the client's sound; 0 while that is not known.
     pub segments: u32,
