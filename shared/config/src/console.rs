@@ -6,7 +6,7 @@ use std::time::Duration;
 use diagnostics::Fields;
 use serde_json::json;
 
-/// Who may use the page.
+/// Users who may use the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// Users who have the group's token.
@@ -20,7 +20,7 @@ pub enum Access {
 pub struct Console {
     /// Address and port; port 0 for any free one.
     pub listen: SocketAddr,
-    /// Who may use the page; [`Access::Open`] only if `listen` accepts this machine alone.
+    /// Users who may use the page; [`Access::Open`] only if `listen` accepts this machine alone.
     pub access: Access,
     /// Maximum number of open pages; one place is reserved for an operator.
     pub viewers_max: usize,

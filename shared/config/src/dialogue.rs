@@ -24,7 +24,7 @@ pub struct Dialogue {
     /// Probability that a user takes a value for another one, and sticks to it; 0 with
     /// [`Language::Paper`].
     pub misperception: f64,
-    /// The same of single attributes, by name.
+    /// Probabilities for single attributes, by name.
     pub misperceptions: Vec<(String, f64)>,
     /// Name of the planner; one of [`PLANNERS`].
     pub planner: String,

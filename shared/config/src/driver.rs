@@ -11,7 +11,7 @@ use crate::part::Registered;
 pub struct Driver {
     /// Name of the driver in `arm.driver`.
     pub name: &'static str,
-    /// It moves a robot, which knows no other time than the real one.
+    /// Whether the driver moves a robot in real time.
     pub in_real_time: bool,
     /// The feature of `whichone` that this build lacks for it, if it lacks one.
     pub needs: Option<&'static str>,

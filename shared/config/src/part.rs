@@ -65,7 +65,7 @@ impl Check<'_> {
 /// An optional part of the group.
 #[derive(Debug)]
 pub struct Part {
-    /// Its name, and that of its service and of the program `whichone-NAME`, if it has them.
+    /// Name of the part, and of its service and the program `whichone-NAME`, if it has them.
     pub name: &'static str,
     /// The part's service, if it is one.
     pub service: Option<PartService>,
@@ -78,7 +78,7 @@ pub struct Part {
 pub struct PartService {
     /// Values whose change restarts the service.
     pub reads: Reads,
-    /// It hands on words and orders of people: it may write the topics of clients.
+    /// Whether the part hands on words and orders of people, and may write the topics of clients.
     pub is_client: bool,
 }
 
@@ -107,7 +107,7 @@ impl Registered {
         Self { key: S::KEY, file: S::FILE, read: |f| drop(S::read(f)), check: check_one::<S> }
     }
 
-    /// Its name in the table that holds it.
+    /// Name in the table that holds it.
     fn name(&self) -> &'static str {
         self.key.last().copied().unwrap_or_default()
     }

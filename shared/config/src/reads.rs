@@ -1,4 +1,4 @@
-//! Which services read which values: a reload restarts those whose values it changes.
+//! Values read by each service: a reload restarts services whose values it changes.
 
 use messages::Service;
 

@@ -11,7 +11,7 @@ use crate::{arm, console, dialogue, group, part, services, speech, study};
 pub struct SectionSchema {
     /// Name of the section.
     pub name: &'static str,
-    /// Its shipped file, whose comments describe its keys.
+    /// Shipped file of the section, whose comments describe the keys.
     pub shipped: &'static str,
     /// Schema of the values that the section's reader accepts.
     pub schema: Json,

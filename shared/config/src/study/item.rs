@@ -9,7 +9,7 @@ const TEXT_MAX: usize = 2000;
 /// A question of the questionnaire.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Item {
-    /// Its name in the data: letters, digits and `_`.
+    /// Name in the data: letters, digits and `_`.
     pub id: String,
     /// Text of the item.
     pub text: String,

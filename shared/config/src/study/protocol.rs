@@ -24,7 +24,7 @@ pub struct Protocol {
     pub design: Design,
     /// The policies, at least one.
     pub policies: Vec<String>,
-    /// In which order they are met, within a participant.
+    /// Order of the policies within a participant.
     pub order: Order,
     /// Longest interaction, seconds.
     pub seconds_max: f64,
