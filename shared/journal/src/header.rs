@@ -24,7 +24,7 @@ pub struct Header {
     pub group: String,
     /// Epoch of the group; numbers of different epochs are never compared.
     pub epoch: u64,
-    /// Which journal of its service in this epoch it is, from 1: a file that was set aside is not
+    /// Index of the journal in its service and epoch, from 1: a file that was set aside is not
     /// taken for its successor.
     pub generation: u64,
 }

@@ -20,7 +20,7 @@
 //! A damaged frame was either torn, before it was acknowledged as durable, and is cut off; or it
 //! was acknowledged: that is corruption, and the journal refuses to open. Which of the two:
 //!
-//! - A valid frame after it: frames are written after a sync of the one before: acknowledged.
+//! - A valid frame after it: frames follow a sync of the one before, so it was acknowledged.
 //! - Otherwise it is the last one. A disk may write the sectors of one frame in any order before
 //!   the sync, and may be interrupted anywhere: unwritten parts are missing at the end of the file
 //!   or read as zeros. Every frame has a byte `0xA5` at its start and at each multiple of 512 of

@@ -11,14 +11,14 @@ use crate::header::StoredHeader;
 pub enum Ending {
     /// The data end with a complete frame.
     Whole,
-    /// With a write that was never acknowledged; opening the journal cuts it off.
+    /// The data end with a write that was never acknowledged; opening the journal cuts it off.
     Torn {
         /// Offset of the torn frame.
         at: u64,
         /// Bytes from there to the end of the file.
         bytes: u64,
     },
-    /// With records that had been acknowledged and can no longer be reached.
+    /// The data end with records that had been acknowledged and can no longer be reached.
     Corrupt {
         /// Offset of the damaged frame.
         at: u64,
