@@ -39,12 +39,12 @@ impl Diagnostic {
         }
     }
 
-    /// The same with its line, from 1.
+    /// Returns the diagnostic with its line, from 1.
     pub fn at(self, line: Option<u32>) -> Self {
         Self { line, ..self }
     }
 
-    /// The same with its column, from 1, in characters.
+    /// Returns the diagnostic with its column, from 1, in characters.
     pub fn at_column(self, column: Option<u32>) -> Self {
         Self { column, ..self }
     }

@@ -73,7 +73,7 @@ impl Source {
         diagnostic.at(self.line).at_column(self.column)
     }
 
-    /// The same file at a line and a column; defaults have neither.
+    /// Returns the same file at a line and a column; defaults have neither.
     pub(crate) fn at(&self, (line, column): (u32, u32)) -> Self {
         let is_file = !self.is_built_in();
         let (line, column) = (is_file.then_some(line), is_file.then_some(column));
