@@ -24,14 +24,14 @@ const PRIVATE: u32 = 0o600;
 /// Mode of a new file before the umask.
 const PUBLIC: u32 = 0o666;
 
-/// Who may read the new file.
+/// Permitted readers of the new file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Readers {
     /// Readable by the owner alone.
     Owner,
-    /// Those who may read the own file that it replaces; for a new one those whom the umask lets.
+    /// Readers of the replaced file of the same user; for a new file those whom the umask lets.
     AsBefore,
-    /// Those of this mode, whatever the umask.
+    /// Readers by this mode, whatever the umask.
     Mode(u32),
 }
 
