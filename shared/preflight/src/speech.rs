@@ -6,7 +6,7 @@ use vocabulary::reaction::SPOKEN;
 /// The robot's voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Voice {
-    /// Its speed, as the voice program takes it.
+    /// Speed of the voice, as its program takes it.
     pub words_per_minute: f64,
 }
 
@@ -40,14 +40,14 @@ impl Voice {
 /// Timing of users and of the recogniser.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pace {
-    /// From the end of a question to the answer's first sound: median, seconds, and standard
+    /// Time from the end of a question to the answer's first sound: median, seconds, and standard
     /// deviation of the logarithm.
     pub reaction_s: (f64, f64),
     /// An answer of one word: median, seconds, and standard deviation of the logarithm.
     pub word_s: (f64, f64),
     /// Each further word, seconds.
     pub further_word_s: f64,
-    /// From the last sound to the recognised words, seconds: least and most.
+    /// Time from the last sound to the recognised words, seconds: least and most.
     pub recogniser_s: (f64, f64),
 }
 
@@ -79,7 +79,7 @@ impl Pace {
         rng.between(self.recogniser_s)
     }
 
-    /// From a question's end to an answer of one word recognised, seconds, in expectation.
+    /// Returns the expected time from a question's end to a recognised answer of one word, seconds.
     pub fn mean_answer_s(&self) -> f64 {
         let mean = |median: f64, log_sd: f64| median * (0.5 * log_sd * log_sd).exp();
         let (least, most) = self.recogniser_s;
