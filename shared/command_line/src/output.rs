@@ -36,7 +36,7 @@ pub enum Ink {
     Dim,
     /// Good state.
     Green,
-    /// In progress.
+    /// Work in progress.
     Yellow,
     /// Bad state.
     Red,
