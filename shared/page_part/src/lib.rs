@@ -14,7 +14,7 @@ use service::Time;
 /// A moment on both clocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Now {
-    /// On the monotonic clock.
+    /// Time on the monotonic clock.
     pub at: Time,
     /// Milliseconds since 1970.
     pub unix_ms: u64,
