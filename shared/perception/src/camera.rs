@@ -34,7 +34,7 @@ pub struct CameraSettings {
 /// An object in front of a simulated camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Standing {
-    /// Which object of the scene file it is.
+    /// Index of the object in the scene file.
     pub object: usize,
     /// Centre, metres.
     pub xyz: [f64; 3],

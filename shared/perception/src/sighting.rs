@@ -109,7 +109,7 @@ pub enum Refusal {
     /// The table is full.
     #[error("the table is full: {0} objects; help: remove some")]
     Full(usize),
-    /// It cannot be changed while the arm fetches.
+    /// The table cannot be changed while the arm fetches.
     #[error("the arm is fetching; help: try again when it is done")]
     Fetching,
     /// Objects are not perceived.
