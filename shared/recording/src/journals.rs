@@ -42,7 +42,7 @@ pub struct Entry {
     pub origin: Origin,
     /// The service whose journal or flight it is in.
     pub service: String,
-    /// Its number: of the record, or of the pass.
+    /// Number of the record, or of the pass.
     pub seq: u64,
     /// When it was written, nanoseconds since 1970.
     pub at_ns: u64,

@@ -32,11 +32,11 @@ pub enum State {
     Complete,
     /// A recorder is writing the recording.
     BeingWritten,
-    /// Its recorder ended before it was completed, which the next start of the recorder does.
+    /// The recorder ended before completing the recording; its next start does.
     Incomplete,
-    /// It has the name of a complete recording, and cannot be read as one.
+    /// The file has the name of a complete recording, and cannot be read as one.
     Damaged,
-    /// Its name is not one that the recorder gives.
+    /// The file's name is not the recorder's.
     Foreign,
 }
 

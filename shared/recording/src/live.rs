@@ -32,7 +32,7 @@ pub enum Request {
     SetParameters(Option<String>),
     /// Names of parameters whose changes are wanted; there are none.
     SubscribeParameters(Vec<String>),
-    /// As above, not wanted any more.
+    /// The end of such a subscription.
     UnsubscribeParameters,
     /// A call of a service.
     Call(Call),
