@@ -57,7 +57,7 @@ pub struct ValueEntry {
     /// Position in the attribute's list in the file; `None` for a new value.
     #[serde(default)]
     pub from: Option<usize>,
-    /// Its name, and a word that people say.
+    /// Name of the value, and a word that people say.
     pub name: String,
     /// Other words and phrases for the value.
     #[serde(default)]
