@@ -121,13 +121,13 @@ impl From<Reply> for Turn {
 /// A kind of user by name, as `whichone study` has them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum UserKind {
-    /// As the planner expects users to be.
+    /// Answers as the planner expects.
     Model,
-    /// Without errors.
+    /// Answers without errors.
     Truthful,
     /// Often silent, often wrong, badly recognised.
     Noisy,
-    /// As people talk.
+    /// Talks as people do.
     Human,
     /// Takes each value for another one in that many of a hundred cases, and sticks to it.
     Mistaken(u8),
@@ -173,7 +173,7 @@ impl UserKind {
 pub enum Policy {
     /// The answer distribution of the observation model.
     Model,
-    /// The same with errors of one's own.
+    /// Answers with errors of one's own.
     Erring(Errors),
     /// Always right, in one word; with probability `by_value` a yes or no is replaced by the value
     /// itself ("it is white").

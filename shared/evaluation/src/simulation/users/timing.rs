@@ -73,7 +73,7 @@ pub struct TimedKind {
     pub random: f64,
     /// Probability that the recogniser loses an answer.
     pub lost: f64,
-    /// With push-to-talk: the click and the pause after it, seconds.
+    /// Click of push-to-talk and the pause after it, seconds.
     pub click_s: f64,
 }
 
@@ -111,7 +111,7 @@ pub struct TimedUtterance {
     pub prompt: u64,
     /// The question that the utterance answers.
     pub question: Question,
-    /// Its recognition result; silence if the recogniser loses it.
+    /// Recognition result; silence if the recogniser loses the utterance.
     pub reply: Reply,
     /// `true` if it repeats an earlier answer.
     pub again: bool,
