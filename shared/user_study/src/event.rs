@@ -63,7 +63,7 @@ pub enum Event {
     Faulted {
         /// Cause.
         fault: Fault,
-        /// In a sentence.
+        /// Reason in a sentence.
         why: String,
     },
     /// Has come to the questionnaire.
@@ -131,7 +131,7 @@ pub struct Drawn {
 pub struct Heard {
     /// The utterance's number.
     pub seq: u64,
-    /// By which way.
+    /// Way in which it was said.
     pub source: Source,
     /// Onset.
     pub onset_ms: f64,
@@ -168,15 +168,15 @@ pub struct Ending {
     pub questions: u32,
     /// Utterances, by the robot's count.
     pub utterances: u32,
-    /// From the first utterance's acceptance to the end, by the robot's clock, seconds; `None` if
-    /// the robot did not end it.
+    /// Time from the first utterance's acceptance to the end, by the robot's clock, seconds; `None`
+    /// if the robot did not end it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
     /// Time at which the end was detected.
     pub ended_ms: f64,
 }
 
-/// By which way something was said.
+/// Way in which something was said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {

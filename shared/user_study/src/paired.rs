@@ -25,7 +25,7 @@ pub struct Paired {
 }
 
 impl Paired {
-    /// As JSON.
+    /// Returns the comparison as JSON.
     pub fn to_json(&self) -> Json {
         json!({
             "policy": self.policy,

@@ -20,7 +20,7 @@ pub enum Stage {
     Over,
     /// Answers the questionnaire.
     Questionnaire,
-    /// Is done, and has been thanked.
+    /// Has finished, and has been thanked.
     Thanks,
     /// Has withdrawn.
     Withdrawn,

@@ -19,7 +19,7 @@ pub enum Verdict {
     Abandoned,
     /// The robot concluded that the object is not there.
     NotHere,
-    /// It took longer than the protocol allows.
+    /// The interaction took longer than the protocol allows.
     TooLong,
 }
 
