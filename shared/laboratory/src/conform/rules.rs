@@ -52,7 +52,7 @@ pub(super) fn beats(test: &mut Test<'_>) -> Result<Kept, Broken> {
     )))
 }
 
-/// Its messages carry the epoch of the group and the number of its start.
+/// Messages carry the epoch of the group and the number of the service's start.
 pub(super) fn identity(test: &mut Test<'_>) -> Result<Kept, Broken> {
     test.exercise()?;
     let incarnation = test.running()?.incarnation;
@@ -82,7 +82,7 @@ pub(super) fn identity(test: &mut Test<'_>) -> Result<Kept, Broken> {
     }
 }
 
-/// It writes its own topics, and those of clients that its kind has a part in, alone.
+/// The service writes only its own topics, and those of clients that its kind takes part in.
 pub(super) fn own_topics(test: &mut Test<'_>) -> Result<Kept, Broken> {
     test.exercise()?;
     test.note_written()?;
@@ -158,7 +158,7 @@ pub(super) fn stop(test: &mut Test<'_>) -> Result<Kept, Broken> {
     ended_cleanly(exit, patience, took, "SIGTERM")
 }
 
-/// It ends when its supervisor is gone.
+/// The service ends when its supervisor is gone.
 pub(super) fn orphan(test: &mut Test<'_>) -> Result<Kept, Broken> {
     let patience = test.stop_deadline();
     test.running()?;
