@@ -16,7 +16,7 @@ pub(crate) enum ProcessError {
     /// The program of this name is not installed.
     #[error("the program {0} is not installed")]
     NotInstalled(String),
-    /// It was not started, exited with an error, or was killed at its deadline.
+    /// The program was not started, exited with an error, or was killed at its deadline.
     #[error("{0}")]
     Failed(String),
 }

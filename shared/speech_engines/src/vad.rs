@@ -37,7 +37,7 @@ pub struct SegmenterOptions {
     /// Audio after the speech that belongs to the segment, seconds. The rest of the pause is not
     /// decoded, so that decoding can begin before the pause ends.
     pub post_roll_s: f64,
-    /// The same for a segment that closes before the post-roll is over, seconds.
+    /// Post-roll of a segment that closes before it is over, seconds.
     pub early_roll_s: f64,
     /// Longest speech in a segment, seconds; the rest becomes the next segment.
     pub longest_s: f64,

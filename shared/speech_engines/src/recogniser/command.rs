@@ -99,7 +99,7 @@ struct AnswerHypothesis {
     text: String,
     /// Relative to the others'.
     weight: Option<f64>,
-    /// Of each word of the text, 0 to 1.
+    /// Confidence of each word of the text, 0 to 1.
     #[serde(default)]
     confidence: Vec<f32>,
 }

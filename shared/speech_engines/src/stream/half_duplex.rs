@@ -29,9 +29,9 @@ const LATE_DB: f32 = 10.0;
 /// Separation of a stream from the robot's own voice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Duplex {
-    /// It may: the stream is muted while the robot speaks.
+    /// Echo is possible: the stream is muted while the robot speaks.
     Half,
-    /// It does not (headset, echo cancellation, push-to-talk): the user may interrupt the robot.
+    /// No echo (headset, echo cancellation, push-to-talk): the user may interrupt the robot.
     Full,
 }
 

@@ -21,10 +21,10 @@ const SILENCE_DB: f32 = -96.0;
 /// Levels of a stream, decibels relative to full scale.
 #[derive(Debug)]
 pub(super) struct Loudness {
-    /// Of frames outside segments, and how many there were.
+    /// Level of frames outside segments, and their number.
     background_db: f32,
     background_frames: usize,
-    /// Of the loudest frame of the segment in progress.
+    /// Level of the loudest frame of the segment in progress.
     voice_db: Option<f32>,
 }
 

@@ -48,11 +48,11 @@ pub struct PlaybackEvent {
 pub enum PlaybackState {
     /// The sound began.
     Started,
-    /// Its sound was played to the end.
+    /// The sound was played to the end.
     Ended,
-    /// It was interrupted, or cancelled before it began.
+    /// The prompt was interrupted, or cancelled before it began.
     Interrupted,
-    /// It could not be spoken, for this reason.
+    /// The prompt could not be spoken, for this reason.
     Failed(String),
 }
 

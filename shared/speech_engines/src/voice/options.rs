@@ -12,7 +12,7 @@ pub enum VoiceMode {
     Auto,
     /// Aloud; if that is impossible, every prompt fails.
     Aloud,
-    /// As text: a prompt ends as soon as it starts.
+    /// Printed as text: a prompt ends as soon as it starts.
     Print,
 }
 

@@ -26,7 +26,7 @@ use messages::Hypothesis;
 /// The second recogniser's result for an utterance.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Opinion {
-    /// Its own words, empty if it heard none.
+    /// The network's own words, empty if it heard none.
     pub text: String,
     /// Logarithm of the likelihood of its own words.
     pub ln_own: f64,
