@@ -1,5 +1,5 @@
-//! From weights of a model to probabilities: an exponent, and a share of the built-in reader,
-//! fitted to labelled utterances by maximum likelihood.
+//! Calibration of a model's weights to probabilities: an exponent, and a share of the built-in
+//! reader, fitted to labelled utterances by maximum likelihood.
 
 use crate::Calibration;
 use scene::Reading;
@@ -67,7 +67,7 @@ fn powers(weights: &[f64], power: f64) -> Vec<f64> {
 pub struct Case {
     /// Weights by the model, not normalised.
     pub model: Vec<(f64, bool)>,
-    /// Those of the built-in reader; they sum to 1.
+    /// Weights by the built-in reader; they sum to 1.
     pub built_in: Vec<(f64, bool)>,
 }
 
