@@ -1,4 +1,4 @@
-//! Which of a scene's words are heard for one another, judged by how alike they sound.
+//! Confusions between a scene's words, estimated by the similarity of their sounds.
 //!
 //! A word's spelling becomes a row of sounds: consonants in the classes of `phonetics.rs`, vowels
 //! in three. The distance of two rows is the cost of the cheapest edit from one to the other,
