@@ -17,7 +17,7 @@ const ANSWERS_MAX: usize = 16;
 /// Change of an estimate that is not published at once, metres or radians.
 const STEP: f64 = 0.002;
 
-/// The tracker with its inputs.
+/// The tracker of objects with inputs and outputs.
 #[derive(Debug)]
 pub(crate) struct Perceived {
     settings: Settings,

@@ -142,7 +142,7 @@ impl Candidate {
 }
 
 impl Reply {
-    /// Returns the named action; an error says what was expected.
+    /// Returns the named action; an error states the expected form.
     fn action(&self, model: &Model, questions: &[Question]) -> Result<Action, String> {
         let beyond = |what: &str, count: usize, found: usize| {
             format!("expected {what} from 0 to {}, found {found}", count.saturating_sub(1))
