@@ -25,7 +25,7 @@ use speech_engines::testing;
 
 const WHITE: Question = Question::Attribute(AttributeId(0), ValueId(0));
 
-/// A speech service with its clock.
+/// A speech service with a simulated clock.
 struct Speech {
     node: SpeechNode,
     now: Time,

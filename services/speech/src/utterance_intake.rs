@@ -383,7 +383,7 @@ impl UtteranceIntake {
         self.publish_activity(fx);
     }
 
-    /// Reports why there is no new utterance. Returns `false`.
+    /// Reports why the input makes no new utterance. Returns `false`.
     fn reject(&mut self, origin: &Origin, reason: &str, fx: &mut Fx) -> bool {
         self.report(origin.rejection(ReceiptStatus::Refused, reason), fx);
         false

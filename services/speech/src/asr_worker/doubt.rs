@@ -20,7 +20,7 @@ pub(super) struct Listening {
 
 impl Listening {
     /// Lets the second recogniser listen to the segment until a time after the voice; `None` if
-    /// that is over, or there is no second recogniser.
+    /// that is over, or without a second recogniser.
     pub(super) fn begin(
         recognisers: &Ensemble,
         sound: u64,

@@ -99,7 +99,7 @@ impl Ensemble {
     /// Returns the hypotheses that count for the samples, in which `speech` are those of the voice.
     ///
     /// # Errors
-    /// If there is no speech, or none for the robot.
+    /// If the sound has no speech, or none for the robot.
     pub fn judge(
         &self,
         heard: &Heard,

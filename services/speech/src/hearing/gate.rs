@@ -54,7 +54,7 @@ impl Gate {
     /// `is_voice` judges whether the sound is a voice's, and is asked last.
     ///
     /// # Errors
-    /// If there is no speech, or none for the robot.
+    /// If the sound has no speech, or none for the robot.
     pub fn judge(
         &self,
         heard: &Heard,
@@ -141,7 +141,7 @@ fn total_weight(hypotheses: &[Hypothesis]) -> f64 {
     hypotheses.iter().map(|h| h.weight).sum::<f64>().max(f64::MIN_POSITIVE)
 }
 
-/// A reading without its word order.
+/// Meaning of a reading without the order of words.
 #[derive(PartialEq)]
 struct Meaning {
     base: BTreeSet<WordId>,

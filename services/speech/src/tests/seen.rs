@@ -18,7 +18,7 @@ fn said(text: &str, key: u8, seen: u64, onset: Time) -> In<'static> {
     })
 }
 
-/// Presents a question to its end.
+/// Presents a question completely.
 fn put(speech: &mut Speech, prompt: u64) {
     let playback = speech.take(0.1, ask(prompt)).spoken().unwrap().playback;
     speech.playback(0.1, playback, PlaybackState::Started);

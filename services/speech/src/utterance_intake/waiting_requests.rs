@@ -43,7 +43,7 @@ impl WaitingRequests {
         of_client.flat_map(|(_, requests)| requests).any(|request| request.origin.key == key)
     }
 
-    /// Adds a request behind the others of its client. Returns `false` if there is no room.
+    /// Adds a request behind the others of its client. Returns `false` without room.
     pub(super) fn push(&mut self, request: Request) -> bool {
         let client = request.origin.key.client();
         let at = match self.clients.iter().position(|(other, _)| *other == client) {
