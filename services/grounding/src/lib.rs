@@ -38,7 +38,7 @@ pub fn run() -> ExitCode {
     service::service_loop::run::<shell::GroundingProgram>()
 }
 
-/// The scene and its readers.
+/// Configuration: the scene, its readers and an optional model.
 pub struct Config {
     /// The scene.
     pub scene: Scene,

@@ -59,7 +59,7 @@ fn language(arguments: &[String], configured: Language) -> Result<Language, Fail
     }
 }
 
-/// Topics of grounding, and its model.
+/// Topics of grounding, and the connection to the model.
 #[derive(Debug)]
 pub struct GroundingShell {
     utterances: Reader<Utterance>,
