@@ -75,7 +75,7 @@ async fn guard(State(gateway): Shared, request: Request, next: Next) -> Response
         next.run(request).await
     };
     let headers = response.headers_mut();
-    // A console has already stated what its page may load.
+    // A console has already declared the permitted sources of its page.
     headers.entry(header::CONTENT_SECURITY_POLICY).or_insert_with(|| content_policy(""));
     harden(headers);
     response
