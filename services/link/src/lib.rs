@@ -38,7 +38,7 @@ pub mod watch;
 
 use config::{EVERYTHING, Part, PartService, Registered};
 
-/// The service and its section. Each mirror begins with the settings in force.
+/// The service and the section of its settings. Each mirror begins with the settings in force.
 pub static PART: Part = Part {
     name: settings::NAME,
     service: Some(PartService { reads: EVERYTHING, is_client: true }),

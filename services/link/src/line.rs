@@ -47,7 +47,7 @@ impl Line {
         postcard::to_stdvec(&(VERSION, self)).ok().filter(|bytes| bytes.len() <= BYTES_MAX)
     }
 
-    /// Returns the file and its contents. Another version, or a thief of keys, may have sent it.
+    /// Returns the file with the line's sound. Another version, or a key thief, may have sent it.
     pub fn decode(bytes: &[u8]) -> Option<(SoundFile, Vec<u8>)> {
         let bytes = Some(bytes).filter(|bytes| bytes.len() <= BYTES_MAX)?;
         let (version, Self { file, sound }) = postcard::from_bytes::<(u8, Self)>(bytes).ok()?;

@@ -58,7 +58,7 @@ enum Inbound {
     Hello(Vec<u8>),
     /// Receipts for the words with this key.
     Receipts(messages::RequestKey, Vec<u8>),
-    /// The request with these words has ended; without an answer if there were no receipts.
+    /// The request with these words has ended; without an answer if no receipts came.
     WordsEnded(messages::RequestKey),
     /// Sound of a line of the robot.
     Line(Vec<u8>),

@@ -47,7 +47,7 @@ pub struct Said {
     pub sound: Sent,
 }
 
-/// A client's input on its way.
+/// Input of a client under way to the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Sent {
     /// Anything but a file.

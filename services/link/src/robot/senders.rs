@@ -44,7 +44,7 @@ pub(super) struct Connecting {
     pub(super) paths: GroupPaths,
 }
 
-/// An answer on its way.
+/// An answer under way to the mirror.
 pub(super) type Answer = (Call, Query, Vec<u8>);
 
 /// Hands messages to the threads that send them. Never waits.
@@ -152,7 +152,7 @@ impl Senders {
             .any(|(name, is)| ![PRESENCE, LINE].contains(name) && is.load(Ordering::Relaxed))
     }
 
-    /// Returns whether this topic has watchers.
+    /// Returns whether the topic has watchers.
     pub(super) fn is_state_watched(&self, topic: &str) -> bool {
         self.of(topic).is_watched_at(topic)
     }
