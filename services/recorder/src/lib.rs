@@ -10,7 +10,7 @@ use config::{EVERYTHING, Part, PartService, Registered};
 
 pub use self::service::run;
 
-/// The service and its section. Each recording holds the settings in force.
+/// The service and the section of its settings. Each recording holds the settings in force.
 pub static PART: Part = Part {
     name: "recorder",
     service: Some(PartService { reads: EVERYTHING, is_client: false }),
