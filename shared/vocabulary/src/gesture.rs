@@ -61,8 +61,8 @@ impl Direction {
         (length.is_finite() && length >= 1e-3).then(|| Self(way.map(|x| x / length)))
     }
 
-    /// Returns the angle to another direction, radians from 0 to π. Exact at both ends, where the
-    /// cosine alone is flat.
+    /// Returns the angle to another direction, radians from 0 to π. Exact at both ends, unlike the
+    /// arc cosine.
     pub fn angle(self, other: Self) -> f64 {
         let ([a, b, c], [d, e, f]) = (self.0, other.0);
         let cross = [b * f - c * e, c * d - a * f, a * e - b * d];

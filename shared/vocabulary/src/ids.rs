@@ -52,7 +52,7 @@ id! {
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
 pub struct PickId {
-    /// The interaction that decided it.
+    /// The interaction that decided the pick.
     pub interaction: InteractionId,
     /// 1 for the first order. Another follows only if the previous one ended without a grasp,
     /// because the scene changed or the user wants another object, or to put an object back.

@@ -9,7 +9,7 @@ pub struct Interpretation {
     /// Probability among the interpretations that answer the same question.
     pub weight: f64,
     /// The question that the reading answers, as an index into the presentations carried by the
-    /// utterance; none if it answers none of them.
+    /// utterance; `None` if it answers no question.
     pub answers: Option<usize>,
     /// Content of the interpretation.
     pub reading: Reading,
