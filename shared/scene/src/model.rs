@@ -250,8 +250,8 @@ impl Scene {
         &self.objects[i.index()]
     }
 
-    /// `attr_k,v(i)`: whether object `i` has value `v` for attribute `k`. An object that lacks the
-    /// attribute has none of its values.
+    /// `attr_k,v(i)`: whether object `i` has value `v` for attribute `k`. An object without the
+    /// attribute has no value of it.
     pub fn has(&self, i: ObjectId, k: AttributeId, v: ValueId) -> bool {
         self.objects[i.index()].values[k.index()] == Some(v)
     }

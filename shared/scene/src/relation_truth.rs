@@ -56,7 +56,7 @@ pub struct Related<'a> {
 impl Scene {
     /// Returns for each object the degree to which a relation holds, from 0 to 1 for the best
     /// candidate; `None` for an object for which it is unknown. Returns `None` as a whole if the
-    /// scene cannot tell: fewer than two objects have the measure, or there is no reference object.
+    /// scene cannot tell: fewer than two objects have the measure, or the reference is missing.
     pub fn truths(&self, relation: Relation, about: &Related<'_>) -> Option<Vec<Option<f64>>> {
         let truths = match relation {
             Relation::Nth(measure, n) => self.ordered(measure, RATIO, about, |_| vec![n.into()]),

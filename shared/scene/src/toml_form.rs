@@ -51,7 +51,7 @@ impl Scene {
 
     /// Reads the text of a scene file, reports every problem of it, and returns the scene without
     /// its wrong parts, so that the places of the other objects can be checked in the same round;
-    /// `None` if there is no scene without them.
+    /// `None` if they leave no scene.
     pub fn examine(file: &str, text: &str, report: &mut Report) -> Option<Self> {
         let table = Table::parse(text, &Source::new(file, 0), report)?;
         let mut f = Fields::new(&table, Vec::new(), report);

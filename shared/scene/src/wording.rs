@@ -46,7 +46,7 @@ impl Scene {
 
     /// Returns the wording of `question` as the `n`-th prompt, put for the `time`-th time (from 1).
     /// Wordings take turns; a repeated question is shortened, then put as "yes or no?", or lists
-    /// `choices`, the answers to an open question that are left (in spoken form; none if they are
+    /// `choices`, the answers to an open question that are left (in spoken form; empty if they are
     /// too many), and then begins in another way each time. The result depends on the arguments
     /// alone, so that a replay gives the same words; variant 0, put once, is `phrase`.
     ///
@@ -115,7 +115,7 @@ impl Scene {
     }
 
     /// "white, metallic or clear"; with "neither" or "none of them" at the end if an object of the
-    /// scene has none of these values.
+    /// scene lacks these values.
     fn listed(&self, k: AttributeId, options: Options) -> String {
         let spoken = |v: &ValueId| self.attributes()[k.index()].values[v.index()].spoken.clone();
         let mut all: Vec<String> = options.values().iter().map(spoken).collect();
