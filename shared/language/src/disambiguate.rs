@@ -26,7 +26,7 @@ pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
 /// Words that the noun of a noun phrase may be followed by.
 const AFTER_NOUN: &[Class] = classes![Preposition Courtesy Filler Pointer];
 
-/// A tag with its neighbours.
+/// A tag and the tags next to it in the utterance.
 struct Place<'t, 'a> {
     tags: &'t [Tag<'a>],
     at: usize,

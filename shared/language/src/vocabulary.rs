@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use crate::token_class::Class;
 
-/// Returns every phrase with its class.
+/// Returns every phrase of the dialogue with its class.
 pub(crate) fn phrases() -> impl Iterator<Item = (Class, &'static str)> {
     let mut class = None;
     let lines = include_str!("vocabulary/phrases.txt").lines();

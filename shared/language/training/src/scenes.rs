@@ -55,10 +55,10 @@ impl Scenes {
         self.0.keys().map(String::as_str)
     }
 
-    /// Returns a scene and its reader.
+    /// Returns a scene with the reader for it.
     ///
     /// # Errors
-    /// There is no scene with that name.
+    /// The name is not that of a scene.
     pub fn get(&self, name: &str) -> Result<&(Scene, Reader), String> {
         self.0.get(name).ok_or_else(|| format!("scene {name} does not exist"))
     }

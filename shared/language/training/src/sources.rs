@@ -34,7 +34,7 @@ const OWN_TABLES: &str = "own tables";
 /// How much a lesson of a line with a slip counts.
 const SLIP: f64 = 0.5;
 
-/// An utterance with its training examples.
+/// An utterance with the training examples from it.
 #[derive(Clone, Debug)]
 pub struct Taught {
     /// The line.

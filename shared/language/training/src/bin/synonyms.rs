@@ -16,7 +16,7 @@ const WORDS: &str = include_str!("../../synonyms.txt");
 const VALUES: usize = 8;
 const SCENES: usize = 6;
 
-/// A value with its synonyms.
+/// A value with synonyms that no scene lists.
 struct Listed {
     is_thing: bool,
     name: &'static str,
