@@ -189,7 +189,7 @@ impl ValueLikelihoods {
         }
     }
 
-    /// Whether there is no evidence.
+    /// Returns whether all evidence is missing.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

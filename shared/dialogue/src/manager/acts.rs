@@ -106,7 +106,7 @@ impl Manager {
     }
 
     /// Returns the values that the wanted object may have for the attribute in question, in their
-    /// spoken form; none if they are too many. Those of a yes/no question are only recorded.
+    /// spoken form; empty if they are too many. Those of a yes/no question are only recorded.
     fn choices(&self, belief: &Belief, question: Question) -> Vec<String> {
         let (Question::Attribute(k, _) | Question::Which(k)) = question else { return Vec::new() };
         let scene = &self.setup.scene;

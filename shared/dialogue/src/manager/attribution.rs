@@ -111,7 +111,7 @@ impl Manager {
         open.prompt(prompt).map(|prompt| prompt.question)
     }
 
-    /// Returns this user's reaction-time model.
+    /// Returns the user's reaction-time model.
     fn reaction(&self, state: &State, typed: bool) -> Reaction {
         let (known, configured) = if typed {
             (state.timing.typed, self.setup.turns.typed)
@@ -201,7 +201,7 @@ pub(super) fn content(reading: &Reading) -> std::borrow::Cow<'_, Reading> {
     use std::borrow::Cow;
     match reading.intent {
         Intent::Inform => Cow::Borrowed(reading),
-        // "Stop, not that one": the words in addition to the order, none for a plain "stop".
+        // "Stop, not that one": the words in addition to the order; a plain "stop" has none.
         Intent::Stop | Intent::GoOn => {
             Cow::Owned(Reading { intent: Intent::Inform, ..reading.clone() })
         }

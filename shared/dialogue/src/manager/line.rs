@@ -64,7 +64,7 @@ pub enum Remark {
     Goodbye,
     /// The answer to thanks.
     Welcome,
-    /// Explains what users can say.
+    /// Explains possible requests to the user.
     Help,
     /// The utterance was not understood.
     NotUnderstood,
@@ -115,7 +115,7 @@ pub enum AboutObjects {
     Which,
     /// The places of the objects.
     Where,
-    /// Whether there are such objects.
+    /// Whether such objects exist.
     Whether,
     /// The value of an attribute, out of several, of the objects; the words are these values.
     Either,
@@ -146,9 +146,9 @@ pub enum Content {
         variant: u64,
         /// For which time in the interaction it is put, from 1.
         time: u32,
-        /// The answers that are left, in their spoken form; none if they are too many.
+        /// The answers that are left, in their spoken form; empty if they are too many.
         choices: Vec<String>,
-        /// Whether this repetition is the last.
+        /// Whether the repetition is the last.
         is_last: bool,
     },
     /// Asks for the wanted object for the given time, from 1.
@@ -183,7 +183,7 @@ pub enum Content {
     Forgotten,
     /// The wanted object is not here.
     NotHere,
-    /// None of the scene's objects is left.
+    /// No object of the scene is left.
     SceneReplaced,
     /// Putting back is called off at the user's request.
     Keeping,

@@ -100,7 +100,7 @@ impl Manager {
         Some(self.setup.scene.ids().map(|i| probability(i) * fits(i)).sum())
     }
 
-    /// Returns the line that offers an object: what is absent, and the nearest object.
+    /// Returns the line that offers an object: the absent values, and the nearest object.
     fn offering(&mut self, open: &Interaction, object: ObjectId) -> Line {
         let belief = open.belief();
         let preface = self.nothing_fits(open, &belief);

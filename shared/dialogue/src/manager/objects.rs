@@ -88,7 +88,7 @@ impl Manager {
 }
 
 impl Setup {
-    /// Returns whether there is no object to fetch.
+    /// Returns whether the scene has no object to fetch.
     pub(super) fn nothing_stands(&self) -> bool {
         self.scene.objects().iter().all(|object| object.taken)
     }

@@ -93,8 +93,8 @@ impl Manager {
         }
     }
 
-    /// Returns whether an utterance asks to put back what the user was handed: after a hand-over
-    /// this is more than a denial.
+    /// Returns whether an utterance asks to put back the object handed over: after a hand-over this
+    /// is more than a denial.
     pub(super) fn asks_to_put_back(&self, state: &State, utterance: &Utterance) -> bool {
         let for_itself = utterance.interpretations.iter().filter(|it| it.answers.is_none());
         let (mut all, mut asks) = (0.0, 0.0);

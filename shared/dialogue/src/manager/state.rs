@@ -282,7 +282,7 @@ pub struct Prompt {
     pub times: u32,
 }
 
-/// A decision with its reasons.
+/// A decision with the reasons for it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Act {
     /// Number of the act.

@@ -10,7 +10,7 @@ use super::references::reference;
 use super::state::State;
 use super::utterance::Utterance;
 
-/// An utterance with its intent.
+/// An utterance and the intent that the manager handles.
 pub(super) struct Turn<'a> {
     pub(super) utterance: &'a Utterance,
     /// Shares of the questions that it may answer, and last the share of none.

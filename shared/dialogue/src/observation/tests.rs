@@ -177,8 +177,8 @@ fn a_question_of_another_scene_is_refused() {
     let _ = log_likelihood(&model(&scene), Question::Point(ObjectId(3)), &Reading::default());
 }
 
-/// A certain word's odds are `(1 + α) : α` with the `α` of certain words, and it is the paper's if
-/// there is no other.
+/// A certain word's odds are `(1 + α) : α` with the `α` of certain words, and the paper's without
+/// another one.
 #[test]
 fn certain_words_have_their_own_smoothing() {
     let scene = bowls();

@@ -106,7 +106,7 @@ fn stopping(problem: &DecisionProblem<'_>, belief: &Belief) -> (Action, f64) {
     if pick > wait { (Action::Pick(likeliest), pick) } else { (Action::Wait, wait) }
 }
 
-/// The most probable objects as announced picks, each with its value; none if picks are final.
+/// The most probable objects as announced picks, each with its value; empty if picks are final.
 fn announced(problem: &DecisionProblem<'_>, model: &Model, joint: &Joint) -> Vec<(Action, f64)> {
     if problem.announce.is_final() {
         return Vec::new();

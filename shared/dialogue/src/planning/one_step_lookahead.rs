@@ -28,7 +28,7 @@ pub(crate) struct OneStepLookahead {
     pub(crate) peak: f64,
     /// Every informative question, except for pointing at improbable classes.
     pub(crate) choices: Vec<Choice>,
-    /// Picks that can be denied, except for improbable classes; none if picks are final.
+    /// Picks that can be denied, except for improbable classes; empty if picks are final.
     pub(crate) picks: Vec<AnnouncedPick>,
     /// Upper bound on the questions and picks that are not among these.
     pub(crate) rest: f64,
