@@ -217,7 +217,7 @@ macro_rules! wire_struct {
             }
         }
 
-        // The sizes of the fields add up to the struct's size: there is no padding.
+        // The sizes of the fields add up to the struct's size: without padding.
         const _: () = assert!(0 $(+ size_of::<$ty>())+ == size_of::<$name>());
 
         // SAFETY: fields are numbers, codes, arrays of these and other such structs; and see above.

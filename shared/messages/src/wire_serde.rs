@@ -70,7 +70,7 @@ macro_rules! numbers {
 }
 numbers! { u8 u16 u32 u64 i16 i32 f32 f64 }
 
-/// An element in its serde form.
+/// An array element in its serde form.
 struct Element<T>(T);
 
 impl<T: WireSerde> Serialize for Element<&T> {

@@ -56,7 +56,7 @@ wire_struct! {
 }
 
 impl AudioChunk {
-    /// The stream ends with this chunk.
+    /// Flag of the stream's last chunk.
     pub const END: u8 = 1;
     /// The person holds a key while speaking, so they may interrupt the robot, and the utterance
     /// ends when the key is released.

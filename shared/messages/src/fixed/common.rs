@@ -162,7 +162,7 @@ impl From<Option<[f64; 3]>> for WireGesture {
 }
 
 impl WireGesture {
-    /// The point indicated by the gesture, metres, frame `base`; none without a gesture.
+    /// The point indicated by the gesture, metres, frame `base`; `None` without a gesture.
     ///
     /// # Errors
     /// A code or a coordinate that makes no sense.
