@@ -83,9 +83,9 @@ pub enum BusError {
     Schema {
         /// The topic.
         topic: String,
-        /// Payload type of this program.
+        /// Payload type known to this program.
         payload: &'static str,
-        /// Schema key of this program.
+        /// Schema key known to this program.
         ours: String,
         /// Reason given by iceoryx2.
         cause: String,

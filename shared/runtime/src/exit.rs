@@ -61,7 +61,7 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// A failure with its reason.
+    /// Makes a failure with its reason and exit code.
     pub fn new(exit: Exit, message: impl Into<String>) -> Self {
         Self { exit, message: message.into() }
     }
@@ -132,9 +132,9 @@ impl From<StopError> for Failure {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProcessExit {
-    /// Exit with this code.
+    /// Exit of the process with the given code.
     Code(i32),
-    /// End by this signal.
+    /// End of the process by the given signal.
     Signal(i32),
     /// The process could not be started; a retry may succeed (e.g. no process slot).
     NotStarted,

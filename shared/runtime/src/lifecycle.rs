@@ -37,7 +37,7 @@ pub struct Environment {
     pub paths: GroupPaths,
     /// Epoch of the group.
     pub epoch: Epoch,
-    /// Number of this start.
+    /// Number of this start of the service.
     pub incarnation: Incarnation,
     /// Arguments of the program; a swapped service may have some.
     pub arguments: Vec<String>,
@@ -83,7 +83,7 @@ fn number<T: std::str::FromStr>(key: &str) -> Result<T, Failure> {
     value.parse().map_err(|_| Failure::new(Exit::Usage, format!("{key}={value} is not a number")))
 }
 
-/// The service's connection to its supervisor.
+/// Connection of a service to its supervisor.
 #[derive(Debug)]
 pub struct Lifecycle {
     signals: UnixStream,

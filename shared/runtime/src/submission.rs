@@ -11,8 +11,8 @@ use crate::{Span, Time};
 /// Time between two transmissions of an unanswered request.
 const RESEND_EVERY: Span = Span::from_ms(250);
 
-/// One request on its way. Pure: the caller sends the result of [`Submission::due`] and feeds every
-/// receipt of the topic to [`Submission::on_receipt`].
+/// A request under way to the group. Pure: the caller sends the result of [`Submission::due`] and
+/// feeds every receipt of the topic to [`Submission::on_receipt`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Submission {
     injection: Injection,
