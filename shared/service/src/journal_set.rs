@@ -274,7 +274,7 @@ fn lock(paths: &GroupPaths) -> io::Result<File> {
 }
 
 /// Moves the journals of these services into a folder of their own, with their older parts, and
-/// lets every number so far be over: each service then continues above it, and what was in progress
+/// lets every number so far be over: each service then continues above it, and work in progress
 /// ends. Returns the folder; `None` without a file to move.
 ///
 /// A crash in between leaves a journal that is missing, for which this is the way out again.

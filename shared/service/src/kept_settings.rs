@@ -1,6 +1,6 @@
 //! The settings in force, which a group's services read, and those by which the journals were
 //! written, kept next to them: a journal can be listed and verified without the options of its
-//! group's start, and a start need not repeat checks by the same program.
+//! group's start, and a start need not repeat the same program's checks.
 
 use std::fs::{self, File};
 use std::io;

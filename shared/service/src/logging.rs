@@ -246,7 +246,7 @@ fn notice(Lost { lines, error, torn }: &Lost, json: bool) -> String {
     }
 }
 
-/// Writes what can be written without waiting. Returns its length, and the error that ended it.
+/// Writes as much as possible without waiting. Returns the length, and the error that ended it.
 fn write_now(file: &mut File, bytes: &[u8]) -> (usize, Option<io::Error>) {
     let mut written = 0;
     while written < bytes.len() {

@@ -155,7 +155,7 @@ impl<Out, Record> Effects<Out, Record> {
         self.urgent.push(output);
     }
 
-    /// Ends the service after this batch.
+    /// Ends the service after the current batch.
     pub fn exit(&mut self) {
         self.exit = true;
     }

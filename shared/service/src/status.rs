@@ -245,7 +245,7 @@ pub enum Actual {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Failure {
-    /// Not ready within its start deadline.
+    /// Not ready within the start deadline.
     NotReady,
     /// No beat of its main loop within the watchdog's period.
     NoBeat,

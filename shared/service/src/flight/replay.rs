@@ -70,7 +70,7 @@ pub struct Difference {
     pub path: String,
     /// The recorded value.
     pub recorded: Value,
-    /// This build's value.
+    /// Value recomputed by this build.
     pub recomputed: Value,
     /// The last events up to there, oldest first: `at_ns` and `event`.
     pub before: Vec<Value>,

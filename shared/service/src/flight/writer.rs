@@ -157,7 +157,7 @@ impl Writer {
     /// Creates the file.
     ///
     /// # Errors
-    /// The file cannot be created, or there is no space for it.
+    /// The file cannot be created, or space is short.
     pub(super) fn create(
         ring: Ring,
         service: String,
