@@ -17,7 +17,7 @@ use crate::{Settings, arm, console, dialogue, group, services, snapshot, speech,
 /// Result of examining a configuration, before a verdict: further checks may add to the report.
 #[derive(Debug)]
 pub struct Examined {
-    /// The settings without the wrong parts of the scene; `None` if there is no scene or no robot.
+    /// The settings without the wrong parts of the scene; `None` without a scene or a robot.
     pub settings: Option<Settings>,
     /// Every problem so far.
     pub report: Report,

@@ -20,7 +20,7 @@ pub(crate) const CORE: [(&str, &str); 6] = [
 pub(crate) static CORE_DEFAULTS: LazyLock<Table> =
     LazyLock::new(|| parsed(CORE.into_iter(), &Source::built_in()));
 
-/// A value and its origin.
+/// A value and the layer that it comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
     /// Dotted key with its section, e.g. `arm.time_scale`.

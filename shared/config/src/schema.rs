@@ -6,7 +6,7 @@ use serde_json::Value as Json;
 use crate::part::{defaults, sections};
 use crate::{arm, console, dialogue, group, part, services, speech, study};
 
-/// A section with its schema.
+/// A section of the configuration with the schema of its values.
 #[derive(Clone, Debug)]
 pub struct SectionSchema {
     /// Name of the section.

@@ -43,7 +43,7 @@ pub struct Speech {
     pub spoken_max: Duration,
     /// Longest typed or injected utterance, bytes of UTF-8.
     pub utterance_bytes_max: usize,
-    /// Longest recording that is recognised.
+    /// Length of the longest recording that is recognised.
     pub recording_max: Duration,
     /// The microphone of the robot's computer.
     pub microphone: Microphone,
