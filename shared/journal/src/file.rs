@@ -87,7 +87,7 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
         Ok((Self { header: header.clone(), ..journal }, recovered))
     }
 
-    /// As [`Journal::open`], but makes a new journal if there is no file. The folder must exist.
+    /// As [`Journal::open`], but makes a new journal if the file is missing. The folder must exist.
     ///
     /// # Errors
     /// See [`JournalOpenError`]; the file is left as it is.
