@@ -128,7 +128,7 @@ impl Report {
         self.0.sort_by_key(|diagnostic| diagnostic.line);
     }
 
-    /// Returns `value` if there is no diagnostic.
+    /// Returns `value` without diagnostics, and these otherwise.
     ///
     /// # Errors
     /// Every diagnostic.

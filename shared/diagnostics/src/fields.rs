@@ -159,7 +159,7 @@ impl<'a> Fields<'a> {
         self.table.source.key(&self.path_of(&quoted(name)))
     }
 
-    /// Accepts keys without reading them.
+    /// Accepts the given keys without reading them.
     pub fn allow(&mut self, keys: &[&'a str]) {
         self.known.extend(keys);
     }

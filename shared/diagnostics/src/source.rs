@@ -68,7 +68,7 @@ impl Source {
         self.locate(Diagnostic::new(&*self.label, self.key(path), what, help))
     }
 
-    /// Returns the diagnostic with this location.
+    /// Returns the diagnostic with the source's location.
     fn locate(&self, diagnostic: Diagnostic) -> Diagnostic {
         diagnostic.at(self.line).at_column(self.column)
     }
@@ -96,7 +96,7 @@ pub enum Scalar {
     Other(&'static str),
 }
 
-/// A value with its source.
+/// A value of a document with its source.
 #[derive(Clone, Debug)]
 pub enum Node {
     /// A scalar.
