@@ -82,7 +82,7 @@ impl Draft {
         self.file.persist(&self.path).map(drop).map_err(|error| error.error)
     }
 
-    /// Puts the draft in place if there is no file.
+    /// Puts the draft in place unless the file exists.
     ///
     /// # Errors
     /// `AlreadyExists`, or the folder cannot be written.

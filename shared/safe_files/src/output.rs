@@ -75,7 +75,7 @@ pub fn write_new_output(path: &Path, content: &[u8]) -> io::Result<()> {
 /// Checks that no link of another user leads to a new file that a user has named.
 ///
 /// # Errors
-/// A link of another user leads to the file, or there is no such folder.
+/// A link of another user leads to the file, or the folder is missing.
 pub fn check_new_output(path: &Path) -> io::Result<()> {
     walk(folder_of(path), End::Existing).map(drop)
 }
