@@ -98,8 +98,8 @@ impl<'a> Arrangement<'a> {
 
     /// Moves every object that cannot be fetched from its place to the nearest one where it can,
     /// then puts each of `new`, which have no place yet, on the table. Returns those with a new
-    /// place. Objects for which there is none keep theirs, out of the others' way; no place helps
-    /// those that cannot be grasped.
+    /// place. Others keep theirs, out of the others' way; no place helps those that cannot be
+    /// grasped.
     pub fn arrange(&mut self, new: &[usize]) -> Vec<usize> {
         new.iter().for_each(|&i| self.stands[i] = false);
         let is_misplaced = |&i: &usize| {
@@ -127,7 +127,7 @@ impl<'a> Arrangement<'a> {
         moved
     }
 
-    /// Returns the reason why there is no place for an object without one.
+    /// Returns the reason for which an object without a place gets none.
     pub fn why_unplaced(&self, i: usize) -> String {
         match self.limb(i) {
             Err(PlanError::Grasp(error)) => format!("cannot be grasped anywhere: {error}"),
