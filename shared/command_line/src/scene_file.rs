@@ -53,7 +53,7 @@ pub fn is_word(path: &Path) -> bool {
 /// Resolves a scene: a name without folder and extension is looked up in the configuration.
 ///
 /// # Errors
-/// The scene is unknown, or there is no configuration.
+/// The scene is unknown, or the configuration is missing.
 pub fn path_of(named: &Path, args: &ConfigArgs) -> Result<PathBuf, Failure> {
     if named.is_file() || !is_word(named) {
         return Ok(named.to_owned());
