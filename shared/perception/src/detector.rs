@@ -256,7 +256,7 @@ fn placed(frame: &Frame, pose: &Pose, label: &Label, covariance: &[f64; 36]) -> 
 }
 
 impl Reported {
-    /// A marker that was seen.
+    /// Makes a message about a seen marker.
     pub fn marker(frame: &str, id: &str, pose: Pose, covariance: [f64; 36]) -> Self {
         let (id, track) = (id.to_owned(), id.to_owned());
         let hypotheses = vec![Hypothesis { id, score: 1.0, pose, covariance }];

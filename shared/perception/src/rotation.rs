@@ -16,8 +16,8 @@ impl Rotation {
         ])
     }
 
-    /// Returns the rotation of a quaternion x, y, z, w of any length; none for length 0, as in
-    /// messages without a rotation.
+    /// Returns the rotation of a quaternion x, y, z, w of any length; no rotation for length 0, as
+    /// in messages without one.
     pub(crate) fn from_quaternion(quaternion: [f64; 4]) -> Self {
         let length = quaternion.iter().map(|part| part * part).sum::<f64>().sqrt();
         if length == 0.0 {
@@ -31,7 +31,7 @@ impl Rotation {
         ])
     }
 
-    /// Returns `first` followed by this rotation.
+    /// Returns the rotation `first` followed by this one.
     pub(crate) fn after(&self, first: &Self) -> Self {
         let Self(b) = first;
         Self(self.0.map(|row| {
