@@ -6,7 +6,7 @@ use serde_reflection::{Registry, Tracer, TracerConfig};
 
 use crate::foxglove::{FrameTransforms, JointStates, Log, RawAudio, SceneUpdate};
 
-/// A channel as MCAP describes it.
+/// A channel in the form in which MCAP describes it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
     /// Name of the channel in the file.

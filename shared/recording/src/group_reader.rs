@@ -43,7 +43,7 @@ pub enum OpenError {
     Settings(diagnostics::Diagnostics),
 }
 
-/// A topic and its reader.
+/// A topic and the reader of its messages.
 #[derive(Debug)]
 struct Source {
     topic: &'static Topic,
@@ -62,7 +62,7 @@ pub struct GroupReader {
     numbers: Numbers,
     /// The latest failure to read a topic, so that it is logged once.
     failure: Option<String>,
-    /// A message with its CDR header.
+    /// Buffer of a message with its CDR header.
     buffer: Vec<u8>,
     /// Topics that are still to be opened, the next one last.
     unopened: Vec<(ChannelId, &'static Topic)>,

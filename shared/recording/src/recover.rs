@@ -93,7 +93,7 @@ fn copy(from: &[PathBuf], to: &Path) -> Result<(u64, LeftOut), RecordingError> {
                 LeftOut { endless: 0, ..found }
             }
             Ok(found) => found,
-            // One of many that is not a recording hides none of the others.
+            // One of many that is not a recording does not hide the others.
             Err(RecordingError::Mcap(path, error)) if from.len() > 1 && path != to => {
                 tracing::warn!(file = %path.display(), %error, "not a recording");
                 LeftOut { parts: 1, ..LeftOut::default() }
@@ -242,7 +242,7 @@ mod tests {
         let to = folder.path().join("both.mcap");
         let merged = merge(&[first.clone(), second.clone()], &to).unwrap();
         assert_eq!(merged, (80, LeftOut::default()));
-        // A file that is not a recording hides none of the others.
+        // A file that is not a recording does not hide the others.
         let (odd, despite) = (folder.path().join("odd.mcap"), folder.path().join("despite.mcap"));
         fs::write(&odd, [7; 300]).unwrap();
         let left_out = LeftOut { parts: 1, ..LeftOut::default() };
