@@ -26,11 +26,11 @@ pub struct Configuration {
 /// Result of a check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Findings {
-    /// Every problem, none if the scene can be used.
+    /// Every problem; empty for a usable scene.
     pub problems: Vec<Problem>,
     /// Ambiguities for a person.
     pub warnings: Vec<String>,
-    /// The robot's words for each object; none if the file has problems.
+    /// The robot's words for each object; empty if the file has problems.
     pub words: Vec<String>,
 }
 

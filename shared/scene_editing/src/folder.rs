@@ -24,7 +24,7 @@ pub enum FileError {
         "scene: `{0}` is not a name; help: use up to {NAME_MAX} letters a to z, digits, `-` and `_`, and begin with a letter or digit"
     )]
     Name(String),
-    /// No scene has this name.
+    /// The folder has no scene of the given name.
     #[error("scene: no scene `{0}` in {folder}", folder = .1.display())]
     Missing(String, PathBuf),
     /// There is a scene of this name, which was to be a new one.
