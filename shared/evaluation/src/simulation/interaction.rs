@@ -318,8 +318,7 @@ impl<'r, 'a> Play<'r, 'a> {
     }
 
     /// Announces the pick. If the user denies it and is heard before the object is gripped, the arm
-    /// leaves it and returns from where it is. A denial that is not understood, or too late,
-    /// changes nothing.
+    /// leaves it and returns. A denial that is not understood, or too late, changes nothing.
     fn is_denied(&mut self, object: ObjectId, user: &mut SimulatedUser) -> bool {
         if !self.room.denials {
             return false;

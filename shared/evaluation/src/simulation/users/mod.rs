@@ -303,9 +303,9 @@ impl SimulatedUser {
         }
     }
 
-    /// Returns the reaction to the announcement of an object: none if it is taken for the wanted
-    /// one, or not attended to. Users who answer as the model has it object with its probabilities;
-    /// the attention of others does not depend on the robot's expectation.
+    /// Returns the reaction to the announcement of an object: a silence if it is taken for the
+    /// wanted one, or not attended to. Users who answer as the model has it object with its
+    /// probabilities; the attention of others does not depend on the robot's expectation.
     pub fn objection(&mut self, domain: Domain<'_>, announce: Announce, object: ObjectId) -> Turn {
         let this = Question::Point(object);
         let rng = &mut self.rng;
@@ -402,7 +402,7 @@ fn answer_or_slip(
     }
     let mut others = spoken_answers(model, question);
     others.retain(|answer| *answer != truth);
-    // The true one if there is no other.
+    // The true one without alternatives.
     one_of(rng, &others).copied().unwrap_or(truth)
 }
 

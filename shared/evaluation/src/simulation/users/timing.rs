@@ -83,7 +83,7 @@ impl TimedKind {
     /// Always answers, is always right and always recognised.
     pub const TRUTHFUL: Self = Self { answers: 1.0, random: 0.0, lost: 0.0, click_s: 1.4 };
 
-    /// Draws a user. With an `open` microphone there is no click.
+    /// Draws a user. With an `open` microphone no click is needed.
     pub fn user(&self, domain: Domain<'_>, pace: &Pace, open: bool, rng: Rng) -> TimedUser {
         let Self { answers, random, lost, click_s } = *self;
         let user = SimulatedUser::wanting_any(Policy::Unreliable { answers, random }, domain, rng);
@@ -104,7 +104,7 @@ enum Habit {
     Doubled,
 }
 
-/// An utterance with its times.
+/// An utterance of a user with its times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedUtterance {
     /// The prompt that it answers; 0 for the request.
