@@ -137,7 +137,7 @@ pub struct Heard {
     pub onset_ms: f64,
     /// Acceptance of the whole.
     pub accepted_ms: f64,
-    /// The words, if they are kept.
+    /// The words, if the study keeps them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub words: Option<String>,
 }

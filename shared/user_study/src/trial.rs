@@ -143,7 +143,7 @@ impl Trial {
         self.asked.iter().map(|question| question.presentation.saturating_sub(1)).sum()
     }
 
-    /// Number of utterances by this source.
+    /// Returns the number of utterances by a source.
     pub fn said_by(&self, source: Source) -> usize {
         self.said.iter().filter(|said| said.source == source).count()
     }
