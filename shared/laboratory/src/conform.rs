@@ -290,7 +290,7 @@ impl<'a> Test<'a> {
         is_client || is_configured || self.is_of_service(topic)
     }
 
-    /// Makes the service do its work.
+    /// Makes the service do the work of its kind.
     fn exercise(&mut self) -> Result<(), Broken> {
         self.running()?;
         if self.bench.service == Service::Grounding {

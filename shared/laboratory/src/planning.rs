@@ -25,7 +25,7 @@ pub(crate) fn planner_of(problem: &Problem) -> &str {
     problem.settings.as_ref().map_or(PLANNER, |settings| &settings.dialogue.planner)
 }
 
-/// Returns the planner with its problem.
+/// Returns the named planner with the decision problem.
 pub(crate) fn decider(args: &PlanArgs) -> Result<Decider, Failure> {
     let follows = args.problem.config.is_given();
     let problem = of_scene(&args.scene, &args.problem, follows)?;
