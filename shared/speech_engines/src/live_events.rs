@@ -42,7 +42,7 @@ impl MicrophoneStatus {
     }
 }
 
-/// Accepts an event, or returns it if there is no room.
+/// Accepts an event, or returns it for lack of room.
 pub type Sink = Box<dyn Fn(LiveEvent) -> Result<(), LiveEvent> + Send>;
 
 /// Events that may wait; beyond it new utterances are dropped as a whole.

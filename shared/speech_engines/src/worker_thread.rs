@@ -58,7 +58,7 @@ impl<T: Send + 'static> WorkerThread<T> {
         Self { queue: Some(queue), thread: Some(thread::spawn(move || run(&work))) }
     }
 
-    /// Queues work if there is room.
+    /// Queues work, if the queue has room.
     ///
     /// # Errors
     /// If there is none, or the thread is gone.

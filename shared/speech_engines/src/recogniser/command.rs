@@ -23,7 +23,7 @@ use messages::Hypothesis;
 /// Program and limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandOptions {
-    /// The program and its arguments.
+    /// Program of the recogniser, with arguments.
     pub command: Vec<String>,
     /// Time limit from the last sample to the answer; doubled for the first answer, because the
     /// program loads its model meanwhile.

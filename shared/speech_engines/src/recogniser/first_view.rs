@@ -9,7 +9,7 @@ pub struct FirstView {
     /// Hypotheses with different texts, best first; empty if nothing was recognised.
     pub hypotheses: Vec<Hypothesis>,
     /// Length of the words on the best path and of other speech between them, without pauses and
-    /// noises, seconds; 0 if there is no word on it.
+    /// noises, seconds; 0 without a word on it.
     pub words_s: Option<f32>,
     /// Share of voice in the sound, if noise reduction has shown it.
     pub voice: Option<VoiceEvidence>,
