@@ -16,7 +16,7 @@ pub(crate) struct PendingSound {
     pub(crate) segment: Option<(u32, u32)>,
     /// Source of the sound.
     pub(crate) source: Source,
-    /// Begin of the sound.
+    /// Start of the sound.
     pub(crate) onset: Time,
     /// End of a live sound; `None` while it lasts.
     pub(crate) end: Option<Time>,

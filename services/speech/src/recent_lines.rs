@@ -17,7 +17,7 @@ pub(crate) struct RecentLines(VecDeque<Line>);
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Line {
     text: String,
-    /// Begin of the sound; `None` before.
+    /// Start of the sound; `None` before.
     began: Option<Time>,
     /// End of the sound; `None` before.
     ended: Option<Time>,

@@ -53,7 +53,7 @@ fn words_after_a_remark_answer_the_questions_before_it() {
     assert_eq!(speech.take(0.1, yes(1, 8, onset)).asked(), [(7, 1, 1)]);
 }
 
-/// Before the voice has begun, while it begins, and by a client with words after its begin.
+/// Before the voice has begun, while it begins, and by a client with words after its start.
 #[test]
 fn question_is_answered_as_soon_as_it_is_shown() {
     for after_s in [0.0, 0.05, 0.2] {
