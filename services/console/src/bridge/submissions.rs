@@ -89,7 +89,7 @@ impl Submissions {
         }
     }
 
-    /// Answers the command that waits for a receipt; an accepted one with the robot's hindrance.
+    /// Answers the command that waits for a receipt; an accepted one with the reason for any delay.
     pub(super) fn on_receipt(
         &mut self,
         receipt: &Receipt,
