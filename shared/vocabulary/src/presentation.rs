@@ -17,7 +17,7 @@ pub struct Presentation {
     pub question: Question,
     /// Key of the scene whose objects and attributes the question is about.
     pub scene: u64,
-    /// Begin of the prompt's sound.
+    /// Start of the prompt's sound.
     pub began: Time,
     /// End or interruption of the prompt's sound; `None` while it plays.
     pub ended: Option<Time>,
