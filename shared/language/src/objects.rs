@@ -86,7 +86,7 @@ fn parts<'a>(tags: &[Tag<'a>], base: &[Asserted<'a>], list: bool) -> Vec<Part<'a
     parts
 }
 
-/// The joint between two values, and the tag after it; for the first value, the begin of its noun
+/// The joint between two values, and the tag after it; for the first value, the start of its noun
 /// phrase.
 fn joint(tags: &[Tag<'_>], from: usize, to: usize) -> (Joint, usize) {
     const BETWEEN: &[Class] = classes![
