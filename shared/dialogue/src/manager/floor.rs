@@ -13,7 +13,7 @@ pub const HEARING_MAX: Span = Span::from_ms(10_000);
 /// State of both voices, the user's and the robot's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Floor {
-    /// Begin of the user's speech; `None` while no speech is heard.
+    /// Start of the user's speech; `None` while no speech is heard.
     pub speaking_since: Option<Time>,
     /// Utterances being recognised, or recognised and not yet applied.
     pub pending: u32,
