@@ -60,7 +60,7 @@ pub(crate) struct Segment<T: Send + Sync + Debug + ZeroCopySend> {
     _content: PhantomData<T>,
 }
 
-/// Begin of a segment, before the memory that the content allocates for itself.
+/// Start of a segment, before the memory that the content allocates for itself.
 #[repr(C)]
 struct Layout<T> {
     /// Version of iceoryx2; 0 until the content is complete.
