@@ -65,7 +65,7 @@ pub struct PresentationRecord {
     pub presentation: u32,
     /// The question; `None` if its scene is no longer known.
     pub question: Option<QuestionView<String>>,
-    /// Begin of the presentation's sound.
+    /// Start of the presentation's sound.
     pub began_ns: u64,
     /// End of the sound; `None` while it plays.
     pub ended_ns: Option<u64>,
