@@ -194,7 +194,7 @@ impl Recording {
         finished(&path)
     }
 
-    /// Returns the recording's begin, nanoseconds since 1970.
+    /// Returns the recording's start, nanoseconds since 1970.
     pub fn began_ns(&self) -> u64 {
         self.began_ns
     }

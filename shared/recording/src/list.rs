@@ -18,7 +18,7 @@ use crate::{EXTENSION, RecordingError, UNFINISHED};
 pub struct Entry {
     /// The file.
     pub path: PathBuf,
-    /// Begin of the recording by its name, nanoseconds since 1970; 0 for a foreign name.
+    /// Start of the recording by its name, nanoseconds since 1970; 0 for a foreign name.
     pub began_ns: u64,
     /// Size of the recording, bytes.
     pub bytes: u64,
