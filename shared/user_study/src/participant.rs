@@ -105,7 +105,7 @@ pub fn people<N>(files: Vec<(N, String)>) -> Result<Vec<Participant>, (N, Format
 pub struct Participant {
     /// The first line.
     pub begun: Begun,
-    /// Begin of the session, milliseconds since 1970.
+    /// Start of the session, milliseconds since 1970.
     pub begun_at: u64,
     /// The latest line.
     pub latest_at: u64,
