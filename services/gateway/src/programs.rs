@@ -22,7 +22,7 @@ use crate::robots::Console;
 const BODY_MAX: usize = 16 << 10;
 const BODY_PATIENCE: Duration = Duration::from_secs(10);
 
-/// A program that makes a request.
+/// The person behind a request, the robot, and the person's right.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Visitor<'a> {
     pub(crate) person: &'a Name,

@@ -81,7 +81,7 @@ pub(crate) async fn pass(
         Ok(answer) => answer.map_err(away)?,
         Err(_) => return Err(away("no answer within 10 s".to_owned())),
     };
-    // It knows its token, so that it redirects no request.
+    // The request has the token, so that the console has no reason to redirect.
     if response.status().is_redirection() && response.status() != StatusCode::NOT_MODIFIED {
         return Err(away(format!("unexpected answer {}", response.status())));
     }

@@ -144,7 +144,7 @@ fn order(frame: Value) -> Option<Order> {
         Some(Value::String(text)) => Some(text),
         other => other.map(|other| other.to_string()),
     };
-    // Orders that a page adds by itself do nothing.
+    // Fields that a page adds by itself are not part of the order.
     for key in ["t", "began_ms", "ended_ms"] {
         said.remove(key);
     }
@@ -227,7 +227,7 @@ mod tests {
         }
         let unnumbered = judged(json!({ "t": "do", "do": "stop" }), Right::Operator);
         assert!(matches!(unnumbered, Verdict::Order(order, _) if order.is_stop()));
-        // Of a duplicate key the same one counts here and there.
+        // Of duplicate keys only the one that counts here is passed on.
         let twice = r#"{"t":"ping","at":1,"t":"do","id":1,"do":"say","do":"stop"}"#;
         let verdict = judge(twice, &Name::new("ann").unwrap(), Right::Operator);
         let Verdict::Order(order, text) = verdict else { panic!("{verdict:?}") };
