@@ -47,7 +47,7 @@ struct Limits {
 }
 
 impl Limits {
-    /// Returns the limits of the configuration. Doubt waits as long as words that lead on.
+    /// Returns the limits of the configuration. A doubtful result waits as long as an open pause.
     fn of(speech: &config::Speech) -> Self {
         Self {
             segmenter: options::segmenter(speech),
