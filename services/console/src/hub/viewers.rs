@@ -26,7 +26,7 @@ const QUEUE_MAX: usize = 64;
 /// The role that a page requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Operator, while there is no other.
+    /// Operator, if no other page is.
     Operator,
     /// A viewer, who may ask for control.
     Viewer,
