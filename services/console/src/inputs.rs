@@ -1,4 +1,4 @@
-//! What browsers send, as the server reads it: for the fuzz targets.
+//! Input from browsers, as the server reads it: for the fuzz targets.
 
 pub use crate::hub::command::{Verb, Words};
 pub use crate::live::say;

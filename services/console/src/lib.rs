@@ -1,11 +1,11 @@
-//! The console: a page in a browser from which a user talks to the robot and sees what it believes.
+//! The console: a page in a browser from which a user talks to the robot and sees its belief.
 //!
-//! Two halves that never wait for each other. The [`bridge`] is the main thread: it owns every topic,
-//! folds what arrives into a [`view_model`] and carries out the commands of viewers. The [`server`] is
-//! a small asynchronous runtime that serves pages and sockets. Between them is the [`hub`]: the bridge
-//! puts the newest text of each section on a board, from which every viewer takes what it has not seen
-//! yet; a slow viewer skips versions, and no queue grows. The [`live`] view is for viewers of robotics: every
-//! message of every topic, of which a slow viewer loses the oldest. The [`metrics`] are for Prometheus.
+//! Two halves that never wait for each other. The [`bridge`] is the main thread: it owns every
+//! topic, folds messages into a [`view_model`] and carries out the commands of viewers. The
+//! [`server`] is a small asynchronous runtime that serves pages and sockets. Between them is the
+//! [`hub`]: the bridge puts the newest text of each section on a board, from which every viewer
+//! takes the unseen ones; a slow viewer skips versions, and no queue grows. The [`live`] view shows
+//! robotics viewers every message; slow ones lose some. The [`metrics`] are for Prometheus.
 
 #![allow(
     unreachable_pub,

@@ -34,13 +34,13 @@ use crate::server::web::Web;
 use crate::server::{Access, App};
 use crate::viewer;
 
-/// Longest sleep with and without viewers. Prompts, acts and phases of the arm wake the console; it polls
-/// the other topics.
+/// Longest sleep with and without viewers. Prompts, acts and phases of the arm wake the console; it
+/// polls the other topics.
 const LOOK_EVERY: (Span, Span) = (Span::from_ms(10), Span::from_ms(250));
 /// Most restarts that wait for the supervisor.
 const RESTARTS_MAX: usize = 8;
 
-/// Runs the service until it is shut down; with the arguments `view FILE`, the page for a shared interaction.
+/// Runs the service until it is shut down; with `view FILE`, the page for a shared interaction.
 pub fn run() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if let [verb, file] = &arguments[..]
@@ -154,8 +154,8 @@ fn http(access: &Arc<Access>, hub: &Hub, paths: &GroupPaths) -> std::io::Result<
     http_api::open(paths, Rules { is_owner, is_stop, ending })
 }
 
-/// Raises the limit of descriptors as far as allowed, and divides it: first to pages, then to the live view.
-/// Returns whether enough is left for that.
+/// Raises the limit of descriptors as far as allowed, and divides it: first to pages, then to the
+/// live view. Returns whether enough is left for that.
 fn limits(viewers_max: usize) -> (Limits, bool) {
     let Rlimit { maximum, .. } = getrlimit(Resource::Nofile);
     let raised = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });

@@ -24,7 +24,7 @@ struct WeightedReading {
     text: String,
     /// Probability among the readings that answer the same question.
     weight: f64,
-    /// Prompt and presentation of that question.
+    /// Prompt and presentation of the question.
     answers: Option<(u64, u32)>,
 }
 
@@ -35,7 +35,7 @@ pub(crate) struct Understood {
     pub(crate) answers: Vec<Answered>,
 }
 
-/// Reads an observation; none if it is of another scene or invalid.
+/// Reads an observation; `None` if it is of another scene or invalid.
 pub(crate) fn read(scene: &Scene, observation: &Observation) -> Option<Readings> {
     if observation.scene_key != scene.key() {
         return None;

@@ -21,13 +21,13 @@ use web_server::request::is_for_this_machine;
 use crate::history::Interaction;
 use crate::server::{page_asset, secure};
 
-/// What the page marks a file with.
+/// Mark of the page in a file.
 const FORMAT: &str = "whichone.interaction/1";
-/// Largest file, bytes: many times what an interaction takes.
+/// Largest file, bytes: many times the size of an interaction.
 const FILE_MAX: u64 = 32 << 20;
 
-/// Serves the page for a file on a free port of this machine until the process is ended. Prints the link, which
-/// only its reader knows.
+/// Serves the page for a file on a free port of this machine until the process is ended. Prints the
+/// link, which only its reader knows.
 pub fn view(file: &Path) -> ExitCode {
     match serve(file) {
         Ok(()) => Exit::Ok.code(),

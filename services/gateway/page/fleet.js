@@ -11,7 +11,7 @@ const at = (id) => document.getElementById(id);
 let robots = [];
 let shown = "";
 
-/** What a robot's row says: text, and tone where it matters. @param {any} listed */
+/** Content of a robot's row: text, and tone if it matters. @param {any} listed */
 function cells({ connected, presence, right }) {
   if (!connected)
     return [

@@ -18,7 +18,7 @@ pub(crate) const SESSIONS_FILE: &str = "sessions.json";
 pub(crate) struct Address {
     /// `https` or `http`.
     pub(crate) scheme: String,
-    /// Host, with its port where it is not the scheme's.
+    /// Host, with its port if it is not the scheme's.
     pub(crate) host: String,
 }
 
@@ -44,8 +44,8 @@ impl std::str::FromStr for Address {
 }
 
 impl Address {
-    /// Returns whether a request is addressed to this gateway: another host name is an attack by another site (DNS
-    /// rebinding). The loopback address always is, for tunnels.
+    /// Returns whether a request is addressed to this gateway: another host name is an attack by
+    /// another site (DNS rebinding). The loopback address always is, for tunnels.
     pub(crate) fn is_addressed(&self, headers: &HeaderMap) -> bool {
         let host = text(headers, &header::HOST);
         host.is_some_and(|host| host.eq_ignore_ascii_case(&self.host))
@@ -58,7 +58,7 @@ impl Address {
     }
 }
 
-/// A person who is known, and by what.
+/// A known person, and the proof.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Known {
     /// The person.
@@ -74,7 +74,7 @@ enum By {
 }
 
 impl Known {
-    /// Returns the person who makes a request, by the secret as a bearer or by the cookie of a session.
+    /// Returns the person who makes a request, by a bearer secret or by the cookie of a session.
     pub(crate) fn of(
         headers: &HeaderMap,
         people: &People,
@@ -89,7 +89,7 @@ impl Known {
         Some(Self { person, by: By::Session(session) })
     }
 
-    /// Returns whether the person is still known by it: the secret is the same, and the session has not ended.
+    /// Returns whether the proof holds: the secret is the same, and the session has not ended.
     pub(crate) fn lasts(&self, people: &People, sessions: &Sessions<Name>) -> bool {
         match &self.by {
             By::Secret(secret) => people.has_secret(&self.person, secret),

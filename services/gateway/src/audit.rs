@@ -1,4 +1,4 @@
-//! The audit: who ordered what of which robot.
+//! The audit: record of orders by person and robot.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -6,20 +6,20 @@ use roster::Name;
 use serde::Serialize;
 use serde_json::Value;
 
-/// Its name in the gateway's folder, without ending.
+/// Name of the audit in the gateway's folder, without ending.
 pub const NAME: &str = "audit";
 
-/// What became of it.
+/// Outcome of the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Outcome {
     /// Given: it is passed on to the robot.
     Ordered,
-    /// The robot has confirmed it.
+    /// The robot has confirmed the order.
     Done,
     /// The robot's console has answered with an error.
     Failed,
-    /// The gateway has refused it.
+    /// The gateway has refused the order.
     Refused,
 }
 
@@ -30,12 +30,12 @@ pub struct Entry {
     pub unix_ms: u64,
     /// Who.
     pub person: Name,
-    /// Of which robot; none for the gateway itself.
+    /// The ordered robot; `None` for the gateway itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub robot: Option<Name>,
-    /// What: the page's command (`stop`, `resume`, `say` …), `sound`, `speech`, `open`, `close`, `login`.
+    /// The order: a page's command (`stop`, `say` …), `sound`, `speech`, `open`, `close`, `login`.
     pub what: String,
-    /// What became of it.
+    /// Outcome of the order.
     pub outcome: Outcome,
     /// The words that were said, or the reason of a failure.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,4 +1,4 @@
-//! What one person may take of what all share: entries in the audit, and pages.
+//! Budgets of one person in shared resources: entries in the audit, and pages.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -38,7 +38,7 @@ impl Budgets {
 pub(crate) struct Places(Arc<Mutex<BTreeMap<Name, usize>>>);
 
 impl Places {
-    /// Takes a place for a page; `None` where the person has too many, or all are taken.
+    /// Takes a place for a page; `None` if the person has too many, or all are taken.
     pub(crate) fn take(&self, person: &Name) -> Option<Place> {
         let mut all = lock(&self.0);
         let taken = all.get(person).copied().unwrap_or(0);

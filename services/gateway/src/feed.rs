@@ -1,5 +1,5 @@
-//! The list of connected robots, as the link's program reports it: `whichone fleet --watch` as a child process, so that the
-//! gateway knows no transport.
+//! The list of connected robots, as the link's program reports it: `whichone fleet --watch` as a
+//! child process, so that the gateway knows no transport.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
@@ -64,7 +64,7 @@ impl Feed {
 impl Drop for Feed {
     fn drop(&mut self) {
         if let Some(child) = lock(&self.child).as_mut() {
-            // It ends by itself where it cannot be killed: nobody reads it any more.
+            // A child that cannot be killed ends by itself: it has no reader any more.
             let _ = child.kill();
         }
     }
@@ -95,7 +95,7 @@ fn follow(
 ) {
     let Some(output) = process.stdout.take() else { return };
     *lock(child) = Some(process);
-    // What the former child knew is said again by this one.
+    // The new child reports everything again.
     lock(robots).clear();
     for line in BufReader::new(output).lines().map_while(Result::ok).filter(|line| !line.is_empty())
     {

@@ -1,10 +1,10 @@
-//! The gateway: the consoles of many robots under one address, with each person's rights to each robot and an audit
-//! (docs/fleet.md).
+//! The gateway: the consoles of many robots under one address, with each person's rights to each
+//! robot and an audit (docs/fleet.md).
 //!
-//! A robot is a group of this machine, or a mirror of one elsewhere, whose console knows no people: it has one token, which
-//! the gateway keeps. The gateway stands before the consoles, knows people by their secrets, and judges every frame of
-//! their pages ([`rules`]). It needs no transport: the link's program is started for the list of robots ([`feed`]) and for
-//! mirrors ([`mirrors`]).
+//! A robot is a group of this machine, or a mirror of one elsewhere, whose console knows no people:
+//! it has one token, which the gateway keeps. The gateway is in front of the consoles, knows people
+//! by their secrets, and judges every frame of their pages ([`rules`]). It needs no transport: the
+//! link's program is started for the list of robots ([`feed`]) and for mirrors ([`mirrors`]).
 
 mod access;
 pub mod audit;
@@ -45,21 +45,21 @@ use roster::Name;
 /// Intervals at which unused mirrors are looked for, and expired connections and the wish to end.
 const TIDY_EVERY: Duration = Duration::from_secs(10);
 const LOOK_EVERY: Duration = Duration::from_millis(100);
-/// Most connections, pages among them.
+/// Most connections, including pages.
 const CONNECTIONS_MAX: usize = 512;
 /// Time for open pages to be closed.
 const CLOSE: Duration = Duration::from_secs(2);
 
-/// What is served, and where.
+/// Served groups, and addresses.
 #[derive(Clone, Debug)]
 struct Options {
     /// The gateway's folder: people, sessions, audit.
     folder: PathBuf,
-    /// Groups of this machine.
+    /// Groups on the gateway's machine.
     groups: Vec<GroupName>,
     /// Keys of a person, for robots elsewhere.
     keys: Option<PathBuf>,
-    /// Where it listens.
+    /// Address to listen on.
     listen: SocketAddr,
     /// The address under which people reach it.
     address: Option<Address>,
@@ -75,7 +75,7 @@ struct Gateway {
     address: Address,
     /// Number of pages that were opened.
     visits: AtomicU64,
-    /// What each person may still have written into the audit.
+    /// Budgets of each person for entries in the audit.
     budgets: Budgets,
     /// The places of each person's pages.
     places: Places,

@@ -1,5 +1,5 @@
-//! Mirrors of robots elsewhere: child processes, one for each robot that somebody uses, each a group in the gateway's folder
-//! with a console on a port of its own.
+//! Mirrors of robots elsewhere: child processes, one for each robot in use, each a group in the
+//! gateway's folder with a console on a port of its own.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// Time for the end of all mirrors.
 const END_PATIENCE: Duration = Duration::from_secs(8);
 
-/// All of them.
+/// All mirrors of the gateway.
 #[derive(Debug)]
 pub(crate) struct Mirrors {
     keys: PathBuf,
@@ -70,7 +70,7 @@ impl Mirrors {
         lock(&self.running).contains_key(robot)
     }
 
-    /// Returns the console of a robot's mirror, which is started where there is none.
+    /// Returns the console of a robot's mirror, which is started if needed.
     ///
     /// # Errors
     /// It is not ready yet, or cannot be started.
@@ -98,7 +98,7 @@ impl Mirrors {
         Ok(GroupPaths::in_home(&self.home, &GroupName::new(robot.as_str())?)?)
     }
 
-    /// Starts a mirror where none runs.
+    /// Starts a mirror if none runs.
     fn keep(&self, robot: &Name, paths: &GroupPaths) -> Result<(), Failure> {
         let mut running = lock(&self.running);
         let now = Instant::now();
@@ -135,7 +135,7 @@ impl Mirrors {
         command.spawn().map_err(|error| missing(&program, &error))
     }
 
-    /// Ends those that nobody has used for a while.
+    /// Ends those that have been unused for a while.
     pub(crate) async fn end_idle(&self) {
         let is_idle = |mirror: &Mirror| mirror.pages == 0 && mirror.used.elapsed() > IDLE_MAX;
         let mut idle = Vec::new();
@@ -158,7 +158,7 @@ impl Mirrors {
         }
     }
 
-    /// Ends all, and waits for them.
+    /// Ends all mirrors, and waits for them.
     pub(crate) fn end(&self) {
         let all = std::mem::take(&mut *lock(&self.running));
         for (robot, mirror) in &all {

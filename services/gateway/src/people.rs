@@ -1,4 +1,4 @@
-//! The people of a gateway and their rights: a file of the administrator, read again when it has changed.
+//! The people of a gateway and their rights: an administrator's file, read again when changed.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,18 +19,18 @@ pub const EVERY_ROBOT: &str = "*";
 const HEAD: &str = "# People of the gateway (docs/fleet.md): `whichone gateway add` and `remove` write this file. \
                     A secret is stored as its hash.\n\n";
 
-/// What a person may do with a robot.
+/// Right of a person on a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Right {
-    /// See it.
+    /// May see the robot.
     Viewer,
     /// See it, talk to it, stop it and release the stop.
     Operator,
 }
 
 impl Right {
-    /// The word for it.
+    /// Returns the right's name.
     pub fn word(self) -> &'static str {
         match self {
             Self::Viewer => "viewer",
@@ -59,7 +59,7 @@ pub struct Person {
 pub struct People(BTreeMap<Name, Person>);
 
 impl People {
-    /// Reads the file; a missing one has nobody in it.
+    /// Reads the file; a missing one has no people.
     ///
     /// # Errors
     /// Others could read or change the file, or it is not one of people.
@@ -104,7 +104,7 @@ impl People {
         self.0.iter()
     }
 
-    /// Returns what a person may do with a robot; `None` for nothing.
+    /// Returns a person's right on a robot; `None` for no access.
     pub fn right(&self, person: &Name, robot: &Name) -> Option<Right> {
         let Person { operator, viewer, .. } = self.0.get(person)?;
         let names = |robots: &[String]| {
@@ -117,7 +117,7 @@ impl People {
         }
     }
 
-    /// Returns the person with this secret.
+    /// Returns the person with the given secret.
     pub fn with_secret(&self, secret: &str) -> Option<&Name> {
         let wanted = Some(secret).filter(|secret| is_token(secret)).map(hash)?;
         self.0.iter().find(|(_, person)| person.secret == wanted).map(|(name, _)| name)
@@ -129,7 +129,7 @@ impl People {
     }
 }
 
-/// Adds a person, or changes the rights of one; returns the secret of a new one, or of one whose secret is renewed.
+/// Adds a person, or changes the rights of one; returns a new or renewed secret.
 ///
 /// # Errors
 /// A robot's name is invalid, or the file cannot be read or written.
@@ -160,7 +160,7 @@ pub fn add(
 /// Removes a person: sessions end at once.
 ///
 /// # Errors
-/// There is no such person, or the file cannot be read or written.
+/// The person is unknown, or the file cannot be read or written.
 pub fn remove(path: &Path, name: &Name) -> Result<(), Failure> {
     let mut people = People::load(path)?;
     if people.0.remove(name).is_none() {

@@ -1,4 +1,4 @@
-//! Programs at a robot's console: `/ROBOT/api/v1/…` (docs/http.md), with the rights of the person whose secret they have.
+//! Programs at a robot's console: `/ROBOT/api/v1/…` (docs/http.md), with the rights of a person.
 
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -22,7 +22,7 @@ use crate::robots::Console;
 const BODY_MAX: usize = 16 << 10;
 const BODY_PATIENCE: Duration = Duration::from_secs(10);
 
-/// Who asks for what.
+/// The person behind a request, the robot, and the person's right.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Visitor<'a> {
     pub(crate) person: &'a Name,
@@ -59,7 +59,7 @@ fn coded(status: StatusCode, code: &str, why: &str) -> Response<Body> {
     response
 }
 
-/// Passes a request on to a console, if the person may make it; orders are recorded before, a stop afterwards.
+/// Passes a permitted request on to a console; orders are recorded before, a stop afterwards.
 pub(crate) async fn serve(
     gateway: &Gateway,
     visitor: Visitor<'_>,
@@ -137,7 +137,7 @@ struct Order<'a> {
     gateway: &'a Gateway,
     visitor: Visitor<'a>,
     what: &'a str,
-    /// Its entries have the same.
+    /// Number of the request; its entries have the same.
     number: u64,
 }
 

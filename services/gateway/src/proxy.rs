@@ -22,9 +22,9 @@ const LOOK_PATIENCE: Duration = Duration::from_millis(1_500);
 /// Largest state for the list of robots, bytes.
 const STATE_MAX: usize = 4 << 20;
 
-/// Headers of a request that matter to a console. Whatever else a browser sends, cookies first of all, stays here.
+/// Headers of a request that matter to a console. All others, such as cookies, stay here.
 const PASSED: [&str; 4] = ["accept", "accept-encoding", "if-none-match", "host"];
-/// Those of a program.
+/// Headers that a program may set.
 const PROGRAMS: [&str; 5] = ["accept", "content-type", "host", "idempotency-key", "last-event-id"];
 /// Tells the console for whom the gateway asks.
 const PERSON: &str = "whichone-person";
@@ -48,7 +48,7 @@ const VIEWERS: [&str; 12] = [
     "robot.urdf",
 ];
 
-/// Returns why a path of a console, from its `/` on, is not for someone with this right; `None` if it is.
+/// Returns why someone with this right may not read a console's path, from `/` on, if so.
 pub(crate) fn denied(path: &str, right: Right) -> Option<&'static str> {
     let mut parts = path.trim_start_matches('/').split('/');
     let first = parts.next().unwrap_or_default();
@@ -64,7 +64,7 @@ pub(crate) fn denied(path: &str, right: Right) -> Option<&'static str> {
 /// Passes a request to read on to a console.
 ///
 /// # Errors
-/// The status and the reason for which there is no answer.
+/// The status of the refusal, and its reason.
 pub(crate) async fn pass(
     console: &Console,
     path_and_query: &str,
@@ -81,7 +81,7 @@ pub(crate) async fn pass(
         Ok(answer) => answer.map_err(away)?,
         Err(_) => return Err(away("no answer within 10 s".to_owned())),
     };
-    // It knows its token, so that it has nobody to send elsewhere.
+    // The request has the token, so that the console has no reason to redirect.
     if response.status().is_redirection() && response.status() != StatusCode::NOT_MODIFIED {
         return Err(away(format!("unexpected answer {}", response.status())));
     }
@@ -97,7 +97,7 @@ pub(crate) struct ProgramRequest<'a> {
     pub(crate) method: &'a Method,
     pub(crate) path: &'a str,
     pub(crate) headers: &'a HeaderMap,
-    /// Whose secret the program has.
+    /// Person whose secret the program has.
     pub(crate) person: &'a Name,
     pub(crate) body: Bytes,
 }
@@ -105,7 +105,7 @@ pub(crate) struct ProgramRequest<'a> {
 /// Passes a program's request on to a console, in the name of its person.
 ///
 /// # Errors
-/// The reason for which there is no answer.
+/// The reason for the missing answer.
 pub(crate) async fn pass_program(
     console: &Console,
     ProgramRequest { method, path, headers, person, body }: ProgramRequest<'_>,
@@ -125,7 +125,7 @@ pub(crate) async fn pass_program(
     Ok(response)
 }
 
-/// Reads something small from a console; `None` where that fails.
+/// Reads something small from a console; `None` on failure.
 pub(crate) async fn get(console: &Console, path: &str) -> Option<Vec<u8>> {
     let read = async {
         let request = Request::get(path).header(header::HOST, &console.place);

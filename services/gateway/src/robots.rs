@@ -1,5 +1,5 @@
-//! The robots of a gateway: groups of this machine, and those that a router connects, each of which is mirrored while
-//! somebody uses its page. Both are groups with a console.
+//! The robots of a gateway: groups of this machine, and those that a router connects, each of which
+//! is mirrored while its page is in use. Both are groups with a console.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ pub(crate) enum Unreached {
     /// The gateway does not know the robot.
     #[error("robot {0} is not connected")]
     Unknown(Name),
-    /// Its mirror is about to run.
+    /// The robot's mirror is about to run.
     #[error("robot {0} is being connected")]
     Starting(Name),
     /// Anything else, with help.
@@ -45,17 +45,17 @@ pub(crate) enum Unreached {
 /// A robot in the list.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Listed {
-    /// Its name.
+    /// Name of the robot.
     pub(crate) robot: Name,
-    /// What the person may do with it.
+    /// Right of the person on the robot.
     pub(crate) right: Right,
-    /// Whether it is there: `false` for one that the rights name and that is not connected.
+    /// Whether it is connected: `false` for one that only the rights name.
     pub(crate) connected: bool,
-    /// What it says of itself; `None` while it is silent.
+    /// Report of the robot; `None` while it is silent.
     pub(crate) presence: Option<Presence>,
 }
 
-/// All of them.
+/// All robots of the gateway.
 #[derive(Debug)]
 pub(crate) struct Robots {
     groups: BTreeMap<Name, GroupPaths>,
@@ -85,7 +85,7 @@ impl Robots {
         Ok(Self { groups, remote: remote.transpose()? })
     }
 
-    /// Returns the robot's console, whose mirror is started where there is none.
+    /// Returns the robot's console, whose mirror is started if needed.
     ///
     /// # Errors
     /// It cannot be reached yet, or at all.
@@ -111,7 +111,7 @@ impl Robots {
         self.remote.as_ref().map(|(_, mirrors)| mirrors.used(robot))
     }
 
-    /// Ends mirrors that nobody has used for a while.
+    /// Ends mirrors that have been unused for a while.
     pub(crate) async fn tidy(&self) {
         if let Some((_, mirrors)) = &self.remote {
             mirrors.end_idle().await;
@@ -158,7 +158,7 @@ pub(crate) fn console(paths: &GroupPaths) -> Option<Console> {
     Some(Console { place, token: console_link::token(paths)? })
 }
 
-/// Asks a console of this machine what its robot does.
+/// Asks a console of this machine for its robot's activity.
 async fn look(robot: &Name, console: &Console) -> Option<Presence> {
     let state: Value = serde_json::from_slice(&proxy::get(console, "/api/state").await?).ok()?;
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();

@@ -1,8 +1,8 @@
-//! What the gateway does with the frames of a page: the person's right decides, and orders are put down for the audit.
+//! Treatment of a page's frames by the gateway, by the person's right; orders go to the audit.
 //!
-//! Pure. The console's protocol (docs/console.md) is judged here once more, from the outside: a viewer's page gets nothing
-//! through but its hello, as a viewer, and its pings. What passes is written from what was read, so that the robot's
-//! console cannot read another order in it.
+//! Pure. The console's protocol (docs/console.md) is judged here once more, from the outside: a
+//! viewer's page gets nothing through but its hello, as a viewer, and its pings. Passed frames are
+//! written anew from their parsed form, so that the robot's console reads the same order.
 
 use roster::Name;
 use serde_json::{Value, json};
@@ -16,7 +16,7 @@ const ORDER_BYTES_MAX: usize = 40 << 10;
 /// A frame of a page, judged.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Passes as this text.
+    /// Passes as the given text.
     Pass(String),
     /// An order, which passes as this text.
     Order(Order, String),
@@ -29,7 +29,7 @@ pub enum Verdict {
 /// An order of a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Order {
-    /// Its number in its page.
+    /// Number of the order in its page.
     pub id: u64,
     /// The command.
     pub what: String,
@@ -144,7 +144,7 @@ fn order(frame: Value) -> Option<Order> {
         Some(Value::String(text)) => Some(text),
         other => other.map(|other| other.to_string()),
     };
-    // What a page adds by itself orders nothing.
+    // Fields that a page adds by itself are not part of the order.
     for key in ["t", "began_ms", "ended_ms"] {
         said.remove(key);
     }
@@ -153,9 +153,9 @@ fn order(frame: Value) -> Option<Order> {
     Some(Order { id, what, text, with })
 }
 
-/// Reads what the audit wants to know of a console's frame.
+/// Reads the parts of a console's frame that the audit records.
 pub fn answered(text: &str) -> Option<Answered> {
-    // Most frames are states and joints, which nobody needs to read here.
+    // Most frames are states and joints, which need not be read here.
     let is_one = ["{\"t\":\"done\"", "{\"t\":\"receipt\""].iter().any(|it| text.starts_with(it));
     let frame: Value = is_one.then(|| serde_json::from_str(text).ok())??;
     if frame["t"] == "receipt" {
@@ -227,7 +227,7 @@ mod tests {
         }
         let unnumbered = judged(json!({ "t": "do", "do": "stop" }), Right::Operator);
         assert!(matches!(unnumbered, Verdict::Order(order, _) if order.is_stop()));
-        // Of a key that comes twice, what counts here counts there.
+        // Of duplicate keys only the one that counts here is passed on.
         let twice = r#"{"t":"ping","at":1,"t":"do","id":1,"do":"say","do":"stop"}"#;
         let verdict = judge(twice, &Name::new("ann").unwrap(), Right::Operator);
         let Verdict::Order(order, text) = verdict else { panic!("{verdict:?}") };

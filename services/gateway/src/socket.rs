@@ -1,5 +1,5 @@
-//! The socket of one page, between its browser and its robot's console. Frames pass one by one in each direction; orders wait
-//! for the audit, stops for nothing.
+//! The socket of one page, between its browser and its robot's console. Frames pass one by one in
+//! each direction; orders wait for the audit, stops for nothing.
 
 use std::collections::VecDeque;
 use std::pin::pin;
@@ -30,7 +30,7 @@ mod notes;
 
 /// Largest frame of a page, bytes: the console's own limit.
 pub(crate) const FRAME_BYTES_MAX: usize = 64 << 10;
-/// Frames that wait in one direction. A console sends the newest of everything to a page that is slow.
+/// Frames that wait in one direction. A console sends only the newest state to a slow page.
 const QUEUE: usize = 8;
 /// Orders that wait for the audit.
 const ORDERS: usize = 16;
@@ -40,7 +40,7 @@ const AWAITED_MAX: usize = 256;
 const SILENCE_MAX: Duration = Duration::from_secs(60);
 /// Interval at which the person's rights and session are looked at.
 const RIGHTS_EVERY: Duration = Duration::from_millis(500);
-/// Timeout of what the robot hears in the sound of a page that is gone.
+/// Timeout for the robot's results on the sound of a page that is gone.
 const HEARD_WITHIN: Duration = Duration::from_secs(5);
 const REVOKED: &str = "the person's rights have changed, or the session has ended";
 /// Timeout of a console's greeting, and of a goodbye.
@@ -81,7 +81,7 @@ pub(crate) async fn open(
     }
 }
 
-/// Whose page it is, and of which robot.
+/// A page's person and robot.
 #[derive(Debug)]
 pub(crate) struct Visit<'a> {
     gateway: &'a Gateway,
@@ -94,7 +94,7 @@ pub(crate) struct Visit<'a> {
     sounds: Sounds,
     /// Stops that were given: a release that waits for the audit is void after one.
     stops: AtomicU64,
-    /// Those of them that have no entry in the audit yet.
+    /// Stops without an entry in the audit so far.
     uncounted_stops: AtomicU64,
     /// Why nothing more is passed on, once the person may not order any more.
     is_revoked: AtomicBool,
@@ -118,8 +118,8 @@ impl<'a> Visit<'a> {
         }
     }
 
-    /// Serves the page until one side ends, or the person may not see the robot any more. What the page has ordered
-    /// until then is passed on, and what it has said is recorded, though it is gone.
+    /// Serves the page until one side ends, or the person may not see the robot any more. Orders of
+    /// the page until then are passed on, and its words recorded, though it is gone.
     pub(crate) async fn serve(self, page: WebSocket, console: ConsoleSocket) {
         self.note("open", Outcome::Done, None, Some(self.right.word().to_owned()));
         let (mut page_out, mut page_in) = page.split();
@@ -161,7 +161,7 @@ impl<'a> Visit<'a> {
         end
     }
 
-    /// Ends the page's streams of sound, and records what the robot still hears in them.
+    /// Ends the page's streams of sound, and records the words that the robot still hears in them.
     async fn hear_out(
         &self,
         console_out: &mut SplitSink<ConsoleSocket, Console>,
@@ -241,7 +241,7 @@ impl<'a> Visit<'a> {
         Ok(())
     }
 
-    /// Passes a stop on, and hands other orders to the audit; returns whether the page goes on.
+    /// Passes a stop on, and hands other orders to the audit; returns whether the page continues.
     async fn order(
         &self,
         order: Order,

@@ -1,5 +1,5 @@
-//! The streams of sound of a page. Each has an entry in the audit before its first frame passes, and is followed to its
-//! end: what the robot has heard in it is recorded, though the page is gone.
+//! The streams of sound of a page. Each has an entry in the audit before its first frame passes,
+//! and is followed to its end: the words heard in it are recorded, though the page is gone.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -16,14 +16,14 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// Reads the header; `None` of what is no frame of sound.
+    /// Reads the header; `None` if it is not a frame of sound.
     pub(crate) fn read(bytes: &[u8]) -> Option<Self> {
         let (header, sound) = bytes.split_first_chunk::<HEADER>()?;
         let is_frame = matches!(*header, [1, 0..=7, 0, 0, ..]) && sound.len() % 2 == 0;
         is_frame.then_some(Self { header: *header, samples: sound.len() as u64 / 2 })
     }
 
-    /// Number of its stream.
+    /// Returns the number of the frame's stream.
     pub(crate) fn stream(&self) -> u32 {
         let [_, _, _, _, a, b, c, d, ..] = self.header;
         u32::from_le_bytes([a, b, c, d])

@@ -1,5 +1,5 @@
-//! The gateway's addresses: `/` lists robots, `/ROBOT/…` is a robot's console, and `/_/…` are the gateway's own, which
-//! no robot's name can be.
+//! The gateway's addresses: `/` lists robots, `/ROBOT/…` is a robot's console, and `/_/…` are the
+//! gateway's own, which no robot's name can be.
 
 use std::sync::Arc;
 
@@ -60,8 +60,8 @@ pub(crate) fn router(gateway: Arc<Gateway>) -> Router {
         .with_state(gateway)
 }
 
-/// Rejects requests that are not addressed to this gateway, exchanges a link's secret for a session, and adds
-/// security headers.
+/// Rejects requests that are not addressed to this gateway, exchanges a link's secret for a
+/// session, and adds security headers.
 async fn guard(State(gateway): Shared, request: Request, next: Next) -> Response<Body> {
     let headers = request.headers();
     let mut response = if !gateway.address.is_addressed(headers) {
@@ -75,7 +75,7 @@ async fn guard(State(gateway): Shared, request: Request, next: Next) -> Response
         next.run(request).await
     };
     let headers = response.headers_mut();
-    // A console has said already what its page may load.
+    // A console has already declared the permitted sources of its page.
     headers.entry(header::CONTENT_SECURITY_POLICY).or_insert_with(|| content_policy(""));
     harden(headers);
     response
@@ -148,8 +148,8 @@ async fn program(State(gateway): Shared, on: On, request: Request) -> Response<B
     programs::serve(&gateway, visitor, &console, &parts, (rest, body)).await
 }
 
-/// Returns a robot and the person's right to it, or why there is none. Whether there is such a robot is not for strangers
-/// to know.
+/// Returns a robot and the person's right to it, or why there is none. Whether there is such a
+/// robot is not for strangers to know.
 fn right_to(gateway: &Gateway, person: &Name, robot: &str) -> Result<(Name, Right), String> {
     let right = Name::new(robot).ok().and_then(|robot| {
         let right = gateway.people.current().right(person, &robot)?;

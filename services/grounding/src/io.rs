@@ -9,7 +9,7 @@ use service::Time;
 pub enum In<'a> {
     /// An utterance, from speech.
     Utterance(MessageRef<'a, Utterance>),
-    /// What came of a request to the model.
+    /// Outcome of a request to the model.
     Answer(ModelAnswer),
 }
 
@@ -33,7 +33,7 @@ pub struct ModelRequest {
     pub utterance: String,
 }
 
-/// What came of a request to the model.
+/// Outcome of a request to the model.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ModelAnswer {
     /// The request.

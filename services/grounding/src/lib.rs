@@ -1,14 +1,14 @@
-//! Grounding: turns an utterance's words into what they say about the scene.
+//! Grounding: turns an utterance's words into readings about the scene.
 //!
 //! The meaning of an utterance depends on the question that it answers, and only the policy can
 //! judge which one that is. So every hypothesis is read as an answer to each question that it may
 //! answer, and to none.
 //!
-//! A language model may read in place of the built-in reader (`dialogue.model`): its answers are events, observations
-//! keep the order of the utterances, and each is published in time.
+//! A language model may read in place of the built-in reader (`dialogue.model`): its answers are
+//! events, observations keep the order of the utterances, and each is published in time.
 //!
-//! Nothing is needed after a restart: an observation depends on the scene, the utterance and the model alone, so
-//! this service can be killed or swapped at any moment and forgets nothing.
+//! Nothing is needed after a restart: an observation depends on the scene, the utterance and the
+//! model alone, so this service can be killed or swapped at any moment and forgets nothing.
 
 mod io;
 mod model_queue;
@@ -38,11 +38,11 @@ pub fn run() -> ExitCode {
     service::service_loop::run::<shell::GroundingProgram>()
 }
 
-/// The scene and its readers.
+/// Configuration: the scene, its readers and an optional model.
 pub struct Config {
     /// The scene.
     pub scene: Scene,
-    /// Reads text with that scene's words.
+    /// Reader of text with the scene's words.
     pub reader: Reader,
     /// How the model is used, if there is one.
     pub model: Option<ModelUse>,

@@ -1,5 +1,5 @@
-//! Utterances whose readings the model is asked for: observations leave in the order of the utterances, each at
-//! the latest when its time is up, then with the built-in reader's readings.
+//! Utterances for which the model is asked: observations leave in the order of the utterances, each
+//! at the latest when its time is up, then with the built-in reader's readings.
 
 use std::collections::VecDeque;
 
@@ -25,11 +25,11 @@ const WARN_EVERY: Span = Span::from_ms(60_000);
 /// How the model is used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelUse {
-    /// Its name, for the status.
+    /// Name of the model, for the status.
     pub name: String,
     /// Time from an utterance to its observation.
     pub timeout: Span,
-    /// Of its weights.
+    /// Calibration of the model's weights.
     pub calibration: Calibration,
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct ModelQueue {
     memory: Memory,
 }
 
-/// What outlives the utterances in progress.
+/// State that outlives the utterances in progress.
 #[derive(Default, Serialize, Deserialize)]
 struct Memory {
     /// Requests so far.
@@ -55,7 +55,7 @@ struct Memory {
     recent: VecDeque<Box<Observation>>,
     /// Whether the last request was answered; nothing before the first one.
     works: Option<bool>,
-    /// What the operator's status says.
+    /// Status for the operator.
     status: Option<String>,
     warned: Option<Time>,
 }
@@ -63,7 +63,7 @@ struct Memory {
 struct Pending {
     since: Time,
     observation: Box<Observation>,
-    /// What it waits for; none when it can leave.
+    /// Reason for waiting; `None` when the utterance can leave.
     waits: Option<Waits>,
 }
 
@@ -156,7 +156,7 @@ impl ModelQueue {
         self.release(now, fx);
     }
 
-    /// Publishes what waits for nothing, up to the first that does.
+    /// Publishes the utterances that wait for nothing, up to the first that does.
     fn release(&mut self, now: Time, fx: &mut Fx) {
         while self.pending.front().is_some_and(|first| first.waits.is_none())
             && let Some(mut done) = self.pending.pop_front()
@@ -205,7 +205,7 @@ impl ModelQueue {
         self.memory.status.as_deref()
     }
 
-    /// The state between utterances; none while one waits.
+    /// The state between utterances; `None` while one waits.
     pub(crate) fn checkpoint(&self) -> Option<Vec<u8>> {
         self.pending.is_empty().then(|| postcard::to_stdvec(&self.memory).ok()).flatten()
     }
@@ -257,8 +257,8 @@ fn noise(best: &Hypothesis) -> f64 {
     doubt / best.word_confidence.len().max(1) as f64
 }
 
-/// Calibrated readings of the model, by question. For a question that it passed over the built-in reader's count;
-/// where these say nothing, what the model has read besides: the utterance may have come after that question.
+/// Calibrated readings of the model, by question. For a question without any, the built-in reader's
+/// count; if these say nothing, its other readings count: the utterance may follow that question.
 fn combined(
     calibration: Calibration,
     readings: &[ModelReading],
@@ -286,8 +286,8 @@ fn says_nothing(reading: &Reading) -> bool {
     reading.base.is_empty() && reading.excluded.is_empty() && reading.response == Response::None
 }
 
-/// Doubts a reading of the model, which sees no confidences: as the built-in reader doubts the same words and
-/// answers, and what it has not found as much as the words in the mean.
+/// Doubts a reading of the model, which sees no confidences: as the built-in reader doubts the same
+/// words and answers, and readings that it has not found as much as the words in the mean.
 fn doubt(reading: &mut Reading, slot: &Slot, noise: f64) {
     let all = || slot.readings.iter().map(|(_, known)| known);
     let word = |word: &scene::WordId| {

@@ -11,7 +11,7 @@ use service::worker_channel::DeviceSender;
 use crate::io::{In, ModelAnswer, ModelRequest};
 use crate::model_queue::PENDING_MAX;
 
-/// Handle of the thread; it ends with the process, or once this is dropped and its request is answered.
+/// Handle of the thread; it ends with the process, or when dropped and its request answered.
 #[derive(Debug)]
 pub(crate) struct ModelWorker {
     requests: Sender<ModelRequest>,

@@ -43,7 +43,7 @@ mod tests {
         Hypothesis { weight, word_confidence: confidence.to_vec(), ..Hypothesis::certain(text) }
     }
 
-    /// The readings as an answer to the newest of `questions`, or to none where there is none.
+    /// The readings as an answer to the newest of `questions`, or to none without questions.
     fn readings(hypotheses: &[Hypothesis], questions: Vec<Question>) -> Vec<(f64, Reading)> {
         let scene = scene();
         let reader = Reader::new(&scene, Language::Careful);

@@ -41,7 +41,7 @@ impl Program for GroundingProgram {
     }
 }
 
-/// The model that is used: none for the paper's reading, which is that of its word lists.
+/// The model to use: `None` for the paper's reading, which is that of its word lists.
 fn model(language: Language, settings: &Settings) -> Result<Option<LanguageModel>, Failure> {
     let Configured(model) = settings.part()?;
     Ok(model.filter(|_| language == Language::Careful))
@@ -59,7 +59,7 @@ fn language(arguments: &[String], configured: Language) -> Result<Language, Fail
     }
 }
 
-/// Grounding's topics and its model.
+/// Topics of grounding, and the connection to the model.
 #[derive(Debug)]
 pub struct GroundingShell {
     utterances: Reader<Utterance>,

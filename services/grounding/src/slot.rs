@@ -6,9 +6,9 @@ use whichone_sdk::grounding::{Grounded, Heard};
 
 /// The readings of an utterance in case it answers one question, or none.
 pub(crate) struct Slot {
-    /// The question's place among those that the utterance may answer; none for none.
+    /// The question's place among those that the utterance may answer; `None` for none.
     pub(crate) place: Option<usize>,
-    /// The question; none also where it is of another scene.
+    /// The question; [`Question::None`] also if it is of another scene.
     pub(crate) question: Question,
     /// The readings, likeliest first; their weights sum to 1.
     pub(crate) readings: Vec<(f64, Reading)>,
@@ -29,7 +29,7 @@ impl Slot {
     }
 }
 
-/// Most readings for one of so many questions, none counted as one.
+/// Most readings for one of `slots` questions, none counted as one.
 pub(crate) fn at_most(slots: usize) -> usize {
     READINGS_MAX / slots
 }

@@ -214,7 +214,7 @@ fn questions_that_the_model_passes_over_are_read_by_the_built_in_reader() {
     assert_eq!((readings[0].answers, readings[0].reading.response), (Some(0), Response::Yes));
     assert_eq!((readings[1].answers, readings[1].reading.base.len()), (None, 1));
 
-    // What was heard in noise is doubted as the built-in reader doubts it, or in the mean.
+    // Words heard in noise are doubted as the built-in reader doubts them, or in the mean.
     let heard = Hypothesis::of_words([("yes".to_owned(), 0.8), ("clear".to_owned(), 0.4)], 1.0);
     let (_, requests) = say(&mut node, answering(2, heard), ms(10));
     let content = json!({ "readings": [reading(json!(0), 1.0, &["clear", "metal"], "yes")] });
@@ -234,8 +234,8 @@ fn calibration_mixes_the_built_in_reader_in() {
     assert_eq!((weights, words(&found[0])), (vec![0.75, 0.25], vec!["clear".to_owned()]));
 }
 
-/// The thread answers through the inbox of the main loop, which never waits: not for a slow service, nor for
-/// one that is gone.
+/// The thread answers through the inbox of the main loop, which never waits: not for a slow
+/// service, nor for one that is gone.
 #[test]
 fn worker_answers_within_the_time_of_each_request() {
     let server = StandIn::start(|request| match stand_in_model::heard(request).as_str() {

@@ -1,5 +1,5 @@
-//! Measures a fleet of simulated robots on this machine (scripts/fleet): `fleet N` starts routers and robots, each a process of
-//! its own, and prints what they cost.
+//! Measures a fleet of simulated robots on this machine (scripts/fleet): `fleet N` starts routers
+//! and robots, each a process of its own, and prints their cost.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

@@ -2,9 +2,9 @@
 //!
 //!     fuzzed_peer KEYS ROBOT SEED SECONDS
 //!
-//! With a person's keys it makes requests of the robot and streams sound to it; with a robot's keys, the robot's own or
-//! another's, it publishes under the robot's name. What it sends is random bytes, valid messages with changed bits, and
-//! valid messages that ask for what must not be.
+//! With a person's keys it makes requests of the robot and streams sound to it; with a robot's
+//! keys, the robot's own or another's, it publishes under the robot's name. It sends random bytes,
+//! valid messages with changed bits, and valid messages with forbidden requests.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! The command line: `whichone link …` and `whichone fleet` call this program. Without arguments it is a service.
+//! The command line, called by `whichone link …` and `whichone fleet`; a service without arguments.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! The robots that are there.
+//! Registry of the connected robots.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -20,9 +20,9 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// A robot in the list.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Listed {
-    /// Its name.
+    /// Name of the robot.
     pub robot: Name,
-    /// What it says of itself; `None` if it is connected and does not answer.
+    /// Its presence; `None` if it is connected and does not answer.
     pub presence: Option<Presence>,
 }
 
@@ -53,7 +53,7 @@ pub fn list(keys: &Path) -> Result<Vec<Listed>, Failure> {
     let (sender, presences) = mpsc::channel();
     for robot in robots.keys() {
         let sender = sender.clone();
-        // The list is complete when nobody listens any more.
+        // The list is complete when it has no listener any more.
         let take = move |bytes: Vec<u8>| drop(sender.send(bytes));
         // Each by its own key: the router lets no request for all robots through to one.
         request(&session, &Keys::of(robot), Call::Presence, Vec::new(), PATIENCE, take);

@@ -1,7 +1,7 @@
 //! Messages of one topic on their way to a mirror.
 //!
-//! A frame says everything that is to be known of its topic: the latest message of a state, the last few of
-//! others. It is sent when that has changed, and once a second; a lost frame costs no more than that.
+//! A frame is complete for its topic: the latest message of a state, the last few of others. It is
+//! sent on changes, and once a second; a lost frame costs no more than that.
 
 use std::collections::VecDeque;
 
@@ -15,7 +15,7 @@ use crate::offset::Offset;
 /// Interval at which everything is sent again.
 pub const REPEAT_EVERY: Span = Span::from_ms(1_000);
 
-/// What is sent under a state's key.
+/// Content sent under a state's key.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame<T> {
     /// Key of the messages' layout; of another one nothing else can be read.
@@ -31,12 +31,12 @@ pub struct Frame<T> {
 /// A frame that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    /// Its messages are of another version.
+    /// The messages are of another version.
     #[error(
         "its {0} are of another version of whichone; help: install the same version on both machines"
     )]
     Version(&'static str),
-    /// It is none.
+    /// The frame is invalid.
     #[error("expected {0}, found {1}")]
     Invalid(&'static str, String),
 }
@@ -62,7 +62,7 @@ pub struct Outgoing<T> {
     start: u64,
     /// The last messages, each with its number.
     kept: VecDeque<(u64, T)>,
-    /// The newest one without its times, to tell what has changed.
+    /// The newest one without its times, to detect changes.
     newest: Option<T>,
     last_number: u64,
     sent: Option<Time>,
@@ -132,8 +132,8 @@ impl<T> Default for Incoming<T> {
 }
 
 impl<T: Mirrored> Incoming<T> {
-    /// Returns what is new in a frame, oldest first, in this machine's time: of a state its latest message in any
-    /// case, of others each once. Frames that were overtaken are left out.
+    /// Returns a frame's new messages, oldest first, in this machine's time: of a state its latest
+    /// one in any case, of others each once. Frames that were overtaken are left out.
     pub fn take(&mut self, frame: Frame<T>, now: Time, offset: &mut Offset) -> Vec<T> {
         offset.observe(frame.sent_ns, now);
         if frame.start != self.newest.0 {

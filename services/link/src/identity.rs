@@ -15,7 +15,7 @@ pub const KEY: &str = "key.pem";
 /// Everything else: [`Identity`] as JSON.
 pub const LINK: &str = "link.json";
 
-/// What the owner of a certificate may do.
+/// Rights of a certificate's owner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Role {
@@ -28,7 +28,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// The word for it.
+    /// Returns the role's name.
     pub fn word(self) -> &'static str {
         match self {
             Self::Robot => "robot",
@@ -44,21 +44,21 @@ impl Role {
 pub struct Identity {
     /// The owner's name.
     pub name: Name,
-    /// What the owner may do.
+    /// Role of the owner.
     pub role: Role,
     /// Robots that a person may see; empty for all.
     pub robots: Vec<Name>,
     /// Host and port of the router.
     pub router: String,
-    /// The password beside the certificate.
+    /// The password in addition to the certificate.
     pub password: String,
 }
 
 impl Identity {
-    /// Reads the folder's `link.json`, and checks that the other files are there.
+    /// Reads the folder's `link.json`, and checks that the other files exist.
     ///
     /// # Errors
-    /// The file and what is wrong with it.
+    /// The file and its fault.
     pub fn load(folder: &Path) -> Result<Self, Failure> {
         let help = "help: copy the whole folder that `whichone link init` made for this machine";
         let path = folder.join(LINK);
@@ -97,7 +97,7 @@ impl Identity {
     }
 }
 
-/// As [`Identity::user`].
+/// Returns the user name as [`Identity::user`] does.
 pub fn user(role: Role, name: &Name) -> String {
     // A viewer who becomes an operator keeps the certificate.
     let kind = if role == Role::Robot { "robot" } else { "person" };

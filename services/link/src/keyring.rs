@@ -1,5 +1,5 @@
-//! The folder from which all keys come: an authority of one's own, a certificate and a password for the router and for each
-//! robot and person, and the router's configuration, which denies everything else.
+//! The folder from which all keys come: an own authority, a certificate and a password for the
+//! router and each robot and person, and the router's configuration, which denies everything else.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -19,16 +19,16 @@ use service::folders::{FolderError, make_private};
 use crate::identity::{AUTHORITY, CERTIFICATE, Identity, KEY, LINK, Role, user};
 use crate::router;
 
-/// What the folder holds.
+/// File with the folder's content.
 const RING: &str = "keys.json";
 /// The authority's private key, which leaves this folder never.
 const AUTHORITY_KEY: &str = "authority.key";
 /// Days for which certificates are good: the authority's, and the others'.
 const DAYS: (u64, u64) = (3_650, 397);
-/// Port of a router, where none is given.
+/// Port of a router, if none is given.
 pub(crate) const PORT: u16 = 7447;
 
-/// What is to be made.
+/// Keys to be made.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
     /// Host and port of the router; required the first time.
@@ -68,7 +68,7 @@ impl Member {
     }
 }
 
-/// Everything that the folder holds beside keys.
+/// Content of the folder other than keys.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Ring {
     /// Host and port.
@@ -76,7 +76,7 @@ pub(crate) struct Ring {
     pub(crate) members: Vec<Member>,
 }
 
-/// Makes what is wanted in `folder`, and returns what was done, a line each. What is there already stays as it is.
+/// Makes the wanted keys in `folder`, and returns the actions, a line each. Existing keys stay.
 ///
 /// # Errors
 /// A name twice, an unknown name, or a file that cannot be written.
@@ -283,7 +283,7 @@ pub(crate) fn write_private(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     safe_files::replace_private_synced(path, bytes).map_err(|error| Failure::file(path, &error))
 }
 
-/// Adds the port where there is none, and checks that the rest can be a host.
+/// Adds a missing port, and checks that the rest can be a host.
 fn with_port(router: &str) -> Result<String, Failure> {
     let (host, port) = match router.rsplit_once(':') {
         Some((host, port)) if !host.contains(':') || host.ends_with(']') => {

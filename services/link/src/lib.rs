@@ -1,9 +1,9 @@
 //! A group over the internet: a robot's group seen and commanded from another machine.
 //!
-//! The crate is what travels and the rules by which it does: [`frame`] and [`mirrored`] (state), [`line`] (the robot's
-//! voice), [`say`] (words), [`motion`] (orders to the motion stop), [`offset`] (time), [`names`] and [`identity`], all of which neither
-//! know the transport nor do any IO beyond reading a folder of keys. The link itself comes with the feature `zenoh`:
-//! `robot` and `mirror` are its two ends, `router` lies between them, `keyring` makes their keys.
+//! The crate has the messages and their rules: [`frame`] and [`mirrored`] (state), [`line`] (the
+//! robot's voice), [`say`] (words), [`motion`] (orders to the motion stop), [`offset`] (time),
+//! [`names`] and [`identity`], without transport and IO except for reading keys. The feature
+//! `zenoh` adds the link: its ends `robot` and `mirror`, `router` between, and `keyring`.
 
 pub mod frame;
 pub mod identity;
@@ -38,7 +38,7 @@ pub mod watch;
 
 use config::{EVERYTHING, Part, PartService, Registered};
 
-/// The service and its section. Each mirror begins with the settings in force.
+/// The service and the section of its settings. Each mirror begins with the settings in force.
 pub static PART: Part = Part {
     name: settings::NAME,
     service: Some(PartService { reads: EVERYTHING, is_client: true }),

@@ -1,7 +1,7 @@
-//! A line of the robot on its way to mirrors: the sound of what it says, at a quarter of its file's size.
+//! A line of the robot on its way to mirrors: its sound, at a quarter of the file's size.
 //!
-//! At 2 Mbit/s a question's file takes a quarter of a second, for which its listener would wait. IMA ADPCM (IMA Digital Audio
-//! Focus and Technical Working Groups, Recommended Practices, revision 3.00, 1992) needs four bits a sample and no look ahead.
+//! A question's file takes 0.25 s at 2 Mbit/s. IMA ADPCM (IMA Digital Audio Focus and Technical
+//! Working Groups, Recommended Practices 3.00, 1992): four bits a sample, no look-ahead.
 
 use std::io::Cursor;
 use std::ops::RangeInclusive;
@@ -11,19 +11,19 @@ use hound::{SampleFormat, WavReader, WavSpec, WavWriter};
 use messages::SoundFile;
 use serde::{Deserialize, Serialize};
 
-/// Of the codes: the other end reads those of its own version alone.
+/// Version of the codes: the other end reads those of its own version alone.
 const VERSION: u8 = 3;
 /// Sample rates, hertz. Others, 0 among them, are of no sound.
 const RATES_HZ: RangeInclusive<u32> = 1_000..=192_000;
 /// Largest line, bytes: more than five minutes of speech.
 const BYTES_MAX: usize = 4 << 20;
 
-/// What is sent of a line.
+/// A line as sent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
-    /// Name of its file.
+    /// Name of the line's file.
     pub file: String,
-    /// What it sounds like.
+    /// Sound of the line.
     pub sound: Packed,
 }
 
@@ -37,7 +37,7 @@ pub enum Packed {
         /// Two samples a byte, the earlier one in its low half.
         codes: Vec<u8>,
     },
-    /// Any other file, as it is.
+    /// Any other file, unchanged.
     File(Vec<u8>),
 }
 
@@ -47,7 +47,7 @@ impl Line {
         postcard::to_stdvec(&(VERSION, self)).ok().filter(|bytes| bytes.len() <= BYTES_MAX)
     }
 
-    /// Returns the file and its contents. Another version, and whoever has a robot's keys, may have sent anything.
+    /// Returns the file with the line's sound. Another version, or a key thief, may have sent it.
     pub fn decode(bytes: &[u8]) -> Option<(SoundFile, Vec<u8>)> {
         let bytes = Some(bytes).filter(|bytes| bytes.len() <= BYTES_MAX)?;
         let (version, Self { file, sound }) = postcard::from_bytes::<(u8, Self)>(bytes).ok()?;
@@ -79,7 +79,7 @@ impl Packed {
         Some(Self::Adpcm { rate_hz, codes: samples.chunks(2).map(byte).collect() })
     }
 
-    /// Returns the file; `None` for what is no sound.
+    /// Returns the file; `None` if it is not a sound.
     fn file(self) -> Option<Vec<u8>> {
         match self {
             Self::Adpcm { rate_hz, codes } if RATES_HZ.contains(&rate_hz) => {

@@ -1,5 +1,5 @@
-//! The operator's side: a robot elsewhere as a group of this machine. `watch`, `status`, `say`, `chat`, `await` and the console
-//! find the topics, sockets and settings of a group, and behind them this one process.
+//! The operator's side: a remote robot as a group here. `watch`, `status`, `say`, `chat`, `await`
+//! and the console find a group's topics, sockets and settings, all of this process.
 
 mod console;
 mod control;
@@ -27,13 +27,13 @@ use crate::presence::Hello;
 use crate::session::{close, connect_patiently, request};
 use local::Local;
 
-/// Timeout of the robot's settings, after which they are asked for again.
+/// Timeout of the robot's settings, after which they are requested again.
 const HELLO_PATIENCE: Duration = Duration::from_secs(3);
 
 /// Folder of the sound of the robot's lines, in the group's folder `run/`.
 const SAID: &str = "said";
 
-/// What is mirrored, and how.
+/// The mirrored robot, and options of the mirror.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// The robot.
@@ -42,11 +42,11 @@ pub struct Options {
     pub keys: PathBuf,
     /// The local group.
     pub group: GroupName,
-    /// Where the console listens; `None` for no console.
+    /// Address of the console; `None` for no console.
     pub console: Option<String>,
 }
 
-/// What the library's threads give to the main loop.
+/// Events from the library's threads to the main loop.
 enum Inbound {
     /// A frame of a state, with the state's name.
     State(String, Vec<u8>),
@@ -54,11 +54,11 @@ enum Inbound {
     Joints(Vec<u8>),
     /// The robot's link with this number has come or gone.
     Alive(String, bool),
-    /// What a new mirror begins with.
+    /// First message to a new mirror.
     Hello(Vec<u8>),
     /// Receipts for the words with this key.
     Receipts(messages::RequestKey, Vec<u8>),
-    /// The request with these words has ended; without an answer where there were no receipts.
+    /// The request with these words has ended; without an answer if no receipts came.
     WordsEnded(messages::RequestKey),
     /// Sound of a line of the robot.
     Line(Vec<u8>),
@@ -66,9 +66,9 @@ enum Inbound {
 
 /// Why a mirrored group ends.
 enum End {
-    /// It was asked to.
+    /// The mirror was asked to end.
     Asked,
-    /// The robot's group was started anew, or its settings have changed: the mirror follows.
+    /// The robot's group was restarted, or its settings have changed: the mirror follows.
     Changed,
 }
 
@@ -168,14 +168,14 @@ impl Link {
     }
 }
 
-/// Subscribes to everything that the robot shows, and to its voice where somebody may listen.
+/// Subscribes to everything that the robot shows, and to its voice if somebody may listen.
 fn subscribe(
     session: &Session,
     keys: &Keys,
     sender: &DeviceSender<Inbound>,
     listens: bool,
 ) -> zenoh::Result<()> {
-    // What finds no room is shown a second later.
+    // Messages that find no room are shown a second later.
     let (own, main) = (keys.clone(), sender.clone());
     let on_state = move |sample: Sample| {
         if let Some(name) = own.state_of(sample.key_expr().as_str()) {
@@ -192,7 +192,7 @@ fn subscribe(
     if listens {
         let main = sender.clone();
         let on_line = move |sample: Sample| {
-            // What finds no room is asked for.
+            // Lines that find no room are requested.
             let _ = main.offer(Inbound::Line(sample.payload().to_bytes().into_owned()));
         };
         session.declare_subscriber(keys.line()).callback(on_line).background().wait()?;
@@ -208,7 +208,7 @@ fn subscribe(
     alive.callback(on_alive).background().wait()
 }
 
-/// Settings of the mirrored group: the robot's, but for what belongs to its own machine.
+/// Settings of the mirrored group: the robot's, except for those of its own machine.
 fn own_settings(text: &str, paths: &GroupPaths, options: &Options) -> Result<Settings, Failure> {
     let said = paths.run().join(SAID).display().to_string();
     let listen = options.console.clone().unwrap_or_else(|| "127.0.0.1:0".to_owned());

@@ -10,16 +10,16 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use service::Span;
 
-/// A message that is mirrored: what its topic's reader needs to know of it.
+/// A mirrored message, with the properties that its topic's reader needs.
 pub trait Mirrored: Schema + Serialize + DeserializeOwned + Clone + PartialEq + 'static {
-    /// Its topic.
+    /// Topic of the message.
     const TOPIC: Topic;
     /// Messages of which each counts, so that as many are sent again; 1 for a state.
     const KEPT: usize = 1;
     /// Shortest time between two frames.
     const PAUSE: Span = Span::from_ms(50);
 
-    /// Visits every time of the monotonic clock in it; 0 stands for none.
+    /// Visits every time of the monotonic clock in it; 0 means none.
     fn times(&mut self, visit: &mut dyn FnMut(&mut u64));
 }
 
@@ -69,7 +69,7 @@ impl Mirrored for TableView {
     }
 }
 
-/// Encoded it is as long as what was understood, a few hundred bytes.
+/// Encoded, an observation takes a few hundred bytes.
 impl Mirrored for Observation {
     const TOPIC: Topic = topics::OBSERVATION;
     const KEPT: usize = 2;

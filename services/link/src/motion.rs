@@ -1,11 +1,11 @@
 //! Orders to the motion stop over a link, exactly as safe as on the robot.
 //!
-//! A stop is stamped with the robot's own clock when it first arrives there, and keeps that stamp however often it is
-//! repeated; so is a release. A release names the stop that it lifts, by that stop's stamp, and the state that the person
-//! saw, which is younger than [`RELEASE_AGE_MAX`]: a later stop is younger still, and the arm ignores a release that was
-//! stamped less than [`RESUME_AFTER`] after a stop, and orders older than the last one obeyed. So no release lifts another
-//! stop than the one it names, whichever order messages arrive in. Both machines' clocks are never compared: how
-//! old the seen state is, is the robot's own time since it sent it.
+//! A stop is stamped with the robot's clock when it first arrives there, and keeps that stamp; so
+//! is a release. A release names the stop that it lifts, by that stop's stamp, and the state that
+//! the person saw, which is younger than [`RELEASE_AGE_MAX`]: a later stop is younger still, and
+//! the arm ignores a release that was stamped less than [`RESUME_AFTER`] after a stop, and orders
+//! older than the last one obeyed. So a release lifts only the stop it names, in any order of
+//! messages. Clocks are never compared: the seen state's age is the robot's time since it sent it.
 
 use std::collections::VecDeque;
 
@@ -24,7 +24,7 @@ const KNOWN_MAX: usize = 64;
 /// The motion stop's state as the robot sends it, in the robot's time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Seen {
-    /// When it was sent.
+    /// Time of sending.
     pub at_ns: u64,
     /// Stamp of the order in force; 0 for none yet.
     pub in_force_ns: u64,
@@ -32,12 +32,12 @@ pub struct Seen {
     pub stopped: bool,
 }
 
-/// What a person orders.
+/// An order by a person.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Order {
     /// Halt and latch.
     Stop,
-    /// Release the stop that was seen.
+    /// Release the stop that the person saw.
     Release(Seen),
 }
 
@@ -53,7 +53,7 @@ pub struct Request {
 /// The robot's answer to a request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Answer {
-    /// What the arm answered, and the stamp that the order was given.
+    /// The arm's answer, and the stamp given to the order.
     State(Stamped),
     /// The release is refused, for this reason.
     Refused(String),
@@ -66,8 +66,8 @@ pub enum Answer {
 pub struct Stamped(pub StopState);
 
 impl Stamped {
-    /// The answer to the same order that was given at `given_ns` of the reader's clock. An order that
-    /// overrules it comes right after.
+    /// The answer to the same order that was given at `given_ns` of the reader's clock. An order
+    /// that overrules it comes right after.
     pub fn here(&self, given_ns: u64) -> StopState {
         let in_force_ns = match self.0.in_force_ns.cmp(&self.0.given_ns) {
             std::cmp::Ordering::Less => given_ns.saturating_sub(RESUME_AFTER.0),
@@ -137,7 +137,7 @@ impl Register {
     }
 }
 
-/// Adds an entry, and forgets the oldest one where there are too many.
+/// Adds an entry, and forgets the oldest one if there are too many.
 fn remember<T>(entries: &mut VecDeque<T>, entry: T) {
     entries.push_back(entry);
     if entries.len() > KNOWN_MAX {
@@ -145,8 +145,8 @@ fn remember<T>(entries: &mut VecDeque<T>, entry: T) {
     }
 }
 
-/// The robot's side: the latest stop, which is repeated to the arm until it is confirmed or overruled, even if the
-/// network is gone meanwhile and the operator's machine repeats nothing.
+/// The robot's side: the latest stop, which is repeated to the arm until it is confirmed or
+/// overruled, even if the network is gone meanwhile and the operator's machine repeats nothing.
 #[derive(Debug, Default)]
 pub struct StandingStop {
     /// Stamp of the latest stop; a repetition of it is not given again.
@@ -173,7 +173,7 @@ impl StandingStop {
         self.progress.is_some()
     }
 
-    /// Repeats the stop where that is due; logs if it is late, and its end.
+    /// Repeats the stop if due; logs if it is late, and its end.
     pub fn advance(&mut self, client: &StopClient, now: Time) {
         let Some(progress) = &mut self.progress else { return };
         if progress.due(now) {
@@ -198,18 +198,18 @@ impl StandingStop {
 
 /// Interval at which the mirror repeats a request without an answer.
 const ASK_EVERY: Span = Span::from_ms(250);
-/// Time after which each repetition goes out once more, on the other way: longer than what is put into one packet, much
-/// shorter than the time in which the network finds out that a packet was lost.
+/// Time after which each repetition goes out once more, on the other way: longer than the time of
+/// filling one packet, much shorter than the time in which the network notices a lost packet.
 const COPY_AFTER: Span = Span::from_ms(10);
 /// Time after which an order that its client no longer repeats is given up.
 const GIVEN_UP: Span = Span::from_ms(1_000);
 
-/// Priority under which a request travels. Each has a stream of its own, so that a lost packet holds up one of two copies.
+/// Priority of a request. Each has its own stream: a lost packet delays one of two copies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// Ahead of everything.
     First,
-    /// Its copy, ahead of everything else.
+    /// Copy of an order, ahead of everything else.
     Second,
 }
 
@@ -231,8 +231,8 @@ struct Current {
 }
 
 impl Orders {
-    /// Takes an order of a local client, given at `given_ns`, and each of its repetitions. Returns the answer to it if there is
-    /// one already.
+    /// Takes an order of a local client, given at `given_ns`, and each of its repetitions. Returns
+    /// the answer to it if there is one already.
     ///
     /// # Errors
     /// A release of a robot whose state is not known.
@@ -268,8 +268,8 @@ impl Orders {
         Ok(None)
     }
 
-    /// Returns the request that is due at `now`, and its way. A release is based on the newest state in which the stop
-    /// that it lifts is still in force.
+    /// Returns the request that is due at `now`, and its way. A release is based on the newest
+    /// state in which the stop that it lifts is still in force.
     pub fn due(&mut self, seen: Option<Seen>, now: Time) -> Option<(Request, Way)> {
         self.current.take_if(|current| now >= current.repeated + GIVEN_UP);
         let current = self.current.as_mut()?;

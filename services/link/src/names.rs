@@ -12,9 +12,9 @@ pub struct Keys(String);
 /// A request to a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Call {
-    /// What a list of robots shows.
+    /// Content of a list of robots.
     Presence,
-    /// What a mirror needs to know first.
+    /// First message to a mirror.
     Hello,
     /// Sound of one of the robot's lines.
     Line,
@@ -28,7 +28,7 @@ impl Call {
     /// Every one.
     pub const ALL: [Self; 5] = [Self::Presence, Self::Hello, Self::Line, Self::Say, Self::Motion];
 
-    /// Last part of its key.
+    /// Returns the last part of the key.
     pub fn name(self) -> &'static str {
         match self {
             Self::Presence => "presence",
@@ -56,7 +56,7 @@ impl Keys {
         Self(format!("{ROOT}/*"))
     }
 
-    /// All of its keys.
+    /// Returns the pattern of all keys of the robot.
     pub fn all(&self) -> String {
         format!("{}/**", self.0)
     }
@@ -71,12 +71,12 @@ impl Keys {
         format!("{}/joints", self.0)
     }
 
-    /// What a list of robots shows.
+    /// Returns the key of the robot's presence.
     pub fn presence(&self) -> String {
         format!("{}/presence", self.0)
     }
 
-    /// Token that exists while the robot's link runs; `start` is its number ([`crate::frame::Frame::start`]).
+    /// Token while the link runs; `start` is its number ([`crate::frame::Frame::start`]).
     pub fn alive(&self, start: &str) -> String {
         format!("{}/alive/{start}", self.0)
     }
@@ -91,7 +91,7 @@ impl Keys {
         format!("{}/call/*", self.0)
     }
 
-    /// Sound of what the robot begins to say.
+    /// Returns the key of the sound of new lines.
     pub fn line(&self) -> String {
         format!("{}/line", self.0)
     }

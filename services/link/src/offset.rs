@@ -1,14 +1,14 @@
-//! Times of one machine's clock on another one. Clocks are never compared: what is known is when a frame was
-//! sent by the sender's clock, and when it arrived by the receiver's.
+//! Times of one machine's clock on another one. Clocks are never compared: known are only a frame's
+//! times of sending, by the sender's clock, and of arrival, by the receiver's.
 
 use service::{Span, Time};
 
-/// Length of the windows over which the shortest way is sought: shorter than clocks take to drift by a
-/// millisecond.
+/// Length of the windows over which the shortest way is sought: shorter than clocks take to drift
+/// by a millisecond.
 const WINDOW: Span = Span::from_ms(20_000);
 
-/// Translates times of a sender's monotonic clock into this machine's. A translated time is late by the
-/// shortest way that a frame has taken lately, and never earlier than it was.
+/// Translates times of a sender's monotonic clock into this machine's. A translated time is late by
+/// the shortest way that a frame has taken lately, and never earlier than it was.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Offset {
     /// Least difference (arrival minus sending, nanoseconds) of this window and of the one before.
@@ -31,7 +31,7 @@ impl Offset {
         self.least[0] = Some(least);
     }
 
-    /// Translates a time; 0, which stands for none, and every time before the first frame stay as they are.
+    /// Translates a time; 0, for none, and every time before the first frame stay as they are.
     pub fn here(&self, there_ns: u64) -> u64 {
         let Some(least) = self.least.into_iter().flatten().min().filter(|_| there_ns > 0) else {
             return there_ns;
@@ -42,7 +42,7 @@ impl Offset {
     }
 }
 
-/// Age of a time at `now`, nanoseconds; `None` for 0, which stands for none.
+/// Age of a time at `now`, nanoseconds; `None` for 0, which means none.
 pub fn age_ns(at_ns: u64, now: Time) -> Option<u64> {
     (at_ns > 0).then(|| now.ns().saturating_sub(at_ns))
 }

@@ -1,4 +1,4 @@
-//! What a list of robots shows of one, and what a mirror needs to know of it.
+//! Presence of a robot in lists, and its first message to mirrors.
 
 use messages::{ArmStatus, PickPhase, PolicyView};
 use roster::Presence;
@@ -6,21 +6,21 @@ use scene::Scene;
 use serde::{Deserialize, Serialize};
 use service::Span;
 
-/// Interval at which a robot says that it is there.
+/// Interval of a robot's presence messages.
 pub const PRESENCE_EVERY: Span = Span::from_ms(5_000);
 
-/// What a mirror begins with.
+/// First message to a mirror.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hello {
     /// The robot's version of whichone.
     pub version: String,
-    /// Epoch of its group.
+    /// Epoch of the group.
     pub epoch: u64,
-    /// Its settings in force.
+    /// Settings in force of the group.
     pub settings: String,
 }
 
-/// Adds what the policy and the arm have said last.
+/// Adds the last statements of the policy and the arm.
 pub fn add(
     presence: &mut Presence,
     view: Option<&PolicyView>,

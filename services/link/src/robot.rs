@@ -1,7 +1,7 @@
-//! The robot's side: a service of its group that shows it to mirrors, and takes words and orders from them.
+//! The robot's side: a service that shows its group to mirrors, and takes words and orders.
 //!
-//! The main loop reads topics, submits words and decides what is sent; it never touches the network. Threads of their own send
-//! states, joints and answers, and one more does nothing but orders to the motion stop.
+//! The main loop reads topics, submits words and chooses messages; it never touches the network.
+//! Threads of their own send states, joints and answers, and one only orders motion stops.
 
 mod answering;
 mod motion;
@@ -35,7 +35,7 @@ use crate::session::close;
 use senders::Senders;
 use sources::TopicSources;
 
-/// Longest sleep: while words wait for their receipts, while somebody watches, and else.
+/// Longest sleep: while words wait for their receipts, while the robot is watched, and else.
 const LOOK_EVERY: [Span; 3] = [Span::from_ms(2), Span::from_ms(15), Span::from_ms(250)];
 /// Messages of one pass: a peer that sends without end does not keep the loop.
 const INBOUND_MAX: usize = 256;
@@ -60,7 +60,7 @@ fn serve(arguments: Vec<String>) -> Result<(), Failure> {
     ended
 }
 
-/// What other threads give to the main loop.
+/// Events from other threads to the main loop.
 enum Inbound {
     /// A connection to the router.
     Connected(Box<Senders>),
@@ -176,7 +176,7 @@ impl Robot {
         }
     }
 
-    /// Sends what has changed, to those who watch.
+    /// Sends changes to watchers.
     fn send(&mut self, now: Time) {
         self.send_line();
         let Some(senders) = &self.senders else { return };

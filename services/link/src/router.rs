@@ -1,5 +1,5 @@
-//! The router that robots and people connect to: the library in its router's mode, in this program. Its configuration is one
-//! for `zenohd` of the same version, too.
+//! The router that robots and people connect to: the library in its router's mode, in this program.
+//! Its configuration is one for `zenohd` of the same version, too.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -42,7 +42,7 @@ pub(crate) fn configure(folder: &Path, ring: &Ring) -> Result<(), Failure> {
     write_private(&folder.join(FILE), &text)
 }
 
-/// Who may do what; everything else is denied.
+/// Rights of the members; everything else is denied.
 fn access(members: &[Member]) -> Value {
     let mut rules = Vec::new();
     let mut subjects = Vec::new();
@@ -81,7 +81,7 @@ fn rule(id: String, keys: &[String], messages: &[&str], flow: &str) -> Value {
     })
 }
 
-/// A robot shows itself under its own name, and gets what is meant for it.
+/// Rules of a robot: it publishes under its own name, and gets messages to it.
 fn robot_rules(user: &str, keys: &Keys) -> Vec<Value> {
     let shown =
         ["put", "delete", "reply", "declare_queryable", "declare_subscriber", "liveliness_token"];
@@ -141,7 +141,7 @@ pub fn run(folder: &Path) -> Result<(), Failure> {
     if !folder.join(AUTHORITY).exists() {
         return Err(bad(&format!("{AUTHORITY} is missing beside it")));
     }
-    // Where the folder lies is known only here.
+    // Only this code knows the folder's place.
     let mut transport = transport(&folder);
     transport["unicast"] = json!({
         "max_sessions": SESSIONS_MAX,

@@ -1,8 +1,8 @@
 //! Words of people over a link, applied exactly once.
 //!
-//! Nothing is added to the group's own protocol: a client repeats its [`Injection`] under one key until its receipts arrive,
-//! and the speech service applies a key once. The mirror repeats the request under the same key, the robot's link repeats
-//! the injection, and an answer that was lost is given again. Times travel as ages.
+//! The group's protocol is unchanged: a client repeats its [`Injection`] under one key until its
+//! receipts arrive, and the speech service applies a key once. The mirror repeats the request under
+//! that key, the link the injection; lost answers are repeated. Times travel as ages.
 
 use std::collections::VecDeque;
 
@@ -17,7 +17,7 @@ use crate::offset::{age_ns, time_ns};
 pub const PATIENCE: Span = Span::from_ms(2_000);
 /// As [`PATIENCE`], for a sound file: it travels for a while, and is then understood.
 pub const FILE_PATIENCE: Span = Span::from_ms(60_000);
-/// Time beyond these at which the mirror asks again when there was no answer at all.
+/// Additional time after which the mirror asks again without any answer.
 const GRACE: Span = Span::from_ms(500);
 /// Shortest interval at which the mirror asks again.
 const ASK_AGAIN: Span = Span::from_ms(250);
@@ -43,11 +43,11 @@ pub struct Said {
     pub seen_prompt: u64,
     /// See [`Injection`].
     pub from: String,
-    /// What was said. A file is its contents.
+    /// The sound said. A file is sent as its contents.
     pub sound: Sent,
 }
 
-/// A client's input on its way.
+/// Input of a client under way to the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Sent {
     /// Anything but a file.
@@ -69,7 +69,7 @@ impl Sent {
 /// The robot's answer: the receipts, and when they were sent by the robot's clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Receipts {
-    /// When they were sent.
+    /// Time of sending.
     pub sent_ns: u64,
     /// One for text, one for every utterance in a sound file.
     pub receipts: Vec<Receipt>,
@@ -95,8 +95,8 @@ impl<Q> Default for Asked<Q> {
 }
 
 impl<Q> Asked<Q> {
-    /// Takes a request, whose sound is `sound` on this machine. Returns the caller with the receipts where they
-    /// are known already; one for whom there is no room is dropped, and asks again.
+    /// Takes a request, whose sound is `sound` on this machine. Returns the caller with the
+    /// receipts if they are known already; a caller without room is dropped, and asks again.
     pub fn take(
         &mut self,
         said: &Said,
@@ -140,7 +140,7 @@ impl<Q> Asked<Q> {
         due.collect()
     }
 
-    /// Takes a receipt of any client; returns those who wait for it once all of theirs are there.
+    /// Takes a receipt of any client; returns those who wait for it once they have all of theirs.
     pub fn on_receipt(&mut self, receipt: &Receipt) -> Option<(Vec<Q>, Vec<Receipt>)> {
         let place = self
             .waiting
@@ -191,12 +191,12 @@ struct Pending {
     injection: Injection,
     arrived: Time,
     repeated: Time,
-    /// When it is asked next.
+    /// Time of the next request.
     due: Time,
 }
 
 impl Outbound {
-    /// Takes an injection of a local client, and each of its repetitions. Returns the receipts where they are known.
+    /// Takes an injection of a local client, and each repetition. Returns the receipts, if known.
     pub fn take(&mut self, injection: Injection, now: Time) -> Option<&[Receipt]> {
         let key = injection.key;
         if let Some(place) = self.answered.iter().position(|(known, _)| *known == key) {
@@ -211,14 +211,14 @@ impl Outbound {
         None
     }
 
-    /// Returns the requests that are due at `now`, and drops those that their clients no longer repeat.
+    /// Returns the requests due at `now`, and drops those that their clients no longer repeat.
     pub fn due(&mut self, now: Time) -> Vec<Said> {
         self.waiting.retain(|pending| now < pending.repeated + GIVEN_UP);
         let is_due = |pending: &&mut Pending| now >= pending.due;
         let due = self.waiting.iter_mut().filter(is_due).map(|pending| {
             let Pending { injection, arrived, due, .. } = pending;
             let Injection { key, onset_ns, end_ns, seen_prompt, ref from, ref sound } = *injection;
-            // What was said when it arrived was not said when it is sent again.
+            // Words are old by the time they are sent again.
             let age = |at_ns| age_ns(at_ns, now).or_else(|| age_ns(arrived.ns(), now));
             let sent = Sent::Sound(sound.clone());
             *due = now + sent.patience() + GRACE;
@@ -292,8 +292,8 @@ mod tests {
         }
     }
 
-    /// Runs one client's words through mirror, network and robot until `end_ms`; half of all messages are lost, and each may
-    /// be late by up to half a second. Returns when the client had its receipt.
+    /// Runs one client's words through mirror, network and robot until `end_ms`; half of all
+    /// messages are lost, and each may be half a second late. Returns the receipt's time.
     fn run(seed: u64) -> (Option<u64>, Speech) {
         let (mut dice, mut speech) = (Dice(seed), Speech::default());
         let (mut mirror, mut robot) = (Outbound::default(), Asked::<()>::default());

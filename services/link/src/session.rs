@@ -1,5 +1,5 @@
-//! Sessions with the router. QUIC, never the library's TLS links: those share a connection between two tasks without a lock
-//! (eclipse-zenoh/zenoh#2557).
+//! Sessions with the router. QUIC, never the library's TLS links: those share a connection between
+//! two tasks without a lock (eclipse-zenoh/zenoh#2557).
 
 use std::path::Path;
 use std::time::Duration;
@@ -15,8 +15,8 @@ use crate::names::{Call, Keys};
 
 /// Time without any message after which a connection counts as lost, milliseconds.
 const LEASE_MS: u32 = 3_000;
-/// Time in which a robot or the router completes a connection, milliseconds. A router that was started again is asked by a
-/// whole fleet at once: with the library's 10 s none of 1,000 robots came back within 300 s (`scripts/fleet`).
+/// Timeout for a connection of a robot or the router, milliseconds. A whole fleet asks a restarted
+/// router: with the library's 10 s no robot of 1,000 came back within 300 s (`scripts/fleet`).
 pub(crate) const OPEN_MS: u32 = 60_000;
 /// As [`OPEN_MS`], for a person, who waits for it, milliseconds.
 const PERSONS_OPEN_MS: u32 = 10_000;
@@ -87,8 +87,8 @@ pub fn connect(identity: &Identity, keys: &Path) -> Result<Session, Failure> {
     })
 }
 
-/// Connects, trying again until it succeeds or `is_ending` says that it is not wanted any more. A connection that is lost later
-/// is made again by the library.
+/// Connects, trying again until it succeeds or `is_ending` says that it is not wanted any more. A
+/// connection that is lost later is made again by the library.
 pub(crate) fn connect_patiently(
     identity: &Identity,
     keys: &Path,
@@ -121,8 +121,8 @@ pub(crate) fn connect_patiently(
     None
 }
 
-/// Makes a request; `take` gets each answer, on a thread of the library, and must not wait. It is dropped when the request
-/// has ended, answered or not.
+/// Makes a request; `take` gets each answer, on a thread of the library, and must not wait. It is
+/// dropped when the request has ended, answered or not.
 pub fn request(
     session: &Session,
     keys: &Keys,
@@ -157,7 +157,7 @@ pub(crate) fn request_at(
         .get(keys.call(call))
         .payload(payload)
         .priority(priority)
-        // What finds no room is asked again.
+        // Requests that find no room are repeated.
         .congestion_control(CongestionControl::Drop)
         .timeout(timeout)
         .callback(answered)
@@ -167,19 +167,19 @@ pub(crate) fn request_at(
     }
 }
 
-/// Answers a request. It may wait for room, so that only a thread that does nothing else may answer.
+/// Answers a request. It may wait for room, so only a thread with no other work may answer.
 pub(crate) fn reply(query: &Query, bytes: Vec<u8>, keys: &Keys, call: Call) {
     if let Err(error) = query.reply(keys.call(call), bytes).wait() {
         tracing::debug!(%error, ?call, "not answered; it is asked again");
     }
 }
 
-/// Drops what holds a session, which says goodbye to the router. A router that is gone is not waited for.
+/// Drops the holder of a session, which says goodbye to the router without waiting for it.
 pub(crate) fn close(holder: impl Send + 'static) {
     let (done, closed) = std::sync::mpsc::channel();
     let close = move || {
         drop(holder);
-        // Nobody listens any more where it took too long.
+        // Nobody listens any more if it took too long.
         let _ = done.send(());
     };
     if std::thread::Builder::new().name("close".into()).spawn(close).is_ok() {

@@ -1,5 +1,5 @@
-//! Light robots for measurements of scale (scripts/fleet): each has a session of its own, declares what a robot's link declares,
-//! says that it is there, shows its state to those who watch, and answers words and orders. None has a group.
+//! Light robots for measurements of scale (scripts/fleet): each has a session of its own, makes a
+//! robot's declarations, shows presence and state, and answers words and orders. None has a group.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -51,7 +51,7 @@ pub struct Fleet {
     pub settings: String,
 }
 
-/// What the robots do, as others see it.
+/// Counts of the robots' actions, as others see them.
 #[derive(Debug, Default)]
 pub struct Counts {
     /// Robots that have joined.
@@ -74,7 +74,7 @@ struct Robot {
     mind: Mutex<Mind>,
 }
 
-/// What it knows.
+/// State of a simulated robot.
 struct Mind {
     view: PolicyView,
     view_out: Outgoing<PolicyView>,
@@ -142,7 +142,7 @@ fn wait_until(moment: Instant, counts: &Counts) {
     }
 }
 
-/// Connects a robot and declares what a robot's link declares.
+/// Connects a robot and makes the declarations of a robot's link.
 fn join(
     number: usize,
     identity: &Identity,
@@ -177,7 +177,7 @@ fn declare(
     let asked = asked.clone();
     let on_query = move |query: Query| {
         if let Some(call) = call_of(query.key_expr().as_str()) {
-            // What finds no room is asked again.
+            // Requests that find no room are repeated.
             let _ = asked.try_send((number, call, query));
         }
     };
@@ -196,7 +196,7 @@ fn declare(
     Ok(Robot { name, keys, session, presence, states, _token: token, start, mind })
 }
 
-/// Shows every robot's presence and, where it is watched, its states, until the end.
+/// Shows every robot's presence and, to watchers, its states, until the end.
 fn show_all(robots: &Mutex<Vec<Option<Arc<Robot>>>>, counts: &Counts) {
     let mut round = 0_u32;
     let rounds = u32::try_from(PRESENCE_EVERY.0 / STATES_EVERY.as_nanos() as u64).unwrap_or(1);

@@ -1,11 +1,11 @@
-//! Reports of frames that cannot be shown, at a bounded rate: who sends nonsense among good frames does not fill the log.
+//! Reports of frames that cannot be shown, at a bounded rate, so that nonsense cannot fill the log.
 
 use service::{Span, Time};
 
 /// Shortest interval between two reports.
 const REPORT_EVERY: Span = Span::from_ms(10_000);
 
-/// What was wrong with frames, and how often since the last report.
+/// Faults of frames, with counts since the last report.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Trouble {
     reported: Option<Time>,
@@ -13,8 +13,8 @@ pub struct Trouble {
 }
 
 impl Trouble {
-    /// Counts a frame that is not shown. Returns the number of those that a report at `now` stands for, or `None` where
-    /// none is due.
+    /// Counts a frame that is not shown. Returns the number of those that a report at `now` covers,
+    /// or `None` if none is due.
     pub fn count(&mut self, now: Time) -> Option<u64> {
         self.unreported += 1;
         if self.reported.is_some_and(|reported| now < reported + REPORT_EVERY) {

@@ -20,22 +20,22 @@ use crate::session::{close, connect_patiently, request};
 
 /// Interval of an empty line, by which the end of the reader is noticed.
 const BEAT_EVERY: Duration = Duration::from_secs(2);
-/// Time for a robot to say what it does, before it is asked again.
+/// Time for a robot to report its activity, before it is asked again.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// News that wait.
 const QUEUE: usize = 16_384;
-/// Robots that are asked at a time: each is asked once it is there, and says the rest unasked.
+/// Robots asked at a time: each is asked once it is connected, and reports the rest unasked.
 const ASKED_MAX: usize = 64;
 
-/// What the library's threads give to the main one.
+/// Events from the library's threads to the main one.
 enum News {
     /// A link of a robot has come or gone.
     Alive(Name, String, bool),
-    /// What a robot says of itself.
+    /// Presence of a robot.
     Presence(Vec<u8>),
 }
 
-/// A robot that is connected.
+/// A connected robot.
 struct Robot {
     /// Its links: two for a moment when one is started again.
     starts: BTreeSet<String>,
@@ -105,7 +105,7 @@ pub fn run(folder: &Path, out: &mut impl Write) -> Result<(), Failure> {
             Err(RecvTimeoutError::Disconnected) => break,
         };
         let line = change.and_then(|change| serde_json::to_string(&change).ok());
-        // Nobody reads any more.
+        // The channel has no reader any more.
         if line.is_some_and(|line| write(&line).is_err()) {
             break;
         }
@@ -116,7 +116,7 @@ pub fn run(folder: &Path, out: &mut impl Write) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Takes what a robot says of itself; returns the change, if it is one.
+/// Takes a robot's presence; returns the change, if it is one.
 fn said(robots: &mut BTreeMap<Name, Robot>, bytes: &[u8]) -> Option<Change> {
     let presence: Presence = serde_json::from_slice(bytes).ok()?;
     let robot = Name::new(&presence.robot).ok()?;
@@ -144,7 +144,7 @@ fn follow(session: &Session, keys: &Keys, sender: &SyncSender<News>) -> zenoh::R
     alive.callback(on_alive).background().wait()
 }
 
-/// Subscribes to what one robot says of itself: the router lets no subscription to all of them through to one.
+/// Subscribes to one robot's presence: the router passes no subscription to all of them.
 fn presences(session: &Session, robot: &Name, sender: &SyncSender<News>) -> Option<Subscriber<()>> {
     let sender = sender.clone();
     let take = move |sample: Sample| {

@@ -1,4 +1,4 @@
-//! Keys of a fleet: what is made, kept, renewed and revoked.
+//! Keys of a fleet: making, keeping, renewing and revoking.
 
 use link::identity::{Identity, Role};
 use link::keyring::{Wanted, init};

@@ -7,7 +7,7 @@ use vocabulary::ids::PromptId;
 
 use crate::{Config, PolicyNode};
 
-/// What a record holds, and what it does not.
+/// Content of a record, and further state.
 #[derive(Serialize, Deserialize)]
 struct Checkpoint {
     state: State,
@@ -22,7 +22,7 @@ struct Checkpoint {
 }
 
 impl PolicyNode {
-    /// Returns the state; `None` where objects are followed, which is not described.
+    /// Returns the state; `None` if objects are tracked, which checkpoints do not cover.
     pub(crate) fn whole_state(&self) -> Option<Vec<u8>> {
         let Self { manager: _, state, perceived, floor, said, heard_of_speech, .. } = self;
         let Self { rested, rejected, waiting_since, next_send, forgot, .. } = self;
@@ -43,7 +43,7 @@ impl PolicyNode {
         postcard::to_stdvec(&checkpoint).ok()
     }
 
-    /// Returns the node of this state.
+    /// Returns the node of the checkpoint.
     pub(crate) fn with_whole_state(config: Config, bytes: &[u8]) -> Result<Self, NodeError> {
         let checkpoint = postcard::from_bytes(bytes);
         let Checkpoint {

@@ -15,7 +15,7 @@ use vocabulary::{ActKind, Action, Outcome, PickOutcome};
 
 use crate::planner_program;
 
-/// Renders a record as one line. Without the scene that it is about, the robot's words are left out.
+/// Renders a record as one line. Without its scene, the robot's words are left out.
 pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
     let Record { cause, state, .. } = record;
     let open = state.open.as_ref().map(|open| {
@@ -79,8 +79,8 @@ pub(crate) fn decision(scene: Option<&Scene>, Record { state, .. }: &Record) -> 
     Decision { interaction, what, value }
 }
 
-/// Why the robot decided so: the value with its bounds, the questions to come, and what else it
-/// weighed, in seconds. A mere remark has no reasons.
+/// Returns the reasons of a decision: the value with its bounds, the questions to come, and the
+/// alternatives, in seconds. A mere remark has no reasons.
 fn reasons(scene: Option<&Scene>, act: &Act) -> String {
     if act.value == 0.0 && act.alternatives.is_empty() {
         return String::new();
@@ -232,7 +232,7 @@ struct Managers<'a> {
     settings: &'a [Settings],
     /// Key of the newest state.
     newest: u64,
-    /// Those that were needed; none where the settings are no longer kept.
+    /// Managers needed so far; `None` if the settings are no longer kept.
     known: BTreeMap<u64, Option<Manager>>,
 }
 
@@ -243,7 +243,7 @@ impl<'a> Managers<'a> {
         Self { settings, newest, known: BTreeMap::new() }
     }
 
-    /// Whether a planner decided that is a program (`--planner-program`): only that program can repeat it.
+    /// Whether a planner program (`--planner-program`) decided: only it can repeat decisions.
     fn is_program(&self, key: u64) -> bool {
         self.settings.iter().any(|settings| settings.manager_key(planner_program::NAME) == key)
     }
@@ -252,7 +252,7 @@ impl<'a> Managers<'a> {
     fn of_key(&mut self, key: u64) -> Result<Option<&mut Manager>, Failure> {
         if !self.known.contains_key(&key) {
             let fitting = self.settings.iter().find(|settings| settings.makes_key(key));
-            // Where there are none of that key, the newest are taken to be those at the journal's end.
+            // Without settings of that key, the newest are taken to be those at the journal's end.
             let is_newest = key == self.newest && !self.is_program(key);
             let newest = self.settings.first().filter(|_| is_newest);
             let manager = fitting.or(newest).map(|settings| settings.manager_of_key(key));

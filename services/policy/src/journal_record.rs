@@ -16,8 +16,8 @@ use vocabulary::{Action, Ended, Interpretation, Presentation};
 /// Scenes of up to this many objects have their descriptions in every record.
 const DESCRIBED_MAX: usize = 64;
 
-/// Returns the scene that a record is about, with the objects of its table; none where no settings have
-/// it.
+/// Returns the scene that a record is about, with the objects of its table; `None` if no settings
+/// have it.
 pub(crate) fn scene<'a>(settings: &'a [Settings], record: &Record) -> Option<Cow<'a, Scene>> {
     let State { table, scene_key, .. } = &record.state;
     let scenes = settings.iter().map(|settings| &settings.scene);
@@ -67,7 +67,7 @@ pub(crate) fn explain(scene: Option<&Scene>, record: &Record) -> PolicyRecord {
     }
 }
 
-/// Names of what a record has by numbers.
+/// Names for the numbers in a record.
 struct Names<'a> {
     scene: Option<&'a Scene>,
     open: Option<&'a Interaction>,

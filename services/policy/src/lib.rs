@@ -1,8 +1,8 @@
-//! The policy service: maintains the belief over the objects, and decides what to do about it.
+//! The policy service: maintains the belief over the objects, and decides the next act.
 //!
 //! [`PolicyNode`] is the reducer around the [dialogue manager](dialogue::manager). It takes
-//! observations strictly in order, each exactly once, advances the state, and has it journaled before
-//! anything that follows from it can be seen.
+//! observations strictly in order, each exactly once, advances the state, and has it journaled
+//! before anything that follows from it can be seen.
 
 mod checkpoint;
 mod inspection;
@@ -37,17 +37,17 @@ pub fn run() -> ExitCode {
 
 /// Interval at which the standing decision is sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);
-/// Longest time without a message of speech, which sends several a second, that is no outage.
+/// Time without a message of speech, which sends several a second, that counts as an outage.
 const OUTAGE: Span = Span::from_ms(1_000);
 
-/// Longest time in which the arm confirms an ordered stop: it halts within 0.1 s and reports its status four
-/// times a second.
+/// Longest time in which the arm confirms an ordered stop: it halts within 0.1 s and reports its
+/// status four times a second.
 const STOP_CONFIRMATION_MAX: Span = Span::from_ms(1_000);
 
 /// Input of the policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum In<'a> {
-    /// From grounding.
+    /// An observation from grounding.
     Observation(MessageRef<'a, Observation>),
     /// From speech: the latest prompt said.
     Presented(Presented),
@@ -55,11 +55,11 @@ pub enum In<'a> {
     Activity(Activity),
     /// From the arm.
     Arm(ArmStatus),
-    /// From the arm: where its grippers are.
+    /// From the arm: positions of its grippers.
     World(Box<WorldView>),
     /// From a camera, another source or a client.
     Sighting(Box<Sighting>),
-    /// From a client.
+    /// An order of a client to forget a person.
     Forget(Forget),
 }
 
@@ -81,7 +81,7 @@ pub enum Out {
 pub struct Config {
     /// The dialogue manager.
     pub manager: Manager,
-    /// How objects are followed, where they come from perception.
+    /// Settings of tracking, if the objects come from perception.
     pub tracker: Option<perception::Settings>,
 }
 
@@ -97,7 +97,7 @@ type Fx = Effects<Out, Record>;
 pub struct PolicyNode {
     manager: Manager,
     state: State,
-    /// Objects from perception, where they come from there.
+    /// Objects from perception, if they come from there.
     perceived: Option<Perceived>,
     floor: Floor,
     /// The latest standing prompt that was said to its end, and which presentation of it.
@@ -231,8 +231,8 @@ impl PolicyNode {
             }
         }
         let Some(utterance) = self.utterance(observation, now) else {
-            // Not applied, so speech sends the utterance again: grounding may be repaired or swapped
-            // meanwhile, and nothing is lost.
+            // Not applied, so speech sends the utterance again: grounding may be repaired or
+            // swapped meanwhile, and nothing is lost.
             self.rejected += 1;
             self.waiting_since.get_or_insert(now);
             let same_scene = observation.scene_key == self.manager.scene_file().key();
@@ -245,8 +245,8 @@ impl PolicyNode {
         self.report_stop(now, fx);
     }
 
-    /// Returns the utterance of an observation; none where it is invalid or of another scene.
-    /// A time in the future is none: it is of a clock before a restart of the machine, or a defect.
+    /// Returns the utterance of an observation; `None` if it is invalid or of another scene. A time
+    /// in the future is invalid: it is of a clock before a restart of the machine, or a defect.
     fn utterance(&self, observation: &Observation, now: Time) -> Option<Utterance> {
         let scene = self.manager.scene_file();
         let begun =
@@ -281,7 +281,7 @@ impl PolicyNode {
         self.apply(Cause::Forget(person), now, fx);
     }
 
-    /// Reports the effect of a stop that a user ordered: only a status that is younger than the order shows it.
+    /// Reports the effect of a user's stop, which only a status younger than the order shows.
     fn report_stop(&mut self, now: Time, fx: &mut Fx) {
         let Some(order) = self.state.stop.order else { return };
         // A time in the future is of a clock before a restart of the machine.
@@ -307,7 +307,7 @@ impl PolicyNode {
         }
         let mut outcome = status.outcome.get();
         if outcome == PickOutcome::Pending {
-            // Done without an outcome is no end.
+            // Done without an outcome is not an end.
             return;
         }
         let done = match self.state.to_put_back() {
@@ -317,8 +317,8 @@ impl PolicyNode {
         let is_done = matches!(outcome, PickOutcome::Delivered | PickOutcome::PutBack);
         let object = self.manager.scene().number(object);
         if is_done && (status.object != u32::from(object.0) || outcome != done) {
-            // The order has a key, an object and a task. Whatever the arm did, it was not what this
-            // one names.
+            // The order has a key, an object and a task. Whatever the arm did, it was something
+            // else.
             self.rejected += 1;
             tracing::error!(?pick, ordered = object.0, found = status.object, "another order");
             outcome = PickOutcome::Interrupted;
@@ -367,8 +367,8 @@ impl PolicyNode {
         }
     }
 
-    /// Returns the floor: an observation that arrived early shows that one more is on its way. It is
-    /// not waited for without end: the early one may never have been an utterance's.
+    /// Returns the floor: an observation that arrived early shows that one more is on its way. It
+    /// is not waited for without end: the early one may never have been an utterance's.
     fn floor(&self, now: Time) -> Floor {
         let is_on_its_way = self.waiting_since.is_some_and(|since| now < since + HEARING_MAX);
         let pending = self.floor.pending.max(is_on_its_way.into());

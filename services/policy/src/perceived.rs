@@ -1,5 +1,5 @@
-//! Objects from perception: the tracker follows what sources report, and each change of the table is
-//! a step of the dialogue, durable like every other. None is taken while the arm has an order.
+//! Objects from perception: the tracker follows the reports of sources, and each change of the
+//! table is a step of the dialogue, durable and only taken while the arm has no order.
 
 use std::collections::VecDeque;
 
@@ -17,11 +17,11 @@ const ANSWERS_MAX: usize = 16;
 /// Change of an estimate that is not published at once, metres or radians.
 const STEP: f64 = 0.002;
 
-/// The tracker and what it needs to know.
+/// The tracker of objects with inputs and outputs.
 #[derive(Debug)]
 pub(crate) struct Perceived {
     settings: Settings,
-    /// None until the table is known.
+    /// `None` until the table is known.
     tracker: Option<Tracker>,
     hiding: Hiding,
     answers: VecDeque<ChangeAnswer>,
@@ -64,7 +64,7 @@ impl Perceived {
         self.answers.push_back(ChangeAnswer { key, object, refusal });
     }
 
-    /// Returns what is known of each object of the table.
+    /// Returns the state of each object of the table.
     fn live(&self, table: &Table) -> Vec<(ObjectId, Live)> {
         let of = |object: &scene::Perceived| {
             let live = self.tracker.as_ref().and_then(|tracker| tracker.live(object.number));
@@ -106,7 +106,7 @@ impl PolicyNode {
         perceived.hiding.handled = object.filter(|_| handles);
     }
 
-    /// Notes where the grippers are.
+    /// Notes the positions of the grippers.
     pub(crate) fn note_grippers(&mut self, world: &WorldView) {
         if let Some(perceived) = &mut self.perceived {
             let finite = world.grippers.iter().filter(|pose| pose.iter().all(|it| it.is_finite()));
@@ -155,8 +155,8 @@ impl PolicyNode {
         }
     }
 
-    /// Makes the objects that the tracker reports those of the dialogue, if they have changed and the
-    /// arm has no order.
+    /// Makes the objects that the tracker reports those of the dialogue, if they have changed and
+    /// the arm has no order.
     pub(crate) fn step_table(&mut self, edit: Option<(u64, ObjectId)>, now: Time, fx: &mut Fx) {
         let is_busy = self.state.ordered().is_some() || self.state.putting_back.is_some();
         let (Some(perceived), Some(table), false) =
@@ -189,7 +189,7 @@ impl PolicyNode {
         self.apply(Cause::Objects(next), now, fx);
     }
 
-    /// Lets the tracker know what the dialogue has done with the objects.
+    /// Reports the dialogue's effects on the objects to the tracker.
     pub(crate) fn sync_table(&mut self, now: Time) {
         let (Some(perceived), Some(table)) = (&mut self.perceived, &self.state.table) else {
             return;

@@ -46,8 +46,8 @@ use service::service_loop::Program;
 
 use crate::shell::PolicyProgram;
 
-/// Runs the policy service, or an inspection of its journal, with this planner beside those that ship with it.
-/// `--planner NAME` chooses it. Returns the exit code.
+/// Runs the policy service, or an inspection of its journal, with this planner in addition to the
+/// shipped ones. `--planner NAME` chooses it. Returns the exit code.
 pub fn run(planner: Entry) -> ExitCode {
     if let Err(error) = registry::add(planner) {
         let add = |_| Err(Failure::new(Exit::Invariant, error.to_string()));

@@ -1,8 +1,8 @@
-//! A planner that is a program in any language: `whichone-policy --planner-program PROGRAM [ARGUMENT…]`.
+//! A planner as a program in any language: `whichone-policy --planner-program PROGRAM [ARGUMENT…]`.
 //!
-//! The program writes the line `ready` once it is. Then it reads a line of JSON on standard input for each decision, a [`Request`],
-//! and answers with a line on standard output, a [`Reply`]. It ends at the end of its input. What it writes to standard error is in the service's log. Like every
-//! planner it decides by the request alone, so that a decision can be repeated from the journal.
+//! The program writes the line `ready` once it is. Then it reads a line of JSON on standard input
+//! for each decision, a [`Request`], and answers with a line on standard output, a [`Reply`]. It
+//! ends with its input; its standard error is logged. It decides by the request alone.
 
 use std::io::{self, BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
@@ -19,11 +19,11 @@ use vocabulary::{Action, Costs};
 
 /// Name of the planner.
 pub(crate) const NAME: &str = "program";
-/// Planner that decides where the program does not, and that values its decisions.
+/// Planner that decides if the program does not, and that values its decisions.
 const FALLBACK: &str = "entropy";
 /// Time that the program may take to become ready, before the service is.
 const START_MAX: Duration = Duration::from_secs(5);
-/// What the program writes once it is ready.
+/// Line that the program writes once it is ready.
 const READY: &str = "ready";
 /// Time that a decision may take. The service sends no heartbeat meanwhile.
 const ANSWER_MAX: Duration = Duration::from_millis(1_500);
@@ -48,15 +48,15 @@ pub(crate) fn register(command: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What the program gets.
+/// Request to the program.
 #[derive(Debug, Serialize)]
 struct Request {
     /// Number of the interaction, and of the decision in it: the only source of randomness.
     interaction: u64,
     step: u32,
-    /// Probability of each object, in the order of the scene, and of none of them where the scene may lack the wanted one.
+    /// Probability of each object, in the order of the scene, and of an absent one if allowed.
     belief: Vec<f64>,
-    /// Value of a right pick and of a wrong one (negative), of waiting, and the discount per action.
+    /// Values of a right pick, a wrong one (negative) and waiting, and the discount per action.
     correct: f64,
     wrong: f64,
     wait: f64,
@@ -68,7 +68,7 @@ struct Request {
 #[derive(Debug, Serialize)]
 struct Candidate {
     kind: &'static str,
-    /// Number of the attribute in the scene, of its value, and of the object, where the question has them.
+    /// Number of the attribute in the scene, of its value, and of the object, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     attribute: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -84,7 +84,7 @@ struct Candidate {
     answers: Vec<Vec<f64>>,
 }
 
-/// What the program answers: a question, a pick, or neither, which waits.
+/// Answer of the program: a question, a pick, or neither, to wait.
 #[derive(Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Reply {
@@ -142,7 +142,7 @@ impl Candidate {
 }
 
 impl Reply {
-    /// The action that it names; an error says what was expected.
+    /// Returns the named action; an error states the expected form.
     fn action(&self, model: &Model, questions: &[Question]) -> Result<Action, String> {
         let beyond = |what: &str, count: usize, found: usize| {
             format!("expected {what} from 0 to {}, found {found}", count.saturating_sub(1))
@@ -160,7 +160,7 @@ impl Reply {
     }
 }
 
-/// The planner. The program is started with it, and again where it has failed.
+/// The planner. The program is started with it, and again if it has failed.
 struct ProgramPlanner {
     fallback: Box<dyn Planner + Send>,
     running: Option<Running>,
@@ -223,7 +223,7 @@ impl Planner for ProgramPlanner {
     }
 }
 
-/// The decision for `action`: what `known` weighs is the alternative to it.
+/// The decision for `action`: the actions that `known` weighs are the alternatives.
 fn chosen(known: Decision, action: Action, value: Option<f64>, wait: f64) -> Decision {
     let Decision { mut alternatives, .. } = known;
     alternatives.insert(0, (known.action, known.value));
@@ -243,7 +243,7 @@ fn chosen(known: Decision, action: Action, value: Option<f64>, wait: f64) -> Dec
     }
 }
 
-/// The running program. A thread each writes to it and reads from it, so that a program that does neither cannot stop the service.
+/// The running program. Two threads write to it and read from it, lest it stop the service.
 struct Running {
     program: Child,
     requests: Sender<String>,
@@ -283,7 +283,7 @@ impl Running {
         Ok(Self { program, requests, answers, is_ready: false })
     }
 
-    /// Waits until it is ready.
+    /// Waits until the program is ready.
     fn wait_ready(&mut self, within: Duration) -> Result<(), String> {
         if !self.is_ready {
             match self.read(within)? {

@@ -1,7 +1,7 @@
 //! Cache of the planner's decisions on disk, between runs.
 //!
-//! Decisions are the same with and without it: a file that is missing, torn or of another problem is
-//! computed again.
+//! Decisions are the same with and without it: a file that is missing, torn or of another problem
+//! is computed again.
 
 use std::fs;
 use std::io;
@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use dialogue::PolicyTable;
 use dialogue::manager::Manager;
 
-/// Lets the planner precompute its decisions from a dialogue's usual beginning, or adopts those that an
-/// earlier run left in `folder` for the same scene and settings.
+/// Lets the planner precompute its decisions from a dialogue's usual beginning, or adopts those
+/// that an earlier run left in `folder` for the same scene and settings.
 pub(crate) fn precompute(manager: &mut Manager, folder: &Path) {
     let path = file(folder, manager.problem().key());
     if let Some(table) = read(&path)
@@ -37,7 +37,7 @@ fn read(path: &Path) -> Option<PolicyTable> {
     postcard::from_bytes(body).ok()
 }
 
-/// Replaces the file atomically. A group has one scene at a time, so the tables of others are removed.
+/// Replaces the file atomically. A group has one scene at a time: other tables are removed.
 fn write(path: &Path, table: &PolicyTable) -> io::Result<()> {
     let mut bytes = postcard::to_stdvec(table).map_err(io::Error::other)?;
     bytes.extend(crc32c::crc32c(&bytes).to_le_bytes());

@@ -116,7 +116,7 @@ pub struct PolicyShell {
     mark: Writer<AppliedMark>,
     act: Writer<RobotAct>,
     view: EncodedWriter<PolicyView>,
-    /// Where the objects come from perception.
+    /// Topics of the table, if the objects come from perception.
     table: Option<TableTopics>,
 }
 

@@ -1,5 +1,5 @@
-//! The service around the dialogue manager, on the shipped six bowls. The rules of the dialogue are tested beside the
-//! manager (`shared/dialogue/src/manager/tests`).
+//! The service around the dialogue manager, on the shipped six bowls. The rules of the dialogue are
+//! tested beside the manager (`shared/dialogue/src/manager/tests`).
 
 mod arm;
 mod journal;

@@ -45,13 +45,13 @@ fn numbered(scene: &Scene, question: Question) -> Question {
     }
 }
 
-/// Returns the object's number; one past the scene's objects, for what is not here, stays as it is.
+/// Returns the object's number; one past the scene's objects, for an absent one, stays as it is.
 fn number(scene: &Scene, object: ObjectId) -> ObjectId {
     if object.index() < scene.objects().len() { scene.number(object) } else { ObjectId(u16::MAX) }
 }
 
-/// Returns the question that waits for an answer: that of the act, or whether what was decided while
-/// the motion stop was latched, or is offered instead of something else, shall start.
+/// Returns the question that waits for an answer: that of the act, or whether a pick that was
+/// decided while the motion stop was latched, or is offered instead, shall start.
 fn asked(manager: &Manager, state: &State) -> Question {
     let act = &state.act;
     let confirmable = || {
@@ -74,7 +74,7 @@ fn answerable(manager: &Manager, state: &State) -> Question {
     deniable.map_or_else(|| asked(manager, state), Question::Point)
 }
 
-/// Returns what was handed over last, while it can be refused.
+/// Returns the object handed over last, while it can be refused.
 fn delivery(manager: &Manager, state: &State) -> Option<Delivery> {
     let handed_over = state.handed_over.as_ref().filter(|_| state.open.is_none())?;
     let window = Span::from_s(manager.turns().refusal_s);

@@ -151,7 +151,7 @@ fn rounded(value: &mut Value) {
     }
 }
 
-/// Programs read it. `WHICHONE_BLESS=1` rewrites the golden file.
+/// Records are read by programs. `WHICHONE_BLESS=1` rewrites the golden file.
 #[test]
 fn records_for_programs_match_the_golden_file() {
     let lab = Lab::with(&every_cause());

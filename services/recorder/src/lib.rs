@@ -1,8 +1,8 @@
 //! Recorder: writes every topic of the group into a ring of MCAP files.
 //!
-//! It is an observer: it writes no topic, no writer waits for it, and the group is whole without it. It looks
-//! at all topics four to ten times a second, with buffers that hold what was sent meanwhile; what it misses all
-//! the same shows as a gap of sequence numbers.
+//! It is an observer: it writes no topic, no writer waits for it, and the group is whole without
+//! it. It looks at all topics four to ten times a second, with buffers for the messages sent
+//! meanwhile; missed ones show as a gap of sequence numbers.
 
 mod service;
 
@@ -10,7 +10,7 @@ use config::{EVERYTHING, Part, PartService, Registered};
 
 pub use self::service::run;
 
-/// The service and its section. Each recording holds the settings in force.
+/// The service and the section of its settings. Each recording holds the settings in force.
 pub static PART: Part = Part {
     name: "recorder",
     service: Some(PartService { reads: EVERYTHING, is_client: false }),

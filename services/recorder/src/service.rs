@@ -78,7 +78,7 @@ impl Recorder {
             next_tend: began,
             is_ending: false,
         };
-        // Deletes what is too old: the rest is completed.
+        // Deletes files that are too old: the rest is completed.
         recorder.tend(began);
         let torn = incomplete(&folder);
         // Beside the recording, as it may take a while. A failure leaves them unfinished.
@@ -90,8 +90,8 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Takes what has arrived on all topics; it is dropped while nothing is recorded. Returns whether the next look
-    /// should come soon.
+    /// Takes the new messages of all topics; they are dropped while nothing is recorded. Returns
+    /// whether the next look should come soon.
     fn look(&mut self, now: Time) -> bool {
         let Self { reader, ring, .. } = self;
         match ring.clock() {
@@ -116,8 +116,8 @@ impl Recorder {
     }
 }
 
-/// The moment up to which an earlier recording has the messages: a second before its last flush, so that
-/// some may be in both and none is lost.
+/// The moment up to which an earlier recording has the messages: a second before its last flush, so
+/// that some may be in both and none is lost.
 fn newest(folder: &Path, now: Time) -> Time {
     let written = entries(folder).pop().and_then(|file| file.path.metadata().ok()?.modified().ok());
     let age = written.and_then(|at| SystemTime::now().duration_since(at).ok());
@@ -168,12 +168,12 @@ impl Cycle for Recorder {
             self.wake_listener.take();
         }
         let now = clock::now();
-        // Clients wake it: what they sent is gone when they end.
+        // Clients wake the recorder: their messages are gone when they end.
         if now >= self.next_look || ready.by_wake || self.is_ending {
-            // What clients have sent is answered soon.
+            // Messages from clients are answered soon.
             let soon = self.look(now) || ready.by_wake;
             self.next_look = now + if soon { LOOK_EVERY.0 } else { LOOK_EVERY.1 };
-            // At the end, too: what was logged in the last second.
+            // At the end, too: log lines of the last second.
             if now >= self.next_tend || self.is_ending {
                 self.tend(now);
             }

@@ -1,7 +1,7 @@
 //! Speech recognition on a thread of its own: from audio to segments of speech with hypotheses.
 //!
-//! Invariant: every accepted input yields exactly one result; those of live utterances come in order, and
-//! so do those of files. What is said does not wait for a file. The thread accepts input at
+//! Invariant: every accepted input yields exactly one result; those of live utterances come in
+//! order, and so do those of files. Utterances do not wait for a file. The thread accepts input at
 //! once; the recogniser follows when it has loaded. Interim results and early decoding delay no
 //! result, and a second opinion none longer than the open pause.
 
@@ -36,7 +36,7 @@ const AGAIN_EVERY: Duration = Duration::from_millis(500);
 /// Possible ends of utterances that may wait for early decoding.
 const HINTS_MAX: usize = 4;
 
-/// What bounds utterances and the work on them.
+/// Limits of utterances and the work on them.
 #[derive(Clone, Debug)]
 struct Limits {
     segmenter: SegmenterOptions,
@@ -47,7 +47,7 @@ struct Limits {
 }
 
 impl Limits {
-    /// Returns the limits of the configuration. Who is in doubt waits as long as for words that lead on.
+    /// Returns the limits of the configuration. A doubtful result waits as long as an open pause.
     fn of(speech: &config::Speech) -> Self {
         Self {
             segmenter: options::segmenter(speech),
@@ -68,8 +68,8 @@ pub(crate) struct AsrWorker {
 }
 
 impl AsrWorker {
-    /// Starts the thread, which opens the recogniser of the configuration with work files in `work`.
-    /// Its events are the state of the recogniser, interim results and results.
+    /// Starts the thread, which opens the recogniser of the configuration with work files in
+    /// `work`. Its events are the state of the recogniser, interim results and results.
     pub(crate) fn start(settings: &Settings, work: &Path) -> (Self, Receiver<In<'static>>) {
         let (scene, speech) = (settings.scene.clone(), &settings.speech);
         let score_min = speech.accept_score_min as f32;
@@ -115,8 +115,8 @@ impl AsrWorker {
         (Self { hints, blocks, files, closed, thread }, happened)
     }
 
-    /// Offers a possible end of utterance `sound`. A quick recogniser decodes it while it is idle, and
-    /// [`Self::submit`] of the same samples then needs no decoding.
+    /// Offers a possible end of utterance `sound`. A quick recogniser decodes it while it is idle,
+    /// and [`Self::submit`] of the same samples then needs no decoding.
     pub(crate) fn decode_early(&self, sound: u64, segment: SpeechSegment) {
         // Without room it is decoded when the end is certain.
         let _ = self.hints.try_send((sound, segment));
@@ -143,7 +143,7 @@ impl Drop for AsrWorker {
     }
 }
 
-/// Opens a recogniser, again as long as the disk has no room for its files. What is said meanwhile waits.
+/// Opens a recogniser, again until the disk has room for its files. Utterances wait meanwhile.
 fn with_room<T>(
     closed: &AtomicBool,
     mut open: impl FnMut() -> Result<T, RecogniserUnavailable>,
@@ -171,7 +171,7 @@ struct Opened {
 }
 
 impl Opened {
-    /// Returns the recognisers after a warning of what is missing.
+    /// Returns the recognisers after a warning about missing ones.
     fn ready(self) -> Ensemble {
         let Self { first, second, unpronounceable, gate } = self;
         if !unpronounceable.is_empty() {

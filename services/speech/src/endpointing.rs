@@ -1,4 +1,4 @@
-//! The end of an utterance by its meaning: how long a pause ends what was said so far.
+//! The end of an utterance by its meaning: length of the pause that ends the words so far.
 
 use std::ops::Deref;
 use std::sync::LazyLock;
@@ -11,7 +11,7 @@ use speech_engines::vad::Closing;
 
 use crate::{Hypothesis, RecognisedSegment};
 
-/// Pauses that end utterances, by what was said.
+/// Pauses that end utterances, depending on the words.
 pub struct Endpointing {
     /// Judges the words.
     pub judge: PreparedJudge,
@@ -23,8 +23,8 @@ pub struct Endpointing {
     pub open: Duration,
 }
 
-/// A judge of words that is prepared when it is first needed: while a user speaks there is time for the several
-/// milliseconds that it takes, during a start there is not.
+/// A judge of words that is prepared when it is first needed: while a user speaks there is time for
+/// the several milliseconds that it takes, during a start there is not.
 pub struct PreparedJudge(LazyLock<CompletenessJudge, Prepare>);
 
 type Prepare = Box<dyn FnOnce() -> CompletenessJudge + Send>;
@@ -52,7 +52,7 @@ const SNR_MIN_DB: f32 = 15.0;
 
 impl Endpointing {
     /// Returns how complete an utterance is that follows `question`: that of its least complete
-    /// hypothesis, and not complete before all recognisers have been heard. A stop waits for nothing.
+    /// hypothesis, and not complete before all recognisers' results. A stop waits for nothing.
     pub fn judge(&self, result: &RecognisedSegment, question: Question) -> Completeness {
         if result.text().is_some_and(language::is_stop) {
             return Completeness::Complete;
@@ -77,8 +77,8 @@ impl Endpointing {
         }
     }
 
-    /// Returns the pause that ends an utterance. Who can interrupt the robot loses nothing by a reply to
-    /// what may be all; others are given as long as if nothing was known.
+    /// Returns the pause that ends an utterance. A user who can interrupt the robot loses nothing
+    /// by an early reply; others get as much time as if nothing was known.
     pub fn pause(&self, judged: Completeness, interrupts: bool) -> Duration {
         let complete = self.complete.min(self.closing);
         match judged {
@@ -90,8 +90,8 @@ impl Endpointing {
     }
 }
 
-/// Possible ends of an utterance in progress that are decoded one after the other, so that the next one
-/// does not delay the end by the first.
+/// Possible ends of an utterance in progress that are decoded one after the other, so that the next
+/// one does not delay the end by the first.
 #[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct EarlyDecoding {
     /// The sound that is being decoded, and the length of its speech.

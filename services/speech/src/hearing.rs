@@ -1,4 +1,4 @@
-//! Judgement of what the recognisers hear: which of them are asked, and what is meant for the robot.
+//! Judgement of recognised speech: the recognisers to ask, and the words meant for the robot.
 
 mod ensemble;
 mod gate;

@@ -124,7 +124,7 @@ pub struct PlaybackRequest {
     pub playback: u64,
     /// The prompt.
     pub prompt: PromptId,
-    /// Which presentation of the prompt.
+    /// Number of the prompt's presentation.
     pub presentation: u32,
     /// The words.
     pub text: String,
@@ -135,7 +135,7 @@ pub struct PlaybackRequest {
 pub struct Recognised {
     /// Number of the sound.
     pub sound: u64,
-    /// The utterances in it, none where it holds no speech; or the reason of a failure.
+    /// The utterances in the sound, none without speech; or the reason of a failure.
     pub segments: Result<Vec<RecognisedSegment>, String>,
 }
 
@@ -148,7 +148,7 @@ pub struct RecognisedSegment {
     pub snr_db: f32,
     /// The hypotheses, best first; or why the speech is not acted on.
     pub hypotheses: Result<Vec<Hypothesis>, Rejected>,
-    /// What each recogniser thought.
+    /// Result of each recogniser.
     pub heard: Heard,
     /// `true` if the second recogniser's opinion is still to come.
     pub awaits_second: bool,

@@ -127,7 +127,7 @@ mod tests {
         ]
     }
 
-    /// Programs read it. `WHICHONE_BLESS=1` rewrites the golden file.
+    /// Records are read by programs. `WHICHONE_BLESS=1` rewrites the golden file.
     #[test]
     fn records_for_programs_match_the_golden_file() {
         let settings = [settings()];

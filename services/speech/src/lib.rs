@@ -1,8 +1,8 @@
-//! Speech: recognises what users say, numbers their utterances, and speaks the robot's prompts.
+//! Speech: recognises users' words, numbers their utterances, and speaks the robot's prompts.
 //!
 //! [`SpeechNode`] is the reducer. An utterance is accepted once its record is durable; from then on
-//! it is sent, in order, until the policy's mark confirms that it is applied. A prompt counts as heard
-//! only once it was spoken to its end.
+//! it is sent, in order, until the policy's mark confirms that it is applied. A prompt counts as
+//! heard only once it was spoken to its end.
 
 mod asr_worker;
 mod bounded;

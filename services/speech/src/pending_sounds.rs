@@ -11,14 +11,14 @@ use speech_engines::stream::Began;
 pub(crate) struct PendingSound {
     /// The request or stream that it belongs to.
     pub(crate) key: RequestKey,
-    /// Number and total of its segment; none for a recording, which may contain several. The total of a
-    /// stream is unknown: 0.
+    /// Number and total of its segment; `None` for a recording, which may contain several. The
+    /// total of a stream is unknown: 0.
     pub(crate) segment: Option<(u32, u32)>,
-    /// Its source.
+    /// Source of the sound.
     pub(crate) source: Source,
-    /// When it began.
+    /// Start of the sound.
     pub(crate) onset: Time,
-    /// When a live one ended; none while it lasts.
+    /// End of a live sound; `None` while it lasts.
     pub(crate) end: Option<Time>,
     /// `true` if its speaker can interrupt the robot.
     pub(crate) interrupts: bool,
@@ -45,7 +45,7 @@ impl PendingSound {
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ClosedStream {
     pub(crate) key: RequestKey,
-    /// Number of its utterances.
+    /// Number of utterances.
     pub(crate) utterances: u32,
     /// Samples lost in transit.
     pub(crate) lost: u64,
@@ -117,7 +117,7 @@ impl PendingSounds {
         self.sounds.remove(&sound)
     }
 
-    /// Adds an ended stream. Clients repeat the end until it is confirmed; only the first end counts.
+    /// Adds an ended stream. Clients repeat the end until confirmed; only the first end counts.
     pub(crate) fn close(&mut self, stream: ClosedStream) {
         if self.closed.iter().any(|closed| closed.key == stream.key) {
             return;

@@ -1,5 +1,5 @@
-//! Speaking: each prompt is spoken once per presentation, delayed while a user speaks, interrupted on
-//! barge-in, and counts as heard only when it was spoken to its end.
+//! Speaking: each prompt is spoken once per presentation, delayed while a user speaks, interrupted
+//! on barge-in, and counts as heard only when it was spoken to its end.
 
 use crate::recent_lines::RecentLines;
 use crate::record::Record;
@@ -32,7 +32,7 @@ pub(crate) struct PromptPlayer {
     waiting: Option<Waiting>,
     /// Number of the last playback.
     last_playback: u64,
-    /// Behind the rest of a checkpoint, where earlier builds have nothing.
+    /// Last in a checkpoint, absent in those of earlier builds.
     #[serde(skip)]
     lines: RecentLines,
     /// The policy's latest prompt. Behind the lines in a checkpoint.
@@ -40,7 +40,7 @@ pub(crate) struct PromptPlayer {
     newest: PromptId,
 }
 
-/// The prompt that is being spoken.
+/// The prompt being spoken.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Playing {
     playback: u64,
@@ -85,9 +85,9 @@ impl PromptPlayer {
         (self.lines, self.newest) = (lines, newest);
     }
 
-    /// Returns the questions that may be answered by words whose user began at `onset` and was shown the prompt
-    /// `seen` before, newest first: that prompt alone if it is a question, whether or not it sounds, otherwise
-    /// those before it; all where `seen` is 0.
+    /// Returns the questions that may be answered by words whose user began at `onset` and was
+    /// shown the prompt `seen` before, newest first: that prompt alone if it is a question, whether
+    /// or not it sounds, otherwise those before it; all if `seen` is 0.
     pub(crate) fn answerable(
         &mut self,
         seen: PromptId,
@@ -108,7 +108,7 @@ impl PromptPlayer {
         asked
     }
 
-    /// Notes that a user was shown a question that does not sound yet: it can be answered from now on.
+    /// Notes that a user was shown a question that is not sounding yet: it can be answered now.
     fn note_shown(&mut self, seen: PromptId, now: Time, fx: &mut Fx) {
         let silent = self.playing.as_ref().filter(|playing| !playing.has_begun);
         let playing = silent.map(|playing| playing.presentation);
@@ -128,7 +128,7 @@ impl PromptPlayer {
         playing.into_iter().chain(earlier).collect()
     }
 
-    /// Returns the question that what a user says now answers, if the last prompt is one.
+    /// Returns the question that an utterance now would answer, if the last prompt is one.
     pub(crate) fn standing(&self) -> Question {
         let playing = self.playing.as_ref().and_then(Playing::begun);
         let last = playing.or(self.interrupted).or(self.last);
@@ -164,8 +164,8 @@ impl PromptPlayer {
         self.waiting = Some(Waiting { act, presentation, text, aim_until });
     }
 
-    /// Returns whether the presentation was the last one spoken, is being spoken, or waits. Acts come
-    /// in order, so only equality counts: a number that was too high must not silence what follows.
+    /// Returns whether the presentation was the last one spoken, is being spoken, or waits. Acts
+    /// come in order, so only equality counts: a number too high must not silence later prompts.
     fn is_known(&self, prompt: PromptId, number: u32) -> bool {
         let is = |other: &Presentation| (other.prompt, other.number) == (prompt, number);
         self.last.as_ref().is_some_and(is)
@@ -193,8 +193,8 @@ impl PromptPlayer {
         }
     }
 
-    /// Makes room for a user who begins to speak: one who can interrupt the robot does, and a prompt that
-    /// does not sound yet waits for everyone.
+    /// Makes room for a user who begins to speak: one who can interrupt the robot does, and a
+    /// prompt that does not sound yet waits for everyone.
     pub(crate) fn give_way(&mut self, interrupts: bool, now: Time, fx: &mut Fx) {
         if interrupts || self.playing.as_ref().is_some_and(|playing| !playing.has_begun) {
             self.interrupt(now, fx);

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use service::{Span, Time};
 
-/// How long after its end a line may sound again: another device repeats it, or a network delays the sound.
+/// Time after its end in which a line may sound again: by another device, or a network's delay.
 const ECHO_WITHIN: Span = Span::from_ms(15_000);
 /// Greatest delay of the report that a line sounds.
 const REPORTED_WITHIN: Span = Span::from_ms(500);
@@ -17,9 +17,9 @@ pub(crate) struct RecentLines(VecDeque<Line>);
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Line {
     text: String,
-    /// `None` before it sounds.
+    /// Start of the sound; `None` before.
     began: Option<Time>,
-    /// `None` while it sounds.
+    /// End of the sound; `None` before.
     ended: Option<Time>,
 }
 

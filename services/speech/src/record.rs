@@ -26,13 +26,13 @@ pub enum Record {
 /// An accepted utterance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Accepted {
-    /// Its number.
+    /// Number of the utterance.
     pub seq: UtteranceSeq,
     /// The client's key.
     pub key: RequestKey,
     /// Number and total of the segment in the client's sound.
     pub segment: (u32, u32),
-    /// Hypotheses, most likely first; none for a gesture without words.
+    /// Hypotheses, most likely first; empty for a gesture without words.
     pub hypotheses: Vec<Hypothesis>,
     /// The point that was pointed at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,
@@ -46,7 +46,7 @@ pub struct Accepted {
     pub end: Time,
     /// Signal-to-noise ratio, decibels; 0 for text.
     pub snr_db: f32,
-    /// When it was accepted.
+    /// Time at which the utterance was accepted.
     pub accepted: Time,
 }
 
@@ -60,7 +60,7 @@ pub struct Origin {
     pub from: PersonId,
 }
 
-/// An origin in a journal, where there once was a [`Source`]: the same bytes mean the same, and persons came later.
+/// An origin in a journal; earlier ones have a [`Source`], which the same bytes encode.
 #[derive(Serialize, Deserialize)]
 enum StoredOrigin {
     Text,

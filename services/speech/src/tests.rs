@@ -25,7 +25,7 @@ use speech_engines::testing;
 
 const WHITE: Question = Question::Attribute(AttributeId(0), ValueId(0));
 
-/// A speech service with its clock.
+/// A speech service with a simulated clock.
 struct Speech {
     node: SpeechNode,
     now: Time,
@@ -33,7 +33,7 @@ struct Speech {
 }
 
 impl Speech {
-    /// With the policy's mark, as when it is ready.
+    /// Makes a ready service, with the policy's mark.
     fn new() -> Self {
         let mut speech = Self::before_mark();
         speech.take(1.0, In::Mark(AppliedMark::default()));
@@ -296,7 +296,7 @@ fn words_whose_beginning_the_robot_covers_are_not_acted_on_and_its_question_is_r
     }
 }
 
-/// Returns the receipt of what is heard some seconds after the robot has asked "Is it white?".
+/// Returns the receipt of a text heard some seconds after the robot has asked "Is it white?".
 fn heard_after_a_question(after_s: f64, text: &str) -> (Receipt, Outputs) {
     let mut speech = Speech::new();
     speech.take(0.0, ask(7));

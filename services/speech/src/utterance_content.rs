@@ -10,7 +10,7 @@ const WEIGHT_MAX: f64 = 1e9;
 /// Words, a pointing gesture, or both.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct UtteranceContent {
-    /// Hypotheses, most likely first; none for a gesture without words.
+    /// Hypotheses, most likely first; empty for a gesture without words.
     pub(crate) hypotheses: Vec<Hypothesis>,
     /// The point that was pointed at, metres, frame `base`.
     pub(crate) gesture: Option<[f64; 3]>,
@@ -29,7 +29,7 @@ impl UtteranceContent {
         Self { hypotheses, gesture: Some(target_m) }
     }
 
-    /// Returns the hypotheses of a client's own recogniser, most likely first; only the best where
+    /// Returns the hypotheses of a client's own recogniser, most likely first; only the best if
     /// there are too many.
     ///
     /// # Errors
@@ -60,7 +60,7 @@ impl UtteranceContent {
         Ok(Self::words(hypotheses))
     }
 
-    /// Returns whether the words tell the robot to stop.
+    /// Returns whether the words are an order to stop.
     pub(crate) fn is_stop(&self) -> bool {
         self.hypotheses.first().is_some_and(|best| language::is_stop(&best.text))
     }

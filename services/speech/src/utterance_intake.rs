@@ -148,7 +148,7 @@ impl UtteranceIntake {
         }
     }
 
-    /// Takes the next request. One whose user was shown a later prompt than the `newest` waits for it.
+    /// Takes the next request. One whose user saw a later prompt than the `newest` waits for it.
     fn next_request(&mut self, newest: PromptId, now: Time) -> Option<Request> {
         self.waiting.take(|Request { origin, received, .. }| {
             let is_known = origin.seen <= newest || now >= *received + PROMPT_WAIT;
@@ -245,9 +245,9 @@ impl UtteranceIntake {
         }
         let judged = self.config.endpointing.judge(result, question);
         let pause_s = self.config.endpointing.pause(judged, pending.interrupts).as_secs_f64();
-        // What ends an utterance is what was said; no disk need be waited for.
+        // The words alone end an utterance; no disk need be waited for.
         fx.publish_urgent(Out::Close(sound, Closing { pause_s, ..at }));
-        // What is complete ends with these samples.
+        // A complete utterance ends with these samples.
         if let Some(segment) = next.filter(|_| judged != Completeness::Complete) {
             fx.publish(Out::DecodeEarly(sound, segment));
             self.early.begun(sound, at);
@@ -281,8 +281,8 @@ impl UtteranceIntake {
         fx.publish(Out::Activity(self.status.activity(self.pending.since(), pending)));
     }
 
-    /// Handles the result of the recogniser. Returns whether the robot's own voice covers a part of what
-    /// a user said, who is not understood without it.
+    /// Handles the result of the recogniser. Returns whether the robot's own voice covers an
+    /// essential part of a user's utterance.
     pub(crate) fn recognised(
         &mut self,
         recognised: Recognised,
@@ -325,8 +325,7 @@ impl UtteranceIntake {
         is_covered
     }
 
-    /// Accepts what was heard, ahead of waiting requests: a user speaks no faster than the robot
-    /// recognises.
+    /// Accepts a heard utterance, ahead of waiting requests: users are slower than the recogniser.
     fn hear(
         &mut self,
         origin: Origin,
@@ -349,8 +348,8 @@ impl UtteranceIntake {
         }
     }
 
-    /// Publishes the receipt of a segment that was accepted before, perhaps before a restart: it keeps
-    /// its number. Returns `false` if it is new.
+    /// Publishes the receipt of a segment that was accepted before, perhaps before a restart: it
+    /// keeps its number. Returns `false` if it is new.
     fn repeat(&self, origin: &Origin, fx: &mut Fx) -> bool {
         let known = self.accepted.find(origin.key, origin.segment.0);
         let receipt = known.map(|accepted| Out::Receipt(Box::new(accepted.receipt())));
@@ -384,7 +383,7 @@ impl UtteranceIntake {
         self.publish_activity(fx);
     }
 
-    /// Reports why there is no new utterance. Returns `false`.
+    /// Reports why the input makes no new utterance. Returns `false`.
     fn reject(&mut self, origin: &Origin, reason: &str, fx: &mut Fx) -> bool {
         self.report(origin.rejection(ReceiptStatus::Refused, reason), fx);
         false
@@ -403,16 +402,17 @@ impl UtteranceIntake {
         self.publish(fx);
     }
 
-    /// Returns whether a user is speaking or an utterance is still being processed. A sound that never
-    /// ends, or a recogniser that never answers, does not silence the robot forever.
+    /// Returns whether a user is speaking or an utterance is still being processed. A sound that
+    /// never ends, or a recogniser that never answers, does not silence the robot forever.
     pub(crate) fn is_busy(&self, now: Time) -> bool {
         let since = self.pending.since().into_iter().chain(self.accepted.oldest()).min();
         since.is_some_and(|since| now < since + BUSY_MAX)
     }
 }
 
-/// Returns what a user tells the robot, or the words that are not acted on: a stop is obeyed whatever else is unclear,
-/// even in the robot's own words; of anything else the part that is missing may be its "not".
+/// Returns a user's words to the robot, or those not acted on: a stop is obeyed whatever else is
+/// unclear, even in the robot's own words; of anything else the part that is missing may be its
+/// "not".
 fn meant(
     hypotheses: Result<Vec<Hypothesis>, Rejected>,
     is_cut: bool,

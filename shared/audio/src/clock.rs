@@ -13,10 +13,10 @@ const INTERVALS: usize = 8;
 
 /// Estimates the recording times of a stream's samples from the times of the reads.
 ///
-/// Each read bounds the beginning of the stream from above: its time minus all samples up to it. The
-/// least delayed read is the most accurate, so the earliest beginning within the last two seconds is
-/// used. This follows a sound card whose clock drifts (at 300 parts per million the error is 0.6 ms) or
-/// that lost samples, and late reads have no effect.
+/// Each read bounds the beginning of the stream from above: its time minus all samples up to it.
+/// The least delayed read is the most accurate, so the earliest beginning within the last two
+/// seconds is used. This follows a sound card whose clock drifts (at 300 parts per million the
+/// error is 0.6 ms) or that lost samples, and late reads have no effect.
 #[derive(Debug, Default)]
 pub struct SampleClock {
     /// Samples read.

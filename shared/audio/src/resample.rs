@@ -8,7 +8,7 @@ use rubato::{Fft, FixedSync, Resampler, WindowFunction};
 const BLOCK_MIN: usize = 2_048;
 
 /// Returns samples at `to_hz` that sound as `samples` at `from_hz` do. The first samples coincide;
-/// what lies before and after the input counts as silence.
+/// silence is assumed before and after the input.
 ///
 /// # Errors
 /// If a rate is 0.

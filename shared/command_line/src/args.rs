@@ -7,8 +7,8 @@ use clap::Args;
 /// Selection of the configuration.
 #[derive(Clone, Debug, Default, Args)]
 pub struct ConfigArgs {
-    /// Folder of the configuration [default: ./config, `config` beside the program, ~/.config/whichone,
-    /// /etc/whichone, else the built-in one].
+    /// Folder of the configuration [default: ./config, `config` beside the program,
+    /// ~/.config/whichone, /etc/whichone, else the built-in one].
     #[arg(long, value_name = "DIR", env = "WHICHONE_CONFIG", hide_env_values = true)]
     pub config: Option<PathBuf>,
     /// A profile from the folder `profiles` of the configuration.

@@ -33,9 +33,9 @@ pub fn settings_in_force(paths: &GroupPaths, args: &ConfigArgs) -> Result<Settin
 /// The folder of the configuration of a whole machine.
 const SYSTEM: &str = "/etc/whichone";
 
-/// Returns the absolute folder of the configuration: the named one, else the first that exists of `./config`,
-/// `config` beside the program or one of the folders above it, `$XDG_CONFIG_HOME/whichone` and
-/// `/etc/whichone`, else the built-in one.
+/// Returns the absolute folder of the configuration: the named one, else the first that exists of
+/// `./config`, `config` next to the program or one of the folders above it,
+/// `$XDG_CONFIG_HOME/whichone` and `/etc/whichone`, else the built-in one.
 pub fn folder(args: &ConfigArgs) -> Result<PathBuf, Failure> {
     if let Some(named) = args.config.as_ref().filter(|path| !path.as_os_str().is_empty()) {
         return Ok(absolute(named));
@@ -65,7 +65,7 @@ pub fn own_folder(args: &ConfigArgs) -> Result<PathBuf, Failure> {
     Ok(folder)
 }
 
-/// The folder of the built-in configuration, which lies beside the groups' folders.
+/// The folder of the built-in configuration, which is next to the groups' folders.
 fn built_in() -> Result<Option<PathBuf>, Failure> {
     let name = GroupName::new(GroupName::DEFAULT)?;
     shipped::folder(GroupPaths::resolve(&name)?.home())

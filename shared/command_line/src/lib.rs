@@ -1,5 +1,5 @@
-//! Shared code of the verbs of the command line: [`output`], the [`configuration`] and the scene files that they name,
-//! [`interrupt`]ions, and the arguments for them.
+//! Shared code of the verbs of the command line: [`output`], the [`configuration`] and the scene
+//! files that they name, [`interrupt`]ions, and the arguments for them.
 
 use service::exit::{Exit, Failure};
 

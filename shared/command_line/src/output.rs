@@ -1,8 +1,8 @@
 //! Output of the verbs.
 //!
 //! Invariant: results go to standard output, as text or as JSON; progress and errors go to standard
-//! error, with `--json` errors also to standard output as `{"schema","error","exit"}`. Colour appears on terminals only, and never where `NO_COLOR` is set. Whatever is printed
-//! passes [`printable`], so that no foreign text steers the terminal.
+//! error, with `--json` errors also to standard output as `{"schema","error","exit"}`. Colour
+//! needs a terminal, without `NO_COLOR`. All output passes [`printable`], so that texts are harmless.
 
 use service::exit::Failure;
 use service::json_schema::with_schema;
@@ -37,7 +37,7 @@ pub enum Ink {
     Dim,
     /// Good state.
     Green,
-    /// In progress.
+    /// Work in progress.
     Yellow,
     /// Bad state.
     Red,
@@ -53,7 +53,7 @@ pub struct Painted<T> {
 }
 
 impl Output<'static> {
-    /// Standard output. What is printed appears when a line is complete.
+    /// Standard output, which appears when a line is complete.
     pub fn standard(json: bool) -> Self {
         let terminal = io::stdout().is_terminal();
         let sink = Box::new(BufWriter::with_capacity(1 << 16, io::stdout().lock()));
@@ -67,7 +67,7 @@ impl<'a> Output<'a> {
         Self { sink: Box::new(sink), json, terminal: false, style: Style::default() }
     }
 
-    /// Returns true if JSON is asked for.
+    /// Returns true if JSON was requested.
     pub fn is_json(&self) -> bool {
         self.json
     }
@@ -139,12 +139,12 @@ impl<'a> Output<'a> {
 }
 
 impl Style {
-    /// `text` in `ink`, where that is understood.
+    /// Returns `text` in `ink`, if the output understands colours.
     pub fn paint<T: Display>(self, ink: Ink, text: T) -> Painted<T> {
         Painted { text, ink: self.colour.then_some(ink) }
     }
 
-    /// Returns the text with nothing left that steers a terminal, except for its own inks.
+    /// Returns the text without controls of a terminal, except for its own inks.
     pub fn clean(self, text: &str) -> Cow<'_, str> {
         let mut kept = Ink::ALL.map(Ink::sequence).to_vec();
         kept.push(Ink::END);
@@ -178,7 +178,7 @@ impl Ink {
     }
 }
 
-/// Prints a note beside the verb's result, on standard error.
+/// Prints a note on standard error, apart from the verb's result.
 pub fn note(text: impl Display) {
     note_in(Style::default(), &text.to_string());
 }

@@ -10,7 +10,7 @@ use scene::Scene;
 use crate::args::ConfigArgs;
 use crate::configuration;
 
-/// Reads a scene file: JSON where the text begins with a brace, else TOML.
+/// Reads a scene file: JSON if the text begins with a brace, else TOML.
 ///
 /// # Errors
 /// The file cannot be read, or every problem of its text.
@@ -40,7 +40,7 @@ pub fn is_json(text: &str) -> bool {
 /// Reads a scene given by its file or by its name in the configuration.
 ///
 /// # Errors
-/// There is no such scene, the file cannot be read, or every problem of its text.
+/// The scene is unknown, the file cannot be read, or every problem of its text.
 pub fn load_named(named: &Path, args: &ConfigArgs) -> Result<Scene, Failure> {
     load(&path_of(named, args)?)
 }
@@ -53,7 +53,7 @@ pub fn is_word(path: &Path) -> bool {
 /// Resolves a scene: a name without folder and extension is looked up in the configuration.
 ///
 /// # Errors
-/// There is no such scene, or no configuration.
+/// The scene is unknown, or the configuration is missing.
 pub fn path_of(named: &Path, args: &ConfigArgs) -> Result<PathBuf, Failure> {
     if named.is_file() || !is_word(named) {
         return Ok(named.to_owned());

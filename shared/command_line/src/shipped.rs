@@ -1,4 +1,4 @@
-//! The configuration that is built in: written out on request, and where no other one is found.
+//! The configuration that is built in: written out on request, and if no other one is found.
 
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ pub type Files = &'static [(&'static str, &'static str)];
 
 static FILES: OnceLock<Files> = OnceLock::new();
 
-/// What the folder of the built-in configuration begins with; a group's name has no dot.
+/// Prefix of the built-in configuration's folder; a group's name has no dot.
 const FOLDER: &str = "built-in.";
 
 /// Makes the files known to the verbs; the first call counts.
@@ -50,9 +50,9 @@ fn write_files(files: Files, folder: &Path) -> Result<usize, Failure> {
     Ok(files.len())
 }
 
-/// Returns the folder of the built-in configuration below the folder of the groups, `home`; it is written
-/// when it is first asked for. Each build has a folder of its own, so that what somebody has changed in one
-/// is never replaced. `None` if nothing is built in.
+/// Returns the folder of the built-in configuration below the folder of the groups, `home`; it is
+/// written at the first request. Each build has a folder of its own, so that user changes in one
+/// are never replaced. `None` if nothing is built in.
 ///
 /// # Errors
 /// It cannot be written.
@@ -75,7 +75,7 @@ fn folder_of(files: Files, home: &Path) -> Result<Option<PathBuf>, Failure> {
         return Ok(Some(folder));
     }
     make_private(home).map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
-    // Whole or not at all, and once where several processes start.
+    // Whole or not at all, and only once if several processes start.
     let failed = |error: io::Error| Failure::file(&folder, &error);
     let part = TemporaryFolder::within(home).map_err(failed)?;
     write_files(files, part.path())?;
@@ -91,7 +91,7 @@ fn was_first(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::AlreadyExists | ErrorKind::DirectoryNotEmpty)
 }
 
-/// Returns true for the folder of a built-in configuration, in which new files would be out of sight.
+/// Returns true for the folder of a built-in configuration, where new files would be hidden.
 pub fn is_built_in(folder: &Path) -> bool {
     let name = folder.file_name().and_then(|name| name.to_str());
     name.is_some_and(|name| name.starts_with(FOLDER))

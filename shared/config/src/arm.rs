@@ -9,10 +9,10 @@ use crate::driver;
 pub struct Arm {
     /// Name of the driver of its joints.
     pub driver: String,
-    /// The limb that fetches, by its name in the robot's description; `None`: the one that reaches the
-    /// object better.
+    /// The limb that fetches, by its name in the robot's description; `None`: the one that reaches
+    /// the object better.
     pub limb: Option<String>,
-    /// Settings of its motions.
+    /// Settings of the arm's motions.
     pub motion: Motion,
     /// Simulated seconds per second.
     pub time_scale: f64,
@@ -50,7 +50,7 @@ pub struct Motion {
 pub struct Grasps {
     /// Attempts in all if the fingers close without an object.
     pub attempts: u32,
-    /// Standard deviation of the objects' positions across the fingers, metres; simulated worlds only.
+    /// Standard deviation of objects' positions across the fingers, metres; simulated worlds only.
     pub error_m: f64,
 }
 

@@ -6,10 +6,10 @@ use std::time::Duration;
 use diagnostics::Fields;
 use serde_json::json;
 
-/// Who may use the page.
+/// Users who may use the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
-    /// Those who have the group's token.
+    /// Users who have the group's token.
     Token,
     /// Every user and every program of this machine.
     Open,
@@ -20,7 +20,7 @@ pub enum Access {
 pub struct Console {
     /// Address and port; port 0 for any free one.
     pub listen: SocketAddr,
-    /// Who may use the page; [`Access::Open`] only where `listen` accepts this machine alone.
+    /// Users who may use the page; [`Access::Open`] only if `listen` accepts this machine alone.
     pub access: Access,
     /// Maximum number of open pages; one place is reserved for an operator.
     pub viewers_max: usize,
@@ -43,7 +43,7 @@ pub struct Camera {
     pub url: String,
     /// Scheme, host and port of the address, as in a content security policy.
     pub origin: String,
-    /// Time between two single pictures; none for a stream (MJPEG).
+    /// Time between two single pictures; `None` for a stream (MJPEG).
     pub every: Option<Duration>,
 }
 
@@ -73,7 +73,7 @@ fn foxglove_origins(f: &mut Fields<'_>) -> Vec<String> {
         json!({ "items": { "type": "string", "pattern": origin } })
     });
     for origin in &origins {
-        // `null` is the origin of pages that do not say where they come from; a star is a misunderstanding.
+        // `null` is the origin of pages that hide theirs; a star is a misunderstanding.
         let is_plain = |b: u8| b.is_ascii_alphanumeric() || b".-:[]".contains(&b);
         let is_origin = origin.split_once("://").is_some_and(|(scheme, host)| {
             !scheme.is_empty()

@@ -19,12 +19,12 @@ pub struct Dialogue {
     pub language: Language,
     /// Parameters of the observation model (section 3.6 of the paper).
     pub params: Params,
-    /// Smoothing of words that are certain beside misperception, in snapshots of earlier versions.
+    /// Smoothing of certain words besides misperception, in snapshots of earlier versions.
     pub alpha_typed: Option<f64>,
     /// Probability that a user takes a value for another one, and sticks to it; 0 with
     /// [`Language::Paper`].
     pub misperception: f64,
-    /// The same of single attributes, by name.
+    /// Probabilities for single attributes, by name.
     pub misperceptions: Vec<(String, f64)>,
     /// Name of the planner; one of [`PLANNERS`].
     pub planner: String,
@@ -40,7 +40,7 @@ pub struct Dialogue {
     pub turns: TurnTaking,
     /// Prior belief.
     pub prior: Prior,
-    /// What to learn about people who give their name; nothing with [`Language::Paper`].
+    /// Settings of learning about people who give their name; none with [`Language::Paper`].
     pub people: Acquaintance,
     /// Pointing gestures.
     pub gesture: Gesture,
@@ -68,8 +68,8 @@ pub struct Gesture {
 }
 
 impl Dialogue {
-    /// Returns the scene in which objects that are alike are told apart by place, as the user sees them where the
-    /// user's place is known; in the paper's language the scene as it is.
+    /// Returns the scene in which like objects are distinguished by place, as the user sees them if
+    /// the user's place is known; in the paper's language the unchanged scene.
     pub fn by_place(&self, scene: Scene) -> Scene {
         let view = match self.gesture.enabled {
             true => View::User(self.gesture.person_xyz_m),
@@ -130,8 +130,8 @@ const ALPHA_TYPED_RANGE: RangeInclusive<f64> = 1e-6..=100.0;
 
 /// Replaces `alpha_typed` in a layer, and returns a warning of it.
 ///
-/// `alpha_typed = A` doubted typed words by `A : 1`. It becomes the misperception `A / (1 + A)`, which gives the
-/// same odds for an attribute of two values, unless the layer states a rate itself or `below` has a higher one.
+/// `alpha_typed = A` doubted typed words by `A : 1`. It becomes the misperception `A / (1 + A)`,
+/// with the same odds for two values, unless the layer states a rate or `below` has a higher one.
 pub(crate) fn replace_former_key(layer: &mut Table, below: &Table) -> Option<Diagnostic> {
     const RATE: &str = "misperception";
     let rate_of = |dialogue: &Table| dialogue.get(RATE).and_then(Node::as_number);

@@ -6,16 +6,16 @@ use diagnostics::Fields;
 
 use crate::part::Registered;
 
-/// A driver of the arm. What it does is known to the programs that move an arm alone.
+/// A driver of the arm. Only the programs that move an arm know its functions.
 #[derive(Debug)]
 pub struct Driver {
-    /// Its name in `arm.driver`.
+    /// Name of the driver in `arm.driver`.
     pub name: &'static str,
-    /// It moves a robot, which knows no other time than the real one.
+    /// Whether the driver moves a robot in real time.
     pub in_real_time: bool,
     /// The feature of `whichone` that this build lacks for it, if it lacks one.
     pub needs: Option<&'static str>,
-    /// Its sections.
+    /// Sections of the driver's configuration.
     pub sections: &'static [Registered],
 }
 
@@ -34,7 +34,7 @@ impl Driver {
 
 static DRIVERS: OnceLock<Vec<&'static Driver>> = OnceLock::new();
 
-/// Names the drivers that configurations may choose, beside the built-in one.
+/// Names the drivers, besides the built-in one, that configurations may choose.
 pub(crate) fn register(drivers: impl IntoIterator<Item = &'static Driver>) {
     DRIVERS.get_or_init(|| std::iter::once(&KINEMATIC).chain(drivers).collect());
 }
@@ -44,9 +44,9 @@ pub(crate) fn sections() -> impl Iterator<Item = &'static Registered> {
     DRIVERS.get().into_iter().flatten().flat_map(|driver| driver.sections)
 }
 
-/// Reads `driver`, and returns it with its name if it is a registered one. Any name is right in a program that has
-/// registered none, which reads checked snapshots, and for an arm with a program of its own (`is_own`), which may have
-/// drivers of its own: their table, of the same name, is theirs to read.
+/// Reads `driver`, and returns it with its name if it is a registered one. Any name is right in a
+/// program that has registered none, which reads checked snapshots, and for an arm with a program
+/// of its own (`is_own`), which may have drivers of its own, with tables of their own.
 pub(crate) fn read(f: &mut Fields<'_>, is_own: bool) -> (String, Option<&'static Driver>) {
     let known = DRIVERS.get().map_or(&[][..], Vec::as_slice);
     let names: Vec<&str> = known.iter().map(|driver| driver.name).collect();

@@ -29,8 +29,8 @@ pub(crate) const FILE_BYTES_MAX: u64 = 16 << 20;
 const BUILT_IN: &str = "baxter";
 
 impl Files {
-    /// Reads the files that `group.scene` and `arm.robot` name, the scene's unless it is given. The SRDF
-    /// lies beside the URDF.
+    /// Reads the files that `group.scene` and `arm.robot` name, the scene's unless it is given. The
+    /// SRDF is next to the URDF.
     pub(crate) fn find(
         dir: &Path,
         tree: &Table,
@@ -118,7 +118,7 @@ impl Found {
     }
 }
 
-/// Help that lists what there is to choose from.
+/// Returns help that lists the known values.
 pub fn one_of<'a>(known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
     if known.is_empty() {
@@ -128,7 +128,7 @@ pub fn one_of<'a>(known: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// Reads a text file that a person has written: a regular one of at most 16 MiB, judged before it is read.
+/// Reads a person's text file: a regular one of at most 16 MiB, checked before it is read.
 ///
 /// # Errors
 /// It cannot be read; it is too large ([`ErrorKind::FileTooLarge`]), no file, or no text

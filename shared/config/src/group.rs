@@ -28,7 +28,7 @@ pub struct Group {
     pub flight: Flight,
 }
 
-/// Space of the flights, in which each service records what it was given and what it stated.
+/// Space of the flights, in which each service records its inputs and statements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Flight {
     /// Whether services record.
@@ -44,7 +44,7 @@ pub struct Flight {
 pub struct Perception {
     /// Whether the objects on the table are those that are perceived; else they are the scene's.
     pub enabled: bool,
-    /// How they are followed.
+    /// Settings of the tracker of objects.
     pub tracker: perception::Settings,
 }
 
@@ -72,7 +72,7 @@ pub struct Log {
     pub json: bool,
     /// Size at which a log is rotated, bytes.
     pub file_bytes_max: u64,
-    /// Rotated logs kept beside the current one.
+    /// Number of rotated logs kept.
     pub files_kept: u32,
 }
 

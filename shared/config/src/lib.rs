@@ -1,13 +1,13 @@
-//! The configuration of a group: parsed, checked as a whole, and equal for every service. Checks that
-//! need the robot's kinematics are in `preflight`.
+//! The configuration of a group: parsed, checked as a whole, and equal for every service. Checks
+//! that need the robot's kinematics are in `preflight`.
 //!
-//! Invariant: a [`Settings`] is complete and consistent. Loading returns one, or every problem at once
-//! with its file, line, key and help; no service ever meets an invalid value.
+//! Invariant: a [`Settings`] is complete and consistent. Loading returns one, or every problem at
+//! once with its file, line, key and help; no service ever meets an invalid value.
 //!
 //! Values come in layers, each over the one before: the defaults (the files of `config/` at build
-//! time), the files of the configuration folder, a profile, and overrides from the command line. The
-//! supervisor resolves them when the group starts or reloads, and writes a snapshot; services read only
-//! that, so that edited files take effect with a reload.
+//! time), the files of the configuration folder, a profile, and overrides from the command line.
+//! The supervisor resolves them when the group starts or reloads, and writes a snapshot; services
+//! read only that, so that edited files take effect with a reload.
 
 mod arm;
 mod console;
@@ -93,8 +93,8 @@ impl Settings {
         examined.report.verdict(examined.settings)
     }
 
-    /// Reads a configuration as [`Settings::load`] does, without a verdict; with `scene` in place of
-    /// the scene that it names.
+    /// Reads a configuration as [`Settings::load`] does, without a verdict; with `scene` in place
+    /// of the scene that it names.
     pub fn examine(
         dir: &Path,
         profile: Option<&str>,
@@ -109,11 +109,11 @@ impl Settings {
         self.resolved.section_text(section)
     }
 
-    /// The section of an optional part. It was checked when the configuration was loaded if the program knows the
-    /// part; a snapshot was checked by the program that wrote it.
+    /// The section of an optional part. It was checked when the configuration was loaded if the
+    /// program knows the part; a snapshot was checked by the program that wrote it.
     ///
     /// # Errors
-    /// Every problem at once; there are none in what was checked.
+    /// Every problem at once; checked settings have none.
     pub fn part<S: Section>(&self) -> Result<S, Diagnostics> {
         part::read(&self.resolved.tree)
     }
@@ -169,8 +169,8 @@ impl Settings {
         self.resolved.tree.source_of(key).diagnostic(&path, what, help)
     }
 
-    /// Folder of the sound of the robot's latest sentences, if any: the configured one, else one in the
-    /// group's run folder `run` if there is a console that plays them elsewhere.
+    /// Folder of the sound of the robot's latest sentences, if any: the configured one, else one in
+    /// the group's run folder `run` if there is a console that plays them elsewhere.
     pub fn voice_dir(&self, run: &Path) -> Option<PathBuf> {
         let console = Service::Console.name();
         let has_console = self.group.services.iter().any(|service| service.name == console);
@@ -178,7 +178,7 @@ impl Settings {
         self.speech.voice_dir.clone().or(own)
     }
 
-    /// Keys of earlier versions in the configuration folder, with what replaces them.
+    /// Keys of earlier versions in the configuration folder, with their replacements.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.resolved.warnings
     }

@@ -14,10 +14,10 @@ use crate::part::{self, Check, sections};
 use crate::resolved::Resolved;
 use crate::{Settings, arm, console, dialogue, group, services, snapshot, speech, study};
 
-/// What a configuration was found to be, before a verdict: further checks may add to the report.
+/// Result of examining a configuration, before a verdict: further checks may add to the report.
 #[derive(Debug)]
 pub struct Examined {
-    /// The settings without the wrong parts of the scene; `None` if there is no scene or no robot.
+    /// The settings without the wrong parts of the scene; `None` without a scene or a robot.
     pub settings: Option<Settings>,
     /// Every problem so far.
     pub report: Report,

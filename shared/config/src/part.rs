@@ -1,8 +1,8 @@
-//! Optional parts of the group, each of which registers its sections of the configuration and its service. Drivers of
-//! the arm register theirs beside them ([`Driver`]).
+//! Optional parts of the group, each of which registers its sections of the configuration and its
+//! service. Drivers of the arm register theirs likewise ([`Driver`]).
 //!
-//! The program that loads configurations names the parts that it knows ([`register`]). Any other program reads
-//! snapshots alone, and of these the sections that it asks for ([`Settings::part`](crate::Settings::part)).
+//! A program that loads configurations names its parts ([`register`]). Others read sections of
+//! snapshots on request ([`Settings::part`](crate::Settings::part)).
 
 use std::sync::OnceLock;
 
@@ -13,14 +13,14 @@ use crate::driver::{self, Driver};
 use crate::resolved::{self, CORE, CORE_DEFAULTS};
 use crate::{Arm, Group};
 
-/// A section of the configuration that belongs to an optional part: its place, its reader and its checks.
+/// A section of the configuration for an optional part: its place, its reader and its checks.
 pub trait Section: Sized + 'static {
-    /// Where its table is: `["ros2"]` for a file of its own, `["arm", "ros1"]` for a table in another section's file.
+    /// Place of the table: `["ros2"]` for an own file, `["arm", "ros1"]` in another section's.
     const KEY: &'static [&'static str];
-    /// The shipped text of its own file, which holds the defaults; `None` for a table in another section's file.
+    /// The shipped text of its own file, with defaults; `None` for a table in another section's.
     const FILE: Option<&'static str> = None;
 
-    /// Reads its values.
+    /// Reads the section's values.
     fn read(f: &mut Fields<'_>) -> Self;
 
     /// Reports contradictions with other sections.
@@ -30,7 +30,7 @@ pub trait Section: Sized + 'static {
 /// The other sections, as far as a part's section may depend on them.
 #[derive(Debug)]
 pub struct Check<'a> {
-    /// The services, and where the objects come from.
+    /// The services, and the source of objects.
     pub group: &'a Group,
     /// The arm.
     pub arm: &'a Arm,
@@ -65,25 +65,25 @@ impl Check<'_> {
 /// An optional part of the group.
 #[derive(Debug)]
 pub struct Part {
-    /// Its name, and that of its service and of the program `whichone-NAME`, if it has them.
+    /// Name of the part, and of its service and the program `whichone-NAME`, if it has them.
     pub name: &'static str,
-    /// Its service, if it is one.
+    /// The part's service, if it is one.
     pub service: Option<PartService>,
-    /// Its sections.
+    /// Sections of the part's configuration.
     pub sections: &'static [Registered],
 }
 
 /// A service that ships and that a group can do without.
 #[derive(Debug)]
 pub struct PartService {
-    /// Values whose change restarts it.
+    /// Values whose change restarts the service.
     pub reads: Reads,
-    /// It hands on words and orders of people: it may write the topics of clients.
+    /// Whether the part hands on words and orders of people, and may write the topics of clients.
     pub is_client: bool,
 }
 
-/// Names of sections, dotted keys of values, `durations`; or [`EVERYTHING`]. The scene, and where its objects come
-/// from, which every service reads, are implied.
+/// Names of sections, dotted keys of values, `durations`; or [`EVERYTHING`]. The scene and the
+/// source of its objects, which every service reads, are implied.
 pub type Reads = &'static [&'static str];
 
 /// Every section, and the durations.
@@ -107,7 +107,7 @@ impl Registered {
         Self { key: S::KEY, file: S::FILE, read: |f| drop(S::read(f)), check: check_one::<S> }
     }
 
-    /// Its name in the table that holds it.
+    /// Name in the table that holds it.
     fn name(&self) -> &'static str {
         self.key.last().copied().unwrap_or_default()
     }
@@ -115,8 +115,8 @@ impl Registered {
 
 static PARTS: OnceLock<&'static [&'static Part]> = OnceLock::new();
 
-/// Names the optional parts whose sections and services configurations may have, and the drivers of the arm that
-/// they may choose beside the built-in one, once and before the first is loaded. Later calls change nothing.
+/// Names the optional parts whose sections and services configurations may have, and the further
+/// drivers of the arm, once and before the first is loaded. Later calls change nothing.
 pub fn register(
     parts: &'static [&'static Part],
     drivers: impl IntoIterator<Item = &'static Driver>,
@@ -133,8 +133,8 @@ fn registered() -> impl Iterator<Item = &'static Registered> {
     driver::sections().chain(parts().flat_map(|part| part.sections))
 }
 
-/// Name and shipped file of every section: the core's, then those of the registered parts. The name is the first
-/// part of its keys, and that of its file `NAME.toml`.
+/// Name and shipped file of every section: the core's, then those of the registered parts. The name
+/// is the first part of its keys, and that of its file `NAME.toml`.
 pub fn sections() -> impl Iterator<Item = (&'static str, &'static str)> {
     let of_parts = registered().filter_map(|it| Some((*it.key.first()?, it.file?)));
     CORE.into_iter().chain(of_parts)
@@ -150,13 +150,13 @@ pub fn part_service(name: &str) -> Option<&'static PartService> {
     parts().find(|part| part.name == name)?.service.as_ref()
 }
 
-/// Returns whether a service may go without a command. A program without parts reads snapshots, which were checked.
+/// Returns whether a service may lack a command. Snapshots, without parts, were checked before.
 pub(crate) fn has_program(name: &str) -> bool {
     PARTS.get().is_none() || part_service(name).is_some()
 }
 
-/// Reads a section and the tables of parts in it. A program without parts does not know the other tables of the
-/// shipped file.
+/// Reads a section and the tables of parts in it. A program without parts does not know the other
+/// tables of the shipped file.
 pub(crate) fn with_tables<T>(
     section: &str,
     f: &mut Fields<'_>,
@@ -175,8 +175,8 @@ pub(crate) fn with_tables<T>(
     value
 }
 
-/// Reads the sections of parts that have files of their own. The snapshot that a program without parts is given was
-/// checked by one that knows them.
+/// Reads the sections of parts that have files of their own. The snapshot that a program without
+/// parts is given was checked by one that knows them.
 pub(crate) fn read_sections(f: &mut Fields<'_>, is_snapshot: bool) {
     own_files().for_each(|it| f.table(it.name(), |f| with_tables(it.name(), f, it.read)));
     if is_snapshot && PARTS.get().is_none() {
@@ -209,7 +209,7 @@ pub(crate) fn read<S: Section>(tree: &Table) -> Result<S, Diagnostics> {
     report.verdict(value)
 }
 
-/// Reads a section below the root of the merged layers; `None` if what should hold it is no table.
+/// Reads a section below the root of the merged layers; `None` if its parent is not a table.
 fn read_at<S: Section>(tree: &Table, report: &mut Report) -> Option<S> {
     let (own, above) = S::KEY.split_last()?;
     let mut table = tree;

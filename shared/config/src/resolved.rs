@@ -20,7 +20,7 @@ pub(crate) const CORE: [(&str, &str); 6] = [
 pub(crate) static CORE_DEFAULTS: LazyLock<Table> =
     LazyLock::new(|| parsed(CORE.into_iter(), &Source::built_in()));
 
-/// One value and where it came from.
+/// A value and the layer that it comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Origin {
     /// Dotted key with its section, e.g. `arm.time_scale`.
@@ -57,8 +57,8 @@ impl Resolved {
         text
     }
 
-    /// The section of the dialogue without the language model: it reads utterances and decides nothing, so that
-    /// journals stay those of one manager whichever model is used.
+    /// The section of the dialogue without the language model: it reads utterances and decides
+    /// nothing, so that journals stay those of one manager whichever model is used.
     pub(crate) fn decision_text(&self) -> String {
         let dialogue = self.tree.get("dialogue").and_then(Node::as_table).cloned();
         let text = dialogue.map(|mut dialogue| {

@@ -6,14 +6,14 @@ use serde_json::Value as Json;
 use crate::part::{defaults, sections};
 use crate::{arm, console, dialogue, group, part, services, speech, study};
 
-/// A section with its schema.
+/// A section of the configuration with the schema of its values.
 #[derive(Clone, Debug)]
 pub struct SectionSchema {
-    /// Its name.
+    /// Name of the section.
     pub name: &'static str,
-    /// Its shipped file, whose comments describe its keys.
+    /// Shipped file of the section, whose comments describe the keys.
     pub shipped: &'static str,
-    /// What its reader accepts.
+    /// Schema of the values that the section's reader accepts.
     pub schema: Json,
 }
 

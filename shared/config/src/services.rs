@@ -31,13 +31,13 @@ const NAME_LEN_MAX: usize = 19;
 pub struct ServiceConfig {
     /// Unique name: 1 to 19 of `a–z 0–9 -`.
     pub name: String,
-    /// Program and arguments. `None`, for services that ship only: the program
-    /// `whichone-NAME` beside this one.
+    /// Program and arguments. `None`, for services that ship only: the program `whichone-NAME` next
+    /// to this one.
     pub command: Option<Vec<String>>,
     /// Services that must be ready before this one is started for the first time. When the group
     /// stops, they are stopped only once this one has ended.
     pub after: Vec<String>,
-    /// Topics that wake this service, beside those of its own table.
+    /// Topics that wake this service in addition to those of its own table.
     pub reads: Vec<String>,
     /// Topics that this service writes: those of clients, and its own, `NAME/…`.
     pub writes: Vec<String>,
@@ -160,7 +160,7 @@ fn check_order(services: &[ServiceConfig], f: &mut Fields<'_>) {
     }
 }
 
-/// Reports topics that a service cannot write, and topics that it would read in vain.
+/// Reports topics that a service cannot write, and topics that nobody writes to.
 fn check_topics(services: &[ServiceConfig], f: &mut Fields<'_>) {
     let shipped = || topics::ALL.iter().chain(&topics::robot::ALL);
     for service in services {

@@ -20,7 +20,7 @@ pub const SNAPSHOT_FILE: &str = "settings.toml";
 /// First line of the file.
 const HEADER: &str = "# The settings in force. Edit the configuration folder instead.\n";
 
-/// Name of the file beside it that holds the scene's key and words, for languages without a reader of TOML.
+/// Name of the file with the scene's key and words, for languages without a TOML reader.
 pub const WORDS_FILE: &str = "scene.words";
 
 /// Largest snapshot, bytes: three files and the values of every section, with escapes.
@@ -35,8 +35,8 @@ const SRDF: &str = "robot_srdf";
 /// which its decisions were made.
 const DURATIONS: &str = "durations";
 
-/// Settings that snapshots of earlier versions do not state, with the values that they had then: answers
-/// of all kinds came through alike, and typed words were doubted by a smoothing alone.
+/// Settings that snapshots of earlier versions do not state, with the values that they had then:
+/// answers of all kinds came through alike, and typed words were doubted by a smoothing alone.
 fn unstated(layer: &Table) -> String {
     let dialogue = layer.get("dialogue").and_then(Node::as_table);
     let number = |key| dialogue.and_then(|it| it.get(key)).and_then(Node::as_number);
@@ -51,8 +51,8 @@ fn unstated(layer: &Table) -> String {
 }
 
 impl Settings {
-    /// The snapshot's text: every value of every section, the scene's and the robot's files as
-    /// they were read, and how long the robot takes for what it does.
+    /// The snapshot's text: every value of every section, the scene's and the robot's files as they
+    /// were read, and the durations of the robot's actions.
     pub fn snapshot(&self) -> String {
         let Resolved { tree, scene, robot, snapshot, warnings: _ } = &self.resolved;
         if let Some(text) = snapshot {
@@ -77,8 +77,8 @@ impl Settings {
         safe_files::replace_private(&run_dir.join(SNAPSHOT_FILE), text)
     }
 
-    /// Writes the scene's key (16 hexadecimal digits) and its words into a group's run folder, each on a line of its
-    /// own; the number of a word in messages is its place, from 0.
+    /// Writes the scene's key (16 hexadecimal digits) and its words into a group's run folder, each
+    /// on a line of its own; the number of a word in messages is its place, from 0.
     ///
     /// # Errors
     /// The folder cannot be written.
@@ -110,8 +110,8 @@ impl Settings {
         Ok(settings)
     }
 
-    /// Reads a snapshot's text, which is called `label` in problems, with changes as in [`Settings::load`],
-    /// which were given with the option of that name. The scene, the robot and the durations stay those of the snapshot.
+    /// Reads a snapshot's text, called `label` in problems, with changes as in [`Settings::load`].
+    /// The scene, the robot and the durations stay those of the snapshot.
     ///
     /// # Errors
     /// Every problem at once.

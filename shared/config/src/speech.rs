@@ -14,20 +14,20 @@ pub struct Speech {
     pub voice_name: String,
     /// Speed of the voice.
     pub voice_words_per_minute: u32,
-    /// Program that speaks under [`Voice::Command`], with its arguments, in which `{text}` and `{wav}`
-    /// stand for the text and the file to write.
+    /// Program that speaks under [`Voice::Command`], with its arguments, with `{text}` and `{wav}`
+    /// for the text and the file to write.
     pub voice_command: Option<Vec<String>>,
     /// Folder in which the sound of the latest sentences is kept, if the operator names one
     /// ([`Settings::voice_dir`](crate::Settings::voice_dir)).
     pub voice_dir: Option<PathBuf>,
-    /// Program, with its arguments before the file, that plays a WAV file; `None` to detect it. `none` plays nothing for as long as it would take.
+    /// Program with arguments before the file, to play WAV; `None` to detect it. `none` is silent.
     pub player: Option<Vec<String>>,
     /// The recogniser.
     pub recogniser: Recogniser,
     /// The program, with its arguments, that turns audio into words; there if `recogniser` is
     /// [`Recogniser::Command`].
     pub recogniser_command: Option<Vec<String>>,
-    /// The model file of a second recogniser, whisper.cpp, in builds that have it; `None`: there is none.
+    /// The model file of a second recogniser, whisper.cpp, in builds that have it, if any.
     pub whisper_model: Option<PathBuf>,
     /// Folder of the recogniser's acoustic model; `None` to detect it.
     pub model_dir: Option<PathBuf>,
@@ -43,7 +43,7 @@ pub struct Speech {
     pub spoken_max: Duration,
     /// Longest typed or injected utterance, bytes of UTF-8.
     pub utterance_bytes_max: usize,
-    /// Longest recording that is recognised.
+    /// Length of the longest recording that is recognised.
     pub recording_max: Duration,
     /// The microphone of the robot's computer.
     pub microphone: Microphone,
@@ -52,7 +52,7 @@ pub struct Speech {
 /// The microphone of the robot's computer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Microphone {
-    /// When it listens.
+    /// Mode of listening.
     pub mode: MicrophoneMode,
     /// Program with its arguments that writes one channel of signed 16-bit samples, low byte first,
     /// at 16 kHz, to its standard output; `None` to detect it.

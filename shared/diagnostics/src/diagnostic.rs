@@ -39,12 +39,12 @@ impl Diagnostic {
         }
     }
 
-    /// The same with its line, from 1.
+    /// Returns the diagnostic with its line, from 1.
     pub fn at(self, line: Option<u32>) -> Self {
         Self { line, ..self }
     }
 
-    /// The same with its column, from 1, in characters.
+    /// Returns the diagnostic with its column, from 1, in characters.
     pub fn at_column(self, column: Option<u32>) -> Self {
         Self { column, ..self }
     }
@@ -128,7 +128,7 @@ impl Report {
         self.0.sort_by_key(|diagnostic| diagnostic.line);
     }
 
-    /// Returns `value` if there is no diagnostic.
+    /// Returns `value` without diagnostics, and these otherwise.
     ///
     /// # Errors
     /// Every diagnostic.

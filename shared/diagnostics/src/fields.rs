@@ -14,7 +14,7 @@ use crate::{Node, Report, Scalar, Table, nearest, suggestion};
 
 mod nested;
 
-/// A table while it is read. Keys that no reader asks for are reported by [`Fields::finish`].
+/// A table being read. [`Fields::finish`] reports keys that no reader asks for.
 #[derive(Debug)]
 pub struct Fields<'a> {
     table: &'a Table,
@@ -22,7 +22,7 @@ pub struct Fields<'a> {
     known: Vec<&'a str>,
     wrong: Vec<String>,
     report: &'a mut Report,
-    /// What is read, while a schema is made of it.
+    /// Schema of the keys read, if one is being made.
     pub(crate) schema: Option<Schema>,
 }
 
@@ -112,8 +112,8 @@ impl<'a> Fields<'a> {
         (!text.is_empty()).then_some(text)
     }
 
-    /// Reads a path that may be absent. It must be absolute: services run in other folders than the
-    /// one where it was written.
+    /// Reads a path that may be absent. It must be absolute: services run in folders other than the
+    /// author's.
     pub fn absolute(&mut self, key: &'a str) -> Option<PathBuf> {
         let text = self.optional_text(key);
         self.note(key, || json!({ "pattern": "^(/|$)" }));
@@ -149,7 +149,7 @@ impl<'a> Fields<'a> {
         self.schema.is_some() || self.table.get(key).is_some()
     }
 
-    /// The dotted key of this table.
+    /// Returns the dotted key of the table.
     pub fn key(&self) -> String {
         self.table.source.key(&self.path)
     }
@@ -159,7 +159,7 @@ impl<'a> Fields<'a> {
         self.table.source.key(&self.path_of(&quoted(name)))
     }
 
-    /// Accepts keys without reading them.
+    /// Accepts the given keys without reading them.
     pub fn allow(&mut self, keys: &[&'a str]) {
         self.known.extend(keys);
     }

@@ -1,7 +1,7 @@
 //! Diagnostics of text files that people write, and the reader of TOML and JSON that produces them.
 //!
-//! A [`Diagnostic`] names the file, the line, the key, what was found and how to fix it. Readers
-//! collect all of them in a [`Report`] instead of stopping at the first. Scenes, settings and robot
+//! A [`Diagnostic`] names the file, the line, the key, the value found and the fix. Readers collect
+//! all of them in a [`Report`] instead of stopping at the first. Scenes, settings and robot
 //! descriptions share these types, so that every error looks alike.
 //!
 //! This crate is pure: no IO, no clock, no threads.

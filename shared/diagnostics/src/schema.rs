@@ -1,11 +1,11 @@
-//! JSON Schema of the tables that a reader accepts, made by the reader itself: [`Fields`] notes each key
-//! that is read, with its type and range, so that a schema never says anything else than the program.
+//! JSON Schema of the tables that a reader accepts, made by the reader itself: [`Fields`] notes
+//! each key that is read, with its type and range, so that a schema always matches the program.
 
 use serde_json::{Map, Value as Json, json};
 
 use crate::{Fields, Node, Report, Scalar, Source, Table};
 
-/// The name that stands for every name of the user's in a table whose keys are names.
+/// The placeholder for the user's names in a table whose keys are names.
 pub(crate) const ANY: &str = "*";
 
 /// The schema of one table, as far as it has been read.
@@ -24,7 +24,7 @@ pub fn schema_of<T>(defaults: &Table, read: impl FnOnce(&mut Fields<'_>) -> T) -
     record(Some(defaults), read).1
 }
 
-/// Reads a table, or an empty one, and returns what was read with the schema.
+/// Reads a table, or an empty one, and returns the result with the schema.
 pub(crate) fn record<T>(
     table: Option<&Table>,
     read: impl FnOnce(&mut Fields<'_>) -> T,
@@ -42,7 +42,7 @@ pub(crate) fn text() -> Json {
     json!({ "type": "string", "pattern": "\\S" })
 }
 
-/// Returns whether a table of this schema needs no key but `name`, so that a string can stand for it.
+/// Returns whether a table of this schema needs no key but `name`, so that a string can replace it.
 pub(crate) fn is_named_alone(item: &Json) -> bool {
     item["required"] == json!(["name"])
 }
@@ -116,8 +116,8 @@ fn is_blank(node: &Node) -> bool {
 }
 
 impl<'a> Fields<'a> {
-    /// Adds to the schema of `key`, where one is made: a rule that the reader enforces by other means
-    /// than a method of this type.
+    /// Adds to the schema of `key`, if one is being made: a rule that the reader enforces by other
+    /// means than a method of this type.
     pub fn note(&mut self, key: &'a str, rule: impl FnOnce() -> Json) {
         if let Some(schema) = &mut self.schema {
             schema.add(key, rule());

@@ -10,7 +10,7 @@ use crate::{Diagnostic, Report};
 pub struct TextFile {
     /// Path, or a description of a built-in file.
     pub label: String,
-    /// Its text.
+    /// Text of the source.
     pub text: String,
 }
 
@@ -68,12 +68,12 @@ impl Source {
         self.locate(Diagnostic::new(&*self.label, self.key(path), what, help))
     }
 
-    /// The diagnostic with this place.
+    /// Returns the diagnostic with the source's location.
     fn locate(&self, diagnostic: Diagnostic) -> Diagnostic {
         diagnostic.at(self.line).at_column(self.column)
     }
 
-    /// The same file at a line and a column; defaults have neither.
+    /// Returns the same file at a line and a column; defaults have neither.
     pub(crate) fn at(&self, (line, column): (u32, u32)) -> Self {
         let is_file = !self.is_built_in();
         let (line, column) = (is_file.then_some(line), is_file.then_some(column));
@@ -96,7 +96,7 @@ pub enum Scalar {
     Other(&'static str),
 }
 
-/// A value with its source.
+/// A value of a document with its source.
 #[derive(Clone, Debug)]
 pub enum Node {
     /// A scalar.
@@ -112,7 +112,7 @@ pub enum Node {
 pub struct Table {
     /// Keys and values.
     pub entries: Vec<(String, Node)>,
-    /// Its place.
+    /// Location of the table.
     pub source: Source,
 }
 
@@ -131,12 +131,12 @@ impl Node {
         }
     }
 
-    /// The table, if it is one.
+    /// Returns the table, if the value is one.
     pub fn as_table(&self) -> Option<&Table> {
         if let Self::Table(table) = self { Some(table) } else { None }
     }
 
-    /// The string, if it is one.
+    /// Returns the string, if the value is one.
     pub fn as_text(&self) -> Option<&str> {
         if let Self::Scalar(Scalar::Text(text), _) = self { Some(text) } else { None }
     }
@@ -185,8 +185,8 @@ impl Node {
         }
     }
 
-    /// The place of what `rest` of a dotted key names in this value; none if `rest` does not continue
-    /// a key here.
+    /// Returns the location of `rest` of a dotted key in this value; `None` if `rest` does not
+    /// continue a key here.
     fn place_within(&self, rest: &str) -> Option<&Source> {
         match self {
             Self::Table(table) => Some(table.place_of(rest.strip_prefix('.')?)),
@@ -246,8 +246,8 @@ impl Table {
         }
     }
 
-    /// Merges `over` into this table: values replace values, tables are merged key by key. `path` is
-    /// the key of this table.
+    /// Merges `over` into this table: values replace values, tables are merged key by key. `path`
+    /// is the key of this table.
     pub fn merge(&mut self, over: Self, path: &mut Vec<String>, report: &mut Report) {
         for (key, node) in over.entries {
             path.push(key);
@@ -283,7 +283,7 @@ impl Table {
     }
 }
 
-/// A key as TOML writes it, in quotes where they are needed.
+/// Returns a key as TOML writes it, in quotes if they are needed.
 pub(crate) fn quoted(name: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if !name.is_empty() && name.chars().all(bare) { name.to_owned() } else { format!("{name:?}") }

@@ -140,8 +140,8 @@ impl<'a> Places<'a> {
         Self { text, starts: std::iter::once(0).chain(after).collect() }
     }
 
-    /// Line and column of a byte offset, both from 1; the column in characters, and in bytes where
-    /// a line is so long that counting its characters for each value would take too long.
+    /// Line and column of a byte offset, both from 1; the column in characters, and in bytes if a
+    /// line is so long that counting its characters for each value would take too long.
     fn of_offset(&self, offset: usize) -> (u32, u32) {
         let line = self.starts.partition_point(|start| *start <= offset);
         let start = self.starts[line - 1];

@@ -1,4 +1,4 @@
-//! What can be heard after a question: the observation space that planners look ahead in.
+//! Possible answers to a question: the observation space in which planners look ahead.
 //!
 //! The paper's observation model read literally lets a base word come with probability `p_l` after
 //! every action, which makes waiting as informative as asking. Planners therefore expect a
@@ -16,7 +16,7 @@ pub enum Answer {
     Silence,
     /// Yes, to a yes/no question.
     Yes,
-    /// No, to a yes/no question; none of the options, to a choice.
+    /// No, to a yes/no question; no option, to a choice.
     No,
     /// The value of the attribute, to an open question or a choice.
     Value(AttributeId, ValueId),
@@ -42,9 +42,9 @@ impl Answer {
         }
     }
 
-    /// Returns the answer of a user who wants `wanted` and neither errs nor stays silent, except that
-    /// there is nothing to say about an attribute that the object lacks. A user who wants what is not
-    /// here says no to everything.
+    /// Returns the answer of a user who wants `wanted` and neither errs nor stays silent, except
+    /// that there is nothing to say about an attribute that the object lacks. A user who wants an
+    /// absent object says no to everything.
     pub fn truthful(model: &Model, question: Question, wanted: ObjectId) -> Self {
         match question {
             Question::None => Self::Silence,
@@ -111,7 +111,7 @@ impl Answer {
     }
 }
 
-/// Probability of naming that value, or none of the options, given an answer.
+/// Probability of naming the value, or no option, given an answer.
 fn named(model: &Model, question: Question, named: Option<ValueId>, wanted: ObjectId) -> f64 {
     let Some((k, law)) = question.attribute().zip(Naming::of(model, question)) else { return 0.0 };
     let is_possible = match (question, named) {
@@ -156,7 +156,7 @@ mod tests {
         }
     }
 
-    /// What planners expect is what the belief is updated with.
+    /// Planners expect exactly the answers with which the belief is updated.
     #[test]
     fn answers_move_the_belief_by_their_probability() {
         for model in models() {

@@ -1,15 +1,15 @@
 //! Attribution of an utterance to the question that it answers, by its onset.
 //!
 //! An answer begins some time after the end of the question that it answers; that time is well
-//! described by a log-normal distribution. The question answered is one more thing that the robot does
-//! not know, and the belief sums over it: `P(o | D) = Σ_j w_j P(o | D, Q_j)`
+//! described by a log-normal distribution. The question answered is one more thing that the robot
+//! does not know, and the belief sums over it: `P(o | D) = Σ_j w_j P(o | D, Q_j)`
 //! ([`Belief::update_mixture`](crate::Belief::update_mixture)).
 //!
-//! The weights are rates of competing events: when the user begins to speak, each question that waits
-//! for its answer draws one at its hazard, `p f(t) / (1 − p F(t))` with the reaction time's density
-//! `f` and distribution `F` and the share `p` of questions that are answered at all. A density alone
-//! would give up a slow answer to the only question there is. A question that was answered draws
-//! second thoughts only, and one that is still being said hardly anything before its last words.
+//! The weights are rates of competing events: when the user begins to speak, each question that
+//! waits for its answer draws one at its hazard, `p f(t) / (1 − p F(t))` with the reaction time's
+//! density `f` and distribution `F` and the share `p` of questions that are answered at all. A
+//! density alone would give up a slow answer to the only question there is. A question that was
+//! answered draws second thoughts only, and one still being said hardly anything before its end.
 
 /// A presentation of a question that may be answered. Times are seconds on any one clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,16 +54,16 @@ impl Candidate {
 pub struct Shares {
     /// Probability per candidate, in order.
     pub questions: Vec<f64>,
-    /// Probability that it answers none of them.
+    /// Probability that the utterance answers no question.
     pub none: f64,
 }
 
-/// Utterances that answer no question, per second: a yes or no to another person in the room, once in
-/// half an hour.
+/// Utterances that answer no question, per second: a yes or no to another person in the room, once
+/// in half an hour.
 const NONE: f64 = 0.0005;
-/// Answers just before a question's last word, per second; people know by then what is asked. What
-/// is asked stands at the end of the sentence, so the rate grows with the fourth power of the share
-/// that was said.
+/// Answers just before a question's last word, per second; people know the question by then. The
+/// essential word is at the end of the sentence, so the rate grows with the fourth power of the
+/// spoken share.
 const EARLY: f64 = 0.1;
 /// A question's usual length, seconds.
 pub(crate) const QUESTION_S: f64 = 1.5;
@@ -83,9 +83,9 @@ impl Shares {
         Self::of_weights(weights, NONE)
     }
 
-    /// Returns the shares of an utterance typed at `at_s`. Typed words are meant for the robot and answer
-    /// what is on the screen, where a question stands as soon as it is asked: one without an answer
-    /// if there is any, else the latest.
+    /// Returns the shares of an utterance typed at `at_s`. Typed words are meant for the robot and
+    /// answer the question on the screen, which appears as soon as it is asked: an unanswered one
+    /// if any, else the latest.
     pub fn typed(asked: &[Candidate], at_s: f64, rate: impl Fn(f64) -> f64) -> Self {
         let open = |asked: &Candidate| asked.answered_s.is_none() && asked.began_s <= at_s;
         let weight = |asked: &Candidate| if open(asked) { rate(at_s - asked.began_s) } else { 0.0 };

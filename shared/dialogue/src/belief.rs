@@ -13,21 +13,21 @@ use crate::observation::{log_mixture, weigh, weighty};
 ///
 /// It is held as the natural logarithms of weights, so that neither thousands of utterances nor
 /// hundreds of objects can under- or overflow, and an object that was all but ruled out can always
-/// come back. An update is one pass over them; what they must be divided by to sum to 1 is found
-/// when a probability is asked for. The logarithms are the whole state: stored and restored by
-/// [`Belief::log_weights`] and [`Belief::from_log`], it goes on bit for bit as before.
+/// come back. An update is one pass over them; the normalising constant is computed when a
+/// probability is requested. The logarithms are the whole state: stored and restored by
+/// [`Belief::log_weights`] and [`Belief::from_log`], it continues bit for bit as before.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
 pub struct Belief {
     log: Vec<f64>,
-    /// Logarithm of the sum of the weights, once it was asked for.
+    /// Logarithm of the sum of the weights, once computed.
     log_sum: OnceLock<f64>,
 }
 
 /// Why numbers are not a belief.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum BeliefError {
-    /// There is no object.
+    /// The belief has no object.
     #[error("a belief needs at least one object")]
     Empty,
     /// The entry is negative, infinite or not a number.
@@ -35,7 +35,7 @@ pub enum BeliefError {
     NotAProbability {
         /// Position in the list.
         index: usize,
-        /// What stands there.
+        /// Value at the position.
         value: f64,
     },
     /// Every entry is zero.
@@ -96,7 +96,7 @@ impl Belief {
         Ok(Self::of(log))
     }
 
-    /// Natural logarithm of the weight of every hypothesis, −∞ where it is zero. Weights are
+    /// Natural logarithm of the weight of every hypothesis, −∞ if it is zero. Weights are
     /// proportional to probabilities; their sum is not 1 in general.
     pub fn log_weights(&self) -> &[f64] {
         &self.log
@@ -144,10 +144,10 @@ impl Belief {
         key.extend(self.log.iter().map(|l| ((l - log_sum).exp() * KEY_UNITS).round() as i64));
     }
 
-    /// The belief that stands for all that have this key.
+    /// The belief that represents all with the given key.
     ///
     /// # Errors
-    /// If it is no belief's key.
+    /// If the key is not the key of a belief.
     pub fn from_key(key: &[i64]) -> Result<Self, BeliefError> {
         let weights: Vec<f64> = key.iter().map(|units| *units as f64).collect();
         Self::from_probabilities(&weights)
@@ -171,8 +171,8 @@ impl Belief {
         self.log_sum.take();
     }
 
-    /// Bayes' rule where it is uncertain what was heard, or which question it answers:
-    /// `P(o | D) = Σ_j w_j P(o_j | D, Q_j)`.
+    /// Updates by Bayes' rule if the words, or the question that they answer, are uncertain: `P(o |
+    /// D) = Σ_j w_j P(o_j | D, Q_j)`.
     ///
     /// Weights are relative; hypotheses of weight zero are left out, and without any other the
     /// belief stays as it is.

@@ -1,4 +1,4 @@
-//! What the user conceded about attributes in an interaction: not being able to tell, or not minding.
+//! Concessions about attributes in an interaction: not being able to tell, or not minding.
 
 use std::collections::HashMap;
 
@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Belief, Model};
 
-/// What was said of attributes rather than of values. The default: nothing.
+/// Statements about attributes rather than values. By default there are none.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Concessions {
-    /// Attributes that the user cannot tell: nothing is asked about them, by value or openly.
+    /// Attributes that the user does not know: no question is about them.
     pub unknown: Vec<AttributeId>,
-    /// Attributes that do not matter to the user: nothing is asked about them, and objects that agree
-    /// in all other attributes are equally right.
+    /// Attributes that do not matter to the user: nothing is asked about them, and objects that
+    /// agree in all other attributes are equally right.
     pub indifferent: Vec<AttributeId>,
 }
 
@@ -32,9 +32,9 @@ impl Concessions {
         self.unknown.contains(&k) || self.indifferent.contains(&k)
     }
 
-    /// The wish that each hypothesis stands for: those of one number are equally right. Numbered in
-    /// the model's order; every hypothesis has its own where nothing is indifferent. What is not here
-    /// agrees with nothing.
+    /// The wish of each hypothesis: those of one number are equally right. Numbered in the model's
+    /// order; every hypothesis has its own if nothing is indifferent. The absent object agrees with
+    /// no other.
     pub fn wishes(&self, model: &Model) -> Vec<usize> {
         if self.indifferent.is_empty() {
             return (0..model.hypotheses()).collect();
@@ -66,7 +66,7 @@ impl Concessions {
         wishes.into_iter().map(|wish| sums[wish]).collect()
     }
 
-    /// Tells everything that decisions depend on, as numbers; nothing where nothing was conceded.
+    /// Reports everything that decisions depend on, as numbers; nothing without concessions.
     pub(crate) fn identify(&self, tell: &mut dyn FnMut(u64)) {
         if self.is_empty() {
             return;
@@ -97,7 +97,7 @@ mod tests {
         Actions { mode: Mode::Present, attribute: true, which: true, choice: false },
     ];
 
-    /// The scene without an attribute and its doubles, with how many objects each one stands for.
+    /// The scene without an attribute and its doubles, with the number of objects behind each one.
     fn without(scene: &Scene, k: AttributeId) -> (Scene, Vec<f64>) {
         let mut kept: Vec<(serde_json::Map<_, _>, f64)> = Vec::new();
         for object in scene.objects() {
@@ -128,7 +128,7 @@ mod tests {
         (scene, kept.into_iter().map(|(_, count)| count).collect())
     }
 
-    /// What does not matter might as well not be there.
+    /// An attribute that does not matter is treated as missing.
     #[test]
     fn indifference_merges_objects() {
         let seed = 141;

@@ -1,15 +1,15 @@
-//! Which of a scene's words are taken for one another.
+//! Probabilities of confusing a scene's words.
 
 use scene::WordId;
 
-/// `κ(u | w)`: if `w` was heard and not said, the probability that `u` was said. A row for each word
-/// heard.
+/// `κ(u | w)`: if `w` was heard and not said, the probability that `u` was said. A row for each
+/// word heard.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Confusion {
     rows: Vec<Vec<f64>>,
 }
 
-/// Why numbers are no confusion model.
+/// Reason why numbers are not a confusion model.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("row {row} of the confusion model is no distribution over the other words")]
 pub struct NotAConfusion {
@@ -30,7 +30,7 @@ impl Confusion {
     ///
     /// # Errors
     /// The first row that does not fit: of another length, with a share of the word itself, or one
-    /// that does not sum to 1 (to 0 where there is no other word).
+    /// that does not sum to 1 (to 0 without another word).
     pub fn from_rows(rows: Vec<Vec<f64>>) -> Result<Self, NotAConfusion> {
         const ROUNDING: f64 = 1e-9;
         let words = rows.len();
@@ -65,13 +65,13 @@ impl Confusion {
         all
     }
 
-    /// How many words it is about.
+    /// Number of words in the model.
     pub fn words(&self) -> usize {
         self.rows.len()
     }
 
-    /// What was said where `heard` was heard with this doubt: the word itself with `1 − doubt`, and
-    /// those taken for it.
+    /// Words that may have been said if `heard` was heard with this doubt: the word itself with `1
+    /// − doubt`, and words mistaken for it.
     pub(crate) fn said_instead(
         &self,
         heard: WordId,
@@ -113,7 +113,7 @@ mod tests {
         }
     }
 
-    /// Where the words of every object are as many, the likelihood of all words sums to 1.
+    /// If all objects have equally many words, the likelihood of all words sums to 1.
     #[test]
     fn doubted_words_are_a_distribution() {
         let scene = bowls();
@@ -123,7 +123,7 @@ mod tests {
             let log = log_likelihood(&model, Question::None, &doubted(&scene, word, 0.3));
             sums.iter_mut().zip(log).for_each(|(sum, log)| *sum += log.exp());
         }
-        // The factor of the response, 1/3 where nothing was asked, and p_l.
+        // The factor of the response, 1/3 without a question, and p_l.
         let expected = model.params().p_l / 3.0;
         assert!(sums.iter().all(|sum| (sum - expected).abs() < 1e-12), "{sums:?}");
     }

@@ -6,10 +6,10 @@ use vocabulary::{Action, Actions};
 
 use crate::Model;
 
-/// What a planner chose, and what it knows about the choice.
+/// A planner's choice, with its value and bounds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
-    /// What to do.
+    /// The chosen action.
     pub action: Action,
     /// Expected discounted return of doing it, in the unit of the costs. Planners that do not look
     /// ahead value a question as if they had to pick after its answer.
@@ -20,8 +20,7 @@ pub struct Decision {
     /// How many questions are still to be expected, this one and repetitions after silence
     /// included.
     pub expected_questions: f64,
-    /// Certified lower and upper bound on the value of the best policy, where the planner has
-    /// them.
+    /// Certified lower and upper bound on the value of the best policy, if the planner has them.
     pub bounds: Option<(f64, f64)>,
 }
 
@@ -31,9 +30,9 @@ impl Decision {
 }
 
 impl Model {
-    /// Every question of the action space, useful or not: attribute by attribute the open question, the
-    /// yes/no questions and the choices, then the objects to point at. Of an attribute with many values
-    /// the choices are those among the values that most objects have.
+    /// Every question of the action space, useful or not: attribute by attribute the open question,
+    /// the yes/no questions and the choices, then the objects to point at. Of an attribute with
+    /// many values the choices are those among the values that most objects have.
     pub fn questions(&self, actions: Actions) -> Vec<Question> {
         let mut questions = Vec::new();
         for k in (0..self.attributes()).map(AttributeId::from) {

@@ -7,7 +7,7 @@ use vocabulary::Action;
 
 use crate::{Answer, Belief, Decision, DecisionProblem, Planner, Step};
 
-/// What a policy achieves from a belief, in expectation over wanted object and answers.
+/// Performance of a policy from a belief, in expectation over wanted object and answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evaluation {
     /// Discounted return.
@@ -20,7 +20,7 @@ pub struct Evaluation {
     pub denied: f64,
     /// Probability of waiting for ever.
     pub waiting: f64,
-    /// Probability of the dialogues that were cut short, by picking what was most likely then.
+    /// Probability of the dialogues that were cut short by picking the then likeliest object.
     pub cut: f64,
     /// How many different beliefs the policy was asked about.
     pub decisions: usize,
@@ -120,8 +120,8 @@ impl Walk<'_> {
         }
     }
 
-    /// A pick ends the dialogue, unless it is denied. Nothing is denied where the dialogue is cut
-    /// short or the robot concludes that the object is not here.
+    /// A pick ends the dialogue, unless it is denied. Nothing is denied if the dialogue is cut
+    /// short or the robot concludes that the object is absent.
     fn pick(
         &mut self,
         i: ObjectId,
@@ -209,7 +209,7 @@ mod tests {
         assert!(found.cut < 1e-8 && found.waiting == 0.0);
     }
 
-    /// "Red, blue or green?" until answered, then a pick: `V = −4.7 + 0.99 (0.9 (0.98·50 − 0.02·100) + 0.1 V)`.
+    /// "Red, blue or green?", then a pick: `V = −4.7 + 0.99 (0.9 (0.98·50 − 0.02·100) + 0.1 V)`.
     #[test]
     fn a_choice_among_three_by_hand() {
         let scene = scene(

@@ -2,11 +2,11 @@
 //! with a floor.
 //!
 //! A person who wants `D` points with probability `p_g`; the angle `θ` between the pointing ray and
-//! the direction to `D`, both from where the person stands, is normal with standard deviation `σ`
-//! and mean 0 (it has no sign, so the density is the half of it twice). Taken alone that model would
+//! the direction to `D`, both from the person's place, is normal with standard deviation `σ` and
+//! mean 0 (it has no sign, so the density is the half of it twice). Taken alone that model would
 //! rule objects out for ever: at `σ = 0.15` a gesture one radian off weighs `e^-22`, which no
-//! dialogue ever makes up for. But people wave, and trackers fail. So with probability `λ` a gesture
-//! is *stray* and says nothing about `D`, its angle uniform on `[0, π]`:
+//! dialogue ever makes up for. But people wave, and trackers fail. So with probability `λ` a
+//! gesture is *stray* and says nothing about `D`, its angle uniform on `[0, π]`:
 //!
 //! `P(g | D) = p_g · ((1 − λ) · 2/(σ√(2π)) · e^(−θ²/2σ²) + λ/π)`
 //!
@@ -17,9 +17,9 @@
 
 use vocabulary::gesture::{Direction, Gestures};
 
-/// `ln P(g | D)` for every object, where `objects` are the directions to them from where the
-/// person stands. `ray` is the pointing ray; none: no gesture was seen, which has probability
-/// `1 − p_g` whatever is wanted.
+/// `ln P(g | D)` for every object; `objects` are the directions to them from the person. `ray` is
+/// the pointing ray; `None` if no gesture was seen, which has probability `1 − p_g` for every
+/// object.
 ///
 /// An object without a direction (it has no place, or is not here at all) is pointed at in any
 /// direction alike: angle uniform on `[0, π]`.

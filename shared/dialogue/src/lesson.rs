@@ -1,13 +1,13 @@
-//! What an interaction teaches about the person who spoke, once the wanted object is known.
+//! Lesson of an interaction about the person who spoke, once the wanted object is known.
 //!
-//! Given the object `D`, the attributes are independent. For each of them the person takes its value for
-//! `m` with `P(m | D)`, and every word and answer about it is right or a slip of that one `m`. So
-//! `P(m | D, heard) ∝ P(m | D) Π_j P(o_j | m)` is exact, and from it follow the expected numbers of slips
-//! and of values taken for another one: the E-step of EM under the rates that held. Errors that either
-//! kind explains are shared by their prior odds.
+//! Given the object `D`, the attributes are independent. For each of them the person takes its
+//! value for `m` with `P(m | D)`, and every word and answer about it is right or a slip of that one
+//! `m`. So `P(m | D, heard) ∝ P(m | D) Π_j P(o_j | m)` is exact, and from it follow the expected
+//! numbers of slips and of values taken for another one: the E-step of EM under the rates that
+//! held. Errors that either kind explains are shared by their prior odds.
 //!
-//! Where an utterance may be one of several, each reading counts by its probability given `D`. What was
-//! heard with a doubt `d` counts as `1 − d` of an observation.
+//! If an utterance has several readings, each counts by its probability given `D`. A word heard
+//! with a doubt `d` counts as `1 − d` of an observation.
 
 use scene::{AttributeId, ObjectId, Question, Reading, Response, WordId};
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ use crate::observation::{log_mixture, named_answer};
 use crate::speaker::Channel;
 use crate::{CERTAIN_DOUBT, Model, Naming};
 
-/// Expected numbers of what was wrong and what was right.
+/// Expected numbers of wrong and right observations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Count {
     /// Wrong ones.
@@ -26,13 +26,13 @@ pub struct Count {
 }
 
 impl Count {
-    /// How many there are.
+    /// Number of all observations.
     pub fn all(&self) -> f64 {
         self.wrong + self.right
     }
 
-    /// The posterior mean of the rate of wrong ones, where the prior is a beta distribution of mean
-    /// `rate` that is worth `strength` observations.
+    /// Posterior mean of the error rate; the prior is a beta distribution of mean `rate`, worth
+    /// `strength` observations.
     pub fn mean(&self, rate: f64, strength: f64) -> f64 {
         (self.wrong + rate * strength) / (self.all() + strength)
     }
@@ -48,13 +48,13 @@ impl Count {
     }
 }
 
-/// What one interaction teaches.
+/// Lesson of one interaction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lesson {
     /// Slips, by [`Channel`].
     pub channels: [Count; Channel::ALL.len()],
-    /// Values taken for another one, by attribute; nothing of those of which nothing was said, or of a
-    /// person who takes values for what they are.
+    /// Mistaken values by attribute; empty for attributes that were not mentioned, and for a person
+    /// who never mistakes values.
     pub attributes: Vec<Count>,
 }
 
@@ -139,27 +139,27 @@ impl Lesson {
 /// A word or an answer about an attribute.
 struct Said {
     channel: Channel,
-    /// Probability that it was said.
+    /// Probability that the word was said.
     share: f64,
     /// 1 less the doubt.
     understood: f64,
-    /// By the value that the person takes the object's for.
+    /// Chances by the value that the person perceives.
     by_value: Vec<Chance>,
-    /// Of an object that lacks the attribute.
+    /// Chance for an object that lacks the attribute.
     lacking: Chance,
 }
 
-/// Likelihood of what was heard.
+/// Likelihood of an observation.
 #[derive(Clone, Copy)]
 struct Chance {
     /// All.
     likelihood: f64,
-    /// Of it, where the person has slipped.
+    /// Part of the likelihood in which the person has slipped.
     slip: f64,
 }
 
 impl Chance {
-    /// Of a yes, a no or a denial that is true or not.
+    /// Chance of a yes, a no or a denial that is true or not.
     fn of_answer(model: &Model, doubt: f64, is_true: bool) -> Self {
         let epsilon = model.error_rate(0.0);
         // With a doubt either may have been said.
@@ -172,7 +172,7 @@ impl Chance {
         Self { likelihood: own + any, slip }
     }
 
-    /// Of an answer that names a value, or none.
+    /// Chance of an answer that names a value, or none.
     fn of_name(law: Naming, doubt: f64, is_true: Option<bool>) -> Self {
         let (epsilon, answers) = (1.0 - law.own, law.answers as f64);
         let (own, own_slip) = match is_true {
@@ -289,7 +289,7 @@ fn of_word(model: &Model, word: WordId, doubt: f64) -> Option<(AttributeId, Said
     Some((k, said(model, k, (channel, doubt), of)))
 }
 
-/// The attribute and the value that a group of words is about, if it is one word that means nothing else.
+/// The attribute and value of a group of words, if it is one word with no other meaning.
 fn only_meaning(model: &Model, group: &[WordId]) -> Option<(AttributeId, usize)> {
     let [word] = group else { return None };
     match model.meanings(*word) {

@@ -1,7 +1,7 @@
-//! The dialogue: what an utterance says about the wanted object, and what to do next.
+//! The dialogue: belief about the wanted object, and decisions about the next act.
 //!
-//! This crate is pure: no IO, no clock, no threads. What it computes depends on its arguments
-//! alone, so that a replay believes and decides the same, bit for bit on the same build.
+//! This crate is pure: no IO, no clock, no threads. Its results depend on the arguments alone, so
+//! that a replay believes and decides the same, bit for bit on the same build.
 //!
 //! # Example
 //!

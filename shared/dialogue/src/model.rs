@@ -12,7 +12,7 @@ mod misperception;
 mod tables;
 mod words;
 
-/// What equations (4)–(7) need of a scene, attribute by attribute.
+/// Data of a scene for equations (4)–(7), attribute by attribute.
 ///
 /// Values lie column-wise (one small integer per object and attribute), so that the likelihood of
 /// a word or an answer is one pass over one column, for thousands of objects alike.
@@ -21,9 +21,9 @@ pub struct Model {
     params: Params,
     objects: usize,
     absent: bool,
-    /// The same for a user who takes values for what they are, if this user may not.
+    /// The model of a user who never mistakes values, if this user may.
     plain: Option<Box<Self>>,
-    /// Whether values in doubt have been weighed with what was said in an interaction.
+    /// Whether values in doubt have been updated with an interaction's utterances.
     is_of_interaction: bool,
     /// Shared by the models of one scene: only parameters differ from person to person.
     tables: Arc<Tables>,
@@ -32,9 +32,9 @@ pub struct Model {
 impl Model {
     /// Stands in a column for an object that lacks the attribute.
     pub const LACKS: u16 = u16::MAX;
-    /// Stands in every column for what is not here: its values are unknown.
+    /// Value in every column for the absent object: its values are unknown.
     pub const UNKNOWN: u16 = u16::MAX - 1;
-    /// Entries of a column from this one up to [`Model::UNKNOWN`] stand for values in doubt
+    /// Entries of a column from this one up to [`Model::UNKNOWN`] denote values in doubt
     /// ([`Model::chances`]): equal entries for equal doubts.
     pub const DOUBTFUL: u16 = 1 << 15;
 
@@ -64,8 +64,8 @@ impl Model {
         Self { params, objects, absent: false, plain: None, is_of_interaction: false, tables }
     }
 
-    /// The same model of a scene with other objects and the same words, but for those of the places
-    /// by which objects that are alike are told apart: they come last.
+    /// The same model of a scene with other objects and the same words, except for those of the
+    /// places that distinguish like objects: they come last.
     #[must_use]
     pub fn with_objects(&self, scene: &Scene) -> Self {
         let same = Self::new(scene, self.params).with_certain_words(self.tables.certain.alpha);
@@ -76,11 +76,11 @@ impl Model {
         same.with_misperceptions(&rates).with_confusion(confusion)
     }
 
-    /// The model with another smoothing for words that are certain ([`CERTAIN_DOUBT`](crate::CERTAIN_DOUBT)).
-    /// Without it they have `α` like all others, as in the paper.
+    /// The model with another smoothing for words that are certain
+    /// ([`CERTAIN_DOUBT`](crate::CERTAIN_DOUBT)). By default they have `α`, as in the paper.
     ///
     /// # Panics
-    /// If `alpha` is not a number above 0, or the model has a hypothesis beyond the objects already.
+    /// If `alpha` is not above 0, or the model already has a hypothesis beyond the objects.
     #[must_use]
     pub fn with_certain_words(mut self, alpha: f64) -> Self {
         assert!(alpha > 0.0 && alpha.is_finite(), "{alpha} is not a smoothing weight");
@@ -93,8 +93,8 @@ impl Model {
 
     /// The model with one hypothesis more, after the objects: that the wanted object is not here.
     ///
-    /// It has no words of the scene, so that eq. (5) makes it speak every word with `1/|V|`. What
-    /// it is like is unknown: "is its k v?" is answered with yes as often as one of `|V_k|` values
+    /// It has no words of the scene, so that eq. (5) makes it speak every word with `1/|V|`. Its
+    /// properties are unknown: "is its k v?" is answered with yes as often as one of `|V_k|` values
     /// or something else would be, and an open question with any value. Pointing is answered with
     /// no.
     #[must_use]
@@ -107,7 +107,7 @@ impl Model {
         self
     }
 
-    /// The model with what is known of the words that are taken for one another.
+    /// Returns the model with the given confusions between words.
     ///
     /// # Panics
     /// If it is not about as many words as the scene has.
@@ -143,13 +143,13 @@ impl Model {
         self.objects
     }
 
-    /// The hypothesis that the wanted object is not here, where the model has it: one past the
-    /// last object.
+    /// The hypothesis that the wanted object is not here, if the model has it: one past the last
+    /// object.
     pub fn absent(&self) -> Option<ObjectId> {
         self.absent.then(|| ObjectId::from(self.objects))
     }
 
-    /// Length of a belief: the objects, and one more where the wanted one may not be here.
+    /// Length of a belief: the objects, and one more if the wanted one may be absent.
     pub fn hypotheses(&self) -> usize {
         self.objects + usize::from(self.absent)
     }
@@ -175,7 +175,7 @@ impl Model {
         self.tables.columns[k.index()].words[v.index()]
     }
 
-    /// The attributes and values that a word stands for: one, or more where attributes share it.
+    /// The attributes and values that a word denotes: one, or more if attributes share it.
     pub fn meanings(&self, word: WordId) -> &[(AttributeId, ValueId)] {
         &self.tables.words[word.index()].meanings
     }
@@ -191,8 +191,8 @@ impl Model {
         1.0 / (self.values(k) as f64 + 1.0)
     }
 
-    /// The value of object `i` for attribute `k`, if it has one; the likeliest of those in doubt. What
-    /// the user takes it for plays no part.
+    /// The value of object `i` for attribute `k`, if it has one; the likeliest of those in doubt.
+    /// The user's perception of it plays no part.
     pub fn value(&self, i: ObjectId, k: AttributeId) -> Option<ValueId> {
         let entry = self.column(k)[i.index()];
         if let known @ Some(_) = self.known(k, entry) {
@@ -207,14 +207,14 @@ impl Model {
         }
     }
 
-    /// `attr_k,v(i)`: false for an object that lacks the attribute, and for what is not here. Of values
-    /// in doubt it is true of the likeliest.
+    /// `attr_k,v(i)`: false for an object that lacks the attribute, and for the absent object. Of
+    /// values in doubt, it is true of the likeliest.
     pub fn has(&self, i: ObjectId, k: AttributeId, v: ValueId) -> bool {
         let entry = self.column(k)[i.index()];
         entry == v.0 || entry >= Self::DOUBTFUL && self.value(i, k) == Some(v)
     }
 
-    /// Probability of each value of attribute `k`, if that entry of its column stands for a doubt.
+    /// Probability of each value of attribute `k`, if that entry of its column denotes a doubt.
     pub fn chances(&self, k: AttributeId, entry: u16) -> Option<&[f64]> {
         let doubt = entry.checked_sub(Self::DOUBTFUL).filter(|_| entry < Self::UNKNOWN)?;
         self.tables.columns[k.index()].doubtful.get(usize::from(doubt)).map(Vec::as_slice)
@@ -235,13 +235,13 @@ impl Model {
         if is_certain { self.tables.certain.alpha } else { self.tables.smoothing.alpha }
     }
 
-    /// What the user takes an object for that lacks attribute `k`: each value, and last that it lacks it. Empty if
-    /// the user knows, or each has a value.
+    /// Perception by the user of an object without attribute `k`: probability of each value, and
+    /// last of its absence. Empty if the user knows, or each has a value.
     pub(crate) fn lacking(&self, k: AttributeId) -> &[f64] {
         &self.tables.columns[k.index()].lacking
     }
 
-    /// Multiplies the probabilities of values in doubt by their likelihoods; that of lacking the attribute comes last.
+    /// Multiplies probabilities of values in doubt by likelihoods; the missing value comes last.
     pub(crate) fn weigh_doubts(&mut self, k: AttributeId, likelihood: &[f64]) {
         self.is_of_interaction = true;
         let column = &mut Arc::make_mut(&mut self.tables).columns[k.index()];

@@ -13,7 +13,7 @@ pub struct ModelUser {
     wanted: ObjectId,
     rng: Rng,
     errors: Option<Errors>,
-    /// What the user takes the attributes asked about so far for.
+    /// The user's perception of the attributes asked about so far.
     perceived: Vec<(AttributeId, Option<ValueId>)>,
 }
 
@@ -44,7 +44,7 @@ impl ModelUser {
         Self { wanted, rng, errors: None, perceived: Vec::new() }
     }
 
-    /// What the person wants.
+    /// The object that the person wants.
     pub fn wanted(&self) -> ObjectId {
         self.wanted
     }

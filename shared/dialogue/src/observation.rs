@@ -17,8 +17,8 @@
 //! Words that are certain ([`CERTAIN_DOUBT`]) may have an `α` of their own
 //! ([`Model::with_certain_words`]).
 //!
-//! A doubt is the probability that something else was said ([`scene::Doubt`]): what a recogniser
-//! misheard, what a person was not sure of.
+//! A doubt is the probability that something else was said ([`scene::Doubt`]): misheard by a
+//! recogniser, or uncertain to the person.
 
 use std::borrow::Cow;
 
@@ -46,8 +46,8 @@ pub fn log_likelihood(model: &Model, question: Question, reading: &Reading) -> V
     log
 }
 
-/// `ln Σ_j w_j P(o_j | D, Q_j)` for every hypothesis: what was heard, or which question it answers,
-/// is uncertain. None if there is nothing of weight.
+/// `ln Σ_j w_j P(o_j | D, Q_j)` for every hypothesis: the words, or the question that they answer,
+/// are uncertain. `None` if nothing has weight.
 ///
 /// The weights are how probable it is that `o_j` was said, given the sound. A longer reading is a
 /// rarer observation than a shorter one whatever is wanted, so the factor of its words is taken
@@ -91,14 +91,14 @@ fn log_add(a: f64, b: f64) -> f64 {
 }
 
 /// Adds [`log_likelihood`] to every entry, but for a constant that is returned: one pass for each
-/// thing said that tells hypotheses apart, and none for what says nothing. No entry rises.
+/// informative word or answer. No entry rises.
 pub(crate) fn weigh(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
     assert!(model.contains(question), "{question:?} is not about this scene");
     assert_eq!(log.len(), model.hypotheses(), "belief and model are of one scene");
     add_words(model, question, reading, log) + add_response(model, question, reading, log)
 }
 
-/// What was said of the object's own values.
+/// Adds the likelihood of words about the object's own values.
 fn add_words(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
     let constant = add_base(model, question, reading, log);
     let is_of_value = |group: &[WordId]| match group {
@@ -118,18 +118,18 @@ fn add_words(model: &Model, question: Question, reading: &Reading, log: &mut [f6
 
 /// How a person answers a question by naming a value: "what is its k?", or "v, w or x?".
 ///
-/// The true answer is given with `1 − ε`, each other one with `ε/(m − 1)`, where `m` is the number of
-/// answers: the values of `V_k`, or the options, and "none of these" unless every hypothesis has one of
-/// them. Silence is `1 − p_l` as for every question.
+/// The true answer is given with `1 − ε`, each other one with `ε/(m − 1)`, where `m` is the number
+/// of answers: the values of `V_k`, or the options, and "none of these" unless every hypothesis has
+/// one of them. Silence is `1 − p_l` as for every question.
 ///
-/// An object that is not here, or that lacks the attribute of an open question, has no known true answer; a
-/// user who wants it is taken to give any answer with the same probability. With one value there is nothing
-/// to confuse it with, so `ε` plays no part.
+/// An object that is not here, or that lacks the attribute of an open question, has no known true
+/// answer; a user who wants it is taken to give any answer with the same probability. With one
+/// value there is nothing to confuse it with, so `ε` plays no part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Naming {
     pub(crate) attribute: AttributeId,
     options: Option<Options>,
-    /// How many answers there are.
+    /// Number of possible answers.
     pub answers: usize,
     /// Whether "none of these" is one of them.
     pub neither: bool,
@@ -142,7 +142,7 @@ pub struct Naming {
 }
 
 impl Naming {
-    /// The answer model of an open or a choice question; none of other questions.
+    /// The answer model of an open or a choice question; `None` for other questions.
     pub fn of(model: &Model, question: Question) -> Option<Self> {
         let (attribute, options) = match question {
             Question::Which(k) => (k, None),
@@ -161,19 +161,19 @@ impl Naming {
         Some(Self { own, other, lacking, ..law })
     }
 
-    /// The channel of its answers.
+    /// Channel of the question's answers.
     pub(crate) fn channel(&self) -> Channel {
         if self.options.is_some() { Channel::Choice } else { Channel::Open }
     }
 
-    /// The same where another answer may have been given with probability `doubt`.
+    /// Returns the model if another answer may have been given with probability `doubt`.
     pub(crate) fn doubted(self, doubt: f64) -> Self {
         let any = 1.0 / self.answers as f64;
         let blend = |p: f64| if doubt > 0.0 { (1.0 - doubt) * p + doubt * any } else { p };
         Self { own: blend(self.own), other: blend(self.other), ..self }
     }
 
-    /// Probability of naming that value, or none of the options, given an answer, for a user who wants an
+    /// Probability of naming the value, or no option, given an answer, for a user who wants an
     /// object with that entry in the model's column.
     pub fn answer(&self, model: &Model, named: Option<ValueId>, entry: u16) -> f64 {
         let chances = model.chances(self.attribute, entry);
@@ -181,7 +181,7 @@ impl Naming {
     }
 
     /// Probability that the answer is true of an entry of the column, or of a value with these
-    /// probabilities; none where that is not known.
+    /// probabilities; `None` if unknown.
     pub(crate) fn right(
         &self,
         named: Option<ValueId>,
@@ -200,24 +200,24 @@ impl Naming {
         (!is_unknown).then(|| named.map_or_else(|| (1.0 - of_options()).max(0.0), chance))
     }
 
-    /// Probability of naming that value, or none of the options, of an object of value `m`.
+    /// Probability of naming the value, or no option, for an object of value `m`.
     pub(crate) fn of_value(&self, named: Option<ValueId>, m: ValueId) -> f64 {
         self.right(named, m.0, None).map_or(self.lacking, |chance| self.mixture(chance))
     }
 
-    /// The same of an object that lacks the attribute, and of what is not here.
+    /// Probability of naming the value for an object without the attribute, and for the absent one.
     pub(crate) fn without_value(&self, named: Option<ValueId>) -> [f64; 2] {
         [Model::LACKS, Model::UNKNOWN].map(|entry| self.of_value(named, ValueId(entry)))
     }
 
-    /// The same where the answer is true with that probability.
+    /// Probability of naming the value if the answer is true with the given probability.
     fn mixture(&self, chance: f64) -> f64 {
         chance * self.own + (1.0 - chance) * self.other
     }
 }
 
-/// The value that answers an open or a choice question: what the words name, if they name exactly one, and
-/// it is an option. "On the counter or in the cabinet" is no answer, but its words still count.
+/// The value that answers an open or a choice question: the only value named, if it is an option.
+/// "On the counter or in the cabinet" is not an answer, but its words still count.
 pub(crate) fn named_answer(
     model: &Model,
     question: Question,
@@ -263,8 +263,8 @@ fn add_base(model: &Model, question: Question, reading: &Reading, log: &mut [f64
     constant
 }
 
-/// The factor of an answer that names a value, or none of the options.
-/// `said` are words beside the answer, about the same value.
+/// Adds the factor of an answer that names a value, or no option. `said` are further words about
+/// the same value.
 fn add_named(
     model: &Model,
     law: Naming,
@@ -312,8 +312,8 @@ fn add_named(
     constant
 }
 
-/// Adds to every entry what follows from the hypothesis's value of attribute `k`: `known` of its entry in the
-/// column, or `in_doubt` of the probabilities of its values.
+/// Adds to every entry the term for the hypothesis's value of attribute `k`: `known` of its entry
+/// in the column, or `in_doubt` of the probabilities of its values.
 fn add_by_value(
     model: &Model,
     k: AttributeId,
@@ -332,7 +332,7 @@ fn add_by_value(
     }
 }
 
-/// An error rate of one half says nothing, and is what a doubt of 1 comes to.
+/// An error rate of one half is uninformative, and results from a doubt of 1.
 fn doubted(params: Reliability, doubt: f64) -> Reliability {
     Reliability { epsilon: params.epsilon + doubt * (0.5 - params.epsilon), ..params }
 }
@@ -371,7 +371,7 @@ fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut 
         }
         Question::Attribute(k, v) => {
             let known = |value| if value == v.0 { if_true } else { if_false };
-            // The words beside an answer are about the same value.
+            // The other words of an answer are about the same value.
             let said = ValueEvidence::of_words(model, k, question, reading);
             add_by_value(model, k, log, known, |chances| {
                 let chance =
@@ -398,7 +398,7 @@ fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut 
     }
 }
 
-/// "No" to a choice. What was named instead counts as an option, or by its own word.
+/// "No" to a choice. A value named instead counts as an option, or by its own word.
 fn add_neither(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
     let heard = model.params().of(question).p_l.ln();
     match Naming::of(model, question) {

@@ -1,4 +1,4 @@
-//! What every planner is: a function from a belief to a decision.
+//! The interface of planners: functions from a belief to a decision.
 
 use scene::Question;
 use serde::{Deserialize, Serialize};
@@ -9,21 +9,21 @@ use crate::{Belief, Concessions, Decision, Model, Naming, PolicyTable};
 
 /// The decision problem `(S, A, T, R, Ω, O)` of section 3, but for the belief.
 ///
-/// `Q_t` and `Q_v` are known to the robot and `D` never changes, so what a planner needs of the
-/// state is the belief over objects alone.
+/// `Q_t` and `Q_v` are known to the robot and `D` never changes, so the belief over objects is all
+/// that a planner needs of the state.
 #[derive(Clone, Copy, Debug)]
 pub struct DecisionProblem<'a> {
     /// Objects, attributes, and how people answer.
     pub model: &'a Model,
-    /// What actions cost and a pick is worth.
+    /// Costs of actions and the worth of a pick.
     pub costs: Costs,
-    /// What the robot can do.
+    /// Actions available to the robot.
     pub actions: Actions,
-    /// What single questions cost, where that was measured; `costs` says it of the others.
+    /// Costs of single questions, if they were measured; `costs` has those of the others.
     pub durations: Option<&'a Durations>,
     /// Whether an announced pick can be denied.
     pub announce: Announce,
-    /// What the user said of attributes in this interaction.
+    /// The user's concessions about attributes in this interaction.
     pub concessions: &'a Concessions,
     /// Questions that are not asked again: their answers are known.
     pub spent: &'a [Question],
@@ -32,14 +32,14 @@ pub struct DecisionProblem<'a> {
 static NOTHING_CONCEDED: Concessions = Concessions::NONE;
 
 impl<'a> DecisionProblem<'a> {
-    /// The problem in which all questions of a kind cost the same, picks are final, and the user has
-    /// conceded nothing.
+    /// The problem in which all questions of a kind cost the same, picks are final, and the user
+    /// has conceded nothing.
     pub fn new(model: &'a Model, costs: Costs, actions: Actions) -> Self {
         let (announce, concessions) = (Announce::FINAL, &NOTHING_CONCEDED);
         Self { model, costs, actions, durations: None, announce, concessions, spent: &[] }
     }
 
-    /// The same problem as a planner sees it that takes picks for final.
+    /// Returns the problem as seen by a planner that assumes final picks.
     #[must_use]
     pub fn with_final_picks(self) -> Self {
         Self { announce: Announce::FINAL, ..self }
@@ -78,32 +78,32 @@ impl DecisionProblem<'_> {
     }
 }
 
-/// Which decision of which interaction: all the randomness that a planner may use, so that a
-/// replay decides the same.
+/// Position of a decision: all the randomness that a planner may use, so that a replay decides the
+/// same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Step {
-    /// Which interaction, counted over the life of the group.
+    /// Index of the interaction over the life of the group.
     pub interaction: u64,
-    /// Which decision in it, from 0.
+    /// Index of the decision in the interaction, from 0.
     pub step: u32,
 }
 
 /// A planner.
 ///
-/// A decision depends on problem, belief and step alone. A planner may keep what it computed, but
-/// never so that an earlier decision shows in a later one.
+/// A decision depends on problem, belief and step alone. A planner may keep results, but an earlier
+/// decision must not influence a later one.
 pub trait Planner {
     /// The name that the registry knows it by.
     fn name(&self) -> &'static str;
 
-    /// What to do.
+    /// Returns the next action.
     ///
     /// # Panics
     /// If the belief is not about the problem's scene.
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision;
 
-    /// What to do, knowing what is believed about the person as well. Planners that take it as
-    /// given how people answer decide by the belief over objects alone.
+    /// Returns the next action given the belief about the person as well. Planners with a fixed
+    /// model of answers decide by the belief over objects alone.
     fn decide_with(
         &mut self,
         problem: &DecisionProblem<'_>,
@@ -113,7 +113,7 @@ pub trait Planner {
         self.decide(problem, &joint.belief(), step)
     }
 
-    /// Whether it makes use of what is believed about the person.
+    /// Whether the planner uses the belief about the person.
     fn uses_user_model(&self) -> bool {
         false
     }

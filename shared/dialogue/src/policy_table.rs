@@ -22,12 +22,12 @@ pub struct PolicyTable {
 const DECISIONS_MAX: usize = 20_000;
 
 impl PolicyTable {
-    /// How many decisions it holds.
+    /// Number of decisions in the table.
     pub fn len(&self) -> usize {
         self.decisions.len()
     }
 
-    /// Whether it holds none.
+    /// Whether the table is empty.
     pub fn is_empty(&self) -> bool {
         self.decisions.is_empty()
     }

@@ -1,5 +1,5 @@
-//! What is believed in an interaction: about the wanted object alone, as in the paper, or about the
-//! person who answers as well.
+//! Beliefs of an interaction: about the wanted object alone, as in the paper, or also about the
+//! person who answers.
 
 use std::borrow::Cow;
 
@@ -19,16 +19,15 @@ pub enum Posterior {
     Object(Belief),
     /// How this person answers is learned meanwhile.
     ObjectAndPerson(Joint),
-    /// The user may take a value for another one ([`Model::with_misperceptions`]): what is believed of
-    /// the object, and what was said of each attribute.
+    /// The user may take a value for another one ([`Model::with_misperceptions`]): belief about the
+    /// object, and evidence about each attribute.
     Perceived(Box<Self>, ValueLikelihoods),
-    /// It is known who speaks: the observation model is that of the person.
+    /// The speaker is known: the observation model is that person's.
     Of(Speaker, Box<Self>),
 }
 
 impl Posterior {
-    /// What is believed before anything is said. The person counts only where the planner makes
-    /// use of it.
+    /// Belief before any utterance. The person counts only if the planner uses it.
     pub fn new(prior: Belief, person: Option<Person>) -> Self {
         match person {
             Some(person) => Self::ObjectAndPerson(Joint::new(prior, person)),
@@ -36,19 +35,19 @@ impl Posterior {
         }
     }
 
-    /// The same for a user who may take a value for another one.
+    /// Returns the posterior of a user who may take a value for another one.
     #[must_use]
     pub fn of_perceived(self) -> Self {
         Self::Perceived(Box::new(self), ValueLikelihoods::default())
     }
 
-    /// The same of a person; the posterior is as under the person's own model.
+    /// Returns the posterior of a known person, as under the person's own model.
     #[must_use]
     pub fn of_speaker(self, speaker: Speaker) -> Self {
         Self::Of(speaker, Box::new(self))
     }
 
-    /// The same of nobody in particular.
+    /// Returns the posterior of an unnamed person.
     #[must_use]
     pub(crate) fn of_anybody(self) -> Self {
         match self {
@@ -57,7 +56,7 @@ impl Posterior {
         }
     }
 
-    /// The person who speaks, where that is known.
+    /// The person who speaks, if known.
     pub fn speaker(&self) -> Option<&Speaker> {
         match self {
             Self::Of(speaker, _) => Some(speaker),
@@ -65,7 +64,7 @@ impl Posterior {
         }
     }
 
-    /// What was said of each attribute, for a user who may take a value for another one.
+    /// Evidence about each attribute, for a user who may take a value for another one.
     pub fn said(&self) -> Option<&ValueLikelihoods> {
         match self {
             Self::Object(_) | Self::ObjectAndPerson(_) => None,
@@ -74,7 +73,7 @@ impl Posterior {
         }
     }
 
-    /// The model after what was said: values as the user takes them.
+    /// The model given the evidence: values as the user perceives them.
     pub fn model<'a>(&self, model: &'a Model) -> Cow<'a, Model> {
         if let Self::Of(speaker, of) = self {
             return Cow::Owned(of.model(&speaker.model(model)).into_owned());
@@ -94,7 +93,7 @@ impl Posterior {
         }
     }
 
-    /// Returns the user model, where there is one.
+    /// Returns the user model, if there is one.
     pub fn person(&self) -> Option<&Person> {
         match self {
             Self::Object(_) => None,
@@ -103,7 +102,7 @@ impl Posterior {
         }
     }
 
-    /// Bayes' rule with what may have been heard; see [`Belief::update_mixture`].
+    /// Updates by Bayes' rule with uncertain words; see [`Belief::update_mixture`].
     ///
     /// # Panics
     /// As [`Belief::update_mixture`].
@@ -141,7 +140,7 @@ impl Posterior {
         }
     }
 
-    /// What a planner does about it.
+    /// Returns a planner's decision for this belief.
     ///
     /// # Panics
     /// As [`Planner::decide`].
@@ -165,7 +164,8 @@ impl Posterior {
         }
     }
 
-    /// Numbers that are equal for what differs by rounding alone; see [`Belief::key`].
+    /// Appends numbers that are equal for beliefs that differ by rounding alone; see
+    /// [`Belief::key`].
     pub fn key_into(&self, key: &mut Vec<i64>) {
         match self {
             Self::Object(belief) => belief.key_into(key),
@@ -181,7 +181,7 @@ impl Posterior {
         }
     }
 
-    /// What stands for all that have this one's key.
+    /// Returns the representative of all beliefs with this one's key.
     ///
     /// # Errors
     /// Never for a key of its own.

@@ -7,7 +7,7 @@ use crate::planners::ALL;
 
 pub use crate::planners::Entry;
 
-/// No planner has that name.
+/// The planner's name is unknown.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no planner \"{name}\"; the planners are {}", known.join(", "))]
 pub struct UnknownPlanner {
@@ -46,7 +46,7 @@ pub fn known() -> Vec<&'static str> {
     names().into_iter().chain(added().iter().map(|entry| entry.name)).collect()
 }
 
-/// Makes the planner of that name.
+/// Makes the planner of the given name.
 ///
 /// # Errors
 /// If there is none.

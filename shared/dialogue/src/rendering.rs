@@ -11,7 +11,7 @@ use crate::manager::{Act, Content, Preface};
 
 pub use foreseen::foreseen;
 
-/// Returns the text of an act's line; empty where nothing is said.
+/// Returns the text of an act's line; empty if the act is silent.
 pub fn text(scene: &Scene, act: &Act) -> String {
     let content = match &act.line.content {
         Content::Silence => return String::new(),
@@ -192,7 +192,7 @@ fn pick_ended(it: &str, outcome: PickOutcome) -> String {
             "My arm did not move as it should. Please look before you ask again.".to_owned()
         }
         PickOutcome::Cancelled => "I have left it where it was.".to_owned(),
-        // Its own line asks what becomes of it.
+        // A line of its own asks for the user's decision.
         PickOutcome::Pending | PickOutcome::PutBack | PickOutcome::Kept => String::new(),
     }
 }

@@ -6,7 +6,7 @@ use vocabulary::{Params, PersonId, Reliability};
 use crate::Model;
 use scene::AttributeId;
 
-/// A way in which a person tells something; each has errors of its own.
+/// Kind of a person's statements; each has errors of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
     /// Answers with yes or no, and denials.
@@ -31,13 +31,13 @@ impl Channel {
     }
 }
 
-/// A person with their error rates, in [`steps`] from the configured ones: persons of the same rates
-/// have the same model, so decisions recur.
+/// A person with their error rates, in [`steps`] from the configured ones: persons of the same
+/// rates have the same model, so decisions recur.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Speaker {
     /// The name.
     pub from: PersonId,
-    /// By [`Channel`].
+    /// Steps by [`Channel`].
     pub(crate) channels: [i8; Channel::ALL.len()],
     /// Rates of misperception, by attribute.
     pub(crate) attributes: Vec<i8>,
@@ -48,13 +48,13 @@ const STEPS: f64 = 2.0;
 /// Highest rate of errors of a person, whatever was learned.
 const RATE_MAX: f64 = 0.4;
 
-/// Returns the number of steps from one rate to another; none where one of them is 0.
+/// Returns the number of steps from one rate to another; 0 steps if one of them is 0.
 pub(crate) fn steps(from: f64, to: f64) -> i8 {
     let steps = ((to / from).log2() * STEPS).round();
     if steps.is_finite() { steps.clamp(-100.0, 100.0) as i8 } else { 0 }
 }
 
-/// Returns the rate so many steps from another one.
+/// Returns the rate some steps from another one.
 fn stepped(rate: f64, steps: i8) -> f64 {
     match steps {
         0 => rate,
@@ -62,8 +62,8 @@ fn stepped(rate: f64, steps: i8) -> f64 {
     }
 }
 
-/// Returns the steps of a channel's rate from the configured one; `learned` gives the rate for what was
-/// expected of it. That of words is the share of slips in all words, from which `α` follows.
+/// Returns the steps of a channel's rate from the configured one; `learned` gives the rate for an
+/// expected one. That of words is the share of slips in all words, from which `α` follows.
 pub(crate) fn channel_steps(
     configured: &Model,
     channel: Channel,
@@ -92,7 +92,7 @@ fn bounded(rate: f64, steps: i8) -> f64 {
 }
 
 impl Speaker {
-    /// Numbers that are equal for what decides alike.
+    /// Appends numbers that are equal for speakers with equal decisions.
     pub(crate) fn key_into(&self, key: &mut Vec<i64>) {
         key.extend(self.channels.iter().chain(&self.attributes).map(|steps| i64::from(*steps)));
     }

@@ -1,9 +1,8 @@
-//! What is known about how one person answers: a posterior that goes on from one interaction to the
-//! next.
+//! Model of how one person answers: a posterior that continues from one interaction to the next.
 //!
 //! The paper takes `ε` and `p_l` as known. Here they are beliefs (after Abbasnejad et al., who put
-//! questions under uncertainty about the model that they are to inform): `p_l` by counting what was
-//! answered and what was not, `ε` together with the wanted object, because an answer is only known
+//! questions under uncertainty about the model that they are to inform): `p_l` by counting answered
+//! and unanswered questions, `ε` together with the wanted object, because an answer is only known
 //! to be wrong once the object is known ([`Joint`]), and the time to react by the times seen
 //! ([`Reaction`](vocabulary::reaction::Reaction)).
 

@@ -1,9 +1,9 @@
-//! What an utterance says about the values of an attribute that are in doubt: a camera is not sure of
-//! them, or the user may take one for another ([`Model::with_misperceptions`]).
+//! Evidence of an utterance about the values of an attribute that are in doubt: a camera is not
+//! sure of them, or the user may take one for another ([`Model::with_misperceptions`]).
 //!
-//! Words and answers about one attribute are independent only given its value: a user who has said no
-//! to "is it white?" of an object that may be white, or that the user believes to be grey, says no
-//! again. So all of them count by value first, and the probabilities of the values come last:
+//! Words and answers about one attribute are independent only given its value: a user who has said
+//! no to "is it white?" of an object that may be white, or that the user believes to be grey, says
+//! no again. So all of them count by value first, and the probabilities of the values come last:
 //!
 //! `P(o₁ … o_n | D) = Π_k Σ_m P(m_k = m | D) Π_j P(o_j | m)`.
 
@@ -13,14 +13,14 @@ use serde::{Deserialize, Serialize};
 use crate::observation::named_answer;
 use crate::{CERTAIN_DOUBT, Model, Naming};
 
-/// Likelihood of what was said of one attribute, by the object's value of it.
+/// Likelihood of the words about one attribute, by the object's value of it.
 #[derive(Clone, Debug)]
 pub(crate) struct ValueEvidence {
-    /// By value.
+    /// Likelihood by value.
     by_value: Vec<f64>,
-    /// Of an object that lacks the attribute.
+    /// Likelihood for an object that lacks the attribute.
     lacking: f64,
-    /// Of what is not here.
+    /// Likelihood for the absent object.
     unknown: f64,
 }
 
@@ -98,8 +98,8 @@ impl ValueEvidence {
         }
     }
 
-    /// Takes in more: its likelihood by value, of an object that lacks the attribute, and of what is
-    /// not here.
+    /// Adds evidence: its likelihood by value, for an object that lacks the attribute, and for the
+    /// absent one.
     fn add(&mut self, [lacking, unknown]: [f64; 2], of: impl Fn(ValueId) -> f64) {
         self.lacking *= lacking;
         self.unknown *= unknown;
@@ -108,8 +108,8 @@ impl ValueEvidence {
         }
     }
 
-    /// Eq. (5) without its denominator, relative to a value's own word. Words of other attributes that
-    /// may have been said instead count by the share of hypotheses that have them.
+    /// Eq. (5) without its denominator, relative to a value's own word. Words of other attributes
+    /// that may have been said instead count by the share of hypotheses that have them.
     fn add_word(&mut self, model: &Model, k: AttributeId, (word, doubt): (WordId, f64)) {
         let alpha = model.smoothing(doubt <= CERTAIN_DOUBT);
         let mut said = vec![0.0; model.values(k)];
@@ -138,7 +138,7 @@ impl ValueEvidence {
         chances.iter().zip(&self.by_value).map(|(p, it)| p * it).sum()
     }
 
-    /// Of an object that lacks the attribute, which the user takes for one of a value with these probabilities.
+    /// Likelihood for an object without the attribute, seen with a value of these probabilities.
     fn of_lacking(&self, chances: &[f64]) -> f64 {
         chances
             .split_last()
@@ -167,14 +167,14 @@ impl ValueEvidence {
 /// Units of a key in a likelihood of 1.
 const KEY_UNITS: f64 = 1e9;
 
-/// What was said so far in an interaction of the attributes with values in doubt: logarithms of its
-/// likelihood by value, up to a constant; that of an object that lacks the attribute, if there is one, comes
+/// Evidence of an interaction about attributes with values in doubt: logarithms of the likelihood
+/// by value, up to a constant; that of an object that lacks the attribute, if there is one, comes
 /// last.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ValueLikelihoods(Vec<(AttributeId, Vec<f64>)>);
 
 impl ValueLikelihoods {
-    /// Takes in what may have been heard; `model` is the one after all that was heard before.
+    /// Adds uncertain words; `model` is the one after all earlier words.
     pub(crate) fn hear(&mut self, model: &Model, heard: &[(f64, Question, Reading)]) {
         for k in (0..model.attributes()).map(AttributeId::from) {
             let Some(likelihood) = model.said_of(k, heard) else { continue };
@@ -189,19 +189,19 @@ impl ValueLikelihoods {
         }
     }
 
-    /// Whether nothing was said of them.
+    /// Returns whether all evidence is missing.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Likelihood by value of all that was said of attribute `k`, relative to the greatest. None if
-    /// nothing was said of it.
+    /// Likelihood by value of all words about attribute `k`, relative to the greatest. `None` if
+    /// there are none.
     pub fn of(&self, k: AttributeId) -> Option<Vec<f64>> {
         let (_, log) = self.0.iter().find(|(of, _)| *of == k)?;
         Some(log.iter().map(|log| log.exp()).collect())
     }
 
-    /// Appends whole numbers that are equal for what differs by rounding alone.
+    /// Appends whole numbers that are equal for evidence that differs by rounding alone.
     pub(crate) fn key_into(&self, key: &mut Vec<i64>) {
         let mut all: Vec<&(AttributeId, Vec<f64>)> = self.0.iter().collect();
         all.sort_by_key(|(k, _)| *k);
@@ -211,7 +211,7 @@ impl ValueLikelihoods {
         }
     }
 
-    /// The likelihoods that stand for all of one key.
+    /// The likelihoods that represent all of one key.
     pub(crate) fn rounded(&self) -> Self {
         let whole = |log: &f64| ((log.exp() * KEY_UNITS).round().max(0.1) / KEY_UNITS).ln();
         let of = |(k, log): &(AttributeId, Vec<f64>)| (*k, log.iter().map(whole).collect());
@@ -253,7 +253,7 @@ impl Model {
         }
     }
 
-    /// Updates the probabilities of values in doubt by Bayes' rule with what may have been heard.
+    /// Updates the probabilities of values in doubt by Bayes' rule with uncertain words.
     pub(crate) fn learn(&mut self, heard: &[(f64, Question, Reading)]) {
         for k in (0..self.attributes()).map(AttributeId::from) {
             if let Some(likelihood) = self.said_of(k, heard) {
@@ -262,9 +262,9 @@ impl Model {
         }
     }
 
-    /// Likelihood by value of all readings about attribute `k`, if one says anything of it; that of an object that
-    /// lacks the attribute comes last, if there is one. A reading that says nothing of it counts as likely as one that
-    /// does is on average.
+    /// Likelihood by value of all readings about attribute `k`, if one says anything of it; that of
+    /// an object that lacks the attribute comes last, if there is one. A reading that says nothing
+    /// of it counts as likely as one that does is on average.
     fn said_of(&self, k: AttributeId, heard: &[(f64, Question, Reading)]) -> Option<Vec<f64>> {
         if !self.is_doubtful(k) {
             return None;

@@ -1,10 +1,10 @@
 //! The decision problem in Cassandra's `.pomdp` text, which public solvers read.
 //!
-//! The state is the wanted object (or `absent`, where the model allows for that), and one more: a
-//! pick ends the interaction, so it leads to `end`, where nothing is paid or heard; one that can be
-//! denied ([`Announce`](vocabulary::Announce)) may leave the state as it is, with the observation `denied`. Waiting and
-//! asking leave the state unchanged (eq. (2), (3)); the answer depends on it by
-//! [`Answer::probability`]. The format: A. R. Cassandra, "The POMDP file format".
+//! The state is the wanted object (or `absent`, if the model allows it), and one more: a pick ends
+//! the interaction, so it leads to `end`, where nothing is paid or heard; one that can be denied
+//! ([`Announce`](vocabulary::Announce)) may leave the state as it is, with the observation
+//! `denied`. Waiting and asking leave the state unchanged (eq. (2), (3)); the answer depends on it
+//! by [`Answer::probability`]. The format: A. R. Cassandra, "The POMDP file format".
 
 mod name;
 
@@ -47,9 +47,9 @@ pub struct Pomdp {
     pub observations: usize,
 }
 
-/// Returns the problem that the planners solve as text, below the lines of `comment`. Every question
-/// of the action space is included, informative or not. Numbers have as many digits as identify
-/// them.
+/// Returns the problem that the planners solve as text, below the lines of `comment`. Every
+/// question of the action space is included, informative or not. Numbers have as many digits as
+/// identify them.
 ///
 /// # Errors
 /// If the problem is too large.
@@ -160,7 +160,7 @@ impl<'a> Writer<'a> {
         states.map(|(state, name)| (name.as_str(), denied(state))).collect()
     }
 
-    /// Writes the most frequent row for all states, then what differs from it.
+    /// Writes the most frequent row for all states, then the differing ones.
     fn write_observations(&self, text: &mut String, action: Action, name: &str) {
         let silence: Row = vec![(0, 1.0)];
         let rows: Vec<Row> = match action {
@@ -222,8 +222,8 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Returns every answer that a question can get, silence first, and last the denial of a pick (none),
-/// where there is one.
+/// Returns every answer that a question can get, silence first, and last the denial of a pick
+/// (`None`), if there is one.
 fn answers(problem: &DecisionProblem<'_>, questions: &[Question]) -> Vec<Option<Answer>> {
     let possible = |question: &Question| Answer::possible(problem.model, *question);
     let plain = [Answer::Silence, Answer::Yes, Answer::No];

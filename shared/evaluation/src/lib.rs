@@ -1,4 +1,4 @@
-//! Evaluation of the robot's decisions with simulated users. Studies with people are in `user_study`.
+//! Evaluation of the robot's decisions with simulated users; with people in `user_study`.
 //!
 //! This crate is pure: no IO, no clock, no threads.
 //!

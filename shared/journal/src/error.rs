@@ -1,4 +1,4 @@
-//! Errors, one enum per operation. Messages end with what the operator can do.
+//! Errors, one enum per operation. Messages end with advice to the operator.
 
 use std::io;
 
@@ -12,10 +12,10 @@ pub enum JournalOpenError {
     /// Another process holds the lock.
     #[error("the journal is locked by another process{}; help: stop that process", by(*pid))]
     Locked {
-        /// The other process, where the lock file names it.
+        /// The other process, if the lock file names it.
         pid: Option<u32>,
     },
-    /// There is no file.
+    /// The file is missing.
     #[error("the file is missing")]
     Missing,
     /// The file has no bytes; a journal has some from its first moment.
@@ -32,7 +32,7 @@ pub enum JournalOpenError {
     Generation {
         /// The one in use.
         expected: u64,
-        /// That of the file.
+        /// Version of the file.
         found: u64,
     },
     /// Damage to acknowledged records.
@@ -48,7 +48,7 @@ pub enum JournalOpenError {
     Undecodable {
         /// Offset of the frame.
         at: u64,
-        /// Number of its first record.
+        /// Number of the first record.
         seq: u64,
     },
     /// Failure of the operating system.
@@ -80,7 +80,7 @@ pub enum AppendError {
 /// Failure to make appended records durable.
 #[derive(Debug, thiserror::Error)]
 pub enum SyncError {
-    /// No space left. The file is unchanged and the records stay in memory: free space and sync again.
+    /// No space left. The file is unchanged and records stay in memory: free space and sync again.
     #[error("no space for the journal: {0}; help: free some space")]
     Full(io::Error),
     /// Failed write. The file is unchanged and the records stay in memory.
@@ -115,8 +115,8 @@ pub enum RotateError {
 }
 
 impl JournalOpenError {
-    /// Returns whether the journal is lost or damaged: a restart changes nothing, and the one way out is
-    /// to set it aside.
+    /// Returns whether the journal is lost or damaged: a restart changes nothing, and the one way
+    /// out is to set it aside.
     pub fn is_lost(&self) -> bool {
         use JournalOpenError::{Corrupt, Empty, Generation, Missing, NotAJournal};
         matches!(self, Missing | Empty | NotAJournal | Generation { .. } | Corrupt { .. })

@@ -52,14 +52,14 @@ pub struct Reading<R> {
     pub header: Header,
     /// Every record up to the ending, oldest first.
     pub records: Vec<R>,
-    /// Number of the first of them.
+    /// Number of the first of these records.
     pub first_seq: u64,
     /// The ending of the file.
     pub ending: Ending,
 }
 
 impl<R: Serialize + DeserializeOwned> Journal<R> {
-    /// Opens the journal at `path`. What a killed writer had written without syncing is synced before
+    /// Opens the journal at `path`. Records that a killed writer left unsynced are synced before
     /// this returns, so every recovered record may be acted on.
     ///
     /// # Errors
@@ -68,8 +68,8 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
         Self::open_with(path, header, |_| Err(JournalOpenError::Missing))
     }
 
-    /// As [`Journal::open`], but also takes over a journal of one of the `older` kinds, whose records decode as
-    /// records of the present one. The file states the present kind from its next rotation on.
+    /// As [`Journal::open`], but also takes over a journal of one of the `older` kinds, whose
+    /// records decode as present ones. The file states the present kind from its next rotation on.
     ///
     /// # Errors
     /// See [`JournalOpenError`]; the file is left as it is.
@@ -87,7 +87,7 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
         Ok((Self { header: header.clone(), ..journal }, recovered))
     }
 
-    /// As [`Journal::open`], but makes a new journal where there is no file. The folder must exist.
+    /// As [`Journal::open`], but makes a new journal if the file is missing. The folder must exist.
     ///
     /// # Errors
     /// See [`JournalOpenError`]; the file is left as it is.
@@ -140,7 +140,7 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
     /// Does nothing if no record is queued.
     ///
     /// # Errors
-    /// See [`SyncError`]; none of the records may be acted on.
+    /// See [`SyncError`]; no record may be acted on.
     pub fn sync(&mut self) -> Result<(), SyncError> {
         self.tail.sync(false)
     }
@@ -155,8 +155,8 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
     }
 
     /// Continues in a new file that starts with `snapshot`; the old one is kept as `<name>.1`.
-    /// Queued records are synced into the old file first. Numbering continues. A crash at any moment
-    /// leaves either the old or the new journal.
+    /// Queued records are synced into the old file first. Numbering continues. A crash at any
+    /// moment leaves either the old or the new journal.
     ///
     /// # Errors
     /// See [`RotateError`].
@@ -164,8 +164,8 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
         self.rotate_until(snapshot, |_| Ok(()))
     }
 
-    /// As [`Journal::rotate`], but keeps no older file: what the snapshot does not hold is gone. A crash in between may
-    /// leave older ones, until this is done again.
+    /// As [`Journal::rotate`], but keeps no older file: records outside the snapshot are gone. A
+    /// crash in between may leave older ones, until this is done again.
     ///
     /// # Errors
     /// See [`RotateError`].
@@ -204,7 +204,7 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
     }
 }
 
-/// Reads a journal without locking it, even while its writer lives or where it is damaged.
+/// Reads a journal without locking it, even while its writer lives or if it is damaged.
 ///
 /// # Errors
 /// Another header or record layout; damage is reported by [`Reading::ending`].
@@ -274,7 +274,7 @@ fn recover<R: DeserializeOwned>(
     Ok((tail, Recovered { records, first_seq, truncated_bytes }))
 }
 
-/// The bytes of a whole new file, and the place where its next frame belongs.
+/// Composes the bytes of a new file; returns them with the position of its next frame.
 fn compose<R: Serialize>(
     header: &Header,
     first_seq: u64,

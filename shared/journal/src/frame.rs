@@ -6,8 +6,8 @@ pub const BODY_BYTES_MAX: usize = 16 << 20;
 
 /// Smallest unit that a disk writes as a whole.
 const SECTOR_BYTES: usize = 512;
-/// First byte of a frame, and of its part in each further sector: no part of a frame is all zeros, so
-/// one that is has not reached the disk.
+/// First byte of a frame, and of its part in each further sector: no part of a frame is all zeros,
+/// so one that is has not reached the disk.
 const MARK: u8 = 0xA5;
 
 /// Mark, length, checksum, number and predecessor's checksum before the body.
@@ -31,7 +31,7 @@ pub(crate) struct Frame {
 /// The bytes of a frame for offset `at` of the file, and its checksum.
 ///
 /// # Panics
-/// Where the body is longer than [`BODY_BYTES_MAX`]: the caller bounds it.
+/// If the body is longer than [`BODY_BYTES_MAX`]: the caller bounds it.
 pub(crate) fn seal(at: u64, seq: u64, prev_crc: u32, body: &[u8]) -> (Vec<u8>, u32) {
     assert!(body.len() <= BODY_BYTES_MAX, "the caller bounds the body");
     let crc = checksum(seq, prev_crc, body);
@@ -49,9 +49,9 @@ pub(crate) fn seal(at: u64, seq: u64, prev_crc: u32, body: &[u8]) -> (Vec<u8>, u
     (mark_sectors(at, &content.concat()), crc)
 }
 
-/// The frame at the start of `bytes`, which begin at offset `at` of the file, if there is a whole one
-/// whose number `plausible` accepts. The number is asked about before the checksum, which makes a
-/// search at every byte cheap.
+/// The frame at the start of `bytes`, which begin at offset `at` of the file, if there is a whole
+/// one whose number `plausible` accepts. The number is asked about before the checksum, which makes
+/// a search at every byte cheap.
 pub(crate) fn parse(at: u64, bytes: &[u8], plausible: impl Fn(u64) -> bool) -> Option<Frame> {
     if bytes.first() != Some(&MARK) {
         return None;
@@ -69,8 +69,8 @@ pub(crate) fn parse(at: u64, bytes: &[u8], plausible: impl Fn(u64) -> bool) -> O
     is_valid.then_some(Frame { crc, seq, prev_crc, body, len: frame_len })
 }
 
-/// Returns whether `bytes`, the invalid end of a file from offset `at` on, are a frame that was once
-/// written to its last byte: it is damaged, and not torn. A torn one lacks its end or a sector.
+/// Returns whether `bytes`, the invalid end of a file from offset `at` on, are a frame that was
+/// once written to its last byte: it is damaged, not torn. A torn one lacks its end or sectors.
 pub(crate) fn was_complete(at: u64, bytes: &[u8]) -> bool {
     if sectors(at, bytes).any(|part| part.iter().all(|byte| *byte == 0)) {
         return false;
@@ -93,7 +93,7 @@ pub(crate) fn words<const N: usize>(bytes: &[u8]) -> Option<[u32; N]> {
     Some(words)
 }
 
-/// What stands before the body.
+/// Head of a frame, before the body.
 struct Head {
     len: usize,
     crc: u32,
@@ -108,7 +108,7 @@ impl Head {
     }
 }
 
-/// The parts of `bytes` in each sector, where they begin at offset `at` of the file.
+/// Splits `bytes`, which begin at offset `at` of the file, into the parts in each sector.
 fn sectors(at: u64, bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let (first, others) = bytes.split_at(in_first_sector(at).min(bytes.len()));
     std::iter::once(first).filter(|part| !part.is_empty()).chain(others.chunks(SECTOR_BYTES))
@@ -118,8 +118,8 @@ fn in_first_sector(at: u64) -> usize {
     SECTOR_BYTES - (at % SECTOR_BYTES as u64) as usize
 }
 
-/// Number of sector marks in a frame at `at` with that many bytes of content, which begins with a mark
-/// of its own.
+/// Number of sector marks in a frame at `at` with that many bytes of content, which begins with a
+/// mark of its own.
 fn marks(at: u64, content: usize) -> usize {
     content.saturating_sub(in_first_sector(at)).div_ceil(SECTOR_BYTES - 1)
 }
@@ -135,7 +135,7 @@ fn mark_sectors(at: u64, content: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The first `len` bytes of a frame's content; none where the file ends or a sector's mark is missing.
+/// The first `len` bytes of a frame's content; `None` at the file's end or without a sector's mark.
 fn content(at: u64, bytes: &[u8], len: usize) -> Option<Vec<u8>> {
     let bytes = bytes.get(..len + marks(at, len))?;
     let is_marked = sectors(at, bytes).skip(1).all(|part| part.first() == Some(&MARK));

@@ -8,7 +8,7 @@ use crate::frame::words;
 
 /// Format number of the file layout that this version writes.
 ///
-/// Format 1 had two more numbers in its header; format 2 had no generation, and frames without an end.
+/// Format 1 had two more numbers in its header; format 2 lacked generation and frame ends.
 pub const FORMAT: u32 = 3;
 
 /// Magic, format, length and checksum before the header's body.
@@ -24,7 +24,7 @@ pub struct Header {
     pub group: String,
     /// Epoch of the group; numbers of different epochs are never compared.
     pub epoch: u64,
-    /// Which journal of its service in this epoch it is, from 1: a file that was set aside is not
+    /// Index of the journal in its service and epoch, from 1: a file that was set aside is not
     /// taken for its successor.
     pub generation: u64,
 }
@@ -64,7 +64,7 @@ pub(crate) fn encode(
 /// Reads the header at the start of a file.
 ///
 /// # Errors
-/// `Empty`, `NotAJournal`, `Foreign`, or `Corrupt { at: 0 }` where the checksum does not match.
+/// `Empty`, `NotAJournal`, `Foreign`, or `Corrupt { at: 0 }` if the checksum does not match.
 pub(crate) fn decode(bytes: &[u8]) -> Result<StoredHeader, JournalOpenError> {
     let corrupt = || JournalOpenError::Corrupt { at: 0, seq: 1 };
     if bytes.is_empty() {

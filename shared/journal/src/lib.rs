@@ -1,8 +1,8 @@
 //! A journal: the durable memory of one service, exact after a crash at any moment.
 //!
-//! Invariant: a record is in the journal after [`Journal::sync`] returned `Ok`, and what was
-//! appended between two syncs is there as a whole or not at all. Nothing else may be relied on
-//! before effects become visible.
+//! Invariant: a record is in the journal after [`Journal::sync`] returned `Ok`, and the records
+//! between two syncs are there as a whole or not at all. Nothing else may be relied on before
+//! effects become visible.
 //!
 //! One file has one writer, which holds a lock for life. It starts with a [`Header`] that names the
 //! owner, followed by frames, one per sync, all little-endian:
@@ -20,16 +20,16 @@
 //! A damaged frame was either torn, before it was acknowledged as durable, and is cut off; or it
 //! was acknowledged: that is corruption, and the journal refuses to open. Which of the two:
 //!
-//! - A valid frame after it: each is written after the one before was synced, so it was acknowledged.
-//! - Otherwise it is the last one. A disk may write the sectors of one frame in any order before the
-//!   sync, and may be interrupted anywhere: what it did not write is missing at the end of the file
-//!   or reads as zeros. Every frame has a byte `0xA5` at its start and at each multiple of 512 of the
-//!   file, so no sector's part of it is all zeros, and its length stands at both ends. A frame that
-//!   lacks its end, or a sector, is torn; one that is there to its last byte and is wrong is corrupt.
+//! - A valid frame after it: frames follow a sync of the one before, so it was acknowledged.
+//! - Otherwise it is the last one. A disk may write the sectors of one frame in any order before
+//!   the sync, and may be interrupted anywhere: unwritten parts are missing at the end of the file
+//!   or read as zeros. Every frame has a byte `0xA5` at its start and at each multiple of 512 of
+//!   the file, so no sector's part of it is all zeros, and its length is at both ends. A frame that
+//!   lacks its end, or a sector, is torn; one that is complete but wrong is corrupt.
 //!
-//! What cannot be distinguished: whole frames missing at the end of a file look as if they had never been
-//! written (the other services' journals may know of them); a last frame of which a whole sector was
-//! lost after the sync, or both of whose lengths are damaged, looks torn.
+//! Indistinguishable cases: whole frames missing at the end of a file look as if they had never
+//! been written (the other services' journals may know of them); a last frame of which a whole
+//! sector was lost after the sync, or both of whose lengths are damaged, looks torn.
 //!
 //! Errors do not name the file; the caller knows it. Data for people is kept as [`lines`].
 

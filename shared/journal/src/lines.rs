@@ -1,7 +1,7 @@
-//! Files of text lines that are only ever appended to: for what people and their programs read.
+//! Append-only files of text lines, for people and their programs.
 //!
-//! Invariant: what [`Lines::append`] has acknowledged is on the disk. A crash may leave the beginning
-//! of one more line, without its end; who reads leaves that out.
+//! Invariant: lines acknowledged by [`Lines::append`] are on the disk. A crash may leave the
+//! beginning of one more line, without its end; readers ignore that.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Write};
@@ -15,7 +15,7 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// A new file. The folder is made where there is none, and both are on the disk afterwards.
+    /// A new file. A missing folder is created, and both are on the disk afterwards.
     ///
     /// # Errors
     /// It exists already, or cannot be written.
@@ -27,8 +27,8 @@ impl Lines {
         Ok(Self { file, bytes: 0 })
     }
 
-    /// An existing file and its whole lines. What follows their last end was never acknowledged and
-    /// is cut off.
+    /// An existing file and its whole lines. Text after the last line end was never acknowledged
+    /// and is cut off.
     ///
     /// # Errors
     /// It cannot be read or written, or is not UTF-8.
@@ -50,7 +50,7 @@ impl Lines {
     /// They cannot be written.
     ///
     /// # Panics
-    /// Where `lines` does not end with the end of a line: a bug.
+    /// If `lines` does not end with a line end: a bug.
     pub fn append(&mut self, lines: &str) -> io::Result<()> {
         assert!(lines.ends_with('\n'), "only whole lines are appended");
         let written = self.file.write_all(lines.as_bytes()).and_then(|()| self.file.sync_data());
@@ -64,7 +64,7 @@ impl Lines {
     }
 }
 
-/// Returns the files with that extension in a folder, by name, with their texts; none if the folder
+/// Returns the files with an extension in a folder, by name, with their texts; empty if the folder
 /// does not exist.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! One writer per journal: a lock on a file beside it, held for life. The journal itself cannot
+//! One writer per journal: a lock on a file next to it, held for life. The journal itself cannot
 //! carry the lock because a rotation puts another file in its place.
 
 use std::fs::{File, TryLockError};

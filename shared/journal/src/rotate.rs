@@ -72,7 +72,7 @@ pub(crate) fn replace(
     Ok(file)
 }
 
-/// Removes what a replacement that did not finish has left.
+/// Removes files left by an unfinished replacement.
 pub(crate) fn clear_unfinished(path: &Path) -> io::Result<()> {
     absent_is_fine(fs::remove_file(suffixed(path, "new")))?;
     let old = suffixed(path, "1");
@@ -99,7 +99,7 @@ fn write_new(new: &Path, bytes: &[u8]) -> io::Result<File> {
     Ok(file)
 }
 
-/// Gives the old journal its second name. A copy does as well where the file system has no links.
+/// Gives the old journal its second name. A copy will do if the file system has no links.
 fn link(path: &Path, keep: u32) -> io::Result<()> {
     if keep == 0 {
         return Ok(());

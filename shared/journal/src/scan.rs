@@ -9,16 +9,16 @@ use crate::header::StoredHeader;
 /// Endings of a journal file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// With its last whole frame.
+    /// The data end with a complete frame.
     Whole,
-    /// With a write that was never acknowledged; opening the journal cuts it off.
+    /// The data end with a write that was never acknowledged; opening the journal cuts it off.
     Torn {
         /// Offset of the torn frame.
         at: u64,
         /// Bytes from there to the end of the file.
         bytes: u64,
     },
-    /// With records that had been acknowledged and can no longer be reached.
+    /// The data end with records that had been acknowledged and can no longer be reached.
     Corrupt {
         /// Offset of the damaged frame.
         at: u64,
@@ -37,7 +37,7 @@ pub(crate) struct Scan<R> {
     pub(crate) ending: Ending,
 }
 
-/// The place where the next frame belongs.
+/// Position of the next frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Position {
     /// Offset in the file.
@@ -127,8 +127,8 @@ fn ending_of(rest: &[u8], position: &Position) -> Ending {
     let expected = position.next_seq;
     let plausible = |seq| seq >= expected && seq - expected <= u64::from(u32::MAX);
     let last_start = rest.len().saturating_sub(PREFIX_BYTES);
-    // No frame begins within the shortest one. Without this, a frame of which a sector's last byte was
-    // the first and is lost would be found again one byte later, behind the next sector's mark.
+    // No frame begins within the shortest one. Without this, a frame of which a sector's last byte
+    // was the first and is lost would be found again one byte later, behind the next sector's mark.
     let starts = std::iter::once(0).chain(FRAME_BYTES_MIN..=last_start);
     let valid = |i: &usize| frame::parse(at + *i as u64, &rest[*i..], plausible).is_some();
     let end = rest.len();

@@ -61,7 +61,7 @@ impl<S: Storage> Tail<S> {
     pub(crate) fn new(storage: S, position: Position) -> Self {
         let waiting = Batch::default();
         let mut tail = Self { storage, position, waiting, reserved: 0, poisoned: false };
-        // On a full disk what is there can be read all the same, and the next sync says what is short.
+        // On a full disk the records can be read anyway, and the next sync reports the shortage.
         let _ = tail.reserve(position.end);
         tail
     }
@@ -94,9 +94,9 @@ impl<S: Storage> Tail<S> {
         self.poisoned = true;
     }
 
-    /// One write, one sync. On a failed write the file is cut back to what it was; on a failed sync
-    /// it is cut back too, because a second sync would report success for pages that the first one
-    /// already gave up, and then no more records are accepted.
+    /// One write, one sync. On a failed write or sync the file is cut back, because a second sync
+    /// would report success for pages that the first one already gave up, and after a failed sync
+    /// no more records are accepted.
     ///
     /// Without `vital`, nothing is written unless the reserve stays whole.
     pub(crate) fn sync(&mut self, vital: bool) -> Result<(), SyncError> {

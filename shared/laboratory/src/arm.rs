@@ -134,8 +134,8 @@ fn to_json(pick: &Pick<'_>, samples_hz: Option<f64>) -> Json {
     json
 }
 
-/// Returns the pose of the object in frame `<limb>_gripper` while it is held: x, y, z in metres, and
-/// a quaternion x, y, z, w.
+/// Returns the pose of the object in frame `<limb>_gripper` while it is held: x, y, z in metres,
+/// and a quaternion x, y, z, w.
 fn object_in_gripper(pick: &Pick<'_>) -> Option<[f64; 7]> {
     let (_, closed_s) = pick.plan.span_s(Phase::Close)?;
     let chain = &pick.robot.arm(pick.plan.limb()).chain;
@@ -145,8 +145,8 @@ fn object_in_gripper(pick: &Pick<'_>) -> Option<[f64; 7]> {
     Some([p.x, p.y, p.z, r.i, r.j, r.k, r.w])
 }
 
-/// Returns the plan at equal intervals and at its end: positions in radians, velocities in rad/s, and
-/// the width between the fingers in metres.
+/// Returns the plan at equal intervals and at its end: positions in radians, velocities in rad/s,
+/// and the width between the fingers in metres.
 fn samples(pick: &Pick<'_>, hz: f64) -> Json {
     let plan = &pick.plan;
     let held = |t_s: f64| {

@@ -68,10 +68,10 @@ where
     }
 }
 
-/// Opens the input that is asked for.
+/// Opens the requested input.
 ///
 /// # Errors
-/// There is no such file.
+/// The file does not exist.
 pub fn open(input: &InputArgs) -> Result<Box<dyn Read>, Failure> {
     let Some(path) = &input.input else { return Ok(Box::new(io::stdin().lock())) };
     let file = safe_files::open_regular(path).map_err(|error| Failure::file(path, &error))?;

@@ -1,4 +1,4 @@
-//! `conform`: tests a service, from wherever it is, against the contract of its kind, in a group of its own.
+//! `conform`: tests a service against the contract of its kind, in a group of its own.
 
 use std::time::{Duration, Instant};
 
@@ -21,16 +21,16 @@ mod grounding;
 mod rules;
 mod subject;
 
-/// Time that a service of no known inputs is given to publish what it publishes.
+/// Timeout for the first publication of a service with no known inputs.
 const PUBLISHES_WITHIN: Duration = Duration::from_millis(800);
-/// Lines of the service's log that are shown where a rule is broken.
+/// Lines of the service's log that are shown if a rule is broken.
 const LOG_LINES: usize = 8;
 /// Pause after a message that makes no sense: a reader that holds one sees each.
 const PAUSE: Duration = Duration::from_millis(20);
 
 /// A rule that holds.
 pub(super) enum Kept {
-    /// What was found.
+    /// A finding.
     Fact(String),
     /// The reason why there is nothing to test.
     NotApplicable(String),
@@ -49,7 +49,7 @@ impl Broken {
     }
 }
 
-/// The test itself cannot go on.
+/// The test itself cannot continue.
 impl From<Failure> for Broken {
     fn from(failure: Failure) -> Self {
         let help = "free shared memory and descriptors, then test again";
@@ -150,7 +150,7 @@ pub fn conform(args: &ConformArgs, out: &mut Output<'_>) -> Outcome {
     Ok(if is_kept { Exit::Ok } else { Exit::NotReached })
 }
 
-/// The rules that the command line names; all of them where it names none.
+/// Returns the rules that the command line names; all rules if it names none.
 fn chosen(args: &ConformArgs, service: Service) -> Result<Vec<&'static Rule>, Failure> {
     let all = rules_of(service);
     let names = || all.iter().map(|rule| rule.name);
@@ -196,7 +196,7 @@ pub(super) struct Test<'a> {
     incarnation: u32,
     /// Whether a start has led to nothing: further ones would, too, after the same time.
     is_given_up: bool,
-    /// What was written so far, beside the tester's own messages.
+    /// Messages written so far, other than the tester's own.
     written: Vec<Written>,
     /// The tester's topics, in the place of speech and policy.
     speaking: Option<grounding::Speaking>,
@@ -217,7 +217,7 @@ impl<'a> Test<'a> {
         Ok(())
     }
 
-    /// Returns the service, ready: it is started where it does not run.
+    /// Returns the service, ready; starts it if it does not run.
     fn running(&mut self) -> Result<&mut Subject, Broken> {
         if self.is_given_up {
             return Err(Broken::new("not tested: it has not become ready", "mend that first"));
@@ -290,17 +290,17 @@ impl<'a> Test<'a> {
         is_client || is_configured || self.is_of_service(topic)
     }
 
-    /// Has the service do what it is for.
+    /// Makes the service do the work of its kind.
     fn exercise(&mut self) -> Result<(), Broken> {
         self.running()?;
         if self.bench.service == Service::Grounding {
-            // What is wrong with an answer is for other rules.
+            // Wrong answers are for other rules.
             return grounding::exercise(self);
         }
         self.survives("while nothing happened", PUBLISHES_WITHIN)
     }
 
-    /// Takes note of what was written by others than the tester.
+    /// Takes note of messages written by others than the tester.
     fn note_written(&mut self) -> Result<(), Failure> {
         let read = self.read_topics();
         self.written.extend(self.bench.written(&read)?);

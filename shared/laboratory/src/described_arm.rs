@@ -36,8 +36,8 @@ impl DescribedArm {
         Self::of(robot, which).map_err(|reason| Failure::new(Exit::Usage, reason))
     }
 
-    /// Name, and pose in the root's frame, of each of its links at a posture (radians, or metres
-    /// where a joint slides); quaternions have w ≥ 0.
+    /// Name, and pose in the root's frame, of each link at a posture (radians, or metres for a
+    /// sliding joint); quaternions have w ≥ 0.
     ///
     /// With `--limb` these are the links from the arm's mount on with all that hangs off them,
     /// fingers closed; with `--tip` those from the root to the tip.

@@ -1,6 +1,6 @@
-//! Verbs for evaluation of the robot and for development of its services: no running robot needs them.
+//! Verbs for evaluation of the robot and development of its services, without a running robot.
 //!
-//! The table of verbs lists [`Verb`] as a whole, and [`conform`] and [`replay`] one by one; [`run`] runs a [`Verb`].
+//! The table of verbs lists [`Verb`] whole, [`conform`] and [`replay`] singly; [`run`] runs it.
 
 use clap::Subcommand;
 use command_line::Outcome;

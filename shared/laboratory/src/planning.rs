@@ -25,7 +25,7 @@ pub(crate) fn planner_of(problem: &Problem) -> &str {
     problem.settings.as_ref().map_or(PLANNER, |settings| &settings.dialogue.planner)
 }
 
-/// The planner and its problem.
+/// Returns the named planner with the decision problem.
 pub(crate) fn decider(args: &PlanArgs) -> Result<Decider, Failure> {
     let follows = args.problem.config.is_given();
     let problem = of_scene(&args.scene, &args.problem, follows)?;
@@ -56,8 +56,8 @@ pub(crate) fn calibrator(scene: &Path, config: &ConfigArgs) -> Result<Calibrator
     Calibrator::new(scene_file::load_named(scene, config)?, model)
 }
 
-/// The problem of a scene given by its file or by its name in the configuration. With `follows`, all
-/// that the command line leaves open is as the robot of the configuration does it.
+/// The problem of a scene given by its file or by its name in the configuration. With `follows`,
+/// all that the command line leaves open is as the robot of the configuration does it.
 pub(crate) fn of_scene(
     scene: &Path,
     args: &ProblemArgs,

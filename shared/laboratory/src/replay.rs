@@ -57,7 +57,7 @@ pub fn replay(
     Ok(if is_damaged { Exit::Storage } else { Exit::Ok })
 }
 
-/// The failure where no flight is the wanted one; `found` are the services that have one.
+/// Returns the failure without a matching flight; `found` are the services that have one.
 fn none_found(folder: &Path, wanted: Option<&str>, found: &BTreeSet<&str>) -> Failure {
     let of = wanted.map(|name| format!(" of {name}")).unwrap_or_default();
     let help = match found.is_empty() {
@@ -132,7 +132,7 @@ fn show(
     Ok(())
 }
 
-/// Prints where two values differ, and both.
+/// Prints the place of a difference, and both values.
 fn show_values(difference: &Difference, out: &mut Output<'_>) -> Result<(), Failure> {
     let Difference { pass, after_s, path, recorded, recomputed, .. } = difference;
     let unit = unit(path);

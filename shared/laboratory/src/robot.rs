@@ -37,7 +37,7 @@ pub(super) fn import(args: &ImportArgs, out: &mut Output<'_>) -> Outcome {
     report(&files, &imported, &options.name, &folder, examined.verdict().err(), out)
 }
 
-/// Prints what was written, and what is wrong with it.
+/// Prints the files written, and their problems.
 fn report(
     files: &Files,
     imported: &Imported,
@@ -137,7 +137,7 @@ impl Files {
     }
 }
 
-/// Prints what was found, chosen and assumed.
+/// Prints the findings, choices and assumptions.
 fn print(findings: &Findings, out: &mut Output<'_>) -> Result<(), Failure> {
     for (kind, word) in
         [(Kind::Chosen, "chosen"), (Kind::Assumed, "assumed"), (Kind::Ignored, "ignored")]

@@ -1,4 +1,4 @@
-//! From answers in the order given to the one that counts.
+//! Selection of the valid one from answers in the order given.
 
 use scene::Response;
 
@@ -14,13 +14,13 @@ use crate::token_class::{Class, classes};
 pub(crate) enum Answer {
     Yes,
     No,
-    /// "I do not know": takes back what was answered before.
+    /// "I do not know": takes back the earlier answers.
     Unsure,
     /// "let me think": takes it back as well, and says nothing instead.
     Pondering,
 }
 
-/// Answers in order, each with its tag; a scope of what was asked about has none.
+/// Answers in order, each with its tag; the scope of the question has none.
 #[derive(Debug, Default)]
 pub(crate) struct Answers {
     given: Vec<Given>,
@@ -30,9 +30,9 @@ pub(crate) struct Answers {
 #[derive(Clone, Copy, Debug)]
 struct Given {
     answer: Answer,
-    /// Its tag.
+    /// Index of the answer's tag.
     at: Option<usize>,
-    /// Probability that it was not given.
+    /// Probability that the answer was not given.
     doubt: f64,
 }
 
@@ -64,8 +64,8 @@ impl Answers {
         self.given.last().is_some_and(|given| given.at.is_some_and(|given| given < at))
     }
 
-    /// The answer that stands: the last one, unless it is tied to its opposite ("yes and no"); and
-    /// its doubt. An answer that was given twice is doubted as the surer one is.
+    /// The valid answer: the last one, unless it is tied to its opposite ("yes and no"); and its
+    /// doubt. An answer given twice has the smaller doubt.
     fn standing(&self, tags: &[Tag<'_>]) -> Option<(Answer, f64)> {
         let last = *self.given.last()?;
         if let [.., before, _] = self.given[..]
@@ -139,7 +139,7 @@ fn is_other_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     whole && plain && !before.is_some_and(|before| before.is_any(classes![Quantifier AskBack]))
 }
 
-/// "the wrong spoon", "wrong medicine": what stands after it is refused.
+/// "the wrong spoon", "wrong medicine": the thing after it is refused.
 pub(crate) fn is_wrong_thing(tags: &[Tag<'_>], at: usize) -> bool {
     tags[at].word == "wrong"
         && after(tags, at)
@@ -157,7 +157,7 @@ fn is_judged(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
         && at + 1 == clause.span.end
 }
 
-/// A sentence about what was asked that says no more than yes.
+/// Returns whether a sentence about the question says no more than yes.
 fn is_affirmed(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     let before = &tags[clause.span.start..at];
     let subject = before.iter().rev().find(|tag| !tag.is(Class::Plain));
@@ -222,8 +222,8 @@ fn names_thing(tags: &[Tag<'_>]) -> bool {
         .any(|tag| tag.is(Class::Head) || [tag.word, tag.second, tag.last].into_iter().any(names))
 }
 
-/// The response to the question: the answer that stands, or what the values said imply; and the
-/// probability that it was not given. `indifferent`: where it was said that the answer does not
+/// The response to the question: the last answer, or the one implied by the values; and the
+/// probability that it was not given. `indifferent`: whether it was said that the answer does not
 /// matter.
 pub(crate) fn response(
     content: &Content<'_>,

@@ -8,7 +8,7 @@ use crate::token_class::{Class, classes};
 use crate::topic::{ClauseAnalysis, SCENE_NAMES};
 
 impl ClauseAnalysis<'_> {
-    /// Returns whether the clause asks what the robot does or what one can say to it.
+    /// Returns whether the clause asks about the robot's activity or its vocabulary.
     pub(crate) fn asks_about_robot(&self) -> bool {
         self.opening().is_some_and(|(_, class)| matches!(class, Class::AskStatus | Class::AskHelp))
             && !self.has(classes![Fetch Want Story])
@@ -20,7 +20,7 @@ impl ClauseAnalysis<'_> {
         let opens = self.clause[0].gap == Gap::Stop || !self.previous_tags.iter().any(is_content);
         let Some((at, opening)) = self.opening().filter(|_| opens) else { return false };
         match opening {
-            // "what can you get me": the fetching is what is asked about.
+            // "what can you get me" asks about fetching.
             Class::AskBack => {
                 let asks =
                     ["what", "which", "how", "why", "do", "did"].contains(&self.clause[at].word);

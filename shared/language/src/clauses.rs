@@ -1,5 +1,5 @@
-//! Which parts of an utterance are about the objects. A listener who knows the objects ignores
-//! "red wine" and "the dishwasher is broken", and takes "the red one" and "in the dishwasher".
+//! Parts of an utterance that are about the objects. A listener who knows the objects ignores "red
+//! wine" and "the dishwasher is broken", and takes "the red one" and "in the dishwasher".
 
 use std::ops::Range;
 

@@ -1,5 +1,5 @@
-//! Words of the closed classes: negators, answers, articles, pronouns, and words that control the dialogue. No value takes
-//! them away: one of that name needs the name of its attribute or the noun beside it. A slip in one of them is mended.
+//! Words of the closed classes: negators, answers, articles, pronouns, and dialogue commands.
+//! Values cannot replace them: one of that name needs its attribute or noun. Slips are corrected.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::LazyLock;
@@ -14,8 +14,8 @@ const CLOSED: &[Class] = classes![
     Not Except No Yes One Determiner Pointer Possessive First Second It
     Cancel StartOver Repeat PutBack Unsure Indifferent AskHelp AskStatus
 ];
-/// Shortest negator that is mended if a letter is missing or added. Every other slip is two neighbours that have changed
-/// places: a wrong letter makes another English word of too many ("cancer", "messed", "loader").
+/// Shortest negator corrected for a missing or added letter. Other slips are swapped neighbours: a
+/// wrong letter often makes another English word ("cancer", "messed", "loader").
 const LETTERS_MIN: usize = 6;
 
 /// Returns whether the words are one phrase of a closed class.
@@ -73,7 +73,7 @@ fn words() -> &'static HashMap<&'static str, Class> {
     &WORDS
 }
 
-/// Returns whether words that stand alone are an answer, whatever else they name in a scene.
+/// Returns whether lone words are an answer, whatever else they name in a scene.
 pub(crate) fn is_answer(class: Class) -> bool {
     matches!(class, Class::Yes | Class::No | Class::WeakYes | Class::WeakNo)
 }

@@ -1,6 +1,6 @@
-//! How complete an utterance in progress is: whether its speaker will go on after a pause.
+//! How complete an utterance in progress is: whether its speaker will continue after a pause.
 //!
-//! The judgement is about words alone, and cautious: what may go on is not complete.
+//! The judgement is about words alone, and cautious: a text that may continue is not complete.
 
 use ::vocabulary::Language;
 use scene::{Intent, Question, Reading, Response, Role, Scene, WordId};
@@ -13,13 +13,13 @@ use crate::token_class::{Class, classes};
 /// How complete an utterance is, the most complete first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Completeness {
-    /// It answers the question, or describes one object: whatever follows hardly matters.
+    /// The utterance answers the question, or describes one object: the rest hardly matters.
     Complete,
-    /// It can stand alone, but people often add to it: "no", "get me the bowl".
+    /// The utterance can be whole, but people often add to it: "no", "get me the bowl".
     Sufficient,
     /// Neither.
     Unclear,
-    /// Its last words need others after them: "the big", "it is on", "um".
+    /// The last words need others after them: "the big", "it is on", "um".
     Open,
 }
 
@@ -38,7 +38,7 @@ impl CompletenessJudge {
         let values =
             |attribute: &scene::Attribute| attribute.values.iter().map(|v| v.word).collect();
         Self {
-            // Whichever reading the dialogue uses, this one knows most of what people say.
+            // Whichever reading the dialogue uses, this one covers the most phrases.
             reader: Reader::new(scene, Language::Careful),
             objects: objects.map(|i| scene.vocabulary(i).collect()).collect(),
             attributes: scene.attributes().iter().map(values).collect(),
@@ -72,7 +72,7 @@ impl CompletenessJudge {
             | Intent::Greet
             | Intent::Thank
             | Intent::PutBack => Completeness::Sufficient,
-            // Questions to the robot, and what is not meant for it.
+            // Questions to the robot, and words that are not meant for it.
             _ => Completeness::Unclear,
         }
     }
@@ -93,7 +93,7 @@ impl CompletenessJudge {
             Response::Yes if is_asked && (!is_described || candidates > 0) => {
                 Completeness::Complete
             }
-            // "No": what it is instead may follow.
+            // "No": a correction may follow.
             Response::No if is_asked && !names_asked && !is_unique => Completeness::Sufficient,
             _ if names_asked || is_unique && ends_in_noun => Completeness::Complete,
             _ if is_asked && !is_described && is_unsure(tags) => Completeness::Complete,
@@ -343,7 +343,7 @@ mod tests {
         assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     }
 
-    /// Whatever is complete does not become so by what the speaker still has to say.
+    /// No beginning of a sentence is complete only because of the words that are still to come.
     #[test]
     fn completeness_of_beginnings_of_sentences_is_never_early() {
         for name in ["bowls", "tools", "garments", "pantry"] {

@@ -11,11 +11,11 @@ use crate::lexicon::ValueSense;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Asserted<'a> {
     pub(crate) value: &'a ValueSense,
-    /// Its tag.
+    /// Index of the value's tag.
     pub(crate) at: usize,
     /// Probability that something else was meant.
     pub(crate) doubt: f64,
-    /// Number of "or" before it.
+    /// Number of "or" before the value.
     pub(crate) choice: usize,
 }
 
@@ -31,7 +31,7 @@ impl Deref for Asserted<'_> {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Excluded {
     pub(crate) words: Vec<WordId>,
-    /// Probability that this was not said.
+    /// Probability that the value was not said.
     pub(crate) doubt: f64,
 }
 
@@ -44,7 +44,7 @@ pub(crate) struct Content<'a> {
     pub(crate) excluded: Vec<Excluded>,
     /// Answers in the order given.
     pub(crate) answers: Answers,
-    /// "maybe": what is said does not amount to an answer.
+    /// "maybe": the words do not amount to an answer.
     pub(crate) hedged: bool,
     /// "red or blue": alternatives, not a description.
     pub(crate) alternatives: bool,
@@ -55,7 +55,7 @@ pub(crate) struct Content<'a> {
 impl Content<'_> {
     /// Adds a group that is ruled out.
     pub(crate) fn exclude(&mut self, group: Excluded) {
-        // "the red one, no, not the red one": the scope stands.
+        // "the red one, no, not the red one": the scope remains valid.
         if let [word] = group.words[..] {
             self.base.retain(|value| value.word != word);
         }
@@ -66,7 +66,7 @@ impl Content<'_> {
         }
     }
 
-    /// Takes back all that was said.
+    /// Retracts everything said so far.
     pub(crate) fn clear(&mut self) {
         self.base.clear();
         self.excluded.clear();

@@ -26,7 +26,7 @@ pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
 /// Words that the noun of a noun phrase may be followed by.
 const AFTER_NOUN: &[Class] = classes![Preposition Courtesy Filler Pointer];
 
-/// A tag among its neighbours.
+/// A tag and the tags next to it in the utterance.
 struct Place<'t, 'a> {
     tags: &'t [Tag<'a>],
     at: usize,
@@ -73,7 +73,7 @@ impl<'a> Place<'_, 'a> {
         class.map(Some)
     }
 
-    /// "can you", "will it", where a can or a will may be fetched.
+    /// "can you", "will it", if a can or a will may be fetched.
     fn is_asking_verb(&self) -> bool {
         let own = Lexicon::own().word(self.tag().word);
         self.tag().is_value()
@@ -82,7 +82,7 @@ impl<'a> Place<'_, 'a> {
             && !self.before().is_some_and(|before| before.is_any(classes![Determiner Possessive]))
     }
 
-    /// "one" is what an object is called after "the" or "white", and a number elsewhere.
+    /// "one" is an object after "the" or "white", and a number elsewhere.
     fn is_noun_one(&self) -> bool {
         const BEFORE: &[Class] = classes![
             Determiner Pointer Quantifier Unlisted Ordinal Other Possessive Plain Question Filler
@@ -108,7 +108,7 @@ impl<'a> Place<'_, 'a> {
         after_verb || self.after().is_some_and(Tag::is_value)
     }
 
-    /// "as big as the metal one": what follows the second "as" is another object.
+    /// "as big as the metal one": another object follows the second "as".
     fn comparison(&self) -> Option<Class> {
         if self.after().is_some_and(Tag::is_value) {
             return Some(Class::Plain);
@@ -116,12 +116,12 @@ impl<'a> Place<'_, 'a> {
         self.recent(1).iter().any(Tag::is_value).then_some(Class::Than)
     }
 
-    /// "the honey please": a thing, not what the robot is called.
+    /// "the honey please": a thing, not a form of address for the robot.
     fn is_named_thing(&self) -> bool {
         self.before().is_some_and(|before| before.is(Class::Determiner))
     }
 
-    /// "the clear one, hang on, the white one": a moment to think, and the words before are replaced.
+    /// "the clear one, hang on, the white one": after a pause to think, earlier words are replaced.
     fn is_pause_to_think(&self) -> bool {
         const REACH: usize = 4;
         let names = |tag: &Tag<'_>| tag.is_value() || tag.is_any(classes![Yes No]);
@@ -130,8 +130,8 @@ impl<'a> Place<'_, 'a> {
             && self.tags[self.at + 1..].iter().take(REACH).any(names)
     }
 
-    /// "leave the white one, …", "leave the white one alone", "leave the white one on the counter", but
-    /// not "leave the white one on the doorstep".
+    /// "leave the white one, …", "leave the white one alone", "leave the white one on the counter",
+    /// but not "leave the white one on the doorstep".
     fn leaves_out(&self) -> bool {
         let rest = &self.tags[self.at + 1..];
         let phrase = &rest[..rest.iter().position(Tag::pauses).unwrap_or(rest.len())];
@@ -141,7 +141,7 @@ impl<'a> Place<'_, 'a> {
             && !phrase.iter().any(Tag::is_unknown)
     }
 
-    /// "the shirt draped over the chair", "the pen clipped to the drawer": how it is where it is.
+    /// "the shirt draped over the chair", "the pen clipped to the drawer": how a thing is placed.
     fn is_participle(&self) -> bool {
         let word = self.tag().word;
         let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) || tag.is_role(Role::Kind);
@@ -153,7 +153,7 @@ impl<'a> Place<'_, 'a> {
             && self.after().is_some_and(leads)
     }
 
-    /// An unknown word as what it was misheard or misspelt for, with the doubt of it.
+    /// The known word for which an unknown one was misheard or misspelt, with its doubt.
     fn misheard(&self, lexicon: &'a Lexicon) -> Option<(Sense<'a>, f64)> {
         if lexicon.lookalikes().is_like_noun(self.tag().word) && self.ends_noun_phrase() {
             return Some((Sense::Class(Class::Head), 0.0));
@@ -164,7 +164,7 @@ impl<'a> Place<'_, 'a> {
         self.misheard_description(lexicon).or_else(|| self.misheard_place(lexicon))
     }
 
-    /// "the small white bold": where the noun belongs.
+    /// "the small white bold": the position of the noun.
     fn ends_noun_phrase(&self) -> bool {
         self.before().is_some_and(Tag::is_value) && self.may_end_noun_phrase()
     }
@@ -173,7 +173,7 @@ impl<'a> Place<'_, 'a> {
         self.after().is_none_or(|tag| tag.is_any(AFTER_NOUN))
     }
 
-    /// "the wide bowl", "the red ranch": where a value belongs, the one that sounds or looks like it.
+    /// "the wide bowl", "the red ranch": at a value's position, the one that sounds or looks alike.
     fn misheard_description(&self, lexicon: &'a Lexicon) -> Option<(Sense<'a>, f64)> {
         let (word, lookalikes) = (self.tag().word, lexicon.lookalikes());
         let sounding = lookalikes.sounds_like(word).map(|value| (value, doubts::SOUND));
@@ -206,7 +206,7 @@ impl<'a> Place<'_, 'a> {
         self.ends_noun_phrase() || self.may_end_noun_phrase() && self.is_described() && asked_for()
     }
 
-    /// "on the counted", "in the draw": where a place ends the sentence, the one that it sounds like.
+    /// "on the counted", "in the draw": at the end of the sentence, the place that sounds alike.
     fn misheard_place(&self, lexicon: &'a Lexicon) -> Option<(Sense<'a>, f64)> {
         let [preposition, determiner] = self.recent(2) else { return None };
         let stands = preposition.is(Class::Preposition)

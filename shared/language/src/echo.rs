@@ -11,9 +11,9 @@ use crate::vocabulary;
 /// Fewest words of a sentence that counts.
 const WORDS_MIN: usize = 3;
 
-/// Returns whether what was heard is a line of the robot, or some of its sentences in a row, with at most one article
-/// or filler more or less. Any other word may be the answer ("is it small or big big"), and a phrase without a verb
-/// ("The red one?") may well be repeated as one: neither is an echo.
+/// Returns whether the heard text is a line of the robot, or some of its sentences in a row, with
+/// at most one article or filler more or less. Other words may be the answer ("is it small or big
+/// big"), and a phrase without a verb ("The red one?") may be repeated as one: neither is an echo.
 pub fn is_echo(heard: &str, line: &str) -> bool {
     let heard = spoken(heard);
     let sentences: Vec<_> =
@@ -50,7 +50,7 @@ fn is_small(word: &str) -> bool {
     SMALL.contains(word)
 }
 
-/// Words as a recogniser writes them.
+/// Splits a text into words as a recogniser writes them.
 fn spoken(text: &str) -> Vec<String> {
     let text = normalise(text);
     Tokens::of(&text).words.iter().map(|token| token.word.to_owned()).collect()

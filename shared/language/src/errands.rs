@@ -45,7 +45,7 @@ impl ClauseAnalysis<'_> {
         (0..self.clause.len()).find(orders)
     }
 
-    /// "put the clear bowl in front of me": to put a thing where the speaker is, is to bring it.
+    /// "put the clear bowl in front of me": putting a thing near the speaker means bringing it.
     fn brings_at(&self, at: usize) -> bool {
         const CARRYING: [&str; 8] =
             ["put", "place", "set", "move", "drop", "lay", "return", "putting"];
@@ -57,8 +57,8 @@ impl ClauseAnalysis<'_> {
                 .any(|place| self.is_at_speaker(place))
     }
 
-    /// "to me", "in my hand", "over here", "closer", but not "for me", "away from here", "out of my way",
-    /// nor "in my cabinet" of the scene.
+    /// "to me", "in my hand", "over here", "closer", but not "for me", "away from here", "out of my
+    /// way", nor "in my cabinet" of the scene.
     fn is_at_speaker(&self, at: usize) -> bool {
         const LEADS: &[Class] = classes![Preposition Destination Landmark];
         let tag = &self.clause[at];
@@ -82,7 +82,7 @@ impl ClauseAnalysis<'_> {
             && self.clause[at..].iter().any(|tag| tag.word == "away")
     }
 
-    /// "wash the clear bowl", "I want you to fill the mug", "wash it": an errand with one of our things.
+    /// "wash the clear bowl", "I want you to fill the mug", "wash it": an errand with our things.
     pub(crate) fn is_chore(&self) -> bool {
         const LEADS: &[Class] = classes![
             Filler Courtesy And But Join Yes WeakYes Repair Plain Auxiliary First Second Want Destination
@@ -95,7 +95,7 @@ impl ClauseAnalysis<'_> {
             let is_it = at == 1 && tag.is(Class::It);
             is_it || tag.is(Class::Head) || is_thing
         };
-        // "I put it in the cabinet" is told, "I want you to put it there" is ordered.
+        // "I put it in the cabinet" is a report, "I want you to put it there" an order.
         lead.iter().all(|tag| tag.is_any(LEADS))
             && (says(Class::Second) || !says(Class::First) && !says(Class::Want))
             && rest.iter().enumerate().any(is_ours)

@@ -1,4 +1,4 @@
-//! What an utterance says if its values have certain fates: collected in one pass from left to right, as a person listens.
+//! Content of an utterance, given the fates of its values: one pass from left to right.
 
 use words::Gap;
 
@@ -25,7 +25,7 @@ struct Extractor<'a, 't> {
     scope: Option<NegationScope<'a>>,
     /// Inside a phrase that names another object: "next to the clear one".
     landmark: bool,
-    /// Words before have been taken back, and what replaces them is still to come.
+    /// Earlier words have been retracted, and their replacement is still to come.
     corrects: bool,
     /// Number of "or" so far.
     choices: usize,
@@ -153,7 +153,7 @@ impl<'a> Extractor<'a, '_> {
         }
     }
 
-    /// "that", "which": a determiner, or the start of a clause about what was just named.
+    /// "that", "which": a determiner, or the start of a clause about the thing just named.
     fn pointer(&mut self, at: usize) {
         let relative =
             self.tags.get(at + 1).is_some_and(|next| next.is_any(classes![Be Auxiliary Likely]));

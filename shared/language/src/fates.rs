@@ -1,7 +1,7 @@
-//! From what the judge states to what an utterance may say of its values.
+//! From the judge's probabilities to the possible fates of an utterance's values.
 //!
-//! The values of one noun phrase share their fate: wanted, denied or neither. Each choice of a fate for every phrase is one
-//! way to read the utterance, weighed by the judge's probabilities.
+//! The values of one noun phrase share their fate: wanted, denied or neither. Each choice of a fate
+//! for every phrase is one way to read the utterance, weighed by the judge's probabilities.
 
 use scene::{Role, WordId};
 
@@ -11,14 +11,14 @@ use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 
-/// Probability from which on what the judge states stands alone.
+/// Probability from which the judge's statement is used without alternatives.
 const SURE: f64 = 0.9;
 /// All that can be said of a phrase.
 const POLARITIES: [Polarity; 3] = [Polarity::Wanted, Polarity::Denied, Polarity::Neither];
 /// Most phrases whose fate is open; that of the others, the surest, is their most probable one.
 const OPEN_MAX: usize = 3;
 
-/// What is said of a value word.
+/// Polarity of a value word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Polarity {
     /// The wanted object has the value.
@@ -29,7 +29,7 @@ pub enum Polarity {
     Neither,
 }
 
-/// What is said of the value of each tag.
+/// Polarity of the value of each tag.
 #[derive(Clone, Debug)]
 pub(crate) struct Fates(Vec<Option<Polarity>>);
 
@@ -50,7 +50,7 @@ impl Fates {
         Self(tags.iter().map(fate).collect())
     }
 
-    /// The same without places, if there are things: "put the clear bowl on the table", "put it on the table".
+    /// Returns the named things, except places among others: "put the bowl on the table".
     pub(crate) fn named_things(tags: &[Tag<'_>]) -> Self {
         let mut fates = Self::named(tags);
         if !tags.iter().any(|tag| tag.is_value() && !tag.is_role(Role::Place)) {
@@ -62,7 +62,7 @@ impl Fates {
         fates
     }
 
-    /// What is said of the value of a tag.
+    /// Returns the polarity of a tag's value.
     pub(crate) fn of(&self, at: usize) -> Polarity {
         self.0[at].unwrap_or(Polarity::Neither)
     }
@@ -99,7 +99,7 @@ fn best(stated: &[f64; 3]) -> usize {
     (0..3).max_by(|a, b| stated[*a].total_cmp(&stated[*b])).unwrap_or(0)
 }
 
-/// Returns what the values of an utterance that follows a question may be said to be, with the probability of each way.
+/// Returns the possible fates of an utterance's values after a question, each with probability.
 pub(crate) fn fates(
     judge: &Judge,
     tags: &[Tag<'_>],
@@ -127,8 +127,8 @@ pub(crate) fn fates(
     ways.into_iter().map(fates).collect()
 }
 
-/// The phrases, each with what the judge states of its values together. A phrase of whose values it states different
-/// things ("not white clear") is two; "white or clear" is one.
+/// The phrases, each with the judge's joint statement about its values. A phrase with different
+/// statements about its values ("not white clear") is two; "white or clear" is one.
 fn phrases(tags: &[Tag<'_>], stated: &[[f64; 3]], features: Features) -> Vec<Phrase> {
     let mut phrases: Vec<Phrase> = Vec::new();
     for (example, stated) in features.examples.into_iter().zip(stated) {
@@ -189,7 +189,7 @@ fn ways(phrases: &[Phrase]) -> Vec<(f64, Vec<usize>)> {
     ways
 }
 
-/// Whether a phrase is denied all of whose words are wanted elsewhere: "the red mug, no wait, the red cup".
+/// Whether a denied phrase has only words wanted elsewhere: "the red mug, no wait, the red cup".
 fn contradicts(phrases: &[Phrase], way: &[usize]) -> bool {
     let of = |polarity: Polarity| {
         let has = move |it: &(&Phrase, &usize)| POLARITIES[*it.1] == polarity;

@@ -1,8 +1,8 @@
-//! Words that halt the arm: orders to stop, requests to wait, and what hurts or endangers somebody.
+//! Words that halt the arm: orders to stop, requests to wait, and phrases about pain or danger.
 //!
-//! The judgement rests on the robot's own words alone, so that no scene can take them away, and on nothing
-//! else: what halts the arm, and what the dialogue takes for an order to stop, is the same. It errs on
-//! the side of one halt too many.
+//! The judgement rests on the robot's own words alone, so that no scene can take them away, and on
+//! nothing else: the words that halt the arm are those that the dialogue takes for an order to
+//! stop. It errs on the side of one halt too many.
 
 mod patterns;
 
@@ -18,22 +18,22 @@ use crate::token_class::{Class, classes};
 /// Phrases that say nothing before a command or after it.
 const BESIDE: &[Class] = classes![Filler Courtesy No Yes Repair WeakYes And But Join Plain];
 
-/// Number of words before a final "stop" among which a negator denies it ("do not stop", "don't let it stop"); one more
-/// before "to stop".
+/// Number of words before a final "stop" among which a negator denies it ("do not stop", "don't let
+/// it stop"); one more before "to stop".
 const NEAR: usize = 2;
 
-/// Returns whether the words halt the arm. That is a matter of safety: it depends neither on the scene nor on the
-/// language, and the careful reading of such words is always a stop.
+/// Returns whether the words halt the arm. That is a matter of safety: it depends neither on the
+/// scene nor on the language, and the careful reading of such words is always a stop.
 pub fn is_stop(text: &str) -> bool {
     !halting_words(&Tokens::of(&normalise(text))).is_empty()
 }
 
-/// Returns the places of the words that halt the arm, in their order; none if nothing does.
+/// Returns the positions of the words that halt the arm, in order; empty without such words.
 pub(crate) fn halting_words(tokens: &Tokens<'_>) -> Vec<Range<usize>> {
     Utterance::new(tokens).halting_words()
 }
 
-/// Returns whether the words ask to go on after a stop, and nothing else.
+/// Returns whether the words ask to continue after a stop, and nothing else.
 pub(crate) fn asks_to_go_on(tokens: &Tokens<'_>) -> bool {
     let beside = classes![Filler Courtesy Yes WeakYes And But Plain];
     Utterance::new(tokens).is_alone(Place::Resuming, beside)
@@ -41,7 +41,7 @@ pub(crate) fn asks_to_go_on(tokens: &Tokens<'_>) -> bool {
 
 struct Utterance<'t, 'a> {
     tokens: &'t [Token<'a>],
-    /// Numbers of each word, and of what it may be if it was lengthened: "stoooop".
+    /// Numbers of each word, and of its candidates if it was lengthened: "stoooop".
     forms: Vec<[Option<WordNumber>; 3]>,
     /// Places of the patterns that may begin with each token.
     begins: Vec<u8>,
@@ -148,7 +148,7 @@ impl<'t, 'a> Utterance<'t, 'a> {
             || is_stop && !self.is_no_order(breath.start, at)
     }
 
-    /// "the bus stop", "did you stop", "how to stop": a name, a question, or what somebody does.
+    /// "the bus stop", "did you stop", "how to stop": a name, a question, or someone's activity.
     fn is_no_order(&self, start: usize, at: usize) -> bool {
         let is_in = |set: &str, back: usize| {
             at >= start + back && PATTERNS.is_in(set, self.tokens[at - back].word)
@@ -157,7 +157,7 @@ impl<'t, 'a> Utterance<'t, 'a> {
         is_in("naming", 1) || is_in("asking", 1) || is_told
     }
 
-    /// "stop sign", "hold it in": what goes on belongs to the words before.
+    /// "stop sign", "hold it in": the rest belongs to the words before.
     fn is_joined(&self, at: usize, end: usize) -> bool {
         let Some(next) = self.tokens[..end].get(at) else { return false };
         if next.gap == Gap::Glued {
@@ -195,7 +195,7 @@ impl<'t, 'a> Utterance<'t, 'a> {
         found
     }
 
-    /// Returns whether something is asked for, or told of another day: no danger then, whatever it names.
+    /// Returns whether something is requested, or told of another day: no danger in either case.
     fn asks_or_tells(&self) -> bool {
         let mut at = 0;
         while at < self.tokens.len() {
@@ -305,7 +305,7 @@ impl<'t, 'a> Utterance<'t, 'a> {
     }
 }
 
-/// Returns the numbers of a word, and of what it may be if it was lengthened and is unknown as it stands.
+/// Returns the numbers of a word, and of its candidates if it is lengthened and unknown.
 fn forms_of(own: &Lexicon, word: &str) -> [Option<WordNumber>; 3] {
     let number = |word: &str| PATTERNS.numbers.get(word).copied();
     let begins = |word: WordNumber| PATTERNS.beginnings(word).places != 0;

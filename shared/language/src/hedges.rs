@@ -9,9 +9,9 @@
 //! | `maybe`, `perhaps`, `possibly`, `might`, `could` | 0.6 | judged: the meaning of "possible" varies between people, and people say it to be polite |
 //! | any other way of not knowing | 0.55 | judged: it says little, not nothing |
 //!
-//! The confidence is the share of statements with these words that are true. A scene word is doubted
-//! by `1 − sure`; an answer or a scope by `2 (1 − sure)`, because half of the answers that were not
-//! given are right by chance ([`scene::Doubt`]).
+//! The confidence is the share of statements with these words that are true. A scene word is
+//! doubted by `1 − sure`; an answer or a scope by `2 (1 − sure)`, because half of the answers that
+//! were not given are right by chance ([`scene::Doubt`]).
 //!
 //! F. Mosteller and C. Youtz, "Quantifying probabilistic expressions", Statistical Science 5(1),
 //! 1990.
@@ -51,7 +51,7 @@ const SURENESS: &[(f64, &str)] = &[
          feasibly plausibly",
     ),
 ];
-/// Of a phrase without any of these words.
+/// Sureness of a phrase without any of these words.
 const SURE_LEAST: f64 = 0.55;
 /// "maybe" as an answer.
 pub(crate) const MAYBE: f64 = 0.6;
@@ -94,8 +94,8 @@ fn sureness_of(tag: &Tag<'_>) -> f64 {
     }
 }
 
-/// Applies each hedge to the content of its clause; one that stands alone, to what was said before
-/// it in the same sentence, or else to what follows: "the white one, I think".
+/// Applies each hedge to the content of its clause; one that stands alone, to the words before it
+/// in the same sentence, or else to those after it: "the white one, I think".
 pub(crate) fn hedge(tags: &mut [Tag<'_>], clauses: &[Clause]) {
     for (n, clause) in clauses.iter().enumerate().filter(|(_, clause)| clause.topic == Topic::On) {
         let said = &tags[clause.span.clone()];

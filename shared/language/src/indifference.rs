@@ -17,7 +17,7 @@ pub(crate) fn indifference(
     let on_topic = clauses.iter().filter(|clause| clause.topic == Topic::On);
     on_topic.flat_map(|clause| clause.span.clone().map(move |at| (clause, at))).find_map(
         |(clause, at)| {
-            // "I don't care what colour" is about what is asked, if anything is.
+            // "I don't care what colour" is about the question, if there is one.
             let said = tags[at].is(Class::Indifferent) && (answers || !wonders_after(tags, at));
             let is_any = is_any(&tags[clause.span.clone()], at - clause.span.start, answers);
             (said || is_any && !is_denied(tags, fates, at)).then_some(at)
@@ -59,8 +59,8 @@ fn is_any(clause: &[Tag<'_>], at: usize, answers: bool) -> bool {
     !two && (answers || !of_attribute) && after.first().is_none_or(|tag| tag.is_any(AFTER))
 }
 
-/// Whether it is said of what was asked ("it does not matter", "any colour"), and not of the object
-/// ("I do not care", "either").
+/// Returns whether it is about the question ("it does not matter", "any colour"), and not of the
+/// object ("I do not care", "either").
 pub(crate) fn is_of_attribute(tags: &[Tag<'_>], at: usize) -> bool {
     const WORDS: &[&str] =
         &["matter", "difference", "important", "irrelevant", "immaterial", "odds"];

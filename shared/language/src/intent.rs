@@ -58,8 +58,8 @@ pub(crate) fn intent(
     }
 }
 
-/// Returns whether the clause gives this command to the robot: nothing unrelated is said beside it,
-/// and it is not negated.
+/// Returns whether the clause gives this command to the robot: it says nothing unrelated, and it is
+/// not negated.
 pub(crate) fn commands(tags: &[Tag<'_>], clause: &Clause, class: Class) -> bool {
     let range = clause.span.clone();
     let Some(at) = range.clone().find(|&at| tags[at].is(class)) else { return false };
@@ -70,8 +70,8 @@ pub(crate) fn commands(tags: &[Tag<'_>], clause: &Clause, class: Class) -> bool 
     plain && clause.topic != Topic::Off
 }
 
-/// "I don't want a bowl any more", "forget about the bowl": what is declined is any of them. `new`: said
-/// in answer to nothing, so that "I don't want it" is no denial.
+/// "I don't want a bowl any more", "forget about the bowl": any of them is declined. `new`: not an
+/// answer, so that "I don't want it" is not a denial.
 fn declines(tags: &[Tag<'_>], clause: &Clause, new: bool) -> bool {
     let tags = &tags[clause.span.clone()];
     let denies = tags.iter().any(|tag| tag.is(Class::Not));
@@ -93,8 +93,8 @@ fn puts_it_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
         && !tags.iter().any(described)
 }
 
-/// "put the red mug back", "return the red mug to the shelf", "put the red mug away", but not "put it
-/// back on" and "bring the red mug back to me".
+/// "put the red mug back", "return the red mug to the shelf", "put the red mug away", but not "put
+/// it back on" and "bring the red mug back to me".
 fn puts_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
     let [verb, rest @ ..] = order(&tags[clause.span.clone()]) else { return false };
     // "put back the red mug"
@@ -114,7 +114,7 @@ fn puts_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
     thing.iter().any(is_thing) && is_where_it_was(place)
 }
 
-/// What may follow "put it back": nothing, "on the shelf", "where it was", "in its place".
+/// Continuations of "put it back": nothing, "on the shelf", "where it was", "in its place".
 fn is_where_it_was(tags: &[Tag<'_>]) -> bool {
     const BESIDE: &[Class] = classes![Courtesy Filler];
     const IN_PLACE: &[Class] =
@@ -123,7 +123,7 @@ fn is_where_it_was(tags: &[Tag<'_>]) -> bool {
     let is_own_place = |tag: &Tag<'_>| matches!(tag.word, "place" | "spot");
     let is_place =
         |tag: &Tag<'_>| tag.is_role(Role::Place) || tag.is(Class::Unlisted) || is_own_place(tag);
-    // Our things go back to where they stood, whatever is said of it.
+    // Our things go back to their places, whatever is said about those.
     let says_where = tags.first().is_some_and(|tag| tag.word == "where");
     let says_place = tags.iter().any(is_place)
         && tags.iter().all(|tag| is_place(tag) || tag.is_any(IN_PLACE) && tag.word != "from");
@@ -157,12 +157,12 @@ fn is_chore(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
         && !fetches_it(tags, clauses)
 }
 
-/// "the clear bowl is in the cabinet": of none of our things that are named anything is wished.
+/// "the clear bowl is in the cabinet": no wish about any of our things that are named.
 pub(crate) fn is_remark(tags: &[Tag<'_>], fates: &Fates) -> bool {
     fates.are_neither() && !tags.iter().any(|tag| tag.is_any(classes![Fetch Want]))
 }
 
-/// "don't get me the clear bowl", "I don't want the white ones": nothing is asked for.
+/// "don't get me the clear bowl", "I don't want the white ones": nothing is requested.
 fn refuses(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     let is_denied = |clause: &Clause| {
         let tags = &tags[clause.span.clone()];
@@ -173,14 +173,14 @@ fn refuses(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     !fetches_it(tags, clauses) && asking.peek().is_some() && asking.all(|is_denied| is_denied)
 }
 
-/// What is said after words that say nothing.
+/// Returns the tags after leading words without meaning.
 fn after_leads<'t, 'a>(tags: &'t [Tag<'a>]) -> &'t [Tag<'a>] {
     const LEADS: &[Class] = classes![Filler Courtesy No And But Join Auxiliary Second];
     let leads = tags.iter().take_while(|tag| tag.is_any(LEADS) && tag.word != "do").count();
     &tags[leads..]
 }
 
-/// A greeting, a farewell or thanks, and nothing that asks for anything.
+/// A greeting, a farewell or thanks, without any request.
 fn courtesy(tags: &[Tag<'_>]) -> Option<Intent> {
     const BESIDE: &[Class] = classes![
         Courtesy Filler WeakYes Reply Plain Second It Be First Determiner Preposition Pointer Head

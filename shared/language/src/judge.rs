@@ -1,22 +1,22 @@
-//! The judge: how probable it is that a value word is wanted, denied, or neither, by the words around it.
+//! The judge: probabilities that a value word is wanted, denied, or neither, by nearby words.
 //!
-//! A linear model over hashed features ([`crate::features`]) and two small recurrent ones ([`crate::recurrent`]), trained by
-//! `reader_training` on labelled lines; their sums are added. It says how sure it is: what the lines do not cover is in doubt.
+//! The sum of a linear model over hashed features ([`crate::features`]) and two recurrent ones
+//! ([`crate::recurrent`]), trained by `reader_training` on labelled lines; unsure of new cases.
 
 use std::sync::LazyLock;
 
 use crate::features::{Example, Features, ROWS};
 use crate::recurrent::{PARTS, Recurrent, Sequence};
 
-/// The weights, as `reader_training` writes them: a hash of what they were trained on; a scale, and the linear weights of the
-/// three polarities by row; then each part of each recurrent one, a scale and weights of 8 bits.
+/// The weights, as `reader_training` writes them: a hash of the inputs; a scale, and the linear
+/// weights of the polarities by row; then, for each recurrent part, a scale and 8-bit weights.
 const FILE: &[u8] = include_bytes!("vocabulary/judge.bin");
 /// Length of the hash, bytes.
 const HASH: usize = 8;
-/// Probability that a value word says nothing, whatever the judge states: it has not seen all that people say.
+/// Probability that a value word says nothing, whatever the judge states: training is incomplete.
 pub const FLOOR: f64 = 0.01;
 
-/// Recurrent networks, each trained from another start: where one errs by chance, the others seldom do.
+/// Recurrent networks, each trained from another start: others seldom share a chance error.
 pub const NETWORKS: usize = 2;
 
 static BUILT_IN: LazyLock<Judge> =
@@ -31,7 +31,7 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// Reads the weights as `reader_training` writes them; none if there are fewer than the judge has.
+    /// Reads the weights as `reader_training` writes them; `None` if there are too few.
     pub fn from_bytes(file: &[u8]) -> Option<Self> {
         let (scale, mut rest) = number(file.get(HASH..)?)?;
         let word = |bytes: &[u8]| i16::from_le_bytes([bytes[0], bytes[1]]);
@@ -92,13 +92,13 @@ pub fn recurrent_sums(networks: &[Recurrent], sequence: &Sequence) -> Vec<[f32; 
     all
 }
 
-/// A number of 32 bits, and what follows it.
+/// Reads a number of 32 bits; returns it with the remaining bytes.
 fn number(bytes: &[u8]) -> Option<(f32, &[u8])> {
     let (number, rest) = bytes.split_first_chunk()?;
     Some((f32::from_le_bytes(*number), rest))
 }
 
-/// Returns the hash of what the weights were trained on.
+/// Returns the hash of the inputs on which the weights were trained.
 pub fn trained_on() -> u64 {
     FILE[..HASH].try_into().map_or(0, u64::from_le_bytes)
 }

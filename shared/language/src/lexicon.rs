@@ -1,5 +1,5 @@
 //! Every word and phrase that means something: the scene's values in all their forms, its noun and
-//! attributes, and the classes of the dialogue. Where two would match, the longer phrase wins; of two
+//! attributes, and the classes of the dialogue. If two match, the longer phrase wins; of two
 //! equally long ones the scene's.
 
 use std::borrow::Cow;
@@ -21,10 +21,10 @@ use crate::synonyms::{common_synonyms, is_thing};
 use crate::token_class::Class;
 use crate::vocabulary;
 
-/// Letters of the shortest head of a compound, and of what stands before it.
+/// Letters of the shortest head of a compound, and of the part before it.
 const HEAD_LENGTH_MIN: usize = 3;
 
-/// What a word or phrase is taken for.
+/// Meaning of a word or phrase.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Sense<'a> {
     Value(&'a ValueSense),
@@ -32,14 +32,14 @@ pub(crate) enum Sense<'a> {
     Unknown,
 }
 
-/// A value as language sees it.
+/// A value in the reader's representation.
 #[derive(Clone, Debug)]
 pub(crate) struct ValueSense {
     pub(crate) word: WordId,
     /// The attributes that have the value; more than one if they share its name.
     pub(crate) attributes: Vec<AttributeId>,
     pub(crate) role: Role,
-    /// Its attribute has no more than two values.
+    /// Whether the attribute has no more than two values.
     pub(crate) one_of_two: bool,
 }
 
@@ -72,11 +72,11 @@ enum Meaning {
     Class(Class),
 }
 
-/// The words after the first, and what the whole means.
+/// The words after the first, and the meaning of the whole phrase.
 #[derive(Clone, Debug)]
 struct Phrase {
     rest: Box<[Box<str>]>,
-    /// Counts only where its clause ends: "it is", but not "it is white".
+    /// Counts only at the end of a clause: "it is", but not "it is white".
     closing: bool,
     meaning: Meaning,
     /// The speaker's confidence.
@@ -156,7 +156,7 @@ impl Lexicon {
         })
     }
 
-    /// The sense of a word that stands alone.
+    /// Returns the sense of a lone word.
     pub(crate) fn word(&self, word: &str) -> Option<Sense<'_>> {
         let shortest = self.phrases.get(word)?.last()?;
         shortest.rest.is_empty().then(|| self.sense(shortest))
@@ -203,7 +203,7 @@ impl Lexicon {
                 all.push((place, value));
             }
         }
-        // Names before synonyms before forms: what a scene says outright is never overruled.
+        // Names before synonyms before forms: explicit statements of a scene are never overruled.
         let names = all.iter().map(|(place, value)| (*place, &value.name));
         let synonyms = all.iter().flat_map(|(n, v)| v.synonyms.iter().map(|s| (*n, s)));
         for (place, name) in names.chain(synonyms) {
@@ -240,8 +240,8 @@ impl Lexicon {
         }
     }
 
-    /// Returns whether words that the scene does not list may stand for a value: they name nothing else here, and are no
-    /// phrase of the dialogue. "Wooden spoon" is two values where "wooden" is one.
+    /// Returns whether words that the scene does not list may stand for a value: they name nothing
+    /// else and are not a phrase of the dialogue. "Wooden spoon" is two values if "wooden" is.
     fn may_stand_for(&self, scene: &Scene, synonym: &[String], place: usize) -> bool {
         let attributes = scene.attributes().iter().map(|attribute| attribute.name.as_str());
         let is_name = attributes.chain([scene.noun()]).any(|name| words(name) == synonym);
@@ -252,14 +252,14 @@ impl Lexicon {
         !is_name && !is_dialogue && !lead.iter().any(is_other)
     }
 
-    /// What a whole phrase means.
+    /// Returns the meaning of a whole phrase.
     fn meaning(&self, words: &[String]) -> Option<Meaning> {
         let (first, rest) = words.split_first()?;
         let is_it = |phrase: &&Phrase| phrase.rest.iter().map(|it| &**it).eq(rest);
         self.phrases.get(first)?.iter().find(is_it).map(|phrase| phrase.meaning)
     }
 
-    /// "number one", "one" being what any of the things is called.
+    /// "number one", "one" being a name for any of the things.
     fn add_closed(&mut self, scene: &Scene, name: &str, place: usize) {
         let attributes = self.values[place].attributes.clone();
         let names = attributes.iter().map(|k| scene.attributes()[k.index()].name.as_str());
@@ -328,8 +328,8 @@ impl Lexicon {
         }
     }
 
-    /// "teddy" for a teddy bear, "syrup" for cough syrup: a part of a name that is in no other value,
-    /// and no word of a dialogue. Only the last part may be an everyday word.
+    /// "teddy" for a teddy bear, "syrup" for cough syrup: a part of a name that is in no other
+    /// value, and no word of a dialogue. Only the last part may be an everyday word.
     fn add_parts(&mut self, scene: &Scene) {
         let values = || scene.attributes().iter().flat_map(|attribute| &attribute.values);
         let spoken: Vec<Vec<String>> =
@@ -356,7 +356,7 @@ impl Lexicon {
         }
     }
 
-    /// "light" for a flashlight: the thing at the end of a compound, if no other value ends with it.
+    /// "light" for a flashlight: the end of a compound, if no other value ends with it.
     fn add_heads(&mut self, scene: &Scene) {
         let values = || scene.attributes().iter().flat_map(|attribute| &attribute.values);
         let compounds: Vec<String> =
@@ -435,7 +435,7 @@ impl Lexicon {
     }
 }
 
-/// Returns the number of words that the rest of a phrase takes, if it matches. Adverbs may stand
+/// Returns the number of words that the rest of a phrase takes, if it matches. Adverbs may be
 /// inside: "I don't really care".
 fn matched(rest: &[Box<str>], after: &[Token<'_>]) -> Option<usize> {
     const ADVERBS: &[&str] =

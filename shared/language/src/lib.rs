@@ -20,8 +20,8 @@
 //! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
 //! | readings | `parsed.rs`, `reader.rs` | alternative readings with weights and doubts |
 //!
-//! [`CompletenessJudge`] judges whether a speaker will go on after a pause.
-//! [`words::confusion`] gives the probabilities of mishearing one of a scene's words for another.
+//! [`CompletenessJudge`] judges whether a speaker will continue after a pause. [`words::confusion`]
+//! gives the probabilities of mishearing one of a scene's words for another.
 //!
 //! Words that belong to a scene come from the scene; the English of a dialogue is data in
 //! `vocabulary/`.

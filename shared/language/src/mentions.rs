@@ -1,4 +1,4 @@
-//! What an utterance says of each value word in it.
+//! Statements of an utterance about each value word in it.
 
 use ::vocabulary::Language;
 use scene::{Question, WordId};
@@ -8,10 +8,10 @@ use crate::features::{Example, Features, features};
 use crate::judge::FLOOR;
 use crate::reader::Reader;
 
-/// A value word of an utterance, and the probabilities of what is said of it; they sum to 1.
+/// A value word of an utterance, and the probabilities of its polarities; they sum to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mention {
-    /// The scene's word that it stands for.
+    /// The scene's word behind the value word.
     pub word: WordId,
     /// The words as they were said, in plain lower case.
     pub surface: String,
@@ -24,8 +24,8 @@ pub struct Mention {
 }
 
 impl Reader {
-    /// Returns the value words of an utterance that followed `last_question`, in their order, with what is said of them;
-    /// none in the paper's language.
+    /// Returns the value words of an utterance that followed `last_question`, in order, with their
+    /// polarities; none in the paper's language.
     pub fn mentions(&self, text: &str, last_question: Question) -> Vec<Mention> {
         if self.language() == Language::Paper {
             return Vec::new();
@@ -40,7 +40,7 @@ impl Reader {
         features.examples.into_iter().zip(stated).map(mention).collect()
     }
 
-    /// Returns what the judge looks at in an utterance that followed `last_question`.
+    /// Returns the judge's features of an utterance that followed `last_question`.
     pub fn features(&self, text: &str, last_question: Question) -> Features {
         let text = normalise(text);
         let tokens = Tokens::of(&text);

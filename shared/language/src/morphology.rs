@@ -23,8 +23,8 @@ pub(crate) fn comparatives(word: &str) -> Option<[String; 2]> {
     Some(["er", "est"].map(|ending| format!("{stem}{ending}")))
 }
 
-/// The singulars that a word may be the plural of, the likelier first: "nut" of "nuts", "berry" of "berries", "box" of
-/// "boxes", "rose" of "roses".
+/// The singulars that a word may be the plural of, the likelier first: "nut" of "nuts", "berry" of
+/// "berries", "box" of "boxes", "rose" of "roses".
 pub(crate) fn singulars(word: &str) -> Vec<String> {
     const LETTERS_MIN: usize = 4;
     let Some(stem) = word.strip_suffix('s') else { return Vec::new() };

@@ -49,11 +49,11 @@ pub(crate) fn is_whole_answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> b
     }
 }
 
-/// "it isn't it is in the cabinet", "it isn't get me the clear one": nobody hears the comma behind the
-/// "not".
+/// "it isn't it is in the cabinet", "it isn't get me the clear one": the comma after the "not" is
+/// not heard.
 fn begins_anew(tags: &[Tag<'_>], at: usize) -> bool {
     let [next, then, ..] = &tags[at + 1..] else { return false };
-    // "don't get me the clear one" is a negation of what follows.
+    // "don't get me the clear one" negates the words after it.
     let is_ended = at > 0 && tags[at - 1].is(Class::Be);
     let states = is_verb(then) && (next.is(Class::It) || is_ended && next.is(Class::Pointer));
     let wants = next.is(Class::Fetch) || next.is(Class::First) && then.is(Class::Want);

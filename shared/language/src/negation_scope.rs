@@ -44,7 +44,7 @@ impl<'a> NegationScope<'a> {
         Self { groups, joined: false, coordinated: false, doubt }
     }
 
-    /// Returns whether the current noun phrase is complete, so that what follows is another.
+    /// Returns whether the current noun phrase is complete, so that another follows.
     fn is_closed(&self) -> bool {
         self.last().headed && !self.joined
     }
@@ -64,7 +64,7 @@ impl<'a> NegationScope<'a> {
             return false;
         }
         if let Some(at) = self.last().values.iter().position(|other| other.rivals(value)) {
-            // "not white clear": nothing is both, so the second is what is wanted instead.
+            // "not white clear": nothing is both, so the second is wanted instead.
             if !self.coordinated && !self.joined {
                 return false;
             }
@@ -86,7 +86,7 @@ impl<'a> NegationScope<'a> {
         true
     }
 
-    /// The noun phrase has its noun.
+    /// Notes that the noun phrase has its noun.
     pub(crate) fn head(&mut self) {
         for group in &mut self.groups {
             group.headed = true;
@@ -99,7 +99,7 @@ impl<'a> NegationScope<'a> {
         self.joined || self.last().is_open()
     }
 
-    /// "in", "that is": what follows describes the same thing.
+    /// "in", "that is": the following words describe the same thing.
     pub(crate) fn join(&mut self) {
         self.joined = true;
     }

@@ -1,5 +1,5 @@
 //! Several objects in one request: "the red mug and the white cup". Never guessed: two things are
-//! asked for only where one cannot be both, or where two named things stand joined.
+//! requested only if one cannot be both, or if two named things are joined.
 
 use scene::Role;
 
@@ -8,7 +8,7 @@ use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 
-/// What a noun phrase is headed by.
+/// Head of a noun phrase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Noun {
     None,
@@ -28,15 +28,15 @@ struct Part<'a> {
 /// How two values are joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Joint {
-    /// By nothing that tells two things apart.
+    /// Nothing that distinguishes two things.
     None,
-    /// By a comma, as in a list.
+    /// Joined by a comma, as in a list.
     Comma,
-    /// By "and", "then", "plus".
+    /// Joined by "and", "then" or "plus".
     And,
 }
 
-/// Splits the values said into those of each object that is asked for, at least one.
+/// Splits the values said into those of each requested object, at least one.
 pub(crate) fn objects<'a>(
     tags: &[Tag<'a>],
     content: &Content<'a>,
@@ -86,8 +86,8 @@ fn parts<'a>(tags: &[Tag<'a>], base: &[Asserted<'a>], list: bool) -> Vec<Part<'a
     parts
 }
 
-/// The joint between two values, and the tag after it; for the first value where its noun phrase
-/// begins.
+/// The joint between two values, and the tag after it; for the first value, the start of its noun
+/// phrase.
 fn joint(tags: &[Tag<'_>], from: usize, to: usize) -> (Joint, usize) {
     const BETWEEN: &[Class] = classes![
         And Determiner Quantifier Possessive Head Fetch Want First Second Auxiliary Courtesy Filler
@@ -127,8 +127,8 @@ fn is_kind_tag(tag: &Tag<'_>) -> bool {
     tag.is_role(Role::Kind)
 }
 
-/// Puts the parts of one object together again. `answers`: in answer to a question, where "white and
-/// clear" is no request.
+/// Puts the parts of one object together again. `answers`: in answer to a question, where "white
+/// and clear" is not a request.
 fn joined(parts: Vec<Part<'_>>, answers: bool) -> Vec<Part<'_>> {
     let mut objects: Vec<Part<'_>> = Vec::new();
     for part in parts {

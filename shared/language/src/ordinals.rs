@@ -1,4 +1,4 @@
-//! "The first one", in answer to a choice: the option at that place, in the order in which they were said.
+//! "The first one", in answer to a choice: the option at that place, in the spoken order.
 
 use scene::WordId;
 
@@ -7,7 +7,7 @@ use crate::relation_words::ordinal;
 use crate::tagger::{Tag, after};
 use crate::token_class::Class;
 
-/// Takes ordinals for the options that they stand for.
+/// Replaces ordinals by the options that they denote.
 pub(crate) fn name_options<'a>(tags: &mut [Tag<'a>], options: &[WordId], lexicon: &'a Lexicon) {
     for at in 0..tags.len() {
         // "the top shelf" is a place of its own.

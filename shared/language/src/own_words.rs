@@ -9,8 +9,8 @@ use crate::lexicon::{Lexicon, Sense};
 use crate::relations::words;
 use crate::token_class::Class;
 
-/// Returns a warning for each name in a scene that is one of the robot's own words. A word that halts the arm
-/// always does, and a negator, an answer or a pronoun stays one; any other loses the robot's meaning in that scene.
+/// Returns a warning for each name in a scene that is one of the robot's own words. Words that halt
+/// the arm, negators, answers and pronouns keep their meaning; others lose it in that scene.
 pub(crate) fn own_words(scene: &Scene) -> Vec<String> {
     let mut found = Vec::new();
     let mut look = |name: &str, of: &str, carrier: Option<&str>| {
@@ -55,7 +55,7 @@ pub(crate) fn is_own(name: &str) -> bool {
     !halting_words(&tokens).is_empty() || is_closed(&words(name)) || meaning(&tokens).is_some()
 }
 
-/// What the robot takes a whole name for, where the dialogue needs it.
+/// Returns the robot's reading of a whole name, if the dialogue uses the name.
 fn meaning(tokens: &Tokens<'_>) -> Option<&'static str> {
     tokens.words.first()?;
     let phrase = Lexicon::own().longest(&tokens.words, 0);

@@ -32,8 +32,8 @@ impl WordSpotter {
         Self { values }
     }
 
-    /// `l_b`: every value that stands in the text, as often as it stands there. `l_r`: yes or no
-    /// if only one of them was said.
+    /// `l_b`: every value in the text, as often as it occurs. `l_r`: yes or no if only one of them
+    /// was said.
     pub(crate) fn read(&self, text: &str) -> Reading {
         let text = text.to_lowercase();
         let words: Vec<&str> = words(&text).collect();

@@ -1,4 +1,4 @@
-//! From one utterance's content to the ways in which it can be understood.
+//! Readings of one utterance's content.
 
 use scene::{Doubt, Intent, Reading, Reference, Response, WordId};
 
@@ -12,7 +12,7 @@ use crate::token_class::{Class, classes};
 
 /// Most readings of one utterance.
 pub const READINGS_MAX: usize = 4;
-/// Most further objects that "all" stands for, and most values that a question is about.
+/// Most further objects that "all" means, and most values in a question.
 const MORE_MAX: usize = 4;
 /// Weight as a yes of a "maybe" that is not an answer, judged. That yes is doubted as well, so that
 /// it moves the odds little.
@@ -65,8 +65,8 @@ impl ParsedUtterance<'_> {
         matches!(self.refers, Reference::Relation(_))
     }
 
-    /// How many beside the first, of what is described: "both cups", "two red mugs", "three bowls",
-    /// "all the cars", "the socks, both of them".
+    /// Number of further objects of the same description: "both cups", "two red mugs", "three
+    /// bowls", "all the cars", "the socks, both of them".
     fn more_of_them(&self) -> Option<usize> {
         let request = self.intent == Intent::Inform
             && matches!(self.asked, QuestionWords::Nothing)
@@ -113,7 +113,7 @@ impl ParsedUtterance<'_> {
         of.word == "of" && matches!(one.last, "one" | "either" | "any")
     }
 
-    /// Places of the first and the last word that describe what is wanted, or else of its noun.
+    /// Positions of the first and last word that describe the wanted object, or else of its noun.
     fn described(&self) -> Option<(usize, usize)> {
         if let [first, ..] = &self.content.base[..] {
             return Some((first.at, self.content.base.last()?.at));
@@ -126,7 +126,7 @@ impl ParsedUtterance<'_> {
 
     fn reading_of(&self, base: &[Asserted<'_>]) -> Reading {
         let (response, doubt) = self.response;
-        // To nothing it is an answer only if no more was said: "great, thanks" and "okay, get it" are not.
+        // Without a question an answer must be alone: "great, thanks" and "okay, get it" are not.
         let is_asked = !matches!(self.asked, QuestionWords::Nothing);
         let may_answer = is_asked || response == Response::DoesNotMatter;
         let requests = self.clauses.iter().any(|clause| clause.requests);
@@ -170,7 +170,7 @@ impl ParsedUtterance<'_> {
         vec![(1.0, best)]
     }
 
-    /// "red or blue": each with what is said of both; none if nothing is to be chosen from.
+    /// "red or blue": each with the words about both; empty without a choice.
     fn choices(&self) -> Vec<Vec<Asserted<'_>>> {
         let base = &self.content.base;
         let Some(at) = base.windows(2).position(|pair| pair[0].choice != pair[1].choice) else {

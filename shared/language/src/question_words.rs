@@ -12,8 +12,8 @@ pub(crate) enum QuestionWords<'a> {
     Nothing,
     /// "This one?": the words of the object pointed at.
     Object(&'a [WordId]),
-    /// The same of an object that the scene file does not have, because it comes from perception: only
-    /// what is said as yes or no answers it.
+    /// Question about an object from perception, which the scene file does not have: only a yes or
+    /// no answers it.
     PerceivedObject,
     /// "Is it white?"
     Value(AttributeId, WordId),
@@ -84,7 +84,7 @@ impl SceneQuestions {
         value.attributes.first().map_or(&[], |k| &self.attributes[k.index()])
     }
 
-    /// "a pair of scissors" is one thing, where the scene calls it so.
+    /// "a pair of scissors" is one thing, if the scene calls it so.
     pub(crate) fn is_plural(&self, word: WordId) -> bool {
         self.plurals.contains(&word)
     }

@@ -1,4 +1,4 @@
-//! What a question to the robot is about, and of which objects.
+//! Subject of a question to the robot, and the objects asked about.
 
 use scene::{Intent, WordId};
 
@@ -11,8 +11,8 @@ use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 
-/// Returns what is asked in a text whose intent is a question, and the words for the objects that it
-/// is asked of: "how many white cups are there".
+/// Returns the subject of a text whose intent is a question, and the words for the objects asked
+/// about: "how many white cups are there".
 pub(crate) fn question<'a>(
     tags: &[Tag<'a>],
     clauses: &[Clause],
@@ -48,7 +48,7 @@ pub(crate) fn question<'a>(
     (Intent::AskWhich, content)
 }
 
-/// "what colour is the wrench", "how long is it": the values of the attribute, if it has more than one.
+/// "what colour is the wrench", "how long is it": the attribute's values, if more than one.
 fn asked_values<'s>(
     tags: &[Tag<'_>],
     lexicon: &Lexicon,
@@ -78,7 +78,7 @@ fn alternatives(tags: &[Tag<'_>], base: &[Asserted<'_>]) -> Vec<usize> {
     (first - listed..=last + 1).collect()
 }
 
-/// "have you seen my red pen? bring it please": what was asked about is asked for.
+/// "have you seen my red pen? bring it please": the object of the question is requested.
 pub(crate) fn fetches_it(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     let on_topic = clauses.iter().filter(|clause| clause.topic == Topic::On);
     on_topic.map(|clause| &tags[clause.span.clone()]).any(|clause| {
@@ -87,7 +87,7 @@ pub(crate) fn fetches_it(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     })
 }
 
-/// The clause as it is read for what a question is asked of: nothing in it describes another thing.
+/// Returns the clause as part of a question: nothing in it describes another thing.
 fn of_question(clause: &Clause) -> Clause {
     let topic = if clause.topic == Topic::AskBack { Topic::On } else { Topic::Off };
     Clause { topic, distractors: Vec::new(), ..clause.clone() }

@@ -1,5 +1,5 @@
-//! A scene's words, read back: the plain phrases for each value, and for each pair of an object's values, must mean what
-//! the scene means by them.
+//! A scene's words, read back: the plain phrases for each value, and for each pair of an object's
+//! values, must have the scene's meaning.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,8 +22,8 @@ enum Found {
     Other(String),
 }
 
-/// Returns problems and warnings about the words of a scene: values that are read as others or cannot be said at all are
-/// problems, phrases that are not understood are warnings.
+/// Returns problems and warnings about the words of a scene: values that are read as others or
+/// cannot be said at all are problems, phrases that are not understood are warnings.
 pub fn word_findings(scene: &Scene) -> WordFindings {
     let (own, mut pairs) = (own_words(scene), WordFindings::default());
     let reading = ReadBack { scene, reader: Reader::new(scene, Language::Careful) };
@@ -140,7 +140,7 @@ impl ReadBack<'_> {
         }
     }
 
-    /// Returns whether another value has the name too; `Scene::ambiguities` tells of it.
+    /// Returns whether another value has the name too; `Scene::ambiguities` reports that.
     fn is_shared(&self, value: &Value, name: &str) -> bool {
         let others = self.scene.attributes().iter().flat_map(|attribute| &attribute.values);
         let mut others = others.filter(|other| other.word != value.word);

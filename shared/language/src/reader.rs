@@ -36,7 +36,7 @@ pub struct Reader {
     questions: SceneQuestions,
     /// Another judge than the built-in one.
     judge: Option<Arc<Judge>>,
-    /// The scene knows where objects are.
+    /// Whether the scene knows the places of objects.
     placed: bool,
 }
 
@@ -53,7 +53,7 @@ impl Reader {
         }
     }
 
-    /// Replaces the judge; for its training.
+    /// Replaces the judge; used in training.
     pub fn with_judge(self, judge: Arc<Judge>) -> Self {
         Self { judge: Some(judge), ..self }
     }
@@ -62,18 +62,18 @@ impl Reader {
         self.judge.as_deref().unwrap_or_else(|| Judge::built_in())
     }
 
-    /// The language that it reads.
+    /// Returns the reader's language.
     pub fn language(&self) -> Language {
         self.language
     }
 
-    /// The words that it knows.
+    /// Returns the known words.
     pub(crate) fn lexicon(&self) -> &Lexicon {
         &self.lexicon
     }
 
-    /// Returns the most probable reading of an utterance that followed `last_question`. Any text is an
-    /// utterance; only its first [`TEXT_CHARS_MAX`](crate::TEXT_CHARS_MAX) characters are read.
+    /// Returns the most probable reading of an utterance that followed `last_question`. Any text is
+    /// an utterance; only its first [`TEXT_CHARS_MAX`](crate::TEXT_CHARS_MAX) characters are read.
     pub fn read(&self, text: &str, last_question: Question) -> Reading {
         match self.language {
             Language::Paper => self.spotter.read(text),
@@ -100,10 +100,10 @@ impl Reader {
         }
     }
 
-    /// Returns the alternative readings of an utterance that followed `last_question`, each with its
-    /// weight, best first; the weights sum to 1 and there are at most
-    /// [`READINGS_MAX`](crate::READINGS_MAX). The first equals that of [`Self::read`] except for its
-    /// doubts.
+    /// Returns the alternative readings of an utterance that followed `last_question`, each with
+    /// its weight, best first; the weights sum to 1 and there are at most
+    /// [`READINGS_MAX`](crate::READINGS_MAX). The first equals that of [`Self::read`] except for
+    /// its doubts.
     ///
     /// `confidence` holds the probability of each blank-separated word of the text, 0 to 1; words
     /// beyond its end are certain. It becomes the doubt of the scene words, groups and answers that
@@ -144,7 +144,7 @@ impl Reader {
         let mut readings: Vec<(f64, Reading)> = Vec::new();
         for (weight, fates) in fates(self.judge(), &heard.tags, heard.asked) {
             for (share, reading) in self.parse(tokens, &heard, &fates).readings() {
-                // Doubts say how well words were heard: they tell no readings apart.
+                // Doubts say how well words were heard: they do not distinguish readings.
                 match readings.iter_mut().find(|(_, known)| known.says_the_same(&reading)) {
                     Some((known, _)) => *known += weight * share,
                     None => readings.push((weight * share, reading)),
@@ -166,7 +166,7 @@ impl Reader {
         self.parse(tokens, heard, &fates)
     }
 
-    /// What the utterance says if its values have these fates.
+    /// Parses the utterance, given the fates of its values.
     fn parse<'a>(
         &'a self,
         tokens: &Tokens<'a>,
@@ -225,14 +225,14 @@ impl Reader {
     }
 }
 
-/// An utterance with what its words are taken for.
+/// An utterance with the meanings of its words.
 pub(crate) struct Heard<'a> {
     pub(crate) tags: Vec<Tag<'a>>,
-    /// The question that it follows.
+    /// The question before the utterance.
     pub(crate) asked: QuestionWords<'a>,
 }
 
-/// The clauses as those of an order, whose things are no wishes.
+/// Returns the clauses as those of an order, whose things are not wishes.
 fn all_on(clauses: &[Clause]) -> Vec<Clause> {
     clauses.iter().map(|clause| Clause { topic: Topic::On, ..clause.clone() }).collect()
 }

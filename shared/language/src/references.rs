@@ -1,5 +1,5 @@
-//! Objects that are pointed to by what was spoken of, or by how they lie and compare: "the other one", "the smaller
-//! one", "the same again".
+//! References to objects by earlier mention, by position or by comparison: "the other one", "the
+//! smaller one", "the same again".
 
 use scene::{Reference, WordId};
 
@@ -9,8 +9,8 @@ use crate::related::Related;
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
 
-/// Returns the last reference of an utterance, and the words of each object that it is to; a relation is preferred to
-/// the others.
+/// Returns the last reference of an utterance, and the words of each object that it is to; a
+/// relation is preferred to the others.
 pub(crate) fn reference(
     tags: &[Tag<'_>],
     clauses: &[Clause],
@@ -44,7 +44,7 @@ fn spoken_of(tags: &[Tag<'_>], clauses: &[Clause], asked: QuestionWords<'_>) -> 
     })
 }
 
-/// What the tag refers to. `new`: no answer to a question, so that "same one" is not a yes.
+/// Returns the reference of the tag. `new`: not an answer, so that "same one" is not a yes.
 fn refers(tags: &[Tag<'_>], at: usize, new: bool) -> Reference {
     let tag = &tags[at];
     if is_denied(tags, at) {
@@ -72,7 +72,7 @@ fn is_another(tags: &[Tag<'_>], at: usize) -> bool {
     one_word && !many && is_whole(tags, at)
 }
 
-/// What follows is a noun phrase of the scene's things, or nothing.
+/// Returns whether a noun phrase of the scene's things, or nothing, follows.
 fn is_whole(tags: &[Tag<'_>], at: usize) -> bool {
     const AFTER: &[Class] =
         classes![Head Courtesy Filler Huh Repeat No Plain Preposition When Be And But];

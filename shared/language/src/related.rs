@@ -1,5 +1,5 @@
-//! Where an utterance says how the wanted object lies or compares to others: "the second from the left", "next to the
-//! clear one", "longer".
+//! Relations of the wanted object to others, by position or by comparison: "the second from the
+//! left", "next to the clear one", "longer".
 
 use std::ops::Range;
 
@@ -16,13 +16,13 @@ const PHRASE_MAX: usize = 6;
 /// Most words between "second" and "from the left".
 const ORDER_MAX: usize = 5;
 
-/// A relation that was said.
+/// A relation in an utterance.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Related {
     pub(crate) relation: Relation,
-    /// Words of each object that it is to; none where it is to no other object, or to the one spoken of.
+    /// Words of each reference object; empty without one, or if it is the object spoken of.
     pub(crate) to: Vec<Vec<WordId>>,
-    /// The tags that say it.
+    /// Range of the relation's tags.
     pub(crate) tags: Range<usize>,
 }
 
@@ -38,7 +38,7 @@ impl Related {
     }
 }
 
-/// Returns the relations that are said of the wanted object. `placed`: the scene knows where its objects are.
+/// Returns the relations of the wanted object. `placed`: the scene knows the places of objects.
 pub(crate) fn related(
     tokens: &Tokens<'_>,
     tags: &[Tag<'_>],
@@ -84,7 +84,7 @@ impl Said<'_, '_> {
             return None;
         }
         if self.tags[at].is_value() {
-            // "smaller" may be a name of a value, and compare to what was handed over as well.
+            // "smaller" may be a name of a value, and also compare to the object handed over.
             let relation = by_quality(self.tags[at].word).filter(|_| self.is_word(at))?;
             return self.alone(relation, at..at + 1);
         }
@@ -147,7 +147,7 @@ impl Said<'_, '_> {
             Some("me" | "us") => Some(Measure::NearUser),
             _ => None,
         };
-        // "close to me" is vague, and "put it next to me" says where it goes.
+        // "close to me" is vague, and "put it next to me" gives a destination.
         let is_where = self.tags[at].word.ends_with("est");
         match near {
             Some(measure) if relation == Relation::Beside && is_where => {
@@ -161,7 +161,7 @@ impl Said<'_, '_> {
         }
     }
 
-    /// The objects that are named from a tag on, each by its words, and the tag after them: of "it" no words.
+    /// The objects named from a tag on, each by its words, and the tag after them: "it" has none.
     fn objects(&self, from: usize) -> Option<(Vec<Vec<WordId>>, usize)> {
         const PHRASE: &[Class] = classes![Determiner Pointer Possessive Quantifier Head One];
         let (mut to, mut group, mut at) = (Vec::new(), Vec::new(), from);
@@ -208,7 +208,7 @@ impl Said<'_, '_> {
         self.alone(Relation::Nth(measure, 1), at..end)
     }
 
-    /// The side that is named within a few words, whether an order is counted from there, and the tag after it.
+    /// The side named within a few words, whether an order counts from it, and the tag after.
     fn side_after(&self, at: usize) -> Option<(Measure, bool, usize)> {
         let end = self.tags.len().min(at + 1 + ORDER_MAX);
         (at + 1..end).find_map(|place| {

@@ -43,7 +43,7 @@ const FIRSTS: &[(&str, Measure)] = &[
     ("farthest", Measure::Far),
     ("furthest", Measure::Far),
 ];
-/// Relations to what is named after them.
+/// Relations to the object named after them.
 const TO: &[(&str, Relation)] = &[
     ("next to", Relation::Beside),
     ("beside", Relation::Beside),
@@ -74,7 +74,7 @@ const ORDINALS: [&[&str]; 5] = [
     &["fifth", "5th", "number five"],
 ];
 
-/// Returns what a comparative or superlative compares, as "the smaller one" or "the smallest one" does.
+/// Returns the relation of a comparative or superlative: "the smaller one", "the smallest one".
 pub(crate) fn by_quality(word: &str) -> Option<Relation> {
     static COMPARED: LazyLock<HashMap<String, Relation>> = LazyLock::new(|| {
         let far = ["farther", "further"].map(|it| (it.to_owned(), Relation::More(Measure::Far)));
@@ -99,7 +99,7 @@ pub(crate) fn first(word: &str) -> Option<Measure> {
     FIRSTS.iter().find(|(first, _)| *first == word).map(|(_, measure)| *measure)
 }
 
-/// Returns the relation to what is named after a phrase.
+/// Returns the relation to the object named after a phrase.
 pub(crate) fn relation_to(phrase: &str) -> Option<Relation> {
     TO.iter().find(|(known, _)| *known == phrase).map(|(_, relation)| *relation)
 }

@@ -36,19 +36,19 @@ const ALIKE: &[&[&str]] = &[
 /// Relations after which a noun alone is read as a place.
 const PREPOSITIONS: &[&str] =
     &["in", "inside", "on", "at", "by", "from", "within", "about", "with"];
-/// What may stand before a noun, its own article or none included.
+/// Articles and possessives that may precede a noun, including none.
 const ARTICLES: &[&str] = &["the", "a", "an", "my", "your", "our", "this", "that"];
 
 /// A form of a value, word by word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Form {
     pub(crate) words: Vec<String>,
-    /// As the scene has it, not one of those alike.
+    /// Whether the phrase is the scene's own, not a similar one.
     pub(crate) own: bool,
 }
 
-/// Returns the phrases for a value beyond its name and synonyms: what it is called in questions, and
-/// for a place the same with relations that are alike. `common`: other words for it.
+/// Returns the phrases for a value beyond its name and synonyms: its form in questions, and for a
+/// place the same with similar relations. `common`: other words for it.
 pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>) -> Vec<Form> {
     let spoken = words(&value.spoken);
     let names = std::iter::once(&value.name).chain(&value.synonyms).map(String::as_str);
@@ -74,7 +74,7 @@ pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>)
     let alike = alike.unwrap_or_default().iter().copied().filter(|other| *other != relation);
     for name in std::iter::once(&noun).chain(names.iter().filter(|name| **name != noun)) {
         for said in std::iter::once(relation).chain(alike.clone()) {
-            // "in the dishwasher" is read word by word where the noun is the value's own.
+            // "in the dishwasher" is read word by word if the noun is the value's own.
             if PREPOSITIONS.contains(&said) && names.contains(name) {
                 continue;
             }
@@ -88,7 +88,7 @@ pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>)
     forms
 }
 
-/// Returns whether a phrase for a place or a part that begins with this word names the relation as well.
+/// Returns whether a phrase for a place or a part beginning with this word names the relation.
 pub(crate) fn begins_relation(word: &str) -> bool {
     const HAVING: &[&str] =
         &["with", "without", "of", "for", "made", "full", "filled", "containing"];

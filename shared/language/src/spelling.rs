@@ -8,10 +8,10 @@ use std::collections::HashMap;
 
 /// Shortest known word that is corrected to: shorter ones have too many neighbours.
 const KNOWN_LETTERS_MIN: usize = 5;
-/// Longest word that is looked up.
+/// Length of the longest word that is looked up.
 const LETTERS_MAX: usize = 32;
 
-/// Known words by what remains of them.
+/// Known words by their reduced spelling.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SpellingIndex {
     words: Vec<(String, usize)>,
@@ -19,7 +19,7 @@ pub(crate) struct SpellingIndex {
 }
 
 impl SpellingIndex {
-    /// Adds a known word and what it stands for.
+    /// Adds a known word with its sense.
     pub(crate) fn add(&mut self, word: &str, sense: usize) {
         let letters = word.chars().count();
         if !(KNOWN_LETTERS_MIN..=LETTERS_MAX).contains(&letters) {

@@ -51,16 +51,15 @@ impl Synonyms {
     }
 }
 
-/// Returns whether a word names a thing, in this scene or not: it is no slip for another one.
+/// Returns whether a word names a thing, in this scene or not, so that it is not a slip.
 pub(crate) fn is_thing(word: &str) -> bool {
     Synonyms::known().with(word, Role::Kind).next().is_some()
 }
 
-/// What is said for one of the scene's values without a list in the scene: "crimson" for red. Values
-/// are given with their places.
+/// Returns common synonyms that scenes do not list ("crimson" for red) of values with places.
 pub(crate) fn common_synonyms(all: &[(usize, &Value)]) -> Vec<(usize, &'static str)> {
     let known = Synonyms::known();
-    // The value that a group names; none for several, as either may be meant.
+    // The value that a group names; `None` for several, as either may be meant.
     let mut named: BTreeMap<usize, Option<usize>> = BTreeMap::new();
     for (place, value) in all {
         for name in std::iter::once(&value.name).chain(&value.synonyms) {
@@ -75,7 +74,8 @@ pub(crate) fn common_synonyms(all: &[(usize, &Value)]) -> Vec<(usize, &'static s
         let (role, words) = known.group(group);
         synonyms.extend(place.iter().flat_map(|it| words.iter().map(|word| (*it, *role, *word))));
     }
-    // A bag may be the rucksack or the purse. Of qualities the first group is the closest: navy is dark blue before blue.
+    // A bag may be the rucksack or the purse. Of qualities the first group is the closest: navy is
+    // dark blue before blue.
     let mut things: HashMap<&str, Option<usize>> = HashMap::new();
     for (place, _, word) in synonyms.iter().filter(|it| it.1 == Role::Kind) {
         let only = things.entry(word).or_insert(Some(*place));

@@ -13,34 +13,34 @@ use crate::relations::begins_relation;
 use crate::spelling::shortened;
 use crate::token_class::{Class, classes};
 
-/// A word or phrase, what it is taken for, and the pause before it.
+/// A word or phrase, its sense, and the pause before it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tag<'a> {
     pub(crate) sense: Sense<'a>,
     pub(crate) gap: Gap,
-    /// Its first word.
+    /// First word of the tag.
     pub(crate) word: &'a str,
     /// Place of its first word in the utterance.
     pub(crate) at: usize,
-    /// Its second word; the first one again where it has one only.
+    /// Second word of the tag; the first one again if there is only one.
     pub(crate) second: &'a str,
-    /// Its last word; the first one again where it has one only.
+    /// Last word of the tag; the first one again if there is only one.
     pub(crate) last: &'a str,
     /// Stands in the lexicon as it was said or typed.
     pub(crate) exact: bool,
     /// Probability that something else was said: the recogniser's doubt, and that of taking the
     /// word for another.
     pub(crate) doubt: f64,
-    /// The speaker's confidence in it.
+    /// Confidence that the words were said.
     pub(crate) sure: f64,
 }
 
-/// What the words at some place are taken for.
+/// Sense of the words at some position.
 #[derive(Clone, Copy, Debug)]
 struct Found<'a> {
     words: usize,
     sense: Sense<'a>,
-    /// What the rest of a single word is taken for: "bowl" of "whitebowl".
+    /// Sense of the rest of a single word: "bowl" of "whitebowl".
     second: Option<Sense<'a>>,
     doubt: f64,
     sure: f64,
@@ -57,9 +57,9 @@ impl<'a> Found<'a> {
 pub(crate) mod doubts {
     /// One slip of the finger in a word that means nothing else, and no other value as near.
     pub(crate) const SLIP: f64 = 0.02;
-    /// An everyday word one slip away, where a value belongs.
+    /// An everyday word one slip away, at the position of a value.
     pub(crate) const EVERYDAY: f64 = 0.3;
-    /// The same consonants, where a value belongs.
+    /// The same consonants, at the position of a value.
     pub(crate) const SOUND: f64 = 0.3;
     /// Several words with the consonants of one value.
     pub(crate) const APART: f64 = 0.2;
@@ -85,7 +85,7 @@ impl<'a> Tag<'a> {
         self.doubt = 1.0 - (1.0 - self.doubt) * (1.0 - doubt);
     }
 
-    /// Probability that a scene word that it stands for was not meant.
+    /// Probability that the scene word behind the tag was not meant.
     pub(crate) fn word_doubt(&self) -> f64 {
         1.0 - (1.0 - self.doubt) * self.sure
     }
@@ -179,8 +179,8 @@ pub(crate) fn tag<'a>(lexicon: &'a Lexicon, tokens: &Tokens<'a>) -> Vec<Tag<'a>>
     tags
 }
 
-/// Returns whether an utterance is an answer and nothing else, whatever its words name in a scene ("that's right"),
-/// unless they name what is asked.
+/// Returns whether an utterance is an answer and nothing else, whatever its words name in a scene
+/// ("that's right"), unless they name a value asked about.
 pub(crate) fn answers_alone(
     tokens: &Tokens<'_>,
     in_scene: &[Tag<'_>],
@@ -199,7 +199,7 @@ pub(crate) fn answers_alone(
         && tags.iter().all(|tag| answers(tag) || tag.is_any(classes![Filler Courtesy]))
 }
 
-/// What the words from `at` on are taken for; `described`: inside a noun phrase.
+/// Returns the sense of the words from `at` on; `described`: inside a noun phrase.
 fn find<'a>(lexicon: &'a Lexicon, tokens: &[Token<'_>], at: usize, described: bool) -> Found<'a> {
     let here = &tokens[at..];
     let phrase = lexicon.longest(tokens, at);
@@ -246,7 +246,7 @@ fn written_apart<'a>(lexicon: &'a Lexicon, tokens: &[Token<'_>]) -> Option<Found
             return Some(Found { words, ..Found::word(sense) });
         }
         let whole = matches!(lexicon.word(run[0].word), Some(Sense::Value(_)));
-        // "me a cup" is no slip of "tea cup", and "a felt tip" none of "felt tip".
+        // "me a cup" is not a slip of "tea cup", nor "a felt tip" of "felt tip".
         let ends = matches!(lexicon.word(run[words - 1].word), Some(Sense::Value(_)));
         let listed = match lexicon.word(run[0].word) {
             Some(Sense::Class(class)) => ends || is_closed_class(class),
@@ -259,8 +259,8 @@ fn written_apart<'a>(lexicon: &'a Lexicon, tokens: &[Token<'_>]) -> Option<Found
     })
 }
 
-/// "mark her", "cab in it": neighbours that together sound like one long value; a shorter one where
-/// a noun phrase continues (`described`).
+/// "mark her", "cab in it": neighbours that together sound like one long value; a shorter one if a
+/// noun phrase continues (`described`).
 fn heard_apart<'a>(
     lexicon: &'a Lexicon,
     tokens: &[Token<'_>],
@@ -277,7 +277,7 @@ fn heard_apart<'a>(
     })
 }
 
-/// A word that the lexicon does not have as it stands: lengthened, misspelt, or two run together.
+/// A word that the lexicon lacks in this form: lengthened, misspelt, or two run together.
 fn guessed<'a>(lexicon: &'a Lexicon, word: &str) -> Option<Found<'a>> {
     let lookalikes = lexicon.lookalikes();
     let short = if lookalikes.is_common(word) { None } else { shortened(word) };
@@ -303,7 +303,7 @@ fn guessed<'a>(lexicon: &'a Lexicon, word: &str) -> Option<Found<'a>> {
     run_on(lexicon, word)
 }
 
-/// "whitebowl", "nonmetal": a value and what it stands with, run together.
+/// "whitebowl", "nonmetal": a value and its neighbour, run together.
 fn run_on<'a>(lexicon: &'a Lexicon, word: &str) -> Option<Found<'a>> {
     let is_common = lexicon.lookalikes().is_common(word);
     if !word.is_ascii() || word.len() > RUN_ON_LETTERS_MAX || is_common {

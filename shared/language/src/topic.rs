@@ -11,7 +11,7 @@ use crate::related::too_much;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 
-/// A clause, what its words give away, and the clause before it.
+/// A clause, the evidence in its words, and the clause before it.
 pub(crate) struct ClauseAnalysis<'a> {
     pub(crate) clause: &'a [Tag<'a>],
     /// Whether the clause is all that was said.
@@ -23,11 +23,11 @@ pub(crate) struct ClauseAnalysis<'a> {
     pub(crate) values: usize,
 }
 
-/// Words that name the scene's objects.
+/// Classes of words that name the scene's objects.
 pub(crate) const SCENE_NAMES: &[Class] = classes![Head Attribute];
 
-/// Returns the clause in a range of the tags, with its topic. `injected`: the text is addressed to a
-/// machine.
+/// Returns the clause in a range of the tags, with its topic. `injected`: the text is addressed to
+/// a machine.
 pub(crate) fn classify(
     tags: &[Tag<'_>],
     fates: &Fates,
@@ -87,7 +87,7 @@ impl<'a> ClauseAnalysis<'a> {
         if self.describes_something_else() || self.is_strange() { Topic::Off } else { Topic::On }
     }
 
-    /// "get me the white one": a person asks for a thing, whatever else the text says.
+    /// "get me the white one": a person requests a thing, whatever else the text says.
     fn is_plain_request(&self) -> bool {
         self.clause.iter().any(|tag| matches!(tag.word, "me" | "i"))
             && self.values > 0
@@ -100,7 +100,7 @@ impl<'a> ClauseAnalysis<'a> {
         let article = |tag: &&Tag<'_>| matches!(tag.word, "de" | "da" | "te");
         let foreign = self.clause.iter().filter(|tag| tag.is(Class::OtherLanguage)).count();
         let articles = self.clause.iter().filter(article).count();
-        // "die weisse cup bitte": what is there was meant.
+        // "die weisse cup bitte": the objects present were meant.
         let ours = self.clause.iter().any(|tag| tag.is_value() && tag.exact);
         !ours && foreign > 0 && 2 * (foreign + articles + self.unknown) >= self.clause.len()
     }
@@ -131,7 +131,7 @@ impl<'a> ClauseAnalysis<'a> {
         }
     }
 
-    /// "one", "ones" as what the clause is about.
+    /// Returns whether the clause is about "one" or "ones".
     fn has_the_one(&self) -> bool {
         self.clause.iter().any(|tag| tag.is(Class::Head) && tag.word.starts_with("one"))
     }
@@ -142,7 +142,7 @@ impl<'a> ClauseAnalysis<'a> {
         self.clause.iter().any(|tag| tag.is_any(classes![Yes WeakYes No]) && shown(tag))
     }
 
-    /// "my bowl", "my silk shirt": what stands here, or the noun that ends it, is one of ours.
+    /// "my bowl", "my silk shirt": the word here, or the phrase's last noun, names one of ours.
     fn owns_ours(&self, at: usize) -> bool {
         let Some(owned) = self.clause.get(at) else { return false };
         let phrase = self.clause[at..].iter().enumerate().take_while(|(n, tag)| {
@@ -159,7 +159,7 @@ impl<'a> ClauseAnalysis<'a> {
         pairs.any(|pair| pair[0].is(Class::Possessive) && pair[1].is(Class::Unlisted))
     }
 
-    /// "my shirt is white": nothing is said of our things, and nothing is asked for.
+    /// "my shirt is white": it says nothing about our things, and requests nothing.
     fn describes_something_else(&self) -> bool {
         // "wrong spoon", "too big"
         let is_refused =
@@ -181,7 +181,7 @@ impl<'a> ClauseAnalysis<'a> {
         (self.unknown > 1 || elsewhere) && !tied
     }
 
-    /// "that one", but not "this phone".
+    /// Returns whether the words point, as "that one", but not "this phone".
     fn points(&self) -> bool {
         let mut tags = self.clause.iter().enumerate();
         tags.any(|(at, tag)| tag.is(Class::Pointer) && !self.next(at).is_some_and(Tag::is_unknown))

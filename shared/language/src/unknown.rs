@@ -18,8 +18,8 @@ const COMPOUND_MAX: usize = 3;
 /// Most words of a landmark that are repeated: "the small white cup".
 const LANDMARK_MAX: usize = 4;
 
-/// Attribute and object words that the scene does not have, for the robot's reply; last the places that it may know how
-/// to tell.
+/// Attribute and object words that the scene does not have, for the robot's reply; last the places
+/// that it may know how to tell.
 pub(crate) fn unknown_words(
     tokens: &Tokens<'_>,
     tags: &[Tag<'_>],
@@ -55,7 +55,7 @@ pub(crate) fn unknown_words(
     words
 }
 
-/// "next to the cup", "on the left", "third": where an object is among others.
+/// "next to the cup", "on the left", "third": the position of an object among others.
 fn relation(tags: &[Tag<'_>], at: usize) -> Option<Range<usize>> {
     const ALONG: [&str; 4] = ["same", "along", "together", "around"];
     const NOUN_PHRASE: &[Class] =
@@ -67,7 +67,7 @@ fn relation(tags: &[Tag<'_>], at: usize) -> Option<Range<usize>> {
         };
         let noun = tags[at + 1..].iter().take(LANDMARK_MAX).take_while(in_phrase).count();
         let next = after(tags, at);
-        // "close to me", "nearby": where the robot and the person are, it has no word for.
+        // "close to me", "nearby": the scene has no words for the places of robot and person.
         let is_person = next.is_some_and(|next| matches!(next.word, "me" | "you" | "us"));
         let is_bare = noun == 0 && !next.is_some_and(|next| next.is(Class::It));
         return (!is_person && !is_bare).then_some(at..at + 1 + noun);
@@ -99,7 +99,7 @@ fn said(tokens: &Tokens<'_>, tags: &[Tag<'_>], range: Range<usize>) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// An unknown word where a value or noun belongs: "the purpure one", "get me a foobar".
+/// An unknown word at the position of a value or noun: "the purpure one", "get me a foobar".
 fn is_in_noun_phrase(tags: &[Tag<'_>], at: usize) -> bool {
     let Some(before) = before(tags, at) else {
         // "penicillin please"
@@ -116,7 +116,7 @@ fn is_clause(tags: &[Tag<'_>], at: usize) -> bool {
     unknown > 1 && after(tags, at + unknown - 1).is_some_and(is_object)
 }
 
-/// The word with those that it forms a compound with, and what it is.
+/// The word with the rest of its compound, and its kind.
 fn named(tokens: &Tokens<'_>, tags: &[Tag<'_>], at: usize) -> UnknownWord {
     let mut last = at;
     while last - at + 1 < COMPOUND_MAX

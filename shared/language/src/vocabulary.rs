@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use crate::token_class::Class;
 
-/// Returns every phrase with its class.
+/// Returns every phrase of the dialogue with its class.
 pub(crate) fn phrases() -> impl Iterator<Item = (Class, &'static str)> {
     let mut class = None;
     let lines = include_str!("vocabulary/phrases.txt").lines();
@@ -18,7 +18,7 @@ pub(crate) fn phrases() -> impl Iterator<Item = (Class, &'static str)> {
     })
 }
 
-/// Returns the patterns of what halts the arm, each with its section.
+/// Returns the patterns that halt the arm, each with its section.
 pub(crate) fn halting() -> impl Iterator<Item = (&'static str, &'static str)> {
     let mut section = "";
     let lines = include_str!("vocabulary/halting.txt").lines();
@@ -33,7 +33,7 @@ pub(crate) fn halting() -> impl Iterator<Item = (&'static str, &'static str)> {
     })
 }
 
-/// The class of a heading; what follows its name parts the class.
+/// Returns the class of a heading; the text after the name subdivides the class.
 fn class_of(heading: &str) -> &str {
     heading.split(' ').next().unwrap_or(heading)
 }

@@ -1,4 +1,4 @@
-//! Words of like meaning: what the judge learns of one counts for all of its group.
+//! Words of similar meaning: a lesson of the judge about one counts for all of its group.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;

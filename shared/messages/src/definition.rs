@@ -1,8 +1,8 @@
-//! Descriptions of message types for programs that do not share this code: ROS 2 message definitions of
-//! fixed layouts, whose bytes are CDR as they lie, and JSON Schemas of payloads.
+//! Descriptions of message types for programs that do not share this code: ROS 2 message
+//! definitions of fixed layouts, whose bytes are CDR as they lie, and JSON Schemas of payloads.
 //!
-//! A fixed layout has no implicit padding and its fields are aligned to their size, which is what CDR
-//! prescribes. So a message is CDR once four bytes stand before it that say "plain, little-endian".
+//! A fixed layout has no implicit padding and its fields are aligned to their size, as CDR
+//! prescribes. So a message is CDR once four bytes for "plain, little-endian" precede it.
 
 use serde_json::{Map, Value, json};
 use serde_reflection::{ContainerFormat, Format, Named, Registry, VariantFormat};
@@ -27,7 +27,7 @@ pub enum Definition {
 pub struct FieldType {
     /// A primitive type, or a message type with its package.
     pub name: String,
-    /// Number of elements, where it is an array.
+    /// Number of elements of an array field.
     pub count: Option<usize>,
     /// The codes of an enum, with their names.
     pub constants: Vec<(&'static str, u8)>,
@@ -95,8 +95,8 @@ fn upper(name: &str) -> String {
 
 /// The JSON Schema of type `name` in `types`.
 ///
-/// `properties` at its top hold only what the viewers' readers of schemas understand: they refuse a schema
-/// with references, alternatives or lists of lists there. Everything is under `allOf`, which they pass over.
+/// `properties` at its top hold only keys that the viewers understand: they refuse a schema with
+/// references, alternatives or lists of lists there. All is under `allOf`, which they skip.
 pub fn json_schema(name: &str, types: &Registry) -> Value {
     let defs: Map<String, Value> =
         types.iter().map(|(name, format)| (name.clone(), container(format))).collect();

@@ -1,5 +1,5 @@
 //! The receiver's half of "in order, exactly once": it accepts `applied + 1` and nothing else. The
-//! sender sends again what is above the receiver's mark, so whatever is turned away comes back.
+//! sender resends messages above the receiver's mark, so rejected ones come back.
 
 use crate::UtteranceSeq;
 
@@ -12,9 +12,9 @@ pub struct Inbox {
 /// Treatment of a numbered message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It is next: apply it, durably, then call [`Inbox::advance`].
+    /// The message is next: apply it, durably, then call [`Inbox::advance`].
     Apply,
-    /// It was applied before.
+    /// The message was applied before.
     Duplicate,
     /// Something before it is missing; it will come again.
     Early,

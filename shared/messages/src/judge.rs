@@ -9,8 +9,8 @@
 //! | time | one in the future counts as now | receivers |
 //! | incarnation | one that the supervisor has started | readers of topics |
 //!
-//! What cannot be told from the truth is believed: a peer that holds a topic's only place for a
-//! writer, in an incarnation that runs, with the next number.
+//! Undetectable forgeries are accepted: a peer that holds a topic's only writer slot, in a running
+//! incarnation, with the next number.
 
 use crate::wire::WireError;
 

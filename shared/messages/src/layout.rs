@@ -11,8 +11,8 @@ use std::mem::MaybeUninit;
 /// A message of fixed layout.
 ///
 /// # Safety
-/// It is made of numbers and codes, so that any bytes of its size are a value of it until its codes are checked, and
-/// has no padding, so that all of its bytes are written.
+/// It is made of numbers and codes, so that any bytes of its size are a value of it until its codes
+/// are checked, and has no padding, so that all of its bytes are written.
 #[allow(unsafe_code)]
 pub unsafe trait WireMessage:
     Schema + WireField + ZeroCopySend + Copy + PartialEq + Debug + 'static
@@ -68,7 +68,7 @@ impl<'a> FixedMessage<'a> {
         layout.check(bytes).map(|()| Self { name: layout.name, bytes })
     }
 
-    /// Returns its bytes.
+    /// Returns the message's bytes.
     pub fn bytes(&self) -> &'a [u8] {
         self.bytes
     }
@@ -89,10 +89,10 @@ pub fn checked<T: WireMessage>(bytes: &[u8]) -> Result<&T, WireError> {
     message.check().map(|()| message)
 }
 
-/// Returns the message that these bytes are, unless their size or alignment is another one; its codes are unchecked.
+/// Returns these bytes as a message, if size and alignment are right; codes are unchecked.
 fn view<T: WireMessage>(bytes: &[u8]) -> Option<&T> {
     let start = bytes.as_ptr().cast::<T>();
-    // SAFETY: size and alignment are those of a `T`, of which any bytes are a value ([`WireMessage`]).
+    // SAFETY: size and alignment are those of `T`, and any bytes are a `T` ([`WireMessage`]).
     #[allow(unsafe_code)]
     (bytes.len() == size_of::<T>() && start.is_aligned()).then(|| unsafe { &*start })
 }
@@ -107,8 +107,8 @@ pub fn slot<T: WireMessage>(bytes: &mut [MaybeUninit<u8>]) -> Option<&mut MaybeU
 
 /// Returns the bytes of a message.
 pub fn bytes<T: WireMessage>(message: &T) -> &[u8] {
-    // SAFETY: a message of fixed layout has no padding (the test of the wire layout checks each), so that
-    // every byte of it is initialised.
+    // SAFETY: a message of fixed layout has no padding (the test of the wire layout checks each),
+    // so that every byte of it is initialised.
     #[allow(unsafe_code)]
     unsafe {
         std::slice::from_raw_parts(std::ptr::from_ref(message).cast(), size_of::<T>())

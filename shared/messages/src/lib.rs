@@ -1,13 +1,13 @@
-//! The contract between the services: what travels over shared memory and what it means.
+//! The contract between the services: messages over shared memory and their meaning.
 //!
-//! Messages are plain fixed-layout structs that are read where the writer left them (no copy, no
-//! decoding); payloads of variable size are postcard. Nothing here opens a topic, reads a clock or
-//! does any IO: that is the runtime's part. Values read from the wire are never trusted: every
-//! accessor that interprets a byte is checked and can fail.
+//! Messages are plain fixed-layout structs that are read in place (no copy, no decoding); payloads
+//! of variable size are postcard. Nothing here opens a topic, reads a clock or does any IO: that is
+//! the runtime's part. Values read from the wire are never trusted: every accessor that interprets
+//! a byte is checked and can fail.
 //!
 //! # Example
 //!
-//! An utterance as speech hands it to grounding, and the receiver's half of "in order, exactly once":
+//! An utterance from speech to grounding, and the receiver's half of "in order, exactly once":
 //!
 //! ```
 //! use messages::inbox::{Inbox, Verdict};

@@ -4,13 +4,13 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::ops::Deref;
 
-/// A message where it lies in shared memory, or one in memory of its own: a test or a simulation, which
-/// has no shared memory, carries messages itself.
+/// A message borrowed from shared memory, or an owned one: a test or a simulation has no shared
+/// memory and carries messages itself.
 #[derive(Clone)]
 pub enum MessageRef<'a, T> {
-    /// In shared memory, for as long as it is being handled. A reader copies what it keeps.
+    /// Borrowed from shared memory while being handled. A reader copies the parts that it keeps.
     Lent(&'a T),
-    /// On the heap.
+    /// Owned, on the heap.
     Owned(Box<T>),
 }
 
@@ -61,7 +61,7 @@ impl<T: Serialize> Serialize for MessageRef<'_, T> {
     }
 }
 
-/// What is read is in memory of its own.
+/// A deserialised message is owned.
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for MessageRef<'_, T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         T::deserialize(deserializer).map(|message| Self::Owned(Box::new(message)))

@@ -46,8 +46,8 @@ impl<T> Outbox<T> {
         self.waiting.push_back((seq, message));
     }
 
-    /// The receiver has applied everything up to `mark`. Returns `false` and changes nothing if that
-    /// was never sent: believed, such a mark would end what still waits.
+    /// The receiver has applied everything up to `mark`. Returns `false` and changes nothing if
+    /// `mark` was never sent: accepting it would drop pending messages.
     pub fn acknowledge(&mut self, mark: UtteranceSeq) -> bool {
         if mark > self.last {
             return false;
@@ -58,8 +58,8 @@ impl<T> Outbox<T> {
         true
     }
 
-    /// Every number up to `over` is over: what waits with one of them is dropped, and numbering
-    /// continues above it.
+    /// Ends every number up to `over`: pending messages with these numbers are dropped, and
+    /// numbering continues above.
     pub fn skip(&mut self, over: UtteranceSeq) {
         self.waiting.retain(|(seq, _)| *seq > over);
         self.last = self.last.max(over);

@@ -30,8 +30,8 @@ pub struct Injection {
     /// The latest prompt that the user was shown before, as text or sound; 0: not known. If it is a question, an
     /// answer is to this one, whether or not the robot's own voice has begun it; otherwise to no later one.
     pub seen_prompt: u64,
-    /// Name of the person who types or points, printable and of at most 64 bytes; empty or `guest`: nobody in
-    /// particular, of whom nothing is learned. Of sound nobody is known.
+    /// Name of the person who types or points, printable and of at most 64 bytes; empty or `guest`:
+    /// nobody in particular, of whom nothing is learned. Of sound nobody is known.
     pub from: String,
     /// Text to be heard.
     pub sound: Sound,
@@ -127,7 +127,7 @@ pub struct PolicyView {
 }
 
 impl PolicyView {
-    /// Returns prompt and presentation of the question in force, once it has been presented completely.
+    /// Returns prompt and presentation of the question in force, once presented completely.
     pub fn open_question(&self, presented: &Presented) -> Option<(u64, u32)> {
         let Presented { prompt, presentation, state, .. } = *presented;
         // "Say yes, and I will get the white bowl."
@@ -193,8 +193,8 @@ pub struct TableObject {
     pub sd: [f64; 4],
     /// When it was last seen, monotonic clock, nanoseconds.
     pub seen_ns: u64,
-    /// Whether it was looked for in vain for so long that it counts as gone; the dialogue hears of it when
-    /// the arm is done.
+    /// Whether it was looked for in vain for so long that it counts as gone; the dialogue hears of
+    /// it when the arm is done.
     pub gone: bool,
 }
 

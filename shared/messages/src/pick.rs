@@ -20,8 +20,8 @@ pub struct Pick {
 }
 
 impl Pick {
-    /// Returns whether the object is let go in its place: it is to be put back, or was called off while
-    /// it was held.
+    /// Returns whether the object is let go in its place: it is to be put back, or was called off
+    /// while it was held.
     pub fn ends_at_place(&self) -> bool {
         self.task == Task::PutBack || self.phase == PickPhase::Returning
     }
@@ -30,9 +30,9 @@ impl Pick {
 /// Treatment of an ordered pick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// Take it on.
+    /// Accept the order.
     Accept,
-    /// It is this one already; nothing to do but to report where it stands.
+    /// The order is known already; only its state is to be reported.
     Known,
     /// Another pick is still running; the order will come again.
     Busy,
@@ -43,12 +43,11 @@ pub enum Order {
 }
 
 /// Judges the order `id` of `task` for `object` against the latest pick. A repeated key is known,
-/// whatever became of it: that is what makes a re-sent order harmless. An order that is called off
-/// has no task.
+/// whatever its outcome, so a re-sent order is harmless. A cancelled order has no task.
 pub fn judge(latest: Option<&Pick>, id: PickId, object: ObjectId, task: Option<Task>) -> Order {
     let Some(pick) = latest else { return Order::Accept };
     if id == pick.id {
-        // What was called off before its order arrived never had a task.
+        // An order cancelled before it arrived never had a task.
         let called_off = pick.outcome == PickOutcome::Cancelled;
         let same_task = called_off || task.is_none_or(|task| task == pick.task);
         return if object == pick.object && same_task { Order::Known } else { Order::Conflict };

@@ -15,9 +15,9 @@ use std::borrow::Cow;
 /// One field of a wire struct, or one type inside a postcard payload.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// Its name.
+    /// Name of the field.
     pub name: Cow<'static, str>,
-    /// Its type: as written in a wire struct, as JSON of `serde-reflection` in a payload.
+    /// Type of the field: as written in a wire struct, as JSON of `serde-reflection` in a payload.
     pub ty: Cow<'static, str>,
     /// Bytes from the start of the struct.
     pub offset: usize,
@@ -35,7 +35,7 @@ pub trait Schema {
     /// Returns the fields in order; of a postcard payload, the types in it.
     fn fields() -> Vec<Field>;
 
-    /// Returns the layout of the struct, none for a postcard payload.
+    /// Returns the layout of the struct, `None` for a postcard payload.
     fn layout() -> Option<Layout>;
 
     /// Returns its description for programs that do not share this code.
@@ -92,8 +92,8 @@ pub fn payload_definition(name: &str, types: Result<Registry, Error>) -> Definit
     Definition::JsonSchema(json_schema(name, &types.unwrap_or_default()))
 }
 
-/// Derives the schemas of payloads of variable size, for topics with messages of one's own, from their
-/// `Deserialize` implementations. The enums inside are listed, innermost first:
+/// Derives the schemas of payloads of variable size, for topics with messages of one's own, from
+/// their `Deserialize` implementations. The enums inside are listed, innermost first:
 ///
 /// ```
 /// use messages::schema::Schema;
@@ -109,8 +109,8 @@ pub fn payload_definition(name: &str, types: Result<Registry, Error>) -> Definit
 /// assert_eq!(Label::NAME, "Label");
 /// ```
 ///
-/// An enum that is not listed makes the schema that of an error, which a test of the payload can find
-/// ([`is_traced`]).
+/// An enum that is not listed makes the schema that of an error, which a test of the payload can
+/// find ([`is_traced`]).
 #[macro_export]
 macro_rules! payloads {
     ($($payload:ident [$($enum:ty),*])+) => {
@@ -217,7 +217,7 @@ macro_rules! wire_struct {
             }
         }
 
-        // The sizes of its fields add up to its own: there is no padding.
+        // The sizes of the fields add up to the struct's size: without padding.
         const _: () = assert!(0 $(+ size_of::<$ty>())+ == size_of::<$name>());
 
         // SAFETY: fields are numbers, codes, arrays of these and other such structs; and see above.

@@ -5,8 +5,8 @@ use std::sync::{Mutex, PoisonError};
 /// Name of the process that starts the services, reserved for it.
 pub const SUPERVISOR: &str = "supervisor";
 
-/// A service of a group. Those of [`Service::BUILT_IN`] are in every group. They, the robot and the optional parts have
-/// a program `whichone-NAME`; a service from outside has a command in the configuration.
+/// A service of a group. [`Service::BUILT_IN`] are in every group. They, the robot and the optional
+/// parts have a program `whichone-NAME`; one from outside has a configured command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Service {
     /// Recognises and synthesises speech.
@@ -38,7 +38,7 @@ impl Service {
     /// Services that keep a journal.
     pub const JOURNALED: [Self; 3] = [Self::Speech, Self::Policy, Self::Arm];
 
-    /// Its name in configuration, journals and status.
+    /// Returns the name in configuration, journals and status.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Speech => "speech",

@@ -1,4 +1,4 @@
-//! The files with the sound of what the robot says.
+//! Files with the sound of the robot's prompts.
 
 use std::fmt;
 
@@ -14,12 +14,12 @@ const SUFFIX: &str = ".wav";
 pub struct SoundFile {
     /// The prompt's number.
     pub prompt: u64,
-    /// Its presentation, from 1.
+    /// Number of the presentation, from 1.
     pub presentation: u32,
 }
 
 impl SoundFile {
-    /// The file of what is presented.
+    /// The file of a presentation.
     pub fn of(presented: &Presented) -> Self {
         Self { prompt: presented.prompt, presentation: presented.presentation }
     }

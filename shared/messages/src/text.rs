@@ -17,14 +17,14 @@ pub struct FixedText<const N: usize> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the text has {bytes} bytes, {max} at most are allowed")]
 pub struct TextTooLong {
-    /// Its length.
+    /// Length of the text.
     pub bytes: usize,
     /// The bound.
     pub max: usize,
 }
 
 impl<const N: usize> FixedText<N> {
-    /// The text as it is.
+    /// Stores the text unchanged.
     ///
     /// # Errors
     /// Longer than `N` bytes.
@@ -35,8 +35,8 @@ impl<const N: usize> FixedText<N> {
         Ok(Self::truncated(text))
     }
 
-    /// The longest prefix that fits, cut between characters. For what a person reads, never for
-    /// what a decision rests on.
+    /// The longest prefix that fits, cut between characters. For display to people, never as a
+    /// basis of decisions.
     pub fn truncated(text: &str) -> Self {
         let end = (0..=N.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0);
         let mut bytes = [0; N];

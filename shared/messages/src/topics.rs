@@ -1,8 +1,7 @@
 //! The table of topics: who writes, who reads, and how much is kept.
 //!
-//! Every topic has safe overflow and never blocks its writer: what a reader missed is sent again by
-//! the writer until its effect is seen. A reader with a wake-up is notified after each send; clients
-//! poll.
+//! Every topic has safe overflow and never blocks its writer: it resends missed messages until
+//! their effect is seen. A reader with a wake-up is notified after each send; clients poll.
 
 use crate::definition::Definition;
 use crate::layout::Layout;
@@ -39,8 +38,8 @@ pub struct Topic {
 }
 
 impl Topic {
-    /// A topic with one writer, of which readers see the latest message: a state. A service of a new kind states its own
-    /// topics with it, whose names begin with its own: `NAME/…`.
+    /// A topic with one writer, of which readers see the latest message: a state. A service of a
+    /// new kind states its own topics with it, whose names begin with its own: `NAME/…`.
     pub const fn new<T: Schema>(name: &'static str, writer: Option<Service>) -> Self {
         Self {
             name,
@@ -71,14 +70,14 @@ impl Topic {
 
 /// Readers of one topic at a time: services, clients, consoles, recorders.
 pub const READERS_MAX: usize = 24;
-/// Readers of a topic with large messages between services: its reader, the console with its live view, the
-/// recorder, each also while it is replaced, and two tools.
+/// Readers of a topic with large messages between services: its reader, the console with its live
+/// view, the recorder, each also while it is replaced, and two tools.
 pub const SERVICES_MAX: usize = 10;
 /// Clients that write at a time.
 pub const CLIENTS_MAX: usize = 16;
 /// Processes that have a topic open at a time.
 pub const NODES_MAX: usize = 48;
-/// Unread messages that the recorder holds of a topic with 100 messages a second, where it looks ten times a second.
+/// Unread messages of a topic with 100 messages a second that the recorder, at 10 Hz, holds.
 const RECORDED_FAST: usize = 32;
 /// Utterances that are on their way at a time; the buffers of their topics hold them all.
 pub const WINDOW: usize = 16;
@@ -259,7 +258,7 @@ pub mod robot {
         measured::<EndEffectorProperties>("robot/end_effector/left_gripper/properties"),
         measured::<EndEffectorProperties>("robot/end_effector/right_gripper/properties"),
     ];
-    /// Clients to the simulated robot: what people do to it, and faults.
+    /// Clients to the simulated robot: actions of people on it, and faults.
     pub const DRILL: Topic = Topic {
         readers: &[Service::Robot],
         writers_max: CLIENTS_MAX,
@@ -268,7 +267,7 @@ pub mod robot {
         ..topic::<Drill>("robot/drill", None)
     };
 
-    /// Every one of them.
+    /// All topics.
     pub const ALL: [Topic; 17] = [
         JOINT_STATES,
         STATE,
@@ -290,8 +289,8 @@ pub mod robot {
     ];
 }
 
-/// Every topic that the group's services and clients share, but for those of [`robot`], which are only
-/// used with a robot behind them.
+/// Every topic that the group's services and clients share, but for those of [`robot`], which are
+/// only used with a robot behind them.
 pub const ALL: [Topic; 19] = [
     INJECTION,
     AUDIO,

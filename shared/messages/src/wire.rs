@@ -28,7 +28,7 @@ impl WireError {
 pub trait WireCode: Copy + 'static {
     /// Name of the enum.
     const NAME: &'static str;
-    /// Variants with their names and codes, all of them; the first stands for an unset field.
+    /// Variants with their names and codes, all of them; the first is an unset field.
     const CODES: &'static [(Self, &'static str, u8)];
 
     /// Returns the code in a message.
@@ -36,7 +36,7 @@ pub trait WireCode: Copy + 'static {
         self.into()
     }
 
-    /// Returns the byte of this variant.
+    /// Returns the variant's byte.
     fn to_byte(self) -> u8;
 
     /// Returns the variant of a byte.
@@ -119,7 +119,7 @@ pub trait WireField {
         Ok(())
     }
 
-    /// Returns what a schema key has to cover beyond the type's name: codes, and nested keys.
+    /// Returns the parts of a schema key other than the type's name: codes, and nested keys.
     fn detail() -> String {
         String::new()
     }
@@ -190,7 +190,7 @@ macro_rules! wire_codes {
 }
 pub(crate) use wire_codes;
 
-/// Declares an enum with its codes.
+/// Declares an enum together with its codes.
 macro_rules! wire_enum {
     ($(#[$doc:meta])* $name:ident { $($(#[$vdoc:meta])* $variant:ident = $code:literal,)+ }) => {
         $(#[$doc])*

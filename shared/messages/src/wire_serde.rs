@@ -1,8 +1,8 @@
 //! Fixed layouts in serde, for files and for people: field by field.
 //!
-//! A binary format gets the used part of each array: elements at its end that are all zeros are left out,
-//! so that a message takes the space of what it says. What is read back has the same bytes, except those
-//! behind the end of a [`FixedText`], which no reader sees.
+//! A binary format gets the used part of each array: elements at its end that are all zeros are
+//! left out, so that a message takes only the space of its content. A message read back has the
+//! same bytes, except those behind the end of a [`FixedText`], which no reader sees.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -70,7 +70,7 @@ macro_rules! numbers {
 }
 numbers! { u8 u16 u32 u64 i16 i32 f32 f64 }
 
-/// An element as serde takes it.
+/// An array element in its serde form.
 struct Element<T>(T);
 
 impl<T: WireSerde> Serialize for Element<&T> {

@@ -1,4 +1,4 @@
-//! The model's answer, read strictly: what is not in the scene or not in the agreed form is refused.
+//! The model's answer, read strictly: answers outside the scene or the agreed form are refused.
 
 use scene::{Intent, Measure, Reading, Reference, Relation, Response, Scene, WordId};
 use serde::Deserialize;
@@ -17,11 +17,11 @@ const GROUP_MAX: usize = 6;
 /// One reading of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelReading {
-    /// Number of the question that it answers; none for none.
+    /// Number of the question that the reading answers; `None` for none.
     pub question: Option<usize>,
     /// Weight among the readings for the same question, above 0; not normalised.
     pub weight: f64,
-    /// Its content, without doubts.
+    /// Content of the reading, without doubts.
     pub reading: Reading,
 }
 
@@ -51,12 +51,12 @@ struct Entry {
     further: Vec<Vec<String>>,
 }
 
-/// Reads the content of an answer about `scene`. `asked` holds the numbers of the questions that were in the
-/// request.
+/// Reads the content of an answer about `scene`. `asked` holds the numbers of the questions that
+/// were in the request.
 ///
 /// # Errors
-/// The first thing that is not as agreed: other text than one JSON object, an unknown or missing key, a value that
-/// the scene does not have, a question that was not asked, a weight that is not above 0, or no readings.
+/// The first fault: other text than one JSON object, an unknown or missing key, a value that the
+/// scene does not have, an unasked question, a weight of 0 or less, or no readings.
 pub fn parse(
     scene: &Scene,
     asked: &[usize],

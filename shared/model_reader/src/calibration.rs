@@ -1,21 +1,21 @@
-//! From weights of a model to probabilities: an exponent, and a share of the built-in reader, fitted to labelled
-//! utterances by maximum likelihood.
+//! Calibration of a model's weights to probabilities: an exponent, and a share of the built-in
+//! reader, fitted to labelled utterances by maximum likelihood.
 
 use crate::Calibration;
 use scene::Reading;
 
 /// Probability with which a meaning counts that no reading has: a log loss is finite.
 pub const LOSS_FLOOR: f64 = 0.001;
-/// Standard deviation of the exponent's logarithm before anything is known: a small set must not drive it to
-/// its bound.
+/// Standard deviation of the exponent's logarithm before anything is known: a small set must not
+/// drive it to its bound.
 const PRIOR_LOG_SD: f64 = 1.0;
 /// Steps of the search along each value, and how often the grid is refined.
 const STEPS: usize = 25;
 const REFINEMENTS: usize = 4;
 
-/// Combines the readings of the model for one question with those of the built-in reader, whose weights add up
-/// to one. Returns at most `at_most`, likeliest first; their weights sum to 1. Without readings of the model the
-/// built-in reader's count.
+/// Combines the readings of the model for one question with those of the built-in reader, whose
+/// weights add up to one. Returns at most `at_most`, likeliest first; their weights sum to 1.
+/// Without readings of the model the built-in reader's count.
 pub fn calibrated(
     calibration: Calibration,
     model: &[(f64, Reading)],
@@ -61,13 +61,13 @@ fn powers(weights: &[f64], power: f64) -> Vec<f64> {
     raised.into_iter().map(|weight| weight / total).collect()
 }
 
-/// A labelled utterance: weights of the distinct readings that each reader gave, and whether the label
-/// accepts them.
+/// A labelled utterance: weights of the distinct readings that each reader gave, and whether the
+/// label accepts them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Case {
-    /// Those of the model, not normalised.
+    /// Weights by the model, not normalised.
     pub model: Vec<(f64, bool)>,
-    /// Those of the built-in reader; they sum to 1.
+    /// Weights by the built-in reader; they sum to 1.
     pub built_in: Vec<(f64, bool)>,
 }
 
@@ -89,16 +89,16 @@ fn right(weights: impl Iterator<Item = (f64, bool)>) -> f64 {
     weights.filter(|(_, is_right)| *is_right).map(|(weight, _)| weight).sum()
 }
 
-/// Mean log loss of the labelled meanings, natural logarithm: lower is better, 0 is perfect. A probability below
-/// [`LOSS_FLOOR`] counts as that. 0 for no cases.
+/// Mean log loss of the labelled meanings, natural logarithm: lower is better, 0 is perfect. A
+/// probability below [`LOSS_FLOOR`] counts as that. 0 for no cases.
 pub fn log_loss(cases: &[Case], calibration: Calibration) -> f64 {
     let loss = |case: &Case| -case.probability(calibration).clamp(LOSS_FLOOR, 1.0).ln();
     // An empty sum is -0.
     cases.iter().map(loss).sum::<f64>().abs() / cases.len().max(1) as f64
 }
 
-/// Fits a calibration to labelled utterances: the least log loss, with a weak preference for an exponent near 1.
-/// The same cases give the same result.
+/// Fits a calibration to labelled utterances: the least log loss, with a weak preference for an
+/// exponent near 1. The same cases give the same result.
 pub fn fit(cases: &[Case]) -> Calibration {
     let (least, most) = (Calibration::POWER.start().ln(), Calibration::POWER.end().ln());
     let (mut powers, mut shares) = ((least, most), (0.0, 1.0));
@@ -121,8 +121,8 @@ pub fn fit(cases: &[Case]) -> Calibration {
     Calibration { power: rounded(log_power.exp()), built_in: rounded(built_in) }
 }
 
-/// Mean log loss where the calibration of each fifth of the cases is fitted to the others: what to expect of
-/// utterances that are not in the set.
+/// Mean log loss if the calibration of each fifth of the cases is fitted to the others: an estimate
+/// for utterances outside the set.
 pub fn held_out_loss(cases: &[Case]) -> f64 {
     const PARTS: usize = 5;
     let of_part = |part: usize| {

@@ -30,7 +30,7 @@ pub enum ClientError {
     Key {
         /// The file.
         path: PathBuf,
-        /// Its fault.
+        /// Fault of the file.
         what: String,
     },
 }
@@ -68,12 +68,12 @@ impl Client {
         })
     }
 
-    /// Sends an utterance, as [`utterance`](crate::utterance) writes it, and returns the text of the answer. Returns or fails
-    /// within `within`.
+    /// Sends an utterance, as [`utterance`](crate::utterance) writes it, and returns the text of
+    /// the answer. Returns or fails within `within`.
     ///
     /// # Errors
-    /// In a sentence: the time is up, the service is not reached, refuses, or answers with something else than a
-    /// completion.
+    /// In a sentence: the time is up, the service is not reached, refuses, or answers with
+    /// something else than a completion.
     pub fn ask(&self, utterance: &str, within: Duration) -> Result<String, String> {
         let request = self.agent.post(&self.url).config().timeout_global(Some(within)).build();
         let request = match &self.authorization {

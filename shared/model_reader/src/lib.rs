@@ -1,7 +1,7 @@
-//! Reads utterances with a language model behind HTTP, in the chat-completions form: the prompt of a scene, the
-//! request, the strict reading of the answer, and the calibration of its weights.
+//! Reads utterances with a language model behind HTTP, in the chat-completions form: the prompt of
+//! a scene, the request, the strict reading of the answer, and the calibration of its weights.
 //!
-//! Only [`Client`] does IO; everything else is a function of its arguments, so that a replay needs no model.
+//! Only [`Client`] does IO; everything else is pure, so that a replay needs no model.
 
 mod answer;
 mod calibration;

@@ -1,4 +1,4 @@
-//! What the model is asked: once the rules, the scene and the form of the answer, then each utterance.
+//! Prompts for the model: once rules, scene and form of the answer, then each utterance.
 
 use crate::LanguageModel;
 use scene::{Intent, Question, Reference, Response, Scene, question_to_json};
@@ -31,7 +31,7 @@ ask_count, ask_which, ask_whether, ask_where, put_back and chore, base and exclu
 The scene:
 ";
 
-/// Every intent, in its order.
+/// Every intent, in order.
 const INTENTS: [Intent; 21] = [
     Intent::Inform,
     Intent::None,
@@ -100,8 +100,8 @@ impl Prompt {
     }
 }
 
-/// Writes an utterance for the model: its hypotheses, each with its probability, and the questions of this scene that it may answer, by
-/// their numbers.
+/// Writes an utterance for the model: its hypotheses, each with its probability, and the questions
+/// of this scene that it may answer, by their numbers.
 pub fn utterance(scene: &Scene, heard: &[(f64, &str)], asked: &[(usize, Question)]) -> String {
     let heard: Vec<Json> = heard
         .iter()
@@ -116,7 +116,7 @@ pub fn utterance(scene: &Scene, heard: &[(f64, &str)], asked: &[(usize, Question
     json!({ "heard": heard, "questions": asked }).to_string()
 }
 
-/// The scene as the model sees it: what can be asked for, and the words for it.
+/// The scene as the model sees it: the objects, and the words for them.
 fn described(scene: &Scene) -> Json {
     let objects = scene.objects().iter().map(|object| {
         let values = object.values.iter().zip(scene.attributes());
@@ -140,7 +140,7 @@ fn described(scene: &Scene) -> Json {
     json!({ "noun": scene.noun(), "objects": objects, "attributes": attributes })
 }
 
-/// JSON Schema of the answer. Bounds are checked by [`parse`](crate::parse): services support few of them.
+/// JSON Schema of the answer. [`parse`](crate::parse) checks bounds: services support few of them.
 fn schema(scene: &Scene) -> Json {
     let words = json!({ "type": "array", "items": { "type": "string", "enum": scene.words() } });
     let groups = json!({ "type": "array", "items": words });

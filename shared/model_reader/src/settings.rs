@@ -10,7 +10,7 @@ use serde_json::json;
 /// A language model behind HTTP, in the chat-completions form, that reads utterances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LanguageModel {
-    /// Where requests are posted, `http://HOST[:PORT]/PATH` or `https://…`.
+    /// Address for requests, `http://HOST[:PORT]/PATH` or `https://…`.
     pub url: String,
     /// Name of the model, as the service knows it.
     pub name: String,
@@ -24,8 +24,8 @@ pub struct LanguageModel {
     pub calibration: Calibration,
 }
 
-/// How weights of the model become probabilities: `p ∝ (1 − built_in) w^power + built_in b`, where `b` is the
-/// built-in reader's probability of the same reading.
+/// Mapping of the model's weights to probabilities: `p ∝ (1 − built_in) w^power + built_in b`,
+/// where `b` is the built-in reader's probability of the same reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibration {
     /// Exponent of the model's weights: above 1 sharpens them, below 1 flattens them.
@@ -37,7 +37,7 @@ pub struct Calibration {
 impl Calibration {
     /// Bounds of `power`.
     pub const POWER: std::ops::RangeInclusive<f64> = 0.05..=20.0;
-    /// The model's weights as they are.
+    /// The model's unchanged weights.
     pub const NONE: Self = Self { power: 1.0, built_in: 0.0 };
 }
 

@@ -110,7 +110,7 @@ fn calibration_sharpens_and_mixes() {
     assert_eq!(calibrated(Calibration::NONE, &model, &[], 1), [(1.0, white)]);
 }
 
-/// A model that says 0.99 and is right four times in five, beside a reader that is right where it errs.
+/// A model that says 0.99 and is right four times in five, and a reader that is right when it errs.
 #[test]
 fn fit_finds_overconfidence_and_a_better_reader() {
     let case = |is_right: bool, built_in: bool| Case {

@@ -1,7 +1,7 @@
-//! The interface of optional parts of the console's page: their commands, their section, their files.
+//! Interface of optional parts of the console's page: their commands, section, and files.
 //!
-//! The console knows a [`Part`] by this trait alone. It lives on the main thread, which it may not keep waiting; its
-//! [`Files`] are read on threads of the web server.
+//! The console knows a [`Part`] by this trait alone. It lives on the main thread, which it may not
+//! keep waiting; its [`Files`] are read on threads of the web server.
 
 use std::fmt::Debug;
 
@@ -14,7 +14,7 @@ use service::Time;
 /// A moment on both clocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Now {
-    /// On the monotonic clock.
+    /// Time on the monotonic clock.
     pub at: Time,
     /// Milliseconds since 1970.
     pub unix_ms: u64,
@@ -27,36 +27,36 @@ pub struct Robot<'a> {
     pub now: Now,
     /// The scene of the dialogue.
     pub scene: &'a Scene,
-    /// State of the dialogue; none until the policy has published one.
+    /// State of the dialogue; `None` until the policy has published one.
     pub view: Option<&'a PolicyView>,
-    /// State of the arm; none where it is not known.
+    /// State of the arm; `None` if unknown.
     pub arm: Option<&'a ArmStatus>,
     /// A service that the dialogue needs and that is not ready.
     pub missing: Option<&'a str>,
 }
 
-/// Something that was said; reported once.
+/// An event of the dialogue; reported once.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DialogueEvent {
     /// A question of the robot has begun.
     Asked {
-        /// Its number.
+        /// Number of the prompt.
         prompt: u64,
-        /// How often it has been presented.
+        /// Number of times the prompt has been presented.
         presentation: u32,
-        /// Its words.
+        /// Words of the prompt.
         words: String,
     },
     /// An utterance was accepted.
     Heard(Box<Receipt>),
 }
 
-/// Fields of an answer, which stand beside those of the console.
+/// Fields of an answer, in addition to the console's.
 pub type Fields = Map<String, Json>;
 
 /// An optional part of the page.
 pub trait Part: Debug {
-    /// Carries out a command of a page, without the part's prefix; returns the fields of its answer.
+    /// Carries out a page's command, without the part's prefix; returns the answer's fields.
     ///
     /// # Errors
     /// The words that the page shows.
@@ -67,10 +67,10 @@ pub trait Part: Debug {
         robot: &Robot<'_>,
     ) -> Result<Fields, String>;
 
-    /// Takes in what was said.
+    /// Handles an event of the dialogue.
     fn on_event(&mut self, event: &DialogueEvent, robot: &Robot<'_>);
 
-    /// Takes in the robot's state, in each pass of the main loop; returns words that are to be said to the robot.
+    /// Takes the robot's state, in each pass of the main loop; returns words to say to the robot.
     fn pass(&mut self, robot: &Robot<'_>) -> Option<String>;
 
     /// Returns the text of the part's section.

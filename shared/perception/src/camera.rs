@@ -1,5 +1,5 @@
-//! A simulated camera over simulated objects: with noise, misses, delay, and values that it mistakes. Both
-//! the simulated Baxter and the simulation of the whole group have this one.
+//! A simulated camera over simulated objects: with noise, misses, delay, and values that it
+//! mistakes. Both the simulated Baxter and the simulation of the whole group have this one.
 
 use std::collections::VecDeque;
 
@@ -27,14 +27,14 @@ pub struct CameraSettings {
     pub sure: (f64, f64),
     /// Distance from a gripper within which it sees no object, metres.
     pub hidden_m: f64,
-    /// Seed of its random numbers.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
 /// An object in front of a simulated camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Standing {
-    /// Which object of the scene file it is.
+    /// Index of the object in the scene file.
     pub object: usize,
     /// Centre, metres.
     pub xyz: [f64; 3],
@@ -60,7 +60,7 @@ impl Camera {
         Self { rng: Rng::new(settings.seed), settings, next: Time(0), pending: VecDeque::new() }
     }
 
-    /// Looks at the objects where a look is due, and returns the reports that are there by now.
+    /// Looks at the objects if a look is due, and returns the reports that are ready.
     pub fn look(
         &mut self,
         file: &Scene,
@@ -116,8 +116,8 @@ impl Camera {
         }
     }
 
-    /// The qualities of an object as the camera sees them: each with a probability with which it is the
-    /// true one. It errs alike whenever it sees the object, also after a restart.
+    /// The qualities of an object as the camera sees them: each with a probability with which it is
+    /// the true one. It errs alike whenever it sees the object, also after a restart.
     fn taken_for(&self, file: &Scene, object: usize) -> Values {
         let object = &file.objects()[object];
         let mut seed = StableHash::default();

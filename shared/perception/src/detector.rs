@@ -1,9 +1,9 @@
-//! Messages of detectors as sightings: which object an identifier stands for, and where its centre is in
-//! frame `base`.
+//! Messages of detectors as sightings: the object behind an identifier, and its centre in frame
+//! `base`.
 //!
-//! Detectors name classes and markers, state poses with all three angles in the frame of a camera, and
-//! leave covariances at zero. All of that is converted here, so that a [`Sighting`] has the names of the
-//! scene file and upright objects in frame `base`.
+//! Detectors name classes and markers, state poses with all three angles in the frame of a camera,
+//! and leave covariances at zero. All of that is converted here, so that a [`Sighting`] has the
+//! names of the scene file and upright objects in frame `base`.
 
 use crate::rotation::Rotation;
 use crate::{Change, Detection, Frame, Look, Sighting};
@@ -11,7 +11,7 @@ use crate::{Change, Detection, Frame, Look, Sighting};
 /// Most unknown identifiers that are remembered, so that each is reported once.
 const UNKNOWN_MAX: usize = 64;
 
-/// What an identifier of a detector stands for.
+/// Meaning of a detector's identifier.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Label {
     /// Class, number of a marker, or name of a marker's frame.
@@ -33,7 +33,7 @@ pub struct Pose {
     pub orientation: [f64; 4],
 }
 
-/// What a detected object may be.
+/// A possible object behind a detection.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hypothesis {
     /// Identifier of the class or marker.
@@ -42,8 +42,8 @@ pub struct Hypothesis {
     pub score: f64,
     /// Pose of the object if it is that; a position of exactly zero counts as not stated.
     pub pose: Pose,
-    /// Covariance of the position, metres, and of rotations about the axes, radians, row by row; zero
-    /// where it is not stated.
+    /// Covariance of the position, metres, and of rotations about the axes, radians, row by row;
+    /// zero where it is not stated.
     pub covariance: [f64; 36],
 }
 
@@ -54,9 +54,9 @@ pub struct Reported {
     pub frame: String,
     /// Identifier under which the detector follows this object; empty if it has none.
     pub track: String,
-    /// What it may be.
+    /// Possible objects.
     pub hypotheses: Vec<Hypothesis>,
-    /// Pose of the object's centre, if it is stated beside those of the hypotheses.
+    /// Pose of the object's centre, if it is stated in addition to those of the hypotheses.
     pub center: Option<Pose>,
 }
 
@@ -71,7 +71,7 @@ pub enum Unused {
     Pose(String),
 }
 
-/// Counts of what was not used.
+/// Counts of unused detections.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct UnusedCounts {
     /// Identifiers that no label has.
@@ -85,18 +85,18 @@ pub struct UnusedCounts {
 pub struct Detector {
     source: String,
     labels: Vec<Label>,
-    /// Names that stand for themselves where no label has them.
+    /// Names that need no label.
     names: Vec<String>,
     frames: Vec<Frame>,
     counts: UnusedCounts,
     reported: Vec<String>,
-    /// What is new since [`take_unused`](Self::take_unused).
+    /// Unused detections since [`take_unused`](Self::take_unused).
     unused: Vec<Unused>,
 }
 
 impl Detector {
-    /// Converts messages of the source `source`, e.g. a topic. `names` are identifiers that need no label,
-    /// `frames` the known ones besides `base`.
+    /// Converts messages of the source `source`, e.g. a topic. `names` are identifiers that need no
+    /// label, `frames` the known ones besides `base`.
     pub fn new(source: &str, labels: &[Label], names: Vec<String>, frames: &[Frame]) -> Self {
         Self {
             source: source.to_owned(),
@@ -109,11 +109,11 @@ impl Detector {
         }
     }
 
-    /// Converts all that one image shows. `at_ns` is the time of its exposure on the monotonic clock, 0 if
-    /// that is not known.
+    /// Converts all that one image shows. `at_ns` is the time of its exposure on the monotonic
+    /// clock, 0 if that is not known.
     ///
-    /// A message with a pose in an unknown frame becomes an empty look in that frame, which the policy
-    /// refuses with its reason.
+    /// A message with a pose in an unknown frame becomes an empty look in that frame, which the
+    /// policy refuses with its reason.
     pub fn look(&mut self, key: u64, at_ns: u64, reported: &[Reported]) -> Sighting {
         let mut sighting = Sighting {
             key,
@@ -135,8 +135,8 @@ impl Detector {
         sighting
     }
 
-    /// Converts a single marker, of which the absence of a message says nothing. Returns none if no label
-    /// has its identifier: transforms of all kinds share a topic.
+    /// Converts a single marker, whose absence says nothing. Returns `None` if no label has its
+    /// identifier: transforms of all kinds share a topic.
     pub fn marker(&mut self, key: u64, at_ns: u64, reported: &Reported) -> Option<Sighting> {
         let hypothesis = reported.hypotheses.first().filter(|it| self.knows(&it.id))?;
         let mut sighting = self.look(key, at_ns, std::slice::from_ref(reported));
@@ -158,12 +158,12 @@ impl Detector {
         self.counts
     }
 
-    /// Returns what was not used since the last call, each unknown identifier only once.
+    /// Returns the detections unused since the last call, each unknown identifier only once.
     pub fn take_unused(&mut self) -> Vec<Unused> {
         std::mem::take(&mut self.unused)
     }
 
-    /// Returns the detection, none if it cannot be used.
+    /// Returns the detection, `None` if it cannot be used.
     ///
     /// # Errors
     /// The frame is not known.
@@ -244,7 +244,7 @@ fn placed(frame: &Frame, pose: &Pose, label: &Label, covariance: &[f64; 36]) -> 
         let row = |i| std::array::from_fn(|j| covariance[6 * (first + i) + first + j]);
         to_base.variances(&std::array::from_fn(row))
     };
-    // Some drivers mark an unknown covariance by −1; NaN is no better.
+    // Some drivers mark an unknown covariance by −1; NaN is just as unusable.
     let stated = |variance: f64| if variance.is_finite() { variance.max(0.0) } else { 0.0 };
     let ([x, y, z], [_, _, yaw]) = (block(0), block(3));
     Detection {
@@ -256,7 +256,7 @@ fn placed(frame: &Frame, pose: &Pose, label: &Label, covariance: &[f64; 36]) -> 
 }
 
 impl Reported {
-    /// A marker that was seen.
+    /// Makes a message about a seen marker.
     pub fn marker(frame: &str, id: &str, pose: Pose, covariance: [f64; 36]) -> Self {
         let (id, track) = (id.to_owned(), id.to_owned());
         let hypotheses = vec![Hypothesis { id, score: 1.0, pose, covariance }];

@@ -1,11 +1,11 @@
-//! What is known of one object after several detections.
+//! State of knowledge about one object after several detections.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::Detection;
 
-/// Least standard deviation of a detection: metres along each axis, then radians. A source that states
-/// less, or nothing, is not believed more.
+/// Least standard deviation of a detection: metres along each axis, then radians. A source that
+/// states less, or nothing, is not believed more.
 const FLOOR: [f64; 4] = [0.01, 0.01, 0.01, 5.0 * PI / 180.0];
 /// Variance that an estimate gains per look: things are pushed a little.
 const DRIFT: [f64; 4] = [1e-7, 1e-7, 1e-7, 1e-5];
@@ -22,9 +22,9 @@ type Chances = Vec<(String, f64)>;
 pub struct Estimate {
     /// Number of detections.
     pub count: u32,
-    /// What it is taken for.
+    /// Probabilities of the object's classes.
     pub classes: Chances,
-    /// Its values by attribute.
+    /// Probabilities of values by attribute.
     pub attributes: Vec<(String, Chances)>,
     /// Centre, metres, and yaw, radians.
     pub place: [f64; 4],
@@ -47,8 +47,8 @@ impl Estimate {
         }
     }
 
-    /// Takes in a detection. One that is more than `moved_m` away counts once as many in a row agree; returns
-    /// whether the estimate is where the object was detected.
+    /// Adds a detection. One more than `moved_m` away counts once enough in a row agree; returns
+    /// whether the estimate is at the detected position.
     pub fn see(&mut self, detection: &Detection, moved_m: f64) -> bool {
         self.count = self.count.saturating_add(1);
         let gain = (1.0 / f64::from(self.count)).max(GAIN_MIN);
@@ -76,7 +76,7 @@ impl Estimate {
         true
     }
 
-    /// Moves it to where another estimate of the same object is.
+    /// Moves it to the place of another estimate of the same object.
     pub fn move_to(&mut self, other: &Self) {
         self.away.clear();
         (self.place, self.variance) = (other.place, other.variance);
@@ -94,7 +94,7 @@ impl Estimate {
         self.place[3] = wrapped(self.place[3]);
     }
 
-    /// Puts it where somebody says that it is.
+    /// Puts it at the place that a person states.
     pub fn put(&mut self, xyz: [f64; 3], yaw: f64) {
         self.away.clear();
         self.place = [xyz[0], xyz[1], xyz[2], wrapped(yaw)];
@@ -132,8 +132,8 @@ fn variance(detection: &Detection) -> [f64; 4] {
     std::array::from_fn(|axis| detection.variances[axis].max(FLOOR[axis] * FLOOR[axis]))
 }
 
-/// Moves `known` by the share `gain` towards `seen`. Reports of one source err alike again and again,
-/// so that they are averaged and not multiplied.
+/// Moves `known` by the share `gain` towards `seen`. Reports of one source err alike again and
+/// again, so that they are averaged and not multiplied.
 fn blend(known: &mut Chances, seen: &Chances, gain: f64) {
     known.iter_mut().for_each(|(_, p)| *p *= 1.0 - gain);
     for (name, p) in seen {

@@ -1,4 +1,4 @@
-//! Objects from perception: what sources report, and the tracker that makes a table of it.
+//! Objects from perception: reports of sources, and the tracker that makes a table of them.
 //!
 //! This crate is pure: no IO, no clock, no threads. Positions are metres in frame `base`, angles
 //! radians, times those of the machine's monotonic clock.

@@ -1,5 +1,5 @@
-//! Rotations as matrices, for poses that are converted between frames. Without nalgebra: every service reads
-//! settings of this crate, and grounding links no kinematics (`tests/layers`).
+//! Rotations as matrices, for poses that are converted between frames. Without nalgebra: every
+//! service reads settings of this crate, and grounding links no kinematics (`tests/layers`).
 
 /// A rotation; the columns are the axes of the rotated frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,8 +16,8 @@ impl Rotation {
         ])
     }
 
-    /// Returns the rotation of a quaternion x, y, z, w of any length; none for length 0, which a message
-    /// has where the rotation is not set.
+    /// Returns the rotation of a quaternion x, y, z, w of any length; no rotation for length 0, as
+    /// in messages without one.
     pub(crate) fn from_quaternion(quaternion: [f64; 4]) -> Self {
         let length = quaternion.iter().map(|part| part * part).sum::<f64>().sqrt();
         if length == 0.0 {
@@ -31,7 +31,7 @@ impl Rotation {
         ])
     }
 
-    /// Returns this rotation after `first`.
+    /// Returns the rotation `first` followed by this one.
     pub(crate) fn after(&self, first: &Self) -> Self {
         let Self(b) = first;
         Self(self.0.map(|row| {
@@ -49,7 +49,7 @@ impl Rotation {
         self.0[1][0].atan2(self.0[0][0])
     }
 
-    /// Returns the variances along the axes of what has this covariance before it is rotated.
+    /// Returns the variances along the axes, given the covariance before the rotation.
     pub(crate) fn variances(&self, covariance: &[[f64; 3]; 3]) -> [f64; 3] {
         self.0.map(|row| {
             let terms = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));

@@ -1,4 +1,4 @@
-//! What a source reports: what it sees, or what somebody has changed.
+//! Reports of a source: its sightings, or changes made by people.
 
 use serde::{Deserialize, Serialize};
 
@@ -94,22 +94,22 @@ pub enum Refusal {
     /// A number is not one.
     #[error("a position or probability that is not a finite number")]
     Number,
-    /// There is no such object.
+    /// The object is unknown.
     #[error("no object `{0}` on the table; help: `whichone objects list` names them")]
     NoObject(String),
-    /// There is no such class.
+    /// The class is unknown.
     #[error("no object `{0}` in the scene file; help: name one of its objects as the class")]
     NoClass(String),
-    /// There is no such attribute.
+    /// The attribute is unknown.
     #[error("unknown attribute `{0}`; help: the scene file has {1}")]
     NoAttribute(String, String),
     /// The attribute has no such value.
     #[error("unknown value `{1}` of {0}; help: write {2}")]
     NoValue(String, String, String),
-    /// There are too many.
+    /// The table is full.
     #[error("the table is full: {0} objects; help: remove some")]
     Full(usize),
-    /// It cannot be changed while the arm fetches.
+    /// The table cannot be changed while the arm fetches.
     #[error("the arm is fetching; help: try again when it is done")]
     Fetching,
     /// Objects are not perceived.
@@ -120,8 +120,8 @@ pub enum Refusal {
 }
 
 impl Frame {
-    /// Returns a place in this frame in frame `base`. Objects stand upright, so of the rotation the part
-    /// about the vertical counts for their yaw.
+    /// Returns a place in this frame in frame `base`. Objects stand upright, so of the rotation the
+    /// part about the vertical counts for their yaw.
     pub fn to_base(&self, xyz: [f64; 3], yaw: f64) -> ([f64; 3], f64) {
         let to_base = Rotation::from_rpy(self.rpy);
         let moved = to_base.turn(xyz);

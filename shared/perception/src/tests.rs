@@ -135,7 +135,7 @@ fn a_small_motion_is_estimated_and_not_reported_and_a_larger_one_is() {
     assert_eq!(it.numbers(), [6]);
 }
 
-/// Looks at an object that stands as far away as a detection may be err to both sides of that distance.
+/// Looks at an object that is as far away as a detection may err to both sides of it.
 #[test]
 fn an_object_that_was_moved_as_far_as_the_gate_keeps_its_number() {
     let mut it = Scenery::new();
@@ -145,7 +145,7 @@ fn an_object_that_was_moved_as_far_as_the_gate_keeps_its_number() {
     }
     assert_eq!(it.numbers(), [6]);
     assert!((it.tracker.objects()[0].xyz[1] - 0.2).abs() < 0.005, "{:?}", it.tracker.objects());
-    // Where the object was is no candidate for the next motion, whichever of the two ended the first one.
+    // The object's old place is not a candidate for the next motion, whoever ended the first.
     it.looks(1, &[seen("white", 0.7, 0.1)]);
     for y in [0.098, 0.102, 0.098, 0.2, 0.303, 0.298, 0.302, 0.301] {
         it.look(&[seen("white", 0.7, y)]);
@@ -165,7 +165,7 @@ fn an_object_that_was_seen_beside_another_one_is_not_it() {
     it.looks(3, &[seen("white", 0.7, 0.19), seen("white", 0.7, -0.3)]);
     assert_eq!(it.numbers(), [6, 7]);
     assert!((it.tracker.objects()[0].xyz[1] - 0.19).abs() < 0.01, "{:?}", it.tracker.objects());
-    // The slid one is missed in the look in which the new one is there.
+    // The slid one is missed in the look that shows the new one.
     let mut it = Scenery::new();
     it.looks(3, &[seen("white", 0.7, 0.1)]);
     for y in [0.13, 0.16] {
@@ -192,7 +192,7 @@ fn two_of_a_class_side_by_side_are_two() {
 }
 
 proptest! {
-    /// However far it is moved, and however its looks err, the only one of its class stays what it was.
+    /// However it is moved, and its looks err, the only one of its class keeps its number.
     #[test]
     fn the_only_one_of_its_class_keeps_its_number_wherever_it_is_moved_to(
         moves in prop::collection::vec((0.03_f64..0.3, 0.0_f64..std::f64::consts::TAU), 1..4),
@@ -301,7 +301,7 @@ fn changes_by_hand_count_at_once_and_are_not_missed_before_they_are_seen() {
     assert!(of("colour", "white").contains("unknown attribute `colour`"));
 }
 
-/// The camera sees it on its way, in the gripper: that is no motion of its own and no other object.
+/// The camera sees it in the gripper: that is neither its own motion nor another object.
 #[test]
 fn what_is_carried_is_neither_moved_nor_doubled() {
     let mut it = Scenery::new();
@@ -344,8 +344,8 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
 }
 
 proptest! {
-    /// Whatever is seen: numbers are unique, rise in order of appearance, are never given again, also
-    /// after a restart from the table, and no place is invented.
+    /// Whatever is seen: numbers are unique, rise in order of appearance, are never given again,
+    /// also after a restart from the table, and no place is invented.
     #[test]
     fn numbers_are_never_given_again(steps in steps()) {
         const CLASSES: [&str; 3] = ["white", "metal", "clear"];

@@ -13,19 +13,19 @@ mod track;
 
 /// Detections in one look that are used.
 const SEEN_MAX: usize = 256;
-/// Probability up to which a change of what an object is taken for is none.
+/// Largest change of a class probability that is ignored.
 const CHANCE_STEP: f64 = 0.1;
 
 /// Settings of the tracker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Detections after which an object is there.
+    /// Consecutive detections before an object is added.
     pub appear: u32,
     /// Distance up to which an object has not moved, metres.
     pub moved_m: f64,
     /// Distance up to which a detection may be of an object, metres.
     pub gate_m: f64,
-    /// Time for which an object is looked for in vain before it is gone.
+    /// Time without a detection before an object is removed.
     pub vanish: Span,
     /// Greatest age of a look.
     pub age_max: Span,
@@ -35,25 +35,25 @@ pub struct Settings {
     pub frames: Vec<Frame>,
 }
 
-/// What the arm hides.
+/// Positions and objects hidden by the arm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Hiding {
     /// Positions of the grippers, metres.
     pub grippers: Vec<[f64; 3]>,
-    /// The object that is being grasped or carried: what is seen of it says nothing.
+    /// The object being grasped or carried: sightings of it say nothing.
     pub handled: Option<ObjectId>,
 }
 
-/// What is known of an object at this moment.
+/// State of an object at this moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Live {
     /// Centre, metres, and yaw, radians: the best estimate.
     pub place: [f64; 4],
     /// Standard deviation of each.
     pub sd: [f64; 4],
-    /// When it was last seen.
+    /// Time of the last sighting.
     pub seen: Time,
-    /// Whether it was looked for in vain for so long that it is gone.
+    /// Whether it went without a detection for so long that it is gone.
     pub gone: bool,
 }
 
@@ -131,8 +131,8 @@ impl Tracker {
         }
     }
 
-    /// Returns the objects, each as it was last reported: places that differ by less than the settings'
-    /// step are the same.
+    /// Returns the objects, each as it was last reported: places that differ by less than the
+    /// settings' step are the same.
     pub fn objects(&self) -> Vec<Perceived> {
         self.tracks
             .iter()
@@ -146,7 +146,7 @@ impl Tracker {
         self.next
     }
 
-    /// Returns what is known of an object at this moment.
+    /// Returns the state of an object at this moment.
     pub fn live(&self, number: ObjectId) -> Option<Live> {
         let track = self.tracks.iter().find(|track| track.object.number == number)?;
         Some(Live {
@@ -157,8 +157,8 @@ impl Tracker {
         })
     }
 
-    /// Notes that an object was handed to a person, or was put back in its place. One that a person has
-    /// is not looked for.
+    /// Notes that an object was handed to a person, or was put back in its place. One that a person
+    /// has is not looked for.
     pub fn hand_over(&mut self, number: ObjectId, taken: bool) {
         let changed = |it: &&mut Track| it.object.number == number && it.object.taken != taken;
         if let Some(track) = self.tracks.iter_mut().find(changed) {
@@ -217,7 +217,7 @@ impl Tracker {
     }
 }
 
-/// Checks that the scene file has the attributes and values. Cameras may report others, which do not count.
+/// Checks that the scene file has the attributes and values. Others, from cameras, do not count.
 fn check_values(detection: &Detection, file: &Scene) -> Result<(), Refusal> {
     for (name, values) in &detection.attributes {
         let Some(k) = file.attribute_named(name) else {

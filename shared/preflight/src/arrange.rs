@@ -1,4 +1,4 @@
-//! Places for objects that the arm cannot fetch where they are: the nearest one, or any on the table.
+//! Places for objects that the arm cannot fetch from theirs: the nearest, or any on the table.
 
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -19,11 +19,11 @@ const DIRECTIONS: usize = 16;
 /// Distance between boxes of objects below which a place is not tried, metres.
 const GAP_M: f64 = 0.02;
 
-/// Distances between boxes that are tried one after the other on a free table, metres: what stands
-/// loosely leaves room for the next object.
+/// Distances between boxes that are tried one after the other on a free table, metres: loose
+/// spacing leaves room for the next object.
 const LOOSE_M: [f64; 3] = [0.10, 0.05, GAP_M];
 
-/// Spacing of the places that are tried on a free table, and how far they reach from its middle, metres.
+/// Spacing of the places tried on a free table, and their extent from its middle, metres.
 const GRID_M: f64 = 0.05;
 const GRID_STEPS: i32 = 20;
 
@@ -36,14 +36,14 @@ const NEIGHBOURS_MAX: usize = 12;
 pub struct Arrangement<'a> {
     setup: &'a ArmSetup,
     poses: Vec<ObjectPose>,
-    /// Whether the object stands there, so that others must not touch it.
+    /// Whether the object is in its place, so that others must not touch it.
     stands: Vec<bool>,
     /// When searches are given up.
     until: Option<Instant>,
 }
 
 impl<'a> Arrangement<'a> {
-    /// All of them stand where they are.
+    /// Plans with all objects at their own places.
     pub fn new(setup: &'a ArmSetup, poses: Vec<ObjectPose>) -> Self {
         let stands = vec![true; poses.len()];
         Self { setup, poses, stands, until: None }
@@ -59,7 +59,7 @@ impl<'a> Arrangement<'a> {
         self.until.is_some_and(|until| Instant::now() >= until)
     }
 
-    /// Returns the limb that can fetch an object among those that stand.
+    /// Returns the limb that can fetch an object among those in place.
     ///
     /// # Errors
     /// [`PlanError`] of the attempt that came furthest.
@@ -79,8 +79,8 @@ impl<'a> Arrangement<'a> {
         near.find(|&j| !self.is_late() && self.limb_at(i, &self.poses[i], Some(j)).is_ok())
     }
 
-    /// Returns the nearest place at the same height where the arm can fetch `i`, and all others that it
-    /// can fetch now.
+    /// Returns the nearest place at the same height where the arm can fetch `i`, and all others
+    /// that it can fetch now.
     pub fn nearest(&self, i: usize) -> Option<[f64; 3]> {
         let [x, y, z] = self.poses[i].xyz_m;
         let turned = |n: usize| {
@@ -96,10 +96,10 @@ impl<'a> Arrangement<'a> {
             .find(|&place| self.fits(i, place, GAP_M))
     }
 
-    /// Moves every object that cannot be fetched where it stands to the nearest place where it can,
-    /// then puts each of `new`, which do not stand anywhere yet, on the table. Returns those that have
-    /// another place now. Objects for which there is none keep theirs, out of the others' way; no place
-    /// helps those that cannot be grasped.
+    /// Moves every object that cannot be fetched from its place to the nearest one where it can,
+    /// then puts each of `new`, which have no place yet, on the table. Returns those with a new
+    /// place. Others keep theirs, out of the others' way; no place helps those that cannot be
+    /// grasped.
     pub fn arrange(&mut self, new: &[usize]) -> Vec<usize> {
         new.iter().for_each(|&i| self.stands[i] = false);
         let is_misplaced = |&i: &usize| {
@@ -127,7 +127,7 @@ impl<'a> Arrangement<'a> {
         moved
     }
 
-    /// Returns why there is no place for an object that stands nowhere.
+    /// Returns the reason for which an object without a place gets none.
     pub fn why_unplaced(&self, i: usize) -> String {
         match self.limb(i) {
             Err(PlanError::Grasp(error)) => format!("cannot be grasped anywhere: {error}"),
@@ -147,7 +147,7 @@ impl<'a> Arrangement<'a> {
         self.poses[i].xyz_m
     }
 
-    /// Returns a place on the table, the nearest to the middle of what the arm reaches.
+    /// Returns a place on the table, the nearest to the middle of the arm's reach.
     fn on_table(&self, i: usize) -> Option<[f64; 3]> {
         let plan = &self.setup.plan;
         // In front of the robot, a little nearer than objects are handed over.
@@ -168,8 +168,8 @@ impl<'a> Arrangement<'a> {
             .find_map(|(gap_m, place)| self.fits(i, place, gap_m).then_some(place))
     }
 
-    /// Returns whether the arm can fetch `i` at a place that is `gap_m` from others, and still fetch
-    /// those that it can fetch now.
+    /// Returns whether the arm can fetch `i` at a place that is `gap_m` from others, and still
+    /// fetch those that it can fetch now.
     fn fits(&self, i: usize, place: [f64; 3], gap_m: f64) -> bool {
         let pose = ObjectPose { xyz_m: place, ..self.poses[i] };
         if self.others(i).any(|j| are_near(&pose, &self.poses[j], gap_m)) {

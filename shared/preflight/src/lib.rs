@@ -1,7 +1,7 @@
 //! Checks of a scene on a robot before anything moves, and the durations that planners pay for
 //! questions and that studies count.
 //!
-//! This crate is pure, except for [`load`], which reads a configuration folder and checks the reach on all processors.
+//! This crate is pure, except for [`load`], which reads configurations and checks the reach.
 //!
 //! | contents | file |
 //! |---|---|

@@ -9,12 +9,12 @@ use vocabulary::Durations;
 
 use crate::{ArmSetup, Extent, MotionError, Motions, Pace, Voice, measure, reach};
 
-/// Loads a configuration folder ([`Settings::load`]), checks that the arm can fetch every object that
-/// has a place, and measures the durations if they are the costs of questions.
+/// Loads a configuration folder ([`Settings::load`]), checks that the arm can fetch every object
+/// that has a place, and measures the durations if they are the costs of questions.
 ///
 /// # Errors
 /// Every problem of the files and every object with a place that the arm cannot fetch, at once. The
-/// reach is not checked where a problem concerns the arm's settings or the robot's description.
+/// reach is not checked if a problem concerns the arm's settings or the robot's description.
 pub fn load(
     dir: &Path,
     profile: Option<&str>,
@@ -23,8 +23,8 @@ pub fn load(
     examine(dir, profile, overrides, None).verdict()
 }
 
-/// Does the same as [`load`], but skips the check of the arm's reach, which takes most of the time, if `is_known` says
-/// that these settings have passed it before.
+/// Does the same as [`load`], but skips the check of the arm's reach, which takes most of the time,
+/// if `is_known` says that these settings have passed it before.
 ///
 /// # Errors
 /// As [`load`].
@@ -37,8 +37,8 @@ pub fn load_known(
     checked(Settings::examine(dir, profile, overrides, None), is_known).verdict()
 }
 
-/// Does the same as [`load`] before a verdict, so that further checks may add to the report. `scene` is read in place of
-/// the scene that the configuration names.
+/// Does the same as [`load`] before a verdict, so that further checks may add to the report.
+/// `scene` is read in place of the scene that the configuration names.
 pub fn examine(
     dir: &Path,
     profile: Option<&str>,

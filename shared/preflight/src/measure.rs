@@ -8,9 +8,9 @@ use crate::{Motions, Pace, Voice};
 /// Returns the duration of every single action for the user.
 ///
 /// A question lasts from the decision until its answer is recognised: speaking, then the expected
-/// reaction, one word, and the recogniser; a pointing question also the motion of the arm from rest. A
-/// pick lasts until its hand-over. Without motions, or without those of pointing, these lists are
-/// empty.
+/// reaction, one word, and the recogniser; a pointing question also the motion of the arm from
+/// rest. A pick lasts until its hand-over. Without motions, or without those of pointing, these
+/// lists are empty.
 pub fn measure(scene: &Scene, voice: &Voice, pace: &Pace, motions: Option<&Motions>) -> Durations {
     let answer_s = pace.mean_answer_s();
     let asked_s = |question| voice.seconds(&scene.phrase(question)) + answer_s;

@@ -107,8 +107,8 @@ impl Motions {
         Ok(motions)
     }
 
-    /// Adds what follows from one posture of aiming. Where the arm cannot do it from there, it goes
-    /// to rest first.
+    /// Adds the durations from one posture of aiming. If the arm cannot continue from there, it
+    /// goes to rest first.
     fn add_from(&mut self, planner: &Planner<'_>, aimed: &Posture) -> Result<(), Refusal> {
         let count = self.picks[0].len();
         let tried = count <= OBJECTS_MAX;
@@ -133,14 +133,14 @@ impl Motions {
         self.picks.get(row).unwrap_or(&self.picks[0])[object.index()]
     }
 
-    /// Seconds from the decision to pick `object` until the fingers close on it: until then it can be
-    /// called off. From rest or from aiming at `aimed`.
+    /// Seconds from the decision to pick `object` until the fingers close on it: until then it can
+    /// be called off. From rest or from aiming at `aimed`.
     pub fn grip_s(&self, aimed: Option<ObjectId>, object: ObjectId) -> f64 {
         let row = aimed.map_or(0, |i| i.index() + 1);
         self.grips.get(row).unwrap_or(&self.grips[0])[object.index()]
     }
 
-    /// Seconds until the arm aims at `object`, from rest or from aiming at `aimed`; none where
+    /// Seconds until the arm aims at `object`, from rest or from aiming at `aimed`; `None` if
     /// pointing was not planned.
     pub fn point_s(&self, aimed: Option<ObjectId>, object: ObjectId) -> Option<f64> {
         if aimed == Some(object) {
@@ -168,7 +168,7 @@ impl Planner<'_> {
         Ok((released_s, closing_s))
     }
 
-    /// Seconds until the arm aims, with which limb, and where both are then.
+    /// Seconds until the arm aims, the limb, and the final postures of both.
     fn aim(&self, from: &Posture, i: usize) -> Result<(f64, Limb, [Joints; 2]), Refusal> {
         let (others, at) = (self.others(None), self.places[i].xyz_m);
         let plan = plan_point(self.robot, at, self.limb, &from.arms, &others, self.settings)?;

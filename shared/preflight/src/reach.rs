@@ -20,13 +20,13 @@ const NICENESS: i32 = 10;
 /// many take seconds. Objects without a place are not planned, so that their number is not limited.
 const PLACED_MAX: usize = 256;
 
-/// Time for which the other objects are looked at, and better places searched, after the first object that cannot be
-/// fetched: where robot and scene do not fit, each look takes long.
+/// Time for which the other objects are looked at, and better places searched, after the first
+/// object that cannot be fetched: if robot and scene do not fit, each look takes long.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Reports every object with a place that the arm cannot bring, and settings that need the places of
-/// all objects where some have none. `plan` plans every pick, where the durations are needed, and returns whether
-/// it has: then all objects can be fetched.
+/// Reports every object with a place that the arm cannot bring, and settings that need the places
+/// of all objects if some have none. `plan` plans every pick, if the durations are needed, and
+/// returns whether it has: then all objects can be fetched.
 pub(crate) fn check(
     settings: &Settings,
     setup: &ArmSetup,
@@ -99,9 +99,9 @@ pub(crate) fn check(
     }
 }
 
-/// Returns for each object the limb that can fetch it among the others; none for those that are not looked at within
-/// [`PATIENCE`] after the first that cannot be fetched. The objects are divided among all processors; all
-/// but this thread give way to others, an arm that moves during a reload among them.
+/// Returns for each object the limb that can fetch it among the others; `None` for those not
+/// examined within [`PATIENCE`] after the first failure. The objects are divided among all
+/// processors; all but this thread give way to others, also to an arm that moves during a reload.
 fn reachable(
     setup: &ArmSetup,
     poses: &[ObjectPose],
@@ -147,8 +147,8 @@ fn reachable(
 /// Most objects for which a better place is searched: each takes a second or so.
 const SEARCHED_MAX: usize = 8;
 
-/// Returns why object `i` cannot be fetched, with the other object that is in the way, and a move that
-/// helps, both where `is_searched`.
+/// Returns why object `i` cannot be fetched, with the other object that is in the way, and a move
+/// that helps, both if `is_searched`.
 fn move_help(
     i: usize,
     error: &PlanError,
@@ -214,8 +214,8 @@ fn of_object(settings: &Settings, n: usize, key: &str, what: &str, help: &str) -
     settings.scene_diagnostic(format!("objects[{n}].{key}"), what, help)
 }
 
-/// Reports every object that stands where an earlier one does, which no plan can mend: their centres
-/// are nearer in each direction than a quarter of the smaller one. Returns whether there is none.
+/// Reports every object at the place of an earlier one, which no plan can solve: their centres are
+/// nearer in each direction than a quarter of the smaller one. Returns whether there are none.
 fn check_apart(placed: &[(usize, ObjectPose)], settings: &Settings, report: &mut Report) -> bool {
     let is_at = |a: &ObjectPose, b: &ObjectPose| {
         (0..3).all(|axis| {
@@ -234,8 +234,8 @@ fn check_apart(placed: &[(usize, ObjectPose)], settings: &Settings, report: &mut
     all_apart
 }
 
-/// Reports every object that a limb's gripper could hold if `grip_open_percent` were 100: one that is
-/// wider than the fingers open. What no gripper holds is found by planning.
+/// Reports every object that a limb's gripper could hold if `grip_open_percent` were 100: one that
+/// is wider than the fingers open. Planning finds objects too wide for any gripper.
 fn check_widths(
     placed: &[(usize, ObjectPose)],
     settings: &Settings,
@@ -269,7 +269,7 @@ fn placed(settings: &Settings) -> Vec<(usize, ObjectPose)> {
     objects.filter_map(|(n, object)| Some((n, pose(&object.placement?)))).collect()
 }
 
-/// Reports what is impossible with objects that have no place: fetching nothing at all, pointing at
+/// Reports impossible settings for objects without a place: fetching nothing at all, pointing at
 /// them, and the seconds of fetching them as costs.
 fn check_unplaced(settings: &Settings, placed: usize, report: &mut Report) {
     let objects = settings.scene.objects();

@@ -20,8 +20,8 @@ impl ArmSetup {
     /// Reads the robot's description and converts the settings of the arm.
     ///
     /// # Errors
-    /// Every fault of the description, the parts that an arm needs and it lacks, or a limb that it does
-    /// not have.
+    /// Every fault of the description, the parts that an arm needs and it lacks, or a limb that it
+    /// does not have.
     pub fn new(settings: &Settings) -> Result<Self, Diagnostics> {
         let robot = robot(settings.robot_files())?;
         let limb = limb(settings, &robot)?;

@@ -6,14 +6,14 @@ use vocabulary::reaction::SPOKEN;
 /// The robot's voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Voice {
-    /// Its speed, as the voice program takes it.
+    /// Speed of the voice, as its program takes it.
     pub words_per_minute: f64,
 }
 
 /// Seconds of a sentence at [`REFERENCE_WPM`], whatever its length: onset and final fall.
 const SENTENCE_S: f64 = 0.55;
-/// Seconds per letter at [`REFERENCE_WPM`]. Letters predict the length of an English sentence better
-/// than words.
+/// Seconds per letter at [`REFERENCE_WPM`]. Letters predict the length of an English sentence
+/// better than words.
 const LETTER_S: f64 = 0.055;
 /// The speed at which the two were measured.
 const REFERENCE_WPM: f64 = 165.0;
@@ -26,8 +26,8 @@ impl Default for Voice {
 }
 
 impl Voice {
-    /// Returns the seconds that the voice takes for `text`: a fit to espeak-ng's voice `en-us` on the
-    /// questions of the bowls, with an error of at most a fifth.
+    /// Returns the seconds that the voice takes for `text`: a fit to espeak-ng's voice `en-us` on
+    /// the questions of the bowls, with an error of at most a fifth.
     pub fn seconds(&self, text: &str) -> f64 {
         let letters = text.chars().filter(|c| c.is_alphanumeric()).count();
         if letters == 0 {
@@ -40,14 +40,14 @@ impl Voice {
 /// Timing of users and of the recogniser.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pace {
-    /// From the end of a question to the answer's first sound: median, seconds, and standard
+    /// Time from the end of a question to the answer's first sound: median, seconds, and standard
     /// deviation of the logarithm.
     pub reaction_s: (f64, f64),
     /// An answer of one word: median, seconds, and standard deviation of the logarithm.
     pub word_s: (f64, f64),
     /// Each further word, seconds.
     pub further_word_s: f64,
-    /// From the last sound to the recognised words, seconds: least and most.
+    /// Time from the last sound to the recognised words, seconds: least and most.
     pub recogniser_s: (f64, f64),
 }
 
@@ -68,7 +68,7 @@ impl Pace {
         rng.log_normal(self.reaction_s.0, self.reaction_s.1)
     }
 
-    /// Draws how long a person takes to say so many words, seconds.
+    /// Draws the time in which a person says a number of words, seconds.
     pub fn speech_s(&self, rng: &mut Rng, words: usize) -> f64 {
         let factor = rng.log_normal(1.0, self.word_s.1);
         factor * (self.word_s.0 + self.further_word_s * words.saturating_sub(1) as f64)
@@ -79,7 +79,7 @@ impl Pace {
         rng.between(self.recogniser_s)
     }
 
-    /// From a question's end to an answer of one word recognised, seconds, in expectation.
+    /// Returns the expected time from a question's end to a recognised answer of one word, seconds.
     pub fn mean_answer_s(&self) -> f64 {
         let mean = |median: f64, log_sd: f64| median * (0.5 * log_sd * log_sd).exp();
         let (least, most) = self.recogniser_s;

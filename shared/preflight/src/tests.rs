@@ -27,7 +27,7 @@ grasp_width = 0.004
 form = "hollow"
 "#;
 
-/// The folder that is shipped.
+/// Returns the shipped configuration folder.
 fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config")
 }
@@ -47,7 +47,7 @@ fn owned(overrides: &[(&str, &str)]) -> Vec<(String, String)> {
     overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect()
 }
 
-/// Every problem of a configuration with such files, one per line, with files named from its folder.
+/// Every problem of a configuration with such files, one per line, with file names from there.
 fn complaints(files: &[(&str, &str)], overrides: &[(&str, &str)]) -> Vec<String> {
     let folder = folder(files);
     let found = load(folder.path(), None, &owned(overrides)).err();
@@ -278,7 +278,7 @@ fn places_are_checked_in_the_same_round_as_everything_else() {
     assert!(found.contains("hover_m") && !found.contains("out of reach"), "{found}");
 }
 
-/// The shipped arm, and bowls that stand nowhere yet.
+/// The shipped arm, and bowls that have no place yet.
 fn unplaced(count: usize) -> (ArmSetup, Vec<manipulation::ObjectPose>) {
     let settings = Settings::load(&shipped(), None, &[]).unwrap();
     let setup = ArmSetup::new(&settings).unwrap();

@@ -6,10 +6,10 @@ use serde_reflection::{Registry, Tracer, TracerConfig};
 
 use crate::foxglove::{FrameTransforms, JointStates, Log, RawAudio, SceneUpdate};
 
-/// A channel as MCAP describes it.
+/// A channel in the form in which MCAP describes it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
-    /// Its name in the file.
+    /// Name of the channel in the file.
     pub topic: String,
     /// Name of the schema.
     pub schema: String,
@@ -17,7 +17,7 @@ pub struct Channel {
     pub schema_encoding: &'static str,
     /// The schema.
     pub definition: String,
-    /// Whether the latest message stands until the next one: a viewer that joins needs it.
+    /// Whether late joiners need the latest message, which is valid until the next one.
     pub is_state: bool,
 }
 
@@ -44,7 +44,7 @@ pub enum Picture {
     Scene,
     /// Frames of the objects.
     Frames,
-    /// What was said.
+    /// Lines of the dialogue.
     Dialogue,
     /// The services' logs.
     Log,
@@ -53,7 +53,7 @@ pub enum Picture {
 }
 
 impl Picture {
-    /// All of them.
+    /// All channels.
     pub const ALL: [Self; 7] = [
         Self::RobotDescription,
         Self::Joints,
@@ -64,7 +64,7 @@ impl Picture {
         Self::Sound,
     ];
 
-    /// Its name in the file.
+    /// Returns the channel's name in the file.
     pub fn topic(self) -> &'static str {
         match self {
             Self::RobotDescription => "/robot_description",
@@ -121,7 +121,7 @@ impl ChannelId {
         Self(place)
     }
 
-    /// Returns whether it carries sound, which is shown only where `recorder.sound` allows it.
+    /// Returns whether it carries sound, which is shown only if `recorder.sound` allows it.
     pub fn is_sound(self) -> bool {
         let topic = group_topics().nth(self.0);
         topic.map_or(self == Picture::Sound.into(), |topic| topic.name == topics::AUDIO.name)

@@ -1,4 +1,4 @@
-//! Wall-clock times of what is stamped with the monotonic clock, and their names.
+//! Wall-clock times for monotonic stamps, and their names.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -12,7 +12,7 @@ const STEP_NS: u64 = SECOND / 2;
 /// The offset between the wall clock and the monotonic clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WallClock {
-    /// What is added to a monotonic time to get nanoseconds since 1970.
+    /// Difference between nanoseconds since 1970 and the monotonic time.
     pub offset_ns: u64,
 }
 

@@ -1,4 +1,4 @@
-//! One recording as it is written.
+//! A recording being written.
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap};
@@ -15,12 +15,12 @@ use crate::channels::{Channel, ChannelId, message_encoding};
 use crate::clock::{self, WallClock};
 use crate::{EXTENSION, RecordingError, UNFINISHED};
 
-/// Bytes of messages that are compressed together, unless a flush comes first. A writer that is killed
-/// loses those of the open chunk.
+/// Bytes of messages that are compressed together, unless a flush comes first. A writer that is
+/// killed loses those of the open chunk.
 const CHUNK_BYTES: u64 = 256 << 10;
 /// Key of the metadata for the number of a recording in its folder.
 pub(crate) const NUMBER: &str = "number";
-/// Mode of a recording: its owner's alone, as it holds what people said.
+/// Mode of a recording: readable by its owner alone, as it holds people's words.
 const PRIVATE: u32 = 0o600;
 
 /// Files that every recording holds.
@@ -28,7 +28,7 @@ const PRIVATE: u32 = 0o600;
 pub struct Attached {
     /// Name, media type and text of each.
     pub files: Vec<(String, &'static str, String)>,
-    /// What is known of the recorded group.
+    /// Properties of the recorded group.
     pub group: BTreeMap<String, String>,
 }
 
@@ -81,8 +81,8 @@ pub(crate) fn is_locked(path: &Path) -> bool {
         .is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
-/// A recording that is being written; its file is locked. One that is dropped instead of finished is complete in its chunks, but
-/// keeps its unfinished name.
+/// A recording that is being written; its file is locked. One that is dropped instead of finished
+/// is complete in its chunks, but keeps its unfinished name.
 pub struct Recording {
     writer: Writer<Counted>,
     bytes: Rc<Cell<u64>>,
@@ -95,8 +95,8 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Begins a recording in `folder`, at a moment in nanoseconds since 1970. Its number is greater than those of the
-    /// files before it.
+    /// Begins a recording in `folder`, at a moment in nanoseconds since 1970. Its number is greater
+    /// than those of the files before it.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -175,7 +175,7 @@ impl Recording {
         Ok(number)
     }
 
-    /// Hands what was written so far to the operating system: it outlives this process.
+    /// Hands the data so far to the operating system: they outlive this process.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -194,12 +194,12 @@ impl Recording {
         finished(&path)
     }
 
-    /// When it began, nanoseconds since 1970.
+    /// Returns the recording's start, nanoseconds since 1970.
     pub fn began_ns(&self) -> u64 {
         self.began_ns
     }
 
-    /// The clock of its messages.
+    /// Returns the clock of the messages.
     pub fn clock(&self) -> WallClock {
         self.clock
     }

@@ -8,9 +8,9 @@ const SECOND: u64 = 1_000_000_000;
 /// A moment, or a length of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Time {
-    /// Whole seconds, since 1970 where it is a moment.
+    /// Whole seconds, of a moment since 1970.
     pub sec: u64,
-    /// Nanoseconds beyond them.
+    /// Nanoseconds in addition to the seconds.
     pub nsec: u32,
 }
 
@@ -88,7 +88,7 @@ pub struct JointStates {
 /// A joint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct JointState {
-    /// Its name in the robot's description.
+    /// Name in the robot's description.
     pub name: String,
     /// Radians or metres.
     pub position: f64,
@@ -105,18 +105,18 @@ pub struct FrameTransforms {
     pub transforms: Vec<FrameTransform>,
 }
 
-/// A frame in its parent.
+/// Pose of a frame in its parent.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrameTransform {
-    /// When it was there.
+    /// Time of the pose.
     pub timestamp: Time,
     /// The parent.
     pub parent_frame_id: String,
     /// The frame.
     pub child_frame_id: String,
-    /// Its origin in the parent, metres.
+    /// Origin of the frame in the parent, metres.
     pub translation: Vector3,
-    /// Its orientation in the parent.
+    /// Orientation of the frame in the parent.
     pub rotation: Quaternion,
 }
 
@@ -125,11 +125,11 @@ pub struct FrameTransform {
 pub struct SceneUpdate {
     /// Entities that are gone.
     pub deletions: Vec<SceneEntityDeletion>,
-    /// Entities that are there; each replaces the one of its name.
+    /// Present entities; each replaces the one of its name.
     pub entities: Vec<SceneEntity>,
 }
 
-/// An entity that is gone.
+/// Deletion of an entity.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SceneEntityDeletion {
     /// Since when.
@@ -137,24 +137,24 @@ pub struct SceneEntityDeletion {
     /// 0: the one of this name; 1: all.
     #[serde(rename = "type")]
     pub kind: u8,
-    /// Its name.
+    /// Name of the entity.
     pub id: String,
 }
 
 /// A group of shapes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SceneEntity {
-    /// Since when it is so.
+    /// Time from which the entity has this state.
     pub timestamp: Time,
-    /// Frame of its shapes.
+    /// Frame of the shapes.
     pub frame_id: String,
-    /// Its name.
+    /// Name of the entity.
     pub id: String,
     /// How long it is shown; 0 for as long as it is not replaced.
     pub lifetime: Time,
-    /// Whether it moves with its frame.
+    /// Whether the entity moves with its frame.
     pub frame_locked: bool,
-    /// Texts about it.
+    /// Further properties of the entity.
     pub metadata: Vec<KeyValue>,
     /// None.
     pub arrows: Vec<Unused>,
@@ -181,7 +181,7 @@ pub struct Unused {}
 /// A named text.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KeyValue {
-    /// Its name.
+    /// Name of the property.
     pub key: String,
     /// The text.
     pub value: String,
@@ -190,11 +190,11 @@ pub struct KeyValue {
 /// A box.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CubePrimitive {
-    /// Its centre.
+    /// Centre of the box.
     pub pose: Pose,
-    /// Its extents, metres.
+    /// Extents of the box, metres.
     pub size: Vector3,
-    /// Its colour.
+    /// Colour of the box.
     pub color: Color,
 }
 
@@ -223,15 +223,15 @@ pub struct LinePrimitive {
 /// Text in space.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TextPrimitive {
-    /// Its centre.
+    /// Centre of the text.
     pub pose: Pose,
-    /// Whether it faces the camera.
+    /// Whether the text faces the camera.
     pub billboard: bool,
     /// Height of a line, metres or pixels.
     pub font_size: f64,
     /// Whether the height is in pixels.
     pub scale_invariant: bool,
-    /// Its colour.
+    /// Colour of the text.
     pub color: Color,
     /// The text.
     pub text: String,
@@ -240,13 +240,13 @@ pub struct TextPrimitive {
 /// `foxglove.Log`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Log {
-    /// When it was written.
+    /// Time of writing.
     pub timestamp: Time,
     /// One of [`level`].
     pub level: u8,
     /// The text.
     pub message: String,
-    /// Who wrote it.
+    /// Name of the writer.
     pub name: String,
     /// Module of the program.
     pub file: String,

@@ -7,13 +7,13 @@ use std::os::unix::fs::FileExt;
 use mcap::MAGIC;
 use mcap::records::op;
 
-/// A record that claims more has a damaged length; one that claims less and does not fit is cut off.
+/// A record that claims more has a damaged length; one that claims less but too much is cut off.
 const FRAME_BYTES_MAX: u64 = 1 << 40;
 
 /// Bytes of a record's kind and length.
 pub(crate) const HEAD_BYTES: u64 = 9;
 
-/// Whole records that follow one another at a place where reading continues after damage.
+/// Number of consecutive whole records at which reading continues after damage.
 const CHAIN: usize = 3;
 
 /// Bytes that are searched at once for such a place.
@@ -33,7 +33,7 @@ impl Frame {
     }
 }
 
-/// What is found at a place of a file.
+/// Content found at a position of a file.
 pub(crate) enum Found {
     Record(Frame),
     /// The end of the file, perhaps with a part of a record before it.
@@ -69,7 +69,7 @@ impl Frames<'_> {
         Ok(content)
     }
 
-    /// The next place from `at` on where whole records follow one another.
+    /// The next position from `at` on with consecutive whole records.
     pub(crate) fn next(self, mut at: u64) -> io::Result<Option<u64>> {
         let mut window = vec![0; WINDOW_BYTES];
         while self.size.saturating_sub(at) >= HEAD_BYTES {
@@ -87,7 +87,7 @@ impl Frames<'_> {
         Ok(None)
     }
 
-    /// Whether what closes a file stands there: a footer is nine bytes, and those of a damaged length may look like one.
+    /// Returns whether the file's end is there: a footer has nine bytes, like some damaged lengths.
     fn is_last(self, at: u64) -> io::Result<bool> {
         let mut magic = [0; MAGIC.len()];
         let read = self.file.read_at(&mut magic, at)?;
@@ -137,8 +137,8 @@ pub(crate) fn frame(head: &[u8], at: u64) -> Option<Frame> {
     (least..=FRAME_BYTES_MAX).contains(&bytes).then_some(Frame { at, kind, bytes })
 }
 
-/// The length of a chunk, an attachment or an index by the lengths in it; none if it has no room for what they state,
-/// which [`parse_record`] takes for granted.
+/// The length of a chunk, an attachment or an index by the lengths in it; `None` if it has no room
+/// for these lengths, as [`parse_record`] assumes.
 pub(crate) fn own_length(kind: u8, content: &[u8]) -> Option<usize> {
     let number = |at: usize| content.get(at..at + 8)?.try_into().ok().map(u64::from_le_bytes);
     let text = |at: usize| {
@@ -149,7 +149,7 @@ pub(crate) fn own_length(kind: u8, content: &[u8]) -> Option<usize> {
         return text(2).filter(|end| *end <= content.len());
     }
     let (size, sum) = match kind {
-        // Two times, size and sum of what is in it; compression.
+        // Two times, size and sum of the content; compression.
         op::CHUNK => (text(28)?, 0),
         // Two times; name and media type. Its sum is at the end.
         _ => (text(16).and_then(text)?, 4),

@@ -21,7 +21,7 @@ use crate::settings::Recorder;
 pub struct Sample<'a> {
     /// The channel.
     pub channel: ChannelId,
-    /// Number of the message among those of its writer, or of the picture's channel since its reader was made.
+    /// Number of the message among its writer's, or the picture channel's since its reader's start.
     pub sequence: u32,
     /// When it was sent, nanoseconds since 1970.
     pub at_ns: u64,
@@ -43,7 +43,7 @@ pub enum OpenError {
     Settings(diagnostics::Diagnostics),
 }
 
-/// A topic and its reader.
+/// A topic and the reader of its messages.
 #[derive(Debug)]
 struct Source {
     topic: &'static Topic,
@@ -62,7 +62,7 @@ pub struct GroupReader {
     numbers: Numbers,
     /// The latest failure to read a topic, so that it is logged once.
     failure: Option<String>,
-    /// A message with its CDR header.
+    /// Buffer of a message with its CDR header.
     buffer: Vec<u8>,
     /// Topics that are still to be opened, the next one last.
     unopened: Vec<(ChannelId, &'static Topic)>,
@@ -70,8 +70,8 @@ pub struct GroupReader {
 }
 
 impl GroupReader {
-    /// Opens the channels of [`channels::shown`](crate::channels::shown). Of topics that keep more than their latest message, those
-    /// sent before `since` are left out. The services' logs are in `log_folder`.
+    /// Opens the channels of [`channels::shown`](crate::channels::shown). Messages before `since`
+    /// are left out, except latest ones. The services' logs are in `log_folder`.
     ///
     /// # Errors
     /// A topic cannot be read, or the robot's description is invalid.
@@ -86,8 +86,8 @@ impl GroupReader {
         Ok(reader)
     }
 
-    /// As [`GroupReader::open`], with every topic still to be opened by [`GroupReader::open_next`]: each takes
-    /// a while.
+    /// As [`GroupReader::open`], with every topic still to be opened by [`GroupReader::open_next`]:
+    /// each takes a while.
     ///
     /// # Errors
     /// The robot's description is invalid.
@@ -130,8 +130,8 @@ impl GroupReader {
         painter.begin(now, clock, &mut |shown| picture(&shown, numbers, show));
     }
 
-    /// Takes what has arrived on all topics. Returns whether a buffer was more than an eighth full: then the next look should
-    /// come soon.
+    /// Takes the new messages of all topics. Returns whether a buffer was more than an eighth full:
+    /// then the next look should come soon.
     pub fn look(&mut self, now: Time, clock: WallClock, show: &mut dyn FnMut(Sample<'_>)) -> bool {
         let Self { topics, painter, numbers, buffer, .. } = self;
         let (mut failure, mut is_filling) = (None, false);
@@ -176,7 +176,7 @@ impl GroupReader {
         painter.show_logs(now, clock, &mut |shown| picture(&shown, numbers, show));
     }
 
-    /// Drops what has arrived on all topics.
+    /// Drops the new messages of all topics.
     pub fn skip(&mut self) {
         let drop_all = |source: &Source| source.reader.drain(&mut |_, _| {}).err();
         let failure = self.topics.iter().filter_map(drop_all).next();

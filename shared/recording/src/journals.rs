@@ -1,4 +1,4 @@
-//! Journals and flights as a recording: their records or steps, and what a record says as a log.
+//! Journals and flights as a recording: their records or steps, and the text of records as a log.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -13,14 +13,14 @@ use crate::channels::{self, Channel, JSONSCHEMA, Picture, message_encoding};
 use crate::file::{create_private, options};
 use crate::foxglove::{Log, Time, level};
 
-/// Where an entry comes from.
+/// Origin of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// A record of a journal.
     Journal,
     /// An event of a flight.
     FlightIn,
-    /// What a service stated in a pass of a flight.
+    /// Statement of a service in a pass of a flight.
     FlightOut,
 }
 
@@ -38,15 +38,15 @@ impl Origin {
 /// A record of a journal, or a step of a flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// Where it comes from.
+    /// Origin of the entry.
     pub origin: Origin,
     /// The service whose journal or flight it is in.
     pub service: String,
-    /// Its number: of the record, or of the pass.
+    /// Number of the record, or of the pass.
     pub seq: u64,
     /// When it was written, nanoseconds since 1970.
     pub at_ns: u64,
-    /// What a record says.
+    /// Text of a record.
     pub text: Option<String>,
     /// The record, or the step.
     pub record: Value,

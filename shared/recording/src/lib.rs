@@ -1,13 +1,13 @@
 //! Recordings of a group: MCAP files that robotics tools open.
 //!
-//! [`channels`] lists what a file can hold: every topic of the group with the schema of its messages, and the
-//! [`picture`] of the group in schemas that viewers draw. [`file`] writes one file, [`ring`] a ring of them
-//! in bounded space, [`recover`] completes what a killed writer has left, and [`list`] reads them. [`group_reader`]
-//! reads the messages of all channels from a running group, for a recorder and for a live view, whose messages are
-//! those of [`live`].
+//! [`channels`] lists the possible content of a file: every topic of the group with the schema of
+//! its messages, and the [`picture`] of the group in schemas that viewers draw. [`file`] writes one
+//! file, [`ring`] a ring of them in bounded space, [`recover`] completes the file of a killed
+//! writer, and [`list`] reads them. [`group_reader`] reads the messages of all channels from a
+//! running group, for a recorder and for a live view, whose messages are those of [`live`].
 //!
-//! Times in a file are wall-clock times. The messages themselves keep the machine's monotonic clock; the
-//! offset between both is constant within a file and part of its metadata.
+//! Times in a file are wall-clock times. The messages themselves keep the machine's monotonic
+//! clock; the offset between both is constant within a file and part of its metadata.
 
 use std::io::ErrorKind;
 
@@ -47,7 +47,7 @@ pub enum RecordingError {
     /// The file is not MCAP, or is damaged.
     #[error("{0}: {1}")]
     Mcap(std::path::PathBuf, mcap::McapError),
-    /// A payload that is not what its topic says.
+    /// A payload that does not match its topic.
     #[error("topic {0}: {1}")]
     Payload(String, String),
 }

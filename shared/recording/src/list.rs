@@ -18,9 +18,9 @@ use crate::{EXTENSION, RecordingError, UNFINISHED};
 pub struct Entry {
     /// The file.
     pub path: PathBuf,
-    /// When it began, nanoseconds since 1970, by its name; 0 where the name is not one that the recorder gives.
+    /// Start of the recording by its name, nanoseconds since 1970; 0 for a foreign name.
     pub began_ns: u64,
-    /// Its size, bytes.
+    /// Size of the recording, bytes.
     pub bytes: u64,
 }
 
@@ -28,28 +28,28 @@ pub struct Entry {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum State {
-    /// It was completed.
+    /// The recording was completed.
     Complete,
-    /// A recorder is writing it.
+    /// A recorder is writing the recording.
     BeingWritten,
-    /// Its recorder ended before it was completed, which the next start of the recorder does.
+    /// The recorder ended before completing the recording; its next start does.
     Incomplete,
-    /// It has the name of a complete recording, and cannot be read as one.
+    /// The file has the name of a complete recording, and cannot be read as one.
     Damaged,
-    /// Its name is not one that the recorder gives.
+    /// The file's name is not the recorder's.
     Foreign,
 }
 
-/// What is in a recording.
+/// Content of a recording.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
     /// Number of messages.
     pub messages: u64,
-    /// First and last moment, nanoseconds since 1970; 0 where there is no message.
+    /// First and last moment, nanoseconds since 1970; 0 without messages.
     pub span_ns: (u64, u64),
     /// Messages of each topic.
     pub topics: BTreeMap<String, u64>,
-    /// What is known of the recorded group.
+    /// Properties of the recorded group.
     pub group: BTreeMap<String, String>,
 }
 
@@ -78,12 +78,12 @@ impl Entry {
         self.path.extension().is_some_and(|end| end == EXTENSION)
     }
 
-    /// Whether a recorder is writing it.
+    /// Returns whether a recorder is writing the recording.
     pub fn is_being_written(&self) -> bool {
         !self.is_finished() && self.is_own() && file::is_locked(&self.path)
     }
 
-    /// Returns its state.
+    /// Returns the recording's state.
     pub fn state(&self) -> State {
         match self.is_finished() {
             _ if !self.is_own() => State::Foreign,
@@ -94,8 +94,8 @@ impl Entry {
         }
     }
 
-    /// Returns the time from its first message to its last one, seconds; of an incomplete one from its beginning
-    /// to its last change. None where that is not known.
+    /// Returns the time from its first message to its last one, seconds; of an incomplete one from
+    /// its beginning to its last change. `None` if unknown.
     pub fn seconds(&self) -> Option<f64> {
         let ns = match self.state() {
             State::Complete => {
@@ -119,7 +119,7 @@ fn statistics(path: &Path) -> Option<Statistics> {
     summary_section(path)?.stats
 }
 
-/// The number of a recording in its folder: files that were begun later have greater ones. 0 where it has none.
+/// The number of a recording in its folder, greater for files begun later; 0 if it has none.
 pub(crate) fn number(path: &Path) -> u64 {
     let stated = first_metadata(path).and_then(|mut found| found.remove(NUMBER));
     stated.and_then(|number| number.parse().ok()).unwrap_or(0)
@@ -137,7 +137,7 @@ fn entry(path: &Path) -> Option<Entry> {
     })
 }
 
-/// Reads what is in a recording, finished or not.
+/// Summarises the content of a recording, finished or not.
 ///
 /// # Errors
 /// The file cannot be read, or is not MCAP.

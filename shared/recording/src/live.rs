@@ -1,7 +1,7 @@
 //! Messages of a live view over the protocol `foxglove.sdk.v1`, in both directions.
 //!
-//! Pure. Texts are JSON objects with `op`; binary messages begin with an operation code, and their numbers
-//! are little-endian.
+//! Pure. Texts are JSON objects with `op`; binary messages begin with an operation code, and their
+//! numbers are little-endian.
 
 use std::collections::BTreeMap;
 
@@ -26,13 +26,13 @@ pub enum Request {
     Subscribe(Vec<Subscription>),
     /// Numbers of subscriptions that end.
     Unsubscribe(Vec<u32>),
-    /// Names of parameters, all where there are none, and the number of the request.
+    /// Names of parameters (empty for all), and the number of the request.
     GetParameters(Vec<String>, Option<String>),
     /// Parameters are read-only; the number of the request.
     SetParameters(Option<String>),
     /// Names of parameters whose changes are wanted; there are none.
     SubscribeParameters(Vec<String>),
-    /// As above, not wanted any more.
+    /// The end of such a subscription.
     UnsubscribeParameters,
     /// A call of a service.
     Call(Call),
@@ -42,7 +42,7 @@ pub enum Request {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Subscription {
-    /// Its number, chosen by the viewer.
+    /// Number of the subscription, chosen by the viewer.
     pub id: u32,
     /// The channel's number.
     pub channel_id: u64,
@@ -123,8 +123,8 @@ fn number(bytes: &[u8]) -> Option<(u32, &[u8])> {
     Some((u32::from_le_bytes(*number), rest))
 }
 
-/// Returns the first message to a viewer. The session differs between starts of the console, so that a viewer
-/// that reconnects knows whether subscriptions are new.
+/// Returns the first message to a viewer. The session differs between starts of the console, so
+/// that a viewer that reconnects knows whether subscriptions are new.
 pub fn server_info(name: &str, session: &str, metadata: &BTreeMap<&str, String>) -> String {
     json!({
         "op": "serverInfo",
@@ -153,14 +153,14 @@ pub fn advertise<'a>(channels: impl Iterator<Item = (ChannelId, &'a Channel)>) -
     json!({ "op": "advertise", "channels": channels }).to_string()
 }
 
-/// A service as it is listed: its number, name and type, with the JSON Schemas of request and response.
+/// A listed service: its number, name and type, with the JSON Schemas of request and response.
 #[derive(Clone, Debug)]
 pub struct Service {
-    /// Its number.
+    /// Number of the service.
     pub id: u32,
-    /// Its name.
+    /// Name of the service.
     pub name: &'static str,
-    /// Its type.
+    /// Type of the service.
     pub kind: &'static str,
     /// The schema of a request.
     pub request: Json,

@@ -1,4 +1,4 @@
-//! The services' logs as they grow.
+//! Follower of the services' growing logs.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ pub(crate) struct LogLines {
 }
 
 impl LogLines {
-    /// Takes the lines that were completed since the last look, with their times in nanoseconds since
+    /// Takes the lines completed since the last look, with their times in nanoseconds since
     /// 1970. A line without one has that of the look, `now_ns`.
     pub(crate) fn take(&mut self, folder: &Path, now_ns: u64) -> Vec<(u64, Log)> {
         self.find(folder);
@@ -44,7 +44,7 @@ impl LogLines {
             }
             let mut file = LogFile::new(name, path.clone());
             if !self.has_begun {
-                // What was written before belongs to no recording.
+                // Lines written before belong to no recording.
                 let _ = file.last_lines(0);
             }
             self.files.push(file);

@@ -1,4 +1,4 @@
-//! The group as viewers draw it: robot, objects with the belief as colour, planned path, dialogue, logs.
+//! The group as viewers draw it: robot, objects with belief as colour, path, dialogue, logs.
 
 use std::path::PathBuf;
 
@@ -48,7 +48,7 @@ pub type Shown = (Picture, u64, Vec<u8>);
 pub struct Painter {
     /// The scene file, which has the words.
     file: Scene,
-    /// The scene with the objects that are there.
+    /// The scene with the present objects.
     scene: Scene,
     description: String,
     joints: MeasuredJoints,
@@ -226,7 +226,7 @@ impl Painter {
         JointStates { timestamp, joints: own.chain(fingers).collect() }
     }
 
-    /// The objects that are there: place in the scene, number, and pose.
+    /// The present objects: place in the scene, number, and pose.
     fn placed<'a>(
         &'a self,
         world: &'a WorldView,

@@ -1,8 +1,8 @@
 //! Records of a recording, also of one that is damaged.
 //!
-//! A record begins with its kind and its length, so one whose content is damaged is passed over. Where the length is
-//! damaged too, reading continues at the next place where whole records follow one another. Channels whose definition was in
-//! a lost chunk are read from the summary at the end.
+//! A record begins with its kind and its length, so one whose content is damaged is passed over. If
+//! the length is damaged too, reading continues at the next place with consecutive whole records.
+//! Channels whose definition was in a lost chunk are read from the summary at the end.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::{self, Display, Formatter};
@@ -26,7 +26,7 @@ use crate::zstd::Zstd;
 /// Longest record, and most bytes that a chunk may decompress to: a longer one is damage.
 pub(crate) const RECORD_BYTES_MAX: u64 = 256 << 20;
 
-/// What could not be read of recordings.
+/// Counts of unreadable parts of recordings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LeftOut {
     /// Damaged parts.
@@ -72,10 +72,10 @@ impl Display for LeftOut {
 /// Takes a record; refused ones end the reading.
 type Take<'a> = &'a mut dyn FnMut(Record<'_>) -> Result<(), RecordingError>;
 
-/// Reads the records of a file, those in chunks too, to the end of its data. Returns what is left out.
+/// Reads the records of a file, also in chunks, to the end of its data. Returns the parts left out.
 ///
 /// # Errors
-/// The file cannot be read, is no recording, or `take` fails.
+/// The file cannot be read, is not a recording, or `take` fails.
 pub(crate) fn each_record(
     path: &Path,
     mut take: impl FnMut(Record<'_>) -> Result<(), RecordingError>,
@@ -172,7 +172,7 @@ impl Reading<'_> {
         Ok(left_out)
     }
 
-    /// Hands on what is at a place. Returns the next one; none at the end.
+    /// Hands on the content at a position. Returns the next position; `None` at the end.
     fn step(&mut self, at: u64, left_out: &mut LeftOut) -> Result<Option<u64>, RecordingError> {
         let found = self.io(self.frames.at(at))?;
         if let Found::Record(frame) = found {

@@ -50,7 +50,7 @@ fn frames(bytes: &[u8], kind: u8) -> Vec<std::ops::Range<usize>> {
     found
 }
 
-/// What is read: the sequence numbers with the topics, and what is left out.
+/// Returns the sequence numbers read, with the topics, and the parts left out.
 fn read(bytes: &[u8]) -> Result<(Vec<(u32, String)>, LeftOut), RecordingError> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("file.mcap");

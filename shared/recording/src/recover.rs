@@ -12,18 +12,18 @@ use crate::file::{create_private, finished, options};
 use crate::records::{LeftOut, each_record};
 use crate::{EXTENSION, RecordingError};
 
-/// What was kept of a recording.
+/// Result of recovering a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recovered {
     /// The complete file.
     pub path: PathBuf,
-    /// Its messages.
+    /// Number of messages.
     pub messages: u64,
-    /// What could not be read, beside its end.
+    /// Unreadable parts other than the end.
     pub left_out: LeftOut,
 }
 
-/// Completes unfinished recordings, and removes those without a message. One that fails is left as it is.
+/// Completes unfinished recordings, and removes those without a message. A failing one is kept.
 pub fn recover_all(unfinished: &[PathBuf]) {
     for path in unfinished {
         match recover(path) {
@@ -58,8 +58,8 @@ pub fn recover(path: &Path) -> Result<Recovered, RecordingError> {
     Ok(Recovered { path: finished(path)?, messages, left_out })
 }
 
-/// Writes one complete recording from several, in their order; they may be unfinished or still being
-/// written. Returns the number of messages, and what is left out; one of several that is no recording is a damaged part.
+/// Writes one complete recording from several, in their order; also unfinished ones. Returns the
+/// number of messages, and the parts left out; a file that is not a recording is one.
 ///
 /// # Errors
 /// As [`recover`]; nothing is left of the copy then.
@@ -93,7 +93,7 @@ fn copy(from: &[PathBuf], to: &Path) -> Result<(u64, LeftOut), RecordingError> {
                 LeftOut { endless: 0, ..found }
             }
             Ok(found) => found,
-            // One of many that is no recording hides none of the others.
+            // One of many that is not a recording does not hide the others.
             Err(RecordingError::Mcap(path, error)) if from.len() > 1 && path != to => {
                 tracing::warn!(file = %path.display(), %error, "not a recording");
                 LeftOut { parts: 1, ..LeftOut::default() }
@@ -242,7 +242,7 @@ mod tests {
         let to = folder.path().join("both.mcap");
         let merged = merge(&[first.clone(), second.clone()], &to).unwrap();
         assert_eq!(merged, (80, LeftOut::default()));
-        // What is no recording hides none of the others.
+        // A file that is not a recording does not hide the others.
         let (odd, despite) = (folder.path().join("odd.mcap"), folder.path().join("despite.mcap"));
         fs::write(&odd, [7; 300]).unwrap();
         let left_out = LeftOut { parts: 1, ..LeftOut::default() };

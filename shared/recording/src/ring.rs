@@ -1,6 +1,6 @@
 //! A ring of recordings in bounded space: the oldest give way, and the disk is never filled.
 //!
-//! Which are the oldest, and how old they are, is a matter of what was recorded since, and not of the wall clock, which
+//! Order and age of the files follow from the amount recorded since, not from the wall clock, which
 //! may be wrong by years until it is set.
 
 use std::collections::HashMap;
@@ -23,7 +23,7 @@ use crate::settings::Recorder;
 pub const TEND_EVERY: Span = Span::from_ms(1_000);
 /// Pause after a failure to write.
 const RETRY_AFTER: Span = Span::from_ms(5_000);
-/// Interval between two searches for old files, beside the one before each new file.
+/// Interval between two searches for old files, in addition to those before new files.
 const DELETE_EVERY: Span = Span::from_ms(600_000);
 /// Files that share the space of the ring at least: a full one is a small part of it.
 const FILES_MIN: u64 = 8;
@@ -85,7 +85,7 @@ impl Ring {
         self.paused.as_ref().map(|(why, _)| why.as_str())
     }
 
-    /// The file that is being written.
+    /// Returns the file being written.
     pub fn current(&self) -> Option<&Path> {
         self.current.as_ref().map(Recording::path)
     }
@@ -105,7 +105,7 @@ impl Ring {
         }
     }
 
-    /// Flushes, begins the next file where one is due, deletes old ones, and looks at the free space.
+    /// Flushes, begins the next file if one is due, deletes old ones, and checks the free space.
     /// Returns whether a file has begun.
     pub fn tend(&mut self, now: Time, clock: WallClock) -> bool {
         if let Some(error) = self.current.as_mut().and_then(|current| current.flush().err()) {
@@ -156,8 +156,8 @@ impl Ring {
         }
     }
 
-    /// Deletes the oldest files until no more than the age is recorded after the others, and they leave room for the one
-    /// that is written.
+    /// Deletes the oldest files until no more than the age is recorded after the others, and they
+    /// leave room for the one that is written.
     fn delete_old(&mut self, now: Time) {
         self.next_deletion = now + DELETE_EVERY;
         let mut others = entries(&self.folder);
@@ -171,7 +171,7 @@ impl Ring {
         let facts = |file: &Entry| self.others.get(&file.path).copied().unwrap_or_default();
         others.sort_by_key(|file| (facts(file).0, file.began_ns));
         let bytes_max = self.limits.bytes_max;
-        // The file that is written grows by what is sent until the next look.
+        // The current file grows by the messages sent until the next look.
         let most = bytes_max - bytes_max / FILES_MIN - bytes_max / 64;
         let mut bytes: u64 = others.iter().map(|file| file.bytes).sum();
         let mut since_ns: u128 = others.iter().map(|file| u128::from(facts(file).1)).sum();
@@ -192,7 +192,7 @@ impl Ring {
         }
     }
 
-    /// What is recorded in a file, nanoseconds: never more than the longest file, whatever its clock has done.
+    /// Returns the recorded time of a file, nanoseconds: at most that of the longest file.
     fn recorded_ns(&self, file: &Entry) -> u64 {
         let most = self.limits.file_max;
         file.seconds().map_or(0, |s| Duration::from_secs_f64(s).min(most).as_nanos() as u64)
@@ -223,7 +223,7 @@ impl Ring {
     }
 
     fn on_failure(&mut self, error: &RecordingError, now: Time) {
-        // What was flushed is completed at the next start.
+        // Flushed data are completed at the next start.
         self.current = None;
         self.pause(format!("{error}{}", help(error)), now + RETRY_AFTER);
     }
@@ -236,7 +236,7 @@ impl Ring {
     }
 }
 
-/// What a person can do about a failure to write.
+/// Returns advice to a person about a failure to write.
 fn help(error: &RecordingError) -> &'static str {
     let RecordingError::Io(_, error) = error else { return "" };
     match error.kind() {

@@ -83,11 +83,11 @@ pub enum BusError {
     Schema {
         /// The topic.
         topic: String,
-        /// Payload type of this program.
+        /// Payload type known to this program.
         payload: &'static str,
-        /// Schema key of this program.
+        /// Schema key known to this program.
         ours: String,
-        /// iceoryx2's word for it.
+        /// Reason given by iceoryx2.
         cause: String,
     },
     /// A segment of shared memory cannot be created or used.
@@ -103,13 +103,13 @@ pub enum BusError {
     Ipc {
         /// Operation that failed.
         what: String,
-        /// iceoryx2's word for it.
+        /// Reason given by iceoryx2.
         cause: String,
     },
 }
 
 impl BusError {
-    /// An error of iceoryx2, with the segment's error where there was one.
+    /// An error of iceoryx2, with the segment's error if there was one.
     pub(crate) fn ipc(what: &str, cause: String) -> Self {
         let what = what.to_owned();
         match segment_error::of_failure() {
@@ -119,8 +119,8 @@ impl BusError {
     }
 }
 
-/// Creates a port. iceoryx2 also returns one that reaches only some of its peers, for want of a
-/// segment; here that is an error.
+/// Creates a port. For lack of a segment, iceoryx2 may return one that reaches only some of its
+/// peers; here that is an error.
 fn create<T, E: std::fmt::Debug>(
     what: &str,
     create: impl FnOnce() -> Result<T, E>,
@@ -144,7 +144,7 @@ pub struct PortError {
 }
 
 impl PortError {
-    /// An error of iceoryx2, with the segment's error where there was one.
+    /// An error of iceoryx2, with the segment's error if there was one.
     pub(crate) fn new(topic: &'static str, cause: String) -> Self {
         let cause = segment_error::take().map_or(cause, |error| error.to_string());
         Self { topic, cause }
@@ -165,8 +165,8 @@ pub(crate) fn config(name: &ShmName) -> Result<Config, BusError> {
     config.global.node.cleanup_dead_nodes_on_creation = false;
     config.global.node.cleanup_dead_nodes_on_destruction = false;
     config.global.service.cleanup_dead_nodes_on_open = false;
-    // As many writers of a topic as can end between two looks of a reader, whose last messages it still gets.
-    // Each reader initialises this room, 1.5 kB a writer: with iceoryx2's 128 that was most of its start.
+    // Writers of a topic that may end between two looks of a reader without loss. Each reader
+    // initialises this room, 1.5 kB a writer: iceoryx2's 128 took most of its start.
     config.defaults.publish_subscribe.subscriber_expired_connection_buffer = topics::CLIENTS_MAX;
     Ok(config)
 }
@@ -215,8 +215,8 @@ impl Bus {
         Ok(Self { node, identity, paths, wakes, joins, notifiers, writers })
     }
 
-    /// Connects the readers that have joined since this process's writers last sent something, and so
-    /// hands them the latest message of each topic now instead of with the next one.
+    /// Connects the readers that have joined since this process's writers last sent something, and
+    /// so hands them the latest message of each topic now instead of with the next one.
     pub fn connect(&self, joined: Joined) {
         self.writers.borrow_mut().retain(|writer| writer.strong_count() > 0);
         let writers: Vec<_> = self.writers.borrow().iter().filter_map(Weak::upgrade).collect();
@@ -227,8 +227,8 @@ impl Bus {
         }
     }
 
-    /// Asks the writer of a topic that this process has begun to read for its latest messages. Where
-    /// that fails they come with its next one.
+    /// Asks the writer of a topic that this process has begun to read for its latest messages. If
+    /// that fails, they come with its next one.
     fn greet(&self, topic: &Topic) {
         let Some(service) = topic.writer.filter(|_| topic.history > 0) else { return };
         match self.notifier(service) {
@@ -237,8 +237,8 @@ impl Bus {
         }
     }
 
-    /// Returns the notifier of a service, which is opened once: that of a client with its first wake-up, which comes
-    /// after its message.
+    /// Returns the notifier of a service, which is opened once: that of a client with its first
+    /// wake-up, which comes after its message.
     fn notifier(&self, service: Service) -> Result<Rc<WakeNotifier>, BusError> {
         let is_of = |(of, _): &&(Service, _)| *of == service;
         if let Some((_, notifier)) = self.notifiers.borrow().iter().find(is_of) {
@@ -252,7 +252,7 @@ impl Bus {
         Ok(notifier)
     }
 
-    /// Returns the identity of this process.
+    /// Returns the process's identity.
     pub fn identity(&self) -> Identity {
         self.identity
     }

@@ -1,6 +1,6 @@
-//! The supervisor's thread that removes shared memory of dead processes, beside the start of their successors.
+//! The supervisor's thread that removes shared memory of dead processes while successors start.
 //!
-//! Services that start wait for a locked file, which is unlocked when no cleanup goes on, even after a panic.
+//! Starting services wait for a locked file, which a finished cleanup unlocks, even by a panic.
 
 use crate::bus::Ipc;
 use crate::group::GroupPaths;
@@ -32,7 +32,7 @@ pub(crate) struct Cleaner {
     thread: Option<JoinHandle<()>>,
 }
 
-/// A file that is locked while any cleanup goes on.
+/// A file that is locked during any cleanup.
 #[derive(Debug)]
 struct CleanupLock {
     path: PathBuf,
@@ -50,7 +50,7 @@ impl CleanupLock {
     fn hold_back(&self) -> bool {
         let mut begun = self.begun();
         let inode = |found: io::Result<fs::Metadata>| found.map(|file| file.ino()).ok();
-        // Nobody waits for a file that somebody has removed.
+        // A removed file has no waiters.
         let is_locked = inode(self.file.metadata()) == inode(fs::metadata(&self.path))
             && flock(&self.file, FlockOperation::NonBlockingLockExclusive).is_ok();
         *begun += usize::from(is_locked);
@@ -67,7 +67,7 @@ impl CleanupLock {
     }
 }
 
-/// A cleanup that ends with it.
+/// A cleanup that ends when dropped.
 struct Begun<'a>(&'a CleanupLock);
 
 impl Drop for Begun<'_> {
@@ -77,10 +77,10 @@ impl Drop for Begun<'_> {
 }
 
 impl Cleaner {
-    /// Starts the thread, which removes what `config` finds.
+    /// Starts the thread, which removes the leftovers that `config` finds.
     ///
     /// # Errors
-    /// The lock's file cannot be written, or there is no thread.
+    /// The lock's file cannot be written, or the thread cannot start.
     pub(crate) fn start(lock: PathBuf, config: Config) -> io::Result<Self> {
         let file = safe_files::open_lock(&lock)?;
         let (begun, ended) = (Mutex::default(), Condvar::default());
@@ -153,7 +153,7 @@ pub(crate) fn clean(config: &Config) {
     }
 }
 
-/// Waits, as a service that starts, until no cleanup goes on.
+/// Waits, as a service that starts, until no cleanup is in progress.
 pub(crate) fn await_cleanup(paths: &GroupPaths) {
     // A group without a supervisor has no such file. A lock ends with its holder.
     let Ok(file) = File::open(paths.cleanup_lock()) else { return };

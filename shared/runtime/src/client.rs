@@ -1,5 +1,5 @@
-//! A client of a running group: submits utterances and reads its topics. Orders to the motion stop have
-//! a path of their own, [`crate::stop_socket`].
+//! A client of a running group: submits utterances and reads its topics. Orders to the motion stop
+//! have a path of their own, [`crate::stop_socket`].
 //!
 //! Clients poll; they are few, short-lived, and must not cost the services anything.
 
@@ -17,11 +17,11 @@ use vocabulary::PERSON_BYTES_MAX;
 /// First and longest pause of a client that polls.
 const POLL_EVERY: (Duration, Duration) = (Duration::from_micros(100), Duration::from_millis(2));
 
-/// Most bytes of an [`Injection`] beside its sound: a key, two times, a number and a name with its length.
+/// Most bytes of an [`Injection`] besides its sound: key, two times, number, name with length.
 const INJECTION_BYTES: usize = 16 + 3 * 10 + 1 + PERSON_BYTES_MAX;
 
-/// Pauses of a client that polls topics: short at first, because services answer within a millisecond
-/// or two, then longer.
+/// Pauses of a client that polls topics: short at first, because services answer within a
+/// millisecond or two, then longer.
 #[derive(Debug)]
 pub struct Polling {
     pause: Duration,
@@ -53,7 +53,7 @@ pub enum ClientError {
     /// The group is not running.
     #[error("group {0} is not running; help: start it with `whichone up --group {0}`")]
     NoGroup(String),
-    /// Its shared memory cannot be opened.
+    /// The group's shared memory cannot be opened.
     #[error(transparent)]
     Bus(#[from] BusError),
     /// A topic failed.
@@ -108,7 +108,7 @@ impl Client {
         self.submissions_of(None)
     }
 
-    /// Opens the topics by which [`deliver`] submits this sound alone, which takes half a millisecond less.
+    /// Opens the topics by which [`deliver`] submits this sound alone, half a millisecond faster.
     ///
     /// # Errors
     /// They cannot be opened.
@@ -129,8 +129,8 @@ impl Client {
     }
 }
 
-/// Submits `sound`, with the start and end of the utterance (0: its arrival), to the speech service and
-/// returns its receipts: one for text, one for every utterance in a sound file.
+/// Submits `sound`, with the start and end of the utterance (0: its arrival), to the speech service
+/// and returns its receipts: one for text, one for every utterance in a sound file.
 ///
 /// # Errors
 /// No answer within `patience`, or before `standstill` returns why there will be none.
@@ -146,8 +146,8 @@ pub fn deliver(
     submit(writer, receipts, &mut submission, standstill)
 }
 
-/// As [`deliver`], with a request that may have been sent before, perhaps to an earlier run of the group: its key stays,
-/// so that it is accepted once.
+/// As [`deliver`], with a request that may have been sent before, perhaps to an earlier run of the
+/// group: its key stays, so that it is accepted once.
 ///
 /// # Errors
 /// As [`deliver`].
@@ -174,8 +174,8 @@ pub fn submit(
     Err(ClientError::Timeout { what: "speech", seconds: submission.patience().s() })
 }
 
-/// Returns the identity of this process among the clients of the speech service, which gives each its
-/// share.
+/// Returns the identity of this process among the clients of the speech service, which gives each
+/// its share.
 pub fn own_id() -> ClientId {
     static OWN: OnceLock<ClientId> = OnceLock::new();
     *OWN.get_or_init(|| random_key().client())

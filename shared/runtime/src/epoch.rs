@@ -1,5 +1,5 @@
-//! The epoch of a group, and the file that holds it: one line of JSON, then its checksum. The line holds the
-//! set of journals as well, which only services with a journal read.
+//! The epoch of a group, and the file that holds it: one line of JSON, then its checksum. The line
+//! holds the set of journals as well, which only services with a journal read.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -15,7 +15,7 @@ struct Line {
     epoch: u64,
 }
 
-/// Returns the group's epoch; none before its first start.
+/// Returns the group's epoch; `None` before its first start.
 ///
 /// # Errors
 /// The file cannot be read, is damaged or of another version (`InvalidData`).

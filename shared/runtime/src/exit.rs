@@ -1,5 +1,5 @@
-//! Exit codes, the failures that lead to them, and the exits of other processes: part of the contract
-//! with the supervisor and with scripts.
+//! Exit codes, the failures that lead to them, and the exits of other processes: part of the
+//! contract with the supervisor and with scripts.
 
 use std::fmt;
 use std::io::{self, ErrorKind};
@@ -61,7 +61,7 @@ pub struct Failure {
 }
 
 impl Failure {
-    /// A failure with its reason.
+    /// Makes a failure with its reason and exit code.
     pub fn new(exit: Exit, message: impl Into<String>) -> Self {
         Self { exit, message: message.into() }
     }
@@ -132,13 +132,13 @@ impl From<StopError> for Failure {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProcessExit {
-    /// It exited with this code.
+    /// Exit of the process with the given code.
     Code(i32),
-    /// This signal ended it.
+    /// End of the process by the given signal.
     Signal(i32),
-    /// It could not be started; a retry may succeed (e.g. no process slot).
+    /// The process could not be started; a retry may succeed (e.g. no process slot).
     NotStarted,
-    /// It could not be started; a retry cannot succeed (e.g. no such program).
+    /// The process could not be started; a retry cannot succeed (e.g. no such program).
     NotStartable,
 }
 
@@ -153,8 +153,8 @@ impl ProcessExit {
         }
     }
 
-    /// Returns true if it ended for want of a resource: storage, shared memory (a page that cannot
-    /// be had kills with SIGBUS), descriptors, process slots. Nothing is wrong with the service then.
+    /// Returns true if it ended for lack of a resource: storage, shared memory (a page that cannot
+    /// be had kills with SIGBUS), descriptors, process slots. The service is not at fault.
     pub fn is_shortage(self) -> bool {
         match self {
             Self::Code(code) => Exit::of_process(Some(code)) == Exit::Storage,
@@ -190,7 +190,7 @@ impl fmt::Display for ProcessExit {
 /// Ends a process that touches a page of a file or of shared memory which cannot be had.
 const SIGBUS: i32 = 7;
 
-/// Names of the signals that end services in practice; the same numbers on every Linux this runs on.
+/// Names of the signals that end services in practice; the same numbers on every Linux.
 fn signal_name(signal: i32) -> Option<&'static str> {
     Some(match signal {
         1 => "HUP",

@@ -28,7 +28,7 @@ pub const SHM: &str = "/dev/shm";
 
 /// Letters of names in shared memory: one for each six bits.
 const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
-/// Letters that stand for the group; equal at each of its starts.
+/// Letters that identify the group; equal at each of its starts.
 const STABLE_LETTERS: usize = 6;
 /// Letters drawn at each start: 96 bits, which another user can neither guess nor occupy. More do
 /// not fit into the path of a socket.
@@ -199,12 +199,12 @@ impl GroupPaths {
         self.root.join("recordings")
     }
 
-    /// Flights: what the services were given and what they stated.
+    /// Flights: the inputs and statements of the services.
     pub fn flights(&self) -> PathBuf {
         self.root.join("flight")
     }
 
-    /// The data of studies with people, where no other folder is set; never deleted.
+    /// The data of studies with people, if no other folder is set; never deleted.
     pub fn study(&self) -> PathBuf {
         self.root.join("study")
     }
@@ -239,8 +239,8 @@ impl GroupPaths {
         self.root.join("alive.lock")
     }
 
-    /// Held by the supervisor while it removes what a dead service left in shared memory, for which its successor
-    /// waits.
+    /// Held by the supervisor while it removes a dead service's shared memory; the successor waits
+    /// for it.
     pub fn cleanup_lock(&self) -> PathBuf {
         self.run().join("cleanup.lock")
     }
@@ -255,7 +255,7 @@ impl GroupPaths {
         self.run().join("stop.sock")
     }
 
-    /// A motion stop that no arm has confirmed. It outlives the group, because the next one's arm must not move either.
+    /// A motion stop that no arm has confirmed. It outlives the group and holds for the next arm.
     pub fn kept_stop(&self) -> PathBuf {
         self.root.join("stop.kept")
     }
@@ -281,20 +281,20 @@ impl GroupPaths {
         self.run().join("shm")
     }
 
-    /// The file that names the services which topics wake beyond their own table ([`crate::wakes`]).
+    /// File with the services that topics wake beyond their own table ([`crate::wakes`]).
     pub fn wakes_file(&self) -> PathBuf {
         self.run().join("wakes")
     }
 
-    /// What every name of the group in shared memory begins with, at each of its starts: two groups
-    /// differ even where they share a name in different homes.
+    /// Prefix of every name of the group in shared memory, at each start: two groups differ even if
+    /// they share a name in different homes.
     pub fn shm_stem(&self) -> String {
         let mut hash = scene::StableHash::default();
         hash.bytes(self.root.as_os_str().as_encoded_bytes());
         format!("wo{}", letters(&hash.value().to_le_bytes()[..STABLE_LETTERS]))
     }
 
-    /// Draws a name for shared memory that nobody can foresee.
+    /// Draws an unpredictable name for shared memory.
     ///
     /// # Errors
     /// The operating system has no random numbers.
@@ -321,9 +321,9 @@ impl GroupPaths {
     }
 }
 
-/// Name of a group's shared memory for one start: prefix of all its segments, and name of the folder
-/// beside them that holds iceoryx2's other files. The folder is here because sockets lie in it, whose
-/// paths must be short.
+/// Name of a group's shared memory for one start: prefix of all its segments, and name of the
+/// folder with iceoryx2's other files. The folder is here because of its sockets, whose paths must
+/// be short.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShmName(String);
 

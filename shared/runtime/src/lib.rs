@@ -1,8 +1,8 @@
-//! What every process of a group needs to take part in it: shared memory with its topics and wake-ups, the
-//! group's folders, the lifecycle under a supervisor, clients, and the motion stop's own path.
+//! Foundation of every process of a group: shared memory with its topics and wake-ups, the group's
+//! folders, the lifecycle under a supervisor, clients, and the motion stop's own path.
 //!
-//! It reads no configuration and keeps no journal, so that a program outside this repository can be built on
-//! it with few dependencies (`whichone-sdk`). iceoryx2 is reached through this crate alone.
+//! It reads no configuration and keeps no journal, so that a program outside this repository can be
+//! built on it with few dependencies (`whichone-sdk`). Only this crate uses iceoryx2.
 
 pub mod bus;
 mod cleaner;

@@ -21,12 +21,13 @@ use std::time::Duration;
 
 /// Timeout for the shutdown of a service whose supervisor has died, before it is killed.
 const ORPHAN_GRACE: Duration = Duration::from_secs(15);
-/// Timeout for what a service needs of others to be ready. One that is held or stopped keeps nobody
-/// from it: the service is then reported ready, and goes on when the other one returns.
+/// Timeout for a service's dependencies on others at start. A held or stopped one does not block
+/// it: the service is then reported ready, and continues when the other one returns.
 const READY_PATIENCE: Span = Span::from_ms(1_000);
 /// Longest time between two heartbeats of a service that is awake.
 const BEAT_MAX: Span = Span::from_ms(1_000);
-/// The part of it, one eighth, by which a heartbeat may be late, for a service that is soon awake anyway.
+/// The part of it, one eighth, by which a heartbeat may be late, for a service that is soon awake
+/// anyway.
 const LATE_PART: u64 = 8;
 
 /// The environment that the supervisor has set for this process.
@@ -36,15 +37,14 @@ pub struct Environment {
     pub paths: GroupPaths,
     /// Epoch of the group.
     pub epoch: Epoch,
-    /// Number of this start.
+    /// Number of this start of the service.
     pub incarnation: Incarnation,
     /// Arguments of the program; a swapped service may have some.
     pub arguments: Vec<String>,
 }
 
 impl Environment {
-    /// Environment of a node without a group, in simulations and reports: its home is not
-    /// writable.
+    /// Environment of a node without a group, in simulations and reports: its home is not writable.
     pub fn nowhere() -> Self {
         Self {
             paths: GroupPaths::nowhere(),
@@ -83,7 +83,7 @@ fn number<T: std::str::FromStr>(key: &str) -> Result<T, Failure> {
     value.parse().map_err(|_| Failure::new(Exit::Usage, format!("{key}={value} is not a number")))
 }
 
-/// The service's connection to its supervisor.
+/// Connection of a service to its supervisor.
 #[derive(Debug)]
 pub struct Lifecycle {
     signals: UnixStream,
@@ -91,17 +91,17 @@ pub struct Lifecycle {
     _alive: File,
     beat_every: Span,
     last_beat: Option<Time>,
-    /// What the last beat said to be short.
+    /// Shortage reported by the last beat.
     shortage: String,
-    /// What the operator's status was last given.
+    /// Status last given to the operator.
     status: String,
     notifier: Notifier,
     /// Whether the last poll has found a signal or the end of the lifeline.
     is_called: bool,
 }
 
-/// Takes over SIGXFSZ, which kills whoever writes a file beyond its limit of size (`ulimit -f`): the write fails then, as
-/// on a full disk.
+/// Takes over SIGXFSZ, which kills a process that writes a file beyond its limit of size (`ulimit
+/// -f`): the write fails then, as on a full disk.
 ///
 /// # Errors
 /// The operating system refuses it.
@@ -150,8 +150,8 @@ impl Lifecycle {
         })
     }
 
-    /// Sleeps until there is a wake-up, one of `sources` is readable, a signal arrives, the supervisor
-    /// ends, or `longest` has passed.
+    /// Sleeps until there is a wake-up, one of `sources` is readable, a signal arrives, the
+    /// supervisor ends, or `longest` has passed.
     fn wait(&mut self, listener: &WakeListener, sources: Sources<'_>, longest: Span) -> Ready {
         let [a, b, c] = sources;
         let lifeline = self.lifeline.as_ref().map(AsFd::as_fd);
@@ -177,7 +177,7 @@ impl Lifecycle {
         self.notifier.say(&format!("X_VERSION={version}\nREADY=1"));
     }
 
-    /// Gives the operator's status what the service says, if that has changed.
+    /// Reports the service's status to the operator, if it has changed.
     fn status(&mut self, status: Option<&str>) {
         let status = status.unwrap_or_default();
         if self.status != status {
@@ -191,9 +191,9 @@ impl Lifecycle {
         self.notifier.say("STOPPING=1");
     }
 
-    /// Sends a heartbeat if one is due, or if what the service is short of has changed. Called only by
-    /// the main loop after a full pass, so that a heartbeat proves progress. `rejected` messages count beside
-    /// those that the bus has rejected.
+    /// Sends a heartbeat if one is due, or if the service's shortage has changed. Called only by
+    /// the main loop after a full pass, so that a heartbeat proves progress. `rejected` messages
+    /// count in addition to those that the bus has rejected.
     pub fn beat(
         &mut self,
         now: Time,
@@ -226,7 +226,7 @@ impl Lifecycle {
     }
 }
 
-/// Most descriptors that end the sleep of a service beside its wake-ups.
+/// Most descriptors, besides its wake-ups, that end the sleep of a service.
 pub const SOURCES_MAX: usize = 3;
 /// Descriptors that end the sleep of a service, the same for life; those that it lacks are `None`.
 pub type Sources<'a> = [Option<BorrowedFd<'a>>; SOURCES_MAX];
@@ -249,8 +249,8 @@ pub trait Cycle {
     /// Starts the shutdown; further passes follow until one breaks the loop.
     fn shut_down(&mut self);
 
-    /// Processes pending inputs, decides and publishes; breaks once the service has shut down. Only what
-    /// is ready needs to be read, besides shared memory.
+    /// Processes pending inputs, decides and publishes; breaks once the service has shut down.
+    /// Besides shared memory, only ready descriptors need to be read.
     ///
     /// # Errors
     /// A resource that the service requires is lost.
@@ -259,13 +259,13 @@ pub trait Cycle {
     /// Returns the health of the service: without heartbeats the supervisor restarts it.
     fn health(&mut self, now: Time) -> Health;
 
-    /// Returns what the operator's status says about the service.
+    /// Returns the service's status for the operator.
     fn status(&self) -> Option<&str> {
         None
     }
 
-    /// Returns what the service waits for to go on, e.g. space on a disk: it is healthy, and a restart
-    /// would not help.
+    /// Returns the resource that the service waits for, e.g. disk space: it is healthy, and a
+    /// restart would not help.
     fn shortage(&self) -> Option<&str> {
         None
     }
@@ -281,7 +281,7 @@ pub trait Cycle {
 pub enum Health {
     /// Working; the arrival of its oldest unprocessed input.
     Working(Option<Time>),
-    /// A part of it is unresponsive.
+    /// A part of the service is unresponsive.
     Stuck,
 }
 
@@ -338,7 +338,7 @@ fn lifeline() -> std::io::Result<Option<OwnedFd>> {
 }
 
 fn borrow(raw: i32) -> BorrowedFd<'static> {
-    // SAFETY: used for one query, which answers with an error where the descriptor is not open.
+    // SAFETY: used for one query, which fails if the descriptor is not open.
     #[allow(unsafe_code)]
     unsafe {
         BorrowedFd::borrow_raw(raw)

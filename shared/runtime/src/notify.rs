@@ -1,9 +1,9 @@
-//! Notifications of a service to its supervisor, and of the supervisor to an init system: `sd_notify`
-//! datagrams, sent without blocking.
+//! Notifications of a service to its supervisor, and of the supervisor to an init system:
+//! `sd_notify` datagrams, sent without blocking.
 //!
-//! A receiver that has stopped reading has a full queue. Its service keeps working: a beat
-//! that finds no room is dropped, and the next one follows. What is said only once (that the
-//! service is ready, or ending) is said again with the next datagram that finds room.
+//! A receiver that has stopped reading has a full queue. Its service keeps working: a beat that
+//! finds no room is dropped, and the next one follows. Single messages (that the service is ready,
+//! or ending) are repeated with the next datagram that finds room.
 
 use std::ffi::OsStr;
 use std::io;
@@ -20,7 +20,7 @@ pub struct Notifier {
 }
 
 impl Notifier {
-    /// To `$NOTIFY_SOCKET`, a path or an abstract name after `@`; disabled where that is not set.
+    /// Connects to `$NOTIFY_SOCKET`, a path or an abstract name after `@`; disabled without it.
     ///
     /// # Errors
     /// The operating system gives no socket, or the name cannot be one's.

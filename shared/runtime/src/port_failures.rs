@@ -1,4 +1,4 @@
-//! Topics that fail for a while: shared memory or descriptors may be short, which is not the service's failure.
+//! Topics that fail for a while: shared memory or descriptors may be short for now.
 
 use crate::bus::PortError;
 use crate::exit::{Exit, Failure};
@@ -31,7 +31,7 @@ impl PortFailures {
         Err(Failure::new(Exit::NotReached, std::mem::take(what)))
     }
 
-    /// Returns the failure, which a service reports as what it is short of.
+    /// Returns the failure, which a service reports as its shortage.
     pub fn shortage(&self) -> Option<&str> {
         self.0.as_ref().map(|(what, _)| what.as_str())
     }

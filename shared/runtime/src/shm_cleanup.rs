@@ -31,13 +31,13 @@ pub struct Admin {
     _topics: Topics,
     paths: GroupPaths,
     place: ShmName,
-    /// What every process of the group opens.
+    /// Files that every process of the group opens.
     shared: Vec<SharedFile>,
     spare: File,
 }
 
-/// A file in shared memory as it was made: one that is cut short or was made again is not the one that
-/// the running processes have mapped.
+/// A file in shared memory as it was made: one that is cut short or was made again is not the one
+/// that the running processes have mapped.
 #[derive(Debug)]
 struct SharedFile {
     path: PathBuf,
@@ -46,7 +46,7 @@ struct SharedFile {
 }
 
 impl SharedFile {
-    /// Returns the file as it is now; none where it is gone already.
+    /// Returns the file's present state; `None` if it is gone already.
     fn now(path: PathBuf) -> Option<Self> {
         let found = path.symlink_metadata().ok()?;
         Some(Self { path, inode: found.ino(), bytes: found.len() })
@@ -84,8 +84,8 @@ pub fn check_room(needed_mib: u64) -> Result<(), NoRoom> {
 }
 
 impl Admin {
-    /// Removes what earlier runs left, and creates the group's shared memory under a new name, with
-    /// every topic.
+    /// Removes remains of earlier runs, and creates the group's shared memory under a new name,
+    /// with every topic.
     ///
     /// # Errors
     /// iceoryx2 refuses.
@@ -108,20 +108,21 @@ impl Admin {
         Ok(Self { bus, _topics: topics, paths: paths.clone(), place, shared, spare, cleaner })
     }
 
-    /// Begins to remove what dead processes left behind. Until that is done, services that start wait before they open
-    /// topics: a successor loads meanwhile. Returns false if they would not wait; then nothing has begun.
+    /// Begins to remove the remains of dead processes. Until that is done, starting services wait
+    /// before they open topics: a successor loads meanwhile. Returns false if they would not wait;
+    /// then nothing has begun.
     pub fn begin_cleanup(&self) -> bool {
         self.cleaner.begin()
     }
 
-    /// Returns the number of processes that have joined the group and not left it, dead ones included.
+    /// Returns the number of processes that have joined the group and not left, even if dead.
     pub fn joined(&self) -> usize {
         let nodes = fs::read_dir(self.place.folder().join("nodes")).into_iter().flatten().flatten();
         let is_monitor = |name: &OsStr| name.as_bytes().ends_with(b".node_monitor");
         nodes.filter(|entry| is_monitor(&entry.file_name())).count()
     }
 
-    /// Removes what dead processes left behind, after the cleanups that have begun.
+    /// Removes the remains of dead processes, after the cleanups that have begun.
     pub fn clean_dead(&self) {
         self.cleaner.await_end();
         cleaner::clean(self.bus.node().config());
@@ -141,9 +142,8 @@ impl Admin {
     }
 
     /// Returns false if the files by which new processes find the group are known to be gone,
-    /// damaged or made again: new processes would join a second group of the same name, or none could
-    /// start.
-    /// What cannot be looked at for now, e.g. for want of a descriptor, counts as whole.
+    /// damaged or made again: new processes would join a second group of the same name, or none
+    /// could start. Files that cannot be examined now count as intact.
     pub fn intact(&self) -> bool {
         let unless_gone =
             |looked: io::Result<bool>| looked.unwrap_or_else(|error| !is_gone(&error));
@@ -158,8 +158,8 @@ fn is_gone(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory | ErrorKind::InvalidData)
 }
 
-/// Creates the folder of iceoryx2's files under a name that nobody else has, and writes the name down
-/// for the group's processes.
+/// Creates the folder of iceoryx2's files under a unique name, and writes the name down for the
+/// group's processes.
 ///
 /// # Errors
 /// The operating system refuses.
@@ -179,13 +179,13 @@ pub fn create_place(paths: &GroupPaths) -> io::Result<ShmName> {
 }
 
 /// Removes every trace of the group from shared memory, after its last process has ended. Returns
-/// what was left over by then and had to be removed by name.
+/// the entries left over by then, which had to be removed by name.
 pub fn remove_leftovers(paths: &GroupPaths) -> Vec<PathBuf> {
     let place = paths.shm_name().ok();
     if let Some(config) = place.as_ref().and_then(|place| config(place).ok()) {
         cleaner::clean(&config);
     }
-    // The folder goes first: a client that opens the group from now on removes what it makes again.
+    // The folder goes first: a client that opens the group from now on removes its own files again.
     if let Some(place) = place {
         let _ = fs::remove_dir_all(place.folder());
     }
@@ -194,7 +194,7 @@ pub fn remove_leftovers(paths: &GroupPaths) -> Vec<PathBuf> {
     removed.into_iter().filter(|path| !is_management(path)).collect()
 }
 
-/// Removes what this user has in shared memory under names that begin with `prefix`. Returns it.
+/// Removes this user's entries in shared memory with names that begin with `prefix`. Returns them.
 pub(crate) fn remove_entries(prefix: &str) -> Vec<PathBuf> {
     let all: Vec<_> = own_entries(prefix).collect();
     for path in &all {
@@ -265,7 +265,7 @@ mod tests {
             scope.spawn(|| join(1)).join().unwrap();
             assert_eq!(news.recv(), Ok(1), "nobody is held back");
             assert_eq!(admin.joined(), 1, "the supervisor");
-            // Two cleanups: the thread ends its own, the other one goes on.
+            // Two cleanups: the thread ends its own, the other one continues.
             assert!(admin.cleaner.hold_back() && admin.begin_cleanup());
             scope.spawn(|| join(2));
             // Clients do not wait for a service that starts.

@@ -1,17 +1,17 @@
 //! The motion stop's own path: datagrams on a socket of the arm's service.
 //!
-//! An order and its answer need no file, no shared memory, no disk and no other process: the socket is
-//! there since the start of the service, and a client's answer comes to an address that the kernel
-//! makes up. So the arm can be stopped on a full disk, with full shared memory, without a free
-//! descriptor in the service, with a hung supervisor and a dead policy.
+//! An order and its answer need no file, no shared memory, no disk and no other process: the socket
+//! is there since the start of the service, and a client's answer comes to an address that the
+//! kernel makes up. So the arm can be stopped on a full disk, with full shared memory, without a
+//! free descriptor in the service, with a hung supervisor and a dead policy.
 //!
-//! An order is a JSON object in one datagram, `{"order":"stop","given_ns":N}`, and is answered by the
-//! arm's [`StopState`]. A stop is repeated until the arm has confirmed it, however long its service is away
-//! ([`Progress`]); one whose giver ends first is kept in a file for the arm's return ([`KeptStop`]). `given_ns`, its
-//! time on the machine's monotonic clock, makes repetitions harmless, and keeps a release from lifting a stop that was
-//! given less than [`RESUME_AFTER`] before it. Only the group's
-//! own user and root are heard: the socket lies in the private folder `run/`, and both sides check the credentials
-//! that the kernel attaches to each datagram.
+//! An order is a JSON object in one datagram, `{"order":"stop","given_ns":N}`, and is answered by
+//! the arm's [`StopState`]. A stop is repeated until the arm has confirmed it, however long its
+//! service is away ([`Progress`]); one whose giver ends first is kept in a file for the arm's
+//! return ([`KeptStop`]). `given_ns`, its time on the machine's monotonic clock, makes repetitions
+//! harmless, and keeps a release from lifting a stop that was given less than [`RESUME_AFTER`]
+//! before it. Only the group's own user and root are heard: the socket lies in the private folder
+//! `run/`, and both sides check the credentials that the kernel attaches to each datagram.
 
 use std::io;
 use std::os::fd::BorrowedFd;
@@ -37,8 +37,8 @@ mod repeated;
 pub use kept::{KeptStop, is_kept};
 pub use repeated::RepeatedStop;
 
-/// Time after a stop in which no release counts, whoever gives either: a frightened person presses again and again, and
-/// two people press at once.
+/// Time after a stop in which no release counts, whoever gives either: a frightened person presses
+/// repeatedly, and two people press at once.
 pub const RESUME_AFTER: Span = Span::from_ms(2_000);
 
 /// Most datagrams of one pass.
@@ -50,7 +50,7 @@ const DATAGRAMS_MAX: usize = 64;
 pub struct StopOrder {
     /// Stop or release.
     pub order: MotionOrder,
-    /// Time at which it was given, nanoseconds of the monotonic clock; an older one than the last obeyed is ignored.
+    /// Time at which it was given, nanoseconds (monotonic); older than the last is ignored.
     pub given_ns: u64,
 }
 
@@ -67,7 +67,7 @@ pub struct StopState {
     pub at_rest: bool,
     /// True if the latch survives a restart of the service.
     pub durable: bool,
-    /// Reason why the robot cannot move; where the robot is not heard, `at_rest` is a belief.
+    /// Reason why the robot cannot move; if the robot is silent, `at_rest` is an assumption.
     pub inhibit: MotionInhibit,
 }
 
@@ -78,11 +78,11 @@ impl StopState {
     }
 }
 
-/// Where an answer goes.
+/// Return address for an answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Caller(SocketAddrUnix);
 
-/// As the bytes of an address that is no file, which is the only kind that orders come from.
+/// Serialised as the bytes of an address that is not a file, the only kind that orders come from.
 impl Serialize for Caller {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.0.abstract_name().unwrap_or_default().serialize(serializer)
@@ -97,7 +97,7 @@ impl<'de> Deserialize<'de> for Caller {
 }
 
 impl Caller {
-    /// A caller with an address of this name that is no file.
+    /// Returns a caller with an abstract address of this name.
     ///
     /// # Panics
     /// If the name is longer than addresses are.
@@ -200,7 +200,7 @@ pub enum StopError {
          emergency stop, reset and enable the robot, then give the order again"
     )]
     NotTaken(f64, MotionInhibit),
-    /// The stop is latched, and what the robot does is not known.
+    /// The stop is latched, but the robot's state is unknown.
     #[error("the stop is latched, but the robot is not heard and may still move; {EMERGENCY}")]
     Unheard,
     /// A stop that is not confirmed, and that nothing repeats any more.
@@ -236,7 +236,7 @@ impl StopClient {
     /// Sends the order that was given at `given`. A full queue drops it: it is repeated anyway.
     ///
     /// # Errors
-    /// [`StopError::Absent`] if no process listens, [`StopError::NoGroup`] if there is no folder `run` either.
+    /// [`StopError::Absent`] if no process listens, [`StopError::NoGroup`] if `run` is missing too.
     pub fn send(&self, order: MotionOrder, given: Time) -> Result<(), StopError> {
         let socket_error = |error: Errno| StopError::Socket(error.to_string());
         let to = SocketAddrUnix::new(self.paths.stop_socket()).map_err(socket_error)?;
@@ -266,8 +266,8 @@ impl StopClient {
         self.clock.machine_ns(given.ns())
     }
 
-    /// Returns whether this is the user whom the group belongs to. Root alone needs it: others reach no group but
-    /// their own.
+    /// Returns whether this is the user whom the group belongs to. Root alone needs it: others
+    /// reach no group but their own.
     fn is_groups_user(&self, uid: Uid) -> bool {
         use std::os::unix::fs::MetadataExt;
         let is_owner = |run: std::fs::Metadata| run.uid() == uid.as_raw();
@@ -278,13 +278,13 @@ impl StopClient {
 /// Gives an order and waits until the arm has carried it out: latched, at rest and durable, or
 /// released. A stop that cannot become durable is returned as such.
 ///
-/// `keep_trying` is asked with each repetition, and gets the reason for which the order is not confirmed whenever a
-/// warning is due; where it returns false, the order ends. It must not wait.
+/// `keep_trying` is asked with each repetition, and gets the reason for the missing confirmation
+/// whenever a warning is due; if it returns false, the order ends. It must not wait.
 ///
 /// A stop that is returned unconfirmed is kept for the arm's return ([`KeptStop`]).
 /// # Errors
-/// Not confirmed within `patience` ([`default_patience`]), which no error exceeds; without one a stop ends
-/// unconfirmed only if it is overruled, if the group ends, or if the robot is not heard; see [`StopError`].
+/// Not confirmed within `patience` ([`default_patience`]); without one a stop ends unconfirmed only
+/// if overruled, or if the group ends or the robot is silent; see [`StopError`].
 pub fn give(
     paths: &GroupPaths,
     order: MotionOrder,

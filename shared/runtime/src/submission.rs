@@ -11,8 +11,8 @@ use crate::{Span, Time};
 /// Time between two transmissions of an unanswered request.
 const RESEND_EVERY: Span = Span::from_ms(250);
 
-/// One request on its way. Pure: the caller sends what [`Submission::due`] returns and feeds every
-/// receipt of the topic to [`Submission::on_receipt`].
+/// A request under way to the group. Pure: the caller sends the result of [`Submission::due`] and
+/// feeds every receipt of the topic to [`Submission::on_receipt`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Submission {
     injection: Injection,
@@ -40,14 +40,14 @@ impl Submission {
         self
     }
 
-    /// Notes the latest prompt that the user was shown before; 0 where that is not known.
+    /// Notes the latest prompt that the user was shown before; 0 if unknown.
     #[must_use]
     pub fn after(mut self, seen: PromptId) -> Self {
         self.injection.seen_prompt = seen.0;
         self
     }
 
-    /// States who speaks, by a name that the speech service judges; empty: nobody in particular.
+    /// States who speaks, by a name that the speech service judges; empty for an unnamed person.
     #[must_use]
     pub fn by(mut self, from: impl Into<String>) -> Self {
         self.injection.from = from.into();
@@ -90,15 +90,15 @@ impl Submission {
         }
     }
 
-    /// Returns the receipts once all of them have arrived: one for text, one for each utterance of a
-    /// sound file, in order.
+    /// Returns the receipts once all of them have arrived: one for text, one for each utterance of
+    /// a sound file, in order.
     pub fn receipts(&self) -> Option<&[Receipt]> {
         let first = self.receipts.first()?;
         (self.receipts.len() >= first.segments as usize).then_some(&self.receipts)
     }
 
-    /// Returns true if the receipt accepts other words than those of this request: its key was used for them
-    /// before. Words are compared as far as a receipt holds them; sounds and gestures are not compared.
+    /// Returns true if the receipt accepts other words than this request's: its key was used for
+    /// them. Words are compared as far as a receipt holds them; sounds and gestures are not.
     pub fn conflicts_with(&self, receipt: &Receipt) -> bool {
         let Sound::Text(text) = &self.injection.sound else { return false };
         receipt.request() == self.key()

@@ -1,5 +1,5 @@
-//! Services that are woken by a topic beyond those of its own table: the configuration of the group names them
-//! (`reads` of `[services.NAME]`), and the supervisor writes them down for every process, one line each.
+//! Services woken by a topic beyond its own table: the configuration of the group names them
+//! (`reads` of `[services.NAME]`), and the supervisor lists them for every process, one line each.
 
 use std::fs;
 use std::io;
@@ -9,7 +9,7 @@ use messages::topics::Topic;
 
 use crate::group::GroupPaths;
 
-/// Which services are woken by which topics, beyond [`Topic::readers`].
+/// Services woken by topics, beyond [`Topic::readers`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wakes(Vec<(String, Service)>);
 
@@ -20,7 +20,7 @@ impl Wakes {
         Self(pairs.map(|(service, topic)| (topic.to_owned(), Service::named(service))).collect())
     }
 
-    /// Reads what the supervisor has written; nothing without a supervisor, in tests of topics.
+    /// Reads the supervisor's file; empty without a supervisor, in tests of topics.
     pub fn load(paths: &GroupPaths) -> Self {
         let text = fs::read_to_string(paths.wakes_file()).unwrap_or_default();
         Self::new(text.lines().filter_map(|line| line.split_once(' ')))

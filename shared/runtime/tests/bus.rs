@@ -219,7 +219,7 @@ fn submission_has_room_for_its_sound_whatever_its_size() {
     }
 }
 
-/// The first writer was read until it had nothing left, so one that kept sending was the only one heard.
+/// The first writer was read until it was empty, so one that kept sending was the only one heard.
 #[test]
 fn writers_are_read_in_turn_and_one_that_keeps_sending_does_not_hold_the_reader() {
     let shm = Shm::new();
@@ -251,8 +251,8 @@ fn writers_are_read_in_turn_and_one_that_keeps_sending_does_not_hold_the_reader(
     assert!(left > 0, "what arrived meanwhile comes next");
 }
 
-/// A service whose pass took longer than the interval of some topic's messages never ended that pass, and was
-/// killed for a missed heartbeat.
+/// A service whose pass took longer than the interval of some topic's messages never ended that
+/// pass, and was killed for a missed heartbeat.
 #[test]
 fn writer_that_sends_as_fast_as_it_is_read_does_not_hold_the_reader() {
     let shm = Shm::new();

@@ -24,18 +24,18 @@ const PRIVATE: u32 = 0o600;
 /// Mode of a new file before the umask.
 const PUBLIC: u32 = 0o666;
 
-/// Who may read the new file.
+/// Permitted readers of the new file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Readers {
-    /// Its owner alone.
+    /// Readable by the owner alone.
     Owner,
-    /// Those who may read the own file that it replaces; for a new one those whom the umask lets.
+    /// Readers of the replaced file of the same user; for a new file those whom the umask lets.
     AsBefore,
-    /// Those of this mode, whatever the umask.
+    /// Readers by this mode, whatever the umask.
     Mode(u32),
 }
 
-/// A new file beside the one whose place it will take, under a random name. Dropping it removes it.
+/// A new file next to the one that it will replace, under a random name. Dropping it removes it.
 #[derive(Debug)]
 pub struct Draft {
     file: NamedTempFile<File>,
@@ -66,7 +66,7 @@ impl Draft {
         Ok(Self { file, path: path.to_owned() })
     }
 
-    /// Writes to the disk what has been written so far.
+    /// Syncs the draft's content to the disk.
     ///
     /// # Errors
     /// The disk is full or broken.
@@ -82,7 +82,7 @@ impl Draft {
         self.file.persist(&self.path).map(drop).map_err(|error| error.error)
     }
 
-    /// Puts the draft in place if there is no file.
+    /// Puts the draft in place unless the file exists.
     ///
     /// # Errors
     /// `AlreadyExists`, or the folder cannot be written.
@@ -105,7 +105,7 @@ impl Write for Draft {
 /// loss either may be there, or neither.
 ///
 /// # Errors
-/// The file cannot be written; the old content is there then.
+/// The file cannot be written; the old content remains.
 pub fn replace(path: &Path, content: impl AsRef<[u8]>, readers: Readers) -> io::Result<()> {
     let mut draft = Draft::of(path, readers)?;
     draft.write_all(content.as_ref())?;
@@ -120,7 +120,7 @@ pub fn replace_private(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()>
     replace(path, content, Readers::Owner)
 }
 
-/// As [`replace_private`], and a power loss leaves the old or the new content: the new one is on the disk first.
+/// As [`replace_private`], and a power loss leaves the old or the new content, whole.
 ///
 /// # Errors
 /// As [`replace`].
@@ -132,7 +132,7 @@ pub fn replace_private_synced(path: &Path, content: impl AsRef<[u8]>) -> io::Res
     File::open(folder_of(path))?.sync_all()
 }
 
-/// Creates an empty file for its owner alone in the place of what has this name, for a program that writes to it.
+/// Creates an empty file for its owner alone, in place of any other, for a program to write to.
 ///
 /// # Errors
 /// The folder cannot be written.
@@ -141,7 +141,7 @@ pub fn create_private(path: &Path) -> io::Result<File> {
     draft.file.persist(path).map_err(|error| error.error)
 }
 
-/// Opens a file that processes lock; it is created where it is missing, and never replaced.
+/// Opens a file that processes lock; it is created if missing, and never replaced.
 ///
 /// # Errors
 /// It cannot be opened, or is a link.

@@ -10,7 +10,7 @@ use thiserror::Error;
 
 /// Mode of a folder for its owner only.
 const PRIVATE: u32 = 0o700;
-/// Others may write, and so rename what lies in the folder …
+/// Others may write, and so rename entries of the folder …
 const OTHERS_WRITE: u32 = 0o002;
 /// … unless each may rename only their own.
 const STICKY: u32 = 0o1000;
@@ -18,7 +18,7 @@ const STICKY: u32 = 0o1000;
 /// A folder cannot be made private.
 #[derive(Debug, Error)]
 pub enum FolderError {
-    /// It belongs to another user.
+    /// The folder belongs to another user.
     #[error(
         "{}: expected a folder of user {own}, found one of user {owner}; help: run the command as that user, whose \
          group it may be, or set WHICHONE_HOME to a folder of your own",
@@ -27,12 +27,12 @@ pub enum FolderError {
     Foreign {
         /// The folder.
         path: PathBuf,
-        /// User id of this process.
+        /// User id of the process.
         own: u32,
         /// User id of the folder's owner.
         owner: u32,
     },
-    /// Any user can rename what lies in it.
+    /// Any user can rename entries of the folder.
     #[error(
         "{}: any user can replace folders in it; help: `chmod o-w` it, or set WHICHONE_HOME (for \
          temporary files TMPDIR) to another folder",
@@ -44,8 +44,8 @@ pub enum FolderError {
     Io(PathBuf, io::Error),
 }
 
-/// Creates a folder that only its owner can enter, or makes an existing one so. The folders above it
-/// are created in the same way.
+/// Creates a folder that only its owner can enter, or makes an existing one so. The folders above
+/// it are created in the same way.
 ///
 /// # Errors
 /// It cannot be created, or belongs to another user.
@@ -63,8 +63,8 @@ pub fn make_private(folder: &Path) -> Result<(), FolderError> {
     Ok(())
 }
 
-/// Creates a group's own folder as [`make_private`] does, in a folder where no other user can replace
-/// it.
+/// Creates a group's own folder as [`make_private`] does, in a folder where no other user can
+/// replace it.
 ///
 /// # Errors
 /// As [`make_private`]; or the folder above it is open to others.
@@ -73,7 +73,7 @@ pub fn make_root(root: &Path) -> Result<(), FolderError> {
     root.parent().map_or(Ok(()), check_parent)
 }
 
-/// Checks that no other user can replace what this user has in a folder.
+/// Checks that no other user can replace this user's entries in a folder.
 pub(crate) fn check_parent(home: &Path) -> Result<(), FolderError> {
     let found = fs::metadata(home).map_err(|error| FolderError::Io(home.to_owned(), error))?;
     let own = geteuid().as_raw();

@@ -1,7 +1,7 @@
-//! What a crash leaves: files and folders with a random name, which nobody holds a lock on any more.
+//! Leftovers of a crash: files and folders with a random name, no longer locked by any process.
 //!
-//! Their maker locks them for as long as it lives. Between creation and lock another process may take them for a
-//! leftover; the maker notices that, and chooses another name.
+//! Their maker locks them for as long as it lives. Between creation and lock another process may
+//! take them for a leftover; the maker notices that, and chooses another name.
 
 use std::ffi::OsStr;
 use std::fs::{self, File, OpenOptions};

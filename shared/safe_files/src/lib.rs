@@ -1,7 +1,7 @@
 //! Files and temporary folders that no other user of the machine can prepare, redirect or block.
 //!
-//! The only crate that replaces files or uses the system's folders for temporary files: names of new files are random
-//! and must not exist, and what a crash leaves is removed by the next writer of the same file.
+//! The only crate that replaces files or uses the system's folders for temporary files: names of
+//! new files are random and must not exist, and a file's next writer removes leftovers of a crash.
 //!
 //! | contents | file |
 //! |---|---|

@@ -15,7 +15,7 @@ pub fn suffixed(path: &Path, suffix: impl Display) -> PathBuf {
 /// Makes room for a new number 1: each older version moves one number up, and number `kept` goes.
 ///
 /// # Errors
-/// If a file cannot be renamed or removed; a missing one is no error.
+/// If a file cannot be renamed or removed; a missing one is not an error.
 pub fn make_room(kept: u32, path_of: impl Fn(u32) -> PathBuf) -> io::Result<()> {
     if kept == 0 {
         return Ok(());

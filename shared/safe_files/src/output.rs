@@ -1,6 +1,6 @@
 //! Files and folders that a user names for output, wherever they are.
 //!
-//! Another user may have put a link on the way, so as to have a file of this user overwritten. Links are therefore
+//! Another user may have placed a link to have a file of this user overwritten. Links are therefore
 //! followed one by one, each through its own descriptor, and only those of this user and of root.
 
 use std::collections::VecDeque;
@@ -26,7 +26,7 @@ const ROOT: u32 = 0;
 pub struct OutputFolder(OwnedFd);
 
 impl OutputFolder {
-    /// Opens a folder, which is created where it is missing, with those above it.
+    /// Opens a folder, creating it and those above it if missing.
     ///
     /// # Errors
     /// It cannot be created or entered, or a link of another user leads to it.
@@ -37,7 +37,7 @@ impl OutputFolder {
     /// Replaces a file in the folder.
     ///
     /// # Errors
-    /// It cannot be written, or is no regular file.
+    /// The file cannot be written, or is not a regular file.
     pub fn write(&self, name: impl AsRef<OsStr>, content: &[u8]) -> io::Result<()> {
         let (folder, name) =
             follow(self.0.try_clone()?, [name.as_ref().to_owned()].into(), End::File)?;
@@ -56,7 +56,7 @@ impl OutputFolder {
 /// Replaces the content of a file that a user has named.
 ///
 /// # Errors
-/// It cannot be written, it is no regular file, or a link of another user leads to it.
+/// The file cannot be written, is not a regular file, or is behind a link of another user.
 pub fn write_output(path: &Path, content: &[u8]) -> io::Result<()> {
     let (folder, name) = walk(path, End::File)?;
     replace_in(&folder, &name, content)
@@ -75,7 +75,7 @@ pub fn write_new_output(path: &Path, content: &[u8]) -> io::Result<()> {
 /// Checks that no link of another user leads to a new file that a user has named.
 ///
 /// # Errors
-/// One does, or there is no such folder.
+/// A link of another user leads to the file, or the folder is missing.
 pub fn check_new_output(path: &Path) -> io::Result<()> {
     walk(folder_of(path), End::Existing).map(drop)
 }
@@ -95,14 +95,14 @@ fn path_in(folder: &OwnedFd, name: &OsStr) -> PathBuf {
     Path::new("/proc/self/fd").join(folder.as_raw_fd().to_string()).join(name)
 }
 
-/// What a path has to end in.
+/// Required end of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum End {
     /// A regular file, or nothing so far.
     File,
-    /// A folder; what is missing is created.
+    /// A folder, created if missing.
     Folder,
-    /// A folder that is there.
+    /// An existing folder.
     Existing,
 }
 

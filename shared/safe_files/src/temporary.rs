@@ -27,7 +27,7 @@ pub struct TemporaryFolder {
 }
 
 impl TemporaryFolder {
-    /// Creates a folder in `$XDG_RUNTIME_DIR` where that is private, else in the system's folder for temporary files.
+    /// Creates a folder in a private `$XDG_RUNTIME_DIR`, else in the system's temporary folder.
     ///
     /// # Errors
     /// It cannot be created, or any user could replace it.

@@ -1,11 +1,11 @@
-//! What a person cannot say clearly in a scene, although the scene is valid.
+//! Ambiguities of a valid scene: objects and words that a person cannot name clearly.
 
 use std::collections::HashMap;
 
 use crate::{Attribute, Scene, Value};
 
 impl Scene {
-    /// Returns what is ambiguous in the scene, a sentence each.
+    /// Returns the scene's ambiguities, one sentence each.
     pub fn ambiguities(&self) -> Vec<String> {
         let mut found = Vec::new();
         self.noun_as_value(&mut found);

@@ -1,4 +1,4 @@
-//! An attribute of places in a row, for objects that no attribute of the scene tells apart: "Is it on the left?"
+//! An attribute of places in a row, for otherwise identical objects: "Is it on the left?"
 
 use crate::relation_truth::dot;
 use crate::{Attribute, Object, Role, Scene, Value, ValueId, View, WordId};
@@ -20,10 +20,10 @@ const ROWS: [&[&str]; 4] = [
 ];
 /// Places of two objects of which one is behind the other.
 const DEPTH: &[&str] = &["in front", "at the back"];
-/// Distance from which people tell neighbours in a row apart, metres.
+/// Distance at which people distinguish neighbours in a row, metres.
 const APART_M: f64 = 0.04;
 
-/// How objects are told apart by their places.
+/// Distinction of objects by their places.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ByPlace {
     view: View,
@@ -32,15 +32,15 @@ pub(crate) struct ByPlace {
 }
 
 impl Scene {
-    /// Returns the scene with an attribute of places where some objects have all other values in common, as the viewer
-    /// sees them; a scene whose objects are replaced has it anew. Without such objects nothing changes.
+    /// Returns the scene with an attribute of places, as the viewer sees them, if some objects
+    /// share all other values; otherwise the scene as it is. Replacing objects computes it again.
     #[must_use]
     pub fn by_place(mut self, view: View) -> Self {
         self.places = Some(ByPlace { view, words: self.words().len() });
         self.told_apart()
     }
 
-    /// Returns the scene about other objects, whose values are of the attributes without that of places.
+    /// Returns the scene about other objects, with values of the attributes other than places.
     pub(crate) fn with(&self, objects: Vec<Object>) -> Self {
         let (name, noun, asks) =
             (self.name().to_owned(), self.noun().to_owned(), self.asks().clone());

@@ -213,7 +213,7 @@ fn check_roles(attribute: &DraftAttribute, report: &mut Checks<'_>) {
     }
 }
 
-/// The last word of the `spoken` forms of an attribute's values, if they have one in common; else the attribute's name.
+/// The last word of the `spoken` forms of an attribute's values, if shared; or else its name.
 fn shared_word(attribute: &DraftAttribute) -> String {
     let mut last = attribute.values.iter().map(|value| {
         let spoken = value.spoken.as_ref().unwrap_or(&value.name);
@@ -243,7 +243,7 @@ fn build_attribute(attribute: DraftAttribute, ids: &HashMap<String, WordId>) -> 
             }
         })
         .collect();
-    // "scissors" and "milk" beside "a wrench".
+    // "scissors" and "milk" in contrast to "a wrench".
     if values.iter().any(|value| value.role == Role::Kind) {
         let guessed = values.iter_mut().zip(is_guessed).filter(|(_, is_guessed)| *is_guessed);
         let qualities = guessed.filter(|(value, _)| value.role == Role::Quality);

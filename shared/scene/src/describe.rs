@@ -12,15 +12,15 @@ const PAIRED_MAX: usize = 24;
 type Values = Vec<(AttributeId, ValueId)>;
 
 impl Scene {
-    /// The object in words that no other object shares, e.g. `white bowl in the dishwasher`: the kind
-    /// of thing that it is, with as few of its values as tell it apart, qualities before places.
-    /// Where nothing does, with all that help.
+    /// Describes the object in words that fit no other object, e.g. `white bowl in the dishwasher`:
+    /// the kind of thing that it is, with as few of its values as tell it apart, qualities before
+    /// places. If no values do, all values that help are used.
     pub fn describe(&self, object: ObjectId) -> String {
         let all: Vec<ObjectId> = self.ids().collect();
         self.describe_among(object, &all)
     }
 
-    /// The object in words that tell it from these others; itself among them does not count.
+    /// Describes the object in words that fit none of these others; itself does not count.
     pub fn describe_among(&self, object: ObjectId, others: &[ObjectId]) -> String {
         let kind = self.kind(object);
         let alike = |&i: &ObjectId| i != object && kind.is_none_or(|(k, v)| self.has(i, k, v));
@@ -31,8 +31,7 @@ impl Scene {
         self.compose(&chosen)
     }
 
-    /// The same with a quality of the object, even where none is needed: people name what strikes the
-    /// eye.
+    /// Describes the object with one quality even if none is needed: people name conspicuous ones.
     fn describe_with_quality(&self, object: ObjectId, others: &[ObjectId]) -> String {
         let kind = self.kind(object);
         let alike = |&i: &ObjectId| i != object && kind.is_none_or(|(k, v)| self.has(i, k, v));
@@ -56,8 +55,8 @@ impl Scene {
         self.compose(&chosen)
     }
 
-    /// The objects as a choice or an enumeration, each told from the others: `the red mug, the blue
-    /// mug or the white cup` for "or". Objects that no words tell apart are named once.
+    /// The objects as a choice or an enumeration, each distinct from the others: `the red mug, the
+    /// blue mug or the white cup` for "or". Objects that no words distinguish are named once.
     pub fn list(&self, objects: &[ObjectId], conjunction: &str) -> String {
         let mut names: Vec<String> = Vec::new();
         for &object in objects {
@@ -100,14 +99,15 @@ impl Scene {
         self.values_of(object).find(|&(k, v)| self.value(k, v).role() == Role::Kind)
     }
 
-    /// Returns whether an object has a value, or may be said to have it: one that is like no other is in no row, and may be
-    /// further left than the left one of a row.
+    /// Returns whether an object has a value, or may be said to have it: one that is like no other
+    /// is in no row, and may be further left than the left one of a row.
     fn may_have(&self, i: ObjectId, k: AttributeId, v: ValueId) -> bool {
         let is_in_none = || self.object(i).values[k.index()].is_none();
         self.has(i, k, v) || self.attributes()[k.index()].by_place && is_in_none()
     }
 
-    /// The fewest values that no rival has all of; where there are none, those that rule out any.
+    /// Returns the smallest set of values that no rival shares, or else the values that exclude
+    /// any.
     fn telling(&self, object: ObjectId, rivals: &[ObjectId]) -> Values {
         if rivals.is_empty() {
             return Vec::new();
@@ -153,14 +153,14 @@ impl Scene {
         }
     }
 
-    /// Returns these values as a description, `Anna's red mug on the shelf`; the noun is their kind, or else the
-    /// scene's noun.
+    /// Returns these values as a description, `Anna's red mug on the shelf`; the noun is their
+    /// kind, or else the scene's noun.
     pub fn compose(&self, values: &[(AttributeId, ValueId)]) -> String {
         let kind = values.iter().map(|&(k, v)| self.value(k, v)).find(|v| v.role() == Role::Kind);
         self.compose_around(kind.map_or(self.noun(), Value::bare), values)
     }
 
-    /// Returns these values around a noun: owners, then qualities, then numbers, the noun, then parts and places.
+    /// Returns values around a noun: owners, qualities, numbers, the noun, then parts and places.
     pub fn compose_around(&self, noun: &str, values: &[(AttributeId, ValueId)]) -> String {
         let valued = |&(k, v): &(AttributeId, ValueId)| (k, self.value(k, v));
         let all: Vec<(AttributeId, &Value)> = values.iter().map(valued).collect();

@@ -1,9 +1,9 @@
-//! Forms of values in sentences: articles, owners, numbers, and the wordings of questions that a scene leaves out.
+//! Forms of values in sentences: articles, owners, numbers, and default wordings of questions.
 
 use crate::wording::{ASK_WHICH, ASK_YES_NO};
 use crate::{Role, Value};
 
-/// Words that stand for "the".
+/// Words that are determiners, as "the".
 const DETERMINERS: &[&str] =
     &["the", "my", "your", "his", "her", "its", "our", "their", "this", "that"];
 /// Owners in general: "the men's shoe".
@@ -14,7 +14,7 @@ const NUMBERS: &[&str] = &[
     "eleven", "twelve",
 ];
 
-/// Returns a description with "the" before it: "the red mug", "Anna's mug", "my mug", "the cat's bowl".
+/// Returns a description with "the": "the red mug", "Anna's mug", "my mug", "the cat's bowl".
 pub fn definite(description: &str) -> String {
     let first = description.split(' ').next().unwrap_or_default();
     let is_name = first.starts_with(char::is_uppercase) && first != description;
@@ -22,7 +22,7 @@ pub fn definite(description: &str) -> String {
     if has_own { description.to_owned() } else { format!("the {description}") }
 }
 
-/// Returns "a" or "an" as it is spoken before a text: "an hour glass", "a unicorn", "an MP3 player".
+/// Returns the article spoken before a text: "an hour glass", "a unicorn", "an MP3 player".
 pub(crate) fn indefinite(text: &str) -> &'static str {
     let word = text.split([' ', '-']).next().unwrap_or_default();
     let lower = word.to_lowercase();
@@ -56,27 +56,27 @@ fn is_determiner(word: &str) -> bool {
     DETERMINERS.iter().any(|it| word.eq_ignore_ascii_case(it))
 }
 
-/// "anna" of "anna's"; none of "men's".
+/// Returns the owner in a possessive: "anna" for "anna's"; `None` for "men's".
 fn owner(word: &str) -> Option<&str> {
     let owner = ["'s", "\u{2019}s"].iter().find_map(|ending| word.strip_suffix(ending))?;
     let is_one = !owner.is_empty() && !owner.contains(' ');
     (is_one && !OWNERS_IN_GENERAL.contains(&owner)).then_some(owner)
 }
 
-/// Returns whether a form tells whose a thing is, so that it stands first and for "the".
+/// Returns whether a form names an owner, so that it comes first and replaces "the".
 pub(crate) fn is_owner(spoken: &str) -> bool {
     let (first, rest) = spoken.split_once(' ').unwrap_or((spoken, ""));
     owner(spoken).is_some() || is_determiner(first) && (rest.is_empty() || owner(rest).is_some())
 }
 
-/// Returns whether a form is a bare number other than a year; it needs its attribute beside it: "size 42".
+/// Returns whether a form is a bare number other than a year; it needs its attribute: "size 42".
 pub(crate) fn is_number(spoken: &str) -> bool {
     let is_year = spoken.len() == 4 && spoken.starts_with(['1', '2']);
     let is_digits = !spoken.is_empty() && spoken.chars().all(|c| c.is_ascii_digit());
     is_digits && !is_year || NUMBERS.contains(&spoken)
 }
 
-/// Returns a measure as it stands before a noun: "two-year-old" of "two years old".
+/// Returns a measure in its form before a noun: "two-year-old" for "two years old".
 pub(crate) fn measured(spoken: &str) -> Option<String> {
     let words: Vec<&str> = spoken.split(' ').collect();
     let [number, units, what] = words[..] else { return None };
@@ -95,7 +95,7 @@ pub(crate) fn has_quantity(spoken: &str) -> bool {
     without_article(spoken).is_some() || spoken.starts_with("no ")
 }
 
-/// Returns a name with a capital letter for an owner of whom the file has none: "Anna's" of "anna's".
+/// Returns a name with a capital letter for an owner without one: "Anna's" for "anna's".
 pub(crate) fn with_capital(spoken: String) -> String {
     match owner(&spoken).and_then(|owner| owner.chars().next()) {
         Some(first) => first.to_uppercase().chain(spoken[first.len_utf8()..].chars()).collect(),
@@ -132,7 +132,7 @@ pub(crate) fn defaults(values: &[Value]) -> Defaults {
     Defaults { yes_no, which }
 }
 
-/// Gives parts the form that the default wording needs: "a green handle", or beside "with a lid" "with no lid".
+/// Gives parts the default wording's form: "a green handle", or next to "with a lid" "with no lid".
 pub(crate) fn align_parts(values: &mut [Value]) {
     let is_bare = |value: &Value| value.after_noun() != value.spoken;
     let are_parts = values.iter().all(|value| value.role() == Role::Part);

@@ -40,6 +40,6 @@ index! {
     ValueId
 }
 index! {
-    /// A member of `V = ∪ V_k`. `V` is a set: a string that is a value of two attributes is one word.
+    /// A member of `V = ∪ V_k`. `V` is a set: the same value of two attributes is one word.
     WordId
 }

@@ -1,9 +1,9 @@
 //! The scene as JSON, for batch tools and tests:
 //! `{"objects":[{"name":ID,"attributes":{K:V,…}},…],"values":{K:[V,…],…}}`.
 //!
-//! Optional beside these: `name`, `noun`, `synonyms` (`{K:{V:[…],…},…}`), and an object's
-//! `xyz`, `yaw`, `size`, `grasp_width`, `mass_kg`, `wall_deg` and `form` as in the scene file. Without `values`, every value is
-//! listed in the order in which the objects bring it up.
+//! Further optional keys: `name`, `noun`, `synonyms` (`{K:{V:[…],…},…}`), and an object's `xyz`,
+//! `yaw`, `size`, `grasp_width`, `mass_kg`, `wall_deg` and `form` as in the scene file. Without
+//! `values`, every value is listed in the order in which the objects bring it up.
 
 use diagnostics::{Diagnostics, Fields, Node, Report, Source, Table};
 use serde_json::{Map, Value as Json, json};
@@ -32,8 +32,8 @@ impl Scene {
         report.verdict(scene)
     }
 
-    /// The JSON form, which [`Scene::from_json`] reads back to a scene of the same key. Wordings are
-    /// omitted.
+    /// The JSON form, which [`Scene::from_json`] reads back to a scene of the same key. Wordings
+    /// are omitted.
     pub fn to_json(&self) -> Json {
         let mut values = Map::new();
         let mut synonyms = Map::new();

@@ -1,9 +1,9 @@
 //! The scene: objects that can be requested, their attributes and values, and the words for them.
 //!
-//! This crate is pure: no IO, no clock, no threads. [`Scene::from_toml`] and [`Scene::from_json`] parse
-//! text and report every problem of it at once. The types that language and dialogue share are here as
-//! well: [`Question`] (section 3.2 of the publication) and [`Reading`], an understood utterance
-//! (section 3.6).
+//! This crate is pure: no IO, no clock, no threads. [`Scene::from_toml`] and [`Scene::from_json`]
+//! parse text and report every problem of it at once. The types that language and dialogue share
+//! are here as well: [`Question`] (section 3.2 of the publication) and [`Reading`], an understood
+//! utterance (section 3.6).
 //!
 //! # Example
 //!

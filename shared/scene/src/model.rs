@@ -32,8 +32,8 @@ pub struct Object {
     pub name: String,
     /// The number under which it was perceived; none for an object of the scene file.
     pub number: Option<ObjectId>,
-    /// Value per attribute, in the scene's attribute order; an object may lack one. Of a value that is
-    /// in doubt it is the likeliest.
+    /// Value per attribute, in the scene's attribute order; an object may lack one. Of a value that
+    /// is in doubt it is the likeliest.
     pub values: Vec<Option<ValueId>>,
     /// Per attribute the probability of each value, where it is in doubt; empty if nothing is.
     pub chances: Vec<Option<Vec<f64>>>,
@@ -54,7 +54,7 @@ pub struct Placement {
     pub size: [f64; 3],
     /// Width that the gripper closes on, metres.
     pub grasp_width: f64,
-    /// Mass, kilograms, where it is known: the gripper may be too weak.
+    /// Mass, kilograms, if known: the gripper may be too weak.
     pub mass_kg: Option<f64>,
     /// Slope of a wall that is gripped at its rim, degrees from the vertical, outwards.
     pub wall_deg: f64,
@@ -65,10 +65,10 @@ pub struct Placement {
 /// Form of an object, as far as it decides how the fingers take it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Form {
-    /// The fingers span it.
+    /// Solid body that the fingers span.
     #[default]
     Solid,
-    /// A bowl, cup or box without a lid: where it is wider than the fingers open, they take its rim.
+    /// A bowl, cup or box without a lid: if it is wider than the fingers open, they take its rim.
     Hollow,
 }
 
@@ -95,8 +95,8 @@ pub struct Attribute {
     pub ask_yes_no: Vec<String>,
     /// Open wordings, e.g. `What colour is it?`; at least one, the usual one first.
     pub ask_which: Vec<String>,
-    /// Of places in a row, and not of the scene file: people say them as relations
-    /// ([`Relation`](crate::Relation)).
+    /// Whether this is the attribute of places in a row, not of the scene file: people say them as
+    /// relations ([`Relation`](crate::Relation)).
     pub by_place: bool,
 }
 
@@ -107,9 +107,9 @@ pub struct Value {
     pub name: String,
     /// Other words and phrases for it, lower case.
     pub synonyms: Vec<String>,
-    /// Its form in questions, e.g. `in the dishwasher`; the name by default.
+    /// Form of the value in questions, e.g. `in the dishwasher`; the name by default.
     pub spoken: String,
-    /// The same string in `V`.
+    /// The value as a word of `V`.
     pub word: WordId,
     pub(crate) role: Role,
     /// Whether it is a part named without an article: "green handle".
@@ -122,13 +122,13 @@ impl Value {
         self.role
     }
 
-    /// The value without an article, as it stands beside a noun or for one: "felt tip" of "a felt
+    /// The value without an article, as used with a noun or instead of one: "felt tip" of "a felt
     /// tip".
     pub fn bare(&self) -> &str {
         without_article(&self.spoken).filter(|_| self.role == Role::Kind).unwrap_or(&self.spoken)
     }
 
-    /// The value as it stands after a noun: "in the dishwasher", "with a green handle", "with no handle".
+    /// The value after a noun: "in the dishwasher", "with a green handle", "with no handle".
     pub fn after_noun(&self) -> String {
         let spoken = &self.spoken;
         let is_noun = self.role == Role::Part && self.is_noun;
@@ -157,7 +157,7 @@ struct Vocabularies {
 }
 
 impl Scene {
-    /// Puts checked parts together and computes what is looked up often.
+    /// Puts checked parts together and precomputes frequent look-ups.
     pub(crate) fn assemble(
         name: String,
         noun: String,
@@ -214,12 +214,12 @@ impl Scene {
         self.key
     }
 
-    /// The object of that name.
+    /// Returns the object of the given name.
     pub fn object_named(&self, name: &str) -> Option<ObjectId> {
         self.names.objects.get(name).copied()
     }
 
-    /// The attribute of that name.
+    /// Returns the attribute of the given name.
     pub fn attribute_named(&self, name: &str) -> Option<AttributeId> {
         self.names.attributes.get(name).copied()
     }
@@ -250,8 +250,8 @@ impl Scene {
         &self.objects[i.index()]
     }
 
-    /// `attr_k,v(i)`: whether object `i` has value `v` for attribute `k`. An object that lacks the
-    /// attribute has none of its values.
+    /// `attr_k,v(i)`: whether object `i` has value `v` for attribute `k`. An object without the
+    /// attribute has no value of it.
     pub fn has(&self, i: ObjectId, k: AttributeId, v: ValueId) -> bool {
         self.objects[i.index()].values[k.index()] == Some(v)
     }

@@ -18,12 +18,12 @@ impl Options {
     /// Values from this one on are not offered: messages have a byte for each.
     pub const VALUES_MAX: u16 = 255;
 
-    /// Sorts the values; none if they are not two to four different ones below [`Self::VALUES_MAX`].
+    /// Sorts the values; `None` unless there are two to four different ones, below `VALUES_MAX`.
     pub fn new(values: &[ValueId]) -> Option<Self> {
         Self::of(values).filter(|options| options.count >= 2)
     }
 
-    /// One to four different values.
+    /// Sorts one to four different values.
     fn of(values: &[ValueId]) -> Option<Self> {
         let mut kept = [ValueId(0); Self::MAX];
         kept.get_mut(..values.len())?.copy_from_slice(values);

@@ -1,8 +1,8 @@
 //! Objects that were perceived, in place of those of the scene file.
 //!
-//! The file remains the vocabulary (attributes, values, wording) and the table from what a camera
-//! recognises to what can be said about it. A perceived object refers to the file by names, so that
-//! it outlives a change of the file.
+//! The file remains the vocabulary (attributes, values, wording) and the table from the camera's
+//! labels to the attributes that can be talked about. A perceived object refers to the file by
+//! names, so that it outlives a change of the file.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,16 +14,16 @@ const CERTAIN: f64 = 0.995;
 /// An object on the table as it was perceived.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Perceived {
-    /// Its number: never reused, and never below the number of objects in the scene file, so that it
-    /// is never taken for one of those.
+    /// Its number: never reused, and never below the number of objects in the scene file, so that
+    /// it is never taken for one of those.
     pub number: ObjectId,
-    /// Its name, unique and never reused: the class that it was first taken for and its number, e.g.
-    /// `white2-9`.
+    /// Its name, unique and never reused: the class that it was first taken for and its number,
+    /// e.g. `white2-9`.
     pub name: String,
     /// What it was recognised as: names of objects in the scene file with their probabilities.
     pub classes: Vec<(String, f64)>,
-    /// Values perceived directly, by attribute: each value's name with its probability. They replace
-    /// what follows from the classes.
+    /// Values perceived directly, by attribute: each value's name with its probability. They
+    /// replace what follows from the classes.
     pub attributes: Vec<(String, Vec<(String, f64)>)>,
     /// Centre in frame `base`, metres.
     pub xyz: [f64; 3],
@@ -49,21 +49,21 @@ pub fn likeliest(chances: &[(String, f64)]) -> Option<&str> {
 }
 
 impl Scene {
-    /// Returns the scene with perceived objects in place of its own. Names that the scene does not have
-    /// are ignored. The result may be without objects.
+    /// Returns the scene with perceived objects in place of its own. Names that the scene does not
+    /// have are ignored. The result may be without objects.
     #[must_use]
     pub fn with_objects(&self, perceived: &[Perceived]) -> Self {
         let objects = perceived.iter().map(|object| self.object_of(object)).collect();
         self.with(objects)
     }
 
-    /// Returns the number by which services refer to an object: its position in a scene file, or the
-    /// number under which it was perceived.
+    /// Returns the number by which services refer to an object: its position in a scene file, or
+    /// the number under which it was perceived.
     pub fn number(&self, object: ObjectId) -> ObjectId {
         self.objects().get(object.index()).and_then(|object| object.number).unwrap_or(object)
     }
 
-    /// Returns the object with that number.
+    /// Returns the object with the given number.
     pub fn numbered(&self, number: ObjectId) -> Option<ObjectId> {
         let mut all = self.ids();
         all.find(|object| self.number(*object) == number)
@@ -101,8 +101,8 @@ impl Scene {
         Some(Placement { xyz: perceived.xyz, yaw: perceived.yaw, ..known })
     }
 
-    /// Returns the probability of every value of an attribute; none if the object lacks it. What is
-    /// not accounted for is shared evenly by all values.
+    /// Returns the probability of every value of an attribute; `None` if the object lacks it. The
+    /// remaining probability is shared evenly by all values.
     fn chances_of(&self, perceived: &Perceived, k: AttributeId) -> Option<Vec<f64>> {
         let attribute = &self.attributes()[k.index()];
         let mut chances = vec![0.0; attribute.values.len()];

@@ -38,8 +38,8 @@ const IRREGULAR: &[(&str, &str)] = &[
     ("glasses", "glasses"),
 ];
 
-/// Returns the plural of a noun or noun phrase: `mugs`, `knives`, `boxes`, `cups of tea`. A noun that
-/// ends in a single s is one already: `scissors`.
+/// Returns the plural of a noun or noun phrase: `mugs`, `knives`, `boxes`, `cups of tea`. A noun
+/// that ends in a single s is one already: `scissors`.
 pub fn plural(noun: &str) -> String {
     for link in [" of ", " with ", " for ", " in "] {
         if let Some((head, rest)) = noun.split_once(link) {

@@ -1,4 +1,4 @@
-//! The robot's questions: `(Q_t, Q_v)` of section 3.3, and the open and choice questions that extend it.
+//! The robot's questions: `(Q_t, Q_v)` of section 3.3, extended by open and choice questions.
 
 use crate::{AttributeId, ObjectId, Options, ValueId};
 
@@ -21,7 +21,7 @@ pub enum Question {
 }
 
 impl Question {
-    /// The attribute that it asks about.
+    /// Returns the attribute that the question asks about.
     pub fn attribute(self) -> Option<AttributeId> {
         match self {
             Self::Attribute(k, _) | Self::Which(k) | Self::Choice(k, _) => Some(k),

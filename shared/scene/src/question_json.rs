@@ -50,7 +50,7 @@ pub fn question_from_json(scene: &Scene, json: &Json) -> Result<Question, Questi
     }
 }
 
-/// Writes what [`question_from_json`] reads.
+/// Writes a question in the form that [`question_from_json`] reads.
 ///
 /// # Panics
 /// If the question is not of this scene ([`Scene::contains`]).
@@ -84,7 +84,7 @@ pub fn reading_to_json(scene: &Scene, reading: &Reading) -> Json {
     let words = |ids: &[crate::WordId]| -> Vec<&str> {
         ids.iter().map(|w| scene.words()[w.index()].as_str()).collect()
     };
-    // What a question is asked of, or what is to be put back or washed, is not what is wanted.
+    // The object of a user's question, or of an order to put back or wash, is not wanted.
     let intent = published_intent(reading);
     let is_other = matches!(reading.intent, Intent::PutBack | Intent::Chore);
     let wants = intent != Intent::AskBack && !is_other;

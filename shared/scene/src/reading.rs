@@ -69,12 +69,12 @@ pub enum Intent {
     Chore,
     /// Stop moving at once, and withdraw the request ("stop, I don't want it").
     StopAndCancel,
-    /// Move again after a stop ("go on"), which words cannot bring about. An answer in the same words
-    /// ("keep going") stands.
+    /// Move again after a stop ("go on"), which words cannot bring about. An answer in the same
+    /// words ("keep going") stands.
     GoOn,
 }
 
-/// An object that an utterance points to by what was spoken of.
+/// An object that an utterance refers to by an earlier mention.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
@@ -138,12 +138,12 @@ impl Reading {
 pub struct UnknownWord {
     /// The word as it was said, without an article, or the words of a compound: "frying pan".
     pub text: String,
-    /// Its role in the sentence; a kind only where a thing is asked for by it.
+    /// Its role in the sentence; a kind only if a thing is requested by that kind.
     pub role: Role,
 }
 
-/// Doubts about the parts of a reading: for each the probability that something else was said, from 0
-/// (certain, as for typed words) to 1. Entries missing at the end are certain.
+/// Doubts about the parts of a reading: for each the probability that something else was said, from
+/// 0 (certain, as for typed words) to 1. Entries missing at the end are certain.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Doubt {
     /// By word of [`Reading::base`].

@@ -1,7 +1,7 @@
-//! Relations of an object to others by place, order and size, as people name them: "the leftmost", "the second
-//! from the right", "longer than the red one". [`truths`](crate::Scene::truths) says of which objects they hold.
+//! Relations of an object to others by place, order and size: "the leftmost", "the second from the
+//! right", "longer than the red one". [`truths`](crate::Scene::truths) evaluates them.
 
-/// A quantity by which objects are compared; more of it is said of the one that is further that way.
+/// A quantity for comparing objects; an object further that way has more of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
@@ -52,8 +52,8 @@ pub enum Measure {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Relation {
-    /// "the leftmost", "the second from the left", "the biggest": of all that may be meant the n-th,
-    /// 1 to [`Relation::NTH_MAX`].
+    /// "the leftmost", "the second from the left", "the biggest": of all that may be meant the
+    /// n-th, 1 to [`Relation::NTH_MAX`].
     Nth(Measure, u8),
     /// "bigger", "to the left of it".
     More(Measure),
@@ -95,7 +95,7 @@ impl Measure {
         self as usize >= Self::Big as usize
     }
 
-    /// Returns whether it grows with what is measured: "big", and not "small".
+    /// Returns whether the relation grows with its measure: true for "big", false for "small".
     pub(crate) fn is_positive(self) -> bool {
         (self as usize).is_multiple_of(2)
     }
@@ -132,7 +132,7 @@ impl Measure {
     }
 }
 
-/// Measures that fit one form's codes.
+/// Number of measures that fit one form's codes.
 const MEASURES_MAX: u8 = 32;
 
 impl Relation {
@@ -164,7 +164,7 @@ impl Relation {
         }
     }
 
-    /// Returns it in words, for operators.
+    /// Returns the relation in words, for operators.
     pub fn text(self) -> String {
         match self {
             Self::Nth(measure, 1) => format!("most {}", measure.text()),

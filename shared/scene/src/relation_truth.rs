@@ -1,24 +1,24 @@
-//! Truth of relations in a scene: computed from the places, sizes and masses of its objects, graded by how plain
-//! it is.
+//! Truth of relations in a scene: computed from the places, sizes and masses of its objects, graded
+//! by how plain it is.
 
 use crate::{Measure, ObjectId, Placement, Relation, Scene, WordId};
 
 /// Difference of places at which people take one side to be meant with odds of `e`, metres.
 const PLACE_M: f64 = 0.02;
-/// The same of sizes and masses, as the logarithm of their ratio.
+/// The same for sizes and masses, as the logarithm of their ratio.
 const RATIO: f64 = 0.03;
-/// The same where things are compared loosely: "a bigger one".
+/// The same for a loose comparison: "a bigger one".
 const RATIO_LOOSE: f64 = 0.1;
 /// Distance beyond the nearest at which "next to" is said `e` times less often, metres.
 const BESIDE_M: f64 = 0.04;
-/// Distance from the line between two objects at which "between" is said `e` times less often, metres.
+/// Distance from the line between two objects that makes "between" `e` times rarer, metres.
 const ASIDE_M: f64 = 0.1;
 
 /// Truth below which a relation to another object is true of none.
 const TRUE_MIN: f64 = 0.1;
 
-/// Names of sizes, from small to large: values that have these names are ordered by them where no measured
-/// size tells objects apart.
+/// Names of sizes, from small to large: values that have these names are ordered by them if no
+/// measured size tells the objects apart.
 const SIZES: [&[&str]; 5] = [
     &["tiny", "mini"],
     &["small", "little", "short", "thin", "narrow", "low"],
@@ -42,21 +42,21 @@ pub enum View {
     User([f64; 3]),
 }
 
-/// What a relation is about, besides the relation itself.
+/// Arguments of a relation: objects, reference and view.
 #[derive(Clone, Copy, Debug)]
 pub struct Related<'a> {
-    /// The objects that may be meant.
+    /// Candidate objects of the relation.
     pub among: &'a [ObjectId],
     /// The objects that it relates to; of each the objects that it may be.
     pub to: &'a [Vec<ObjectId>],
-    /// Where left and right are seen from.
+    /// Viewpoint for left and right.
     pub view: View,
 }
 
 impl Scene {
-    /// Returns for each object how true a relation is of it, from 0 to 1 for the truest of those that may be meant;
-    /// none for an object of which it is not known. Returns none at all where the scene cannot tell: what is
-    /// measured is not known of two objects, or nothing is there that it relates to.
+    /// Returns for each object the degree to which a relation holds, from 0 to 1 for the best
+    /// candidate; `None` for an object for which it is unknown. Returns `None` as a whole if the
+    /// scene cannot tell: fewer than two objects have the measure, or the reference is missing.
     pub fn truths(&self, relation: Relation, about: &Related<'_>) -> Option<Vec<Option<f64>>> {
         let truths = match relation {
             Relation::Nth(measure, n) => self.ordered(measure, RATIO, about, |_| vec![n.into()]),
@@ -76,7 +76,7 @@ impl Scene {
         (known > 1 && most > least).then(|| truths.into_iter().map(scaled).collect())
     }
 
-    /// Returns whether a word is a value that stands for more of a measure: "long" for [`Measure::Long`].
+    /// Returns whether a word is a value for more of a measure: "long" for [`Measure::Long`].
     pub fn is_value_of(&self, word: WordId, measure: Measure) -> bool {
         let values = self.attributes().iter().flat_map(|attribute| &attribute.values);
         let names = values
@@ -88,7 +88,7 @@ impl Scene {
             && ranks.any(|rank| if measure.is_positive() { rank > middle } else { rank < middle })
     }
 
-    /// The probability of each object to be at one of these places in the order of those that may be meant.
+    /// The probability of each object to be at one of these places among the candidates.
     fn ordered(
         &self,
         measure: Measure,
@@ -186,8 +186,8 @@ impl Scene {
         (!pairs.is_empty()).then(|| self.ids().map(truth).collect())
     }
 
-    /// Returns the measure of each object, and the difference that counts; none where it does not tell those apart
-    /// that may be meant.
+    /// Returns the measure of each object, and the smallest difference that counts; `None` if the
+    /// measure does not tell the candidates apart.
     fn measured(
         &self,
         measure: Measure,

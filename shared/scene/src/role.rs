@@ -1,4 +1,4 @@
-//! Grammatical roles of values: where a value may stand beside a noun.
+//! Grammatical roles of values: the position that a value may take next to a noun.
 
 use crate::forms::without_article;
 
@@ -13,8 +13,8 @@ pub enum Role {
     Kind,
     /// "in the dishwasher": stands after the noun.
     Place,
-    /// "with nuts", "a green handle": what is in a thing or belongs to it; stands after the noun, and can be asked for
-    /// as if it were the thing.
+    /// "with nuts", "a green handle": what is in a thing or belongs to it; stands after the noun,
+    /// and can be asked for as if it were the thing.
     Part,
 }
 
@@ -27,8 +27,8 @@ impl Role {
         ("part", Self::Part),
     ];
 
-    /// Guesses the role of a value from its name and its `spoken` form; `shared` is the last word of the `spoken` forms
-    /// of its attribute, if they have one in common, or else the attribute's name.
+    /// Guesses the role of a value from its name and its `spoken` form; `shared` is the last word
+    /// of the `spoken` forms of its attribute, if common to all, or else the attribute's name.
     pub(crate) fn guess(attribute: &str, name: &str, spoken: &str, shared: &str) -> Self {
         let starts = |relation: &&str| {
             spoken.strip_prefix(*relation).is_some_and(|rest| rest.starts_with(' '))
@@ -47,7 +47,7 @@ impl Role {
         }
         match without_article(spoken) {
             Some(noun) => {
-                // "a green handle", where another one is "a black handle".
+                // "a green handle", if another one is "a black handle".
                 let rest = noun.strip_prefix(name).unwrap_or_default();
                 if rest.trim_start() == shared && rest != shared { Self::Part } else { Self::Kind }
             }
@@ -58,8 +58,8 @@ impl Role {
     }
 }
 
-/// Returns whether a form is a part named without an article, "green handle" of the attribute "handle"; not of an
-/// attribute that is a place, as in "top shelf".
+/// Returns whether a form is a part named without an article, "green handle" of the attribute
+/// "handle"; not of an attribute that is a place, as in "top shelf".
 pub(crate) fn is_part_of(attribute: &str, spoken: &str) -> bool {
     let is_place = |place: &&str| attribute.ends_with(*place);
     let is_first = |word: &&str| spoken.strip_prefix(*word).is_some_and(|it| it.starts_with(' '));
@@ -69,8 +69,8 @@ pub(crate) fn is_part_of(attribute: &str, spoken: &str) -> bool {
         && !RELATIONS.iter().chain(HAVING).any(is_first)
 }
 
-/// Returns whether a form is an adjective with what it needs after it: "older than a year". Names of things may
-/// have the same words in them: "The Lord of the Rings", "toast on a plate".
+/// Returns whether a form is an adjective with its complement: "older than a year". Names of things
+/// may have the same words in them: "The Lord of the Rings", "toast on a plate".
 fn is_continued(attribute: &str, spoken: &str) -> bool {
     let mut words = spoken.split(' ').skip(1);
     let is_link = |word: &str| ["in", "on", "at", "to", "than", "by", "from"].contains(&word);
@@ -106,7 +106,7 @@ const THING_NOUNS: &[&str] = &[
     "product",
 ];
 
-/// Relations of a thing to where it is.
+/// Relations of a thing to its location.
 const RELATIONS: &[&str] = &[
     "in",
     "on",
@@ -134,7 +134,7 @@ const RELATIONS: &[&str] = &[
     "right of",
     "to the",
 ];
-/// Relations of a thing to what it holds, is made of, is for or about.
+/// Relations of a thing to its content, material, purpose or subject.
 const HAVING: &[&str] = &[
     "with",
     "without",

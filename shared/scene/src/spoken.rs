@@ -3,12 +3,12 @@
 use crate::forms::definite;
 use crate::{AttributeId, Role, Scene, Value, ValueId};
 
-/// What reading a scene's own words back has found. The reader is a parameter elsewhere.
+/// Findings of reading a scene's own words back; other crates pass in the reader.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WordFindings {
     /// Words that make the scene unusable.
     pub problems: Vec<WordProblem>,
-    /// What a person cannot say clearly, a sentence each.
+    /// Ambiguities for a person in this scene, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -24,8 +24,8 @@ pub struct WordProblem {
 }
 
 impl Value {
-    /// Returns a phrase with another name of the value in the place of its own: whole words alone ("colored red" has
-    /// one "red").
+    /// Returns a phrase with another name of the value in the place of its own: whole words alone
+    /// ("colored red" has one "red").
     pub fn with_name(&self, phrase: &str, name: &str) -> String {
         let is_edge = |text: char| !text.is_alphanumeric();
         let (mut out, mut rest) = (String::new(), phrase);
@@ -42,8 +42,8 @@ impl Value {
 }
 
 impl Scene {
-    /// Returns the plain phrases that ask for things with a value, `name` being one of its names; the name alone is the
-    /// first.
+    /// Returns the plain phrases that ask for things with a value, `name` being one of its names;
+    /// the name alone is the first.
     pub fn requests(&self, value: &Value, name: &str) -> Vec<String> {
         let noun = self.noun();
         let after = value.with_name(&value.after_noun(), name);
@@ -77,7 +77,7 @@ impl Scene {
         }
     }
 
-    /// Returns the phrase that asks for a thing with these values.
+    /// Returns the phrase that requests a thing with these values.
     pub fn request_for(&self, values: &[(AttributeId, ValueId)]) -> String {
         format!("get me {}", definite(&self.compose(values)))
     }

@@ -28,7 +28,7 @@ impl StableHash {
         self.bytes(&(count as u64).to_le_bytes());
     }
 
-    /// Adds a number by its bits.
+    /// Adds the bits of a floating-point number.
     pub fn number(&mut self, number: f64) {
         self.bytes(&number.to_bits().to_le_bytes());
     }

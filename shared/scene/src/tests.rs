@@ -202,8 +202,8 @@ fn wording_has_defaults() {
     assert_eq!(scene.phrase(Question::Which(AttributeId(0))), "What is the age?");
 }
 
-/// `invalid.txt` holds each text and what it leads to; `UPDATE_EXPECT=1 cargo test -p scene` rewrites
-/// the latter.
+/// `invalid.txt` holds each text and its diagnostics; `UPDATE_EXPECT=1 cargo test -p scene`
+/// rewrites the diagnostics.
 #[test]
 fn invalid_scenes_get_every_diagnostic_with_line_and_help() {
     let mut found = String::new();

@@ -49,9 +49,9 @@ impl Scene {
         report.verdict(scene)
     }
 
-    /// Reads the text of a scene file, reports every problem of it, and returns the scene without its
-    /// wrong parts, so that the places of the other objects can be checked in the same round; `None` if
-    /// there is no scene without them.
+    /// Reads the text of a scene file, reports every problem of it, and returns the scene without
+    /// its wrong parts, so that the places of the other objects can be checked in the same round;
+    /// `None` if they leave no scene.
     pub fn examine(file: &str, text: &str, report: &mut Report) -> Option<Self> {
         let table = Table::parse(text, &Source::new(file, 0), report)?;
         let mut f = Fields::new(&table, Vec::new(), report);
@@ -138,7 +138,7 @@ pub(crate) fn object(f: &mut Fields<'_>) -> DraftObject {
     }
 }
 
-/// Greatest slope of a wall that the fingers, coming from above, enclose: degrees from the vertical.
+/// Greatest slope of a wall that fingers from above can enclose: degrees from the vertical.
 const WALL_DEG_MAX: f64 = 30.0;
 
 /// Lengths above these are taken for other units than metres.
@@ -146,7 +146,7 @@ const EXTENT_MAX_M: f64 = 2.0;
 const GRASP_MAX_M: f64 = 0.5;
 const DISTANCE_MAX_M: f64 = 5.0;
 
-/// The place and size of an object: all of it or nothing; nothing either where something is wrong.
+/// The place and size of an object: all of it or nothing; nothing if a part is wrong.
 fn placement(f: &mut Fields<'_>) -> Option<Placement> {
     const KEYS: [&str; 7] = ["xyz", "yaw", "size", "grasp_width", "mass_kg", "wall_deg", "form"];
     let placement = f.together(&KEYS, |f| Placement {
@@ -196,7 +196,7 @@ fn check_lengths(f: &mut Fields<'_>, key: &'static str, lengths_m: &[f64], max_m
         if length_m <= 0.0 && !is_place {
             f.problem(&item, format!("expected a length above 0 m, found {length_m}"), "");
         } else if length_m.abs() > max_m {
-            // Centimetres, millimetres, or either, where what is on a table may have that length.
+            // Centimetres, millimetres, or either, if an object on a table may have that length.
             let guesses = [100.0, 1000.0].map(|parts| length_m / parts).into_iter();
             let guesses = guesses.filter(|guess_m| guess_m.abs() <= max_m / 4.0);
             let guesses =

@@ -44,11 +44,11 @@ impl Scene {
         self.phrase_variant(question, 0, 1, &[])
     }
 
-    /// Returns the wording of `question` as the `n`-th prompt, when it is put for the `time`-th time in
-    /// one interaction, from 1. Wordings take turns; a repeated question is shortened, then put as
-    /// "yes or no?", or lists `choices`, the answers to an open question that are left (in their spoken
-    /// form; none where there are too many), and then begins in another way each time. The result depends on the arguments alone, so that a
-    /// replay gives the same words; variant 0 put once is [`Scene::phrase`].
+    /// Returns the wording of `question` as the `n`-th prompt, put for the `time`-th time (from 1).
+    /// Wordings take turns; a repeated question is shortened, then put as "yes or no?", or lists
+    /// `choices`, the answers to an open question that are left (in spoken form; empty if they are
+    /// too many), and then begins in another way each time. The result depends on the arguments
+    /// alone, so that a replay gives the same words; variant 0, put once, is `phrase`.
     ///
     /// # Panics
     /// If the question is not of this scene ([`Scene::contains`]).
@@ -79,7 +79,7 @@ impl Scene {
         }
     }
 
-    /// Returns a wording as it continues after a colon; a value at its beginning keeps its own capital.
+    /// Returns a wording as it continues after a colon; a value at the start keeps its capital.
     fn continued(&self, question: Question, wording: &str) -> String {
         let values = question.attribute().map(|k| &self.attributes()[k.index()].values);
         let mut values = values.into_iter().flatten();
@@ -99,8 +99,8 @@ impl Scene {
         })
     }
 
-    /// "White or clear?", "What colour is it: white or clear?", "Is it white or clear?"; of the attribute's
-    /// wordings only those that an enumeration fits into.
+    /// "White or clear?", "What colour is it: white or clear?", "Is it white or clear?"; of the
+    /// attribute's wordings only those that an enumeration fits into.
     fn choice_wordings(&self, k: AttributeId, options: Options) -> Vec<String> {
         let attribute = &self.attributes()[k.index()];
         let listed = self.listed(k, options);
@@ -114,8 +114,8 @@ impl Scene {
         [Some(format!("{}?", capitalised(&listed))), open, yes_no].into_iter().flatten().collect()
     }
 
-    /// "white, metallic or clear"; with "neither" or "none of them" at the end where an object of the scene
-    /// has none of these values.
+    /// "white, metallic or clear"; with "neither" or "none of them" at the end if an object of the
+    /// scene lacks these values.
     fn listed(&self, k: AttributeId, options: Options) -> String {
         let spoken = |v: &ValueId| self.attributes()[k.index()].values[v.index()].spoken.clone();
         let mut all: Vec<String> = options.values().iter().map(spoken).collect();
@@ -126,7 +126,7 @@ impl Scene {
         enumerate(&all, "or")
     }
 
-    /// A wording with its slots filled.
+    /// Fills the slots of a wording.
     fn fill(&self, wording: &str, question: Question) -> String {
         let wording = wording.replace("{noun}", self.noun());
         match question {

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use toml_edit::{Item, TableLike, Value};
 
-/// A scene. What a file leaves out is `None`, or empty.
+/// A scene. Keys missing in the file are `None`, or empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Document {
     /// Name of the scene.
     pub name: String,
-    /// What an object is called if nothing distinguishes it.
+    /// Name of an object if nothing distinguishes it.
     pub noun: String,
     /// Wordings of the first prompt.
     #[serde(default)]
@@ -29,12 +29,12 @@ pub struct Document {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AttributeEntry {
-    /// Its position in the file that is edited; none for a new one.
+    /// Position in the edited file; `None` for a new attribute.
     #[serde(default)]
     pub from: Option<usize>,
-    /// Its name.
+    /// Name of the attribute.
     pub name: String,
-    /// Other words for it.
+    /// Other words for the attribute.
     #[serde(default)]
     pub synonyms: Vec<String>,
     /// Wordings of yes/no questions.
@@ -46,7 +46,7 @@ pub struct AttributeEntry {
     /// Role of its values in a sentence.
     #[serde(default)]
     pub role: Option<String>,
-    /// Its values in their order.
+    /// Values in their order.
     pub values: Vec<ValueEntry>,
 }
 
@@ -54,18 +54,18 @@ pub struct AttributeEntry {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ValueEntry {
-    /// Its position in the attribute's list in the file; none for a new one.
+    /// Position in the attribute's list in the file; `None` for a new value.
     #[serde(default)]
     pub from: Option<usize>,
-    /// Its name, and a word that people say.
+    /// Name of the value, and a word that people say.
     pub name: String,
-    /// Other words and phrases for it.
+    /// Other words and phrases for the value.
     #[serde(default)]
     pub synonyms: Vec<String>,
-    /// How a question names it.
+    /// Name of the value in questions.
     #[serde(default)]
     pub spoken: Option<String>,
-    /// Its role in a sentence.
+    /// Role of the value in a sentence.
     #[serde(default)]
     pub role: Option<String>,
 }
@@ -81,10 +81,10 @@ impl ValueEntry {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectEntry {
-    /// Its position in the file that is edited; none for a new one.
+    /// Position in the edited file; `None` for a new object.
     #[serde(default)]
     pub from: Option<usize>,
-    /// Its name.
+    /// Name of the object.
     pub name: String,
     /// Value by attribute.
     #[serde(default)]
@@ -95,7 +95,7 @@ pub struct ObjectEntry {
     /// Rotation about the vertical, radians.
     #[serde(default)]
     pub yaw: Option<f64>,
-    /// Extents along its own axes, metres.
+    /// Extents along the object's own axes, metres.
     #[serde(default)]
     pub size: Option<[f64; 3]>,
     /// Width that the fingers close on, metres.

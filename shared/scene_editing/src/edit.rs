@@ -39,7 +39,7 @@ impl SceneEdit {
     /// Returns the scene as an editor sees it.
     ///
     /// # Errors
-    /// Every problem of the file's form, where a key is not of its type: such a file is corrected as text.
+    /// Every problem of the form, if a key has a wrong type: such a file is corrected as text.
     pub fn document(&self) -> Result<Document, Diagnostics> {
         Document::read(self.toml.as_table()).map_err(|_| {
             let mut report = Report::default();
@@ -50,11 +50,11 @@ impl SceneEdit {
         })
     }
 
-    /// Makes the file that of a changed document: keys, entries and comments that stay are left as they are
-    /// written.
+    /// Makes the file that of a changed document: keys, entries and comments that stay are left as
+    /// they are written.
     ///
     /// # Errors
-    /// The file is written in a form that would say something else afterwards; it is unchanged then.
+    /// The file is in a form that would have another meaning afterwards; it is unchanged then.
     pub fn apply(&mut self, document: &Document) -> Result<(), Diagnostics> {
         let before = self.toml.clone();
         write(&mut self.toml, document);
@@ -68,8 +68,8 @@ impl SceneEdit {
         Err(Diagnostic::new(&*self.label, "", what, help).into())
     }
 
-    /// Gives every object that has a size and a grasp width but no place one at the origin, which is
-    /// still to be replaced. Returns their numbers.
+    /// Gives every object that has a size and a grasp width but no place one at the origin, which
+    /// is still to be replaced. Returns their numbers.
     pub fn add_places(&mut self) -> Vec<usize> {
         let mut added = Vec::new();
         for n in 0..self.objects() {

@@ -1,4 +1,4 @@
-//! Problems of a scene in a configuration, and where its arm can fetch an object.
+//! Problems of a scene in a configuration, and the reach of its arm.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -15,22 +15,22 @@ use crate::ObjectEntry;
 /// The configuration in which a scene is used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Configuration {
-    /// Its folder.
+    /// Folder of the configuration.
     pub folder: PathBuf,
-    /// A profile of it.
+    /// Profile of the configuration.
     pub profile: Option<String>,
     /// Overrides of its values: dotted key and value.
     pub set: Vec<(String, String)>,
 }
 
-/// What a check has found.
+/// Result of a check.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Findings {
-    /// Every problem, none where the scene can be used.
+    /// Every problem; empty for a usable scene.
     pub problems: Vec<Problem>,
-    /// What a person cannot say clearly.
+    /// Ambiguities for a person.
     pub warnings: Vec<String>,
-    /// The robot's words for each object; none where there are problems of the file.
+    /// The robot's words for each object; empty if the file has problems.
     pub words: Vec<String>,
 }
 
@@ -64,8 +64,8 @@ impl From<&Diagnostic> for Problem {
     }
 }
 
-/// The reader's findings in a scene's words (`language::word_findings`); an argument, so that editors of scenes do not
-/// depend on the reading of English.
+/// The reader's findings in a scene's words (`language::word_findings`); an argument, so that
+/// editors of scenes do not depend on the reading of English.
 pub type ReadBack = fn(&Scene) -> WordFindings;
 
 /// Checks the text of a scene as `whichone scene check` does, with reach and clearance.
@@ -83,7 +83,7 @@ pub fn check(configuration: &Configuration, file: TextFile, read_back: ReadBack)
     Findings { problems, warnings, words }
 }
 
-/// Returns what a person cannot say in a scene: problems of its file, and warnings, a sentence each.
+/// Returns the ambiguities of a scene for a person: problems of its file, and warnings.
 pub fn misunderstood(
     scene: &Scene,
     file: &TextFile,
@@ -102,35 +102,35 @@ pub fn misunderstood(
 /// A robot, as an editor draws it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RobotSummary {
-    /// Its name.
+    /// Name of the robot.
     pub name: String,
     /// The limbs that may fetch.
     pub limbs: Vec<LimbSummary>,
     /// Height of the table, metres.
     pub table_z_m: f64,
-    /// Where objects are handed over, metres.
+    /// Place for handing over objects, metres.
     pub hand_over_xyz_m: [f64; 3],
 }
 
-/// One of its limbs.
+/// Summary of a limb.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LimbSummary {
-    /// Its name.
+    /// Name of the limb.
     pub name: String,
-    /// Its shoulder, metres, frame `base`.
+    /// Shoulder of the limb, metres, frame `base`.
     pub shoulder_xyz_m: [f64; 3],
-    /// What its fingers close on, metres: from the thinnest to the widest.
+    /// Widths that the fingers can grip, metres: from the thinnest to the widest.
     pub grip_m: [f64; 2],
 }
 
-/// Where the arm of a configuration can fetch objects.
+/// Reach of a configuration's arm for objects.
 #[derive(Debug)]
 pub struct Reach {
     configuration: Configuration,
     setup: ArmSetup,
 }
 
-/// Ranges of an object whose reach is asked for, metres and kg: as those of scene files.
+/// Ranges of an object in requests about the reach, metres and kg: as those of scene files.
 const DISTANCE_MAX_M: f64 = 5.0;
 const EXTENT_MAX_M: f64 = 2.0;
 
@@ -151,7 +151,7 @@ impl Reach {
         Ok(Self { configuration: configuration.clone(), setup: ArmSetup::new(&settings)? })
     }
 
-    /// Returns whether it is of this configuration. A changed file is noticed by [`Reach::new`] alone.
+    /// Returns whether it is of this configuration. Only [`Reach::new`] notices a changed file.
     pub fn is_of(&self, configuration: &Configuration) -> bool {
         self.configuration == *configuration
     }
@@ -174,9 +174,9 @@ impl Reach {
         }
     }
 
-    /// Returns the name of the limb that can fetch an object that stands alone with its centre at each of these
-    /// places (x and y, metres, at the height of the object), or why none can. Stops at `until`, after the first
-    /// at least; `None` if the object has no place, or a size that no object has.
+    /// Returns the name of the limb that can fetch a lone object with its centre at each of these
+    /// places (x and y, metres, at the height of the object), or why none can. Stops at `until`,
+    /// after the first at least; `None` without a place, or with an impossible size.
     pub fn limbs(
         &self,
         object: &ObjectEntry,

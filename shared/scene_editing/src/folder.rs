@@ -1,4 +1,4 @@
-//! The scene files of a configuration: read and replaced by their names, and nothing outside the folder.
+//! The scene files of a configuration: read and replaced by name, only within the folder.
 
 use std::fs;
 use std::io::{self, ErrorKind, Write};
@@ -24,7 +24,7 @@ pub enum FileError {
         "scene: `{0}` is not a name; help: use up to {NAME_MAX} letters a to z, digits, `-` and `_`, and begin with a letter or digit"
     )]
     Name(String),
-    /// There is no scene of this name.
+    /// The folder has no scene of the given name.
     #[error("scene: no scene `{0}` in {folder}", folder = .1.display())]
     Missing(String, PathBuf),
     /// There is a scene of this name, which was to be a new one.
@@ -43,7 +43,7 @@ pub enum FileError {
     Io(PathBuf, #[source] io::Error),
 }
 
-/// Returns what tells one content of a file from another.
+/// Returns a fingerprint of a file's content.
 pub fn fingerprint(text: &str) -> String {
     let mut hash = StableHash::default();
     hash.text(text);
@@ -60,7 +60,7 @@ impl ScenesFolder {
         Self(configuration.join("scenes"))
     }
 
-    /// Its path.
+    /// Returns the folder's path.
     pub fn path(&self) -> &Path {
         &self.0
     }
@@ -97,7 +97,7 @@ impl ScenesFolder {
     /// Reads a scene.
     ///
     /// # Errors
-    /// The name is not one, there is no such scene, or it cannot be read.
+    /// The name is invalid, the scene is missing, or it cannot be read.
     pub fn read(&self, name: &str) -> Result<TextFile, FileError> {
         let path = self.file(name)?;
         match config::read_file(&path) {
@@ -109,11 +109,11 @@ impl ScenesFolder {
         }
     }
 
-    /// Writes a scene whole or not at all. `known` is the [`fingerprint`] of the text that it replaces, none for
-    /// a new scene.
+    /// Writes a scene whole or not at all. `known` is the [`fingerprint`] of the text that it
+    /// replaces, `None` for a new scene.
     ///
     /// # Errors
-    /// The name is not one; the file is not the one of `known`; it cannot be written. The old file is there then.
+    /// The name is invalid; the file is not that of `known`; it cannot be written and is unchanged.
     pub fn write(&self, name: &str, text: &str, known: Option<&str>) -> Result<(), FileError> {
         let path = self.file(name)?;
         let mode = match fs::symlink_metadata(&path) {

@@ -1,4 +1,4 @@
-//! Single keys of a table. What has the wanted value already stays as it is written; what is replaced keeps
+//! Single keys of a table. A key with the wanted value stays as it is written; a replaced one keeps
 //! the comments around it.
 
 use std::collections::BTreeMap;
@@ -7,7 +7,7 @@ use toml_edit::{Array, InlineTable, Item, TableLike, Value};
 
 use crate::document::number_of;
 
-/// Sets a value, or removes it.
+/// Sets the value of a key, or removes the key.
 fn set(table: &mut dyn TableLike, key: &str, new: Option<Value>) {
     match (table.get_mut(key), new) {
         (Some(item), Some(mut value)) => {
@@ -55,7 +55,7 @@ pub(crate) fn set_triple(table: &mut dyn TableLike, key: &str, numbers: Option<[
     }
 }
 
-/// Sets a list of texts. Where `is_one_or_more`, a single one is written as a text, and none leaves the key out.
+/// Sets a list of texts. With `is_one_or_more`, a single one is a text, and none leaves no key.
 pub(crate) fn set_texts(
     table: &mut dyn TableLike,
     key: &str,
@@ -83,7 +83,7 @@ pub(crate) fn set_texts(
     set(table, key, new);
 }
 
-/// Makes an array laid out as `old`: on several lines where that was, with its comments.
+/// Makes an array laid out as `old`: on several lines if `old` was, with its comments.
 pub(crate) fn arranged(old: Option<&Array>, values: impl Iterator<Item = Value>) -> Array {
     let prefix = |value: &Value| value.decor().prefix()?.as_str().map(str::to_owned);
     let is_broken = |prefix: &String| prefix.contains('\n');

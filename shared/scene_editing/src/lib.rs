@@ -1,9 +1,9 @@
 //! Editing of scene files for programs: the console's editor and `whichone scene`.
 //!
-//! A scene file is edited as its author wrote it: comments, layout and the form of numbers stay wherever
-//! nothing else is wanted. What an editor sees of it is a [`Document`]; [`SceneEdit`] applies a changed one.
-//! [`ScenesFolder`] keeps the files of a configuration, [`check`] finds every problem at once as
-//! `whichone scene check` does, and [`Reach`] says where the arm can fetch an object.
+//! A scene file is edited as its author wrote it: comments, layout and the form of numbers stay
+//! wherever nothing else is wanted. Editors see it as a [`Document`]; [`SceneEdit`] applies a
+//! changed one. [`ScenesFolder`] keeps the files of a configuration, [`check`] finds every problem
+//! at once as `whichone scene check` does, and [`Reach`] gives the places within the arm's reach.
 //!
 //! | contents | file |
 //! |---|---|

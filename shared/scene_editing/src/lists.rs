@@ -8,7 +8,7 @@ use crate::keys::arranged;
 
 /// An entry that may be of the file that is edited.
 pub(crate) trait Entry {
-    /// Its position in the file.
+    /// Returns the entry's position in the file.
     fn from(&self) -> Option<usize>;
     /// Writes its keys into a table that has those of the file, or none.
     fn write(&self, table: &mut dyn TableLike);
@@ -16,8 +16,8 @@ pub(crate) trait Entry {
     fn plain(&self) -> Option<Value>;
 }
 
-/// Replaces the list at `key` by entries. Returns the comments of removed entries that belong to no single
-/// entry, where no entry follows that could keep them.
+/// Replaces the list at `key` by entries. Returns the comments of removed entries that belong to no
+/// single entry, if no entry follows that could keep them.
 pub(crate) fn set_entries<T: Entry>(
     parent: &mut dyn TableLike,
     key: &str,
@@ -108,7 +108,7 @@ fn set_tables<T: Entry>(tables: &mut ArrayOfTables, entries: &[T]) -> String {
     let old = mem::take(tables);
     let position = old.iter().find_map(Table::position);
     let is_kept = |n: usize| entries.iter().any(|entry| entry.from() == Some(n));
-    // What stood before a removed entry and belongs to no single one goes to the next that stays.
+    // Comments before a removed entry that belong to no single one go to the next that stays.
     let mut loose = String::new();
     let mut before: Vec<String> = Vec::new();
     for (n, table) in old.iter().enumerate() {
@@ -146,7 +146,7 @@ fn prefix(table: &Table) -> String {
     prefix.unwrap_or_default().to_owned()
 }
 
-/// Divides the text before a table at its last empty line: comments before it belong to no single entry.
+/// Divides the text before a table at its last empty line: comments before belong to no entry.
 fn split(prefix: &str) -> (&str, &str) {
     let at = prefix.rfind("\n\n").map_or(0, |at| at + 1);
     match prefix[..at].trim().is_empty() {
@@ -155,7 +155,7 @@ fn split(prefix: &str) -> (&str, &str) {
     }
 }
 
-/// Puts a table and those in it at one position, so that they follow one another in the order of their list.
+/// Puts a table and those in it at one position, so that they follow the order of their list.
 fn place(table: &mut Table, position: Option<isize>) {
     table.set_position(position);
     for (_, item) in table.iter_mut() {

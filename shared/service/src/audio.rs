@@ -8,8 +8,8 @@ use messages::{AudioChunk, CHUNK_SAMPLES_MAX, Pcm, Receipt, ReceiptStatus, Reque
 /// Nanoseconds of one sample.
 const SAMPLE_NS: u64 = 62_500;
 
-/// A stream of sound on its way to the speech service: one channel, 16 000 samples a second, in real
-/// time. What is sent faster than the service listens is lost.
+/// A stream of sound on its way to the speech service: one channel, 16 000 samples a second, in
+/// real time. Sound sent faster than the service reads is lost.
 #[derive(Debug)]
 pub struct AudioStream {
     chunks: Writer<AudioChunk>,

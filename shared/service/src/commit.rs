@@ -1,11 +1,11 @@
 //! Durability before visibility, without waiting for the disk.
 //!
-//! A thread owns the journal. The main loop hands it the records of each pass and keeps the pass's outputs
-//! until they are durable; the thread makes everything that waits durable with one sync. Order is kept:
-//! an output that follows records in the same or an earlier pass is published after them.
+//! A thread owns the journal. The main loop hands it the records of each pass and keeps the pass's
+//! outputs until they are durable; the thread makes all of them durable with one sync. Order is
+//! kept: an output that follows records in the same or an earlier pass is published after them.
 //!
-//! A full disk is a state and not an end. The thread keeps the records, tries again, and says what is
-//! short; nothing that waits is lost, and nothing of it is seen.
+//! A full disk is a state and not an end. The thread keeps the records, retries, and reports the
+//! shortage; pending outputs are neither lost nor published.
 
 use std::collections::VecDeque;
 use std::io;
@@ -26,20 +26,20 @@ use runtime::sync_time;
 
 /// Interval at which a failed write is tried again.
 const RETRY_EVERY: Duration = Duration::from_millis(250);
-/// Most outputs, and most passes with records, that wait for the disk; with more the service takes in
-/// nothing new. A sender repeats what it has to.
+/// Most outputs, and most passes with records, that wait for the disk; with more the service takes
+/// in nothing new. Senders repeat important messages.
 const WAITING_MAX: usize = 256;
 /// Size at which a journal is compacted, if the node offers a snapshot, bytes.
 const ROTATE_BYTES: u64 = 1 << 20;
 /// Growth after which a failed rotation is tried again, bytes.
 const ROTATE_AGAIN_BYTES: u64 = 256 << 10;
 
-/// What the thread needs of a journal; tests inject disk faults here.
+/// Journal operations that the thread needs; tests inject disk faults here.
 pub(crate) trait Store<R>: Send + 'static {
     fn append_all(&mut self, records: &[R]) -> Result<(), AppendError>;
     fn sync(&mut self, vital: bool) -> Result<(), SyncError>;
     fn rotate(&mut self, snapshot: &[R]) -> Result<(), RotateError>;
-    /// As `rotate`, and removes what was before.
+    /// As `rotate`, and removes the earlier content.
     fn erase(&mut self, snapshot: &[R]) -> Result<(), RotateError>;
     fn bytes(&self) -> u64;
     /// Number of the next record.
@@ -76,7 +76,7 @@ impl<R: Serialize + DeserializeOwned + 'static> Store<R> for Journal<R> {
 enum Job<R> {
     /// The records of one pass.
     Append { records: Vec<R>, vital: bool },
-    /// A snapshot that replaces everything before, which is kept beside it or erased.
+    /// A snapshot that replaces everything before, which is kept next to it or erased.
     Rotate { snapshot: Vec<R>, erases: bool },
 }
 
@@ -94,7 +94,7 @@ enum Report {
 
 /// The loop's side.
 pub(crate) struct Commit<Out, Record> {
-    /// To the thread; none for a stateless service.
+    /// Channel to the thread; `None` for a stateless service.
     jobs: Option<Sender<Job<Record>>>,
     reports: DeviceReceiver<Report>,
     /// Passes with records, and those of them that are durable.
@@ -204,12 +204,12 @@ impl<Out, Record: Send + 'static> Commit<Out, Record> {
         self.durable == self.stated
     }
 
-    /// Returns whether so much waits that nothing more should be taken in.
+    /// Returns whether the backlog forbids further inputs.
     pub(crate) fn is_behind(&self) -> bool {
         self.held.len() >= WAITING_MAX || self.stated - self.durable >= WAITING_MAX as u64
     }
 
-    /// Returns whether the disk is full; what waits is tried again.
+    /// Returns whether the disk is full; pending records are retried.
     pub(crate) fn is_short(&self) -> bool {
         self.is_short
     }
@@ -338,7 +338,7 @@ impl<R, S: Store<R>> Writer<R, S> {
             Ok(()) => {
                 (self.durable, self.vital) = (self.appended, false);
                 self.report_durable();
-                // What waits for the records does not wait for this aid for readers.
+                // Outputs that wait for the records do not wait for this aid for readers.
                 self.clock.note(first);
                 Ok(true)
             }

@@ -1,5 +1,5 @@
-//! The console's address for the group's owner: the token in a file that only the owner can read, and
-//! the link that carries it.
+//! The console's address for the group's owner: the token in a file that only the owner can read,
+//! and the link that carries it.
 
 use std::fs;
 use std::io;
@@ -12,8 +12,8 @@ use crate::group::GroupPaths;
 /// Lengths of a token, characters.
 const TOKEN_LEN: std::ops::RangeInclusive<usize> = 12..=200;
 
-/// Returns the file of the token: its first line. It is the owner's, who may write a word of
-/// their own there; the console writes it only where there is no token.
+/// Returns the file of the token: its first line. The owner may write a token of their own; the
+/// console writes one only if there is none.
 pub fn token_file(paths: &GroupPaths) -> PathBuf {
     paths.root().join("console.token")
 }
@@ -23,7 +23,7 @@ pub fn sessions_file(paths: &GroupPaths) -> PathBuf {
     paths.root().join("console.sessions")
 }
 
-/// Returns the group's token; none before the console's first start.
+/// Returns the group's token; `None` before the console's first start.
 pub fn token(paths: &GroupPaths) -> Option<String> {
     read_private(&token_file(paths))?.lines().next().map(str::to_owned)
 }
@@ -44,8 +44,8 @@ pub fn link(paths: &GroupPaths) -> Option<String> {
     })
 }
 
-/// Returns whether a text can be a token: 12 to 200 letters, digits, `-` and `_`, which need no quotes in a
-/// link, a cookie or a header.
+/// Returns whether a text can be a token: 12 to 200 letters, digits, `-` and `_`, which need no
+/// quotes in a link, a cookie or a header.
 pub fn is_token(text: &str) -> bool {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_';
     TOKEN_LEN.contains(&text.len()) && text.bytes().all(plain)

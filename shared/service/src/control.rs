@@ -39,7 +39,7 @@ pub enum Request {
     Stop(Target),
     /// Stops a service, if it runs, and starts it.
     Restart {
-        /// Its name.
+        /// Name of the service.
         service: String,
         /// True to restore the configured command of a swapped service.
         #[serde(default)]
@@ -67,8 +67,8 @@ pub enum Request {
         /// Timeout for their readiness, milliseconds.
         wait_ms: u64,
     },
-    /// Reloads the configuration with another scene, which stays in force for later reloads until the
-    /// group ends. Answered by [`Reply::Reloaded`].
+    /// Reloads the configuration with another scene, which stays in force for later reloads until
+    /// the group ends. Answered by [`Reply::Reloaded`].
     UseScene {
         /// As `group.scene`: the name of a scene of the configuration, or a path from its folder.
         scene: String,
@@ -83,7 +83,7 @@ pub enum Request {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Target {
-    /// Its name.
+    /// Name of the service.
     pub service: String,
     /// Timeout for its end, or for its readiness if it is wanted up, milliseconds.
     pub wait_ms: u64,
@@ -109,7 +109,7 @@ pub enum Reply {
     Status(Box<GroupStatus>),
     /// The new configuration is in force.
     Reloaded {
-        /// Services that were restarted for it.
+        /// Services restarted because of the change.
         restarted: Vec<String>,
     },
     /// The group is down.

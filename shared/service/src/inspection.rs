@@ -1,6 +1,6 @@
-//! Inspection of a service by its own program: `whichone journal`, `whichone doctor` and `whichone replay` run
-//! `whichone-SERVICE journal …` and so on, so that only the service itself knows its records, its reducer
-//! and its devices.
+//! Inspection of a service by its own program: `whichone journal`, `whichone doctor` and `whichone
+//! replay` run `whichone-SERVICE journal …` and so on, so that only the service itself knows its
+//! records, its reducer and its devices.
 
 use std::collections::BTreeSet;
 use std::io::{self, BufWriter, Write};
@@ -28,7 +28,7 @@ pub struct Part<R> {
     reading: Reading<R>,
 }
 
-/// What one journal says about the others.
+/// Statements of one journal about the others.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SharedFacts {
     /// Highest utterance accepted (speech) or applied (policy).
@@ -40,7 +40,7 @@ pub struct SharedFacts {
     /// The latest interaction, if it ended with a delivery by the arm (policy); else 0.
     #[serde(default)]
     pub delivered: u64,
-    /// Whether the motion stop is latched (arm); none where that is not known.
+    /// Whether the motion stop is latched (arm); `None` if unknown.
     #[serde(default)]
     pub stopped: Option<bool>,
 }
@@ -56,7 +56,7 @@ pub struct Verdict {
     /// Number of records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub records: Option<u64>,
-    /// What was verified.
+    /// The verified facts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub facts: Option<Vec<String>>,
     /// For the other journals.
@@ -69,9 +69,9 @@ pub struct Verdict {
 pub struct Finding {
     /// The aspect, e.g. `microphone`.
     pub what: String,
-    /// Its condition.
+    /// Condition of the journal.
     pub state: Condition,
-    /// Details, with help where something is missing.
+    /// Details, with help if something is missing.
     pub note: String,
 }
 
@@ -182,7 +182,7 @@ struct Request {
     /// Folders of settings that were in force, newest first.
     settings: Vec<PathBuf>,
     verify: bool,
-    /// Print what the journal says about the others, unverified.
+    /// Print the journal's statements about the others, unverified.
     facts: bool,
     json: bool,
     /// First record to be printed, from an older file if need be.
@@ -309,7 +309,7 @@ fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fail
     shown.last().map_or(Ok(()), check_ending)
 }
 
-/// When a record was written, as a column: by the wall clock too, where that is known.
+/// Returns a record's time as a column: by the wall clock too, if known.
 fn when(recorded: Time, unix_ms: Option<u64>) -> String {
     let wall = unix_ms.map(|ms| format!("  {}", wall_time::text(ms.saturating_mul(1_000_000))));
     at(recorded) + &wall.unwrap_or_default()
@@ -326,7 +326,7 @@ fn nothing_since(since: u64, last: Option<(u64, Time, Option<u64>)>) -> String {
     }
 }
 
-/// Checks the end of a journal: an interrupted write was never acknowledged; other damage is an error.
+/// Checks a journal's end: an interrupted write was never acknowledged; other damage is an error.
 fn check_ending<R>(part: &Part<R>) -> Result<(), Failure> {
     match part.reading.ending {
         Ending::Whole => Ok(()),

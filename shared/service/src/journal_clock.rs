@@ -1,6 +1,6 @@
-//! Wall time of journal records. Records carry times of the monotonic clock, which restarts with the
-//! machine; a small file beside each journal says from which record on which offset to the wall clock
-//! holds. It is an aid for readers: no service depends on it, and a failed write is only logged.
+//! Wall time of journal records. Records carry times of the monotonic clock, which restarts with
+//! the machine; a small file beside each journal has the offsets to the wall clock by record. It is
+//! an aid for readers: no service depends on it, and a failed write is only logged.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ const CHANGE_NS: u64 = 1_000_000_000;
 /// Most entries; the oldest are dropped.
 const ENTRIES_MAX: usize = 256;
 
-/// From a record on, what the wall clock is ahead of the monotonic one.
+/// Lead of the wall clock over the monotonic one, from a record on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Entry {
     seq: u64,
@@ -26,7 +26,7 @@ struct Entry {
 #[derive(Debug)]
 pub(crate) struct JournalClock {
     file: PathBuf,
-    /// The offset noted last; none before the first record of this process.
+    /// The offset noted last; `None` before the first record of this process.
     noted_ns: Option<i64>,
 }
 
@@ -36,7 +36,7 @@ impl JournalClock {
         Self { file: file_of(journal), noted_ns: None }
     }
 
-    /// Notes the present offset for record `seq` and those after it, where it has changed.
+    /// Notes the present offset for record `seq` and those after it, if it has changed.
     pub(crate) fn note(&mut self, seq: u64) {
         self.note_offset(seq, wall_minus_monotonic_ns());
     }
@@ -69,7 +69,7 @@ impl JournalClock {
 pub(crate) struct WallTimes(Vec<Entry>);
 
 impl WallTimes {
-    /// Reads the offsets of the journal at `journal`; none where they are not known.
+    /// Reads the offsets of the journal at `journal`; `None` if they are unknown.
     pub(crate) fn of(journal: &Path) -> Self {
         Self(read(&file_of(journal)))
     }
@@ -93,7 +93,7 @@ fn read(file: &Path) -> Vec<Entry> {
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
 }
 
-/// `policy.clock` beside `policy.journal`.
+/// The file `policy.clock` next to `policy.journal`.
 fn file_of(journal: &Path) -> PathBuf {
     journal.with_extension("clock")
 }

@@ -1,9 +1,9 @@
-//! Journal records for programs: what `whichone journal --json` prints.
+//! Journal records for programs: the output of `whichone journal --json`.
 //!
-//! Each service translates its own records into these types, with the scene's names in place of numbers.
-//! A number's key ends with its unit (`_ns`, `_ms`, `_s`, `_m`, `_rad`, `_db`); without one it is a
-//! number of something, a count, a probability or a weight. Times in `_ns` are of the machine's monotonic
-//! clock. `docs/journals.md` has the table, `tests/golden/journal_*.jsonl` an example of each type.
+//! Each service translates its own records into these types, with the scene's names for numbers. A
+//! number's key ends with its unit (`_ns`, `_ms`, `_s`, `_m`, `_rad`, `_db`); without one it is an
+//! index, a count, a probability or a weight. Times in `_ns` are of the machine's monotonic clock.
+//! `docs/journals.md` has the table, `tests/golden/journal_*.jsonl` an example of each type.
 
 mod arm;
 pub mod golden;
@@ -28,7 +28,7 @@ pub struct JournalLine {
     pub seq: u64,
     /// When it was written, nanoseconds of the machine's monotonic clock.
     pub at_ns: u64,
-    /// The same, milliseconds since 1970 by the wall clock; none where that is not known.
+    /// Milliseconds since 1970 by the wall clock; `None` if unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unix_ms: Option<u64>,
     /// The record as a sentence.
@@ -41,11 +41,11 @@ pub struct JournalLine {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "service", rename_all = "snake_case")]
 pub enum JournalRecord {
-    /// Of the speech service.
+    /// Record of the speech service.
     Speech(Box<SpeechRecord>),
-    /// Of the policy.
+    /// Record of the policy.
     Policy(Box<PolicyRecord>),
-    /// Of the arm.
+    /// Record of the arm.
     Arm(Box<ArmRecord>),
 }
 

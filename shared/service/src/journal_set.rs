@@ -1,5 +1,5 @@
-//! The journals of a group, which know one another: which epoch they are of, which of them exist, and
-//! which numbers are over because a journal was set aside.
+//! The journals of a group, which know one another: which epoch they are of, which of them exist,
+//! and which numbers are over because a journal was set aside.
 //!
 //! | the group's file `epoch` | |
 //! |---|---|
@@ -7,12 +7,12 @@
 //! | per service: generation, exists | a journal that exists must be there, whole, and of this generation |
 //! | numbers over | no number up to here is ever given again |
 //!
-//! Invariant: a service appends its first record only after the file says that its journal exists. So a
-//! missing journal is either one that never held anything, or a loss, and never taken for the other.
+//! Invariant: a service appends its first record only after the file says that its journal exists.
+//! So a journal that never held anything and a lost one are never confused.
 //!
-//! The file has one writer at a time, by a lock: the supervisor before it starts a service, a service
-//! that makes its journal, and [`set_aside`] while the group is down. It is replaced atomically and
-//! synced.
+//! The file has one writer at a time, by a lock: the supervisor before it starts a service, a
+//! service that makes its journal, and [`set_aside`] while the group is down. It is replaced
+//! atomically and synced.
 
 mod agreement;
 
@@ -36,8 +36,8 @@ use crate::group::GroupPaths;
 use crate::lifecycle::Environment;
 use crate::{SetAside, Span, clock, epoch};
 
-/// Numbers that each setting aside skips: more than a journal ever gives, so that a number which only a
-/// lost journal, a page or a client knew is never given again.
+/// Numbers that each setting aside skips: more than a journal ever gives, so that a number which
+/// only a lost journal, a page or a client knew is never given again.
 pub const NUMBERS_SKIPPED: u64 = 1_000_000_000;
 
 /// Timeout for a journal's or the set's lock: a previous incarnation may still be ending.
@@ -46,7 +46,7 @@ const LOCK_PATIENCE: Span = Span::from_ms(3_000);
 /// The journals of a group.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JournalSet {
-    /// Epoch of all of them.
+    /// Epoch of all the journals.
     pub epoch: u64,
     /// Utterances, interactions, prompts and acts up to this number are over.
     pub numbers_over: u64,
@@ -69,7 +69,7 @@ pub struct Unusable {
     pub is_foreign: bool,
 }
 
-/// A journal with what it held, and the numbers that are over.
+/// A journal with its records, and the numbers that are over.
 pub(crate) type Opened<R> = (Journal<R>, Recovered<R>, Option<SetAside>);
 
 impl JournalSet {
@@ -80,11 +80,11 @@ impl JournalSet {
         Self { epoch, numbers_over: 0, journals: Service::JOURNALED.map(first).into() }
     }
 
-    /// Reads the set; none before the first start.
+    /// Reads the set; `None` before the first start.
     ///
     /// # Errors
-    /// The file cannot be read, is damaged or of another version, or is missing beside journals
-    /// (`InvalidData`).
+    /// The file cannot be read, is damaged or of another version, or is missing although there are
+    /// journals (`InvalidData`).
     pub fn load(paths: &GroupPaths) -> io::Result<Option<Self>> {
         let path = paths.epoch_file();
         let failed = |kind, what: &str| io::Error::new(kind, format!("{}: {what}", path.display()));
@@ -158,8 +158,8 @@ impl JournalSet {
         }
     }
 
-    /// The set of a new epoch in the place of journals that are put aside. An arm whose stop was latched, or is not known
-    /// not to be, starts without its own memory: it waits for a person.
+    /// The set of a new epoch in the place of journals that are put aside. An arm whose stop was
+    /// latched, or is not known not to be, starts without its own memory: it waits for a person.
     pub fn renewed(paths: &GroupPaths, old: Option<&Self>, epoch: u64) -> Self {
         let mut set = Self::new(epoch);
         let (arm, was_free) = (Service::Arm.name(), || agreement::is_free(paths) == Some(true));
@@ -202,7 +202,7 @@ impl Unusable {
     }
 }
 
-/// Opens a service's journal, or makes it where the set says that there is none yet. Journals of the `older` kinds of
+/// Opens a service's journal, or makes it if the set has none yet. Journals of the `older` kinds of
 /// record are continued.
 pub(crate) fn open<R: Serialize + DeserializeOwned>(
     environment: &Environment,
@@ -273,9 +273,9 @@ fn lock(paths: &GroupPaths) -> io::Result<File> {
     }
 }
 
-/// Moves the journals of these services into a folder of their own, with their older parts, and lets
-/// every number so far be over: each service then continues above it, and what was in progress ends.
-/// Returns the folder; none where there was no file to move.
+/// Moves the journals of these services into a folder of their own, with their older parts, and
+/// lets every number so far be over: each service then continues above it, and work in progress
+/// ends. Returns the folder; `None` without a file to move.
 ///
 /// A crash in between leaves a journal that is missing, for which this is the way out again.
 ///

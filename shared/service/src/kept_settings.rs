@@ -1,6 +1,6 @@
-//! The settings in force, which a group's services read, and those by which the journals were written, kept beside
-//! them: a journal can be listed and verified without saying how its group was started, and a start need not check
-//! again what the same program has checked before.
+//! The settings in force, which a group's services read, and those by which the journals were
+//! written, kept next to them: a journal can be listed and verified without the options of its
+//! group's start, and a start need not repeat the same program's checks.
 
 use std::fs::{self, File};
 use std::io;
@@ -15,11 +15,11 @@ use crate::wakes::Wakes;
 
 /// Number of settings that are kept.
 const KEPT: usize = 8;
-/// The file beside kept settings that names the program which has checked them.
+/// The file next to kept settings that names the program that checked them.
 const CHECKED_FILE: &str = "checked";
 
-/// Writes everything that the services of a group read, and keeps the settings beside the journals. Those in force
-/// change last, when nothing can fail any more.
+/// Writes everything that the services of a group read, and keeps the settings next to the
+/// journals. Those in force change last, when nothing can fail any more.
 ///
 /// # Errors
 /// A folder cannot be written.
@@ -30,7 +30,7 @@ pub fn put_in_force(paths: &GroupPaths, settings: &Settings) -> io::Result<()> {
     settings.write_snapshot(&paths.run())
 }
 
-/// What wakes the services beside the table of topics.
+/// Sources that wake the services besides the table of topics.
 fn wakes(settings: &Settings) -> Wakes {
     let services = settings.group.services.iter();
     Wakes::new(services.flat_map(|service| {
@@ -48,7 +48,7 @@ fn keep(paths: &GroupPaths, settings: &Settings) -> io::Result<()> {
     if !folder.join(config::SNAPSHOT_FILE).is_file()
         && let Err(error) = settings.write_snapshot(&folder)
     {
-        // Nothing is left of what was not kept.
+        // Settings that were not kept leave no trace.
         let _ = fs::remove_dir_all(&folder);
         return Err(error);
     }
@@ -82,8 +82,8 @@ pub fn note_checked(paths: &GroupPaths, settings: &Settings) {
     }
 }
 
-/// Identifies this program's file: another build may check differently. Its times of change, unlike those of
-/// modification, are not set by who installs it.
+/// Identifies this program's file: another build may check differently. Its times of change, unlike
+/// those of modification, are not set by who installs it.
 fn own_program() -> Option<String> {
     let file = fs::metadata("/proc/self/exe").ok()?;
     let (device, inode, bytes) = (file.dev(), file.ino(), file.len());

@@ -23,7 +23,7 @@ use crate::log_file;
 /// The program that may contain all others.
 const HOST: &str = "whichone";
 
-/// What the name of a service's program begins with.
+/// Prefix of the names of services' programs.
 pub const PREFIX: &str = "whichone-";
 
 /// Interval at which a starting supervisor is polled.
@@ -42,11 +42,11 @@ pub struct Options {
     pub group: GroupName,
     /// Folder of the configuration.
     pub config: PathBuf,
-    /// Name of a profile in it.
+    /// Name of a profile in the configuration.
     pub profile: Option<String>,
     /// Overrides of configuration values: dotted key and TOML value.
     pub set: Vec<(String, String)>,
-    /// True to start a new epoch and keep the old journals beside it.
+    /// True to start a new epoch and keep the old journals next to it.
     pub fresh: bool,
 }
 
@@ -59,10 +59,10 @@ pub enum LaunchError {
     /// A folder of the group is not its owner's alone.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// It ended before it listened; its exit status and the end of its log.
+    /// The supervisor ended before it listened; its exit status and the end of its log.
     #[error("the supervisor ended with {}{}", .0, indented(.1))]
     Ended(ExitStatus, Vec<String>),
-    /// It did not listen within the timeout; its log.
+    /// The supervisor did not listen within the timeout; its log.
     #[error(
         "the supervisor is still starting after {} s; see {}; help: `whichone status` shows its state, `whichone down` \
          stops it",
@@ -123,16 +123,16 @@ pub fn program() -> PathBuf {
     program_of(SUPERVISOR)
 }
 
-/// Returns the program of a service: beside the running one, where an installed `whichone` may stand in for
-/// it ([`host_of`]), else from `PATH`. Start it with [`command`].
+/// Returns the program of a service: next to the running one, where an installed `whichone` may
+/// replace it ([`host_of`]), else from `PATH`. Start it with [`command`].
 pub fn program_of(service: &str) -> PathBuf {
     let name = format!("{PREFIX}{service}");
     let beside = env::current_exe().ok().and_then(|own| Some(own.parent()?.join(&name)));
     beside.filter(|path| path.is_file() || host_of(path).is_some()).unwrap_or_else(|| name.into())
 }
 
-/// Returns the program that runs in place of `program`, if that is absent: a build of `whichone` contains the
-/// services, and runs as the one whose name it is started under. So an installation is one file.
+/// Returns the program that runs in place of `program`, if that is absent: a build of `whichone`
+/// contains the services, and runs as the one that names it. So an installation is one file.
 pub fn host_of(program: &Path) -> Option<PathBuf> {
     let name = program.file_name()?.to_str()?;
     let is_name_alone = program.parent().is_none_or(|folder| folder.as_os_str().is_empty());

@@ -1,13 +1,13 @@
 //! The shell: the only place that opens topics, reads clocks, takes signals and writes files for
-//! the services. What every process of a group needs, also one from outside, is in `runtime`, whose modules
-//! appear here, too.
+//! the services. Parts for every process of a group, also one from outside, are in `runtime`, whose
+//! modules are re-exported here.
 //!
-//! A service is a [`Node`]: a reducer from events to effects, which the main loop of [`service_loop`] recovers from
-//! its journal, feeds from its topics, and whose effects it carries out. Clients of a group are in [`client`].
+//! A service is a [`Node`], a reducer from events to effects. The main loop, [`service_loop`],
+//! recovers it from its journal, feeds it and applies its effects. Clients are in [`client`].
 //!
 //! # Example
 //!
-//! A reducer that counts what it hears. Nothing is published before the record that backs it is durable.
+//! A reducer that counts its inputs. Nothing is published before its record is durable.
 //!
 //! ```
 //! use service::{Effects, Event, Node, NodeError, Time};

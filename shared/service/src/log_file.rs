@@ -35,7 +35,7 @@ pub fn open(path: &Path, limits: &Log) -> io::Result<File> {
     Ok(log)
 }
 
-/// Opens a file that only its owner can read, also one that others could: logs hold what people said.
+/// Opens a file, which only its owner can then read: logs hold utterances of people.
 fn appended(path: &Path) -> io::Result<File> {
     let log = OpenOptions::new().append(true).create(true).mode(PRIVATE).open(path)?;
     if log.metadata()?.permissions().mode() & 0o7777 != PRIVATE {

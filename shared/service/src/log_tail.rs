@@ -28,7 +28,7 @@ impl LogFile {
         Self { service: service.to_owned(), path, inode: 0, at: 0, begun: Vec::new() }
     }
 
-    /// The service whose log it is.
+    /// The service that writes the log.
     pub fn service(&self) -> &str {
         &self.service
     }
@@ -41,7 +41,7 @@ impl LogFile {
     /// The last lines, `count` at most; [`LogFile::new_lines`] continues after them.
     ///
     /// # Errors
-    /// The file cannot be read; there are no lines where it does not exist.
+    /// The file cannot be read; a missing file has no lines.
     pub fn last_lines(&mut self, count: usize) -> io::Result<Vec<String>> {
         let Some(mut file) = open(&self.path)? else { return Ok(Vec::new()) };
         let metadata = file.metadata()?;

@@ -1,9 +1,9 @@
 //! Structured logs on standard error, which the supervisor has pointed at the service's log file.
 //!
-//! Logging never ends or delays a process. A thread writes the lines: a write to a file waits while others
-//! keep its disk busy, and the main loop of an arm that is to stop must not. A line that finds no room in
-//! the thread's queue, or in a pipe that nobody reads, is dropped, and the next one that can be written is
-//! preceded by the number of lost lines.
+//! Logging never ends or delays a process. A thread writes the lines: a write to a file waits while
+//! others keep its disk busy, and the main loop of an arm that is to stop must not. A line that
+//! finds no room in the thread's queue, or in a pipe that nobody reads, is dropped, and the next
+//! one that can be written is preceded by the number of lost lines.
 
 use crate::group::{ENV_LOG, ENV_LOG_FORMAT};
 use crossbeam_channel::{Receiver, Sender, bounded};
@@ -35,7 +35,7 @@ const FLUSH_MAX: Duration = Duration::from_secs(1);
 static JSON: AtomicBool = AtomicBool::new(false);
 
 /// Begins logging. `WHICHONE_LOG` holds the filter (`info`, `policy=debug`, …) and
-/// `WHICHONE_LOG_FORMAT=json` asks for one JSON object a line.
+/// `WHICHONE_LOG_FORMAT=json` requests one JSON object a line.
 ///
 /// The program must keep the result to its end, so that its last lines are written.
 pub fn init() -> LogFlush {
@@ -68,15 +68,15 @@ pub fn identify() {
     tracing::info!("{} {}", name.to_string_lossy(), build_info::current());
 }
 
-/// Changes the format of the lines that follow to what the configuration says: one JSON object a line, or text.
-/// `WHICHONE_LOG_FORMAT`, where it is set, counts more.
+/// Changes the format of later lines as configured: one JSON object a line, or text.
+/// `WHICHONE_LOG_FORMAT`, if set, has precedence.
 pub fn set_json(json: bool) {
     if std::env::var_os(ENV_LOG_FORMAT).is_none() {
         JSON.store(json, Ordering::Relaxed);
     }
 }
 
-/// Both formats of a line, of which [`JSON`] chooses one. Nothing opens spans, so neither writes any.
+/// Both formats of a line; [`JSON`] chooses one. Without spans, neither writes any.
 struct Lines {
     text: Format,
     json: Format<Json>,
@@ -192,7 +192,7 @@ fn standard_error() -> io::Result<File> {
     Ok(own.unwrap_or(shared).into())
 }
 
-/// A log that drops what cannot be written, and counts it.
+/// A log that drops lines that cannot be written, and counts them.
 struct LossyLog {
     file: File,
     lost: Option<Lost>,
@@ -202,7 +202,7 @@ struct LossyLog {
 struct Lost {
     lines: u64,
     error: io::Error,
-    /// True if a part of a line stands at the log's end.
+    /// Whether a partial line is at the log's end.
     torn: bool,
 }
 
@@ -254,7 +254,7 @@ fn notice(Lost { lines, error, torn }: &Lost, json: bool) -> String {
     }
 }
 
-/// Writes what can be written without waiting. Returns its length, and the error that ended it.
+/// Writes as much as possible without waiting. Returns the length, and the error that ended it.
 fn write_now(file: &mut File, bytes: &[u8]) -> (usize, Option<io::Error>) {
     let mut written = 0;
     while written < bytes.len() {
@@ -288,7 +288,7 @@ mod tests {
         let (reader, writer) = pipe().unwrap();
         let mut lossy = LossyLog::new(writer.into());
         let line = format!("{}\n", "x".repeat(999));
-        // Far more than a pipe holds: each call returns although nobody reads.
+        // Far more than a pipe holds: each call returns although there is no reader.
         (0..1_000).for_each(|_| lossy.write(line.as_bytes()));
         let mut reader = File::from(reader);
         let mut full = vec![0; 1 << 20];

@@ -1,9 +1,9 @@
-//! Foreign text on a terminal: what a person, a program or a log says must not steer it.
+//! Foreign text on a terminal: words of a person, a program or a log must not control it.
 
 use std::borrow::Cow;
 
-/// Returns the text with every character that could steer a terminal, reorder what stands there, or is not seen at all,
-/// written as an escape (`\u{1b}`). Line feeds, tabs and the sequences `kept` stay.
+/// Returns the text with every character that could control a terminal, reorder its text, or is
+/// invisible, written as an escape (`\u{1b}`). Line feeds, tabs and the sequences `kept` stay.
 pub fn printable<'a>(text: &'a str, kept: &[&str]) -> Cow<'a, str> {
     cleaned(text, |c| is_hostile(c) && !matches!(c, '\n' | '\t'), kept)
 }
@@ -18,7 +18,7 @@ pub fn printable_json(json: &str) -> Cow<'_, str> {
     if !json.contains(is_hostile) {
         return Cow::Borrowed(json);
     }
-    // The serialiser escapes what is below a blank.
+    // The serialiser escapes characters below a blank.
     let mut clean = String::with_capacity(json.len());
     for c in json.chars() {
         match is_hostile(c) {
@@ -30,8 +30,8 @@ pub fn printable_json(json: &str) -> Cow<'_, str> {
     Cow::Owned(clean)
 }
 
-/// Control characters (C0, DEL and C1), format characters (category Cf, with those that change the direction
-/// of text), and others that are not seen. What tells text from emoji (U+FE0E, U+FE0F) is harmless.
+/// Control characters (C0, DEL and C1), format characters (category Cf, also those for the
+/// direction of text), and invisible ones. Emoji selectors (U+FE0E, U+FE0F) are harmless.
 fn is_hostile(c: char) -> bool {
     c.is_control()
         || matches!(c,

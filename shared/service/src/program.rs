@@ -1,4 +1,4 @@
-//! Programs of commands: where they are.
+//! Search for the programs of commands.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -22,8 +22,8 @@ pub enum ProgramError {
     NotExecutable(PathBuf),
 }
 
-/// The path of a command's program: searched for beside this program and in `PATH` where it has no
-/// slash, else taken as seen from `directory`. One that is absent may be run by the `whichone` beside it.
+/// The path of a command's program: searched for next to this program and in `PATH` if it has no
+/// slash, else taken as seen from `directory`. If absent, the `whichone` next to it may run it.
 ///
 /// # Errors
 /// There is none, or it cannot be executed.

@@ -22,12 +22,12 @@ pub enum Event<In> {
     Message(In),
     /// A deadline has passed, or the periodic tick is due.
     Tick,
-    /// The service is to end: bring what moves to rest, then call [`Effects::exit`].
+    /// The service is to end: bring moving parts to rest, then call [`Effects::exit`].
     Shutdown,
 }
 
-/// The numbers that are over because a journal of the group was set aside: nothing that has one of them
-/// is in progress any more, none of them is given again.
+/// The numbers that are over because a journal of the group was set aside: nothing with these
+/// numbers is in progress any more, and none is assigned again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SetAside {
     /// The highest of them; for utterances, interactions, prompts and acts alike.
@@ -36,20 +36,20 @@ pub struct SetAside {
     pub is_own: bool,
 }
 
-/// A service as a reducer. What it is given and what it states can be recorded, and given again to another
-/// build of it ([`crate::flight`]).
+/// A service as a reducer. Its inputs and statements can be recorded, and replayed with another
+/// build ([`crate::flight`]).
 pub trait Node: Sized + 'static {
-    /// Its configuration.
+    /// Configuration of the node.
     type Config;
-    /// Messages and device results that it receives; messages are read where they lie in shared memory.
+    /// Messages and device results that it receives; messages are read in place in shared memory.
     type In<'a>: Serialize + DeserializeOwned;
     /// Messages that it publishes, and requests to its devices.
     type Out: Serialize + DeserializeOwned;
-    /// Records of its journal. A stateless node uses [`Never`].
+    /// Records of the node's journal. A stateless node uses [`Never`].
     type Record: Serialize + DeserializeOwned + Send + 'static;
 
-    /// Restores the node from its journal; empty at the first start. There is no other way
-    /// to make one, so that first start and restart share one path.
+    /// Restores the node from its journal; empty at the first start. It is the only constructor, so
+    /// that first start and restart share one path.
     ///
     /// # Errors
     /// The journal contradicts the configuration in a way that the node cannot repair.
@@ -74,7 +74,7 @@ pub trait Node: Sized + 'static {
         None
     }
 
-    /// Returns what the operator's status says about the service, in a few words.
+    /// Returns the service's status for the operator, in a few words.
     fn status(&self) -> Option<&str> {
         None
     }
@@ -89,24 +89,24 @@ pub trait Node: Sized + 'static {
         true
     }
 
-    /// Returns records that replace the whole journal so far, so that it can be compacted; `None` where
-    /// what is in progress does not permit that.
+    /// Returns records that replace the whole journal so far, so that it can be compacted; `None`
+    /// if work in progress does not permit that.
     fn snapshot(&self) -> Option<Vec<Self::Record>> {
         None
     }
 
-    /// Returns, once, whether the journal must be replaced by [`Node::snapshot`] now, and what it held be erased.
+    /// Returns once whether [`Node::snapshot`] must replace the journal, its content erased.
     fn take_erasure(&mut self) -> bool {
         false
     }
 
-    /// Returns the whole state, so that a flight can begin here; `None` where what is in progress, or the
+    /// Returns the whole state, so that a flight can begin here; `None` if work in progress, or the
     /// kind of node, does not permit that.
     fn checkpoint(&self) -> Option<Vec<u8>> {
         None
     }
 
-    /// Restores the node from [`Node::checkpoint`]: from here on it does what that node does.
+    /// Restores the node from [`Node::checkpoint`]: from here on it behaves like that node.
     ///
     /// # Errors
     /// The checkpoint is not of this configuration and this build.
@@ -155,7 +155,7 @@ impl<Out, Record> Effects<Out, Record> {
         self.urgent.push(output);
     }
 
-    /// Ends the service after this batch.
+    /// Ends the service after the current batch.
     pub fn exit(&mut self) {
         self.exit = true;
     }
@@ -176,7 +176,7 @@ impl<Out, Record> Effects<Out, Record> {
         &self.records
     }
 
-    /// Leaves what remains once everything is carried out: whether the service is to end.
+    /// Keeps only the request to end, once everything is carried out.
     pub(crate) fn carried_out(&mut self) {
         *self = Self { exit: self.exit, ..Self::default() };
     }

@@ -1,5 +1,5 @@
-//! A robot's topics as the robot has them: a simulated one, or a bridge to a real one. The arm's side is
-//! its own.
+//! A robot's topics as the robot has them: a simulated one, or a bridge to a real one. The arm's
+//! side is its own.
 
 use crate::Time;
 use crate::bus::{Bus, BusError, PortError, Reader, Writer};
@@ -43,7 +43,7 @@ impl RobotSide {
         })
     }
 
-    /// Hands over every order that waits, where it lies in shared memory.
+    /// Hands over every pending order, in place in shared memory.
     ///
     /// # Errors
     /// As [`Reader::take`].
@@ -57,8 +57,8 @@ impl RobotSide {
         Ok(())
     }
 
-    /// Hands over the newest order of each topic, with the time when it was sent: for robots that have no
-    /// use for older ones.
+    /// Hands over the newest order of each topic, with the time when it was sent: for robots that
+    /// have no use for older ones.
     ///
     /// # Errors
     /// As [`Reader::take`].

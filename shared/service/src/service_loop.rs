@@ -23,15 +23,15 @@ mod start;
 pub use program::{Context, Program, Record, Shell};
 pub use start::{program, run};
 
-/// Maximum events per pass; the others wait for the next pass, so that heartbeats and signals are not
-/// delayed.
+/// Maximum events per pass; the others wait for the next pass, so that heartbeats and signals are
+/// not delayed.
 const PASS_EVENTS_MAX: usize = 256;
 /// Maximum sleep: inputs are polled this often even if a wake-up was lost.
 const LOOK_EVERY: Span = Span::from_ms(500);
 /// The disk, as a service reports it to be short.
 const SHORT_OF_DISK: &str = "disk";
 
-/// What devices hand over.
+/// Results of devices.
 type In<P> = <<P as Program>::Node as Node>::In<'static>;
 type Out<P> = <<P as Program>::Node as Node>::Out;
 /// Returns the wall time, nanoseconds since 1970.
@@ -93,7 +93,7 @@ impl<P: Program> Cycle for Loop<P> {
         self.commit()?;
         self.end_recorded_pass();
         self.port_failures.judge(self.port_error.take(), clock::now())?;
-        // What waits for a full disk was never acknowledged, and is given up as by a kill.
+        // Outputs that wait for a full disk were never acknowledged, and are given up as by a kill.
         let is_done = self.commit.is_settled() || self.commit.is_short();
         let ends = self.effects.exits() && is_done;
         Ok(if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
@@ -125,7 +125,7 @@ impl<P: Program> Loop<P> {
         feed(&mut self.node, &mut self.tap, event, &mut self.effects);
     }
 
-    /// Ends a pass of the flight, which continues in another file where that one is long.
+    /// Ends a pass of the flight, which continues in another file if that one is long.
     fn end_recorded_pass(&mut self) {
         self.tap.end_pass();
         if self.tap.wants_checkpoint()
@@ -136,12 +136,12 @@ impl<P: Program> Loop<P> {
         }
     }
 
-    /// Returns whether new inputs are taken, beside urgent ones.
+    /// Returns whether new inputs are taken, other than urgent ones.
     fn takes_inputs(&self) -> bool {
         !self.commit.is_behind() && !self.effects.exits()
     }
 
-    /// Returns whether time passes for the node. What moves is brought to rest whatever waits.
+    /// Returns whether time passes for the node. Moving parts come to rest even if outputs wait.
     fn takes_ticks(&self) -> bool {
         let is_urgent = self.shell.urgent_fd().is_some();
         (is_urgent || !self.commit.is_behind()) && !self.effects.exits()
@@ -153,7 +153,7 @@ impl<P: Program> Loop<P> {
         let takes_inputs = self.takes_inputs();
         let Self { node, shell, inbox, effects, tap, .. } = self;
         let mut handled = 0;
-        // A message is handled where it lies in shared memory, before the next one is taken.
+        // A message is handled in place in shared memory, before the next one is taken.
         let mut handle = |message: <P::Node as Node>::In<'_>| {
             feed(node, tap, Event::Message(message), effects);
             handled += 1;
@@ -172,8 +172,8 @@ impl<P: Program> Loop<P> {
         result
     }
 
-    /// Publishes what waits for no record, hands over the records of the pass, and publishes what is
-    /// backed by durable ones. Never the other way round.
+    /// Publishes outputs without a record, hands over the records of the pass, and publishes
+    /// outputs backed by durable ones. Never the other way round.
     fn commit(&mut self) -> Result<(), Failure> {
         self.tap.stated(&self.effects);
         let urgent = self.effects.take_urgent();

@@ -10,7 +10,7 @@ use crate::exit::ProcessExit;
 /// A group at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroupStatus {
-    /// Its name.
+    /// Name of the group.
     pub name: String,
     /// State of the group as a whole.
     pub state: GroupState,
@@ -31,7 +31,7 @@ pub struct GroupStatus {
     pub profile: Option<String>,
     /// The configuration's folder.
     pub config: PathBuf,
-    /// Overrides of configuration values: dotted key and value. None where the group follows the
+    /// Overrides of configuration values: dotted key and value. `None` if the group follows the
     /// configuration of another machine, as a mirror does.
     #[serde(default)]
     pub set: Option<Vec<(String, String)>>,
@@ -46,10 +46,10 @@ pub struct GroupStatus {
     pub services: Vec<ServiceStatus>,
 }
 
-/// A service at one moment. What only a running process has is `None` while none runs.
+/// A service at one moment. Properties of a running process are `None` while there is none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ServiceStatus {
-    /// Its name.
+    /// Name of the service.
     pub name: String,
     /// Desired state.
     pub wanted: Wanted,
@@ -60,7 +60,7 @@ pub struct ServiceStatus {
     pub state: ServiceState,
     /// Reason for a difference between the two: awaited services, a shortage, cause of a hold.
     pub why: Option<String>,
-    /// Its process.
+    /// Process id of the service.
     pub pid: Option<u32>,
     /// Number of the current or last start; 0 before the first.
     pub incarnation: u32,
@@ -72,15 +72,15 @@ pub struct ServiceStatus {
     pub beat_age_ms: Option<u64>,
     /// Age of its oldest pending input, milliseconds, as last reported.
     pub input_age_ms: Option<u64>,
-    /// Its reported version.
+    /// Version reported by the service.
     pub version: Option<String>,
-    /// Its reported activity.
+    /// Activity reported by the service.
     pub says: Option<String>,
     /// Messages of other processes that it has rejected as impossible since its start.
     #[serde(default)]
     pub rejected: u64,
-    /// Messages that it has lost since its start because it did not read them in time. Only readers of every
-    /// message count them: the recorder, and the console for live views.
+    /// Messages that it has lost since its start because it did not read them in time. Only readers
+    /// of every message count them: the recorder, and the console for live views.
     #[serde(default)]
     pub lost: u64,
     /// Syncs of its journal since its start.
@@ -93,7 +93,7 @@ pub struct ServiceStatus {
     pub swapped: Option<Vec<String>>,
     /// End of the previous incarnation.
     pub last_exit: Option<LastExit>,
-    /// The last lines of its log, where it is held.
+    /// The last lines of the log of a held service.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub log_tail: Vec<String>,
     /// Resident memory, KiB.
@@ -103,7 +103,7 @@ pub struct ServiceStatus {
 }
 
 impl ServiceStatus {
-    /// Returns what a person can do about the state; none where it passes by itself, or where its reason says so.
+    /// Returns advice to a person about the state; `None` if none is needed, or the reason has it.
     pub fn help(&self) -> Option<String> {
         let name = &self.name;
         match self.state {
@@ -125,8 +125,8 @@ impl ServiceStatus {
         self.why.as_deref().is_some_and(|why| why.contains("; help: "))
     }
 
-    /// Returns why it does nothing for anyone until a person acts or a shortage ends, in a
-    /// sentence with the way out; none where it works or soon will.
+    /// Returns a sentence with reason and remedy if the service is unavailable until a person acts
+    /// or a shortage ends; `None` if it works or soon will.
     pub fn unavailable(&self) -> Option<String> {
         let (name, why) = (&self.name, self.why.as_deref());
         if self.state == ServiceState::Short && self.has_own_help() {
@@ -191,7 +191,7 @@ impl ServiceState {
 pub struct LastExit {
     /// Number of the incarnation.
     pub incarnation: u32,
-    /// Its exit.
+    /// Exit of the process.
     pub exit: ProcessExit,
     /// The missed deadline for which it was stopped, if any.
     pub failure: Option<Failure>,
@@ -249,7 +249,7 @@ pub enum Actual {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Failure {
-    /// Not ready within its start deadline.
+    /// Not ready within the start deadline.
     NotReady,
     /// No beat of its main loop within the watchdog's period.
     NoBeat,

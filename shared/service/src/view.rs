@@ -1,4 +1,4 @@
-//! The serialisable view of a group: `whichone watch --json` prints it, the console's page shows it.
+//! The serialisable view of a group, shown by `whichone watch --json` and the console's page.
 //!
 //! One struct per section, made from the messages that arrived last. `tests/golden/view.json` holds
 //! an example, so that a change of a key is seen.
@@ -26,7 +26,7 @@ use crate::Time;
 /// A group at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct View<'a, Group> {
-    /// Belief and decision of the policy; none before its first publication.
+    /// Belief and decision of the policy; `None` before its first publication.
     pub dialogue: Option<DialogueView<'a>>,
     /// The latest lines of the dialogue, oldest first.
     pub said: Vec<SaidView<'a>>,
@@ -41,7 +41,7 @@ pub struct View<'a, Group> {
 /// A line of the dialogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct SaidView<'a> {
-    /// Its speaker.
+    /// Speaker of the line.
     pub who: Speaker,
     /// The words.
     pub text: &'a str,
@@ -117,7 +117,7 @@ pub struct HearingView<'a> {
     pub recogniser: EarState,
     /// Loudness, dB of full scale.
     pub level_db: f32,
-    /// Signal-to-noise ratio of the latest utterance, dB; none before the first measurement.
+    /// Signal-to-noise ratio of the latest utterance, dB; `None` before the first measurement.
     pub snr_db: Option<f32>,
     /// Sounds that wait for recognition.
     pub pending: u32,

@@ -1,5 +1,5 @@
 //! Blocking sources (a recogniser, a voice, a microphone) live on threads of their own and hand
-//! what they have to the main loop through a bounded channel that wakes it.
+//! their results to the main loop through a bounded channel that wakes it.
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use rustix::event::{EventfdFlags, eventfd};
@@ -22,7 +22,7 @@ impl Wake {
     fn raise(&self) {
         // The counter only fails to grow when it is full, and then the loop is awake anyway.
         let _ = rustix::io::write(&self.counter, &1_u64.to_ne_bytes());
-        // Afterwards: whoever sees this finds the counter raised.
+        // Afterwards: every reader of this finds the counter raised.
         self.is_raised.store(true, Ordering::Release);
     }
 
@@ -47,7 +47,7 @@ impl<T> Clone for DeviceSender<T> {
 }
 
 impl<T> DeviceSender<T> {
-    /// Sends `message`, blocking while the channel is full. Returns `false` once the loop has ended.
+    /// Sends `message`, blocking while the channel is full. Returns `false` after the loop's end.
     pub fn send(&self, message: T) -> bool {
         let sent = self.sender.send(message).is_ok();
         self.wake.raise();
@@ -57,7 +57,7 @@ impl<T> DeviceSender<T> {
     /// Sends `message` if the channel is not full.
     ///
     /// # Errors
-    /// The message, where the channel is full. Once the loop has ended, nothing is ever full.
+    /// The message, if the channel is full. Once the loop has ended, it never is.
     pub fn offer(&self, message: T) -> Result<(), T> {
         match self.sender.try_send(message) {
             Err(TrySendError::Full(message)) => Err(message),

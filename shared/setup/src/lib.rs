@@ -1,4 +1,4 @@
-//! Settings put into effect: the dialogue manager and the observation model that a configuration describes.
+//! Settings in effect: the dialogue manager and the observation model of a configuration.
 //!
 //! `config` parses and checks values and knows no planner; this crate knows them all.
 
@@ -9,8 +9,8 @@ use dialogue::{Confusion, Model, NotAConfusion};
 use scene::Scene;
 use vocabulary::Language;
 
-/// Smoothing of words that are certain. Their values are doubted by the rates of misperception, and once
-/// is enough; above 0, so that words that contradict one another leave a belief.
+/// Smoothing of words that are certain. Their values are doubted by the rates of misperception, and
+/// once is enough; above 0, so that words that contradict one another leave a belief.
 const CERTAIN_SMOOTHING: f64 = 1e-6;
 
 /// Error of building a dialogue manager from settings.
@@ -38,9 +38,9 @@ pub trait DialogueSettings {
     /// An unknown planner.
     fn manager_with(&self, planner: &str) -> Result<Manager, ManagerError>;
 
-    /// Returns the manager that decided under the key `settings_key`: that of these settings, or the
-    /// same with another planner, which may have been swapped in. That of these settings where the
-    /// key belongs to neither.
+    /// Returns the manager that decided under the key `settings_key`: that of these settings, or
+    /// the same with another planner, which may have been swapped in. For an unknown key, that of
+    /// these settings.
     ///
     /// # Errors
     /// An unknown planner.

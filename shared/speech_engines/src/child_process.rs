@@ -1,8 +1,8 @@
 //! Child processes with a deadline.
 //!
 //! Invariant: no call waits longer than its deadline, and no child outlives its [`ChildProcess`],
-//! except when this process is killed; the supervisor then ends the process group, which contains the
-//! children.
+//! except when this process is killed; the supervisor then ends the process group, which contains
+//! the children.
 
 use std::fmt::Display;
 use std::io::{ErrorKind, Read};
@@ -16,7 +16,7 @@ pub(crate) enum ProcessError {
     /// The program of this name is not installed.
     #[error("the program {0} is not installed")]
     NotInstalled(String),
-    /// It was not started, exited with an error, or was killed at its deadline.
+    /// The program was not started, exited with an error, or was killed at its deadline.
     #[error("{0}")]
     Failed(String),
 }

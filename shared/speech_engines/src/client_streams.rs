@@ -1,8 +1,8 @@
 //! Clients' audio streams, segmented into utterances on a thread of its own.
 //!
-//! Invariant: every [`StreamEvent::Began`] is followed by one [`StreamEvent::Ended`]; every stream is
-//! followed by one [`StreamEvent::Closed`], even if its client dies. The number of streams and the
-//! queue are bounded; losses are counted and replaced by silence.
+//! Invariant: every [`StreamEvent::Began`] is followed by one [`StreamEvent::Ended`]; every stream
+//! is followed by one [`StreamEvent::Closed`], even if its client dies. The number of streams and
+//! the queue are bounded; losses are counted and replaced by silence.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -1,11 +1,10 @@
-//! Engines of speech: recognisers, voices, and the way of sound from a microphone or a client to them.
+//! Engines of speech: recognisers, voices, and the way of sound from a microphone or a client to
+//! them.
 //!
-//! They know a scene's words and nothing of the dialogue, the configuration or the journal. The speech service chooses
-//! them by its configuration, and judges what they hear. A recogniser implements [`recogniser::Recogniser`]; a voice
-//! is a [`voice::Program`].
+//! Engines of speech: recognisers, voices, and the path of sound from microphones or clients.
 //!
-//! Invariant: none blocks its caller. Microphone, streams and [`Voice`](voice::Voice) work on threads of their own,
-//! behind bounded queues. An error about a missing library or program names its package.
+//! Invariant: none blocks its caller. Microphone, streams and [`Voice`](voice::Voice) work on
+//! threads of their own, behind bounded queues. Errors about missing programs name the package.
 
 pub mod audio;
 mod child_process;

@@ -21,10 +21,10 @@ pub(crate) const QUIETEST_DB: f32 = -100.0;
 /// Status of the microphone, published on every change and five times a second while it listens.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MicrophoneStatus {
-    /// Its state.
+    /// State of the microphone.
     pub state: MicrophoneState,
-    /// Level over the last fifth of a second, decibels below full scale; -100 for digital silence and
-    /// where it is unknown.
+    /// Level over the last fifth of a second, decibels below full scale; -100 for digital silence
+    /// and if unknown.
     pub level_db: f32,
     /// Restarts of recording programs.
     pub restarts: u32,
@@ -42,7 +42,7 @@ impl MicrophoneStatus {
     }
 }
 
-/// Accepts an event, or returns it if there is no room.
+/// Accepts an event, or returns it for lack of room.
 pub type Sink = Box<dyn Fn(LiveEvent) -> Result<(), LiveEvent> + Send>;
 
 /// Events that may wait; beyond it new utterances are dropped as a whole.

@@ -36,8 +36,8 @@ pub fn began(at: Time) -> Began {
     }
 }
 
-/// Returns a buzz with falling pitch and formants that glide from vowel to vowel, four syllables per
-/// second, which a detector classifies as voice.
+/// Returns a buzz with falling pitch and formants that glide from vowel to vowel, four syllables
+/// per second, which a detector classifies as voice.
 pub fn voice(seconds: f64) -> Vec<i16> {
     const VOWELS: [[f64; 3]; 4] = [
         [730.0, 1_090.0, 2_440.0],
@@ -83,8 +83,8 @@ pub struct Said {
 /// Quiet before and after a sentence, samples.
 const QUIET: usize = RATE_HZ as usize / 2;
 
-/// Says a sentence, with files in `work`. A human voice is flite's, which is cut from recordings, if that is installed;
-/// otherwise espeak-ng speaks.
+/// Says a sentence, with files in `work`. A human voice is flite's, which is cut from recordings,
+/// if that is installed; otherwise espeak-ng speaks.
 pub fn say(text: &str, human: bool, work: &Path) -> Said {
     let flite = VoiceOptions {
         program: Program::Flite("flite".into()),

@@ -1,5 +1,5 @@
-//! Sound as flights hold it: its length. The reducer passes sound on without a look at its samples, so the
-//! length is all that a replay needs; and what people say is in no file that they do not know of.
+//! Sound as flights hold it: its length. The reducer passes sound on without a look at its samples,
+//! so the length is all that a replay needs; and people's voices stay out of unknown files.
 
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

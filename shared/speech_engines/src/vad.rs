@@ -1,7 +1,7 @@
 //! Voice activity detection: segments of speech in a stream.
 //!
-//! Invariant: segments are ordered and do not overlap; every frame of speech that opened a segment lies
-//! in exactly one. The state advances by samples alone, never by a clock.
+//! Invariant: segments are ordered and do not overlap; every frame of speech that opened a segment
+//! lies in exactly one. The state advances by samples alone, never by a clock.
 
 mod babble;
 mod loudness;
@@ -23,21 +23,21 @@ const TAIL: usize = 12;
 /// Settings of segmentation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SegmenterOptions {
-    /// Score above which a frame may be speech, 0 to 1. 0.5 finds onsets within 44 ms (median) and yields
-    /// no false alarms at 25 dB; higher values lose the ends of words.
+    /// Score above which a frame may be speech, 0 to 1. 0.5 finds onsets within 44 ms (median) and
+    /// yields no false alarms at 25 dB; higher values lose the ends of words.
     pub threshold: f32,
     /// Consecutive frames of speech that open a segment; fewer admit clicks.
     pub opening_frames: usize,
     /// Pause that closes a segment of which nothing else is known, seconds; for human speech 0.3 to
     /// 1.0. See [`Segmenter::set_closing`].
     pub closing_pause_s: f64,
-    /// Audio before the onset that belongs to the segment, seconds: soft first consonants precede the
-    /// detected onset.
+    /// Audio before the onset that belongs to the segment, seconds: soft first consonants precede
+    /// the detected onset.
     pub pre_roll_s: f64,
     /// Audio after the speech that belongs to the segment, seconds. The rest of the pause is not
     /// decoded, so that decoding can begin before the pause ends.
     pub post_roll_s: f64,
-    /// The same for a segment that closes before the post-roll is over, seconds.
+    /// Post-roll of a segment that closes before it is over, seconds.
     pub early_roll_s: f64,
     /// Longest speech in a segment, seconds; the rest becomes the next segment.
     pub longest_s: f64,
@@ -76,8 +76,8 @@ pub enum VadEvent {
         /// First sample of the speech, counted from the stream's start.
         at_sample: usize,
     },
-    /// A pause as long as the early roll or the post-roll. Unless speech continues, the end carries the
-    /// range and speech of one of them.
+    /// A pause as long as the early roll or the post-roll. Unless speech continues, the end carries
+    /// the range and speech of one of them.
     Pause {
         /// The samples to decode.
         range: Range<usize>,
@@ -134,7 +134,7 @@ impl Segmenter {
         events
     }
 
-    /// Sets the pause that closes the open segment, unless speech has continued since it was judged.
+    /// Sets the pause that closes the open segment, unless speech has continued in the meantime.
     pub fn set_closing(&mut self, closing: Closing) {
         if let Some(open) = &mut self.track.open
             && open.speech_end - open.onset == closing.speech
@@ -143,16 +143,16 @@ impl Segmenter {
         }
     }
 
-    /// Ends the open segment with its voice: whoever lets go of the button has nothing to add. Without a
-    /// voice it ends with the next frame.
+    /// Ends the open segment with its voice: a user who releases the button has nothing to add.
+    /// Without a voice it ends with the next frame.
     pub fn release(&mut self) {
         if let Some(open) = &mut self.track.open {
             open.is_released = true;
         }
     }
 
-    /// Ends the stream and an open segment with it. The next one begins in the same room: its background
-    /// stays known.
+    /// Ends the stream and an open segment with it. The next one begins in the same room: its
+    /// background stays known.
     pub fn finish(&mut self) -> Option<VadEvent> {
         let track = std::mem::take(&mut self.track);
         let end = track.at + self.rest.len();
@@ -189,15 +189,15 @@ struct Open {
     onset: usize,
     /// End of the last frame of speech.
     speech_end: usize,
-    /// What was judged since.
+    /// Judgement of the frames since `speech_end`.
     closing: Option<Closing>,
     /// Whether it ends with the voice; see [`Segmenter::release`].
     is_released: bool,
 }
 
 impl Open {
-    /// Returns the range to decode at sample `at`, and the speech in it. The range is that of a pause that
-    /// was reported: of the last one, or of the one that was judged if it is closed by that.
+    /// Returns the range to decode at sample `at`, and the speech in it. The range is that of a
+    /// reported pause: the last one, or the judged one if that closes it.
     fn cut(
         &self,
         speech_end: usize,

@@ -11,7 +11,7 @@ pub struct WorkerThread<T> {
     thread: Option<JoinHandle<()>>,
 }
 
-/// Niceness of loading beside services that start: a third of their share of a processor where both want it all.
+/// Niceness of loading beside starting services: a third of their share of a contended processor.
 const LOADING: i32 = 5;
 
 /// Lowers the priority of this thread, and of the threads and processes that it starts from now on.
@@ -20,8 +20,8 @@ pub fn lower_priority(niceness: i32) {
     let _ = rustix::process::nice(niceness);
 }
 
-/// Returns what `work` returns, which is done at a lower priority. It must start no thread or process that lasts:
-/// a priority is not raised again.
+/// Runs `work` at a lower priority and returns its result. It must start no lasting thread or
+/// process: a priority is not raised again.
 pub fn in_background<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let quietly = || {
         lower_priority(LOADING);
@@ -58,7 +58,7 @@ impl<T: Send + 'static> WorkerThread<T> {
         Self { queue: Some(queue), thread: Some(thread::spawn(move || run(&work))) }
     }
 
-    /// Queues work if there is room.
+    /// Queues work, if the queue has room.
     ///
     /// # Errors
     /// If there is none, or the thread is gone.

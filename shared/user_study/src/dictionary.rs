@@ -5,7 +5,7 @@ use config::study::{Item, Kind};
 /// A column of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Its name.
+    /// Name of the column.
     pub name: &'static str,
     /// Type of its values: `text`, `number`, `0/1` or `UTC`.
     pub kind: &'static str,
@@ -17,7 +17,7 @@ const fn column(name: &'static str, kind: &'static str, meaning: &'static str) -
     Column { name, kind, meaning }
 }
 
-/// The columns of `interactions.csv`: a row for each interaction, the spoilt and unfinished ones too.
+/// The columns of `interactions.csv`: a row per interaction, also spoilt and unfinished ones.
 pub const INTERACTIONS: [Column; 27] = [
     column("participant", "text", "the participant's code"),
     column("status", "text", "of the participant: complete, left, running or withdrawn"),

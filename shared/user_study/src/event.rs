@@ -38,14 +38,14 @@ pub enum Event {
     Drawn(Drawn),
     /// The policy service was switched to that planner.
     Switched {
-        /// Its name.
+        /// Name of the planner.
         planner: String,
     },
     /// The policy service was given its configured planner back.
     Restored,
     /// The participant began the interaction that was drawn last.
     Started {
-        /// The robot's latest interaction before it.
+        /// The robot's latest interaction before the trial.
         after: u64,
     },
     /// The participant said something.
@@ -63,7 +63,7 @@ pub enum Event {
     Faulted {
         /// Cause.
         fault: Fault,
-        /// In a sentence.
+        /// Reason in a sentence.
         why: String,
     },
     /// Has come to the questionnaire.
@@ -77,14 +77,14 @@ pub enum Event {
     Finished,
     /// The participant continued after the page or the console was gone.
     Resumed {
-        /// The page that asked for it.
+        /// The page that asked to resume.
         session: String,
     },
-    /// Went away in the middle; what there is counts.
+    /// Left before the end; the data so far count.
     Left,
-    /// Withdrew; nothing of it counts.
+    /// Withdrew; the data do not count.
     Withdrawn,
-    /// Withdrew and had the data deleted: what came before this is gone.
+    /// Withdrew and had the data deleted: everything before is gone.
     Deleted,
 }
 
@@ -116,7 +116,7 @@ pub struct Drawn {
     pub step: usize,
     /// The object's name.
     pub object: String,
-    /// Its name for people.
+    /// Name of the object for people.
     pub label: String,
     /// The scene's name.
     pub scene: String,
@@ -131,13 +131,13 @@ pub struct Drawn {
 pub struct Heard {
     /// The utterance's number.
     pub seq: u64,
-    /// By which way.
+    /// Way in which it was said.
     pub source: Source,
     /// Onset.
     pub onset_ms: f64,
     /// Acceptance of the whole.
     pub accepted_ms: f64,
-    /// The words, where they are kept.
+    /// The words, if the study keeps them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub words: Option<String>,
 }
@@ -147,9 +147,9 @@ pub struct Heard {
 pub struct Asked {
     /// The question's number.
     pub prompt: u64,
-    /// Number of this presentation, from 1.
+    /// Number of the presentation, from 1.
     pub presentation: u32,
-    /// Its words, where they are kept.
+    /// Words of the prompt, if they are kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub words: Option<String>,
 }
@@ -159,7 +159,7 @@ pub struct Asked {
 pub struct Ending {
     /// Verdict.
     pub verdict: Verdict,
-    /// The robot's number of it, 0 where nothing was said.
+    /// The robot's number of the interaction, 0 without an utterance.
     pub interaction: u64,
     /// The object that was handed over or tried.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -168,15 +168,15 @@ pub struct Ending {
     pub questions: u32,
     /// Utterances, by the robot's count.
     pub utterances: u32,
-    /// From the first utterance's acceptance to the end, by the robot's clock, seconds; none where
-    /// the robot did not end it.
+    /// Time from the first utterance's acceptance to the end, by the robot's clock, seconds; `None`
+    /// if the robot did not end it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
-    /// Time of its detection.
+    /// Time at which the end was detected.
     pub ended_ms: f64,
 }
 
-/// By which way something was said.
+/// Way in which something was said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
@@ -196,13 +196,13 @@ pub enum Fault {
     Scene,
     /// The policy could not be switched, or decides by another planner.
     Planner,
-    /// The robot was restarted, or the console was away for so long that its end was missed.
+    /// The robot was restarted, or the console was away and missed the end.
     Missed,
     /// The experimenter said so.
     Experimenter,
 }
 
-/// A journal that is none.
+/// A journal with an invalid format.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {what}; restore the file from a copy, or move it out of the folder")]
 pub struct FormatError {
@@ -213,7 +213,7 @@ pub struct FormatError {
 }
 
 impl Entry {
-    /// Returns the line, with its end.
+    /// Returns the event's line, with a line end.
     ///
     /// # Panics
     /// Never: an entry is an object with text keys and finite numbers.

@@ -1,11 +1,11 @@
 //! Studies with people: protocol, events and results.
 //!
-//! A participant's data is a journal: one JSON object a line, only ever appended to. Everything else
-//! is a fold of it ([`Participant`]), so that the page that conducts the study, the export and the
-//! report of the command line cannot disagree, and a killed program resumes.
+//! A participant's data is a journal: one JSON object a line, only ever appended to. Everything
+//! else is a fold of it ([`Participant`]), so that the page that conducts the study, the export and
+//! the report of the command line cannot disagree, and a killed program resumes.
 //!
-//! This crate is pure: no IO, no clock, no threads; it knows no planner and no reader, so that the page, which conducts
-//! studies, is not built again with these.
+//! This crate is pure: no IO, no clock, no threads; it knows no planner and no reader, so that the
+//! page, which conducts studies, is not built again with these.
 //!
 //! | contents | file |
 //! |---|---|

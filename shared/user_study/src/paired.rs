@@ -14,7 +14,7 @@ use crate::trial::Trial;
 pub struct Paired {
     /// Policy.
     pub policy: String,
-    /// Policy that it is compared with.
+    /// Policy of the comparison.
     pub with: String,
     /// Share of successes.
     pub success: Mean,
@@ -25,7 +25,7 @@ pub struct Paired {
 }
 
 impl Paired {
-    /// As JSON.
+    /// Returns the comparison as JSON.
     pub fn to_json(&self) -> Json {
         json!({
             "policy": self.policy,

@@ -8,7 +8,7 @@ use crate::trial::{End, Trial};
 /// Stage of a participant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Reads what there is to agree to.
+    /// Reads the consent form.
     Consent,
     /// Reads the instructions.
     Instructions,
@@ -20,7 +20,7 @@ pub enum Stage {
     Over,
     /// Answers the questionnaire.
     Questionnaire,
-    /// Is done, and has been thanked.
+    /// Has finished, and has been thanked.
     Thanks,
     /// Has withdrawn.
     Withdrawn,
@@ -29,7 +29,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// Its name on the wire.
+    /// Returns the stage's name on the wire.
     pub fn name(self) -> &'static str {
         match self {
             Self::Consent => "consent",
@@ -57,7 +57,7 @@ pub enum Status {
     Running,
     /// Has done everything.
     Complete,
-    /// Left in the middle; what there is counts.
+    /// Left before the end; the data so far count.
     Left,
     /// Withdrew; nothing counts.
     Withdrawn,
@@ -66,7 +66,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// Its name in the data.
+    /// Returns the status's name in the data.
     pub fn name(self) -> &'static str {
         match self {
             Self::Running => "running",
@@ -105,7 +105,7 @@ pub fn people<N>(files: Vec<(N, String)>) -> Result<Vec<Participant>, (N, Format
 pub struct Participant {
     /// The first line.
     pub begun: Begun,
-    /// Its time, milliseconds since 1970.
+    /// Start of the session, milliseconds since 1970.
     pub begun_at: u64,
     /// The latest line.
     pub latest_at: u64,
@@ -113,7 +113,7 @@ pub struct Participant {
     pub session: String,
     /// Present stage.
     pub stage: Stage,
-    /// `true` if consent was given, where it is required.
+    /// Whether consent was given, if it is required.
     pub consented: bool,
     /// Every interaction, the spoilt ones too, in order.
     pub trials: Vec<Trial>,
@@ -126,7 +126,7 @@ pub struct Participant {
 }
 
 impl Participant {
-    /// Folds a journal; none without a first line.
+    /// Folds a journal; `None` without a first line.
     pub fn fold(entries: &[Entry]) -> Option<Self> {
         let (first, rest) = entries.split_first()?;
         let Event::Begun(begun) = &first.event else { return None };
@@ -202,8 +202,8 @@ impl Participant {
         self.trials.last()
     }
 
-    /// Returns the place in the plan of what comes next: after a fault the same again. None where
-    /// all is done.
+    /// Returns the place of the next step in the plan: after a fault the same again. `None` after
+    /// the last.
     pub fn next_step(&self) -> Option<usize> {
         let next = match self.trials.last() {
             None => 0,

@@ -14,7 +14,7 @@ const ROW: u32 = 68;
 /// A row of a chart.
 struct Row {
     label: String,
-    /// Number of its colour and mark.
+    /// Number of the series' colour and mark.
     series: usize,
     value: f64,
     interval: Option<Interval>,

@@ -94,7 +94,7 @@ fn square_row(size: usize, row: usize) -> Vec<usize> {
 /// # Panics
 /// `own` is empty.
 pub fn draw(objects: Objects, own: &[usize], all: &[usize], seed: u64, number: u32) -> usize {
-    // Each draw has a generator of its own, so that it depends on nothing but what is kept.
+    // Each draw has a generator of its own, so that it depends only on the stored data.
     let mut rng = Rng::new(seed ^ 0x6472_6177 ^ (u64::from(number) << 40));
     match objects {
         Objects::Uniform => rng.below(own.len()),

@@ -54,9 +54,9 @@ pub struct Report {
     pub scenes: Vec<(String, String)>,
     /// All interactions together.
     pub all: Group,
-    /// By policy, in the protocol's order.
+    /// Groups by policy, in the protocol's order.
     pub policies: Vec<Group>,
-    /// The same people with different policies.
+    /// Comparisons of the same people with different policies.
     pub paired: Vec<Paired>,
     /// The questionnaire.
     pub questionnaire: Vec<Answers>,
@@ -175,7 +175,7 @@ impl Answers {
 }
 
 impl Report {
-    /// As JSON.
+    /// Returns the report as JSON.
     pub fn to_json(&self) -> Json {
         let people: Map<String, Json> =
             self.participants.iter().map(|(name, n)| ((*name).to_owned(), (*n).into())).collect();
@@ -193,8 +193,7 @@ impl Report {
     }
 }
 
-/// Returns a mean with its interval by Student's distribution; null where there are too few
-/// numbers.
+/// Returns a mean with its interval by Student's distribution; null if there are too few numbers.
 pub(crate) fn mean_json(mean: &Mean) -> Json {
     let interval = mean.student_interval();
     json!({

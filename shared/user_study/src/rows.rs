@@ -44,7 +44,7 @@ pub fn tables(people: &[Participant]) -> Tables {
     Tables { interactions, participants, dictionary: dictionary(&items) }
 }
 
-/// Returns the same as one JSON object, with the words said and asked where they were kept, and the
+/// Returns the same as one JSON object, with the words said and asked if they were kept, and the
 /// protocol that each participant had.
 pub fn to_json(people: &[Participant]) -> Json {
     let people = people.iter().map(|person| {
@@ -199,8 +199,8 @@ fn cell_of(value: &Json) -> String {
     }
 }
 
-/// Returns a text as a cell (RFC 4180). One that a spreadsheet would calculate has an apostrophe in front, by which it is
-/// text there: participants are strangers. Numbers stay numbers.
+/// Returns a text as a cell (RFC 4180). One that a spreadsheet would calculate has an apostrophe in
+/// front, by which it is text there: participants are strangers. Numbers stay numbers.
 pub(crate) fn cell(text: &str) -> String {
     let is_formula =
         text.starts_with(['=', '+', '-', '@', '\t', '\r']) && text.parse::<f64>().is_err();

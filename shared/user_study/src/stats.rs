@@ -13,7 +13,8 @@ pub struct Interval {
 const Z: f64 = 1.959_963_984_540_054;
 
 /// The Wilson score interval (Wilson 1927) of a proportion: it keeps to 0 … 1 and holds for few
-/// trials and for none or all successes, where the usual interval fails. 0 … 1 without any trial.
+/// trials and for none or all successes, for which the usual interval fails. 0 … 1 without any
+/// trial.
 pub fn wilson(successes: u64, trials: u64) -> Interval {
     if trials == 0 {
         return Interval { low: 0.0, high: 1.0 };
@@ -78,14 +79,13 @@ impl Mean {
         if self.count == 0 { 0.0 } else { self.deviation() / (self.count as f64).sqrt() }
     }
 
-    /// The interval of the mean, by the normal distribution, which holds from some thirty numbers
-    /// on.
+    /// The interval of the mean, by the normal distribution; for some thirty numbers or more.
     pub fn interval(&self) -> Interval {
         let half = Z * self.error();
         Interval { low: self.mean - half, high: self.mean + half }
     }
 
-    /// The interval of the mean by Student's distribution, for a few numbers; none of fewer than two.
+    /// The interval of the mean by Student's distribution, for few numbers, but at least two.
     pub fn student_interval(&self) -> Option<Interval> {
         let half =
             student(self.count.checked_sub(1).filter(|freedom| *freedom > 0)?) * self.error();

@@ -101,7 +101,7 @@ pub(crate) fn interaction(n: usize, verdict: Verdict) -> [Event; 6] {
     ]
 }
 
-/// That participant.
+/// Returns a finished participant.
 pub(crate) fn finished(id: &str, protocol: &Protocol, right: u32) -> Participant {
     Participant::fold(&journal(id, protocol, right)).expect("a first line")
 }

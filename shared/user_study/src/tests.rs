@@ -49,7 +49,7 @@ fn trial_seconds_count_from_the_first_sound_to_the_end() {
     let trial = &person.trials[1];
     assert_eq!((trial.seconds(), trial.talk_seconds()), (Some(11.0), Some(5.0)));
     assert_eq!((trial.questions(), trial.repeats()), (1, 1));
-    // The robot did not end it: what the console saw counts.
+    // The robot did not end it: the console's observations count.
     let mut entries = journal("A", &protocol(), 3);
     for entry in &mut entries {
         if let Event::Ended(ending) = &mut entry.event {

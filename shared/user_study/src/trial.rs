@@ -9,7 +9,7 @@ use crate::plan::Step;
 pub enum End {
     /// The interaction came to an end.
     Verdict(Ending),
-    /// It was spoilt.
+    /// The trial was spoilt.
     Fault(Fault, String),
 }
 
@@ -26,7 +26,7 @@ pub struct Trial {
     pub started_at: Option<u64>,
     /// See [`Trial::drawn_at`].
     pub ended_at: Option<u64>,
-    /// The robot's latest interaction before it.
+    /// The robot's latest interaction before the trial.
     pub after: u64,
     /// Utterances.
     pub said: Vec<Heard>,
@@ -34,14 +34,14 @@ pub struct Trial {
     pub asked: Vec<Asked>,
     /// Time of the robot's decision which object to fetch, monotonic milliseconds.
     pub decided_ms: Option<f64>,
-    /// Its end.
+    /// End of the trial.
     pub end: Option<End>,
     /// Interruptions of page or console.
     pub resumed: u32,
 }
 
 impl Trial {
-    /// An interaction that was drawn.
+    /// Makes a trial from a draw.
     pub fn new(step: Step, drawn: Drawn, at: u64) -> Self {
         Self {
             step,
@@ -58,7 +58,7 @@ impl Trial {
         }
     }
 
-    /// Takes in what happened in it; anything else changes nothing.
+    /// Applies an event of the trial; anything else changes nothing.
     pub fn apply(&mut self, at: u64, event: &Event) {
         match event {
             Event::Started { after } => (self.started_at, self.after) = (Some(at), *after),
@@ -105,8 +105,8 @@ impl Trial {
         self.ending().map(|ending| ending.verdict)
     }
 
-    /// Seconds from the first sound or key of the first utterance to the end: the hand-over, where
-    /// there was one. None where nothing was said.
+    /// Seconds from the first sound or key of the first utterance to the end: the hand-over, if
+    /// there was one. `None` without an utterance.
     ///
     /// The robot measures from the acceptance of that utterance; the time before is added. So the
     /// duration is exact even if the console was down when the interaction ended.
@@ -133,7 +133,7 @@ impl Trial {
         self.ending().map_or(self.asked.len() as u32, |ending| ending.questions)
     }
 
-    /// Returns the number of utterances: the robot's count, or the console's where that is larger.
+    /// Returns the number of utterances: the robot's count, or the console's if that is larger.
     pub fn utterances(&self) -> u32 {
         self.ending().map_or(0, |ending| ending.utterances).max(self.said.len() as u32)
     }
@@ -143,7 +143,7 @@ impl Trial {
         self.asked.iter().map(|question| question.presentation.saturating_sub(1)).sum()
     }
 
-    /// Utterances that came by that way.
+    /// Returns the number of utterances by a source.
     pub fn said_by(&self, source: Source) -> usize {
         self.said.iter().filter(|said| said.source == source).count()
     }

@@ -1,4 +1,4 @@
-//! The verdict on an interaction, given what was desired.
+//! Verdicts on interactions, given the desired object.
 
 use serde::{Deserialize, Serialize};
 use vocabulary::{Costs, Outcome};
@@ -13,13 +13,13 @@ pub enum Verdict {
     Wrong,
     /// The arm could not.
     Failed,
-    /// The participant called it off.
+    /// The participant cancelled.
     Cancelled,
     /// The participant fell silent, or no question helped.
     Abandoned,
     /// The robot concluded that the object is not there.
     NotHere,
-    /// It took longer than the protocol allows.
+    /// The interaction took longer than the protocol allows.
     TooLong,
 }
 
@@ -35,7 +35,7 @@ impl Verdict {
         (Self::TooLong, "too_long"),
     ];
 
-    /// Returns the verdict on an interaction with that outcome; none where the scene was changed.
+    /// Returns the verdict on an interaction with that outcome; `None` if the scene was changed.
     /// `right` says whether the object that was handed over is the desired one.
     pub fn of(outcome: Outcome, right: bool) -> Option<Self> {
         Some(match outcome {
@@ -49,7 +49,7 @@ impl Verdict {
         })
     }
 
-    /// Its name in the data.
+    /// Returns the verdict's name in the data.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(verdict, _)| *verdict == self).map_or("", |(_, name)| name)
     }

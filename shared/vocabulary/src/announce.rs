@@ -1,22 +1,22 @@
 //! The announced pick: "I will get the clear bowl" can be denied until the object is gripped.
 //!
-//! With `c` ([`Announce::heard`]) the probability that a denial is said and heard in time, and `η` that
-//! of an erroneous one, a denial is heard with `c·η` if the announced object is wanted and with
-//! `c·(1−η)` if it is not (what is not here is denied like any other). Announcing `i` at belief `b` is
-//! worth
+//! With `c` ([`Announce::heard`]) the probability that a denial is said and heard in time, and `η`
+//! that of an erroneous one, a denial is heard with `c·η` if the announced object is wanted and
+//! with `c·(1−η)` if it is not (a wrong announcement is denied even if the wanted object is
+//! absent). Announcing `i` at belief `b` is worth
 //!
 //! `b_i (1−cη)·correct − Σ_{j≠i} b_j (1−c(1−η))·wrong + P(denial) (−cost_s + γ V(b'))`,
 //!
 //! where `b'` is the belief after the denial, which the dialogue manager counts twice: as "no" to
-//! [`Question::Point`](scene::Question::Point) of `i`, and as what stops a moving robot, which is no
-//! slip of the tongue. So `η/(1−η) = (ε/(1−ε))²`. With `c = 0` a pick is final, as in the publication.
+//! [`Question::Point`](scene::Question::Point) of `i`, and as the utterance that stops a moving
+//! robot, which is not a slip of the tongue. So `η/(1−η) = (ε/(1−ε))²`. With `c = 0` a pick is
+//! final, as in the publication.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{Costs, Fault};
 
-/// Whether a pick that was announced can still be denied, and what that costs. The default: a pick
-/// is final.
+/// Whether an announced pick can still be denied, and at which cost. By default, a pick is final.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Announce {
@@ -28,10 +28,10 @@ pub struct Announce {
 }
 
 impl Announce {
-    /// Picks that end the interaction.
+    /// Announcement model in which a pick ends the interaction.
     pub const FINAL: Self = Self { heard: 0.0, cost_s: 0.0 };
 
-    /// Cost of a denied pick where none is configured, seconds.
+    /// Default cost of a denied pick, seconds.
     pub const COST_S: f64 = 8.0;
 
     /// Whether picks are final.

@@ -8,13 +8,13 @@ use crate::ids::{PromptId, UtteranceSeq};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Attribution {
-    /// It counts for each question by its weight.
+    /// Counts the utterance for each question by the question's weight.
     #[default]
     Mixture,
-    /// It counts for the latest question that had been said when it began.
+    /// Counts the utterance for the latest question said when it began.
     Onset,
-    /// It counts for the question that is pending when the recogniser's result arrives. What naive
-    /// systems do; kept to be compared with.
+    /// Assigns the utterance to the question pending when the recogniser's result arrives, as naive
+    /// systems do; kept for comparison.
     Naive,
 }
 

@@ -1,4 +1,4 @@
-//! What actions cost and what a pick is worth (section 3.5).
+//! Costs of actions and rewards of picks (section 3.5).
 
 use serde::{Deserialize, Serialize};
 
@@ -85,7 +85,7 @@ impl Costs {
         ("abstract", Self::ABSTRACT),
     ];
 
-    /// The preset of that name.
+    /// Returns the preset of the given name.
     pub fn preset(name: &str) -> Option<Self> {
         Self::PRESETS.iter().find(|(known, _)| *known == name).map(|(_, costs)| *costs)
     }
@@ -124,7 +124,7 @@ impl Costs {
         probability * (self.correct + self.wrong) - self.wrong
     }
 
-    /// Return of waiting for ever: what every other plan has to beat.
+    /// Return of waiting for ever: the value that every other plan has to beat.
     #[inline]
     pub fn wait_value(&self) -> f64 {
         -self.wait_s / (1.0 - self.discount)

@@ -1,27 +1,26 @@
-//! Seconds of single actions, where they were measured: what a question costs on this robot, in
-//! this scene.
+//! Measured durations of single actions, seconds, for this robot and scene.
 
 use scene::{ObjectId, Perceived, Question, Scene};
 use serde::{Deserialize, Serialize};
 
 use crate::{Action, Fault};
 
-/// Seconds that single actions take. A list that is empty was not measured: these questions cost
-/// what [`Costs`](crate::Costs) says of all of their kind, which is the special case in which all
-/// entries of a list are the same.
+/// Seconds that single actions take. An empty list was not measured: its questions have the cost
+/// that [`Costs`](crate::Costs) gives for their kind, as if all entries were equal.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Durations {
-    /// Of "is its k v?", per attribute and value: from the decision to the answer recognised.
+    /// Seconds of "is its k v?", per attribute and value: from the decision to the recognised
+    /// answer.
     pub attribute: Vec<Vec<f64>>,
-    /// Of "what is its k?", per attribute.
+    /// Seconds of "what is its k?", per attribute.
     pub which: Vec<f64>,
-    /// Of pointing at an object and asking, per object, the way of the arm there included.
+    /// Seconds of pointing at an object and asking, per object, including the arm's motion.
     pub point: Vec<f64>,
-    /// Of fetching an object, per object: from the decision to its hand-over.
+    /// Seconds of fetching, per object: from the decision to its hand-over.
     ///
-    /// No reward holds them (section 3.5): they are paid for the wanted object whatever is asked
-    /// before, so they cannot tell one question from another. Among objects that are equally
+    /// They are not part of any reward (section 3.5): they are paid for the wanted object in any
+    /// case, so they do not affect the choice of questions. Among objects that are equally
     /// probable, and that no question can tell apart, the quickest is picked.
     pub pick: Vec<f64>,
 }
@@ -54,8 +53,8 @@ impl Durations {
         }
     }
 
-    /// Everything that does not fit the scene, or is no amount of seconds; empty if planners can
-    /// use it.
+    /// Returns a fault for each entry that does not fit the scene or is not a duration in seconds;
+    /// empty if planners can use the durations.
     pub fn check(&self, scene: &Scene) -> Vec<Fault> {
         let fits = |len: usize, of: usize| len == 0 || len == of;
         let values = |k: usize| scene.attributes()[k].values.len();

@@ -53,16 +53,16 @@ impl Gestures {
 pub struct Direction([f64; 3]);
 
 impl Direction {
-    /// From one point to another, metres; none where they are nearer to each other than a
-    /// millimetre.
+    /// Returns the direction from one point to another (metres); `None` if they are less than a
+    /// millimetre apart.
     pub fn between(from_m: [f64; 3], to_m: [f64; 3]) -> Option<Self> {
         let way = [to_m[0] - from_m[0], to_m[1] - from_m[1], to_m[2] - from_m[2]];
         let length = dot(way, way).sqrt();
         (length.is_finite() && length >= 1e-3).then(|| Self(way.map(|x| x / length)))
     }
 
-    /// The angle to another direction, radians from 0 to π. Exact at both ends, where the cosine
-    /// alone is flat.
+    /// Returns the angle to another direction, radians from 0 to π. Exact at both ends, unlike the
+    /// arc cosine.
     pub fn angle(self, other: Self) -> f64 {
         let ([a, b, c], [d, e, f]) = (self.0, other.0);
         let cross = [b * f - c * e, c * d - a * f, a * e - b * d];

@@ -1,5 +1,5 @@
-//! Identifiers of the dialogue. Each is assigned once, by the service that owns it, and made durable
-//! before its first use, so that a restart never assigns one twice.
+//! Identifiers of the dialogue. Each is assigned once, by the service that owns it, and made
+//! durable before its first use, so that a restart never assigns one twice.
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ macro_rules! id {
         pub struct $name(pub u64);
 
         impl $name {
-            /// Returns the identifier that follows.
+            /// Returns the next identifier.
             #[must_use]
             pub fn next(self) -> Self {
                 Self(self.0.saturating_add(1))
@@ -47,14 +47,14 @@ id! {
     PromptId
 }
 
-/// One attempt to fetch one object, or to put it back. The pair is the idempotency key of the motion.
+/// One attempt to fetch one object, or to put it back. The pair is the motion's idempotency key.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
 pub struct PickId {
-    /// The interaction that decided it.
+    /// The interaction that decided the pick.
     pub interaction: InteractionId,
-    /// 1 for the first order. Another follows only where the previous one ended without a grasp,
+    /// 1 for the first order. Another follows only if the previous one ended without a grasp,
     /// because the scene changed or the user wants another object, or to put an object back.
     pub attempt: u32,
 }

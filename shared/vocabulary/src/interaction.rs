@@ -97,8 +97,8 @@ pub enum PickOutcome {
     PutBack,
     /// The object is no longer where it was seen; nothing is held.
     Vanished,
-    /// Called off while it was held, and no way back to its place was found: the gripper keeps hold of it
-    /// until the next order for it.
+    /// Called off while it was held, and no way back to its place was found: the gripper keeps hold
+    /// of it until the next order for it.
     Kept,
 }
 
@@ -123,10 +123,10 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Returns what a pick's outcome means for its interaction; none while it is pending.
+    /// Returns how a pick's outcome ends its interaction; `None` while the pick is pending.
     pub fn of_pick(outcome: PickOutcome) -> Option<Self> {
         match outcome {
-            // Putting back is no interaction's end.
+            // Putting an object back does not end an interaction.
             PickOutcome::Pending | PickOutcome::PutBack => None,
             PickOutcome::Delivered => Some(Self::Delivered),
             PickOutcome::Unreachable

@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 pub struct Interpretation {
     /// Probability among the interpretations that answer the same question.
     pub weight: f64,
-    /// The question that it answers, as an index into the presentations carried by the utterance;
-    /// none if it answers none of them.
+    /// The question that the reading answers, as an index into the presentations carried by the
+    /// utterance; `None` if it answers no question.
     pub answers: Option<usize>,
-    /// Its content.
+    /// Content of the interpretation.
     pub reading: Reading,
 }
 
@@ -24,7 +24,7 @@ pub struct NamedReading {
     pub response: Response,
     /// Groups of words; an object that has all words of a group is ruled out.
     pub excluded: Vec<Vec<String>>,
-    /// Doubts about its parts.
+    /// Doubts about parts of the reading.
     pub doubt: Doubt,
 }
 

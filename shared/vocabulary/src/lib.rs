@@ -1,9 +1,9 @@
-//! The vocabulary of the group: identifiers, moments, acts, phases and outcomes, questions as they were put, readings,
-//! and the plain settings of the dialogue.
+//! The vocabulary of the group: identifiers, moments, acts, phases and outcomes, questions as they
+//! were put, readings, and the plain settings of the dialogue.
 //!
-//! This crate is pure, and plans nothing: almost every crate depends on it, so that a change of a planner or of the reader
-//! rebuilds few of them. What computes with these types is in `dialogue`. Its searches call the functions marked `#[inline]`
-//! millions of times, and a release is linked without optimisation.
+//! This crate is pure, and plans nothing: almost every crate depends on it, and changes of planners
+//! or reader rebuild few. `dialogue` computes with these types: its searches call the functions
+//! marked `#[inline]` millions of times, and a release is linked without optimisation.
 
 mod action;
 mod announce;

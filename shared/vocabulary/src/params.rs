@@ -3,7 +3,7 @@
 use scene::Question;
 use serde::{Deserialize, Serialize};
 
-/// `p_l`, `ε` and `α` of section 3.6. The default is what section 4 tests with.
+/// `p_l`, `ε` and `α` of section 3.6. The default has the values tested in section 4.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Params {
@@ -31,7 +31,7 @@ pub struct Reliability {
     pub epsilon: f64,
 }
 
-/// What is wrong with one setting: its key, the fault, and the fix.
+/// A wrong setting: its key, the fault, and the fix.
 pub type Fault = (&'static str, String, &'static str);
 
 impl Default for Params {

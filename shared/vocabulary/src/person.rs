@@ -1,4 +1,4 @@
-//! Names that people give themselves.
+//! Names by which users introduce themselves.
 
 use std::fmt;
 
@@ -11,21 +11,21 @@ pub const PERSON_BYTES_MAX: usize = 64;
 const GUEST: &str = "guest";
 
 /// The name under which a person speaks: printable, without spaces around it, of at most
-/// [`PERSON_BYTES_MAX`] bytes. Empty: nobody in particular, of whom nothing is learned.
+/// [`PERSON_BYTES_MAX`] bytes. Empty for an unnamed person, about whom nothing is learned.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct PersonId(String);
 
-/// What is learned about people who give their name.
+/// Settings of learning about users who give their name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Acquaintance {
     /// Whether anything is.
     pub learns: bool,
-    /// Deliveries to a person from which on the prior over objects is by what they had fetched.
+    /// Deliveries to a person after which the prior over objects follows that person's deliveries.
     pub prior_from: u64,
 }
 
-/// As shipped.
+/// The shipped settings.
 impl Default for Acquaintance {
     fn default() -> Self {
         Self { learns: true, prior_from: 5 }
@@ -35,9 +35,9 @@ impl Default for Acquaintance {
 /// A text that is not the name of a person.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotAPerson {
-    /// It has so many bytes.
+    /// The name is too long: its length in bytes.
     TooLong(usize),
-    /// It has a character that is not printed, or that changes how others are.
+    /// The name has a character that is not printed, or that changes how others are.
     NotPrintable(char),
 }
 
@@ -59,7 +59,7 @@ impl fmt::Display for NotAPerson {
 impl std::error::Error for NotAPerson {}
 
 impl PersonId {
-    /// Returns the person of that name, without the spaces around it. "guest" is nobody.
+    /// Returns the person of that name, without the spaces around it. "guest" is unnamed.
     ///
     /// # Errors
     /// A text that is too long or not printable.
@@ -75,12 +75,12 @@ impl PersonId {
         Ok(Self(if is_guest { String::new() } else { name.to_owned() }))
     }
 
-    /// Returns whether it is nobody in particular.
+    /// Returns whether the person is unnamed.
     pub fn is_nobody(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Returns the name; empty for nobody in particular.
+    /// Returns the name; empty for an unnamed person.
     pub fn as_str(&self) -> &str {
         &self.0
     }

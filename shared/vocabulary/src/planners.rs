@@ -1,7 +1,7 @@
 //! Names of the planners.
 
-/// Calls a macro with the module and the name of each planner of `dialogue`, the default first. It is the one list of
-/// them, and stands here because a configuration is checked against the names without the planners.
+/// Calls a macro with the module and the name of each planner of `dialogue`, the default first. It
+/// is the only list, and is here because configurations are checked without the planners.
 #[macro_export]
 macro_rules! planners {
     ($declare:ident) => {

@@ -11,15 +11,15 @@ use crate::time::Time;
 pub struct Presentation {
     /// The prompt.
     pub prompt: PromptId,
-    /// Which presentation of the prompt, from 1.
+    /// Number of the presentation of the prompt, from 1.
     pub number: u32,
     /// The question; [`Question::None`] for a remark.
     pub question: Question,
     /// Key of the scene whose objects and attributes the question is about.
     pub scene: u64,
-    /// When its sound began.
+    /// Start of the prompt's sound.
     pub began: Time,
-    /// When its sound ended or was interrupted; none while it lasts.
+    /// End or interruption of the prompt's sound; `None` while it plays.
     pub ended: Option<Time>,
     /// Whether it was said to its end.
     pub complete: bool,

@@ -3,19 +3,19 @@
 /// Prior of a new interaction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prior {
-    /// Which objects are more probable.
+    /// Prior over the objects.
     pub objects: PriorObjects,
     /// Weight of each object in the Dirichlet distribution, in deliveries.
     pub smoothing: f64,
-    /// Probability that the wanted object is not here; 0 where that is not considered.
+    /// Probability that the wanted object is absent; 0 if absence is not considered.
     pub absent: f64,
 }
 
-/// Which objects are more probable before anything was said.
+/// Prior over the objects before any utterance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PriorObjects {
     /// All alike, as in the paper.
     Uniform,
-    /// Those delivered more often.
+    /// Objects delivered more often are likelier.
     History,
 }

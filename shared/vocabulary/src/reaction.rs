@@ -19,7 +19,7 @@ pub struct Reaction {
 
 /// Median of people's reaction to a spoken question, seconds, and the deviation of its logarithm.
 pub const SPOKEN: (f64, f64) = (0.9, 0.55);
-/// The same of typed answers, from when the question is on the screen. Judged, not measured.
+/// Reaction to a question on the screen with a typed answer. Estimated, not measured.
 pub const TYPED: (f64, f64) = (3.0, 0.9);
 /// Shape of the prior; its count is as large. Worth a handful of times seen.
 const SHAPE: f64 = 3.0;
@@ -29,7 +29,8 @@ const GAMMA_RATIO: f64 = 1.661_675_445_222_153_8;
 const SPREAD_MIN: f64 = 0.1;
 /// Even of the most willing, some questions stay unanswered.
 const ANSWERED_MAX: f64 = 0.999;
-/// Times are cut off here: no person reacts within, and typing at leisure is no reaction.
+/// Range to which reaction times are limited: nobody reacts faster, and typing at leisure is not a
+/// reaction.
 const SECONDS: std::ops::RangeInclusive<f64> = 0.05..=60.0;
 
 /// Times of one person that are remembered in full: beyond it the latest of them count more than
@@ -44,8 +45,7 @@ impl Default for Reaction {
 }
 
 impl Reaction {
-    /// What is known of people in general: median, seconds, and standard deviation of the
-    /// logarithm, both above 0.
+    /// Prior for people in general: median, seconds, and standard deviation of the logarithm.
     pub fn new(median_s: f64, log_sd: f64) -> Self {
         let scale = log_sd * log_sd * (SHAPE - 1.0);
         Self { mean: median_s.ln(), count: SHAPE, shape: SHAPE, scale }
@@ -103,8 +103,8 @@ impl Reaction {
         0.5 + 0.5 * t.signum() * student_within(t.abs(), (2.0 * self.shape).round() as u32)
     }
 
-    /// Answers that begin per second, `seconds` after a question that has not been answered yet:
-    /// `p f(t) / (1 − p F(t))` where a share `p` of questions is answered at all.
+    /// Answers that begin per second, `seconds` after a question that has not been answered yet: `p
+    /// f(t) / (1 − p F(t))` if a share `p` of questions is answered at all.
     pub fn rate(&self, seconds: f64, answered: f64) -> f64 {
         let (soonest, answered) = (seconds.max(*SECONDS.start()), answered.min(ANSWERED_MAX));
         answered * self.log_density(soonest).exp() / (1.0 - answered * self.share_begun(soonest))

@@ -9,7 +9,7 @@ pub struct Rng {
 const GOLDEN_GAMMA: u64 = 0x9e37_79b9_7f4a_7c15;
 
 impl Rng {
-    /// The generator of that seed.
+    /// Returns a generator with the given seed.
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }
@@ -59,7 +59,7 @@ impl Rng {
         ((u128::from(self.next_u64()) * bound as u128) >> 64) as usize
     }
 
-    /// An index with these probabilities; none with what they fall short of 1.
+    /// Draws an index with these probabilities; `None` with the remainder if their sum is below 1.
     #[inline]
     pub fn index(&mut self, probabilities: impl IntoIterator<Item = f64>) -> Option<usize> {
         let mut left = self.uniform();

@@ -1,4 +1,4 @@
-//! The objects on the table, where they come from perception.
+//! Objects on the table as reported by perception.
 
 use scene::{ObjectId, Perceived};
 use serde::{Deserialize, Serialize};
@@ -8,8 +8,8 @@ pub const TABLE_MAX: usize = 64;
 /// Latest changes by hand that are remembered, so that one that is sent again takes effect once.
 const EDITS_MAX: usize = 16;
 
-/// The objects on the table, in the order in which they appeared. Each change of it is a step of the
-/// dialogue.
+/// The objects on the table, in the order in which they appeared. Each change of it is a step of
+/// the dialogue.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Table {
     /// Number of changes so far.
@@ -23,7 +23,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Returns the object with that number.
+    /// Returns the object with the given number.
     pub fn object(&self, number: ObjectId) -> Option<&Perceived> {
         self.objects.iter().find(|object| object.number == number)
     }

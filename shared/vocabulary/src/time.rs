@@ -1,4 +1,4 @@
-//! Moments and lengths of time on the monotonic clock, as numbers: reading the clock is the caller's part.
+//! Moments and durations on the monotonic clock, as numbers; callers read the clock.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, Sub};
@@ -30,12 +30,12 @@ impl Time {
 }
 
 impl Span {
-    /// From seconds; negative and non-finite ones are zero.
+    /// Makes a span of seconds; negative and non-finite ones are zero.
     pub fn from_s(seconds: f64) -> Self {
         Self((seconds.max(0.0) * 1e9) as u64)
     }
 
-    /// From milliseconds.
+    /// Makes a span of milliseconds.
     pub const fn from_ms(ms: u64) -> Self {
         Self(ms * 1_000_000)
     }

@@ -29,7 +29,7 @@ pub struct TurnTaking {
 }
 
 impl Default for TurnTaking {
-    /// As in the shipped configuration.
+    /// The shipped configuration.
     fn default() -> Self {
         Self {
             response_window_s: 15.0,

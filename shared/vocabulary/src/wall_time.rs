@@ -11,8 +11,8 @@ pub fn text(wall_ns: u64) -> String {
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{ms:03}Z")
 }
 
-/// Nanoseconds since 1970 of a moment such as `2026-11-25T10:08:19.250Z`, with any number of decimals and
-/// any mark between the numbers; none where the text is not one.
+/// Nanoseconds since 1970 of a moment such as `2026-11-25T10:08:19.250Z`, with any number of
+/// decimals and any mark between the numbers; `None` if the text is not a time.
 pub fn parse(text: &str) -> Option<u64> {
     let number = |range: std::ops::Range<usize>| text.get(range)?.parse::<u64>().ok();
     let (year, month, day) = (number(0..4)?, number(5..7)?, number(8..10)?);
@@ -24,8 +24,8 @@ pub fn parse(text: &str) -> Option<u64> {
     (is_date && day > 0).then(|| s * SECOND + fraction)
 }
 
-/// Year, month and day of the Gregorian calendar, days after 1970-01-01. Years begin in March here, so
-/// that the leap day is the last one.
+/// Year, month and day of the Gregorian calendar, days after 1970-01-01. Years begin in March here,
+/// so that the leap day is the last one.
 fn civil(days: u64) -> (u64, u64, u64) {
     let days = days + 719_468;
     let (era, day) = (days / 146_097, days % 146_097);

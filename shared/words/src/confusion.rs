@@ -1,8 +1,8 @@
-//! Which of a scene's words are heard for one another, judged by how alike they sound.
+//! Confusions between a scene's words, estimated by the similarity of their sounds.
 //!
-//! A word's spelling becomes a row of sounds: consonants in the classes of `phonetics.rs`, vowels in
-//! three. Two rows are as far apart as the cheapest way to turn one into the other costs, divided
-//! by what the rows cost themselves; of a value with synonyms the nearest pair counts.
+//! A word's spelling becomes a row of sounds: consonants in the classes of `phonetics.rs`, vowels
+//! in three. The distance of two rows is the cost of the cheapest edit from one to the other,
+//! divided by the cost of the rows themselves; of a value with synonyms the nearest pair counts.
 //!
 //! | step | cost |
 //! |---|---|
@@ -13,7 +13,7 @@
 //! | any other consonant left out or put in | 0.7 |
 //! | vowel for consonant | never: one is left out, the other put in |
 //!
-//! The costs are judged. They order pairs, and the order is what counts: `pen` is nearer to `red`
+//! The costs are estimates. They rank pairs, and only the rank matters: `pen` is nearer to `red`
 //! than to `screwdriver`.
 
 use scene::Scene;
@@ -22,7 +22,7 @@ use crate::normalise::normalise;
 use crate::phonetics::{is_vowel_letter, sound};
 use crate::tokens::Tokens;
 
-/// Share of each row that is divided evenly: what sounds cannot explain.
+/// Share of each row that is divided evenly: confusions that sounds cannot explain.
 const EVEN: f64 = 0.1;
 /// Distance over which the rest of a row falls by the factor `e`. With it the nearest of the six
 /// bowls' words gets between a quarter and nine tenths of its row.
@@ -73,15 +73,15 @@ fn forms(scene: &Scene) -> Vec<Vec<Vec<Sound>>> {
     forms
 }
 
-/// One sound, with what the comparison of many rows needs of it.
+/// One sound, with the properties that comparisons of many rows need.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sound {
     /// A consonant in capitals, a vowel in small letters.
     heard: char,
     is_vowel: bool,
-    /// Cost of deleting or inserting it.
+    /// Cost of deleting or inserting the sound.
     loss: f64,
-    /// Which consonants are made like it.
+    /// Class of consonants with the same manner of articulation.
     made: Option<usize>,
 }
 

@@ -1,6 +1,6 @@
 //! Words of a text: normalised, taken apart, and compared by their sounds.
 //!
-//! This crate is pure, and knows no meaning: `language` reads what the words say.
+//! This crate is pure, and knows no meaning: `language` interprets the words.
 
 mod confusion;
 mod normalise;

@@ -20,8 +20,7 @@ pub fn normalise(text: &str) -> Cow<'_, str> {
         };
     }
     let mut plain = String::with_capacity(text.len().min(TEXT_CHARS_MAX * 2));
-    // The accent that stands alone is typed for an apostrophe; its compatibility form would part
-    // the word.
+    // A lone accent is typed for an apostrophe; its compatibility form would split the word.
     let chars = text.chars().map(|c| if c == '\u{00b4}' { '\'' } else { c });
     // Compatibility forms first (full-width letters, ligatures, ellipsis), then each on its own.
     for c in chars.take(TEXT_CHARS_MAX).nfkd().take(TEXT_CHARS_MAX) {

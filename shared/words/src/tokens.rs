@@ -1,5 +1,5 @@
-//! Normalised text to words: contractions opened ("isn't" is "is not"), compounds taken apart at
-//! their hyphens, punctuation kept as the pause that it stands for.
+//! Normalised text to words: contractions opened ("isn't" is "is not"), compounds split at their
+//! hyphens, punctuation kept as a pause.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -17,14 +17,14 @@ pub enum Gap {
     Stop,
 }
 
-/// A word and what stood before it.
+/// A word and the gap before it in the text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Token<'a> {
     /// Letters and digits, in lower case.
     pub word: &'a str,
-    /// The pause before it.
+    /// Pause before the word.
     pub gap: Gap,
-    /// Probability that this was said.
+    /// Probability that the word was said.
     pub confidence: f32,
 }
 
@@ -132,8 +132,8 @@ fn takes_is(stem: &str) -> bool {
     STEMS.split(' ').any(|listed| listed == stem)
 }
 
-/// End of the word that starts `text`: letters and digits, apostrophes between letters, and marks between
-/// digits: "2.5", "9:15", "7/8".
+/// End of the word that starts `text`: letters and digits, apostrophes between letters, and marks
+/// between digits: "2.5", "9:15", "7/8".
 fn word_end(text: &str) -> usize {
     let mut end = 0;
     let mut before = ' ';
@@ -158,7 +158,7 @@ fn hyphenated(text: &str) -> Option<&str> {
     text.strip_prefix('-').filter(|after| after.starts_with(char::is_alphanumeric))
 }
 
-/// The pause that a character stands for, and its length in bytes.
+/// Returns the pause for a character, and the character's length in bytes.
 fn pause(text: &str, c: char) -> (Gap, usize) {
     match c {
         '.' => {

@@ -1,6 +1,6 @@
 // @ts-check
-// What was handed over, for as long as it can be refused: the store's section `delivery`. The section
-// `belief` is what is believed now; until that time is over, what was believed at the end.
+// The object handed over, while it can be refused: the store's section `delivery`. The section
+// `belief` is the present belief; until that time is over, the belief at the end.
 
 /** Longest delay of a timer, milliseconds. */
 const TIMER_MAX_MS = 2 ** 31 - 1;

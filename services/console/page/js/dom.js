@@ -35,13 +35,13 @@ function fill(node, properties, children) {
   return node;
 }
 
-/** Sets a text only where it is another one. @param {Node} node @param {string} text */
+/** Sets a text only if it differs. @param {Node} node @param {string} text */
 export function setText(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
 /**
- * Sets an attribute only where it is another one; null takes it away.
+ * Sets an attribute only if it differs; null removes it.
  * @param {Element} node
  * @param {string} name
  * @param {string|number|boolean|null} value
@@ -57,7 +57,7 @@ export function setAttribute(node, name, value) {
 
 /**
  * Makes the children of `parent` those of `items`, in their order: nodes are kept by key, made by
- * `make`, and moved only where they stand elsewhere.
+ * `make`, and moved only if they are elsewhere.
  * @template T
  * @param {Element} parent
  * @param {T[]} items
@@ -102,7 +102,7 @@ export function eachFrame(draw) {
 }
 
 /**
- * The time of day, where this page is.
+ * The local time of day.
  * @param {{unix_ms: number}} event
  * @param {string} language
  */

@@ -1,5 +1,5 @@
 // @ts-check
-// What the browser keeps for this page. Some private windows refuse; the page works without.
+// Storage of the browser for this page. Some private windows refuse; the page works without.
 const PREFIX = "whichone.";
 
 /**
@@ -32,7 +32,7 @@ export function keptLanguage() {
   return recall("language");
 }
 
-/** The tab's own storage, null where it is refused. */
+/** The tab's own storage, null if it is refused. */
 export function tabStorage() {
   try {
     return sessionStorage;

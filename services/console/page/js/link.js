@@ -12,7 +12,7 @@ const PROTOCOL = 2;
 const PING_MS = 2_000;
 /**
  * A server that is silent for more pings than that is gone. Pings and not seconds: a page that was
- * busy or asleep has not looked, and finds what came meanwhile when it does.
+ * busy or asleep has not looked, and finds the new messages when it does.
  */
 const SILENT_PINGS = 3;
 /** Deadline for an answer from a connection after the page was hidden, milliseconds. */
@@ -36,13 +36,13 @@ const ATTEMPTS = 2;
  */
 
 /**
- * A link to the server that mends itself: it connects again, says what it has seen already, and
+ * A link to the server that mends itself: it connects again, reports what it has seen already, and
  * keeps the server's clock.
  * @param {object} options
- * @param {string} [options.url] the socket's address; by default `/ws` where the page is served
+ * @param {string} [options.url] the socket's address; by default `/ws` of the page's server
  * @param {string} options.session 32 hexadecimal digits, see `sessionId`
- * @param {"operator"|"viewer"|"screen"} [options.role] what this page wishes to be
- * @param {() => string} [options.name] what it is called towards the other viewers
+ * @param {"operator"|"viewer"|"screen"} [options.role] role that this page requests
+ * @param {() => string} [options.name] its name for other viewers
  * @param {() => number} [options.lastLine] the newest transcript line that the page has
  * @param {(parts: object) => void} [options.onState] the same as `on("state", …)`
  * @param {() => void} [options.refused] when it cannot connect: by default looks for the login page

@@ -1,5 +1,5 @@
 // @ts-check
-// What is so, as far as this page knows: the store's section `now`, from which every view draws. No view
+// The state, as far as this page knows: the store's section `now`, from which every view draws. No view
 // judges for itself whether the robot is stopped, out of reach, or at work.
 
 import { tone } from "./model/health.js";
@@ -7,7 +7,7 @@ import { whoControls } from "./model/turn.js";
 
 /** A connection that is back sooner changes nothing that is seen, milliseconds. */
 const GRACE_MS = 1_200;
-/** Services without which there is no dialogue. */
+/** Services that the dialogue needs. */
 const NEEDED = ["speech", "grounding", "policy", "arm"];
 /** Phases of an order that is not under way. */
 const AT_REST = ["idle", "done"];
@@ -15,13 +15,13 @@ const AT_REST = ["idle", "done"];
 /**
  * @typedef {object} Now
  * @property {"disconnected"|"stopped"|"held"|"fetching"|"asking"|"idle"} is the gravest that holds
- * @property {"connecting"|"offline"|"replaced"|"gave_way"|null} why there is no connection
+ * @property {"connecting"|"offline"|"replaced"|"gave_way"|null} reason for a missing connection
  * @property {boolean} atRest a stop is in force, and no joint moves
- * @property {{name: string, state: string}|null} service what keeps a robot that is `held`
+ * @property {{name: string, state: string}|null} service cause of a `held` robot
  * @property {boolean} moves the arm is known to move
- * @property {any} order the arm's section, where it is of the dialogue in hand
+ * @property {any} order the arm's section, if it is of the present dialogue
  * @property {string|null} aim name of the object that is fetched, or will be
- * @property {any} question the question that stands, or null
+ * @property {any} question the pending question, or null
  * @property {string} turn state of the section `turn`
  * @property {ReturnType<typeof whoControls>} who is in control
  */
@@ -71,7 +71,7 @@ function gapOf(link, turn, isLost) {
   return turn ? null : "connecting";
 }
 
-/** The arm's section, unless what it is about is over: an order of an earlier dialogue. */
+/** The arm's section, unless its subject is over: an order of an earlier dialogue. */
 function orderOf(arm, dialogue) {
   if (!arm?.object) return null;
   const inHand = dialogue?.interaction || dialogue?.last?.interaction;
@@ -81,7 +81,7 @@ function orderOf(arm, dialogue) {
 /** @param {any} arm */
 const isUnderWay = (arm) => !AT_REST.includes(arm?.phase ?? "idle");
 
-/** What is fetched: by the arm, or by the decision that it has not taken yet. */
+/** The object being fetched: by the arm, or by the decision that it has not taken yet. */
 function aimOf(order, dialogue) {
   if (isUnderWay(order)) return order.object;
   const decided = dialogue?.interaction > 0 && dialogue.decision === "pick";
@@ -94,14 +94,14 @@ function mostLikely(belief) {
   return all.reduce((best, one) => (one[1] > best[1] ? one : best), ["", -1])[0] || null;
 }
 
-/** The question that waits for an answer, also where no request is open. */
+/** The question that waits for an answer, also if no request is open. */
 function standing(dialogue) {
   const { question, decision } = dialogue ?? {};
   if (!question || question.type === "none") return null;
   return decision === "pick" || decision === "cancel" ? null : question;
 }
 
-/** The first service that the dialogue needs and that is not ready; a silent arm where all are. */
+/** The first service that the dialogue needs and that is not ready; a silent arm if all are. */
 function missing(services) {
   const all = services ?? [];
   const needed = all.filter(({ name }) => NEEDED.includes(name));
@@ -112,7 +112,7 @@ function missing(services) {
 const SECTIONS = ["link", "turn", "arm", "dialogue", "group", "control", "welcome"];
 
 /**
- * Keeps the section `now`; the document's root has `data-stale` where what is shown may be old. To be called
+ * Keeps the section `now`; the document's root has `data-stale` if the view may be old. To be called
  * before any view is mounted.
  * @param {{store: any}} context
  * @param {{toggleAttribute: (name: string, on: boolean) => void}} [root]

@@ -6,7 +6,7 @@ const PLACE = new URL("../", import.meta.url);
 export const place = PLACE.pathname;
 
 /**
- * The address of what the server has under a path.
+ * The address of a path on the server.
  * @param {string} path from the server's root, e.g. `/api/state`
  */
 export const addressOf = (path) => new URL(path.replace(/^\/+/, ""), PLACE).href;

@@ -27,7 +27,7 @@ export async function speak(text, { link, store }, when = {}) {
 
 /**
  * The robot's latest prompt that the page shows: in the conversation, or in large type, where a
- * question stands before its voice begins.
+ * question appears before its voice begins.
  * @param {{get: (section: string) => any}} store
  * @returns {number} 0 for none
  */
@@ -37,7 +37,7 @@ export function shownPrompt(store) {
 }
 
 /**
- * What is said for an object, in the words that the robot itself uses for it.
+ * Words for an object, as the robot itself uses them.
  * @param {{description: string}} object of the section `scene`
  */
 export const objectWords = ({ description }) => `the ${description}`;

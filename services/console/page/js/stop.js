@@ -83,7 +83,7 @@ export function stopper({ link, store, now = () => performance.now() }) {
 }
 
 /**
- * What became of the stop that was pressed here or elsewhere; null where nothing is left to say.
+ * Outcome of a stop pressed here or elsewhere; null if nothing is left to say.
  * @param {{get: (section: string) => any}} store
  * @returns {"unsent"|"unconfirmed"|"sending"|null}
  */

@@ -93,7 +93,7 @@ export class Store {
 }
 
 /**
- * Puts together what is known of the scene: the section `scene` has the objects with a place, as
+ * Assembles the knowledge about the scene: the section `scene` has the objects with a place, as
  * `standing`; those of the section `further` follow them in `objects`.
  * @param {Store} store
  * @param {Record<string, any>} parts of a `state` frame

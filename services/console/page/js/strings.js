@@ -1,7 +1,7 @@
 // @ts-check
 import { addressOf } from "./place.js";
 
-/** Languages that the page speaks; the first one stands in for what another lacks. */
+/** Languages that the page speaks; the first one supplies missing words. */
 export const LANGUAGES = ["en", "de"];
 
 /**
@@ -58,7 +58,7 @@ export const t = Object.assign((key, args) => current(key, args), {
 });
 
 /**
- * Chooses the language: the address, then what was chosen before, then the browser's.
+ * Chooses the language: the address, then the previous choice, then the browser's.
  * @param {string} search the address's query
  * @param {string|null} kept
  * @param {readonly string[]} wished the browser's languages
@@ -71,7 +71,7 @@ export function chooseLanguage(search, kept, wished) {
 }
 
 /**
- * Loads the tables of a language; what it lacks is said in English.
+ * Loads the tables of a language; missing words are in English.
  * @param {string} language
  */
 export async function loadStrings(language) {

@@ -1,4 +1,4 @@
-//! "Not that" and "start over" with one click: the utterance that each stands for.
+//! "Not that" and "start over" with one click: the utterances behind them.
 //!
 //! Pure. Both become words that a user could say too, so that they are in the transcript and in the
 //! journal, and do nothing that a dialogue could not.
@@ -11,10 +11,10 @@ use service::view::Latest;
 const NO: &str = "no";
 /// Withdraws a request.
 const NEVER_MIND: &str = "never mind";
-/// Forgets what was said.
+/// Words that make the robot forget the request.
 const START_OVER: &str = "start over";
 
-/// Returns the words that deny what the robot asks about or is fetching. A fetched object is named,
+/// Returns the words that deny the object in question or being fetched. A fetched object is named,
 /// so that it is denied before the robot has announced it, too.
 pub(super) fn not_that(scene: &Scene, latest: &Latest) -> Result<String, String> {
     let view = open(latest).ok_or(NOTHING)?;
@@ -40,7 +40,7 @@ fn open(latest: &Latest) -> Option<&PolicyView> {
     latest.view.as_ref().filter(|view| view.interaction != 0)
 }
 
-/// Returns the object of the pick under way: the arm's, or the most likely one where the order may not
+/// Returns the object of the pick under way: the arm's, or the most likely one if the order may not
 /// have reached the arm.
 fn fetched(view: &PolicyView, arm: Option<&ArmStatus>) -> usize {
     let over = [PickPhase::Idle, PickPhase::Done];

@@ -1,5 +1,5 @@
-//! The main loop's work: folds what arrives on the topics into the view model, carries out the
-//! commands of viewers, and puts what has changed on the board.
+//! The main loop's work: folds messages into the view model, carries out the commands of viewers,
+//! and puts changes on the board.
 
 mod corrections;
 mod line_store;
@@ -64,7 +64,7 @@ pub struct Bridge {
     submissions: Submissions,
     motions: Motions,
     lines: LineStore,
-    /// The interaction that ended last, and how: so much is known to be in the history.
+    /// The interaction that ended last, with its outcome: the history has those up to it.
     ended: Option<(InteractionId, Outcome)>,
     voice_dir: Option<PathBuf>,
     /// The joints that were sent last, and when.
@@ -79,7 +79,7 @@ pub struct Inbox {
     pub motions: DeviceReceiver<Motion>,
 }
 
-/// Every topic that is shown.
+/// Topics that pages show.
 #[derive(Debug)]
 struct Topics {
     latest: LatestTopics,
@@ -148,7 +148,7 @@ impl Bridge {
         })
     }
 
-    /// Runs one pass: orders to the motion stop, what has arrived, commands, sections.
+    /// Runs one pass: orders to the motion stop, messages, commands, sections.
     pub fn pass(&mut self, inbox: &Inbox) {
         self.orders(inbox);
         let now = now();
@@ -178,7 +178,7 @@ impl Bridge {
         }
     }
 
-    /// Takes in what has arrived, causes before effects as far as one pass can order them.
+    /// Processes new messages, causes before effects as far as one pass can order them.
     fn take_in(&mut self, now: Now) {
         let Self { topics, model, tally, .. } = self;
         let app = Arc::clone(&self.app);
@@ -189,7 +189,7 @@ impl Bridge {
             model.set_scene(scene);
         }
         for receipt in &arrived.receipts {
-            // What an accepted utterance still needs.
+            // Parts that an accepted utterance still needs.
             let later = [Service::Grounding, Service::Policy, Service::Arm];
             self.submissions.on_receipt(receipt, || model.unavailable(&later), &self.app.hub);
             model.on_receipt(receipt, now);

@@ -1,8 +1,8 @@
 //! Orders to the motion stop that the arm has not confirmed.
 //!
-//! They take the motion stop's own path, which needs neither shared memory nor disk. A stop is repeated
-//! until the arm confirms it, latched and at rest, or the operator resumes, however long its service is away.
-//! Where no confirmation comes, every page warns, with the reason, until one does.
+//! They take the motion stop's own path, which needs neither shared memory nor disk. A stop is
+//! repeated until the arm confirms it, latched and at rest, or the operator resumes, however long
+//! its service is away. Without a confirmation, every page warns, with the reason, until one does.
 
 use std::io;
 
@@ -33,7 +33,7 @@ pub(super) struct Motions {
 #[derive(Debug)]
 struct Latest {
     progress: Progress,
-    /// It is a stop that pages warn about, with the reason.
+    /// Reason of a stop that pages warn about.
     late: Option<StopError>,
 }
 
@@ -45,8 +45,8 @@ pub(super) struct MotionSection {
 
 #[derive(Debug, PartialEq, Serialize)]
 struct Unconfirmed {
-    /// State of the arm's service; `silent` if it should answer and does not; `moving` if it is latched, but
-    /// not at rest.
+    /// State of the arm's service; `silent` if it should answer and does not; `moving` if it is
+    /// latched, but not at rest.
     why: &'static str,
 }
 
@@ -93,8 +93,8 @@ impl Motions {
         self.latest.is_some()
     }
 
-    /// Takes in the arm's answers, repeats the order until it is confirmed, warns of a late stop, and gives up
-    /// a late release.
+    /// Takes in the arm's answers, repeats the order until it is confirmed, warns of a late stop,
+    /// and gives up a late release.
     pub(super) fn pass(&mut self, group: Option<&GroupStatus>, hub: &Hub, now: Time) {
         self.latest.iter_mut().for_each(|latest| latest.progress.advance(&self.client, now));
         self.judge(group, hub, now);
@@ -128,7 +128,7 @@ impl Motions {
         self.waiting.drain(..).for_each(|motion| answer(hub, motion, outcome.clone()));
     }
 
-    /// Returns what pages show.
+    /// Returns the section for pages.
     pub(super) fn section(&self, group: Option<&GroupStatus>) -> MotionSection {
         let late = self.latest.as_ref().and_then(|latest| latest.late.as_ref());
         let unconfirmed = |why| Unconfirmed { why: why_in_a_word(why, group) };

@@ -15,8 +15,8 @@ const PATIENCE: Span = Span::from_ms(8_000);
 /// Most utterances of one viewer on their way, and of all of them.
 const WORDS_MAX: (usize, usize) = (8, 128);
 
-/// Returns a viewer's identity among the clients of the speech service; the study's is the console's
-/// own.
+/// Returns a viewer's identity among the clients of the speech service; the study's is the
+/// console's own.
 fn client_of(viewer: Option<ViewerId>) -> ClientId {
     ClientId(own_id().0.wrapping_add(viewer.map_or(0, |viewer| viewer.0)))
 }
@@ -74,7 +74,7 @@ impl Submissions {
         self.0.is_empty()
     }
 
-    /// Sends what is due and gives up what has expired.
+    /// Sends due requests and gives up expired ones.
     pub(super) fn pass(&mut self, writer: &EncodedWriter<Injection>, hub: &Hub, now: Time) {
         for Waiting { submission, .. } in &mut self.0 {
             if let Some(Err(error)) = submission.due(now).map(|request| writer.send(request)) {
@@ -89,8 +89,7 @@ impl Submissions {
         }
     }
 
-    /// Answers the command that waits for a receipt; an accepted one with what keeps the robot from
-    /// following it.
+    /// Answers the command that waits for a receipt; an accepted one with the reason for any delay.
     pub(super) fn on_receipt(
         &mut self,
         receipt: &Receipt,

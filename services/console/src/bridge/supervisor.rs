@@ -21,7 +21,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// A restart that a viewer has requested.
 pub(crate) type Restart = (ViewerId, u64, String);
 
-/// Requests the group's status every second, and restarts as they come, until their senders are gone.
+/// Requests the group's status every second, and restarts on demand, until the senders are gone.
 pub(crate) fn watch(
     paths: &GroupPaths,
     app: &Arc<App>,

@@ -23,7 +23,7 @@ const LIKELY_MAX: usize = 8;
 /// Interactions that are not finished with.
 #[derive(Debug, Default)]
 pub(super) struct Assembler {
-    /// By number.
+    /// Recent interactions by number.
     recent: BTreeMap<u64, Begun>,
     /// Accepted utterances by number.
     accepted: BTreeMap<u64, AcceptedRecord>,
@@ -41,8 +41,8 @@ struct Begun {
 }
 
 impl Assembler {
-    /// Takes in records of one journal, oldest first. Those of speech come before those of the policy, and
-    /// these before the arm's.
+    /// Takes in records of one journal, oldest first. Those of speech come before those of the
+    /// policy, and these before the arm's.
     pub(super) fn take_in(&mut self, lines: Vec<JournalLine>) {
         for JournalLine { seq, at_ns, unix_ms, record, .. } in lines {
             let at = At { seq, ns: at_ns, unix_ms };
@@ -59,7 +59,7 @@ impl Assembler {
         self.recent.values().map(|begun| &begun.interaction)
     }
 
-    /// Returns the interaction of that number.
+    /// Returns the interaction with the given number.
     pub(super) fn get(&self, interaction: u64) -> Option<&Interaction> {
         self.recent.get(&interaction).map(|begun| &begun.interaction)
     }
@@ -158,13 +158,13 @@ impl Assembler {
     fn on_arm(&mut self, at: At, record: ArmRecord) {
         let ArmRecord { cause, pick, offered, .. } = record;
         let Some(mut pick) = pick.filter(|pick| is_shown(cause, pick)) else { return };
-        // The gripper opens for the user: the end of the pick tells of it.
+        // The gripper opens for the user: the end of the pick shows it.
         let opens = pick.phase == PickPhase::Holding && offered.is_some();
         if cause == ArmCause::Phase && opens {
             return;
         }
         let Some(begun) = self.recent.get_mut(&pick.interaction) else { return };
-        // The arm knows perceived objects by their numbers; the policy has named the order's object.
+        // The arm knows perceived objects by number; the policy has named the order's object.
         if let Some(name) = begun.interaction.ordered(pick.attempt) {
             pick.object = name;
         }
@@ -192,8 +192,8 @@ impl Assembler {
     }
 }
 
-/// Returns whether a step of the arm is part of the interaction of its pick. That the fetch has ended is known
-/// from the policy; the limbs also come to rest before they set out.
+/// Returns whether a step of the arm is part of the interaction of its pick. That the fetch has
+/// ended is known from the policy; the limbs also come to rest before they set out.
 fn is_shown(cause: ArmCause, pick: &PickRecord) -> bool {
     let is_done = pick.phase == PickPhase::Done;
     match cause {
@@ -225,7 +225,7 @@ impl Begun {
         moments.insert(place, Moment { after_ms, event, thought });
     }
 
-    /// Time since the first words. The monotonic clock restarts with the machine, the wall clock does not.
+    /// Time since the first words. The monotonic clock restarts with the machine; this does not.
     fn after_ms(&self, at: At) -> u64 {
         let by_wall = at.unix_ms.zip(self.interaction.unix_ms);
         let by_wall = by_wall.map(|(now, began)| now.saturating_sub(began));

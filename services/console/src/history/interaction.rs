@@ -12,12 +12,12 @@ pub struct Interaction {
     pub interaction: u64,
     /// When its first words were accepted, milliseconds since 1970; `None` if that is not known.
     pub unix_ms: Option<u64>,
-    /// False where its beginning is in no journal any more.
+    /// False if its beginning is in no journal any more.
     pub whole: bool,
-    /// The objects of the beliefs: all of a small scene, of a large one those that were likely in some
-    /// moment.
+    /// The objects of the beliefs: all of a small scene, of a large one those that were likely in
+    /// some moment.
     pub objects: Vec<Labelled>,
-    /// What happened, in the order of time.
+    /// Events in the order of time.
     pub moments: Vec<Moment>,
     /// Moments left out for lack of room.
     #[serde(default)]
@@ -29,7 +29,7 @@ pub struct Interaction {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Labelled {
     pub name: String,
-    /// Its description, unique among the objects.
+    /// Description, unique among the objects.
     pub label: String,
 }
 
@@ -43,7 +43,7 @@ pub struct Moment {
     pub thought: Option<Thought>,
 }
 
-/// What it was.
+/// Kind of event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum Event {
@@ -73,11 +73,11 @@ pub enum Event {
     Arm { cause: ArmCause, pick: PickRecord },
 }
 
-/// An utterance with what it was understood to mean.
+/// An utterance with its understood meaning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Heard {
     pub utterance: u64,
-    /// The words; empty where they are in no journal any more.
+    /// The words; empty if they are in no journal any more.
     pub text: String,
     pub source: Option<Source>,
     /// Probability of the words among all that may have been said.
@@ -92,7 +92,7 @@ pub struct Heard {
 /// Belief and decision.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Thought {
-    /// By object of the interaction; those that became likely later are missing at the end.
+    /// Probability of each object of the interaction; later ones are missing at the end.
     pub belief: Vec<f64>,
     /// Probability that the wanted object is not here.
     pub absent: f64,
@@ -120,7 +120,7 @@ pub struct Summary {
 }
 
 impl Interaction {
-    /// Returns its entry in the list.
+    /// Returns the interaction's entry in the list.
     pub fn summary(&self) -> Summary {
         let heard = self.moments.iter().find_map(|moment| match &moment.event {
             Event::Heard(heard) if !heard.text.is_empty() => Some(heard.text.clone()),

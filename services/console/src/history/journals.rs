@@ -14,7 +14,7 @@ use service::{kept_settings, launch};
 #[derive(Debug)]
 pub(super) struct Journals {
     paths: GroupPaths,
-    /// Effects before causes: what a later one refers to is then in an earlier one.
+    /// Effects before causes: references of a later one are then in an earlier one.
     followed: [Followed; 3],
 }
 
@@ -35,7 +35,7 @@ impl Journals {
         Self { paths, followed }
     }
 
-    /// Reads what is new: of speech, of the policy, of the arm.
+    /// Reads new records: of speech, of the policy, of the arm.
     pub(super) fn read(&mut self) -> [Vec<JournalLine>; 3] {
         let Self { paths, followed } = self;
         let [arm, policy, speech] = followed.each_mut().map(|journal| journal.read(paths));

@@ -1,8 +1,8 @@
-//! The history: past interactions, put together from the group's journals and kept in a bounded store.
+//! The history: past interactions, assembled from the group's journals and kept in a bounded store.
 //!
-//! The journals are the only source, so the history is the same whether the console was running or not.
-//! They are read when someone looks at the history and when an interaction has ended, by a thread or by the
-//! server's threads for blocking work: the main loop never waits for it.
+//! The journals are the only source, so the history is the same whether the console was running or
+//! not. They are read when someone looks at the history and when an interaction has ended, by a
+//! thread or by the server's threads for blocking work: the main loop never waits for it.
 
 mod assemble;
 mod interaction;
@@ -22,7 +22,7 @@ pub use interaction::{Interaction, Summary};
 use journals::Journals;
 use store::Store;
 
-/// Interactions that stay with the journals: a refusal or the way back to rest may still be added to them.
+/// Interactions left to the journals: a refusal or the way back to rest may be added to them.
 const SETTLED_AFTER: usize = 2;
 /// Interactions of one answer.
 pub const PAGE_MAX: usize = 200;
@@ -42,7 +42,7 @@ pub struct History {
 struct Inner {
     journals: Journals,
     assembler: Assembler,
-    /// None until it is first needed, or where it cannot be read.
+    /// `None` until first needed, or if it cannot be read.
     store: Option<Store>,
     paths: GroupPaths,
 }
@@ -99,15 +99,15 @@ impl History {
         }
     }
 
-    /// Returns at most `most` interactions before that number, newest first. Reads the journals first, which
-    /// takes some milliseconds.
+    /// Returns at most `most` interactions before that number, newest first. Reads the journals
+    /// first, which takes some milliseconds.
     pub fn page(&self, before: u64, most: usize) -> Page {
         let mut inner = self.lock();
         inner.refresh();
         inner.page(before, most.min(PAGE_MAX))
     }
 
-    /// Returns an interaction; none if there is none of that number. Reads the journals first.
+    /// Returns an interaction; `None` for an unknown number. Reads the journals first.
     pub fn interaction(&self, number: u64) -> Option<Interaction> {
         let mut inner = self.lock();
         inner.refresh();
@@ -119,7 +119,7 @@ impl History {
     }
 
     fn lock(&self) -> MutexGuard<'_, Inner> {
-        // What a reader that panicked has left is whole: it is changed by single steps.
+        // After a panic of a reader the store is whole: it is changed by single steps.
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

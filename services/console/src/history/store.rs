@@ -1,7 +1,7 @@
-//! The store of past interactions: JSON lines in a few files of bounded size, oldest interactions first.
-//! The journals keep the last few hundred interactions only; this keeps thousands.
+//! The store of past interactions: JSON lines in a few files of bounded size, oldest interactions
+//! first. The journals keep the last few hundred interactions only; this keeps thousands.
 //!
-//! Lines are not synced: what a power failure takes is put together from the journals again.
+//! Lines are not synced: after a power failure lost ones are rebuilt from the journals.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -39,7 +39,7 @@ struct Entry {
 }
 
 impl Store {
-    /// Opens the store in a folder; empty where there is none.
+    /// Opens the store in a folder; empty if there is none.
     ///
     /// # Errors
     /// The folder cannot be read.
@@ -105,7 +105,7 @@ impl Store {
         Ok(())
     }
 
-    /// Reads an interaction; none if it is not stored.
+    /// Reads an interaction; `None` if it is not stored.
     ///
     /// # Errors
     /// Its file cannot be read.
@@ -126,7 +126,7 @@ impl Store {
 }
 
 impl StoreFile {
-    /// Lists the interactions of a file. Damaged lines are skipped, and a torn one at the end is cut off.
+    /// Lists the interactions of a file. Damaged lines are skipped, and a torn end is cut off.
     fn read(path: PathBuf) -> io::Result<Self> {
         let text = fs::read(&path)?;
         let (mut entries, mut offset): (Vec<Entry>, u64) = (Vec::new(), 0);
@@ -161,7 +161,7 @@ impl StoreFile {
     }
 }
 
-/// Folder of the store beside the journals: a fresh start moves it with them.
+/// Folder of the store next to the journals: a fresh start moves it with them.
 pub(super) fn folder(journals: &Path) -> PathBuf {
     journals.join("history")
 }

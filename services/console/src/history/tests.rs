@@ -22,7 +22,7 @@ fn accepted(seq: u64, at_s: f64, text: &str) -> JournalLine {
     line(seq, at_s, record)
 }
 
-/// What an utterance was understood to mean, as an answer to prompt 1 or to none.
+/// Makes an utterance's meaning, as an answer to prompt 1 or to none.
 fn heard(utterance: u64, text: &str, answers: Option<u64>) -> Value {
     let answers = answers.map(|prompt| json!({ "prompt": prompt, "presentation": 1 }));
     let reading = json!({

@@ -1,4 +1,4 @@
-//! The board: the newest state for every viewer, as text, each part with the revision of its change.
+//! The board: the newest state for viewers, as text, each part with the revision of its change.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

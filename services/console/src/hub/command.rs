@@ -24,7 +24,7 @@ pub enum Command {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verb {
     Say(Words),
-    /// Denies what the robot asks about or is fetching.
+    /// Denies the object in question or being fetched.
     NotThat,
     /// Makes the robot forget the request.
     StartOver,
@@ -41,9 +41,9 @@ pub struct Words {
     pub spoken: bool,
     pub began: Option<Time>,
     pub ended: Option<Time>,
-    /// The robot's latest prompt that the page had shown before; 0 where that is not known.
+    /// The robot's latest prompt that the page had shown before; 0 if unknown.
     pub seen: PromptId,
-    /// Who speaks.
+    /// Speaker of the words.
     pub from: PersonId,
     /// Key of the request, the same for each repetition of it; `None` if nothing repeats it.
     pub key: Option<RequestKey>,

@@ -21,7 +21,7 @@ pub struct Lease {
 struct Holder {
     viewer: ViewerId,
     session: String,
-    /// When its connection was lost.
+    /// Time at which the connection was lost.
     away: Option<Time>,
 }
 
@@ -122,7 +122,7 @@ impl Lease {
         self.asked.map(|asked| asked.until).into_iter().chain(away).min()
     }
 
-    /// Advances the lease to `now`; returns whether it has changed. `session` returns a viewer's session.
+    /// Advances the lease to `now`; returns whether it changed. `session` finds viewers' sessions.
     pub fn tick(&mut self, now: Time, session: impl Fn(ViewerId) -> Option<String>) -> bool {
         if self.deadline().is_none_or(|deadline| now < deadline) {
             return false;

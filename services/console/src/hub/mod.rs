@@ -1,5 +1,5 @@
-//! The hub between bridge and server: the board, the viewers, the lease of control, and the channels
-//! to the main loop.
+//! The hub between bridge and server: the board, the viewers, the lease of control, and the
+//! channels to the main loop.
 
 pub mod board;
 pub mod command;
@@ -59,7 +59,7 @@ pub struct Channels {
 struct ControlSection<'a> {
     operator: Option<String>,
     name: Option<&'a String>,
-    /// Whether the operator's page is gone: nobody is in control, until it is back or the lease ends.
+    /// Whether the operator's page is gone: nobody is in control until its return or the end.
     away: bool,
     viewers: usize,
     asked_by: Option<String>,
@@ -90,8 +90,8 @@ struct Control {
     lease: Lease,
 }
 
-/// Returns whether a command concerns the participant of the page that gives it, which proves itself by its
-/// secret. All others need control of the robot.
+/// Returns whether a command concerns the participant of the page that gives it, which proves
+/// itself by its secret. All others need control of the robot.
 fn is_of_own_participant(verb: &Verb) -> bool {
     const OWN: [&str; 7] = ["find", "begin", "consent", "next", "start", "answer", "withdraw"];
     matches!(verb, Verb::Study(verb, _) if OWN.contains(&verb.as_str()))
@@ -114,9 +114,9 @@ impl Hub {
         hub
     }
 
-    /// Admits a page; returns its number and the frames for it alone. One place is reserved for a page that
-    /// may operate the robot; where all are taken, the page that was idle for the longest time gives way to
-    /// it.
+    /// Admits a page; returns its number and the frames for it alone. One place is reserved for a
+    /// page that may operate the robot; if all are taken, the page that was idle for the longest
+    /// time gives way.
     pub fn join(
         &self,
         name: &str,
@@ -126,7 +126,7 @@ impl Hub {
     ) -> Result<(ViewerId, mpsc::Receiver<OutboundFrame>), String> {
         let mut control = self.control();
         let Control { viewers, lease } = &mut *control;
-        // The server does so only once a second while nobody is connected.
+        // The server does so only once a second without connections.
         lease.tick(now, |viewer| viewers.session(viewer));
         if !viewers.has_session(session) {
             let places = match role {
@@ -203,8 +203,8 @@ impl Hub {
 
     /// Passes a command to the bridge, which answers by [`Hub::answer`].
     ///
-    /// Words that tell the robot to stop go to the arm first, on the motion stop's own path, whoever may speak to it and
-    /// whatever becomes of the words.
+    /// Words that tell the robot to stop go to the arm first, on the motion stop's own path,
+    /// whoever may speak to it and whatever becomes of the words.
     pub fn ask(&self, viewer: ViewerId, id: u64, verb: Verb) -> Result<(), String> {
         let stops = matches!(&verb, Verb::Say(words) if language::is_stop(&words.text));
         if stops {
@@ -305,8 +305,8 @@ impl Hub {
         Err("this is for the page of the operator; help: take control first".to_owned())
     }
 
-    /// Checks that a viewer may release the motion stop: the operator may. A participant of a study may not;
-    /// while one is in control, every other page may, so that the experimenter need not take control.
+    /// Checks that a viewer may release the motion stop: the operator may. A participant of a study
+    /// may not; meanwhile every other page may, so that the experimenter need not take control.
     fn must_release(&self, viewer: ViewerId) -> Result<(), String> {
         {
             let Control { viewers, lease } = &*self.control();

@@ -34,7 +34,7 @@ pub struct Welcome<'a> {
 /// Settings that concern pages.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct PageSettings {
-    /// The language where the page has chosen none.
+    /// The language if the page has chosen none.
     pub language: String,
     pub voice: VoiceSettings,
     pub study: bool,
@@ -47,7 +47,7 @@ pub struct PageSettings {
 #[derive(Clone, Debug, Serialize)]
 pub struct CameraSettings {
     pub url: String,
-    /// Time between two single pictures; none for a stream.
+    /// Time between two single pictures; `None` for a stream.
     pub every_ms: Option<f64>,
     #[serde(skip)]
     pub origin: String,
@@ -95,7 +95,7 @@ pub enum Answer {
     Motion {
         stopped: bool,
     },
-    /// The viewer has control, or asks for it.
+    /// The viewer has control, or requests it.
     Control {
         granted: bool,
         /// When it gets control unless the operator keeps it, milliseconds.

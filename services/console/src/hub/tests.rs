@@ -95,7 +95,7 @@ fn hub_reserves_a_place_for_an_operator() {
     }
     let (operator, _frames) = hub.join("", "o", Role::Operator, Time(4)).unwrap();
     assert_eq!(hub.control().lease.operator(), Some(operator));
-    // Where all of them would operate, the one that was idle for the longest time gives way.
+    // If all would operate, the one that was idle for the longest time gives way.
     hub.note(ViewerId(1), Time(5));
     let (next, _more) = hub.join("", "p", Role::Operator, Time(6)).unwrap();
     let [(_, mut first), (_, mut second)] = <[_; 2]>::try_from(open).unwrap();

@@ -23,10 +23,10 @@ pub enum OutboundFrame {
 /// Frames that wait for a viewer; one with more does not read and is disconnected.
 const QUEUE_MAX: usize = 64;
 
-/// The role that a page asks for.
+/// The role that a page requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The operator, if there is none.
+    /// Operator, if no other page is.
     Operator,
     /// A viewer, who may ask for control.
     Viewer,
@@ -46,7 +46,7 @@ pub(super) struct Viewer {
     pub(super) name: String,
     pub(super) session: String,
     pub(super) role: Role,
-    /// It is the page of a study's participant.
+    /// Whether it is the page of a study's participant.
     pub(super) is_participant: bool,
     pub(super) queue: mpsc::Sender<OutboundFrame>,
     /// When its user did something last, or when it was opened.
@@ -70,8 +70,8 @@ impl Viewers {
         (ViewerId(self.last), frames)
     }
 
-    /// Ends the connection that a session still has: a broken one that was not noticed, or that of a
-    /// duplicated page.
+    /// Ends the connection that a session still has: a broken one that was not noticed, or that of
+    /// a duplicated page.
     fn replace(&mut self, session: &str) {
         self.open.retain(|_, open| {
             let replaced = open.session == session;

@@ -25,7 +25,7 @@ const RETRY_AFTER: Span = Span::from_ms(2_000);
 pub struct Feed {
     settings: Settings,
     log_folder: PathBuf,
-    /// None while there is no viewer.
+    /// `None` without viewers.
     open: Option<Open>,
     next_attempt: Time,
 }
@@ -44,7 +44,7 @@ impl Feed {
         Self { settings: settings.clone(), log_folder, open: None, next_attempt: Time(0) }
     }
 
-    /// Publishes what has arrived, if there are viewers.
+    /// Publishes new messages, if there are viewers.
     pub fn pass(&mut self, bus: &Bus, live: &Live, metrics: &Metrics, now: Time) {
         if live.viewers.count() == 0 {
             if self.open.take().is_some() {

@@ -1,10 +1,10 @@
-//! Live view for Foxglove and Lichtblick: the channels of recordings over the protocol `foxglove.sdk.v1`, at
-//! `/foxglove`.
+//! Live view for Foxglove and Lichtblick: the channels of recordings over the protocol
+//! `foxglove.sdk.v1`, at `/foxglove`.
 //!
-//! Its messages are those of `recording::live`. The [`feed`] belongs to the main loop: it reads every topic while
-//! there are viewers, and opens none while there is nobody. The [`socket`] of each viewer takes its messages from
-//! [`viewers`].
-//! A viewer is a viewer of the hub like a page, so that the same limits and the same lease of control hold for it.
+//! Its messages are those of `recording::live`. The [`feed`] belongs to the main loop: it reads
+//! every topic while there are viewers, and opens none otherwise. The [`socket`] of each viewer
+//! takes its messages from [`viewers`]. A viewer is a viewer of the hub like a page, so that the
+//! same limits and the same lease of control hold for it.
 
 pub mod feed;
 pub mod say;
@@ -32,7 +32,7 @@ pub fn descriptors() -> usize {
 #[derive(Debug)]
 pub struct Live {
     pub viewers: Viewers,
-    /// Whether there are descriptors for it.
+    /// Whether enough descriptors are free for the live view.
     pub is_possible: bool,
     /// Other origins whose pages may connect.
     origins: Vec<String>,
@@ -82,8 +82,8 @@ impl Live {
         self.origins.iter().any(|known| known.eq_ignore_ascii_case(origin))
     }
 
-    /// Returns the values of the named parameters, of all where none is named, in answer to the request
-    /// `id`. Names that do not exist are left out.
+    /// Returns the values of the named parameters, of all if none is named, in answer to the
+    /// request `id`. Names that do not exist are left out.
     fn parameters(&self, names: &[String], id: Option<&str>) -> String {
         let is_named = |name: &str| names.is_empty() || names.iter().any(|it| it == name);
         let named = self.parameters.iter().filter(|(name, _)| is_named(name));

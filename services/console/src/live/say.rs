@@ -9,7 +9,7 @@ use serde_json::json;
 use crate::hub::command::{Words, typed};
 use crate::server::message::spoken_text;
 
-/// Its number among the services.
+/// Number among the services.
 pub const NUMBER: u32 = 1;
 /// Longest key, bytes.
 const KEY_MAX: usize = 256;
@@ -46,7 +46,7 @@ pub fn service() -> Service {
     }
 }
 
-/// Reads a request. Requests with the same key are one utterance; one without a key is always a new one.
+/// Reads a request. Requests with the same key are one utterance; one without a key is a new one.
 ///
 /// # Errors
 /// It is not JSON with a text, or the text is too long.
@@ -64,8 +64,8 @@ pub fn read(request: &[u8]) -> Result<Words, String> {
     Ok(words)
 }
 
-/// Returns the key of the submission, the same for every connection and every start of the console. All live
-/// viewers are one client of the speech service.
+/// Returns the key of the submission, the same for every connection and every start of the console.
+/// All live viewers are one client of the speech service.
 fn request_key(key: &str) -> RequestKey {
     let hash = |text: &str| {
         let mut hash = StableHash::default();

@@ -63,7 +63,7 @@ impl Viewers {
         Self { channels: channels.collect(), state: Mutex::default() }
     }
 
-    /// Adds a viewer; returns what notifies it of messages.
+    /// Adds a viewer; returns the notifier of its messages.
     pub fn join(&self, viewer: ViewerId) -> Arc<Notify> {
         let arrived = Arc::new(Notify::new());
         let joined = Viewer {
@@ -112,7 +112,7 @@ impl Viewers {
         Ok(())
     }
 
-    /// Ends a subscription; what waits for it is dropped.
+    /// Ends a subscription; pending messages are dropped.
     ///
     /// # Errors
     /// The viewer has no such subscription.
@@ -132,8 +132,8 @@ impl Viewers {
         Ok(())
     }
 
-    /// Publishes a message, and keeps it where it is a state. Never waits for a viewer. Returns how many
-    /// messages were lost by viewers that do not keep up.
+    /// Publishes a message, and keeps it if it is a state. Never waits for a viewer. Returns how
+    /// many messages were lost by viewers that do not keep up.
     pub fn publish(&self, channel: ChannelId, at_ns: u64, data: &[u8]) -> u64 {
         let is_state = self.channels.get(&channel).is_some_and(|is_state| *is_state);
         let State { viewers, latest } = &mut *self.state();
@@ -201,7 +201,7 @@ impl Viewer {
             lost += 1;
             self.stale.insert(dropped);
         }
-        // What was just added replaces what was lost.
+        // The added messages replace lost ones.
         if is_state {
             self.stale.remove(&channel);
         }

@@ -115,16 +115,16 @@ fn name(value: &impl Serialize) -> String {
     json.as_str().unwrap_or("unknown").to_owned()
 }
 
-/// Counts what happens once, from messages that are repeated. What had happened before the console began is
-/// not counted.
+/// Counts single events, from messages that are repeated. Events before the console began are not
+/// counted.
 #[derive(Debug)]
 pub struct Tally {
     began: Time,
     /// The latest interaction that has ended.
     ended: Option<Option<(u64, Outcome)>>,
-    /// Interaction and questions asked in it.
+    /// Interaction, and number of questions asked in it.
     questions: Option<(u64, u32)>,
-    /// The latest pick with its outcome.
+    /// The latest pick and the outcome.
     pick: Option<(u64, u32, Task, PickOutcome)>,
     receipts: VecDeque<([u8; 16], u32)>,
 }

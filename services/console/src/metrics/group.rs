@@ -15,7 +15,7 @@ use service::status::{GroupState, GroupStatus, ServiceState, ServiceStatus};
 /// Gauges and counters that others keep; a counter begins again with its service.
 #[derive(Clone, Debug)]
 pub(super) struct GroupMetrics {
-    /// None while the supervisor does not answer.
+    /// `None` while the supervisor does not answer.
     status: Arc<Mutex<Option<GroupStatus>>>,
     recordings: PathBuf,
 }
@@ -30,7 +30,7 @@ impl GroupMetrics {
     }
 }
 
-/// A figure of a service: its name, its help, its type, and where it is in the status.
+/// A figure of a service: its name, its help, its type, and its value in the status.
 type Figure = (&'static str, &'static str, MetricType, fn(&ServiceStatus) -> Option<f64>);
 
 const FIGURES: [Figure; 11] = [

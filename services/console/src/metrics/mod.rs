@@ -1,7 +1,7 @@
 //! Metrics of the group in the format of Prometheus (OpenMetrics text).
 //!
-//! [`dialogue`] folds what passes on the topics into counters and histograms that begin with the console.
-//! [`group`] exports what the supervisor reports, and the recordings, at each scrape.
+//! [`dialogue`] folds the topics' messages into counters and histograms that begin with the
+//! console. [`group`] exports the supervisor's report, and the recordings, at each scrape.
 
 mod dialogue;
 mod group;
@@ -19,7 +19,7 @@ use dialogue::DialogueMetrics;
 pub use dialogue::Tally;
 use group::GroupMetrics;
 
-/// Everything that is exported.
+/// All exported metrics.
 #[derive(Debug)]
 pub struct Metrics {
     /// Pages and live views that are open.
@@ -85,7 +85,7 @@ impl Metrics {
         registry.register("pass_seconds", pass, self.pass.clone());
     }
 
-    /// Takes over the supervisor's status; none while it does not answer.
+    /// Takes over the supervisor's status; `None` while it does not answer.
     pub fn set_group(&self, status: Option<&GroupStatus>) {
         self.group.set(status.cloned());
     }

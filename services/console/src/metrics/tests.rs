@@ -59,7 +59,7 @@ fn interactions_and_questions_are_counted_once() {
         ..PolicyView::default()
     };
     for (interaction, questions, last) in [
-        // What stood before the console began.
+        // State from before the console began.
         (4, 2, ended(3, Outcome::Delivered)),
         (4, 3, ended(3, Outcome::Delivered)),
         (4, 3, ended(3, Outcome::Delivered)),
@@ -202,7 +202,7 @@ fn dashboard_queries_metrics_and_labels_that_are_exported() {
             for name in &found {
                 assert!(exported.contains(&name.as_str()), "{query}: {name} is not exported");
             }
-            // Labels: what is grouped by or shown in a legend.
+            // Labels used for grouping or in a legend.
             let legend = target["legendFormat"].as_str().unwrap_or_default();
             let by = query.split("by (").nth(1).and_then(|rest| rest.split(')').next());
             let shown = legend.split("{{").nth(1).and_then(|rest| rest.split("}}").next());

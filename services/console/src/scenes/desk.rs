@@ -15,12 +15,12 @@ use service::control::{CallError, Reply, Request, call};
 
 /// Timeout of the supervisor's answer.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Time of one answer about the reach: the page asks for the rest.
+/// Time of one answer about the reach: the page requests the rest.
 const REACH: Duration = Duration::from_millis(700);
 /// Most places of one request about the reach.
 const PLACES_MAX: usize = 256;
 
-/// Most objects, and values of all attributes, of a scene in the editor: a check of it takes seconds.
+/// Most objects, and values of all attributes, in the editor: checks of more take seconds.
 const OBJECTS_MAX: usize = 1_024;
 const VALUES_MAX: usize = 4_096;
 
@@ -30,7 +30,7 @@ pub(super) struct Refusal {
     #[serde(skip)]
     pub(super) status: StatusCode,
     error: String,
-    /// Every problem, where a file is wrong.
+    /// Every problem, if a file is wrong.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     problems: Vec<Problem>,
     /// Further lines.
@@ -76,7 +76,7 @@ pub(super) struct Listed {
     names: Vec<String>,
     /// The scene in force, as the configuration names it.
     in_force: String,
-    /// What tells its text from others: that of a saved file where nothing has changed since.
+    /// Fingerprint of its text: that of a saved file if nothing has changed since.
     in_force_hash: String,
     /// Why scenes are not saved or put into force here.
     locked: Option<String>,
@@ -85,10 +85,10 @@ pub(super) struct Listed {
 /// A scene for the editor.
 #[derive(Debug, Serialize)]
 pub(super) struct Opened {
-    /// None for a new one.
+    /// `None` for a new scene.
     name: Option<String>,
     text: String,
-    /// None for a new one.
+    /// `None` for a new scene.
     hash: Option<String>,
     document: Document,
     robot: RobotSummary,
@@ -108,7 +108,7 @@ pub(super) struct Draft {
 pub(super) struct Saving {
     text: String,
     document: Document,
-    /// The hash of the file that it replaces; none for a new one.
+    /// The hash of the replaced file; `None` for a new one.
     known: Option<String>,
     /// True to save it although it has problems.
     #[serde(default)]
@@ -126,12 +126,12 @@ pub(super) struct Saved {
     findings: Findings,
 }
 
-/// A question where an object that stands alone can be fetched.
+/// A question about the places where a lone object can be fetched.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Places {
     object: ObjectEntry,
-    /// Its centre, metres: x and y.
+    /// Centres of the object, metres: x and y.
     at: Vec<[f64; 2]>,
 }
 
@@ -149,7 +149,7 @@ pub(super) struct Used {
     restarted: Vec<String>,
 }
 
-/// What the requests work with.
+/// Resources of the requests.
 #[derive(Debug)]
 pub struct Desk {
     /// The supervisor's.
@@ -160,7 +160,7 @@ pub struct Desk {
 }
 
 impl Desk {
-    /// A desk for a group: its control socket, the text of the scene in force, and why scenes are not changed.
+    /// A desk for a group: its control socket, the scene in force, and the reason for any lock.
     pub fn new(socket: PathBuf, in_force: String, locked: Option<String>) -> Self {
         Self { socket, in_force_hash: fingerprint(&in_force), locked, reach: None }
     }
@@ -280,7 +280,7 @@ impl Desk {
         Ok((Configuration { folder, profile: status.profile, set }, status.scene))
     }
 
-    /// The arm of a configuration, read again where it is another one or `is_fresh`.
+    /// The arm of a configuration, read again if it is another one or `is_fresh`.
     fn reach_in(
         &mut self,
         configuration: &Configuration,

@@ -1,5 +1,5 @@
-//! The scene editor's HTTP endpoints. Reading is for everyone who may open the page; all else is for the page of
-//! the operator, which names its session.
+//! The scene editor's HTTP endpoints. Reading is for everyone who may open the page; all else is
+//! for the page of the operator, which names its session.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -82,8 +82,8 @@ async fn use_scene(
     json(app.scenes.ask(Rank::Operator, move |desk| desk.use_scene(&name)).await?)
 }
 
-/// What the operator's page says, and the place that it takes among such requests. Nothing of a request is read before
-/// it is known to be the operator's and has a place.
+/// Request of the operator's page, and its place among such requests. Nothing of a request is read
+/// before it is known to be the operator's and has a place.
 struct Operated<T>(T, OwnedSemaphorePermit);
 
 impl<T: DeserializeOwned> FromRequest<Arc<App>> for Operated<T> {

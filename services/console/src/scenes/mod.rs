@@ -1,8 +1,8 @@
-//! The scene editor's half in the console: scene files of the group's configuration are read, checked, written
-//! and put into force for operators.
+//! The scene editor's half in the console: scene files of the group's configuration are read,
+//! checked, written and put into force for operators.
 //!
-//! Checks plan motions, which takes up to seconds, so that all of it runs on one thread of low priority. Neither
-//! the main loop nor the server waits for it; a request that its page has given up is skipped.
+//! Checks plan motions, which takes up to seconds, so that all of it runs on one thread of low
+//! priority. Neither the main loop nor the server waits for it; abandoned requests are skipped.
 
 mod desk;
 mod http;
@@ -26,7 +26,7 @@ const BODIES_MAX: usize = 2;
 /// Lower priority than the robot's services.
 const NICENESS: i32 = 10;
 
-/// Whose request it is: what the operator asks for goes ahead of what viewers do.
+/// Rank of a request: the operator's go ahead of viewers'.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Rank {
     Operator,
@@ -90,7 +90,7 @@ impl Scenes {
     }
 }
 
-/// Waits for the next task, the operator's first; an error once nobody can give one.
+/// Waits for the next task, the operator's first; an error once no sender is left.
 fn next(first: &Receiver<Task>, then: &Receiver<Task>) -> Result<Task, RecvError> {
     if let Ok(task) = first.try_recv() {
         return Ok(task);

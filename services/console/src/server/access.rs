@@ -1,6 +1,6 @@
-//! Access rules: the console's own pages, the token, and the sessions of browsers that have shown it.
+//! Access rules: the console's own pages, the token, and the sessions of authorised browsers.
 //!
-//! Decided by a request's headers. The token's file belongs to the owner of the group, the sessions' one to the console.
+//! Decided by a request's headers. The token's file is the owner's, the sessions' the console's.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use web_server::sessions::{Rules, Sessions, hash};
 /// The rules of browsers' sessions.
 const SESSIONS: Rules = Rules { cookie: "whichone", most: 64, each: 64, life_s: 30 * 24 * 3_600 };
 
-/// Who may use the page.
+/// Rules about who may use the page.
 #[derive(Debug)]
 pub struct Access(Option<Guard>);
 
@@ -32,8 +32,8 @@ impl Access {
         Self(None)
     }
 
-    /// Makes the rules for those who have the token. A file that others can read, or that has no token, is
-    /// replaced by one with a new token.
+    /// Makes the rules for those who have the token. A file that others can read, or that has no
+    /// token, is replaced by one with a new token.
     ///
     /// # Errors
     /// The file of the token cannot be written.
@@ -64,7 +64,7 @@ impl Access {
         }
     }
 
-    /// Returns whether the request carries the token as a bearer, or without a bearer the cookie of a session.
+    /// Returns whether the request carries the token as a bearer, or else the cookie of a session.
     pub fn is_known(&self, headers: &HeaderMap, now_s: u64) -> bool {
         let Some(guard) = &self.0 else { return true };
         match bearer(headers) {
@@ -73,8 +73,8 @@ impl Access {
         }
     }
 
-    /// Returns why a request is refused that is not known: it carries no token, or a wrong one, be it in its
-    /// address.
+    /// Returns why a request is refused that is not known: it carries no token, or a wrong one, be
+    /// it in its address.
     pub fn refusal(headers: &HeaderMap, has_token_in_address: bool) -> &'static str {
         match has_token_in_address || bearer(headers).is_some() {
             true => "wrong token",
@@ -82,7 +82,7 @@ impl Access {
         }
     }
 
-    /// Returns whether this is the token. Without one, any word is.
+    /// Returns whether `said` is the token. Without one, any word is.
     pub fn is_token(&self, said: &str) -> bool {
         self.0.as_ref().is_none_or(|guard| guard.is_token(said))
     }

@@ -5,7 +5,7 @@ use axum::http::{HeaderMap, Response, StatusCode, header};
 
 #[derive(Debug)]
 pub(super) struct Asset {
-    /// Its path without the first `/`.
+    /// Path of the file without the first `/`.
     pub(super) path: &'static str,
     mime: &'static str,
     tag: &'static str,
@@ -30,7 +30,7 @@ pub(super) fn find(path: &str) -> Option<&'static Asset> {
     ALL.binary_search_by(|asset| asset.path.cmp(path)).ok().map(|at| &ALL[at])
 }
 
-/// Returns whether a file is served without the token: what the login page is made of.
+/// Returns whether a file is served without the token: the login page's files.
 pub(super) fn is_open(path: &str) -> bool {
     let folders = ["/css/", "/js/", "/strings/"];
     path == "/login" || path == "/icon.svg" || folders.iter().any(|folder| path.starts_with(folder))

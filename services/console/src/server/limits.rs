@@ -1,6 +1,6 @@
 //! The numbers of connections that the limit of descriptors allows.
 
-/// Most connections besides those of pages.
+/// Most connections other than pages.
 const OTHERS_MAX: usize = 96;
 /// Fewest connections besides those of pages: a browser opens six to load a page.
 const OTHERS_MIN: usize = 16;
@@ -17,12 +17,12 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Returns the descriptors that are ever used with so many pages.
+    /// Returns the most descriptors used with a number of pages.
     pub fn most(viewers_max: usize) -> usize {
         RESERVE + viewers_max + OTHERS_MAX
     }
 
-    /// Divides `free` descriptors: first what a page needs to load, then pages, then more connections.
+    /// Divides `free` descriptors: first those to load a page, then pages, then more connections.
     pub fn new(viewers_max: usize, free: usize) -> Self {
         let free = free.saturating_sub(RESERVE);
         let viewers = viewers_max.min(free.saturating_sub(OTHERS_MIN)).max(2);

@@ -150,7 +150,7 @@ fn words(json: &Json, now: Time) -> Result<Words, String> {
     Ok(Words { text, alternatives, spoken, began, ended, seen, from: person(json)?, key: None })
 }
 
-/// Returns the person who speaks; a page that says nothing about it speaks for nobody in particular.
+/// Returns the person who speaks; a page without a name speaks for an unnamed user.
 fn person(json: &Json) -> Result<PersonId, String> {
     let name = match &json["from"] {
         Json::Null => "",
@@ -169,7 +169,7 @@ pub(crate) fn spoken_text(text: &str) -> Result<String, String> {
     }
 }
 
-/// Returns a text without the characters that steer what shows it, such as a terminal.
+/// Returns a text without the characters that control a display, such as a terminal.
 fn plain(text: &str) -> String {
     text.replace(char::is_control, " ").trim().to_owned()
 }
@@ -312,7 +312,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// Whatever a page sends is refused, or lies within the limits that everything behind relies on.
+        /// Every message from a page is refused, or within the limits that later code relies on.
         #[test]
         fn any_message_is_within_limits_or_refused(json in any_json(), text in "\\PC{0,40}") {
             let _ = message(&text, NOW);

@@ -35,7 +35,7 @@ use crate::scenes::Scenes;
 pub use access::Access;
 pub use routes::page_asset;
 
-/// Intervals of the server's progress reports while somebody is connected, and otherwise.
+/// Intervals of the server's progress reports with connected pages, and without.
 const PROGRESS_EVERY: (Duration, Duration) = (Duration::from_millis(250), Duration::from_secs(1));
 
 /// State and files that the server serves.
@@ -104,8 +104,8 @@ fn router(app: Arc<App>) -> Router {
         .with_state(app)
 }
 
-/// Requires the token or a session, except for the files of the login page, which hold no data of this
-/// robot. A link with the token is exchanged for a session: the token does not stay in the address.
+/// Requires the token or a session, except for the files of the login page, which hold no data of
+/// this robot. A link with the token gets a session: the token leaves the address.
 async fn admit(
     State(app): State<Arc<App>>,
     ConnectInfo(Of(connection)): ConnectInfo<Of>,
@@ -150,8 +150,8 @@ async fn address(State(app): State<Arc<App>>, request: Request, next: Next) -> R
     response
 }
 
-/// Adds security headers to an answer to a request that was addressed to `host`: no foreign scripts, no
-/// framing, and no foreign pictures but those of the camera's origin.
+/// Adds security headers to an answer to a request that was addressed to `host`: no foreign
+/// scripts, no framing, and no foreign pictures but those of the camera's origin.
 pub fn secure(headers: &mut HeaderMap, host: Option<&str>, camera: Option<&str>) {
     // `'self'` covers sockets of the same host in newer browsers only.
     let plain =

@@ -46,8 +46,8 @@ pub(super) async fn socket(
         .on_upgrade(move |socket| sockets::serve(socket, connection, app))
 }
 
-/// The live view. Its viewers cannot follow the redirect by which a page's link with the token becomes a
-/// session, so that the token may be in the address itself.
+/// The live view. Its viewers cannot follow the redirect by which a page's link with the token
+/// becomes a session, so that the token may be in the address itself.
 pub(super) async fn foxglove(
     State(app): State<Arc<App>>,
     ConnectInfo(Of(connection)): ConnectInfo<Of>,
@@ -112,7 +112,7 @@ pub(super) async fn state(State(app): State<Arc<App>>) -> Response<Body> {
     (json, app.hub.board.all()).into_response()
 }
 
-/// The part of the history that is asked for: at most `limit` interactions before number `before`.
+/// The requested part of the history: at most `limit` interactions before number `before`.
 #[derive(Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Part {
@@ -170,7 +170,7 @@ pub(super) async fn study(State(app): State<Arc<App>>, Path(name): Path<String>)
     answer.unwrap_or_else(|_| StatusCode::INTERNAL_SERVER_ERROR.into_response())
 }
 
-/// The result of a blocking task as JSON, 404 where there is none.
+/// The result of a blocking task as JSON, 404 without one.
 async fn as_json<T: Serialize>(found: JoinHandle<Option<T>>) -> Response<Body> {
     let json = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
     let found = found.await.map(|found| found.map(|found| serde_json::to_string(&found)));
@@ -259,7 +259,7 @@ pub(super) async fn login(
     enter(&app, &headers, &token, "/").await
 }
 
-/// Exchanges the token for a session and leads to a page; back to the login page where it is wrong.
+/// Exchanges the token for a session and leads to a page; back to the login page if it is wrong.
 pub(super) async fn enter(
     app: &App,
     headers: &HeaderMap,
@@ -278,7 +278,7 @@ pub(super) async fn enter(
             if !from_elsewhere {
                 return (unseen, cookie, Redirect::to(page)).into_response();
             }
-            // A redirect of another site's link would not carry the cookie; the page's own one does.
+            // A redirect of another site's link would lack the cookie; the page's own one has it.
             let go_on = stepping_stone(page, "icon.svg");
             let kind = [(header::CONTENT_TYPE, "text/html; charset=utf-8")];
             (unseen, cookie, kind, go_on).into_response()

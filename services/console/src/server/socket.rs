@@ -26,7 +26,7 @@ const HELLO_PATIENCE: Duration = Duration::from_secs(10);
 const READ_PATIENCE: Duration = Duration::from_secs(10);
 /// Longest silence of a page, pongs included.
 const SILENCE_MAX: Duration = Duration::from_secs(60);
-/// Shortest time between two frames of a page that are read, on average, and frames that are read at once.
+/// Shortest average time between two frames read from a page, and frames read at once.
 const FRAME_EVERY: Duration = Duration::from_micros(500);
 const FRAMES_AT_ONCE: u32 = 500;
 /// Close code of a page that was replaced by another one of its session.
@@ -75,11 +75,11 @@ pub(crate) enum Ended {
     Slow,
     /// No frame arrived, not even a pong.
     Silent,
-    /// It sent a message above [`FRAME_BYTES_MAX`].
+    /// The page sent a message above [`FRAME_BYTES_MAX`].
     TooLong,
-    /// It sent a text that is not UTF-8.
+    /// The page sent a text that is not UTF-8.
     NotText,
-    /// It broke the protocol.
+    /// The page broke the protocol.
     Protocol,
     Console,
 }

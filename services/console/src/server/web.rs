@@ -1,7 +1,7 @@
 //! The web server's life: its threads, its port, and the file with its address.
 //!
-//! Ports are tried in this order: that of the console's previous incarnation, so that pages find it again,
-//! the configured one, and those after it.
+//! Ports are tried in this order: that of the console's previous incarnation, so that pages find it
+//! again, the configured one, and those after it.
 
 use std::io;
 use std::net::{SocketAddr, TcpListener};
@@ -33,7 +33,7 @@ pub struct Web {
     app: Arc<App>,
     configured: SocketAddr,
     url_file: PathBuf,
-    /// Most connections besides those of pages.
+    /// Most connections other than pages.
     others_max: usize,
     listening: bool,
     tried: Option<Time>,
@@ -42,8 +42,8 @@ pub struct Web {
 }
 
 impl Web {
-    /// Starts the server's threads; it listens at `configured` once there is a port, and holds at most
-    /// `others_max` connections besides those of pages.
+    /// Starts the server's threads; it listens at `configured` once there is a port, and holds at
+    /// most `others_max` connections besides those of pages.
     pub fn new(
         app: &Arc<App>,
         configured: SocketAddr,

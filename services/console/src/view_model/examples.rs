@@ -46,7 +46,7 @@ pub(super) fn examples(scene: &Scene) -> Vec<String> {
     examples
 }
 
-/// Returns where an object is, as it is said: "on the counter".
+/// Returns the words for an object's place: "on the counter".
 fn place(scene: &Scene, object: ObjectId) -> Option<&str> {
     let values = scene.attributes().iter().zip(&scene.object(object).values);
     let mut values = values.filter_map(|(attribute, v)| Some(&attribute.values[(*v)?.index()]));

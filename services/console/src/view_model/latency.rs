@@ -10,12 +10,12 @@ use serde::Serialize;
 const KEPT: usize = 500;
 /// Utterances without an answer.
 const OPEN_MAX: usize = 32;
-/// Longest time from a meaning to the decision about it, nanoseconds: the robot defers a decision for
-/// ten seconds at most. A question after a longer silence is not an answer.
+/// Longest time from a meaning to the decision about it, nanoseconds: the robot defers a decision
+/// for ten seconds at most. A question after a longer silence is not an answer.
 const DECIDED_NS_MAX: u64 = 11_000_000_000;
 
-/// Milliseconds of one answer: from the end of the utterance to its text, from there to its meaning, to a
-/// decision, to the first sound; and all of it.
+/// Milliseconds of one answer: from the end of the utterance to its text, from there to its
+/// meaning, to a decision, to the first sound; and all of it.
 pub type Stages = [f64; 5];
 
 /// Stages to a tenth of a millisecond.
@@ -119,7 +119,7 @@ impl Latency {
         std::mem::take(&mut self.news)
     }
 
-    /// Returns an utterance's entry, made where there is none.
+    /// Returns an utterance's entry, made if missing.
     fn open(&mut self, seq: u64) -> Option<&mut Open> {
         if let Some(at) = self.open.iter().position(|open| open.seq == seq) {
             return self.open.get_mut(at);

@@ -23,7 +23,7 @@ pub struct Line {
     /// Probability of the text among all that it may have been.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confidence: Option<f32>,
-    /// What each recogniser thought, where two were asked.
+    /// Result of each recogniser, if two were asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recognisers: Option<Recognisers>,
     /// Why it is not acted on: `no_words`, `other_talk`, `no_speech` or `covered`.
@@ -38,7 +38,7 @@ pub struct Line {
     /// Outcome of the interaction that has ended.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outcome: Option<Outcome>,
-    /// What a note of the system is about.
+    /// Subject of a note of the system.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<Note>,
     /// The robot's prompt, and which presentation of it.
@@ -46,7 +46,7 @@ pub struct Line {
     pub said: Option<(u64, u32)>,
 }
 
-/// What a note of the system is about, in values: a page puts them into its own language.
+/// Subject of a note of the system, in values: a page puts them into its own language.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum Note {
@@ -62,12 +62,12 @@ pub enum Note {
     ServiceBack { service: String, exit: Option<String> },
 }
 
-/// What each recogniser thought.
+/// Result of each recogniser.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recognisers {
     /// Best words of the first one.
     pub first: String,
-    /// Words of the second one; there is none where it was too late.
+    /// Words of the second one; `None` if it was too late.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub second: Option<String>,
 }
@@ -75,7 +75,7 @@ pub struct Recognisers {
 /// One way to understand an utterance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Meaning {
-    /// In words: `yes · small · not white`.
+    /// Meaning in words: `yes · small · not white`.
     pub text: String,
     pub weight: f64,
 }
@@ -84,7 +84,7 @@ pub struct Meaning {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answered {
     pub question: String,
-    /// Probability that the utterance answers it.
+    /// Probability that the utterance answers the question.
     pub share: f64,
 }
 

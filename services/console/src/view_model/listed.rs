@@ -1,5 +1,5 @@
-//! The objects that pages list: those that have a place; of the others all of a small scene, and of a
-//! large one those that the dialogue is about at the moment.
+//! The objects that pages list: those that have a place; of the others all of a small scene, and of
+//! a large one those that the dialogue is about at the moment.
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -22,7 +22,7 @@ pub(super) struct Labels(Vec<OnceCell<Label>>);
 pub(super) struct Label {
     /// The robot's own words for it, which it also understands.
     pub(super) description: String,
-    /// The same, numbered where objects have the same values.
+    /// Words for the object, numbered if objects have the same values.
     pub(super) unique: String,
 }
 
@@ -31,7 +31,7 @@ impl Labels {
         Self(scene.objects().iter().map(|_| OnceCell::new()).collect())
     }
 
-    /// Returns the words for an object of the scene; none if it has no such object.
+    /// Returns the words for an object of the scene; `None` if it has no such object.
     pub(super) fn of(&self, scene: &Scene, object: ObjectId) -> Option<&Label> {
         let cell = self.0.get(object.index())?;
         Some(cell.get_or_init(|| Label::new(scene, object)))
@@ -104,7 +104,7 @@ pub(super) fn likeliest(belief: &[f64], most: usize) -> impl Iterator<Item = Obj
 mod tests {
     use super::*;
 
-    /// A scene of so many mugs, all alike; the first three have a place.
+    /// A scene of `count` like mugs; the first three have a place.
     fn mugs(count: usize) -> Scene {
         let mug = |n: usize| {
             let place = "xyz = [0.7, 0.2, 0.0]\nsize = [0.1, 0.1, 0.1]\ngrasp_width = 0.004\nform = \"hollow\"\n";

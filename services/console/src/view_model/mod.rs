@@ -1,7 +1,7 @@
 //! The view model: folds messages into the sections that pages show.
 //!
-//! Pure: no IO, no clock, no thread. Messages come in any order and more than once (a service that is
-//! restarted repeats its latest); folding one twice changes nothing.
+//! Pure: no IO, no clock, no thread. Messages come in any order and more than once (a service that
+//! is restarted repeats its latest); folding one twice changes nothing.
 
 mod examples;
 mod latency;
@@ -41,7 +41,7 @@ use services::missing;
 /// Utterances whose readings are remembered.
 const READINGS_MAX: usize = 16;
 
-/// Silence of the arm's service, which publishes three to four times a second, after which the arm's state is unknown.
+/// Silence of the arm's service, which normally publishes at 3 to 4 Hz, to call its state unknown.
 const ARM_SILENCE: Span = Span::from_ms(2_000);
 
 /// Everything that pages show, at one moment.
@@ -126,8 +126,8 @@ impl ViewModel {
         self.group.as_ref()
     }
 
-    /// Returns why the first of these services does nothing for anyone for now; `None` if they work or soon
-    /// will.
+    /// Returns why the first of these services does nothing for anyone for now; `None` if they work
+    /// or soon will.
     pub fn unavailable(&self, services: &[Service]) -> Option<String> {
         let named = |name: &str| services.iter().any(|service| service.name() == name);
         let needed = self.group.iter().flat_map(|group| &group.services);
@@ -240,7 +240,7 @@ impl ViewModel {
         self.latest.arm = Some(arm);
     }
 
-    /// Forgets the arm's state where its service is silent: what it was is not what it is.
+    /// Forgets the arm's state if its service is silent: it may have changed.
     pub fn tick(&mut self, now: Now) {
         let is_silent = now.at.since(self.arm_seen) >= ARM_SILENCE;
         if is_silent && self.latest.arm.take().is_some() {

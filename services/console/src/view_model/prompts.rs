@@ -15,7 +15,7 @@ pub(super) struct Prompts(VecDeque<Prompt>);
 pub(super) struct Prompt {
     pub(super) id: u64,
     pub(super) presentation: u32,
-    /// True if it is a question.
+    /// Whether the prompt is a question.
     pub(super) asks: bool,
     pub(super) text: String,
 }
@@ -44,7 +44,7 @@ impl Prompts {
         self.find(presented.prompt, presented.presentation)
     }
 
-    /// Returns one presentation of a prompt, or another one where that was not seen.
+    /// Returns one presentation of a prompt, or another one if that was not seen.
     pub(super) fn find(&self, id: u64, presentation: u32) -> Option<&Prompt> {
         let of_prompt = || self.0.iter().filter(move |prompt| prompt.id == id);
         of_prompt().find(|prompt| prompt.presentation == presentation).or(of_prompt().next_back())

@@ -1,5 +1,5 @@
-//! Sections of the page that only the console has: scene, objects, trajectory, speaking and turn. The
-//! others are those of [`service::view`].
+//! Sections of the page that only the console has: scene, objects, trajectory, speaking and turn.
+//! The others are those of [`service::view`].
 
 use messages::{MotionPhase, PresentationState, Presented, TrajectoryView, WorldView};
 use scene::{ObjectId, Scene};
@@ -20,9 +20,9 @@ pub(super) struct SceneSection<'a> {
     attributes: Vec<Attribute<'a>>,
     /// Number of objects in the scene.
     count: usize,
-    /// Those that have a place; the section `further` has others.
+    /// Objects that have a place; the section `further` has others.
     objects: Vec<ObjectSection<'a>>,
-    /// Requests that the robot understands, for who does not know what to say.
+    /// Requests that the robot understands, as a help for users.
     examples: Vec<String>,
 }
 
@@ -143,7 +143,7 @@ struct Phase {
 }
 
 impl TrajectorySection {
-    /// Makes the section; none while no planned motion is under way.
+    /// Makes the section; `None` while no planned motion is under way.
     pub(super) fn new(trajectory: &TrajectoryView) -> Option<Self> {
         let digits = |number: f64| (number * 1e3).round() / 1e3;
         let phases = trajectory.phases.iter().map(|phase| Phase {

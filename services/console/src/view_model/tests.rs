@@ -237,7 +237,7 @@ fn view_model_makes_sections_after_a_change() {
     assert!(!names(&mut model).contains(&"dialogue"), "object numbers are of another scene");
 }
 
-/// The page's sections are a contract with its scripts. `WHICHONE_BLESS=1` rewrites the golden file.
+/// The page's sections are a contract with scripts. `WHICHONE_BLESS=1` rewrites the golden file.
 #[test]
 fn view_model_sections_keep_their_keys() {
     const GOLDEN: &str =

@@ -133,7 +133,7 @@ impl Transcript {
             return;
         }
         self.ended = ended.interaction.0;
-        // One that ended before this console started is not new, nor one that its predecessor noted.
+        // A pick that ended before this console, or that its predecessor noted, is not new.
         if is_first && self.lines.iter().any(|line| line.outcome.is_some()) {
             return;
         }
@@ -218,7 +218,7 @@ impl Transcript {
     }
 }
 
-/// Returns what each recogniser thought, where two were asked.
+/// Returns each recogniser's result, if two were asked.
 fn recognisers(receipt: &Receipt) -> Option<Recognisers> {
     let text = |text: Result<&str, _>| text.unwrap_or_default().to_owned();
     let second = match receipt.second.get() {

@@ -24,13 +24,13 @@ pub enum Actor {
 pub enum TurnState {
     /// No request is open.
     Idle,
-    /// As idle, with a microphone open.
+    /// Idle, with a microphone open.
     Listening,
     Hearing,
     /// An utterance is being recognised and understood.
     Understanding,
     Speaking,
-    /// A question waits for its answer.
+    /// A question waits for an answer.
     Asked,
     /// The arm fetches something, or points at it.
     Moving,
@@ -50,7 +50,7 @@ pub struct Turn {
 }
 
 /// Returns whose turn it is, the gravest state first: a stop and a missing service come before
-/// everything else, a user who is speaking before what the robot does meanwhile.
+/// everything else, a user who is speaking before the robot's activity.
 pub(super) fn turn(latest: &Latest, group: Option<&GroupStatus>) -> Turn {
     use Actor::{Arm, NoOne, Person, Robot};
     use TurnState::*;

@@ -26,9 +26,9 @@ pub struct PcmFrame {
 }
 
 impl PcmFrame {
-    /// Reads a binary frame: version 1, flags (1 end, 2 held, 4 echo-free), two bytes of zero, stream
-    /// `u32`, time in server milliseconds `f64`, samples before `u64`, samples `i16`; all with the low
-    /// byte first.
+    /// Reads a binary frame: version 1, flags (1 end, 2 held, 4 echo-free), two bytes of zero,
+    /// stream `u32`, time in server milliseconds `f64`, samples before `u64`, samples `i16`; all
+    /// with the low byte first.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
         let Some((header, sound)) = bytes.split_at_checked(HEADER) else {
             return Err(format!("expected a header of {HEADER} bytes in a frame of sound"));

@@ -1,8 +1,8 @@
 //! Audio streams from viewers to the robot.
 //!
-//! The server reads a binary frame of the socket into a [`PcmFrame`] and hands it, if its viewer is in
-//! control, to the main loop, which owns every topic. There [`Voice`] forwards it ([`Voice::frame`])
-//! and returns receipts ([`Voice::pass`]).
+//! The server reads a binary frame of the socket into a [`PcmFrame`] and hands it, if its viewer is
+//! in control, to the main loop, which owns every topic. There [`Voice`] forwards it
+//! ([`Voice::frame`]) and returns receipts ([`Voice::pass`]).
 //!
 //! Invariant: each stream that has begun is ended towards the robot; the end is repeated until the
 //! robot confirms it or has been silent for [`PATIENCE`].
@@ -42,7 +42,7 @@ struct Stream {
     timestamps: Timestamps,
     /// When it ended, and when the end was sent last.
     ended: Option<(Time, Time)>,
-    /// `true` if its viewer has gone.
+    /// `true` if the viewer has gone.
     deserted: bool,
 }
 

@@ -1,4 +1,4 @@
-//! The audio streams, and where a frame belongs among them.
+//! The audio streams, and the assignment of frames to them.
 
 use crate::hub::ViewerId;
 
@@ -13,11 +13,11 @@ pub(super) type Name = (ViewerId, u32);
 /// A frame's relation to its stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FrameKind {
-    /// It begins a stream.
+    /// The frame begins a stream.
     Begin,
-    /// It continues its stream after this many lost samples.
+    /// The frame continues its stream after this many lost samples.
     Next(u64),
-    /// It is a repetition, or comes after the end of its stream.
+    /// The frame is a repetition, or comes after the end of its stream.
     Ignore,
 }
 

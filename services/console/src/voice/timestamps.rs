@@ -58,8 +58,8 @@ mod tests {
         Time(ms * 1_000_000)
     }
 
-    /// Returns the timestamps of frames of 100 ms, the first recorded at 100 s, each arriving 150 ms
-    /// after its beginning, for what the viewer's clock claims.
+    /// Returns the timestamps of frames of 100 ms, the first recorded at 100 s, each arriving 150
+    /// ms after its beginning, given the times that the viewer's clock claims.
     fn times(claimed_ms: &[u64]) -> Vec<u64> {
         let mut timestamps = Timestamps::default();
         let taken = claimed_ms.iter().enumerate().map(|(n, claimed)| {

@@ -1,4 +1,4 @@
-//! What the audit has of a page.
+//! Entries of the audit about a page.
 
 use std::sync::PoisonError;
 use std::sync::atomic::Ordering;
@@ -33,7 +33,7 @@ impl Visit<'_> {
         }
     }
 
-    /// Records a stop that has passed. One beyond the person's budget, or for which the audit has no room, is counted.
+    /// Records a stop that has passed. One beyond the budget or the audit's room is only counted.
     pub(super) fn note_stop(&self, order: &Order) {
         if self.has_budget() && self.note_order(order, Outcome::Ordered, None) {
             self.await_outcome(order);

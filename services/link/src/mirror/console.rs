@@ -12,7 +12,7 @@ use service::group::{self, GroupPaths};
 use service::launch;
 use std::os::fd::{AsRawFd, OwnedFd};
 
-/// Pause before it is started again.
+/// Pause before the console is started again.
 const PAUSE: Duration = Duration::from_secs(2);
 /// Time for its end, before it is killed.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -36,7 +36,7 @@ impl Console {
         Ok(Self { paths, epoch, incarnation: 0, child: None, started: None, lifeline })
     }
 
-    /// Starts it where it does not run.
+    /// Starts the console if it does not run.
     pub(super) fn keep(&mut self) {
         if let Some(child) = &mut self.child {
             match child.try_wait() {
@@ -59,7 +59,7 @@ impl Console {
         }
     }
 
-    /// Its process, while there is one.
+    /// Returns the console's process, while there is one.
     pub(super) fn pid(&self) -> Option<u32> {
         self.child.as_ref().map(Child::id)
     }

@@ -15,7 +15,7 @@ const CLIENT_PATIENCE: Duration = Duration::from_secs(2);
 /// Interval at which a client that waits is looked after.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 
-/// What is known of the robot.
+/// Knowledge about the robot.
 #[derive(Clone, Debug)]
 pub(super) struct Known {
     pub(super) robot: Name,
@@ -24,7 +24,7 @@ pub(super) struct Known {
     pub(super) scene: String,
     pub(super) config: PathBuf,
     pub(super) began: Instant,
-    /// Its group, as last shown.
+    /// Status of the robot's group, as last shown.
     pub(super) status: Option<GroupStatus>,
     /// When anything was heard of it last.
     pub(super) heard: Option<Instant>,
@@ -140,7 +140,7 @@ pub(super) fn listen(socket: &Path, known: &Arc<Mutex<Known>>) -> std::io::Resul
     std::thread::Builder::new().name("control".into()).spawn(accept).map(drop)
 }
 
-/// Locks what is known; a thread that has panicked leaves it readable.
+/// Locks the knowledge; a thread that has panicked leaves it readable.
 pub(super) fn lock(known: &Mutex<Known>) -> std::sync::MutexGuard<'_, Known> {
     known.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -31,7 +31,7 @@ impl<T: Mirrored + Serialize> Post<T> for EncodedWriter<T> {
     }
 }
 
-/// A topic: what has arrived, and its local writer.
+/// A topic: its new messages, and its local writer.
 pub(super) struct Inlet<T> {
     incoming: Incoming<T>,
     writer: Box<dyn Post<T>>,
@@ -56,7 +56,7 @@ impl<T: Mirrored> Inlet<T> {
     }
 }
 
-/// What the loop does with most topics.
+/// Operations of the loop on most topics.
 trait AnyInlet {
     fn pass(&mut self, bytes: &[u8], now: Time, offset: &mut Offset) -> Result<(), FrameError>;
 }
@@ -69,7 +69,7 @@ impl<T: Mirrored> AnyInlet for Inlet<T> {
     }
 }
 
-/// All of them. Lines of the robot wait for their sound, receipts also come as answers.
+/// All inlets. Lines of the robot wait for their sound, receipts also come as answers.
 pub(super) struct Inlets {
     pub(super) presented: Inlet<Presented>,
     pub(super) receipts: Inlet<Receipt>,

@@ -74,7 +74,7 @@ pub(super) struct Local {
 }
 
 impl Local {
-    /// Makes them.
+    /// Creates the mirror's local resources.
     pub(super) fn raise(
         paths: &GroupPaths,
         hello: &Hello,
@@ -83,7 +83,7 @@ impl Local {
     ) -> Result<Self, Failure> {
         check_room(u64::from(settings.group.shared_memory_free_min_mib))
             .map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?;
-        // What a mirror that was killed has left.
+        // Leftovers of a mirror that was killed.
         remove_leftovers(paths);
         let run = paths.run();
         if run.exists() {
@@ -97,7 +97,7 @@ impl Local {
         JournalSet::new(hello.epoch).save(paths).map_err(stored(paths.epoch_file()))?;
         settings.write_snapshot(&run).map_err(stored(run.clone()))?;
         let admin = Admin::open(paths, epoch)?;
-        // Readers believe a service's start only while the supervisor's socket for it is there.
+        // Readers accept a service's start only with the supervisor's socket for it.
         for service in Service::DIALOGUE {
             let socket = paths.notify_socket(service.name(), INCARNATION.0);
             safe_files::create_private(&socket).map_err(stored(socket.clone()))?;
@@ -106,7 +106,7 @@ impl Local {
         Ok(Self { paths: paths.clone(), epoch, admin: Some(admin) })
     }
 
-    /// Removes what dead clients have left in shared memory.
+    /// Removes the shared memory of dead clients.
     pub(super) fn clean(&self) {
         self.admin.iter().for_each(Admin::clean_dead);
     }

@@ -1,4 +1,4 @@
-//! The motion stop of a mirrored group: a thread that does nothing else, so that an order waits for nothing.
+//! The motion stop of a mirrored group: a thread of its own, so that an order waits for nothing.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,7 +25,7 @@ const EVENTS_MAX: usize = 64;
 /// Timeout of the robot's answer; a request is repeated much sooner.
 const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 
-/// What other threads give to this one.
+/// Events from other threads to this one.
 pub(super) enum Event {
     /// The motion stop's state, as the robot shows it.
     Seen(Seen),
@@ -80,7 +80,7 @@ struct Worker {
     events: DeviceSender<Event>,
     inbox: DeviceReceiver<Event>,
     orders: Orders,
-    /// Who gave the order under way.
+    /// Caller of the order under way.
     caller: Option<(u64, Caller)>,
     seen: Option<Seen>,
 }
@@ -141,7 +141,7 @@ impl Worker {
                 }
                 self.caller = Some((given_ns, caller));
             }
-            // Its client is told by the silence, which says what to do.
+            // The silence tells the client, which then advises its user.
             Err(why) => tracing::warn!(why, "order not passed on"),
         }
     }

@@ -1,4 +1,4 @@
-//! The main loop of a mirror: passes the robot's states to the local topics, and local words and sound to the robot.
+//! The main loop of a mirror: passes states to local topics, local words and sound to the robot.
 
 use std::collections::VecDeque;
 use std::io::Read;
@@ -103,16 +103,16 @@ struct Passing<'a> {
     audio: Reader<AudioChunk>,
     wake_listener: WakeListener,
     bus: Bus,
-    /// Dropped last: it removes what the others use.
+    /// Dropped last: it removes files that the others use.
     local: Local,
     offset: Offset,
     outbound: Outbound,
-    /// The robot's link that is there, by its number.
+    /// The running link of the robot, by its number.
     alive: Option<String>,
     trouble: Trouble,
     voice_dir: Option<PathBuf>,
     line: Option<Waiting>,
-    /// Lines whose sound is there or is not waited for, oldest first.
+    /// Lines with their sound, or not waiting for it, oldest first.
     lines: VecDeque<SoundFile>,
     tended: Time,
 }
@@ -282,8 +282,8 @@ impl<'a> Passing<'a> {
         }
     }
 
-    /// A line that has begun is shown once its sound is there, so that pages play it. The robot sends it before; it is
-    /// asked for where that was lost, or before this mirror's time.
+    /// A line that has begun is shown once its sound has arrived, so that pages play it. The robot
+    /// sends it before; it is requested if that was lost, or before this mirror's time.
     fn on_presented(&mut self, presented: Presented, now: Time) {
         let file = SoundFile::of(&presented);
         let has_sound = self.voice_dir.is_none() || self.lines.contains(&file);
@@ -329,13 +329,13 @@ impl<'a> Passing<'a> {
     /// Shows the line that waits, with its sound or without.
     fn present(&mut self) {
         if let Some(Waiting { file, presented, .. }) = self.line.take() {
-            // It is not asked for again.
+            // It is not requested again.
             self.note_line(file);
             self.inlets.presented.write(&presented);
         }
     }
 
-    /// Notes a line whose sound is there or is not waited for, and forgets the oldest one.
+    /// Notes a line with its sound, or not waiting for it, and forgets the oldest one.
     fn note_line(&mut self, file: SoundFile) {
         if self.lines.contains(&file) {
             return;

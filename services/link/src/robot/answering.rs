@@ -88,7 +88,7 @@ impl Robot {
         }
     }
 
-    /// What speech is to hear; contents of a file are written to one first.
+    /// Returns the sound for speech; contents of a file are written to one first.
     fn sound_of(&self, said: &Said) -> Option<Sound> {
         match &said.sound {
             Sent::Sound(Sound::Wav(_)) => None,
@@ -131,7 +131,7 @@ impl Robot {
     }
 
     fn forget_sound(&self, key: RequestKey) {
-        // It is there only where a file was sent.
+        // The file exists only if one was sent.
         let _ = std::fs::remove_file(sound_file(&self.paths.run(), key));
     }
 

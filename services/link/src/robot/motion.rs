@@ -1,4 +1,4 @@
-//! Orders to the motion stop: a thread of its own, which waits for nothing but orders and the arm's answers.
+//! Orders to the motion stop: a thread of its own, for orders and the arm's answers alone.
 
 use std::sync::mpsc::SyncSender;
 use std::thread;
@@ -15,16 +15,16 @@ use super::senders::{Answer, Outlet};
 use crate::motion::{self, Register, Request, Seen, Stamped, StandingStop};
 use crate::names::Call;
 
-/// Interval at which an order is repeated to the arm while its request waits; a stop is repeated beyond that.
+/// Interval of repeating an order to the arm while its request waits; a stop continues after.
 const RESEND_EVERY: Span = Span::from_ms(10);
 /// Requests of one pass, and requests that wait for the arm.
 const REQUESTS_MAX: usize = 64;
-/// Time for the arm to be at rest, before a request is answered with what is known.
+/// Time for the arm to be at rest, before a request is answered with the present state.
 const ANSWER_WITHIN: Span = Span::from_ms(400);
-/// Interval at which the arm is asked for its state while somebody watches.
+/// Interval at which the arm is asked for its state while watched.
 const LOOK_EVERY: Span = Span::from_ms(500);
 
-/// Starts the thread; returns where requests go.
+/// Starts the thread; returns the channel for requests.
 pub(super) fn start(
     paths: &GroupPaths,
     states: Outlet,
@@ -152,7 +152,7 @@ impl Worker {
         }
     }
 
-    /// Answers what is carried out, or has waited long enough.
+    /// Answers orders that are carried out, or have waited long enough.
     fn finish(&mut self, now: Time) {
         let is_over = |waiting: &mut Waiting| {
             let is_late = now >= waiting.since + ANSWER_WITHIN;

@@ -1,5 +1,5 @@
-//! The connection to the router, and the threads that send. Each has a bounded queue; what finds no room is dropped, as states
-//! are sent again a second later, and lines are asked for.
+//! The connection to the router, and the threads that send. Each has a bounded queue; messages
+//! without room are dropped, as states are resent a second later, and lines are requested.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -29,13 +29,13 @@ use crate::session::{connect_patiently, reply};
 const QUEUE: usize = 64;
 /// Interval at which it is found out who watches.
 const WATCHED_EVERY: Duration = Duration::from_millis(250);
-/// States beside the topics.
+/// States other than the topics.
 const GROUP: &str = "group";
 const MOTION: &str = "motion";
 const PRESENCE: &str = "presence";
 const LINE: &str = "line";
 
-/// What sends needs to connect.
+/// Parameters for connecting.
 pub(super) struct Connecting {
     pub(super) identity: Identity,
     pub(super) folder: PathBuf,
@@ -44,7 +44,7 @@ pub(super) struct Connecting {
     pub(super) paths: GroupPaths,
 }
 
-/// An answer on its way.
+/// An answer under way to the mirror.
 pub(super) type Answer = (Call, Query, Vec<u8>);
 
 /// Hands messages to the threads that send them. Never waits.
@@ -79,14 +79,14 @@ impl Connecting {
         let keys = &self.keys;
         let names = TOPICS.into_iter().filter(|name| *name != topics::JOINTS.name);
         let states = names.chain([GROUP, MOTION]).map(|name| {
-            // The motion stop's state and what the arm does before what is only shown.
+            // The motion stop's state and the arm's actions come before mere displays.
             let is_urgent = [MOTION, topics::STATUS.name].contains(&name);
             let priority = if is_urgent { Priority::InteractiveHigh } else { Priority::Data };
             publisher(&session, keys.state(name), priority).map(|publisher| (name, publisher))
         });
         let mut states = states.collect::<zenoh::Result<Vec<_>>>()?;
         states.push((PRESENCE, publisher(&session, keys.presence(), Priority::DataLow)?));
-        // In one stream with the state that shows the line, so that it is there before it is shown.
+        // In one stream with the state that shows the line, so that it arrives before.
         states.push((LINE, publisher(&session, keys.line(), Priority::Data)?));
         let joints = publisher(&session, keys.joints(), Priority::DataLow)?;
         let states = Outlet::start("states", states)?;
@@ -95,7 +95,7 @@ impl Connecting {
         let orders = motion::start(&self.paths, states.clone(), answers_of_motion(keys)?)?;
         let main = main_loop.clone();
         let on_query = move |query: Query| {
-            // What finds no room is not answered, and asked again.
+            // Requests that find no room are not answered, and repeated.
             match call_of(query.key_expr().as_str()) {
                 Some(Call::Motion) => drop(orders.offer(query)),
                 Some(call) => drop(main.offer(Inbound::Asked(call, query))),
@@ -144,7 +144,7 @@ fn answers_of_motion(keys: &Keys) -> zenoh::Result<SyncSender<Answer>> {
 }
 
 impl Senders {
-    /// Returns whether anybody sees any state.
+    /// Returns whether any state has watchers.
     pub(super) fn is_watched(&self) -> bool {
         self.states
             .is_watched
@@ -152,7 +152,7 @@ impl Senders {
             .any(|(name, is)| ![PRESENCE, LINE].contains(name) && is.load(Ordering::Relaxed))
     }
 
-    /// Returns whether anybody sees this topic.
+    /// Returns whether the topic has watchers.
     pub(super) fn is_state_watched(&self, topic: &str) -> bool {
         self.of(topic).is_watched_at(topic)
     }
@@ -169,17 +169,17 @@ impl Senders {
         }
     }
 
-    /// Returns whether anybody hears what the robot says.
+    /// Returns whether the robot's lines have listeners.
     pub(super) fn is_line_watched(&self) -> bool {
         self.states.is_watched_at(LINE)
     }
 
-    /// Sends the sound of what the robot begins to say.
+    /// Sends the sound of a line that begins.
     pub(super) fn line(&self, line: Vec<u8>) {
         self.states.send(LINE, line);
     }
 
-    /// Says that the robot is there.
+    /// Publishes the robot's presence.
     pub(super) fn presence(&self, presence: &Presence) {
         self.states.send(PRESENCE, serde_json::to_vec(presence).unwrap_or_default());
     }
@@ -227,7 +227,7 @@ impl Outlet {
         self.send(MOTION, bytes);
     }
 
-    /// Returns whether anybody sees the motion stop's state.
+    /// Returns whether the motion stop's state has watchers.
     pub(super) fn is_motion_watched(&self) -> bool {
         self.is_watched_at(MOTION)
     }

@@ -1,4 +1,4 @@
-//! The topics that mirrors see, each with what is to be sent of it.
+//! The topics that mirrors see, each with the messages to send.
 
 use config::Settings;
 use messages::{
@@ -29,7 +29,7 @@ impl<T: Mirrored> Drain<T> for EncodedReader<T> {
     }
 }
 
-/// A topic: its reader, what is to be sent, and its latest message.
+/// A topic: its reader, the messages to send, and the latest one.
 struct Source<T> {
     reader: Box<dyn Drain<T>>,
     outgoing: Outgoing<T>,
@@ -42,7 +42,7 @@ impl<T: Mirrored> Source<T> {
     }
 }
 
-/// What the loop does with every topic.
+/// Operations of the loop on every topic.
 trait AnySource {
     fn name(&self) -> &'static str;
     fn look(&mut self);
@@ -70,7 +70,7 @@ impl<T: Mirrored> AnySource for Source<T> {
     }
 }
 
-/// All of them. Policy and arm are also read for the presence, and lines for their sound.
+/// All sources. Policy and arm are also read for the presence, and lines for their sound.
 pub(super) struct TopicSources {
     view: Source<PolicyView>,
     status: Source<ArmStatus>,
@@ -111,12 +111,12 @@ impl TopicSources {
         first.into_iter().chain(others.iter_mut().map(|it| &mut **it as &mut dyn AnySource))
     }
 
-    /// Takes what has arrived.
+    /// Takes the new messages.
     pub(super) fn look(&mut self) {
         self.all().for_each(|source| source.look());
     }
 
-    /// Sends what is due to those who watch.
+    /// Sends due messages to watchers.
     pub(super) fn send(&mut self, senders: &Senders, now: Time) {
         for source in self.all() {
             let name = source.name();

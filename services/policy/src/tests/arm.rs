@@ -1,4 +1,4 @@
-//! What the policy makes of the arm's status.
+//! Reactions of the policy to the arm's status.
 
 use super::*;
 use messages::Task;

@@ -3,7 +3,7 @@
 use super::*;
 use dialogue::manager::{Reason, Remark};
 
-/// Journals hold what was said last: a remark inserted before others made the next start after an upgrade fail.
+/// Journals hold the last remark: one inserted before others made a start after an upgrade fail.
 #[test]
 fn remarks_keep_their_numbers_in_journals() {
     let number = |remark: Remark| postcard::to_stdvec(&remark).unwrap()[0];
@@ -22,8 +22,8 @@ fn remarks_keep_their_numbers_in_journals() {
     }
 }
 
-/// Its journal folds again, and from any record on, or from a snapshot in the middle of an interaction, the
-/// policy knows what it knew.
+/// The journal folds again, and from any record on, or from a snapshot in the middle of an
+/// interaction, the policy has its former state.
 #[test]
 fn policy_is_recovered_from_any_record_and_from_any_snapshot() {
     let mut node = PolicyNode::recover(manager().into(), Vec::new()).unwrap();

@@ -242,7 +242,7 @@ fn an_empty_table_is_said() {
     bench.check();
 }
 
-/// One is surely white. Of the other the camera cannot tell: it is asked about.
+/// One is surely white. The camera is unsure of the other, which is asked about.
 #[test]
 fn a_doubtful_detection_is_asked_about() {
     let color = |white: f64| {
@@ -276,8 +276,8 @@ fn a_change_by_hand_that_is_sent_again_takes_effect_once() {
     assert!(bench.table.answers.last().unwrap().refusal.contains("no object `metal-7`"));
 }
 
-/// Whole dialogues over tables that change at random: the journal folds again, bit for bit, and every
-/// belief is over the objects of its table.
+/// Whole dialogues over tables that change at random: the journal folds again, bit for bit, and
+/// every belief is over the objects of its table.
 #[test]
 fn random_tables_under_random_dialogues_fold_again() {
     const CLASSES: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];

@@ -1,4 +1,4 @@
-//! A lost journal, of the policy itself or of another service, and orders of which the arm knows less.
+//! A lost journal, of the policy or another service, and orders partly unknown to the arm.
 
 use service::SetAside;
 

@@ -4,7 +4,7 @@ use super::*;
 
 const ROBOT: (&str, &str) = ("dialogue.costs.from", "robot");
 
-/// What a planner that was swapped in has decided folds again, though the settings name another.
+/// Decisions of a planner that was swapped in fold again, though the settings name another.
 #[test]
 fn decisions_of_a_planner_swapped_in_fold_again_with_it() {
     let settings = settings();

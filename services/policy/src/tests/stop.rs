@@ -1,4 +1,4 @@
-//! What the robot says of a stop follows from the arm's status.
+//! The robot's remarks about a stop follow from the arm's status.
 
 use super::*;
 

@@ -1,9 +1,9 @@
-//! What clients see.
+//! Views of clients.
 
 use super::*;
 use crate::view::view;
 
-/// Clients learn what can be refused, and until when.
+/// Clients learn which object can be refused, and until when.
 #[test]
 fn the_view_shows_what_can_be_refused() {
     let mut manager = manager();
@@ -55,7 +55,7 @@ fn policy_publishes_the_attribution_of_an_utterance_between_two_questions() {
     assert!(shares.iter().all(|share| *share > 0.01), "{shares:?}");
     let sum = shares.iter().sum::<f64>() + seen.attributed.none;
     assert!((sum - 1.0).abs() < 1e-12, "{shares:?}, none {}", seen.attributed.none);
-    // What is published is typed: no English, no wire codes.
+    // Published views are typed: no English, no wire codes.
     assert_eq!((seen.decision, seen.question), (after.act.kind, after.act.question));
     assert_eq!(seen.alternatives, after.act.alternatives);
 }

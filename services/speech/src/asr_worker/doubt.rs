@@ -10,8 +10,8 @@ use speech_engines::stream::SpeechSegment;
 
 use crate::hearing::{Ensemble, Heard, SecondView};
 
-/// An utterance that the second recogniser listens to while the first one decodes it. Dropping it makes it
-/// stop.
+/// An utterance that the second recogniser listens to while the first one decodes it. Dropping it
+/// makes it stop.
 pub(super) struct Listening {
     sound: u64,
     segment: SpeechSegment,
@@ -19,8 +19,8 @@ pub(super) struct Listening {
 }
 
 impl Listening {
-    /// Has the second recogniser listen to the segment until so long after the voice; `None` if that is
-    /// over, or there is no second recogniser.
+    /// Lets the second recogniser listen to the segment until a time after the voice; `None` if
+    /// that is over, or without a second recogniser.
     pub(super) fn begin(
         recognisers: &Ensemble,
         sound: u64,
@@ -33,8 +33,8 @@ impl Listening {
         Some(Self { sound, segment: segment.clone(), pending })
     }
 
-    /// Asks for an opinion on the first recogniser's hypotheses, which are about the segment with as much
-    /// of the pause as `post_roll_s`, seconds, or about an earlier one.
+    /// Asks for an opinion on the first recogniser's hypotheses, which are about the segment with
+    /// as much of the pause as `post_roll_s`, seconds, or about an earlier one.
     pub(super) fn doubted(self, first: FirstView, post_roll_s: f64) -> Doubt {
         let Self { sound, segment, pending } = self;
         // The hypotheses of an earlier pause are followed by those of this one, which are better.
@@ -62,7 +62,7 @@ impl Doubt {
         self.sound == sound && self.segment.speech == segment.speech
     }
 
-    /// Takes what was decoded with a longer pause.
+    /// Takes the result of decoding with a longer pause.
     pub(super) fn update(&mut self, segment: SpeechSegment, first: FirstView) {
         (self.segment, self.first) = (segment, first);
         self.pending.ask_about(&self.first.hypotheses);
@@ -74,7 +74,7 @@ impl Doubt {
         self.pending.ask_about(&self.first.hypotheses);
     }
 
-    /// Returns where the opinion arrives and when it is late.
+    /// Returns the opinion's channel and the time after which it is late.
     pub(super) fn awaited(doubt: Option<&Self>) -> (Receiver<Opinion>, Option<Instant>) {
         match doubt {
             None => (never(), None),
@@ -82,8 +82,8 @@ impl Doubt {
         }
     }
 
-    /// Returns the opinion, or `Some(None)` if it is late or there will be none; `None` as long as it may
-    /// come.
+    /// Returns the opinion, or `Some(None)` if it is late or there will be none; `None` as long as
+    /// it may come.
     pub(super) fn outcome(&self) -> Option<Option<Opinion>> {
         match self.pending.opinion().try_recv() {
             Ok(opinion) => Some(Some(opinion)),
@@ -92,7 +92,7 @@ impl Doubt {
         }
     }
 
-    /// Returns what both recognisers think; without an opinion it is late.
+    /// Returns the results of both recognisers; without an opinion it counts as late.
     pub(super) fn heard(&self, opinion: Option<Opinion>) -> Heard {
         let second = opinion.map_or(SecondView::Late, SecondView::Heard);
         Heard { first: self.first.clone(), second }

@@ -1,7 +1,7 @@
 //! Interim results of utterances in progress, on a thread of its own.
 //!
-//! Invariant: it delays nothing. It has a decoder of its own, runs at low priority, and omits what it
-//! cannot decode in time.
+//! Invariant: it delays nothing. It has a decoder of its own, runs at low priority, and omits sound
+//! that it cannot decode in time.
 
 use crossbeam_channel::{Receiver, Sender};
 use speech_engines::recogniser::{InterimDecoder, InterimDecoderOpener};
@@ -40,7 +40,7 @@ struct OngoingUtterance {
 }
 
 impl OngoingUtterance {
-    /// Returns the words so far where they have changed.
+    /// Returns the words so far if they have changed.
     fn decode(&mut self, sound: u64, samples: &[i16]) -> Option<String> {
         // Of simultaneous speakers the last to begin is followed: numbers rise.
         if sound < self.sound {

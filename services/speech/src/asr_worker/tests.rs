@@ -11,7 +11,7 @@ use crate::{Hypothesis, Recognised, RecognisedSegment};
 
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Reports each call with its number of samples, waits for permission where it has to, and recognises
+/// Reports each call with its number of samples, waits for permission if it has to, and recognises
 /// "white" in long segments, else "zebra".
 struct Stub {
     calls: Sender<usize>,

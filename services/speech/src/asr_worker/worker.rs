@@ -1,8 +1,7 @@
-//! The worker's thread: decodes what is said in order, possible ends of it while it is idle, and files
-//! beside that. Where the first recogniser is in doubt it asks the second one, and goes on meanwhile.
+//! The worker's thread: decodes utterances in order, possible ends of them while idle, and files in
+//! between. If the first recogniser is in doubt, it asks the second one, and continues meanwhile.
 //!
-//! Invariant: what is said waits for no file, and for the second recogniser no longer than the open
-//! pause.
+//! Invariant: utterances wait for no file, and for the second recogniser at most the open pause.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -37,9 +36,9 @@ pub(super) struct Worker {
 
 /// The ends of the worker's channels.
 pub(super) struct Channels<'a> {
-    /// What is said.
+    /// Segments of live utterances.
     pub(super) live: &'a Receiver<(u64, SpeechSegment)>,
-    /// Possible ends of what is being said.
+    /// Possible ends of the current utterance.
     pub(super) hints: &'a Receiver<(u64, SpeechSegment)>,
     pub(super) files: &'a Receiver<(u64, PathBuf)>,
 }
@@ -66,8 +65,8 @@ impl Worker {
         }
     }
 
-    /// Decodes what is said, settles what the second recogniser was asked, and decodes possible ends of
-    /// what is being said while nothing else waits. Returns whether more may come.
+    /// Decodes utterances, settles requests to the second recogniser, and decodes possible ends of
+    /// the current utterance while nothing else waits. Returns whether more may come.
     fn serve(&mut self, channels: &Channels<'_>) -> bool {
         while !self.closed.load(Ordering::SeqCst) {
             match channels.live.try_recv() {
@@ -172,7 +171,7 @@ impl Worker {
         Listening::begin(recognisers, sound, segment, self.limits.patience)
     }
 
-    /// Asks the second recogniser, which listens already, where the first one is in doubt.
+    /// Asks the second recogniser, which listens already, if the first one is in doubt.
     fn doubted(&self, listening: Option<Listening>, first: &FirstView) -> Option<Doubt> {
         let recognisers = self.recognisers.as_ref().ok()?;
         let listening = listening.filter(|_| recognisers.is_in_doubt(&first.hypotheses))?;
@@ -197,7 +196,7 @@ impl Worker {
         Ok(RecognisedSegment { awaits_second, ..result })
     }
 
-    /// Decodes a file piece by piece. What is said meanwhile comes first: it may be a stop.
+    /// Decodes a file piece by piece. Utterances come first meanwhile: one may be a stop.
     fn recognise_file(
         &mut self,
         path: &Path,
@@ -223,7 +222,7 @@ impl Worker {
         Ok(segments)
     }
 
-    /// Decodes one utterance of a file. The second recogniser is not waited for where something is said.
+    /// Decodes one utterance of a file. The second recogniser is not awaited while someone speaks.
     fn recognise_range(
         &mut self,
         samples: &[i16],

@@ -1,4 +1,4 @@
-//! The recognisers of one robot and its gate: from the samples of an utterance to what counts.
+//! The recognisers of one robot and its gate: from the samples of an utterance to accepted words.
 
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -17,17 +17,17 @@ use super::heard::{Heard, SecondView};
 
 /// Sound around the voice that the second recogniser hears.
 const AROUND: usize = RATE_HZ as usize / 5;
-/// Probability from which on a voice speaks: that of most knocks is lower, and that of hardly any voice
-/// (docs/speech.md).
+/// Probability from which on a voice speaks: that of most knocks is lower, and that of hardly any
+/// voice (docs/speech.md).
 const VOICE_MIN: f32 = 0.994;
-/// Share of the voiced sound that the words cover, at least: of music and knocks only a part resembles any
-/// (docs/speech.md).
+/// Share of the voiced sound that the words cover, at least: of music and knocks only a part
+/// resembles any (docs/speech.md).
 const WORDS_MIN: f32 = 0.7;
 /// Time limit of the second recogniser for recordings.
 const UNHURRIED: Duration = Duration::from_secs(20);
 
-/// The recogniser of the configuration, a second one that is asked where the first one is in doubt, if
-/// there is one, and the gate.
+/// The recogniser of the configuration, an optional second one that is asked if the first one is in
+/// doubt, and the gate.
 pub struct Ensemble {
     first: Box<dyn Recogniser>,
     second: Option<SecondOpinion>,
@@ -52,16 +52,16 @@ impl Ensemble {
         self.first.recognise(pcm, speech)
     }
 
-    /// Returns whether the first recogniser's hypotheses are worth a second opinion. A stop waits for
-    /// none.
+    /// Returns whether the first recogniser's hypotheses are worth a second opinion. A stop waits
+    /// for none.
     pub fn is_in_doubt(&self, first: &[Hypothesis]) -> bool {
         let is_open =
             |best: &Hypothesis| !language::is_stop(&best.text) && !self.gate.is_clear(first);
         self.second.is_some() && first.first().is_some_and(is_open)
     }
 
-    /// Has the second recogniser listen, if there is one and it is free. Begun together with the first one
-    /// it is done the sooner; drop the result where that one is sure.
+    /// Lets the second recogniser listen, if there is one and it is free. Beginning together with
+    /// the first one saves time; drop the result if that one is sure.
     pub fn second_listens(
         &self,
         pcm: &[i16],
@@ -72,8 +72,8 @@ impl Ensemble {
         self.second.as_ref()?.begin(&pcm[speech.start.saturating_sub(AROUND)..end], until)
     }
 
-    /// Asks all recognisers that are needed. `wait` waits for the second one's opinion until a time and
-    /// returns whether it is there.
+    /// Asks all recognisers needed. `wait` waits for the second one's opinion until a time and
+    /// returns whether it has come.
     ///
     /// # Errors
     /// If the first one fails on these samples.
@@ -99,7 +99,7 @@ impl Ensemble {
     /// Returns the hypotheses that count for the samples, in which `speech` are those of the voice.
     ///
     /// # Errors
-    /// If there is no speech, or it is not meant for the robot.
+    /// If the sound has no speech, or none for the robot.
     pub fn judge(
         &self,
         heard: &Heard,

@@ -15,7 +15,7 @@ use super::heard::{Heard, SecondView};
 pub struct Rejected {
     /// The best hypothesis; empty if nothing was recognised.
     pub text: String,
-    /// Why it is not acted on.
+    /// Reason for ignoring the utterance.
     pub reason: GateVerdict,
     /// [`Gate::score`] of the speech, 0 to 1.
     pub score: f64,
@@ -23,15 +23,15 @@ pub struct Rejected {
 
 /// Share of a meaning in the scene's words alone from which it is accepted whatever else was heard.
 const PLAIN: f64 = 0.5;
-/// Share of a meaning from which it is clear: second opinions on it change nothing (docs/speech.md).
+/// Share of a clear meaning, which second opinions do not change (docs/speech.md).
 const CLEAR: f64 = 0.9;
 /// A yes or no has a meaning only as an answer.
 const ANY_QUESTION: Question = Question::Point(ObjectId(0));
 
 /// Rejects speech that is not about the scene.
 ///
-/// The language model knows the scene's sentences and common words of other talk; speech about other
-/// things is recognised as a mixture of both, with low confidence.
+/// The language model knows the scene's sentences and common words of other talk; speech about
+/// other things is recognised as a mixture of both, with low confidence.
 pub struct Gate {
     words: BTreeSet<String>,
     reader: Reader,
@@ -39,7 +39,7 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// Default threshold; `docs/speech.md` lists what it accepts and rejects.
+    /// Default threshold; `docs/speech.md` lists accepted and rejected talk.
     pub const THRESHOLD: f32 = 0.45;
 
     /// Returns a gate for the scene; `threshold` from 0 (accept everything) to 1.
@@ -50,11 +50,11 @@ impl Gate {
         Self { words, reader, threshold: threshold.into() }
     }
 
-    /// Accepts or rejects all hypotheses of one utterance together; returns them, best first. `is_voice`
-    /// judges whether the sound is a voice's, and is asked last.
+    /// Accepts or rejects all hypotheses of one utterance together; returns them, best first.
+    /// `is_voice` judges whether the sound is a voice's, and is asked last.
     ///
     /// # Errors
-    /// If there is no speech, or it is not meant for the robot.
+    /// If the sound has no speech, or none for the robot.
     pub fn judge(
         &self,
         heard: &Heard,
@@ -85,8 +85,8 @@ impl Gate {
 
     /// Returns how much the hypotheses are about the scene, 0 to 1: the mean share of the scene's
     /// words in them, to the sixth power, times the weight of the heaviest meaning; both by the
-    /// hypotheses' weights. (Of the products of powers of shares, weights and word probabilities that
-    /// were compared, this one keeps most of what is meant for the robot at 1 % of other talk, in
+    /// hypotheses' weights. (Of the products of powers of shares, weights and word probabilities
+    /// that were compared, this one keeps most utterances to the robot at 1 % of other talk, in
     /// quiet and in noise.)
     pub fn score(&self, hypotheses: &[Hypothesis]) -> f64 {
         let total = total_weight(hypotheses);
@@ -95,7 +95,7 @@ impl Gate {
         share.powi(6) * meanings.iter().map(|(_, weight)| *weight).fold(0.0, f64::max) / total
     }
 
-    /// Returns whether the hypotheses leave so little doubt that another opinion would hardly matter.
+    /// Returns whether the hypotheses are so certain that another opinion would hardly matter.
     pub fn is_clear(&self, hypotheses: &[Hypothesis]) -> bool {
         self.score(hypotheses).max(self.plain_content(hypotheses)) >= CLEAR
     }
@@ -111,7 +111,7 @@ impl Gate {
     }
 
     /// Returns the share of the heaviest meaning with content in the scene's words alone. A short
-    /// answer is plain even where the alternative is other talk: "yes" or "years".
+    /// answer is plain even if the alternative is other talk: "yes" or "years".
     fn plain_content(&self, hypotheses: &[Hypothesis]) -> f64 {
         let plain = hypotheses.iter().filter(|hypothesis| self.share(hypothesis) >= 1.0);
         let meanings = self.meanings(plain, ANY_QUESTION);
@@ -141,7 +141,7 @@ fn total_weight(hypotheses: &[Hypothesis]) -> f64 {
     hypotheses.iter().map(|h| h.weight).sum::<f64>().max(f64::MIN_POSITIVE)
 }
 
-/// A reading without its order.
+/// Meaning of a reading without the order of words.
 #[derive(PartialEq)]
 struct Meaning {
     base: BTreeSet<WordId>,

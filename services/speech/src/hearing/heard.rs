@@ -16,11 +16,11 @@ pub struct Heard {
 /// The second recogniser's view of one utterance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SecondView {
-    /// There is no second recogniser, or the first one was sure.
+    /// No second recogniser was asked, or needed.
     NotAsked,
-    /// It was too late.
+    /// The opinion was too late.
     Late,
-    /// Its opinion.
+    /// The second recogniser's opinion.
     Heard(Opinion),
 }
 

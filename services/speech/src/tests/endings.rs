@@ -1,4 +1,4 @@
-//! Utterances in progress: what is decoded of them, and when they end.
+//! Utterances in progress: interim decoding, and when they end.
 
 use super::*;
 

@@ -31,7 +31,7 @@ impl Outputs {
     }
 }
 
-/// Everybody waited for a client that hammers, or was refused: up to 256 of its utterances came first.
+/// Everybody waited for a hammering client, or was refused: up to 256 of its utterances came first.
 #[test]
 fn client_that_hammers_does_not_delay_another() {
     let mut speech = Speech::new();

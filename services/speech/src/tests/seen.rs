@@ -1,4 +1,4 @@
-//! What a client has shown is what its user answers.
+//! A client's user answers the prompt that the client has shown.
 
 use super::*;
 
@@ -18,7 +18,7 @@ fn said(text: &str, key: u8, seen: u64, onset: Time) -> In<'static> {
     })
 }
 
-/// Puts a question to its end.
+/// Presents a question completely.
 fn put(speech: &mut Speech, prompt: u64) {
     let playback = speech.take(0.1, ask(prompt)).spoken().unwrap().playback;
     speech.playback(0.1, playback, PlaybackState::Started);
@@ -53,7 +53,7 @@ fn words_after_a_remark_answer_the_questions_before_it() {
     assert_eq!(speech.take(0.1, yes(1, 8, onset)).asked(), [(7, 1, 1)]);
 }
 
-/// Before the voice has begun, while it begins, and by a client whose words come after it has begun.
+/// Before the voice has begun, while it begins, and by a client with words after its start.
 #[test]
 fn question_is_answered_as_soon_as_it_is_shown() {
     for after_s in [0.0, 0.05, 0.2] {

@@ -32,8 +32,8 @@ fn speech_without_memory_numbers_above_everything_that_the_policy_may_know() {
     assert_eq!(speech.type_in(1.0, "the bowl").utterance().unwrap().seq, OVER + 1);
 }
 
-/// The robot fell silent for good: a policy without memory gave its prompts the numbers of those that
-/// speech had said before.
+/// The robot fell silent for good: a policy without memory gave its prompts the numbers of those
+/// that speech had said before.
 #[test]
 fn prompts_of_a_policy_without_memory_are_said() {
     let mut speech = Speech::new();

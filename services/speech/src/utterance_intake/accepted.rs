@@ -74,7 +74,7 @@ impl AcceptedUtterances {
         self.is_marked
     }
 
-    /// Returns the utterances to send; none before the mark is known, when all of them may be applied.
+    /// Returns the utterances to send; none before the mark is known: all may be applied then.
     pub(super) fn to_send(&self) -> impl Iterator<Item = &Accepted> {
         let window = self.outbox.window().map(|(_, accepted)| accepted);
         window.filter(|_| self.is_marked)
@@ -100,8 +100,8 @@ impl AcceptedUtterances {
         self.outbox.len()
     }
 
-    /// Returns the utterances that a new journal must begin with, in order: those that are not applied
-    /// yet, and the latest ones.
+    /// Returns the utterances that a new journal must begin with, in order: those that are not
+    /// applied yet, and the latest ones.
     pub(crate) fn snapshot(&self) -> impl Iterator<Item = Accepted> + '_ {
         let recent = self.recent.front().map(|accepted| accepted.seq);
         let older = move |accepted: &&Accepted| recent.is_some_and(|seq| accepted.seq < seq);

@@ -19,15 +19,15 @@ pub(super) struct Origin {
     /// Number and total of the segment.
     pub(super) segment: (u32, u32),
     pub(super) source: Source,
-    /// Who typed or pointed.
+    /// Person who typed or pointed.
     pub(super) from: PersonId,
     /// Beginning and end of the speech, 0 without speech.
     pub(super) span: (Time, Time),
-    /// The latest prompt that the user was shown before; 0 where that is not known.
+    /// The latest prompt that the user was shown before; 0 if unknown.
     pub(super) seen: PromptId,
     /// Signal-to-noise ratio, decibels; 0 for text.
     pub(super) snr_db: f32,
-    /// What each recogniser thought, where sound was recognised.
+    /// Result of each recogniser, if sound was recognised.
     pub(super) heard: Option<Heard>,
 }
 
@@ -46,7 +46,7 @@ impl Origin {
         Self::new(key, (u32::MAX, utterances), Source::Microphone)
     }
 
-    /// Returns the origin of segment `number` of `count` in a sound; a live sound is a segment itself.
+    /// Returns the origin of segment `number` of `count` in a sound; a live sound is one segment.
     pub(super) fn of(sound: &PendingSound, number: u32, count: u32) -> Self {
         let segment = sound.segment.unwrap_or((number, count));
         let span = (sound.onset, sound.end.unwrap_or(Time(0)));
@@ -59,8 +59,8 @@ impl Origin {
         Self { key, segment, source, from, span, seen, snr_db: 0.0, heard: None }
     }
 
-    /// Adds what the recogniser measured. The times of a live sound are known; those of a recording
-    /// count from its beginning.
+    /// Adds the recogniser's measurements. The times of a live sound are known; those of a
+    /// recording count from its beginning.
     pub(super) fn measured(self, segment: &RecognisedSegment, now: Time) -> Self {
         let at = |s: f64| (self.span.0 + Span::from_s(s)).min(now);
         let recorded = (at(segment.span_s.0), at(segment.span_s.1));
@@ -68,7 +68,7 @@ impl Origin {
         Self { span, snr_db: segment.snr_db, heard: Some(segment.heard.clone()), ..self }
     }
 
-    /// Adds what each recogniser thought to the receipt.
+    /// Adds each recogniser's result to the receipt.
     pub(super) fn with_views(&self, receipt: Receipt) -> Receipt {
         let Some(Heard { first, second }) = &self.heard else { return receipt };
         let first = first.hypotheses.first().map_or("", |best| best.text.as_str());

@@ -1,5 +1,5 @@
-//! The stop that a user orders in words. The order outlives this service: it is repeated until the arm has
-//! carried it out, whichever process restarts meanwhile.
+//! The stop that a user orders in words. The order outlives this service: it is repeated until the
+//! arm has carried it out, whichever process restarts meanwhile.
 
 use std::collections::VecDeque;
 

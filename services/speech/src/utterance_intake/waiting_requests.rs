@@ -1,8 +1,8 @@
-//! Requests that wait for their turn, so that a client that asks for much delays no other.
+//! Requests that wait for their turn, so that a client with many delays no other.
 //!
-//! Each client has a share of the utterances that are accepted and not yet applied. What it asks for
-//! beyond that waits here, in its own order, and the clients take turns. What does not fit is not
-//! acknowledged, and its client sends it again.
+//! Each client has a share of the utterances that are accepted and not yet applied. Its further
+//! requests wait here, in order, and the clients take turns. A request that does not fit is not
+//! acknowledged, and its client resends it.
 
 use std::collections::VecDeque;
 
@@ -13,8 +13,8 @@ use service::Time;
 use super::origin::Origin;
 use crate::utterance_content::UtteranceContent;
 
-/// Utterances of one client that are accepted and not yet applied: as many as keep speech, grounding and
-/// policy busy.
+/// Utterances of one client that are accepted and not yet applied: as many as keep speech,
+/// grounding and policy busy.
 pub(super) const SHARE: usize = 4;
 /// Waiting requests of one client.
 const EACH_MAX: usize = 16;
@@ -26,11 +26,11 @@ const CLIENTS_MAX: usize = 32;
 pub(super) struct Request {
     pub(super) origin: Origin,
     pub(super) content: UtteranceContent,
-    /// When it arrived.
+    /// Time of arrival.
     pub(super) received: Time,
 }
 
-/// The waiting requests of every client, the client whose turn it is first; none without requests.
+/// The waiting requests of every client, the client whose turn it is first; empty without requests.
 #[derive(Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct WaitingRequests {
     clients: VecDeque<(ClientId, VecDeque<Request>)>,
@@ -43,7 +43,7 @@ impl WaitingRequests {
         of_client.flat_map(|(_, requests)| requests).any(|request| request.origin.key == key)
     }
 
-    /// Adds a request behind the others of its client. Returns `false` if there is no room for it.
+    /// Adds a request behind the others of its client. Returns `false` without room.
     pub(super) fn push(&mut self, request: Request) -> bool {
         let client = request.origin.key.client();
         let at = match self.clients.iter().position(|(other, _)| *other == client) {
@@ -62,7 +62,7 @@ impl WaitingRequests {
         has_room
     }
 
-    /// Takes the next client's oldest request, if it `may` be accepted; afterwards it is the others' turn.
+    /// Takes the next client's oldest request, if it `may` be accepted; then others follow.
     pub(super) fn take(&mut self, may: impl Fn(&Request) -> bool) -> Option<Request> {
         let mut oldest = self.clients.iter().map(|(_, requests)| requests.front());
         let next = oldest.position(|request| request.is_some_and(&may))?;

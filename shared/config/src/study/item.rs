@@ -9,11 +9,11 @@ const TEXT_MAX: usize = 2000;
 /// A question of the questionnaire.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Item {
-    /// Its name in the data: letters, digits and `_`.
+    /// Name in the data: letters, digits and `_`.
     pub id: String,
-    /// Its text.
+    /// Text of the item.
     pub text: String,
-    /// Kind of its answers.
+    /// Kind of answers to the item.
     pub kind: Kind,
     /// Options of a [`Kind::Choice`]; empty for others.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -21,10 +21,10 @@ pub struct Item {
     /// Label of the least value of a [`Kind::Likert`].
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub low: String,
-    /// Label of its greatest value.
+    /// Label of the greatest value.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub high: String,
-    /// Number of its values.
+    /// Number of values.
     #[serde(default)]
     pub points: u8,
     /// An answer is required.
@@ -46,10 +46,10 @@ pub enum Kind {
 }
 
 impl Item {
-    /// The answer as it is kept: none where nothing was answered.
+    /// Returns the answer as it is stored: `None` without an answer.
     ///
     /// # Errors
-    /// A sentence for the participant: what the item needs.
+    /// A sentence for the participant with the item's requirements.
     pub fn check(&self, answer: &Json) -> Result<Option<Json>, String> {
         let empty = match answer {
             Json::Null => true,

@@ -22,7 +22,7 @@ pub struct Study {
     pub protocol: Protocol,
     /// Absence of a service after which an interaction is repeated.
     pub fault: Duration,
-    /// Folder of the data; the group's own where nothing is said.
+    /// Folder of the data; by default the group's own.
     pub data_dir: Option<PathBuf>,
 }
 

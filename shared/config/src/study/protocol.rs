@@ -16,7 +16,7 @@ pub struct Protocol {
     /// Interactions that count: of a participant, within a design that compares within, of a
     /// participant and policy.
     pub interactions: u32,
-    /// Practice interactions before them.
+    /// Practice interactions before the trials.
     pub warmup: u32,
     /// Draw of the desired object.
     pub objects: Objects,
@@ -24,7 +24,7 @@ pub struct Protocol {
     pub design: Design,
     /// The policies, at least one.
     pub policies: Vec<String>,
-    /// In which order they are met, within a participant.
+    /// Order of the policies within a participant.
     pub order: Order,
     /// Longest interaction, seconds.
     pub seconds_max: f64,

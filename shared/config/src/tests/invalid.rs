@@ -1,5 +1,5 @@
-//! Invalid configurations: every kind of error is reported with file, line, key and help, and all of
-//! them at once. Single files are in the tests of `parts`, which knows every section.
+//! Invalid configurations: every kind of error is reported with file, line, key and help, and all
+//! of them at once. Single files are in the tests of `parts`, which knows every section.
 
 use expect_test::expect;
 

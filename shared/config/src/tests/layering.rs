@@ -142,8 +142,8 @@ fn a_scene_may_be_a_path() {
     assert_eq!(folder.load(None, &[("group.scene", &absolute)]).unwrap().scene, scene);
 }
 
-/// The key of earlier versions becomes the rate that replaces it, with a warning, unless that rate is
-/// stated beside it or as high by default.
+/// The key of earlier versions becomes the rate that replaces it, with a warning, unless that rate
+/// is stated too or as high by default.
 #[test]
 fn former_keys_are_replaced_with_a_warning() {
     let read = |text: &str| {

@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 use crate::{Diagnostics, Settings};
 
-/// The folder that is shipped.
+/// Returns the shipped configuration folder.
 fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config")
 }

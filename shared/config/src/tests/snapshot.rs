@@ -1,4 +1,4 @@
-//! Snapshots: services read what the supervisor wrote.
+//! Snapshots: services read the settings that the supervisor wrote.
 
 use std::fs;
 
@@ -89,7 +89,7 @@ fn a_missing_or_damaged_snapshot_is_rejected() {
     assert!(bare.contains("the scene is missing"), "{bare}");
 }
 
-/// What a recording of an earlier version does not state is as it was then.
+/// Values that a recording of an earlier version omits have that version's meaning.
 #[test]
 fn settings_of_an_earlier_version_keep_their_meaning() {
     let over = [("dialogue.epsilon".to_owned(), "0.02".to_owned())];

@@ -108,8 +108,8 @@ impl<'a> Fields<'a> {
         Some(read)
     }
 
-    /// Reads keys that belong together, where one of `keys` is there: those that `read` requires
-    /// are all there or none is.
+    /// Reads keys that belong together, if one of `keys` is there: those that `read` requires are
+    /// all present or all absent.
     pub fn together<T>(
         &mut self,
         keys: &[&'a str],
@@ -150,8 +150,8 @@ impl<'a> Fields<'a> {
         all.unwrap_or_default()
     }
 
-    /// Reads a list of tables, each over `defaults`, TOML; absent is the same as empty. An item that
-    /// is a string is short for a table with that `name`.
+    /// Reads a list of tables, each over `defaults`, TOML; absent is the same as empty. An item
+    /// that is a string is short for a table with that `name`.
     pub fn list<T>(
         &mut self,
         key: &'a str,

@@ -24,7 +24,7 @@ fn the_cases_of_section_4_and_the_bowls() {
         }
         for (name, printed) in case["published"].as_object().into_iter().flatten() {
             let got = belief.probability(scene.object_named(name).unwrap());
-            // Where the paper prints two digits, the third is a zero that it left out.
+            // If the paper prints two digits, the third is an omitted zero.
             let rounded = (got * 1000.0).round() / 1000.0;
             assert!((rounded - printed.as_f64().unwrap()).abs() < 1e-12, "{id}: {name} {got}");
             published += 1;

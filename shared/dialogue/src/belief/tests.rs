@@ -47,7 +47,7 @@ fn nothing_under_or_overflows() {
         }
     }
     assert_normalised(&belief);
-    // The weakest object is far below the smallest f64, and still comes back when asked for.
+    // The weakest object is far below the smallest f64, and still comes back when requested.
     let weakest = (belief.log_weights().iter().enumerate())
         .min_by(|a, b| a.1.total_cmp(b.1))
         .map(|(i, _)| ObjectId::from(i))

@@ -72,7 +72,7 @@ fn no_gesture_and_no_direction_say_nothing() {
 }
 
 /// However far off, a gesture leaves an object within reach of honest words: its weight against
-/// another is at most what the head of the file says.
+/// another is bounded as stated at the head of the file.
 #[test]
 fn no_gesture_rules_an_object_out_for_ever() {
     for (seed, mut rng) in cases() {
@@ -106,8 +106,8 @@ fn an_update_is_bayes_rule() {
     }
 }
 
-/// From farther and farther away the angle between two objects vanishes, and so does what a
-/// gesture tells of them; from near by the one that is pointed at wins.
+/// From farther and farther away the angle between two objects vanishes, and so does a gesture's
+/// information about them; from near by, the object pointed at wins.
 #[test]
 fn pointing_at_an_object_finds_it_if_it_stands_apart() {
     let (here, there) = ([0.6, 0.3, 0.0], [0.6, -0.3, 0.0]);

@@ -4,8 +4,8 @@ use vocabulary::{Params, Reliability, Rng};
 use super::*;
 use crate::testing::random_scene;
 
-/// What is expected given the object, against the sum over everything that the person may take values for,
-/// and over right and slip of every word and answer.
+/// Expected errors given the object, compared with the sum over all possible perceptions of the
+/// person, and over right and slip of every word and answer.
 #[test]
 fn expected_errors_are_those_of_all_that_may_have_been() {
     let seed = 5;
@@ -66,8 +66,8 @@ fn random_reading(rng: &mut Rng, model: &Model) -> (f64, Question, Reading) {
     (1.0, question, reading)
 }
 
-/// One thing said: its channel, and the likelihood with and without a slip where attribute `k` is taken
-/// for `m`; none for what has no known truth.
+/// One thing said: its channel, and the likelihood with and without a slip if attribute `k` is
+/// taken for `m`; `None` if the truth is unknown.
 fn chances(
     model: &Model,
     object: ObjectId,
@@ -191,7 +191,7 @@ fn by_hand(
     lesson
 }
 
-/// What may have been something else teaches less.
+/// Uncertain observations teach less.
 #[test]
 fn doubts_count_less() {
     let mut rng = Rng::new(3);

@@ -1,4 +1,4 @@
-//! Learning who speaks: from deliveries that are not refused, and only of people who gave their name.
+//! Learning who speaks: from deliveries that are not refused, and only of named people.
 
 use scene::ObjectId;
 use vocabulary::PersonId;
@@ -18,14 +18,14 @@ impl State {
 }
 
 impl Interaction {
-    /// Returns who speaks in it.
+    /// Returns the speaker of the utterance.
     pub fn from(&self) -> PersonId {
         self.posterior.speaker().map(|speaker| speaker.from.clone()).unwrap_or_default()
     }
 }
 
 impl Manager {
-    /// Returns the person as one who speaks; none of nobody in particular.
+    /// Returns the person as one who speaks; `None` if the speaker is unnamed.
     pub(super) fn speaker(&self, state: &State, from: &PersonId) -> Option<Speaker> {
         if from.is_nobody() || !self.setup.people.learns {
             return None;
@@ -46,7 +46,7 @@ impl Manager {
         let Some(speaker) = interaction.posterior.speaker() else { return };
         let scene = &self.setup.scene;
         let model = speaker.model(&self.setup.model);
-        // That an object is refused is told beside what was answered.
+        // The refusal of an object is announced along with the answer.
         let counts = |it: &&Evidence| !matches!(it.mark, Some(Mark::Not(_)));
         let heard: Vec<_> =
             interaction.evidence.iter().filter(counts).map(|it| it.in_scene(scene)).collect();
@@ -56,7 +56,7 @@ impl Manager {
         });
     }
 
-    /// Forgets a person. An open interaction of theirs goes on as anybody's.
+    /// Forgets a person. Their open interaction continues as an unnamed user's.
     pub(super) fn forget_person(&mut self, state: &mut State, id: &PersonId, at: Time) {
         state.users.people.forget(id);
         let is_theirs = |open: &Interaction| open.from() == *id;

@@ -43,8 +43,7 @@ impl Manager {
             && standing.question == question
             && open.prompts.last().is_some_and(|prompt| prompt.id == standing.prompt);
         if stands && basis.heard != standing.prompt && basis.preface == Preface::None {
-            // It stands already and was not heard to its end yet: saying it again would only
-            // interrupt it.
+            // Already pending and not heard to its end yet: repeating it would only interrupt it.
             return set_reasons(state, reasons);
         }
         open.presentations += 1;
@@ -106,8 +105,8 @@ impl Manager {
         Content::Question { variant: prompt.0, time, choices, is_last }
     }
 
-    /// Returns the values that the wanted object may have for the attribute in question, in their spoken form;
-    /// none where there are too many. Those of a yes/no question are recorded, and not said.
+    /// Returns the values that the wanted object may have for the attribute in question, in their
+    /// spoken form; empty if they are too many. Those of a yes/no question are only recorded.
     fn choices(&self, belief: &Belief, question: Question) -> Vec<String> {
         let (Question::Attribute(k, _) | Question::Which(k)) = question else { return Vec::new() };
         let scene = &self.setup.scene;
@@ -163,7 +162,7 @@ impl Manager {
         set(state, Act { kind: ActKind::Pick, prompt, presentation: 1, pick, line, ..reasons });
     }
 
-    /// Asks openly what is wanted.
+    /// Asks the user openly for the wanted object.
     pub(super) fn ask_wanted(&self, state: &mut State, at: Time) {
         state.last_prompt = state.last_prompt.next();
         let (prompt, utterance) = (state.last_prompt, state.applied);
@@ -216,7 +215,8 @@ pub(super) fn order_again(state: &mut State, at: Time) {
     state.act.id = state.act.id.next();
 }
 
-/// Orders the arm to leave the object that it was sent for, or to put it back if it already holds it.
+/// Orders the arm to leave the object that it was sent for, or to put it back if it already holds
+/// it.
 pub(super) fn call_off(state: &mut State, content: Content, at: Time) {
     let pick = state.open.as_ref().and_then(|open| open.pick);
     say_with(state, ActKind::Cancel, content, at);
@@ -227,8 +227,7 @@ pub(super) fn say(state: &mut State, content: Content, at: Time) {
     say_with(state, ActKind::Say, content, at);
 }
 
-/// Returns the key of the next order to the arm: of the latest interaction, and higher than every
-/// earlier one.
+/// Returns the key of the next order to the arm, higher than every earlier one.
 pub(super) fn next_key(state: &mut State) -> PickId {
     let (interaction, last) = (state.last_interaction, state.last_order);
     let attempt = if last.interaction == interaction { last.attempt + 1 } else { 1 };

@@ -14,7 +14,7 @@ use super::state::State;
 use super::utterance::Utterance;
 use crate::answer_attribution::{Candidate, QUESTION_S, Shares};
 
-/// Weights below this say nothing.
+/// Weight below which an attribution is ignored.
 const NEGLIGIBLE: f64 = 1e-9;
 /// Share from which it is plain which question is answered.
 pub(super) const PLAIN: f64 = 0.8;
@@ -22,7 +22,7 @@ pub(super) const PLAIN: f64 = 0.8;
 /// Content of an utterance in the open interaction.
 #[derive(Default)]
 pub(super) struct Heard<'a> {
-    /// Its interpretations with their weights and the question that each answers, likeliest first.
+    /// Interpretations with their weights and the question that each answers, likeliest first.
     pub(super) interpretations: Vec<(f64, Question, Reading)>,
     /// A word that the scene does not have.
     pub(super) unknown: Option<&'a UnknownWord>,
@@ -80,7 +80,7 @@ impl Manager {
         }
     }
 
-    /// Returns a presentation as a candidate for an answer; none for another interaction's.
+    /// Returns a presentation as a candidate for an answer; `None` for another interaction's.
     fn candidate(&self, state: &State, put: &Presentation) -> Option<Candidate> {
         self.question(state, put.prompt)?;
         let before = || state.handed_over.as_ref().map(|before| &before.interaction);
@@ -93,8 +93,8 @@ impl Manager {
         })
     }
 
-    /// Returns the question of a prompt of the open interaction. That an object is being fetched can be
-    /// denied, like "this one?".
+    /// Returns the question of a prompt of the open interaction. That an object is being fetched
+    /// can be denied, like "this one?".
     fn question(&self, state: &State, prompt: PromptId) -> Option<Question> {
         if let Some(object) = state.goes_back(prompt) {
             return Some(Question::Point(object));
@@ -111,7 +111,7 @@ impl Manager {
         open.prompt(prompt).map(|prompt| prompt.question)
     }
 
-    /// Returns how soon this user answers.
+    /// Returns the user's reaction-time model.
     fn reaction(&self, state: &State, typed: bool) -> Reaction {
         let (known, configured) = if typed {
             (state.timing.typed, self.setup.turns.typed)
@@ -160,11 +160,11 @@ impl Manager {
         (weight, NamedQuestion::new(scene, question), NamedReading::new(scene, reading))
     }
 
-    /// Notes that a question was answered, if it is plain which one, and how soon, if it is plain which
-    /// presentation of it. A question counts as answered once, however much is said after it.
+    /// Notes that a question was answered, if it is plain which one, and how soon, if it is plain
+    /// which presentation of it. A question counts as answered once, however much is said after it.
     pub(super) fn note_answer(&self, state: &mut State, utterance: &Utterance, shares: &[f64]) {
         let asked = || utterance.presentations.iter().zip(shares);
-        // One that was repeated is answered by what is divided among its presentations.
+        // An answer to a repeated question has the share divided among its presentations.
         let of_prompt = |prompt: PromptId| -> f64 {
             asked().filter(|(put, _)| put.prompt == prompt).map(|(_, share)| share).sum()
         };
@@ -196,12 +196,12 @@ impl Manager {
     }
 }
 
-/// Returns the content of a reading about the object: none where it is about something else.
+/// Returns the content of a reading about the object: `None` if it is about something else.
 pub(super) fn content(reading: &Reading) -> std::borrow::Cow<'_, Reading> {
     use std::borrow::Cow;
     match reading.intent {
         Intent::Inform => Cow::Borrowed(reading),
-        // "Stop, not that one": what is said beside the order, nothing with a plain "stop".
+        // "Stop, not that one": the words in addition to the order; a plain "stop" has none.
         Intent::Stop | Intent::GoOn => {
             Cow::Owned(Reading { intent: Intent::Inform, ..reading.clone() })
         }
@@ -210,7 +210,7 @@ pub(super) fn content(reading: &Reading) -> std::borrow::Cow<'_, Reading> {
     }
 }
 
-/// Returns the question of a prompt after a hand-over: that this object was handed over can be denied.
+/// Returns the question of a prompt after a hand-over: this hand-over can be denied.
 fn answered_after(state: &State, prompt: PromptId) -> Option<Question> {
     let handed_over = state.handed_over.as_ref()?;
     let earlier = || handed_over.interaction.prompt(prompt).map(|prompt| prompt.question);

@@ -1,4 +1,4 @@
-//! Beliefs of an interaction: prior, updates, and the user model where the planner uses it.
+//! Beliefs of an interaction: prior, updates, and the user model if the planner uses it.
 
 use scene::{Question, Reading};
 
@@ -22,7 +22,7 @@ impl Manager {
         self.prior_of(state, &PersonId::default())
     }
 
-    /// Returns the same of a person: by what they had fetched, once that is known.
+    /// Returns the prior for a person: by past deliveries, once there are any.
     fn prior_of(&self, state: &State, from: &PersonId) -> Belief {
         let objects = self.setup.scene.objects();
         let any_taken = objects.iter().any(|object| object.taken);
@@ -61,7 +61,7 @@ impl Manager {
         self.planner.uses_user_model().then(known)
     }
 
-    /// Returns the expected `p_l` and `ε` of the user, where they are learned.
+    /// Returns the expected `p_l` and `ε` of the user, if they are learned.
     pub fn user_params(&self, state: &State) -> Option<(f64, f64)> {
         let configured = self.setup.model.params();
         let open = state.open.as_ref();
@@ -105,8 +105,8 @@ impl Manager {
         }
     }
 
-    /// Returns the observation model after what was said of the wanted object: what values in doubt are
-    /// likely to be. A posterior of what the user perceives keeps that itself.
+    /// Returns the observation model given the utterances about the wanted object: the likely truth
+    /// of values in doubt. A posterior over the user's perception keeps that itself.
     pub(super) fn learned<'a>(
         &'a self,
         evidence: impl Iterator<Item = &'a Evidence>,

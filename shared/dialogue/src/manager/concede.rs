@@ -1,4 +1,4 @@
-//! What the user cannot tell, and what does not matter to the user.
+//! Attributes that the user does not know or does not care about.
 
 use scene::{AttributeId, Question, Reading, Reference, Response, Scene};
 use serde::{Deserialize, Serialize};
@@ -7,10 +7,10 @@ use super::Manager;
 use super::state::{Interaction, Preference};
 use crate::Concessions;
 
-/// What the user said of attributes rather than of values, by names: it outlives a change of the scene.
+/// Statements of the user about attributes, by name so that they outlive a change of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Conceded {
-    /// Attributes that the user cannot tell.
+    /// Attributes that the user does not know.
     pub unknown: Vec<String>,
     /// Attributes that do not matter to the user.
     pub indifferent: Vec<String>,
@@ -27,9 +27,9 @@ impl Conceded {
 }
 
 impl Manager {
-    /// Notes what an utterance concedes, and returns what the user wants to be decided. "I do not
-    /// know" and "it does not matter" are about the attribute that was asked about; without one, or
-    /// with other words ("any red cup"), the latter is about the object.
+    /// Records an utterance's concessions and returns the user's preference. "I do not know" and
+    /// "it does not matter" are about the attribute that was asked about; without one, or with
+    /// other words ("any red cup"), the latter is about the object.
     pub(super) fn concede(
         &self,
         open: &mut Interaction,
@@ -55,12 +55,11 @@ impl Manager {
     }
 }
 
-/// Returns the interpretation that is likelier than all others together, or one of several that
-/// concede the same.
+/// Returns the interpretation with the majority, or one of several that concede the same.
 pub(super) fn likeliest(heard: &[(f64, Question, Reading)]) -> Option<(Question, &Reading)> {
     let all: f64 = heard.iter().map(|(weight, ..)| weight).sum();
     let (_, question, first) = heard.first()?;
-    // "the red one or the blue one, I don't mind": what is conceded is the same in both.
+    // "the red one or the blue one, I don't mind": both interpretations concede the same.
     let agrees = |reading: &Reading| {
         let concedes = matches!(first.response, Response::CannotTell | Response::DoesNotMatter);
         reading == first || concedes && reading.response == first.response

@@ -1,5 +1,5 @@
-//! Corrections: utterances while the arm fetches. They count like every other, and where they speak
-//! against the object, the pick is called off and the interaction continues.
+//! Corrections: utterances while the arm fetches. They count like any other; if they are evidence
+//! against the object, the pick is cancelled and the interaction continues.
 
 use scene::{AttributeId, Doubt, ObjectId, Question, Reading, Reference, Response, WordId};
 use vocabulary::time::Time;
@@ -42,9 +42,9 @@ impl Manager {
         }
     }
 
-    /// Takes back words that the user replaces: by others of the same attribute ("a mug", and then "make
-    /// it a cup"), or by a description that fits objects to none of which they apply ("the white one in the cabinet", and
-    /// then "the clear one"). Only where both are certain: what is misheard replaces nothing.
+    /// Retracts words that the user replaces: by others of the same attribute ("a mug", and then
+    /// "make it a cup"), or by a description that fits objects to none of which they apply ("the
+    /// white one in the cabinet", and then "the clear one"). Only if both are certain.
     pub(super) fn retract(&self, state: &mut State, heard: &Heard<'_>) {
         let Some((_, reading)) = likeliest(&heard.interpretations) else { return };
         if state.open.is_none() || reading.base.is_empty() || reading.doubt != Doubt::default() {
@@ -91,9 +91,9 @@ impl Manager {
         state.open = Some(open);
     }
 
-    /// Returns the denial of `object` alone, where it is likely that there is one. It counts in
-    /// addition to the utterance that it came with: no user stops the robot on its way to the right
-    /// object by a slip of the tongue, as may happen with the answer to a question.
+    /// Returns the denial of `object` alone, if one is likely. It counts in addition to its
+    /// utterance: no user stops the robot on its way to the right object by a slip of the tongue,
+    /// as may happen with the answer to a question.
     pub(super) fn denial(
         &self,
         object: ObjectId,

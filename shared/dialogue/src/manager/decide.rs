@@ -52,7 +52,7 @@ impl Manager {
         let open = state.open.as_mut()?;
         let step = Step { interaction: open.id.0, step: open.step };
         open.step += 1;
-        // What was said of values in doubt counts for the questions to come.
+        // Earlier statements about values in doubt apply to the coming questions.
         let model = self.learned(open.counting()).into_owned();
         let spent = open.spent();
         let problem = DecisionProblem {
@@ -111,7 +111,7 @@ impl Manager {
         }
     }
 
-    /// Names the objects that the user cannot tell apart before one of them is picked.
+    /// Names the objects that the user cannot distinguish before one of them is picked.
     fn left_over(&mut self, state: &State, object: ObjectId) -> Preface {
         let Some(open) = &state.open else { return Preface::None };
         let left = self.left(&open.belief());

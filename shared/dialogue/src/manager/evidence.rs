@@ -17,7 +17,7 @@ const ENTRY: usize = 4;
 /// Content of one utterance about the wanted object.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
-    /// Its interpretations with the question that each answers and its weight, the likeliest first.
+    /// Interpretations with the question that each answers and its weight, the likeliest first.
     pub interpretations: Vec<(f64, NamedQuestion, NamedReading)>,
     /// A word that the scene did not have. Another scene may have it.
     pub unknown: Option<UnknownWord>,
@@ -36,19 +36,19 @@ pub enum Mark {
     OneOf(Vec<String>),
     /// How likely a relation would be said of each, as the scene was then.
     Likely {
-        /// Of these objects.
+        /// Likelihoods for the named objects.
         named: Vec<(String, f64)>,
-        /// Of every other one.
+        /// Likelihood for every other one.
         others: f64,
     },
-    /// The utterance is an answer that a later one has replaced. It counts no longer, but still teaches about the
-    /// person who gave it.
+    /// The utterance is an answer that a later one has replaced. It counts no longer, but still
+    /// teaches about the person who gave it.
     Replaced,
 }
 
-/// Factor of an object that was refused: beyond what any words can make up for.
+/// Factor of a refused object: beyond compensation by any words.
 const REFUSED: f64 = 1e-30;
-/// Factor of what is not pointed to: beyond what words of the scene can make up for in one utterance.
+/// Factor of objects that are not pointed to: beyond compensation by the words of one utterance.
 const NOT_MEANT: f64 = 1e-9;
 
 impl Mark {
@@ -92,7 +92,7 @@ impl Evidence {
         };
         let mut all: Vec<(f64, Question, Reading)> = self.interpretations.iter().map(of).collect();
         // The unknown word belongs to the best reading. Whether it was negated is not known, so it
-        // counts only where nothing was.
+        // counts only if nothing was.
         let unknown = self.unknown.as_ref().and_then(|unknown| scene.word_named(&unknown.text));
         if let (Some((_, _, best)), Some(word)) = (all.first_mut(), unknown)
             && best.response != Response::No

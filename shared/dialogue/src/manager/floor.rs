@@ -1,4 +1,4 @@
-//! The floor: whose turn it is to speak, and what time alone brings about.
+//! The floor: whose turn it is to speak, and transitions caused by time alone.
 
 use vocabulary::ids::PromptId;
 use vocabulary::time::{Span, Time};
@@ -10,16 +10,16 @@ use super::{Manager, State};
 /// silence the robot.
 pub const HEARING_MAX: Span = Span::from_ms(10_000);
 
-/// What is known of both voices.
+/// State of both voices, the user's and the robot's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Floor {
-    /// Since when the user speaks; none while no speech is heard.
+    /// Start of the user's speech; `None` while no speech is heard.
     pub speaking_since: Option<Time>,
     /// Utterances being recognised, or recognised and not yet applied.
     pub pending: u32,
     /// The latest presentation of a prompt.
     pub presented: Presentation,
-    /// For how long the standing prompt could be answered since its end: an outage is no silence.
+    /// Time since the prompt's end in which an answer could be heard: an outage is not silence.
     pub listened: Span,
 }
 
@@ -47,8 +47,8 @@ impl Manager {
         deferred.is_some_and(|it| !floor.is_taken(now) || now >= it.since + HEARING_MAX)
     }
 
-    /// Returns whether [`Silence`](super::Cause::Silence) is due: the standing question was said to its end, and could
-    /// be answered for the response window since.
+    /// Returns whether [`Silence`](super::Cause::Silence) is due: the standing question was said to
+    /// its end, and could be answered for the response window since.
     pub fn silence_is_due(&self, state: &State, floor: &Floor, now: Time) -> bool {
         let (act, put) = (&state.act, &floor.presented);
         let asked = act.kind == ActKind::Ask && act.prompt != PromptId(0);
@@ -64,8 +64,8 @@ impl Manager {
     /// Returns the response window: the one configured, or, once the user has answered a few times,
     /// the one in which this user does. Seconds.
     ///
-    /// A question that was met with silence is asked again after the adapted window, but from then on
-    /// nobody is given up sooner than configured: the user, or the client, may be away for a moment.
+    /// A question met with silence is repeated after the adapted window, but from then on users get
+    /// at least the configured time: the user, or the client, may be away for a moment.
     pub fn response_window_s(&self, state: &State) -> f64 {
         /// Answers after which a user's reaction time counts as known.
         const ACQUAINTED: u32 = 5;

@@ -18,9 +18,9 @@ use super::utterance::Utterance;
 /// A delivery that can still be refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HandedOver {
-    /// The interaction that ended with it.
+    /// The interaction that ended with the hand-over.
     pub interaction: Interaction,
-    /// When it was handed over.
+    /// Time of the hand-over.
     pub at: Time,
     /// Lines said since: each can be answered with a refusal.
     pub lines: Vec<PromptId>,
@@ -51,7 +51,7 @@ impl Manager {
         self.expire_with_user(state, at);
     }
 
-    /// Returns the refusal of what was handed over last, where the utterance is likely to be one.
+    /// Returns the refusal of the object handed over last, if the utterance is likely to be one.
     pub(super) fn refusal(&self, state: &State, heard: &Heard<'_>) -> Option<Heard<'static>> {
         let object = state.handed_over.as_ref().filter(|_| state.open.is_none())?.object()?;
         // Words of another object are the next request, and no refusal.

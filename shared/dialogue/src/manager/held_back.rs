@@ -1,6 +1,6 @@
-//! Picks that wait for a word: those decided while the motion stop is latched, which are ordered once the
-//! user has confirmed them and the stop is released, and an object that was called off and that the
-//! gripper has kept (`kept.rs`).
+//! Picks that wait for a word: those decided while the motion stop is latched, which are ordered
+//! once the user has confirmed them and the stop is released, and an object that was called off and
+//! that the gripper has kept (`kept.rs`).
 
 use scene::{ObjectId, Question, Response};
 use serde::{Deserialize, Serialize};
@@ -15,25 +15,25 @@ use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, State};
 use super::stop::MotionStop;
 
-/// A pick that waits for the release of the motion stop, or for a word about what the gripper has kept.
+/// A pick that waits for the release of the motion stop, or for a decision about a kept object.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HeldBack {
     /// Name of the object.
     pub name: String,
-    /// What it waits for.
+    /// Condition for the pick.
     pub wait: Wait,
 }
 
-/// What a pick waits for. In journals it once was `is_confirmed: bool`.
+/// Condition that a pick waits for. Earlier journals have `is_confirmed: bool`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Wait {
     /// The user's word and the release.
     Word,
     /// The release; the user has confirmed it.
     Release,
-    /// The user's word about what the gripper has kept.
+    /// The user's decision about the object kept in the gripper.
     WordOfKept,
-    /// The release; the user has asked for what the gripper has kept.
+    /// The release; the user has asked for the object kept in the gripper.
     ReleaseOfKept,
 }
 
@@ -50,7 +50,7 @@ impl HeldBack {
 }
 
 impl State {
-    /// Returns the object that an answer to that line would confirm or deny, where its pick waits for
+    /// Returns the object that an answer to that line would confirm or deny, if its pick waits for
     /// the release of the motion stop.
     pub fn confirmable(&self, prompt: PromptId) -> Option<ObjectId> {
         let open = self.open.as_ref().filter(|open| open.held_back.is_some())?;
@@ -111,8 +111,8 @@ impl Manager {
         }
     }
 
-    /// Reports the effect of a stop that a user ordered, as the arm does: it is at rest, or the stop is not
-    /// confirmed in time.
+    /// Reports the effect of a stop that a user ordered, as the arm does: it is at rest, or the
+    /// stop is not confirmed in time.
     pub(super) fn report_stop(&mut self, state: &mut State, confirmed: bool, at: Time) {
         let Some(order) = &mut state.stop.order else { return };
         order.is_late = true;

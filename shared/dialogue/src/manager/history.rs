@@ -18,7 +18,7 @@ impl History {
         self.count_within(name, NAMES_MAX);
     }
 
-    /// Counts a delivery, and at most so many names.
+    /// Counts a delivery, up to the given number of names.
     pub fn count_within(&mut self, name: &str, names_max: usize) {
         if !self.delivered.contains_key(name) && self.delivered.len() >= names_max {
             // Of several the last by name, so that a replay drops the same.
@@ -49,8 +49,8 @@ impl History {
         self.delivered.get(name).copied().unwrap_or(0)
     }
 
-    /// Returns the posterior mean of a Dirichlet distribution with weight `smoothing` for each object:
-    /// `(n_i + s) / Σ_j (n_j + s)`, in the order of the names.
+    /// Returns the posterior mean of a Dirichlet distribution with weight `smoothing` for each
+    /// object: `(n_i + s) / Σ_j (n_j + s)`, in the order of the names.
     pub fn prior<'a>(&self, names: impl Iterator<Item = &'a str>, smoothing: f64) -> Vec<f64> {
         let weights: Vec<f64> = names.map(|name| self.of(name) as f64 + smoothing).collect();
         let sum: f64 = weights.iter().sum();

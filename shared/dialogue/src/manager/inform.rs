@@ -33,21 +33,21 @@ impl Manager {
         self.open(state, said.utterance);
         let Some(open) = &mut state.open else { return };
         if said.spoken_of.is_some() {
-            // It compares to what was handed over.
+            // The comparison is with the object handed over.
             let relations = said.heard.interpretations.iter_mut().map(|(.., it)| it);
             relations.filter(|it| is_comparison(it)).for_each(forget_relation);
         }
         for mark in said.spoken_of.take().into_iter().chain(refused) {
             self.take_in(open, Heard { mark: Some(mark), ..Heard::default() });
         }
-        // What was asked before is over.
+        // The previous question is over.
         said.heard.interpretations.iter_mut().for_each(|(_, asked, _)| *asked = Question::None);
         let preface = if is_refused { Preface::Sorry } else { Preface::None };
         self.consider(state, said, preface);
     }
 
-    /// Scores an utterance against the questions that it may answer, and decides again. The preface stands in the
-    /// place of a remark on the utterance.
+    /// Scores an utterance against the questions that it may answer, and decides again. The preface
+    /// replaces a remark on the utterance.
     pub(super) fn consider(&mut self, state: &mut State, said: Statement<'_>, preface: Preface) {
         self.note_said(state, said.utterance);
         let (preference, mut remark) = self.note_concessions(state, &said.heard);
@@ -84,8 +84,8 @@ impl Manager {
         open.silences = 0;
     }
 
-    /// Notes the concessions, further objects and retractions of an utterance. Returns the user's preference for the
-    /// next decision, and the preface of the next question.
+    /// Notes the concessions, further objects and retractions of an utterance. Returns the user's
+    /// preference for the next decision, and the preface of the next question.
     pub(super) fn note_concessions(
         &self,
         state: &mut State,
@@ -101,7 +101,7 @@ impl Manager {
         (preference, preface)
     }
 
-    /// Returns the object that the robot has just offered to fetch, where that is accepted.
+    /// Returns the object that the robot has just offered to fetch, if the user accepts the offer.
     pub(super) fn accepted(&self, state: &State, heard: &Heard<'_>) -> Option<Mark> {
         let offered = self.offered(state)?;
         let (_, question, reading) = heard.interpretations.first()?;
@@ -125,7 +125,7 @@ impl Manager {
         }
     }
 
-    /// Records what the next decision rests on. It waits while the user is still speaking.
+    /// Records the basis of the next decision, which waits while the user is still speaking.
     pub(super) fn defer(
         &self,
         state: &mut State,
@@ -173,8 +173,8 @@ impl Manager {
         utterance.gesture.is_some() && self.pointing.is_some()
     }
 
-    /// Returns whether the utterance can open an interaction: a mere answer means nothing where no
-    /// question was asked, and neither does a gesture that does not count.
+    /// Returns whether the utterance can open an interaction: a mere answer means nothing without a
+    /// question, and neither does a gesture that does not count.
     pub(super) fn is_request(&self, utterance: &Utterance) -> bool {
         let all = utterance.interpretations.iter().map(|it| &it.reading);
         let only_gesture =
@@ -184,15 +184,15 @@ impl Manager {
             .interpretations
             .iter()
             .any(|it| it.answers.is_none() && it.reading.refers == Reference::Any);
-        // An answer has no content where it is not taken for one.
+        // An utterance that is not taken for an answer has no content as one.
         let is_empty = |it: &Reading| *it == Reading::default();
         let is_answer = all.clone().all(|it| is_mere_answer(it) || is_empty(it));
         let is_answer = is_answer && is_mostly_answer(&utterance.interpretations);
         takes_any || self.is_pointing(utterance) || !(is_answer || only_gesture)
     }
 
-    /// Returns the preface of the next question after an utterance with an unknown word, or that describes nothing. A
-    /// request that only repeats what is wanted ("the bowl") is understood: the question is put once more.
+    /// Returns the preface of the next question after an utterance with unknown words or no
+    /// description. If it only repeats the kind ("the bowl"), the question is repeated.
     fn preface(&self, heard: &Heard<'_>) -> Preface {
         match heard.unknown {
             Some(word) => Preface::UnknownWord(word.clone()),
@@ -230,7 +230,7 @@ pub(super) fn says_nothing(heard: &Heard) -> bool {
     heard.interpretations.iter().all(|(.., it)| *it == Reading::default())
 }
 
-/// Returns whether it is more likely an answer than something without content, where it may be taken for an answer.
+/// Returns whether an utterance that may be an answer is more likely one than without content.
 fn is_mostly_answer(interpretations: &[Interpretation]) -> bool {
     let weight = |answers: Option<usize>, is_answer: bool| -> f64 {
         let of_question = interpretations.iter().filter(|it| it.answers == answers);

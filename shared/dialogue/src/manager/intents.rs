@@ -1,4 +1,4 @@
-//! What the user wants of the robot beside an object: intents, cancelling, starting over.
+//! Requests to the robot other than for an object: intents, cancelling, starting over.
 
 use scene::{Intent, Reading, Reference, Response};
 use vocabulary::time::Time;
@@ -18,8 +18,7 @@ use super::turn::Turn;
 use super::utterance::Utterance;
 
 impl Manager {
-    /// Processes one utterance. Whatever its content, it counts as applied, and what was typed gets an
-    /// answer.
+    /// Processes one utterance. It always counts as applied, and a typed one always gets an answer.
     pub(super) fn hear(&mut self, state: &mut State, utterance: &Utterance, at: Time) {
         state.applied = utterance.seq;
         self.expire(state, at);
@@ -82,7 +81,8 @@ impl Manager {
         is_over && utterance.interpretations.iter().any(is_again)
     }
 
-    /// Forgets the words about the wanted object, and asks for it unless the same utterance tells it.
+    /// Forgets the words about the wanted object, and asks for it unless the same utterance names
+    /// it.
     pub(super) fn start_over(&mut self, state: &mut State, utterance: &Utterance, at: Time) {
         self.forget(state, at);
         if let Some(request) = request_after(utterance) {
@@ -120,31 +120,31 @@ impl Manager {
     }
 }
 
-/// Returns whether an answer comes without a further word of the user: a decision is deferred, or the standing
-/// question is on its way.
+/// Returns whether an answer comes without a further word of the user: a decision is deferred, or
+/// the standing question is on its way.
 fn is_about_to_speak(state: &State) -> bool {
     let Some(open) = &state.open else { return false };
     let is_deferred = open.deferred.is_some() && state.to_put_back().is_none();
     is_deferred || state.act.kind == ActKind::Ask
 }
 
-/// Notes an order to stop, which the speech service has given to the arm: the robot reports its effect once
-/// the arm has.
+/// Notes an order to stop, which the speech service has given to the arm: the robot reports its
+/// effect once the arm has.
 pub(super) fn order_stop(state: &mut State, utterance: &Utterance) {
     state.stop.order = Some(StopOrder { accepted: utterance.accepted, is_late: false });
 }
 
-/// Returns whether it withdraws only what it describes.
+/// Returns whether an utterance withdraws only the objects that it describes.
 pub(super) fn excludes(utterance: &Utterance) -> bool {
     likeliest(utterance, Intent::Cancel).is_some_and(|reading| !reading.excluded.is_empty())
 }
 
-/// Returns whether an order to stop also tells what is wanted or not.
+/// Returns whether an order to stop also says which object is wanted or not.
 pub(super) fn is_about_object(utterance: &Utterance) -> bool {
     likeliest(utterance, Intent::Stop).is_some_and(|it| *content(it) != Reading::default())
 }
 
-/// Returns whether "ok, go on" confirms what waits for the release of the motion stop.
+/// Returns whether "ok, go on" confirms a pick that waits for the release of the motion stop.
 fn is_confirmed(state: &State, utterance: &Utterance) -> bool {
     let is_fetched = state.open.as_ref().is_some_and(|open| open.held_back.is_some());
     let held_back = |it: &PuttingBack| matches!(it.progress, Progress::HeldBack { .. });
@@ -161,7 +161,7 @@ fn answered(utterance: &Utterance) -> Intent {
     if utterance.interpretations.iter().any(answers) { Intent::Inform } else { Intent::None }
 }
 
-/// Returns what is asked for beside starting over: "start over, I want the ladle".
+/// Returns the request that comes with starting over: "start over, I want the ladle".
 fn request_after(utterance: &Utterance) -> Option<Utterance> {
     let asks = |it: &&Interpretation| {
         it.answers.is_none()
@@ -174,8 +174,8 @@ fn request_after(utterance: &Utterance) -> Option<Utterance> {
     Some(Utterance { interpretations, ..utterance.clone() })
 }
 
-/// Returns the most probable intent, over all interpretations. Where nothing is open, "thank you, that
-/// is perfect" is thanks and no answer.
+/// Returns the most probable intent, over all interpretations. If nothing is open, "thank you, that
+/// is perfect" is thanks rather than an answer.
 fn likeliest_intent(utterance: &Utterance, shares: &[f64], is_open: bool) -> Intent {
     let mut alone = utterance.interpretations.iter().filter(|it| it.answers.is_none());
     if let Some(intent @ (Intent::Thank | Intent::Greet | Intent::Leave)) =

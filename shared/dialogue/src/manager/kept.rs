@@ -1,5 +1,5 @@
-//! An object that was called off and cannot go back to its place: the gripper keeps hold of it, and
-//! nothing else is decided until the user has said what becomes of it.
+//! A cancelled object that cannot go back to its place: the gripper keeps holding it, and nothing
+//! else is decided until the user decides about it.
 
 use scene::{ObjectId, Response};
 use vocabulary::time::Time;
@@ -38,7 +38,7 @@ impl Manager {
         self.setup.scene.object_named(state.kept()?)
     }
 
-    /// Asks whether to hand over what the gripper has kept; returns whether there is such an object.
+    /// Asks whether to hand over the object kept in the gripper; returns whether there is one.
     pub(super) fn ask_about_kept(&self, state: &mut State, preface: Preface, at: Time) -> bool {
         let Some(object) = self.kept(state) else { return false };
         let content = Content::Kept(rendering::object(&self.setup.scene, object));
@@ -47,7 +47,7 @@ impl Manager {
         true
     }
 
-    /// Returns whether the user asks for what the gripper has kept by its description.
+    /// Returns whether the user asks for the object kept in the gripper by its description.
     pub(super) fn asks_for_kept(&self, state: &State, heard: &Heard<'_>) -> bool {
         let Some(kept) = self.kept(state) else { return false };
         heard.interpretations.first().is_some_and(|(.., reading)| {

@@ -47,11 +47,11 @@ pub enum Preface {
     Sorry,
     /// Putting back the object of that description is over.
     PutBackEnded(String, PickOutcome),
-    /// These objects are left, which the user cannot tell apart; descriptions.
+    /// These objects are left, which the user cannot distinguish; descriptions.
     Left(Vec<String>),
 }
 
-/// A remark that answers the user without a decision. Journals hold its position in this list: new ones come last.
+/// A remark that answers the user without a decision. Journals hold positions: new ones come last.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Remark {
     /// The motion stop is latched, and the arm is at rest.
@@ -64,7 +64,7 @@ pub enum Remark {
     Goodbye,
     /// The answer to thanks.
     Welcome,
-    /// What one can say.
+    /// Explains possible requests to the user.
     Help,
     /// The utterance was not understood.
     NotUnderstood,
@@ -86,17 +86,17 @@ pub enum Remark {
     PutBackInTurn(String, String),
     /// The answer to a question about the scene.
     Objects {
-        /// What was asked.
+        /// Kind of the user's question.
         asked: AboutObjects,
         /// The words that describe the objects.
         words: Vec<String>,
         /// Names of the objects.
         objects: Vec<String>,
     },
-    /// What speaks for the objects in question.
+    /// Evidence for the objects in question.
     Why(Reason),
-    /// Nothing but fetching and putting back can be done. The name of the object that is offered to be
-    /// fetched, if there is one.
+    /// Nothing but fetching and putting back can be done. The name of the object that is offered to
+    /// be fetched, if there is one.
     OnlyFetches(Option<String>),
     /// The object of that description is handed over: it was called off too late.
     TooLate(String),
@@ -109,28 +109,28 @@ pub enum Remark {
 /// A question of the user about the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum AboutObjects {
-    /// How many there are.
+    /// The number of objects.
     Count,
-    /// Which there are.
+    /// The list of objects.
     Which,
-    /// Where they are.
+    /// The places of the objects.
     Where,
-    /// Whether there are any.
+    /// Whether such objects exist.
     Whether,
-    /// Which of several values of an attribute they have; the words are these values.
+    /// The value of an attribute, out of several, of the objects; the words are these values.
     Either,
 }
 
-/// Reason of what the robot does.
+/// Reason for an action of the robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Reason {
-    /// A question tells these objects apart; descriptions.
+    /// A question distinguishes these objects; descriptions.
     Between(Vec<String>),
     /// The user said these words.
     Said(Vec<String>),
-    /// It is the likeliest object.
+    /// The object is the likeliest.
     Likeliest,
-    /// There is nothing to explain.
+    /// No action needs an explanation.
     None,
 }
 
@@ -146,12 +146,12 @@ pub enum Content {
         variant: u64,
         /// For which time in the interaction it is put, from 1.
         time: u32,
-        /// The answers that are left, in their spoken form; none where there are too many.
+        /// The answers that are left, in their spoken form; empty if they are too many.
         choices: Vec<String>,
-        /// Whether it is not repeated again.
+        /// Whether the repetition is the last.
         is_last: bool,
     },
-    /// Asks what is wanted; for which time, from 1.
+    /// Asks for the wanted object for the given time, from 1.
     Wanted(u32),
     /// The object of that description is being fetched.
     Fetching(String),
@@ -167,7 +167,7 @@ pub enum Content {
     AskToPutBack(String),
     /// Putting back the object of that description is over.
     PutBackEnded(String, PickOutcome),
-    /// What was held back is confirmed.
+    /// The pick that was held back is confirmed.
     Confirmed,
     /// The pick of the object of that description is over.
     PickEnded(String, PickOutcome),
@@ -183,11 +183,11 @@ pub enum Content {
     Forgotten,
     /// The wanted object is not here.
     NotHere,
-    /// None of the scene's objects is left.
+    /// No object of the scene is left.
     SceneReplaced,
     /// Putting back is called off at the user's request.
     Keeping,
-    /// The object of that description was called off and cannot go back: asks whether to hand it over.
+    /// The object of that description was cancelled and cannot go back: offers to hand it over.
     Kept(String),
     /// Asks whether the first of the objects of these descriptions is wanted; the others come next.
     Offered(Vec<String>),

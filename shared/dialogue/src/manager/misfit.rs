@@ -1,8 +1,8 @@
-//! Offers: if what was said fits no object, or does not tell the last ones apart, the nearest ones are
-//! offered before one of them is fetched.
+//! Offers: if the description fits no object, or does not distinguish the last ones, the nearest
+//! ones are offered before one is fetched.
 //!
-//! A user in another room learns in this way which objects are here. The answer is about the object,
-//! and no longer about what the user took it for.
+//! In this way a user in another room learns which objects are here. The answer is about the
+//! object, no longer about the user's perception of it.
 
 use scene::{AttributeId, ObjectId, Question, ValueId};
 
@@ -14,7 +14,7 @@ use crate::Belief;
 use crate::planning::Price;
 use vocabulary::ActKind;
 
-/// Probability that the user takes an object for what it is, below which it does not fit.
+/// Probability that the user perceives an object correctly, below which it does not fit.
 const FITS_MIN: f64 = 0.5;
 /// Probability from which the user takes an attribute for one value.
 const TAKEN_MIN: f64 = 0.5;
@@ -26,10 +26,10 @@ const OFFERS_MAX: usize = 2;
 pub(super) type Offered = (ObjectId, Line);
 
 impl Manager {
-    /// Returns the offer of the object that would be fetched now, if what was said does not fit it, or
-    /// if the user cannot tell it from others, which `alike` names: then a second time, if the user has said
-    /// neither which one nor, by `preference`, that either will do. Only a user who may take a value for another one is
-    /// offered something.
+    /// Returns the offer of the object to be fetched now, if the description does not fit it, or if
+    /// the user cannot distinguish it from others, which `alike` names: then a second time, if the
+    /// user has said neither which one nor, by `preference`, that either will do. Only users who
+    /// may mistake values get offers.
     pub(super) fn offer_first(
         &mut self,
         state: &State,
@@ -39,7 +39,7 @@ impl Manager {
         let is_unanswered = *alike != Preface::None && preference == Preference::Best;
         let most = if is_unanswered { OFFERS_MAX } else { 1 };
         let open = state.open.as_ref().filter(|open| offers(open, object) < most)?;
-        // What is not here is concluded, and cannot be offered.
+        // An absent object is concluded, and cannot be offered.
         let is_here = Some(object) != self.setup.model.absent();
         let fit = self.fit(open, |i| f64::from(u8::from(i == object))).filter(|_| is_here)?;
         if *alike != Preface::None {
@@ -49,8 +49,8 @@ impl Manager {
         (fit < FITS_MIN).then(|| (object, self.offering(open, object)))
     }
 
-    /// Returns the offer to make instead of asking a question of that value: what was said fits no
-    /// object, and further questions are worth no more.
+    /// Returns the offer to make instead of asking a question of that value: the description fits
+    /// no object, and further questions are worth no more.
     pub(super) fn offer_instead(&mut self, state: &State, value: f64) -> Option<Offered> {
         let open = state.open.as_ref()?;
         let belief = open.belief();
@@ -65,8 +65,7 @@ impl Manager {
         is_worth.then(|| (object, self.offering(open, object)))
     }
 
-    /// Returns the value of offering objects of these probabilities one after another, until one is
-    /// accepted.
+    /// Returns the value of offering objects of these probabilities in turn, until one is accepted.
     fn worth_of_offers(&self, chances: &[f64]) -> f64 {
         let (costs, params) = (&self.setup.costs, self.setup.model.params());
         let price = Price::new(costs, costs.point_s, 1.0 - params.p_l);
@@ -82,9 +81,9 @@ impl Manager {
         })
     }
 
-    /// How well what was said fits, on average over the objects: for each attribute the probability
-    /// that the user takes the object for what it is, times the likelihood of what was said of that
-    /// value, relative to the likeliest one's. None for a user who takes values for what they are.
+    /// Returns the fit of the description, averaged over the objects: for each attribute the
+    /// probability that the user perceives the object correctly, times the likelihood of the words
+    /// for that value, relative to the likeliest. `None` for a user who never mistakes values.
     fn fit(&self, open: &Interaction, probability: impl Fn(ObjectId) -> f64) -> Option<f64> {
         let said = open.posterior.said()?;
         let model = open.posterior.model(&self.setup.model);
@@ -101,7 +100,7 @@ impl Manager {
         Some(self.setup.scene.ids().map(|i| probability(i) * fits(i)).sum())
     }
 
-    /// Returns the line that offers an object: what there is not, and what comes nearest.
+    /// Returns the line that offers an object: the absent values, and the nearest object.
     fn offering(&mut self, open: &Interaction, object: ObjectId) -> Line {
         let belief = open.belief();
         let preface = self.nothing_fits(open, &belief);

@@ -96,7 +96,7 @@ const LEFT_MAX: usize = 3;
 /// The dialogue manager of one scene and one decision problem.
 pub struct Manager {
     setup: Setup,
-    /// What the setup was made of, where the objects come from perception.
+    /// Scene file of the setup, if the objects come from perception.
     file: Option<Box<SceneFile>>,
     /// The table that the setup is about.
     table: Option<Table>,
@@ -209,8 +209,8 @@ impl Manager {
         self.setup.problem()
     }
 
-    /// Lets the planner precompute decisions from the prior of a first interaction, and returns them
-    /// if it is a planner that keeps any.
+    /// Lets the planner precompute decisions from the prior of a first interaction, and returns
+    /// them if it is a planner that keeps any.
     pub fn precompute(&mut self) -> Option<&PolicyTable> {
         if self.file.is_some() {
             // The first interaction is about objects that are not known yet.
@@ -265,7 +265,7 @@ impl Manager {
             return self.keep_hold(state, object, at);
         }
         if outcome == PickOutcome::Cancelled {
-            // The order still stands: the arm gave it up before a grasp, because it was restarted
+            // The order is still valid: the arm gave it up before a grasp, because it was restarted
             // with another scene.
             if state.act.kind == ActKind::Pick {
                 return order_again(state, at);
@@ -342,8 +342,8 @@ impl Manager {
         say(state, content, at);
     }
 
-    /// Lets every number up to `over` be over, and the open interaction with them: what was said in it
-    /// may be lost.
+    /// Ends every number up to `over`, and with them the open interaction, whose utterances may be
+    /// lost.
     fn set_aside(&self, state: &mut State, over: u64, at: Time) {
         state.applied = state.applied.max(UtteranceSeq(over));
         state.last_interaction = state.last_interaction.max(InteractionId(over));

@@ -8,7 +8,7 @@ use super::state::{Cause, Interaction, State};
 use super::{Manager, Setup};
 use crate::Model;
 
-/// What a setup was made of: words, and what objects may be.
+/// Source of a setup: words, and possible objects.
 pub(super) struct SceneFile {
     scene: Scene,
     model: Model,
@@ -63,8 +63,8 @@ impl Manager {
         self.follow(state);
     }
 
-    /// Notes that an object of the table was handed to the user, or is back in its place. Its number in
-    /// the scene stays, so that it can still be refused.
+    /// Notes that an object of the table was handed to the user, or is back in its place. Its
+    /// number in the scene stays, so that it can still be refused.
     pub(super) fn hand_over_from_table(&mut self, state: &mut State, name: &str, taken: bool) {
         let Some(table) = &mut state.table else { return };
         let object = table.objects.iter_mut().find(|object| object.name == name);
@@ -75,8 +75,8 @@ impl Manager {
         }
     }
 
-    /// Translates what is remembered of a delivery to the objects of the present scene; false if the
-    /// object is not among them.
+    /// Translates a remembered delivery to the objects of the present scene; false if the object is
+    /// not among them.
     pub(super) fn keep_delivery(&self, before: &mut Interaction) -> bool {
         let picked = self.setup.scene.object_named(&before.picked);
         before.pick = before.pick.zip(picked).map(|((id, _), object)| (id, object));
@@ -88,7 +88,7 @@ impl Manager {
 }
 
 impl Setup {
-    /// Returns whether there is no object that could be fetched.
+    /// Returns whether the scene has no object to fetch.
     pub(super) fn nothing_stands(&self) -> bool {
         self.scene.objects().iter().all(|object| object.taken)
     }

@@ -1,4 +1,4 @@
-//! What was learned about those who speak: error rates, and what they had fetched.
+//! Knowledge about speakers: error rates and past deliveries.
 
 use scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -18,13 +18,13 @@ const NAMES_MAX: usize = 64;
 /// Observations that a configured rate is worth.
 const STRENGTH: f64 = 10.0;
 
-/// What was learned about those who speak. In journals it once was `person: Option<Person>`.
+/// Knowledge about speakers. Earlier journals have `person: Option<Person>`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(from = "Stored", into = "Stored")]
 pub struct Users {
-    /// All users as one, as learned in earlier interactions, where the planner uses it.
+    /// All users as one, as learned in earlier interactions, if the planner uses it.
     pub person: Option<Person>,
-    /// Those who gave their name.
+    /// Users who gave their name.
     pub people: People,
 }
 
@@ -64,7 +64,7 @@ pub struct People {
     latest: Option<(InteractionId, KnownPerson)>,
 }
 
-/// What was learned about a person, from deliveries that were not refused.
+/// Knowledge about a person, from deliveries that were not refused.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct KnownPerson {
     /// The name.
@@ -85,7 +85,7 @@ impl People {
         self.known.iter()
     }
 
-    /// What is known of a person.
+    /// Returns the knowledge about a person.
     pub fn get(&self, id: &PersonId) -> Option<&KnownPerson> {
         self.known.iter().find(|known| known.id == *id).filter(|_| !id.is_nobody())
     }
@@ -111,7 +111,7 @@ impl People {
         self.known.push(person);
     }
 
-    /// Takes back what was learned from a delivery that was refused.
+    /// Takes back the lesson of a delivery that was refused.
     pub(super) fn take_back(&mut self, interaction: InteractionId) {
         let Some((_, before)) = self.latest.take_if(|(of, _)| *of == interaction) else { return };
         if let Some(person) = self.known.iter_mut().find(|known| known.id == before.id) {
@@ -131,14 +131,14 @@ impl People {
     }
 }
 
-/// The rate that is expected of a person. Nobody is taken to err less than configured: who has not erred in a
-/// few dialogues may yet, and would be asked too little.
+/// The rate that is expected of a person. At least as configured: a person without errors in a few
+/// dialogues may still err, and would be asked too little.
 fn expected(known: &Count, configured: f64) -> f64 {
     known.mean(configured, STRENGTH).max(configured)
 }
 
 impl KnownPerson {
-    /// Takes in what an interaction has shown, in a scene.
+    /// Learns from an interaction, in a scene.
     pub(super) fn take_in(&mut self, scene: &Scene, lesson: &Lesson, object: &str) {
         self.deliveries += 1;
         self.fetched.count_within(object, NAMES_MAX);

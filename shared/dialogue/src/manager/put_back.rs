@@ -1,5 +1,5 @@
-//! Putting back what was handed over: ordered at once, or in turn after what is being fetched; while
-//! the motion stop is latched it waits for a yes and the release. An open interaction goes on after it.
+//! Putting back the object handed over: ordered at once, or after the current fetch; while the
+//! motion stop is latched, it waits for a yes and the release. The interaction then continues.
 
 use scene::{Intent, ObjectId, Question, Response, WordId};
 use serde::{Deserialize, Serialize};
@@ -20,9 +20,9 @@ const PLAIN: f64 = 0.5;
 /// The object that the user was handed last.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WithUser {
-    /// Its name.
+    /// Name of the object.
     pub name: String,
-    /// The interaction that ended with it.
+    /// The interaction that ended with the hand-over.
     pub interaction: InteractionId,
     /// When it was handed over, or last spoken of.
     pub at: Time,
@@ -42,11 +42,11 @@ pub struct PuttingBack {
 /// How far putting back has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Progress {
-    /// What is being fetched is handed over first.
+    /// The object being fetched is handed over first.
     InTurn,
-    /// It waits for the release of the motion stop.
+    /// The object waits for the release of the motion stop.
     HeldBack {
-        /// Whether the user has confirmed it.
+        /// Whether the user has confirmed the order.
         is_confirmed: bool,
     },
     /// The arm has the order.
@@ -68,8 +68,8 @@ impl State {
         }
     }
 
-    /// Returns the object that a line was about which goes back to its place: that can be denied, and
-    /// confirmed while the motion stop is latched.
+    /// Returns the object that a line was about which goes back to its place: that can be denied,
+    /// and confirmed while the motion stop is latched.
     pub fn goes_back(&self, prompt: PromptId) -> Option<ObjectId> {
         let it = self.putting_back.as_ref().filter(|it| it.lines.contains(&prompt))?;
         Some(it.object)
@@ -93,8 +93,8 @@ impl Manager {
         }
     }
 
-    /// Returns whether an utterance asks to put back what the user was handed: after a hand-over that is
-    /// no mere denial.
+    /// Returns whether an utterance asks to put back the object handed over: after a hand-over this
+    /// is more than a denial.
     pub(super) fn asks_to_put_back(&self, state: &State, utterance: &Utterance) -> bool {
         let for_itself = utterance.interpretations.iter().filter(|it| it.answers.is_none());
         let (mut all, mut asks) = (0.0, 0.0);
@@ -122,7 +122,7 @@ impl Manager {
         }
         let is_fetching = state.open.as_ref().is_some_and(|open| open.pick.is_some());
         let Some(with_user) = state.with_user.clone() else {
-            // What is being fetched is meant.
+            // The object being fetched is meant.
             return match is_fetching {
                 true => self.cancel(state, at),
                 false => self.reply(state, Remark::NothingToPutBack, at),
@@ -150,7 +150,7 @@ impl Manager {
         wishes.any(|it| it.reading.base.iter().all(has))
     }
 
-    /// Returns what is said of the object that goes back to its place.
+    /// Returns the remark about the object that goes back to its place.
     pub(super) fn about_putting_back(&mut self, state: &State) -> Remark {
         let Some(it) = &state.putting_back else { return Remark::NothingToPutBack };
         let description = self.description(it.object);
@@ -163,7 +163,7 @@ impl Manager {
         }
     }
 
-    /// Puts the object back whose turn has come with the end of a pick, where the arm is fit for it.
+    /// Puts the object back whose turn has come with the end of a pick, if the arm is available.
     pub(super) fn put_back_in_turn(
         &mut self,
         state: &mut State,
@@ -178,8 +178,7 @@ impl Manager {
         self.put_back_now(state, preface, at);
     }
 
-    /// Orders to put the object back whose turn it is, or asks whether to, where the motion stop is
-    /// latched.
+    /// Puts the object back whose turn it is, or asks whether to, if the motion stop is latched.
     pub(super) fn put_back_now(&mut self, state: &mut State, preface: Preface, at: Time) {
         let Some(object) = state.putting_back.as_ref().map(|it| it.object) else { return };
         let description = self.description(object);
@@ -230,7 +229,7 @@ impl Manager {
         state.note_putting_back(state.last_prompt);
     }
 
-    /// The object is to stay where it is: with the user, unless the arm already holds it.
+    /// Keeps the object where it is: with the user, unless the arm already holds it.
     pub(super) fn withdraw_put_back(&mut self, state: &mut State, at: Time) {
         if state.to_put_back().is_none() {
             state.putting_back = None;
@@ -278,8 +277,8 @@ impl Manager {
         self.go_on(state, (preface, Content::PutBackEnded(description, outcome)), at);
     }
 
-    /// Goes on with what was open before an object was put back: the preface comes before it, or else
-    /// the content is said.
+    /// Continues the interaction that was open before an object was put back, after the preface;
+    /// without one, says the content.
     fn go_on(&mut self, state: &mut State, (preface, content): (Preface, Content), at: Time) {
         let Some(open) = &mut state.open else {
             if state.queue.is_empty() {

@@ -14,7 +14,7 @@ use super::utterance::Utterance;
 const QUEUE_MAX: usize = 8;
 
 impl Manager {
-    /// Puts the further objects of a request in the queue, and returns what is said about it.
+    /// Puts the further objects of a request in the queue, and returns the remark about them.
     pub(super) fn enqueue(&self, state: &mut State, heard: &Heard<'_>) -> Preface {
         let Some((.., reading)) = heard.interpretations.first() else { return Preface::None };
         if matches!(reading.refers, Reference::Relation(_)) {
@@ -44,7 +44,7 @@ impl Manager {
         Preface::InTurn([vec![first], further].concat())
     }
 
-    /// Turns to the next object of the queue once a pick has ended, where the arm is fit for it.
+    /// Turns to the next object of the queue once a pick has ended, if the arm is available.
     pub(super) fn serve_queue(&mut self, state: &mut State, preface: Preface, at: Time) {
         let words = state.queue.remove(0);
         let before = state.handed_over.take().map(|it| it.interaction);
@@ -66,8 +66,8 @@ impl Manager {
         self.decide(state, Basis { preface, utterance: seq, preference, ..Basis::default() }, at);
     }
 
-    /// Returns the objects that are no longer meant by the words of an interaction: the one fetched in
-    /// it, and those before.
+    /// Returns the objects that are no longer meant by the words of an interaction: the one fetched
+    /// in it, and those before.
     fn fetched(&self, before: &Interaction) -> Vec<Mark> {
         let earlier = before.counting().filter_map(|evidence| evidence.mark.clone());
         earlier.chain([Mark::Not(before.picked.clone())]).collect()

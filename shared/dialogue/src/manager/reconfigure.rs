@@ -1,8 +1,8 @@
 //! Other settings under an open interaction: it continues wherever possible.
 //!
-//! The evidence is scored again from the prior under the present scene, so that objects that are gone
-//! drop out and new ones count with everything said so far. The transition reads nothing of the
-//! former scene but the names in the state.
+//! The evidence is scored again from the prior under the present scene, so that objects that are
+//! gone drop out and new ones count with everything said so far. The transition reads nothing of
+//! the former scene but the names in the state.
 
 use scene::{ObjectId, Question};
 use vocabulary::time::Time;
@@ -51,8 +51,8 @@ impl Manager {
         let changes = if same_scene { Preface::None } else { changes(&open.objects, &known) };
         open.objects = known;
         self.translate(state, open);
-        // Where neither belief nor objects have changed, the standing question still stands; other
-        // costs count from the next utterance on.
+        // If neither belief nor objects have changed, the pending question remains; new costs count
+        // from the next utterance on.
         let is_ordered = state.ordered().is_some();
         if is_ordered || (same_scene && same_belief) {
             return;

@@ -1,5 +1,6 @@
-//! What an utterance points to by what was spoken of: "the other one", "the same again", and compared to what was handed
-//! over "a smaller one". Comparisons of journals from before there were relations are marks ([`Manager::compared`]).
+//! References of an utterance to earlier ones: "the other one", "the same again", and compared to
+//! the object handed over "a smaller one". Comparisons of journals from before there were relations
+//! are marks ([`Manager::compared`]).
 
 use scene::{ObjectId, Reading, Reference, Relation, Role, WordId, size_rank};
 use vocabulary::Outcome;
@@ -27,8 +28,8 @@ impl Manager {
         self.setup.scene.object_named(ended.name.as_deref()?)
     }
 
-    /// Returns the objects that a request points to by the one delivered last: of those that its words
-    /// describe, or else of those that are most like it.
+    /// Returns the objects that a request points to by the one delivered last: of those that its
+    /// words describe, or else of those that are most like it.
     pub(super) fn resolve(&self, state: &State, heard: &Heard<'_>) -> Option<Mark> {
         let delivered = self.delivered(state)?;
         let (.., reading) = heard.interpretations.first()?;
@@ -62,7 +63,7 @@ impl Manager {
         }
     }
 
-    /// Returns whether nothing is said beside the reference: "bigger" may be a name of a value as well.
+    /// Returns whether nothing is said beside the reference: "bigger" may also name a value.
     fn says_no_more(&self, reading: &Reading) -> bool {
         let measure = match reading.refers {
             Reference::Relation(Relation::More(measure) | Relation::Nth(measure, 1)) => measure,
@@ -71,7 +72,7 @@ impl Manager {
         reading.base.iter().all(|word| self.setup.scene.is_value_of(*word, measure))
     }
 
-    /// Returns the objects that the robot has just listed, where a request without a kind of thing
+    /// Returns the objects that the robot has just listed, if a request without a kind of thing
     /// fits one of them: "where is the red mug?" … "bring it".
     pub(super) fn listed(&self, state: &State, heard: &Heard<'_>) -> Option<Mark> {
         let objects = match &state.act.line.content {
@@ -96,7 +97,7 @@ impl Manager {
         Mark::OneOf(objects.iter().map(name).collect())
     }
 
-    /// Returns the objects whose size compares so with that of `object`; all where sizes are not known.
+    /// Returns the objects whose size compares so with that of `object`; all if sizes are unknown.
     fn of_other_size(
         &self,
         object: ObjectId,
@@ -117,8 +118,7 @@ impl Manager {
         scene.ids().filter(|i| scene.noun_of(*i) == scene.noun_of(object)).collect()
     }
 
-    /// Returns those of the objects that are most like `object`: in kind, in what was said of it, and
-    /// in their values.
+    /// Returns those of the objects most like `object`: in kind, in words used for it, in values.
     fn most_alike(&self, state: &State, object: ObjectId, others: Vec<ObjectId>) -> Vec<ObjectId> {
         let scene = &self.setup.scene;
         let said = state.handed_over.as_ref().map(|it| said(&it.interaction)).unwrap_or_default();
@@ -153,8 +153,8 @@ impl Manager {
         Some(self.one_of(&meant))
     }
 
-    /// Returns the size of each object as far as it is known: in cubic metres where they differ, else
-    /// the rank of its value in an attribute of sizes; none where neither tells them apart.
+    /// Returns the size of each object as far as it is known: in cubic metres if they differ, else
+    /// the rank of its value in an attribute of sizes; `None` if neither distinguishes them.
     fn sizes(&self, objects: &[ObjectId]) -> Option<Vec<Option<f64>>> {
         let scene = &self.setup.scene;
         let volume = |i: &ObjectId| {

@@ -6,7 +6,7 @@ use super::{Cause, Manager, Record, State};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("record {index}: the state does not follow from the one before it ({part} differs)")]
 pub struct Mismatch {
-    /// Its index, from 0.
+    /// Index of the record, from 0.
     pub index: usize,
     /// The part that differs.
     pub part: &'static str,
@@ -32,9 +32,9 @@ pub fn refold(manager: &mut Manager, records: &[Record]) -> Result<(), Mismatch>
 }
 
 /// Checks the latest consecutive records that were decided under the settings with that key, which
-/// must be those of `manager`, and returns their number. The record before them is taken as it is, and
-/// the change to these settings is checked like every other step: it rests on that record and on the
-/// settings since.
+/// must be those of `manager`, and returns their number. The record before them is taken as it is,
+/// and the change to these settings is checked like every other step: it rests on that record and
+/// on the settings since.
 ///
 /// # Errors
 /// As [`refold`], with the place in `records`.
@@ -54,7 +54,7 @@ pub fn refold_since(
     Ok(records.len() - from)
 }
 
-/// Returns what differs, comparing numbers by their bits.
+/// Returns the first difference, comparing numbers by their bits.
 fn difference(folded: &mut State, recorded: &State) -> Option<&'static str> {
     let bits = |state: &State| -> Option<Vec<u64>> {
         let belief = state.open.as_ref()?.belief();

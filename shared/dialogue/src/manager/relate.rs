@@ -1,5 +1,5 @@
-//! Relations by place, order and size as evidence: the truth of "the leftmost", "longer than the red one" for each
-//! object is the likelihood of saying so, never certain.
+//! Relations by place, order and size as evidence: the truth of "the leftmost", "longer than the
+//! red one" for each object is the likelihood of saying so, never certain.
 
 use scene::{
     AttributeId, ObjectId, Question, Reading, Reference, Related, Relation, Response, View, WordId,
@@ -16,26 +16,26 @@ const TRUTH_MIN: f64 = 0.01;
 /// Most objects whose likelihoods are remembered one by one.
 const NAMED_MAX: usize = 64;
 
-/// A relation that was said.
+/// A relation in an utterance.
 #[derive(Clone, Debug)]
 pub(super) struct SaidRelation {
     relation: Relation,
     to: Vec<Vec<ObjectId>>,
-    /// Words of the scene beside it.
+    /// Words of the scene next to the relation.
     base: Vec<WordId>,
     /// Share of the interpretations that have it.
     share: f64,
 }
 
 impl Manager {
-    /// Returns the relation in the likeliest reading; none where it is to something that the scene does not have.
+    /// Returns the relation in the likeliest reading; `None` if it is to something unknown.
     pub(super) fn relation(&self, heard: &Heard<'_>) -> Option<SaidRelation> {
         let (_, question, reading) = heard.interpretations.first()?;
         let Reference::Relation(relation) = reading.refers else { return None };
         if let Relation::Nth(measure, 1) | Relation::More(measure) = relation
             && reading.base.iter().any(|word| self.setup.scene.is_value_of(*word, measure))
         {
-            // "longer" is what the scene calls long.
+            // "longer" refers to the scene's word "long".
             return None;
         }
         let named: Vec<Vec<ObjectId>> =
@@ -53,7 +53,7 @@ impl Manager {
         Some(SaidRelation { relation, to, base: reading.base.clone(), share })
     }
 
-    /// "No, a bigger one", "the one to the left of it": the object that was asked about, where that is one.
+    /// "No, a bigger one", "the one to the left of it": the object asked about, if there is one.
     fn spoken_of(&self, question: Question, reading: &Reading) -> Vec<Vec<ObjectId>> {
         let asked = match question {
             Question::Point(object) => vec![object],
@@ -71,8 +71,8 @@ impl Manager {
         self.setup.scene.ids().filter(has).collect()
     }
 
-    /// Returns how likely a relation would be said of each object, of those that are left; none where the scene cannot
-    /// tell.
+    /// Returns how likely a relation would be said of each object, of those that are left; `None`
+    /// if the scene cannot tell.
     fn likely(&self, open: &Interaction, said: &SaidRelation) -> Option<Mark> {
         let SaidRelation { relation, to, base, share } = said;
         let left = self.left(&open.belief());
@@ -102,8 +102,8 @@ impl Manager {
         Some(Mark::Likely { named, others })
     }
 
-    /// Updates an interaction with a relation that was said. Returns whether the scene can tell of which objects it is
-    /// true.
+    /// Updates an interaction with a relation that was said. Returns whether the scene can tell of
+    /// which objects it is true.
     pub(super) fn relate(&self, open: &mut Interaction, said: Option<SaidRelation>) -> bool {
         let mark = said.and_then(|said| self.likely(open, &said));
         let is_known = mark.is_some();
@@ -113,8 +113,8 @@ impl Manager {
         is_known
     }
 
-    /// Returns what the user conceded. Nothing is asked about places in rows while an object that is in none may be meant:
-    /// it may be further left than "the left one".
+    /// Returns the user's concessions. Nothing is asked about places in rows while an object
+    /// outside all rows may be meant: it may be further left than "the left one".
     pub(super) fn concessions(&self, open: &Interaction) -> Concessions {
         let scene = &self.setup.scene;
         let mut concessions = open.conceded.in_scene(scene);
@@ -127,7 +127,7 @@ impl Manager {
         concessions
     }
 
-    /// Returns the objects that compare so to what was handed over, of these.
+    /// Returns the objects, of these, that compare so to the object handed over.
     pub(super) fn comparable(
         &self,
         relation: Relation,
@@ -142,7 +142,7 @@ impl Manager {
         others.into_iter().filter(fits).collect()
     }
 
-    /// The user's view where the user's place is known, else the robot's.
+    /// Returns the user's view if the user's place is known, else the robot's.
     fn view(&self) -> View {
         self.setup.gestures.map_or(View::Robot, |(_, user_m)| View::User(user_m))
     }

@@ -1,4 +1,4 @@
-//! Answers to what the user asks the robot: from the scene, the state and the evidence.
+//! Answers to questions to the robot: from the scene, the state and the evidence.
 
 use scene::{Intent, ObjectId, Reading, WordId};
 use vocabulary::ActKind;
@@ -43,9 +43,9 @@ impl Manager {
         }
     }
 
-    /// Returns what the robot is doing.
+    /// Returns the robot's current activity.
     pub(super) fn status(&mut self, state: &State) -> Remark {
-        // A question that stands is still to be answered; anything else waits for the release.
+        // A pending question still needs an answer; anything else waits for the release.
         if state.stop.motion.is_latched()
             && (state.act.kind != ActKind::Ask || state.open.is_none())
         {
@@ -65,8 +65,8 @@ impl Manager {
         }
     }
 
-    /// Returns the name of the one object that is to be washed or the like: it can be fetched instead, where
-    /// nothing else is under way and the user does not have it.
+    /// Returns the name of the one object that is to be washed or the like: it can be fetched
+    /// instead if nothing else is under way and the user does not have it.
     fn fetched_instead(&self, state: &State, said: &Utterance) -> Option<String> {
         if state.open.is_some() || state.ordered().is_some() {
             return None;

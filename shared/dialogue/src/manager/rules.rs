@@ -1,5 +1,5 @@
-//! The rules for an utterance, in order: the first one whose conditions hold handles it. [`INTENTS`] go by the user's
-//! intent, [`CONTENT`] by the stage of the dialogue and by the words about the wanted object.
+//! The rules for an utterance, in order: the first one whose conditions hold handles it.
+//! [`INTENTS`] go by the user's intent, [`CONTENT`] by the dialogue's stage and the words.
 
 use scene::{Intent, Response, Role};
 
@@ -13,11 +13,11 @@ use super::turn::{Statement, Turn};
 
 /// A rule for an utterance.
 pub(super) struct Rule<On: 'static, Applies, Apply> {
-    /// Its name.
+    /// Name of the rule.
     pub(super) name: &'static str,
     /// Intents or stages for which it is made; empty for all.
     on: &'static [On],
-    /// Its further condition.
+    /// Further condition of the rule.
     applies: Applies,
     /// Handles the utterance.
     pub(super) apply: Apply,

@@ -1,4 +1,4 @@
-//! What the manager decides by.
+//! Settings by which the manager decides.
 
 use scene::Scene;
 use vocabulary::gesture::Gestures;
@@ -23,14 +23,14 @@ pub struct Setup {
     pub announce: Announce,
     /// Prior of a new interaction.
     pub prior: Prior,
-    /// Model of pointing gestures and the user's place (metres, frame `base`); none where gestures
+    /// Model of pointing gestures and the user's place (metres, frame `base`); `None` if gestures
     /// do not count.
     pub gestures: Option<(Gestures, [f64; 3])>,
     /// Settings of turn-taking.
     pub turns: TurnTaking,
-    /// What to learn about people who give their name.
+    /// Settings of learning about people who give their name.
     pub people: Acquaintance,
-    /// Whether the objects come from perception; those of the scene are what they may be.
+    /// Whether objects come from perception; those of the scene are then the possible ones.
     pub perceives: bool,
 }
 

@@ -1,9 +1,9 @@
-//! State of the dialogue: everything that must outlive a restart. It is small, so each journal record
-//! holds it whole, and recovery reads one record.
+//! State of the dialogue: everything that must outlive a restart. It is small, so each journal
+//! record holds it whole, and recovery reads one record.
 //!
-//! Journals of earlier versions are read as if they were of this one: an enum gets new variants at its end, and a
-//! struct no new field. What a struct has to state further is a variant of a field that it has ([`Stop`],
-//! [`HeldBack`]).
+//! Journals of earlier versions are read as if they were of this one: an enum gets new variants at
+//! its end, and a struct no new field. Further content of a struct becomes a variant of one of its
+//! fields ([`Stop`], [`HeldBack`]).
 
 use scene::{ObjectId, Question};
 use serde::{Deserialize, Serialize};
@@ -33,7 +33,7 @@ pub struct State {
     pub settings_key: u64,
     /// Latest utterance that the state includes.
     pub applied: UtteranceSeq,
-    /// The objects on the table, where they come from perception.
+    /// The objects on the table, if they come from perception.
     pub table: Option<Table>,
     /// Last interaction number assigned.
     pub last_interaction: InteractionId,
@@ -43,7 +43,7 @@ pub struct State {
     pub last_prompt: PromptId,
     /// The open interaction.
     pub open: Option<Interaction>,
-    /// Words of each further object that was asked for, in order.
+    /// Words of each further requested object, in order.
     pub queue: Vec<Vec<String>>,
     /// The standing decision.
     pub act: Act,
@@ -53,7 +53,7 @@ pub struct State {
     pub ended: Option<Ended>,
     /// The latest delivery, while it can be refused.
     pub handed_over: Option<HandedOver>,
-    /// What was handed over last, while it can be put back.
+    /// The object handed over last, while it can be put back.
     pub with_user: Option<WithUser>,
     /// The object that goes back to its place.
     pub putting_back: Option<PuttingBack>,
@@ -61,7 +61,7 @@ pub struct State {
     pub stop: Stop,
     /// Deliveries by object.
     pub history: History,
-    /// What was learned about those who speak.
+    /// Knowledge about speakers.
     pub users: Users,
     /// The user's reaction times as observed so far.
     pub timing: Timing,
@@ -74,7 +74,7 @@ pub enum Stage {
     Idle,
     /// The wanted object is being found out.
     Deciding,
-    /// A pick waits for the release of the motion stop, or for a word about what the gripper has kept.
+    /// A pick waits for the release of the motion stop, or for a decision about a kept object.
     HeldBack,
     /// The arm has the order to fetch an object, or to leave it.
     Fetching,
@@ -92,16 +92,16 @@ impl State {
     }
 }
 
-/// Reaction times of the user. None until an answer was observed: the configured one holds then.
+/// Reaction times of the user. `None` until an answer was observed: the configured one holds then.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
-    /// From the end of a spoken question to the first sound of the answer.
+    /// Time from the end of a spoken question to the first sound of the answer.
     pub spoken: Option<Reaction>,
-    /// From a question's appearance to the answer typed.
+    /// Time from a question's appearance to the answer typed.
     pub typed: Option<Reaction>,
 }
 
-/// Questions and lines of an interaction that are remembered: nobody answers older ones.
+/// Questions and lines of an interaction that are remembered: older ones get no answers.
 pub const PROMPTS_MAX: usize = 64;
 
 /// How often a question is asked in an interaction, repetitions after silence not counted.
@@ -118,22 +118,22 @@ pub(super) fn push_bounded<T>(items: &mut Vec<T>, item: T) {
 /// One interaction in progress.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interaction {
-    /// Its number.
+    /// Number of the interaction.
     pub id: InteractionId,
-    /// When its first utterance was accepted.
+    /// Time at which its first utterance was accepted.
     pub opened: Time,
-    /// Posterior over the wanted object, and over the user where the planner uses it.
+    /// Posterior over the wanted object, and over the user if the planner uses it.
     pub posterior: Posterior,
     /// Content of the utterances, to be scored again under another scene.
     pub evidence: Vec<Evidence>,
     /// Utterances dropped from `evidence` for lack of room.
     pub forgotten: u32,
-    /// The scene's objects when it was last read; empty where they are too many.
+    /// The scene's objects when it was last read; empty if they are too many.
     pub objects: Vec<KnownObject>,
-    /// What the user said of attributes, by name.
+    /// Statements of the user about attributes, by name.
     pub conceded: Conceded,
-    /// The latest questions asked ([`PROMPTS_MAX`]), so that an answer can be scored against the one it
-    /// was meant for.
+    /// The latest questions asked ([`PROMPTS_MAX`]), so that an answer can be scored against the
+    /// one it was meant for.
     pub prompts: Vec<Prompt>,
     /// Number of questions asked, each counted once however often it was repeated.
     pub questions: u32,
@@ -149,7 +149,7 @@ pub struct Interaction {
     pub deferred: Option<Deferred>,
     /// The ordered pick.
     pub pick: Option<(PickId, ObjectId)>,
-    /// Name of its object.
+    /// Name of the picked object.
     pub picked: String,
     /// The latest lines said since it was ordered ([`PROMPTS_MAX`]): each can be denied.
     pub announced: Vec<PromptId>,
@@ -197,8 +197,8 @@ impl Interaction {
         push_bounded(&mut self.prompts, prompt);
     }
 
-    /// Returns the questions that were asked as often as one is ([`ASKED_MAX`]). A user who may take a
-    /// value for another one says the same again.
+    /// Returns the questions that were asked as often as one is ([`ASKED_MAX`]). A user who may
+    /// take a value for another one says the same again.
     pub(super) fn spent(&self) -> Vec<Question> {
         if self.posterior.said().is_none() {
             return Vec::new();
@@ -224,7 +224,7 @@ impl Interaction {
     }
 }
 
-/// What a decision rests on.
+/// Basis of a decision.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Basis {
     /// The last question that the user had heard completely.
@@ -233,11 +233,11 @@ pub struct Basis {
     pub preface: Preface,
     /// The latest utterance.
     pub utterance: UtteranceSeq,
-    /// What the user wants to be decided.
+    /// Preference that the user expressed.
     pub preference: Preference,
 }
 
-/// What the user wants to be decided.
+/// Preference of the user for the decision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Preference {
     /// Whatever is best.
@@ -252,27 +252,27 @@ pub enum Preference {
 /// A deferred decision: the user was still speaking when the belief was updated.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Deferred {
-    /// What it rests on.
+    /// Basis of the decision.
     pub basis: Basis,
-    /// Since when it waits.
+    /// Since when the decision waits.
     pub since: Time,
 }
 
 /// An object of the scene, by name.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KnownObject {
-    /// Its name.
+    /// Name of the object.
     pub name: String,
-    /// Its description, unique in the scene, e.g. `small white bowl in the dishwasher`.
+    /// Description, unique in the scene, e.g. `small white bowl in the dishwasher`.
     pub description: String,
 }
 
-/// A question that was asked.
+/// A question put to the user.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Prompt {
-    /// Its number.
+    /// Number of the prompt.
     pub id: PromptId,
-    /// The question, numbered as in the present scene; none if that scene lacks its subject.
+    /// The question, numbered as in the present scene; `None` if that scene lacks its subject.
     pub question: Question,
     /// The question by names.
     pub named: NamedQuestion,
@@ -282,16 +282,16 @@ pub struct Prompt {
     pub times: u32,
 }
 
-/// A decision with its reasons.
+/// A decision with the reasons for it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Act {
-    /// Its number.
+    /// Number of the act.
     pub id: ActId,
-    /// Its kind.
+    /// Kind of the act.
     pub kind: ActKind,
     /// The line that goes with it, if any.
     pub prompt: PromptId,
-    /// Which presentation of the prompt.
+    /// Number of the prompt's presentation.
     pub presentation: u32,
     /// The question asked.
     pub question: Question,
@@ -299,9 +299,9 @@ pub struct Act {
     pub pick: Option<(PickId, ObjectId)>,
     /// The robot's words.
     pub line: Line,
-    /// The utterance that led to it.
+    /// The utterance that led to the act.
     pub utterance: UtteranceSeq,
-    /// When it was decided.
+    /// Time of the decision.
     pub decided: Time,
     /// Expected discounted return.
     pub value: f64,
@@ -309,7 +309,7 @@ pub struct Act {
     pub alternatives: Vec<(Action, f64)>,
     /// Expected number of questions still to ask.
     pub expected_questions: f64,
-    /// Certified lower and upper bound on the value of the best policy, where the planner has them.
+    /// Certified lower and upper bound on the value of the best policy, if the planner has them.
     pub bounds: Option<(f64, f64)>,
 }
 
@@ -328,7 +328,7 @@ pub enum Cause {
     PickEnded {
         /// The pick.
         pick: PickId,
-        /// Its outcome.
+        /// Outcome of the pick.
         outcome: PickOutcome,
     },
     /// The service was started with other settings, perhaps with another scene.
@@ -355,6 +355,6 @@ pub struct Record {
     pub cause: Cause,
     /// The time; the transition depends on no other clock.
     pub at: Time,
-    /// The state after it.
+    /// State after the event.
     pub state: State,
 }

@@ -7,7 +7,7 @@ use vocabulary::time::Time;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "StoredStop", into = "StoredStop")]
 pub struct Stop {
-    /// What the arm reports.
+    /// State of the motion stop as the arm reports it.
     pub motion: MotionStop,
     /// A stop that a user ordered in words and whose effect the robot has not reported yet.
     pub order: Option<StopOrder>,
@@ -41,8 +41,8 @@ pub struct StopOrder {
     pub is_late: bool,
 }
 
-/// The stop in a journal, where it once was `stopped: bool`: the same bytes mean the same, and orders are variants
-/// that came later.
+/// The stop in a journal; earlier journals have `stopped: bool`, which the same bytes encode.
+/// Orders are variants that came later.
 #[derive(Serialize, Deserialize)]
 enum StoredStop {
     Released,

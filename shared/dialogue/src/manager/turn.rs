@@ -10,7 +10,7 @@ use super::references::reference;
 use super::state::State;
 use super::utterance::Utterance;
 
-/// An utterance with its intent.
+/// An utterance and the intent that the manager handles.
 pub(super) struct Turn<'a> {
     pub(super) utterance: &'a Utterance,
     /// Shares of the questions that it may answer, and last the share of none.
@@ -35,19 +35,19 @@ pub(super) struct Statement<'a> {
     pub(super) utterance: &'a Utterance,
     /// Shares of the questions that it may answer, and last the share of none.
     pub(super) shares: Vec<f64>,
-    /// Its content.
+    /// Content of the utterance.
     pub(super) heard: Heard<'a>,
-    /// The reference in its likeliest reading.
+    /// The reference in the utterance's likeliest reading.
     pub(super) refers: Reference,
     /// The answer to a line about the object that goes back to its place.
     pub(super) of_put_back: Option<Response>,
     /// The object of the pick that was held back, if this confirms it.
     pub(super) confirmed: Option<ObjectId>,
-    /// The refusal of what was handed over last, if it is likely to be one.
+    /// The refusal of the object handed over last, if the utterance is likely to be one.
     pub(super) refusal: Option<Heard<'static>>,
     /// Objects spoken of before that it points to, if no interaction is open.
     pub(super) spoken_of: Option<Mark>,
-    /// Whether it can open an interaction.
+    /// Whether the utterance can open an interaction.
     pub(super) is_request: bool,
     /// The time.
     pub(super) at: Time,

@@ -10,7 +10,7 @@ use vocabulary::{Interpretation, PersonId, Presentation};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(from = "Stored", into = "Stored")]
 pub struct Utterance {
-    /// Its number.
+    /// Number of the utterance.
     pub seq: UtteranceSeq,
     /// The latest presentations whose sound had begun when it was accepted, newest first.
     pub presentations: Vec<Presentation>,
@@ -20,7 +20,7 @@ pub struct Utterance {
     pub onset: Time,
     /// When the user had finished.
     pub end: Time,
-    /// When it was accepted.
+    /// Time at which the utterance was accepted.
     pub accepted: Time,
     /// Interpretations as an answer to each of the presentations, and to none.
     pub interpretations: Vec<Interpretation>,
@@ -30,7 +30,7 @@ pub struct Utterance {
     pub gesture: Option<[f64; 3]>,
     /// Whether the user is still speaking, or more speech is being recognised.
     pub more: bool,
-    /// Who spoke, as far as the channel knows.
+    /// Speaker, as far as the channel knows.
     pub from: PersonId,
 }
 
@@ -56,8 +56,8 @@ type Stored = (
     Ending,
 );
 
-/// The last fields, where there once was `more: bool`: the same bytes mean the same, and persons are variants that
-/// came later.
+/// The last fields; earlier journals have `more: bool`, which the same bytes encode. Persons are
+/// variants that came later.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Ending {
     Whole,

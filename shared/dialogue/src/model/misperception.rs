@@ -9,10 +9,10 @@ use super::Model;
 
 impl Model {
     /// The model of a user who takes the object's value of attribute `k` for another one with
-    /// probability `rates[k]`, each other value alike, and sticks to it: every word and answer about
-    /// the attribute is about the value that the user takes it for. As often the user describes by a
-    /// value, each alike, what the scene gives none ("the tomato ketchup"): scenes do not state all. Without a rate
-    /// above 0 the model stays as it is.
+    /// probability `rates[k]`, each other value alike, and sticks to it: every word and answer
+    /// about the attribute is about the value that the user takes it for. With the same rate the
+    /// user gives a value, each alike, to an object for which the scene states none ("the tomato
+    /// ketchup"): scenes are incomplete. Without a rate above 0 the model stays as it is.
     ///
     /// # Panics
     /// If there is not a rate from 0 to below 1 for each attribute, or the model has a hypothesis
@@ -38,8 +38,8 @@ impl Model {
         tables.find_what_splits();
     }
 
-    /// The model of a person with these parameters, with that `α` of words and of words that are certain, and
-    /// these rates of misperception, if a user may take a value for another one at all.
+    /// The model of a person with these parameters, with that `α` of words and of words that are
+    /// certain, and these rates of misperception, if users mistake values at all.
     #[must_use]
     pub(crate) fn of_person(
         &self,
@@ -48,7 +48,7 @@ impl Model {
         rate: impl Fn(AttributeId) -> f64,
     ) -> Self {
         let mut model = self.plain().with_params(params);
-        // Persons come and go: tables of decisions are for what recurs.
+        // Persons come and go: tables of decisions are for recurring models.
         model.is_of_interaction = true;
         if [alpha, certain] != [false, true].map(|is_certain| model.smoothing(is_certain)) {
             let objects = model.objects;
@@ -65,10 +65,10 @@ impl Model {
         self.tables.columns[k.index()].misperceived
     }
 
-    /// The model that decisions are planned with: attributes of which something was said, as `told`
-    /// has it, are as the user takes them. All others are as they are, and their answers wrong as
-    /// often as by misperception and error together: a search takes answers for independent given
-    /// the object, so it would count on asking again what says nothing new.
+    /// The model for planning: attributes that were mentioned, according to `told`, are as the user
+    /// perceives them. All others are as they are, and their answers wrong as often as by
+    /// misperception and error together: a search assumes independent answers given the object, so
+    /// it would rely on repeated questions that bring nothing new.
     #[must_use]
     pub(crate) fn planned(&self, told: impl Fn(AttributeId) -> bool) -> Self {
         let mut model = self.plain().clone();
@@ -87,7 +87,7 @@ impl Model {
         model
     }
 
-    /// The model of a user who takes values for what they are.
+    /// The model of a user who never mistakes values.
     pub(crate) fn plain(&self) -> &Self {
         self.plain.as_deref().unwrap_or(self)
     }
@@ -97,14 +97,14 @@ impl Model {
         self.plain.is_some()
     }
 
-    /// The value that an entry stands for which only the user may take for another one.
+    /// The value of an entry that only the user may take for another one.
     pub(crate) fn known(&self, k: AttributeId, entry: u16) -> Option<ValueId> {
         let doubt = entry.checked_sub(Self::DOUBTFUL).filter(|_| entry < Self::UNKNOWN)?;
         self.tables.columns[k.index()].known.get(usize::from(doubt)).copied().flatten()
     }
 
-    /// Whether values in doubt have been weighed with what was said in an interaction, so that the
-    /// model will hardly recur.
+    /// Whether values in doubt were updated with the words of an interaction, so that the model
+    /// will hardly recur.
     pub(crate) fn is_of_interaction(&self) -> bool {
         self.is_of_interaction
     }

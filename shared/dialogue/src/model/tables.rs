@@ -5,15 +5,15 @@ use scene::{AttributeId, Scene, ValueId, WordId};
 use super::Model;
 use crate::Confusion;
 
-/// What the models of one scene share.
+/// Data that the models of one scene share.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tables {
     pub(super) confusion: Confusion,
     pub(super) columns: Vec<Column>,
     pub(super) words: Vec<Word>,
-    /// Of words that may have been something else.
+    /// Smoothing of uncertain words.
     pub(super) smoothing: Smoothing,
-    /// Of words that are certain.
+    /// Smoothing of certain words.
     pub(super) certain: Smoothing,
 }
 
@@ -40,10 +40,10 @@ pub(super) struct Column {
     /// Probabilities of the values of hypotheses whose value is in doubt, by entry from
     /// [`Model::DOUBTFUL`] on.
     pub(super) doubtful: Vec<Vec<f64>>,
-    /// The value of each of these where it is known, and only the user may take it for another.
+    /// The known value of each of these, if only the user may take it for another.
     pub(super) known: Vec<Option<ValueId>>,
-    /// What a user takes a hypothesis for that lacks the attribute: each value, and last that it lacks it. Empty if
-    /// the user knows, or each has a value.
+    /// Perception by the user of a hypothesis without the attribute: probability of each value, and
+    /// last of its absence. Empty if the user knows, or each has a value.
     pub(super) lacking: Vec<f64>,
     pub(super) words: Vec<WordId>,
     /// Probability that a user takes a value for another one.
@@ -52,7 +52,7 @@ pub(super) struct Column {
     pub(super) splits: Vec<bool>,
 }
 
-/// What a word stands for, and whether hearing it says anything.
+/// Referents of a word, and whether hearing it is informative.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Word {
     pub(super) meanings: Vec<(AttributeId, ValueId)>,
@@ -101,7 +101,7 @@ impl Tables {
         (0..objects).map(|i| certain(i) + in_doubt(i)).collect()
     }
 
-    /// Notes which words and values tell hypotheses apart.
+    /// Notes which words and values distinguish hypotheses.
     pub(super) fn find_what_splits(&mut self) {
         for column in &mut self.columns {
             let unsure = column.values.len() > 1
@@ -130,8 +130,8 @@ impl Tables {
 }
 
 impl Column {
-    /// Lets a user take each value for another one with that probability, any other alike, and describe by any value
-    /// what the scene gives none.
+    /// Lets a user take each value for another one with that probability, any other alike, and give
+    /// any value to objects for which the scene has none.
     pub(super) fn misperceive(&mut self, rate: f64) {
         let values = self.words.len();
         if values < 2 || rate <= 0.0 {

@@ -1,4 +1,4 @@
-//! Eq. (5): what a word says about every hypothesis.
+//! Eq. (5): the likelihood of a word under every hypothesis.
 
 use scene::{ObjectId, WordId};
 
@@ -23,7 +23,7 @@ impl Model {
         lengths.iter().sum::<usize>() as f64 / self.objects as f64
     }
 
-    /// The words that may have been said where one was heard with a doubt, each with its share.
+    /// The words that may have been said if one was heard with a doubt, each with its share.
     pub(crate) fn said_instead(
         &self,
         word: WordId,
@@ -32,8 +32,8 @@ impl Model {
         self.tables.confusion.said_instead(word, doubt)
     }
 
-    /// The denominator of eq. (5), and the weight of an object's own word: what a word says beyond
-    /// the value that it names. Added to every entry but for a constant that is returned.
+    /// The denominator of eq. (5), and the weight of an object's own word: the information in a
+    /// word beyond its value. Added to every entry but for a constant that is returned.
     pub(crate) fn add_vocabulary(&self, is_certain: bool, out: &mut [f64]) -> f64 {
         let tables = &*self.tables;
         let Smoothing { alpha, vocabulary } =

@@ -73,18 +73,18 @@ fn the_value_answers_an_open_question() {
     assert_likelihood(which, &["red", "red"], Response::None, answer);
     assert_likelihood(which, &["red"], Response::Yes, answer);
     assert_likelihood(which, &[], Response::No, [(1.0 - P_L) * third; 3]);
-    // A word of another attribute keeps its own factor beside the answer.
+    // A word of another attribute keeps its own factor next to the answer.
     let lidded = [1.5 / 4.5, 0.5 / 4.5, 0.5 / 3.5];
     let both = [0, 1, 2].map(|i| answer[i] * lidded[i]);
     assert_likelihood(which, &["lidded", "red"], Response::None, both);
-    // Two values are no answer; their words count as any others.
+    // Two values are not an answer; their words count as any others.
     let red = [1.5 / 4.5, 0.5 / 4.5, 0.5 / 3.5];
     let blue = [0.5 / 4.5, 1.5 / 4.5, 0.5 / 3.5];
     let neither = [0, 1, 2].map(|i| P_L * third * red[i] * blue[i]);
     assert_likelihood(which, &["red", "blue"], Response::None, neither);
 }
 
-/// "Red or blue?", with "neither" for the green one; "lidded or open?" of which the green one is neither.
+/// "Red or blue?": "neither" for the green one; "lidded or open?": neither for the green one.
 #[test]
 fn options_and_neither_answer_a_choice() {
     let third = 1.0 / 3.0;
@@ -96,7 +96,7 @@ fn options_and_neither_answer_a_choice() {
         let second = [other, own, other].map(|p| P_L * p);
         let said = second.map(|p| p * third);
         assert_likelihood(choice, &[word], Response::None, said);
-        // What is named counts, not the yes or no beside it.
+        // The named value counts, not the yes or no next to it.
         assert_likelihood(choice, &[word], Response::Yes, said);
         assert_likelihood(choice, &[word], Response::No, second.map(|p| P_L * p));
         let neither = [other, other, own].map(|p| (1.0 - P_L) * P_L * p);
@@ -109,7 +109,7 @@ fn options_and_neither_answer_a_choice() {
     assert_likelihood(choice, &["green"], Response::None, green.map(|p| p * third));
     let no = [0, 1, 2].map(|i| green[i] * P_L * [other, other, own][i]);
     assert_likelihood(choice, &["green"], Response::No, no);
-    // Where every object has an option, none of them is no answer.
+    // If every object has an option, "none of them" is not an answer.
     let all = Question::Choice(COLOR, Options::new(&[0, 1, 2].map(ValueId)).unwrap());
     assert_likelihood(all, &[], Response::No, [(1.0 - P_L) * P_L; 3]);
 }
@@ -121,7 +121,7 @@ fn an_object_without_the_attribute_may_be_called_anything() {
     assert_likelihood(Question::Which(LID), &["lidded"], Response::None, answer);
 }
 
-/// The answers to an open question and silence exhaust what can be said.
+/// The answers to an open question and silence exhaust the possibilities.
 #[test]
 fn open_answers_are_a_distribution() {
     let scene = pots();
@@ -177,8 +177,8 @@ fn a_question_of_another_scene_is_refused() {
     let _ = log_likelihood(&model(&scene), Question::Point(ObjectId(3)), &Reading::default());
 }
 
-/// A certain word's odds are `(1 + α) : α` with the `α` of certain words, and it is the paper's where
-/// there is no other.
+/// A certain word's odds are `(1 + α) : α` with the `α` of certain words, and the paper's without
+/// another one.
 #[test]
 fn certain_words_have_their_own_smoothing() {
     let scene = bowls();
@@ -206,7 +206,7 @@ fn certain_words_have_their_own_smoothing() {
     }
 }
 
-/// Every word and every answer weighs an object by the mixture over what it may be.
+/// Every word and every answer weighs an object by the mixture over its possible values.
 #[test]
 fn values_in_doubt_are_mixtures() {
     let file = pots();

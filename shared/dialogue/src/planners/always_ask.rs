@@ -13,9 +13,9 @@ pub(super) const ENTRY: Entry = Entry {
     make: || Box::new(AlwaysAsk),
 };
 
-/// Asks at least once, and until one object is very probable: present, it points at the most
-/// probable object; remotely, where it cannot, it asks the most informative question. Objects that
-/// no question can tell apart count as one.
+/// Asks at least once, and until one object is very probable: on site, it points at the most
+/// probable object; remotely, it asks the most informative question. Objects that no question can
+/// distinguish count as one.
 #[derive(Clone, Copy, Debug, Default)]
 struct AlwaysAsk;
 
@@ -37,7 +37,7 @@ impl Planner for AlwaysAsk {
         let problem = &DecisionProblem { actions, ..problem.with_final_picks() };
         let outlook = Outlook::new(problem, belief);
         // Pointing questions come in order of falling probability: the first is at the most
-        // probable object, even where pointing at the next tells as much.
+        // probable object, even if pointing at the next is as informative.
         let choices = outlook.one_step.choices.iter();
         let question = choices.reduce(|a, b| {
             let more = problem.actions.mode == Mode::Remote && b.information > a.information;

@@ -1,4 +1,4 @@
-//! Planners where an announced pick can be denied.
+//! Planners with announced picks that can be denied.
 
 use std::collections::HashMap;
 
@@ -162,7 +162,7 @@ fn the_bowls_are_solved_where_picks_can_be_denied() {
 }
 
 /// Every planner's exact value is below the certified upper bound, on scenes with doubles, missing
-/// attributes, own costs, and where the wanted object may not be here.
+/// attributes, own costs, and with possibly absent objects.
 #[test]
 fn no_policy_beats_the_bounds() {
     let seed = 152;
@@ -205,7 +205,7 @@ fn no_policy_beats_the_bounds() {
     }
 }
 
-/// Without anybody who is heard, everything is as before, to the last bit.
+/// If nobody is heard, everything is as before, to the last bit.
 #[test]
 fn unheard_denials_change_nothing() {
     let mut rng = Rng::new(153);
@@ -237,7 +237,7 @@ fn announcing_replaces_the_last_question() {
     let value = 0.5 * 50.0 + 0.5 * (-6.0 + 0.99 * 50.0);
     assert!((found.value - value).abs() < 1e-3, "{found:?} not {value}");
     assert!((found.denied - 0.5).abs() < 1e-3 && found.questions == 0.0, "{found:?}");
-    // Somebody who is heard every other time is asked.
+    // A user who is heard every other time is asked.
     let (decision, _) = solved(&announced(&model, Costs::SECONDS, YES_NO, (0.5, 6.0)), "optimal");
     assert!(matches!(decision.action, Action::Ask(_)), "{decision:?}");
 }

@@ -1,4 +1,4 @@
-//! `entropy`: the question that tells most per second (after Deits et al. 2013).
+//! `entropy`: the most informative question per second (after Deits et al. 2013).
 
 use crate::{Belief, Decision, DecisionProblem, Planner, Step};
 

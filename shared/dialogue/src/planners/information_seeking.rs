@@ -18,19 +18,19 @@ pub(super) const ENTRY: Entry = Entry {
     make: || Box::new(InformationSeeking),
 };
 
-/// Weighs every promising question by what its answers would teach about the object and about the
+/// Weighs every promising question by the information of its answers about the object and the
 /// person together (after Abbasnejad et al.).
 ///
-/// After each answer the dialogue is valued as it would go on with what is then expected of the
-/// person, so an answer that contradicts the belief is worth one more question to a user who errs, and
-/// a question that tells a careful person from a careless one has a value of its own. Of a person
-/// of whom nothing is known, `ε` and `p_l` are those configured, but uncertain.
+/// After each answer the rest of the dialogue is valued with the expected person model, so an
+/// answer that contradicts the belief is worth one more question to a user who errs, and a question
+/// that distinguishes careful from careless people has a value of its own. For an unknown person,
+/// `ε` and `p_l` are as configured, but uncertain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct InformationSeeking;
 
 /// Most questions that are weighed, the most promising by a one-step lookahead.
 const WEIGHED_MAX: usize = 10;
-/// Beliefs that are looked at to value what follows an answer, and with what work at most.
+/// Limits on beliefs, and on work, for valuing the dialogue after an answer.
 const FOLLOWED_MAX: usize = 60;
 const WORK_MAX: usize = 20_000;
 
@@ -59,7 +59,7 @@ impl Planner for InformationSeeking {
         let best = weighed.first().copied().filter(|(_, value)| *value > stopped);
         let (action, value) = best.unwrap_or((stop, stopped));
         let alternatives = alternatives(problem, &belief, weighed, action);
-        // Expected of the plan that takes the person as known; it may pick where this one asks.
+        // Expectation for the plan that takes the person as known; it may pick when this one asks.
         let asks = matches!(action, Action::Ask(_));
         let expected_questions = if asks { plain.expected_questions.max(1.0) } else { 0.0 };
         Decision { action, value, alternatives, expected_questions, bounds: None }
@@ -70,12 +70,12 @@ impl Planner for InformationSeeking {
     }
 }
 
-/// The model of people with what is expected of this one.
+/// Returns the model of people with this person's expected parameters.
 fn expected(model: &Model, person: &Person) -> Model {
     model.with_params(person.params(model.params()))
 }
 
-/// How the dialogue goes on if the person is taken to be as expected.
+/// Continues the dialogue with a person as expected.
 fn follow(problem: &DecisionProblem<'_>, belief: &Belief) -> Decision {
     let stake = problem.costs.correct + problem.costs.wrong;
     searched(problem, belief, |reduced| Effort {
@@ -106,7 +106,7 @@ fn stopping(problem: &DecisionProblem<'_>, belief: &Belief) -> (Action, f64) {
     if pick > wait { (Action::Pick(likeliest), pick) } else { (Action::Wait, wait) }
 }
 
-/// The most probable objects as announced picks, each with its value; none where picks are final.
+/// The most probable objects as announced picks, each with its value; empty if picks are final.
 fn announced(problem: &DecisionProblem<'_>, model: &Model, joint: &Joint) -> Vec<(Action, f64)> {
     if problem.announce.is_final() {
         return Vec::new();
@@ -137,7 +137,7 @@ fn promising(problem: &DecisionProblem<'_>, belief: &Belief) -> Vec<Question> {
     choices.iter().map(|choice| reduced.question(choice.query)).collect()
 }
 
-/// Value of asking until something is heard, and going on with what is known then.
+/// Value of asking until something is heard, and continuing with the resulting belief.
 fn ask(problem: &DecisionProblem<'_>, model: &Model, joint: &Joint, question: Question) -> f64 {
     let (mut heard, mut sum) = (0.0, 0.0);
     for answer in Answer::possible(model, question) {
@@ -153,7 +153,7 @@ fn ask(problem: &DecisionProblem<'_>, model: &Model, joint: &Joint, question: Qu
     (costs.discount * sum - problem.cost(Action::Ask(question))) / again
 }
 
-/// Value of going on after an answer with what is known then.
+/// Value of continuing after an answer with the resulting belief.
 fn after(
     problem: &DecisionProblem<'_>,
     model: &Model,

@@ -16,17 +16,16 @@ pub(super) const ENTRY: Entry = Entry {
 /// The default planner. It searches the beliefs that questions lead to (`planning`), until the
 /// value of the best policy is known or a number of beliefs has been looked at.
 ///
-/// Small scenes are solved: the six bowls take about 150 beliefs, 20 objects some ten thousand. With
-/// thousands of objects it
-/// looks a few questions ahead along the most promising plans and expects the entropy that is left
-/// to cost its price. The effort is counted in beliefs, never in time, and nothing is kept between
-/// decisions: the same belief is always decided alike.
+/// Small scenes are solved: the six bowls take about 150 beliefs, 20 objects some ten thousand.
+/// With thousands of objects it looks a few questions ahead along the most promising plans and
+/// expects the entropy that is left to cost its price. The effort is counted in beliefs, never in
+/// time, and nothing is kept between decisions: the same belief is always decided alike.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lookahead {
     /// Most beliefs to look at for one decision.
     pub beliefs_max: usize,
-    /// Gap between the bounds at which the value counts as known, as a share of what is at stake
-    /// in a pick.
+    /// Gap between the bounds at which the value counts as known, as a share of the stake of a
+    /// pick.
     pub tolerance: f64,
 }
 
@@ -39,8 +38,8 @@ impl Default for Lookahead {
 /// How much work one decision may be on large scenes, in classes looked at times attributes: about
 /// 4 ms of one core.
 const WORK_MAX: usize = 600_000;
-/// The same with few classes, where more work still finds the best policy: a tenth of a second at
-/// the most doubtful beliefs of 20 objects, and far less once something was answered.
+/// The same with few classes, for which more work still finds the best policy: a tenth of a second
+/// at the most doubtful beliefs of 20 objects, and far less once something was answered.
 const WORK_MAX_FEW: usize = 2_400_000;
 /// Up to how many classes are few.
 const FEW: usize = 32;

@@ -1,4 +1,4 @@
-//! The planners, one file each, and what their decisions have in common.
+//! The planners, one file each, and the common parts of their decisions.
 
 mod searched;
 
@@ -26,11 +26,11 @@ use crate::{Belief, Decision, DecisionProblem};
 /// A planner in the registry.
 #[derive(Clone, Copy, Debug)]
 pub struct Entry {
-    /// Its name on the command line and in the configuration.
+    /// Name on the command line and in the configuration.
     pub name: &'static str,
-    /// What it does, in one sentence.
+    /// Description in one sentence.
     pub about: &'static str,
-    /// Makes it with its default settings.
+    /// Makes the planner with its default settings.
     pub make: fn() -> Box<dyn Planner + Send>,
 }
 
@@ -57,8 +57,8 @@ impl Outlook {
         stop(problem, &self.reduced, self.one_step.class, self.one_step.stop)
     }
 
-    /// The decision to stop, or to ask `choice`. A question is worth what stopping is worth after
-    /// its answer.
+    /// The decision to stop, or to ask `choice`. The value of a question is the value of stopping
+    /// after its answer.
     fn decide(
         &self,
         problem: &DecisionProblem<'_>,
@@ -87,8 +87,8 @@ fn stop(problem: &DecisionProblem<'_>, reduced: &Reduced, class: usize, value: f
     Action::Pick(reduced.best[class])
 }
 
-/// What was weighed, the best picks where these are final, and waiting, without what was chosen, best
-/// first.
+/// The alternatives, best first: questions, the best picks if these are final, and waiting, without
+/// the choice.
 fn alternatives(
     problem: &DecisionProblem<'_>,
     belief: &Belief,

@@ -11,7 +11,7 @@ pub(super) const ENTRY: Entry = Entry {
     make: || Box::new(NeverAsk),
 };
 
-/// Picks the most probable object, or waits where a pick is worth less than waiting for ever.
+/// Picks the most probable object, or waits if a pick is worth less than waiting for ever.
 #[derive(Clone, Copy, Debug, Default)]
 struct NeverAsk;
 

@@ -15,18 +15,18 @@ pub(super) const ENTRY: Entry = Entry {
 
 /// Solves the problem from every belief that is decided about, and remembers the decision.
 ///
-/// It looks at the belief that stands for all that differ by rounding alone ([`Belief::key`]), so
-/// that what is remembered is what would be found again: decisions do not depend on earlier ones,
-/// nor on a table from disk. Where a scene is too large to be solved, the bounds of the
-/// decision say how far from optimal it can be.
+/// It uses one representative of all beliefs that differ by rounding alone ([`Belief::key`]), so
+/// that remembered results equal recomputed ones: decisions do not depend on earlier ones, nor on a
+/// table from disk. If a scene is too large to be solved, the bounds of the decision say how far
+/// from optimal it can be.
 #[derive(Debug)]
 pub struct Optimal {
     /// Most beliefs to look at for one decision.
     pub beliefs_max: usize,
-    /// Gap between the bounds at which the value counts as known, as a share of what is at stake
-    /// in a pick.
+    /// Gap between the bounds at which the value counts as known, as a share of the stake of a
+    /// pick.
     pub tolerance: f64,
-    /// Where that gap is not reached: most further beliefs to look at for a better plan.
+    /// Limit on further beliefs to examine for a better plan if that gap is not reached.
     pub plan_max: usize,
     /// There too: most beliefs of an easier problem to look at for an upper bound.
     pub easier_max: usize,
@@ -45,8 +45,8 @@ impl Default for Optimal {
     }
 }
 
-/// How much work the search for one decision may be, and that for a better plan as much again, in classes looked at
-/// times attributes: under two seconds of one core each, most of it spent on scenes of 20 objects and more.
+/// Limit on the work of the search for one decision, and again for a better plan, in classes times
+/// attributes: under two seconds of one core each, mostly for scenes of 20 objects and more.
 const WORK_MAX: usize = 150_000_000;
 /// Fewest beliefs that are looked at, however large the scene.
 const BELIEFS_MIN: usize = 200;
@@ -87,7 +87,7 @@ impl Planner for Optimal {
             return known.clone();
         }
         let decision = self.solve(problem, &stands_for(belief, &key));
-        // What was conceded, or perceived, is of one interaction; the table is for what recurs.
+        // Concessions and perceptions are of one interaction; the table is for recurring beliefs.
         if problem.concessions.is_empty() && !problem.model.is_of_interaction() {
             self.table.insert(problem_key, &key, decision.clone());
         }

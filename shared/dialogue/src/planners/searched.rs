@@ -41,7 +41,7 @@ pub(super) fn searched(
     }
 }
 
-/// Upper bound on the value. Where the search leaves the bounds apart, the plan is rolled out and improved, while
+/// Upper bound on the value. If the search leaves a gap, the plan is rolled out and improved, while
 /// another thread searches the easier problem. Both do the same work however long it takes.
 fn certify(
     search: &mut Search<'_>,
@@ -77,8 +77,8 @@ pub(super) fn affordable(reduced: &Reduced, work: usize) -> usize {
 /// Dialogues less probable than this do not count towards the expected number of questions.
 const UNLIKELY: f64 = 1e-3;
 
-/// How many questions the plan asks from that belief on, repetitions after silence included. Where
-/// the search has not looked further, every answer is expected to carry all it can.
+/// How many questions the plan asks from that belief on, repetitions after silence included. Beyond
+/// the search, every answer is expected to carry all possible information.
 fn questions_left(search: &Search<'_>, reduced: &Reduced, node: usize, reached: f64) -> f64 {
     let node = search.at(node);
     let Some(branch) = node.best() else { return 0.0 };

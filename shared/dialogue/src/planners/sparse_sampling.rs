@@ -17,8 +17,8 @@ pub(super) const ENTRY: Entry = Entry {
 /// Looks a fixed number of questions ahead, and for every question draws a few answers instead of
 /// weighing all of them. The predecessor's public configuration has a horizon of 2.
 ///
-/// Drawing is what makes it err: with three draws the improbable answer is mostly not seen. The
-/// same interaction and step draw the same answers.
+/// Sampling causes its errors: three draws mostly miss the improbable answer. The same interaction
+/// and step draw the same answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct SparseSampling {
     /// How many questions to look ahead, with a pick behind the last.
@@ -33,7 +33,7 @@ impl Default for SparseSampling {
     }
 }
 
-/// What a planner of that kind looks ahead in.
+/// State of a sampling planner's look-ahead.
 struct Tree<'a> {
     reduced: &'a Reduced,
     problem: &'a DecisionProblem<'a>,

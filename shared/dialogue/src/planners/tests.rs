@@ -90,7 +90,7 @@ fn choices_are_solved() {
     }
 }
 
-/// What is kept from one run to the next is what would be found again.
+/// A policy kept from one run to the next equals the recomputed one.
 #[test]
 fn a_kept_policy_is_the_policy() {
     let model = Model::new(&bowls(), Params::default());
@@ -292,7 +292,7 @@ fn one_object_is_picked_and_hopeless_cases_are_waited_out() {
     assert!((decision.value + 10.0).abs() < 1e-9);
 }
 
-/// A user wants what is not here, and says no to everything.
+/// A user wants an absent object, and says no to everything.
 #[test]
 fn what_is_not_here_is_concluded() {
     for scene in [bowls(), tools()] {
@@ -318,7 +318,7 @@ fn what_is_not_here_is_concluded() {
     }
 }
 
-/// What a decision expects against what following the policy comes to.
+/// Expectations of a decision, compared with the results of following the policy.
 #[test]
 fn expected_questions_come_true() {
     let scene = bowls();
@@ -380,7 +380,7 @@ fn uniform_costs_are_the_special_case() {
     }
 }
 
-/// Objects stand ever farther away; nothing but pointing tells them apart.
+/// Objects are ever farther away; only pointing distinguishes them.
 #[test]
 fn what_is_far_is_pointed_at_later() {
     let object = |i: usize| json!({"name": format!("o{i}"), "attributes": {"shape": "round"}});
@@ -405,8 +405,8 @@ fn what_is_far_is_pointed_at_later() {
     }
 }
 
-/// With costs of their own the best questions are found all the same: the certified value is that
-/// of the policy, and no other planner beats it.
+/// With costs of their own, too, the best questions are found: the certified value is that of the
+/// policy, and no other planner beats it.
 #[test]
 fn the_best_policy_is_found_where_every_question_has_its_own_cost() {
     let seed = 88;

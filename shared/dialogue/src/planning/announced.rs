@@ -1,4 +1,4 @@
-//! Announced picks in the reduced problem: what they pay, and what bounds the value with them.
+//! Announced picks in the reduced problem: their rewards, and bounds on the value with them.
 
 use vocabulary::{Announce, Costs};
 
@@ -18,7 +18,7 @@ pub(crate) struct Announced {
 }
 
 impl Announced {
-    /// None where picks are final.
+    /// Returns `None` if picks are final.
     pub(super) fn of(problem: &DecisionProblem<'_>) -> Option<Self> {
         let (announce, costs, epsilon) =
             (problem.announce, problem.costs, problem.model.params().epsilon);
@@ -26,8 +26,8 @@ impl Announced {
         (!announce.is_final()).then_some(Self { announce, costs, epsilon, own, other })
     }
 
-    /// What announcing an object of that probability pays at once, as a price, and how probable its
-    /// denial is.
+    /// Immediate reward, as a price, of announcing an object of the given probability, and the
+    /// probability of a denial.
     pub(super) fn price(&self, right: f64) -> (Price, f64) {
         let (settled, denied) = self.announce.settle(&self.costs, self.epsilon, right);
         (Price { cost: -settled, discount: self.costs.discount, times: 0.0 }, denied)
@@ -39,32 +39,32 @@ impl Announced {
         price.pay(denied * after)
     }
 
-    /// Value of announcing the same until it is not denied, at a belief that denials leave as it is.
+    /// Value of announcing the same until not denied, at a belief that denials leave as it is.
     fn insisting(&self, right: f64) -> f64 {
         let (price, denied) = self.price(right);
         -price.cost / (1.0 - price.discount * denied)
     }
 
-    /// `r`: value of knowing what is wanted.
+    /// `r`: value of knowing the wanted object.
     pub(super) fn certain(&self) -> f64 {
         self.insisting(1.0)
     }
 
     /// A value that no belief over that many classes goes below: that of always announcing the most
-    /// probable object, whose probability `x` is at least `1/n`. If `f ≤ Q(x, f)` for all those `x`,
-    /// every denial leads to `f` or more again; `Q` is linear in `x`, so its ends decide.
+    /// probable object, whose probability `x` is at least `1/n`. If `f ≤ Q(x, f)` for all those
+    /// `x`, every denial leads to `f` or more again; `Q` is linear in `x`, so its ends decide.
     pub(super) fn floor(&self, classes: usize) -> f64 {
         self.insisting(1.0).min(self.insisting(1.0 / classes as f64))
     }
 
-    /// Upper bound on the value of knowing that one of some objects is wanted which nothing but
-    /// announcing tells apart, times their probability: `U(m)` for their probabilities `m`.
+    /// Upper bound on the value of knowing that the wanted object is among some that only
+    /// announcing distinguishes, times their probability: `U(m)` for their probabilities `m`.
     ///
-    /// Easier than the real problem, an erroneous denial is known to be one. An object that was denied
-    /// is then out or known, and the rest is announced in the order of falling probability, as an
-    /// exchange of neighbours shows: `U(m) = m_i v − (M−m_i) w + γ·other·U(m without i)`, where `v` is
-    /// the value of knowing the object, `w` the cost of announcing a wrong one, and `M = Σ m`. Waiting
-    /// and announcing something else are worth no less than `M` times the greater of two constants.
+    /// An easier problem: an erroneous denial is known as such. An object that was denied is then
+    /// out or known, and the rest is announced in the order of falling probability, as an exchange
+    /// of neighbours shows: `U(m) = m_i v − (M−m_i) w + γ·other·U(m without i)`, where `v` is the
+    /// value of knowing the object, `w` the cost of announcing a wrong one, and `M = Σ m`. Waiting
+    /// and other announcements are worth at least `M` times the greater of two constants.
     pub(super) fn among(&self, mass: &[f64]) -> f64 {
         let mut mass = mass.to_vec();
         mass.sort_unstable_by(f64::total_cmp);
@@ -78,28 +78,28 @@ impl Announced {
         mass.into_iter().fold((0.0, 0.0), step).1
     }
 
-    /// Cost of announcing what is not wanted, but for what follows.
+    /// Cost of announcing another object than the wanted one, without later costs.
     fn wrong(&self) -> f64 {
         self.price(0.0).0.cost
     }
 
-    /// The least `δ` for which announcing does not beat `ψ(b) = Σ_g U_g + δ − B·H(b)` at any belief over
-    /// that many groups of objects that nothing but announcing tells apart, where `H` is the entropy
-    /// over groups and `U_g ≥ b_g u` bounds what knowing a group is worth ([`Self::among`]).
+    /// The least `δ` for which announcing does not beat `ψ(b) = Σ_g U_g + δ − B·H(b)` at any belief
+    /// over that many groups of objects that only announcing distinguishes, where `H` is the
+    /// entropy over groups and `U_g ≥ b_g u` bounds the worth of knowing a group ([`Self::among`]).
     ///
     /// Let the announced object be of group `g` with probability `y`, `P` the probability of its
-    /// denial, `a` that of a denial and `g`, and `b⁻` the belief after it. Since `U_g` is not beaten by
-    /// announcing if the group is known, announcing beats `ψ` at most by
+    /// denial, `a` that of a denial and `g`, and `b⁻` the belief after it. Since `U_g` is not
+    /// beaten by announcing if the group is known, announcing beats `ψ` at most by
     ///
     /// `G = −(1−y) (w + (1 − γ·other) u) − (1 − γP) δ + B (H(b) − γ P H(b⁻))`.
     ///
-    /// `P·H(b⁻)` is concave in `a`, so `G` is convex in it and greatest at an end: `own·y` (a group of
-    /// one) or `other·y` (an object that is not wanted for certain). The entropy among the other groups
-    /// enters with the factor `(1−y)(1 − γ·other) ≥ 0` and is at its worst where they are alike. Then
-    /// the second derivative of `H(b) − γ P H(b⁻)` is, at the first end,
-    /// `−(1−γ·own)/y − (1−γ·other)/(1−y) − γ(own−other)²/P < 0`, and `(1 − γ·other) H''(b) < 0` at the
-    /// second: `G` is concave in `y` for every `δ`, and a climb to the top of each raises `δ` to the
-    /// least one (Dinkelbach).
+    /// `P·H(b⁻)` is concave in `a`, so `G` is convex in it and greatest at an end: `own·y` (a group
+    /// of one) or `other·y` (an object that is not wanted for certain). The entropy among the other
+    /// groups enters with the factor `(1−y)(1 − γ·other) ≥ 0` and is at its worst where they are
+    /// alike. Then the second derivative of `H(b) − γ P H(b⁻)` is, at the first end, `−(1−γ·own)/y
+    /// − (1−γ·other)/(1−y) − γ(own−other)²/P < 0`, and `(1 − γ·other) H''(b) < 0` at the second:
+    /// `G` is concave in `y` for every `δ`, and a climb to the top of each raises `δ` to the least
+    /// one (Dinkelbach).
     pub(super) fn offset(&self, groups: usize, u: f64, price: f64) -> f64 {
         let ends = [self.own, self.other];
         ends.into_iter().map(|end| self.offset_at(end, groups, u, price)).fold(0.0, f64::max)

@@ -12,13 +12,13 @@
 //! if it holds for the greatest information and the smallest potential. Waiting for ever must not
 //! beat it either.
 //!
-//! **Announced picks.** Where a pick can be denied, `r_c` is the value of announcing what is known to
-//! be wanted, and `δ` the least constant for which announcing does not beat `ψ` ([`Announced::offset`]).
-//! Classes that nothing but announcing tells apart count as one: for their sum of `b_c r_c` stands
-//! [`Announced::among`], and `H` is the entropy over such groups.
+//! **Announced picks.** If a pick can be denied, `r_c` is the value of announcing an object known
+//! to be wanted, and `δ` the least constant for which announcing does not beat `ψ`
+//! ([`Announced::offset`]). Classes that only announcing distinguishes count as one:
+//! [`Announced::among`] replaces their sum of `b_c r_c`, and `H` is the entropy over such groups.
 //!
 //! **The doubt about one class.** Near certainty a nat costs far more than `B`, because answers
-//! rarely tell anything new. There [`Doubt`] is the tighter bound.
+//! rarely bring anything new. There [`Doubt`] is the tighter bound.
 
 use std::ops::Range;
 
@@ -33,7 +33,7 @@ use super::reduced::Reduced;
 #[derive(Clone, Debug)]
 pub(crate) struct Bound {
     pub(crate) costs: Costs,
-    /// `r_c` per class, that of a group of one where picks are announced.
+    /// `r_c` per class, that of a group of one if picks are announced.
     pub(crate) worth: Vec<f64>,
     /// `δ`.
     offset: f64,
@@ -46,21 +46,21 @@ pub(crate) struct Bound {
     floor: f64,
 }
 
-/// What a nat is expected to cost in fact, as a multiple of `B`: questions rarely split the
-/// probability evenly, and the last doubts are dear. Measured on random scenes of 20 and 50
-/// objects: the policies are best, and hardly differ, between 1.5 and 2.5.
+/// Realistic expected cost of a nat, as a multiple of `B`: questions rarely split the probability
+/// evenly, and the last doubts are dear. Measured on random scenes of 20 and 50 objects: the
+/// policies are best, and hardly differ, between 1.5 and 2.5.
 const INEFFICIENCY: f64 = 2.0;
 
-/// What is known about a value.
+/// Bounds and estimate of a value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Value {
     pub(crate) lower: f64,
     pub(crate) upper: f64,
-    /// Where between the bounds it is expected to be.
+    /// Expected value, between the bounds.
     pub(crate) estimate: f64,
 }
 
-/// What the bounds need of a belief.
+/// Properties of a belief that the bounds need.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Summary {
     /// `Σ b_c r_c`.
@@ -125,8 +125,8 @@ impl Bound {
         bound
     }
 
-    /// Value of a pick that ends the dialogue, where it may be the best thing to do: not where it is
-    /// announced, unless it is the conclusion that the object is not here.
+    /// Value of a pick that ends the dialogue, if it may be the best move: not for announced picks,
+    /// unless the pick concludes that the object is absent.
     fn final_pick(&self, right: f64) -> f64 {
         let is_possible = self.announced.is_none() || self.has_absent;
         if is_possible { self.costs.pick_value(right) } else { f64::INFINITY }
@@ -137,8 +137,7 @@ impl Bound {
         self.worth.iter().copied().fold(self.costs.wait_value(), f64::max) + self.offset
     }
 
-    /// What can be said about a belief without asking: its value is at least that of picking or
-    /// waiting.
+    /// Value of a belief without asking: at least that of picking or waiting.
     pub(crate) fn value(&self, belief: &Summary) -> Value {
         let announced = self.announced.map(|announced| announced.value(belief.top, self.floor));
         let picked = self.final_pick(belief.top).min(announced.unwrap_or(f64::INFINITY));

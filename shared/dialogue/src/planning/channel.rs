@@ -1,4 +1,4 @@
-//! Questions as noisy channels: what they cost and how their answers depend on the class.
+//! Questions as noisy channels: their costs and the dependence of answers on the class.
 
 use scene::Question;
 use vocabulary::{Action, Costs, Params};
@@ -12,17 +12,16 @@ pub(crate) enum Query {
     Is { partition: u16, block: u16 },
     /// Open: in which block of the partition is it?
     Which { partition: u16 },
-    /// In which of some blocks is it, or in none of them? The number is that of the offer of the partition.
+    /// In which of some blocks is the object, if any? `offer` is an index into the partition's.
     Choice { partition: u16, offer: u16 },
-    /// Yes/no: is it that class?
+    /// Yes/no question about one class.
     Point { class: u32 },
 }
 
-/// How a question is answered, given that the answer tells something. Answers that leave every
-/// belief as it is are folded into the price.
+/// Distribution of a question's informative answers. Uninformative ones are folded into the price.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Channel {
-    /// What it costs until an answer tells something.
+    /// Cost until an answer is informative.
     pub(crate) price: Price,
     /// Cost of asking once.
     pub(crate) cost: f64,
@@ -34,24 +33,24 @@ pub(crate) struct Channel {
     pub(crate) lacking: f64,
     /// Probability of an answer that is true of no class, about a class whose true answer is known.
     pub(crate) absent_other: f64,
-    /// The same about a class whose true answer is not known.
+    /// Probability of such an answer about a class whose true answer is not known.
     pub(crate) absent_lacking: f64,
-    /// Entropy of the answers about one class, nats: what remains open after all answers.
+    /// Entropy of the answers about one class, nats: the uncertainty left by all answers.
     pub(crate) noise: f64,
     /// Most information that an answer can carry, nats, whatever the belief.
     pub(crate) capacity: f64,
 }
 
-/// What it costs to ask until an answer is heard that tells something.
+/// Cost of asking until an informative answer is heard.
 ///
-/// With `q` the probability of hearing nothing, asking again until heard has the return
-/// `Q = −c + γ((1−q) V' + q Q)`, so it costs `c / (1−γq)` and discounts by `γ(1−q) / (1−γq)`.
-/// Silence leaves the belief as it is, so what was best before it is best after it.
+/// With `q` the probability of hearing nothing, asking again until heard has the return `Q = −c +
+/// γ((1−q) V' + q Q)`, so it costs `c / (1−γq)` and discounts by `γ(1−q) / (1−γq)`. Silence leaves
+/// the belief unchanged, and so the best move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Price {
     /// Expected discounted cost.
     pub(crate) cost: f64,
-    /// Expected discount of what follows.
+    /// Expected discount of the dialogue after the answer.
     pub(crate) discount: f64,
     /// Expected number of times that it is asked.
     pub(crate) times: f64,
@@ -77,9 +76,9 @@ impl Price {
 /// The channels of questions that differ in their price alone.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Channels {
-    /// Of a question of uniform cost.
+    /// Channel of a question of uniform cost.
     alike: Channel,
-    /// Of every question, where they have costs of their own.
+    /// Channels of every question, if they have costs of their own.
     own: Vec<Channel>,
 }
 
@@ -101,7 +100,7 @@ impl Channels {
         Self { alike, own }
     }
 
-    /// That of one question.
+    /// Channel of one question.
     pub(crate) fn of(&self, index: usize) -> &Channel {
         self.own.get(index).unwrap_or(&self.alike)
     }
@@ -131,9 +130,9 @@ impl Channel {
         }
     }
 
-    /// A question that is answered by naming: with one of `named` answers that are true of classes, or of
-    /// `absent` ones that are true of none. An answer of the latter kind tells nothing, unless there are
-    /// classes whose true answer is not known (`lacking`).
+    /// A question that is answered by naming: with one of `named` answers that are true of classes,
+    /// or of `absent` ones that are true of none. An answer of the latter kind is uninformative,
+    /// unless there are classes whose true answer is not known (`lacking`).
     pub(crate) fn naming(
         problem: &DecisionProblem<'_>,
         question: Question,

@@ -1,15 +1,15 @@
 //! The value of the easier problem in which all classes but one may be picked together.
 //!
-//! A planner that learns for free, in the end, which of the other classes is wanted cannot do worse, so
-//! the value of that two-class problem bounds the real one from above, for any choice of the one
-//! class. It is all but exact where one class is nearly certain, and that is where it counts:
-//! whether to make sure or to pick is the last decision of every dialogue.
+//! A planner that learns for free, in the end, which of the other classes is wanted cannot do
+//! worse, so the value of that two-class problem bounds the real one from above, for any choice of
+//! the one class. It is nearly exact when one class is nearly certain, which matters most: whether
+//! to make sure or to pick is the last decision of every dialogue.
 //!
-//! An announced pick of a third class tells the two apart no more than silence does, and is paid as a
+//! An announced pick of a third class distinguishes the two no more than silence, and is paid as a
 //! wrong one.
 //!
 //! Between two classes every question is a symmetric channel: an open one at best confuses two of
-//! its values, and its other answers tell the two apart no more than silence does.
+//! its values, and its other answers distinguish the two no more than silence.
 
 use vocabulary::Costs;
 
@@ -20,8 +20,8 @@ use super::reduced::Reduced;
 /// Upper bound on the value as a function of the probability of the one class.
 #[derive(Clone, Debug)]
 pub(super) struct Doubt {
-    /// Values at `x = 1 − u²` for equally spaced `u` from 0 (certain) to `√½` (evenly split):
-    /// dense where the decision between asking and picking is made.
+    /// Values at `x = 1 − u²` for equally spaced `u` from 0 (certain) to `√½` (evenly split): dense
+    /// near the decision between asking and picking.
     grid: Vec<f64>,
 }
 
@@ -70,7 +70,7 @@ impl Doubt {
     pub(super) fn upper(&self, x: f64) -> f64 {
         let u = x.min(1.0 - x).max(0.0).sqrt() * (POINTS as f64 / SPAN);
         let below = (u as usize).min(POINTS - 1);
-        // Linear in x between the two points, not in u: that is what convexity allows.
+        // Linear in x between the two points, not in u, as convexity requires.
         let (near, far) = (below as f64, below as f64 + 1.0);
         let part = ((u * u - near * near) / (far * far - near * near)).clamp(0.0, 1.0);
         self.grid[below] + part * (self.grid[below + 1] - self.grid[below])
@@ -96,7 +96,7 @@ impl Doubt {
         asked.fold(stop(x).max(picked), f64::max).min(self.grid[n])
     }
 
-    /// Value of the best announced pick: of the one class, of the other, or of none of them.
+    /// Value of the best announced pick: of either class, or of neither.
     fn announce(&self, announced: &Announced, x: f64) -> f64 {
         let of = |right: f64| {
             let denied = announced.price(right).1;

@@ -1,4 +1,4 @@
-//! The objects that matter, merged where no question can tell them apart.
+//! The objects that matter, merged if no question can distinguish them.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -17,15 +17,15 @@ pub(super) struct EquivalenceClasses {
     pub(super) interchangeable: Vec<Range<usize>>,
 }
 
-/// Total probability of the objects that are left out. It moves values by less than this times
-/// what is at stake in a pick.
+/// Total probability of the objects that are left out. It moves values by less than this times the
+/// stake of a pick.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// Hypotheses that are equally right: one, but where an attribute does not matter to the user.
+/// Hypotheses that are equally right: one, except for attributes that do not matter to the user.
 struct Wish {
     /// The most probable of them, of equals the quickest to pick.
     best: usize,
-    /// Of all of them.
+    /// Probability of all the hypotheses.
     probability: f64,
     group: usize,
 }

@@ -1,4 +1,4 @@
-//! What planners look ahead with: the reduced problem, bounds, one step ahead, and search.
+//! Foundations of the planners: the reduced problem, bounds, one-step look-ahead, and search.
 //!
 //! All of it is deterministic and counts its work in beliefs looked at, never in time.
 

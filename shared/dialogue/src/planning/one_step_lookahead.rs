@@ -1,8 +1,8 @@
 //! One step ahead from a belief: the value of every question, from one pass over the belief per
 //! attribute.
 //!
-//! Each attribute's blocks collect what the bounds need of their classes. A question's answers
-//! weigh whole blocks, so the beliefs after them never have to be written down.
+//! Each attribute's blocks collect the properties of their classes that the bounds need. A
+//! question's answers weigh whole blocks, so the beliefs after them never have to be written down.
 
 use std::ops::Range;
 
@@ -16,19 +16,19 @@ use super::reduced::Reduced;
 /// A belief seen one step ahead.
 #[derive(Clone, Debug)]
 pub(crate) struct OneStepLookahead {
-    /// What can be said without looking ahead.
+    /// Value without looking ahead.
     pub(crate) value: Value,
     /// Value of the better of waiting and a pick that is final.
     pub(crate) stop: f64,
-    /// The class of that pick.
+    /// Class of the pick in `stop`.
     pub(crate) class: usize,
     /// Entropy over classes, nats.
     pub(crate) entropy: f64,
     /// Probability of the most probable class.
     pub(crate) peak: f64,
-    /// Every question that can tell anything, but for pointing at improbable classes.
+    /// Every informative question, except for pointing at improbable classes.
     pub(crate) choices: Vec<Choice>,
-    /// Picks that can be denied, but for improbable classes; none where picks are final.
+    /// Picks that can be denied, except for improbable classes; empty if picks are final.
     pub(crate) picks: Vec<AnnouncedPick>,
     /// Upper bound on the questions and picks that are not among these.
     pub(crate) rest: f64,
@@ -51,7 +51,7 @@ pub(crate) struct Choice {
     pub(crate) information: f64,
 }
 
-/// Most classes that are looked at to point at or to announce: the most probable ones tell most.
+/// Most classes examined for pointing or announcing: the most probable ones are most informative.
 const LIKELIEST_MAX: usize = 24;
 
 /// Looks one step ahead from beliefs about one reduced problem.
@@ -59,11 +59,11 @@ const LIKELIEST_MAX: usize = 24;
 pub(crate) struct OneStepEvaluator<'a> {
     reduced: &'a Reduced,
     bound: &'a Bound,
-    /// Share and worth of every class, where all classes have the same.
+    /// Share and worth of every class, if all classes have the same.
     alike: Option<(f64, f64)>,
     classes: Vec<Block>,
     all: Block,
-    /// What is not here; nothing where the model takes everything to be here.
+    /// Block of the absent object; empty if the model takes everything to be here.
     absent: Block,
     entropy: f64,
 }
@@ -105,8 +105,8 @@ impl<'a> OneStepEvaluator<'a> {
         }
     }
 
-    /// Lets classes that nothing but announcing tells apart count as one: each has its part of what
-    /// the bound needs of all of them.
+    /// Counts classes that only announcing distinguishes as one: each has its part of their joint
+    /// bound.
     fn group_doubles(&mut self, mass: &[f64]) {
         let Some(announced) = &self.reduced.announced else { return };
         for run in &self.reduced.doubles {
@@ -121,8 +121,8 @@ impl<'a> OneStepEvaluator<'a> {
         }
     }
 
-    /// The best that ends the dialogue, and the class to pick then. Where picks are announced, only
-    /// the conclusion that the object is not here is final.
+    /// The best move that ends the dialogue, and the class to pick. If picks are announced, only
+    /// the conclusion that the object is absent is final.
     fn stop(&self, value: &Value) -> (f64, usize) {
         if self.reduced.announced.is_none() {
             let likeliest = self.classes.iter().position(|class| class.top >= self.all.top);
@@ -197,7 +197,7 @@ impl<'a> OneStepEvaluator<'a> {
         }
     }
 
-    /// A question to which some classes say yes and some no, and what is not here yes with
+    /// A question to which some classes say yes and some no, and the absent object yes with
     /// probability `unknown`.
     fn yes_no(&self, query: Query, yes: &Block, no: &Block, unknown: f64) -> Choice {
         let channel = self.reduced.channel(query);
@@ -211,8 +211,8 @@ impl<'a> OneStepEvaluator<'a> {
         outlook.choice(query, channel, self.entropy)
     }
 
-    /// A question about an attribute whose value is in doubt of some classes: every answer weighs every
-    /// block.
+    /// A question about an attribute whose value is in doubt of some classes: every answer weighs
+    /// every block.
     fn doubtful(&self, query: Query, partition: u16, blocks: &[Block]) -> Choice {
         let channel = self.reduced.channel(query);
         let partition = self.reduced.partition(partition);
@@ -244,7 +244,7 @@ impl<'a> OneStepEvaluator<'a> {
         outlook.choice(query, channel, self.entropy)
     }
 
-    /// A choice among some blocks; what is not here is in the block `unknown`.
+    /// A choice among some blocks; the absent object is in the block `unknown`.
     fn choose(
         &self,
         query: Query,
@@ -298,8 +298,8 @@ impl<'a> OneStepEvaluator<'a> {
         outlook.choice(query, channel, self.entropy)
     }
 
-    /// Pointing questions at the most probable classes, and an upper bound on the others: a user who
-    /// points at a less probable class learns less than by pointing at the last of these.
+    /// Pointing questions at the most probable classes, and an upper bound on the others: a user
+    /// who points at a less probable class learns less than by pointing at the last of these.
     fn point(&self, mass: &[f64], choices: &mut Vec<Choice>) -> f64 {
         let (pointed, more) = self.likeliest(self.reduced.pointed.clone(), mass);
         let (here, greatest) = self.here();
@@ -320,8 +320,8 @@ impl<'a> OneStepEvaluator<'a> {
         })
     }
 
-    /// Announced picks of the most probable classes, and an upper bound on the others: what announcing
-    /// a less probable one is worth is linear in its probability, however good what follows a denial.
+    /// Announced picks of the most probable classes, and an upper bound on the others: the value of
+    /// announcing a less probable one is linear in its probability, whatever follows a denial.
     fn announce(&self, mass: &[f64]) -> (Vec<AnnouncedPick>, f64) {
         let Some(announced) = &self.reduced.announced else {
             return (Vec::new(), f64::NEG_INFINITY);
@@ -383,7 +383,7 @@ impl<'a> OneStepEvaluator<'a> {
         (classes, more)
     }
 
-    /// Sums over what is here, and the greatest among it.
+    /// Sums over present objects, and the greatest probabilities among them.
     fn here(&self) -> (Block, TwoGreatest) {
         let here = self.classes.iter().enumerate().filter(|(c, _)| Some(*c) != self.reduced.absent);
         let greatest = TwoGreatest::of(here.map(|(_, class)| class));
@@ -391,7 +391,7 @@ impl<'a> OneStepEvaluator<'a> {
     }
 }
 
-/// What is expected after an answer.
+/// Expected belief after an answer.
 struct Outlook<'a> {
     bound: &'a Bound,
     value: Value,

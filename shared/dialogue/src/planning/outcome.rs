@@ -4,7 +4,7 @@ use super::announced::Announced;
 use super::channel::Query;
 use super::reduced::Reduced;
 
-/// Probability of each answer that tells something, and the class probabilities after it.
+/// Probability of each informative answer, and the class probabilities after it.
 pub(crate) fn outcomes(reduced: &Reduced, query: Query, mass: &[f64]) -> Vec<(f64, Vec<f64>)> {
     let channel = reduced.channel(query);
     let mut answers: Vec<Vec<f64>> = Vec::new();

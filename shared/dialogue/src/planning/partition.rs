@@ -6,19 +6,19 @@ use super::channel::{Channel, Channels};
 use crate::decision::choices;
 use crate::{DecisionProblem, Model, Naming};
 
-/// An attribute that tells classes apart: those of one block have the same value.
+/// An attribute that distinguishes classes: those of one block have the same value.
 #[derive(Debug)]
 pub(crate) struct Partition {
     pub(crate) attribute: AttributeId,
     /// The block of every class.
     pub(crate) blocks: Vec<u16>,
-    /// The value of every block; `None` for the block of classes that lack the attribute, for that of
-    /// what is not here, and for classes whose value is in doubt.
+    /// The value of every block; `None` for the block of classes that lack the attribute, for that
+    /// of the absent object, and for classes whose value is in doubt.
     pub(crate) values: Vec<Option<ValueId>>,
-    /// The block of what is not here.
+    /// Block of the absent object.
     pub(crate) unknown: Option<Unknown>,
-    /// For every block of classes whose value is in doubt the probability of each block's value; empty where
-    /// there is no such block.
+    /// For every block of classes whose value is in doubt the probability of each block's value;
+    /// empty without such blocks.
     pub(crate) doubtful: Vec<Option<Vec<f64>>>,
     /// How "is its k v?" is answered, per block.
     pub(crate) yes_no: Channels,
@@ -39,7 +39,7 @@ pub(crate) struct Offer {
 }
 
 impl Offer {
-    /// The answers that may be true of a class: each option's block, and none of them.
+    /// The answers that may be true of a class: each option's block, and "none of them".
     pub(super) fn answers(&self) -> impl Iterator<Item = Option<u16>> {
         self.blocks.iter().copied().map(Some).chain(self.neither.then_some(None))
     }
@@ -54,15 +54,15 @@ pub(crate) struct Unknown {
 }
 
 impl Unknown {
-    /// Probability of that answer.
+    /// Probability of the given answer.
     pub(super) fn probability(&self, yes: bool) -> f64 {
         if yes { self.yes } else { 1.0 - self.yes }
     }
 }
 
 impl Partition {
-    /// The partition that an attribute makes of classes, of each of which one object is given;
-    /// none if it separates nothing.
+    /// The partition that an attribute makes of classes, each represented by one object; `None` if
+    /// it separates nothing.
     pub(super) fn of(
         problem: &DecisionProblem<'_>,
         k: AttributeId,
@@ -92,7 +92,7 @@ impl Partition {
             blocks.push(block);
         }
         let in_doubt = |entry: &u16| model.chances(k, *entry);
-        // What only classes in doubt may have can be asked about as well.
+        // Values that only classes in doubt may have can be asked about as well.
         for (v, block) in block_of.iter_mut().enumerate().take(model.values(k)) {
             if block.is_none()
                 && entries.iter().filter_map(in_doubt).any(|chances| chances[v] > 0.0)
@@ -169,7 +169,7 @@ impl Partition {
         Some(Offer { options, blocks, neither, channel })
     }
 
-    /// Probability of choosing that block's value, or none of the options, about classes in `block`.
+    /// Probability of choosing that block's value, or no option, about classes in `block`.
     pub(super) fn chooses(&self, offer: &Offer, chosen: Option<u16>, block: u16) -> f64 {
         if self.unknown.is_some_and(|unknown| unknown.block == block) {
             return offer.channel.lacking;
@@ -188,8 +188,8 @@ impl Partition {
         if is_unknown { offer.channel.absent_lacking } else { offer.channel.absent_other }
     }
 
-    /// Tells choices apart that are answered differently about a class, given the classes' codes; none where
-    /// a value is in doubt.
+    /// Code that distinguishes choices with different answers about a class, given the classes'
+    /// codes; `None` if a value is in doubt.
     pub(super) fn choice_code(&self, offer: &Offer, codes: &[u64]) -> Option<Vec<u64>> {
         if !self.doubtful.is_empty() {
             return None;
@@ -207,7 +207,7 @@ impl Partition {
         Some(sets)
     }
 
-    /// Whether a choice tells no more than a yes/no question that costs no more.
+    /// Whether a choice is no more informative than a yes/no question that costs no more.
     pub(super) fn is_plain(&self, offer: &Offer) -> bool {
         let two = self.doubtful.is_empty() && self.unknown.is_none();
         let mut plainly = offer.blocks.iter().map(|block| self.yes_no.of(usize::from(*block)));
@@ -224,7 +224,7 @@ impl Partition {
         self.values[usize::from(block)].is_none()
     }
 
-    /// Probability that classes in a block have the value of another one: neither 0 nor 1 where it is
+    /// Probability that classes in a block have the value of another one: neither 0 nor 1 if it is
     /// in doubt.
     pub(super) fn chance(&self, block: u16, of: u16) -> f64 {
         match self.chances(block) {
@@ -238,8 +238,8 @@ impl Partition {
         self.doubtful.get(usize::from(block))?.as_deref()
     }
 
-    /// Number of blocks and classes that are weighed to judge every question about the attribute: the classes are
-    /// summed into blocks once, and where a value is in doubt every answer weighs every block.
+    /// Number of blocks and classes weighed for every question about the attribute: the classes are
+    /// summed into blocks once, and if a value is in doubt, every answer weighs every block.
     pub(super) fn work(&self) -> usize {
         let (values, blocks) = (self.named().count(), self.values.len());
         // Yes and no to each value, each value by its name, and another one.
@@ -253,8 +253,8 @@ impl Partition {
         4 * (answers * self.values.len() + offer.blocks.len())
     }
 
-    /// Probability of yes, or no, to "is it in the block `asked`?" about classes in `block`; `is` and `not`
-    /// are those of that answer where it is and where it is not.
+    /// Probability of yes, or no, to "is it in the block `asked`?" about classes in `block`; `is`
+    /// and `not` are the probabilities of that answer if it is and if it is not.
     pub(super) fn answer(&self, asked: u16, block: u16, (is, not): (f64, f64)) -> f64 {
         if let Some(unknown) = self.unknown.filter(|unknown| unknown.block == block) {
             return unknown.probability(is > not);
@@ -283,7 +283,7 @@ impl Partition {
         self.chances(block).is_some()
     }
 
-    /// Tells apart questions about the same blocks that are answered differently about classes in doubt.
+    /// Distinguishes questions about the same blocks with different answers about classes in doubt.
     pub(super) fn doubt_code(&self, asked: u16) -> u64 {
         let code = |(place, chances): (u64, &Vec<f64>)| {
             let place = place.wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -307,7 +307,7 @@ impl Partition {
         self.named().map(move |block| (block, sets[usize::from(block)]))
     }
 
-    /// Whether its open question tells anything: not if there is one value to name.
+    /// Whether its open question is informative: not if there is one value to name.
     pub(super) fn tells(&self) -> bool {
         self.open.capacity > 0.0
     }

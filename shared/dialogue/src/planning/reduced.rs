@@ -1,6 +1,6 @@
 //! The decision problem at one belief, without everything that cannot matter.
 //!
-//! Objects of negligible probability are left out; objects that no question can tell apart become
+//! Objects of negligible probability are left out; objects that no question can distinguish become
 //! one class; questions with the same answers for every class are asked in the cheapest way only;
 //! silence, which leaves the belief as it is, is folded into the price of a question.
 
@@ -17,38 +17,38 @@ use super::equivalence_classes::EquivalenceClasses;
 use super::partition::Partition;
 use crate::{Belief, DecisionProblem};
 
-/// Equivalence classes of objects and the questions that tell them apart.
+/// Equivalence classes of objects and the questions that distinguish them.
 #[derive(Debug)]
 pub(crate) struct Reduced {
     /// Probability of each class; sums to 1.
     pub(crate) mass: Vec<f64>,
     /// The most probable object of each class.
     pub(crate) best: Vec<ObjectId>,
-    /// That object's share of its class, for ever: nothing that is asked can change it.
+    /// Constant share of that object in its class: no question can change it.
     pub(crate) share: Vec<f64>,
-    /// Attributes that tell classes apart.
+    /// Attributes that distinguish classes.
     pub(crate) partitions: Vec<Partition>,
-    /// Yes/no, open and choice questions about attributes, none the double of another; those about one
-    /// attribute together.
+    /// Yes/no, open and choice questions about attributes, none the double of another; those about
+    /// one attribute together.
     pub(crate) queries: Vec<Query>,
-    /// The class of what is not here.
+    /// Class of the absent object.
     pub(crate) absent: Option<usize>,
     /// Classes that are worth pointing at.
     pub(crate) pointed: Vec<u32>,
     /// How a pointing question is answered, per class.
     pub(crate) point: Channels,
-    /// What announcing a pick pays; none where picks are final.
+    /// Reward of announcing a pick; `None` if picks are final.
     pub(crate) announced: Option<Announced>,
-    /// Runs of classes that nothing but announcing one tells apart.
+    /// Runs of classes that only announcing one distinguishes.
     pub(crate) doubles: Vec<Range<usize>>,
-    /// Runs of classes that only pointing, or announcing one, tells apart, each at the same price, so that the problem
-    /// is the same however their probabilities are permuted. Each run is in order of falling
-    /// probability.
+    /// Runs of classes that only pointing, or announcing one, distinguishes, each at the same
+    /// price, so that the problem is the same however their probabilities are permuted. Each run is
+    /// in order of falling probability.
     pub(crate) interchangeable: Vec<Range<usize>>,
 }
 
 impl Reduced {
-    /// The problem at that belief.
+    /// Reduces the problem at the given belief.
     ///
     /// # Panics
     /// If the belief is not about the problem's scene.
@@ -89,12 +89,12 @@ impl Reduced {
         reduced
     }
 
-    /// How many classes there are.
+    /// Number of classes.
     pub(crate) fn classes(&self) -> usize {
         self.mass.len()
     }
 
-    /// How many groups of classes there are that questions can tell apart.
+    /// Number of groups of classes that questions can distinguish.
     pub(crate) fn groups(&self) -> usize {
         self.classes() - self.doubles.iter().map(|run| run.len() - 1).sum::<usize>()
     }
@@ -112,7 +112,7 @@ impl Reduced {
         2 * self.classes() + attributes.sum::<usize>() + offered.sum::<usize>()
     }
 
-    /// The question of the scene that a query stands for.
+    /// The scene's question for a query.
     pub(crate) fn question(&self, query: Query) -> Question {
         match query {
             Query::Point { class } => Question::Point(self.best[class as usize]),
@@ -143,7 +143,7 @@ impl Reduced {
         }
     }
 
-    /// Every question that can tell anything, pointing included.
+    /// Every informative question, pointing included.
     pub(crate) fn all_queries(&self) -> Vec<Query> {
         let pointed = self.pointed.iter().map(|class| Query::Point { class: *class });
         self.queries.iter().copied().chain(pointed).collect()
@@ -182,7 +182,7 @@ impl Reduced {
     }
 
     /// Collects the questions. Two yes/no questions are equal if they split the classes alike,
-    /// whichever half says yes; and, where the wanted object may not be here, if an unknown value leaves
+    /// whichever half says yes; and, if the wanted object may be absent, if an unknown value leaves
     /// the same answers open. A set of classes is identified by the exclusive or of random numbers,
     /// one per class. Of equal questions the cheapest is kept, of those the first.
     fn find_questions(&mut self, problem: &DecisionProblem<'_>) {
@@ -232,8 +232,8 @@ impl Reduced {
             kept.filter(|query| !problem.spent.contains(&self.question(*query))).collect();
     }
 
-    /// Collects the classes to point at: each but those that a
-    /// question tells apart at no higher cost; `asked` is the cost of the question with that split.
+    /// Collects the classes to point at: each but those that a question distinguishes at no higher
+    /// cost; `asked` is the cost of the question with that split.
     fn find_pointed(
         &mut self,
         problem: &DecisionProblem<'_>,

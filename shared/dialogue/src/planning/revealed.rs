@@ -1,17 +1,17 @@
 //! An upper bound from an easier problem, for yes/no questions about attributes: whether an answer
 //! was right is revealed, for the compensation of [`Told`].
 //!
-//! What is revealed leaves a set of classes whose probabilities keep their proportions, since all of
-//! them answered alike. The robot's own belief goes on as ever: it says how probable answers are, and
-//! so what the compensation is. A right answer leads on; a wrong one, which is rare, is worth no more
-//! than telling the class. The questions available, how evenly they split, and what a verification
-//! leaves in doubt all count as they are, so this bound is tighter than any price of information.
+//! Each revelation leaves a set of classes with the same proportions, since all of them answered
+//! alike. The robot's own belief continues as ever: it gives the probabilities of answers, and so
+//! the compensation. A right answer leads on; a wrong one, which is rare, is worth no more than
+//! telling the class. The questions available, how evenly they split, and the doubt left by a
+//! verification all count as they are, so this bound is tighter than any price of information.
 //!
-//! The search is depth-first, the most promising question first. It passes over the questions that are
-//! bounded by the best one, and leaves a belief as soon as its bound is low enough for the question that
-//! led to it to be bounded so. It goes on where the bounds of the easier problem are apart by more than a
-//! threshold, weighed with the probability of what is left, and is repeated with half the threshold. Of
-//! a belief it keeps the key, the bound, and the threshold: whatever was found before still bounds it.
+//! The search is depth-first, the most promising question first. It passes over the questions that
+//! are bounded by the best one, and leaves a belief as soon as its bound is low enough for the
+//! question that led to it to be bounded so. It continues while the gap of the easier problem's
+//! bounds exceeds a threshold, weighed with the probability that is left, and is repeated with half
+//! the threshold. It keeps key, bound and threshold of a belief: earlier bounds remain valid.
 
 use std::collections::HashMap;
 
@@ -36,19 +36,19 @@ pub(crate) struct Revealed<'a> {
     beliefs_max: usize,
     /// Whether there was more to look into.
     is_cut: bool,
-    /// How far apart bounds may be, weighed with their probability; a search that goes on begins lower.
+    /// Gap allowed between bounds, weighed with their probability; a continued search begins lower.
     threshold: f64,
 }
 
-/// What was found about a belief.
+/// Result for a belief.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     upper: f64,
-    /// The threshold that it was searched with; infinite where it was left once it was low enough.
+    /// Threshold of the search; infinite if the belief was left once its bound was low enough.
     threshold: f64,
 }
 
-/// "Is it of that block?"
+/// Question whether the wanted class is in a block.
 #[derive(Debug)]
 struct Question<'a> {
     partition: usize,
@@ -57,11 +57,11 @@ struct Question<'a> {
     channel: &'a Channel,
     /// Logarithms of the probabilities of a right and of a wrong answer.
     log: [f64; 2],
-    /// Sums of these, less those of denied questions, tell beliefs apart.
+    /// Sums of these, less those of denied questions, identify beliefs.
     code: u128,
 }
 
-/// The robot's belief, and what was revealed.
+/// The robot's belief, and the revealed set of classes.
 struct State {
     mass: Vec<f64>,
     /// Logarithms of the same.
@@ -86,7 +86,7 @@ struct Outlook {
 /// A side of a question, and the right answer of those who are on it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Side {
-    /// Its probability among the classes that are left.
+    /// Probability of the side among the classes that are left.
     share: f64,
     /// Upper bound on the value after the answer.
     right: f64,
@@ -103,14 +103,14 @@ impl Question<'_> {
         usize::from(self.blocks[class] != self.block)
     }
 
-    /// What the right answer of a side adds to the key of a belief.
+    /// Change of a belief's key by the right answer of a side.
     fn code(&self, side: usize) -> u128 {
         if side == 0 { self.code } else { self.code.wrapping_neg() }
     }
 }
 
 impl<'a> Revealed<'a> {
-    /// The easier problem; none where there are other questions or picks are announced.
+    /// The easier problem; `None` if there are other questions or announced picks.
     pub(crate) fn of(reduced: &'a Reduced, costs: &Costs) -> Option<Self> {
         let others = reduced.announced.is_some() || !reduced.pointed.is_empty();
         if others || reduced.absent.is_some() || reduced.classes() < 2 {
@@ -237,7 +237,7 @@ impl<'a> Revealed<'a> {
         outlooks
     }
 
-    /// Takes into account what is known of the beliefs after the right answers.
+    /// Takes into account known results for the beliefs after the right answers.
     fn recall(&self, at: &State, outlook: &mut Outlook) {
         let question = &self.questions[outlook.question];
         for (side, of) in outlook.sides.iter_mut().enumerate() {
@@ -249,7 +249,7 @@ impl<'a> Revealed<'a> {
         }
     }
 
-    /// What telling the class is worth.
+    /// Value of telling the class.
     fn told_class(&self, at: &State) -> f64 {
         let (mut total, mut value) = (0.0, 0.0);
         for class in &at.left {
@@ -265,8 +265,8 @@ impl<'a> Revealed<'a> {
         &self.told[usize::from(several)]
     }
 
-    /// The better of picking and waiting. Whatever is picked, the classes that are left get their
-    /// compensation, and what another class would get is at the expense of the picked one.
+    /// The better of picking and waiting. After any pick, the classes that are left get their
+    /// compensation, and that of other classes is at the expense of the picked one.
     fn stop(&self, at: &State) -> f64 {
         let Costs { correct, wrong, .. } = self.costs;
         let paid =
@@ -303,8 +303,8 @@ impl<'a> Revealed<'a> {
             let yes = blocks[question.partition][usize::from(question.block)];
             let split = self.told[0].split(yes.clamp(0.0, 1.0));
             let [own_log, other_log] = question.log;
-            // Of the right answer of each side, and of the wrong one: likelihood, probability, and what it adds to the
-            // logarithm of a class.
+            // For the right answer of each side, and for the wrong one: likelihood, probability,
+            // and change of a class's logarithm.
             let right = [0, 1].map(|side| (own, split.heard[side], own_log - split.log[side]));
             let wrong = [1, 0].map(|said| (other, split.heard[said], other_log - split.log[said]));
             let (mut misheard, mut sides) = (0.0, [(0.0, 0.0); 2]);

@@ -1,9 +1,9 @@
 //! Best-first search over the beliefs that a dialogue can reach.
 //!
-//! Beliefs are nodes, questions and denials of announced picks lead from one to several, and equal beliefs are one node however
-//! they were reached: the order of answers does not matter, so the graph is far smaller than the
-//! tree of dialogues. Every node keeps a certified lower and upper bound, and an estimate between
-//! them that leads the search when it cannot close the bounds.
+//! Beliefs are nodes, questions and denials of announced picks lead from one to several, and equal
+//! beliefs are one node however they were reached: the order of answers does not matter, so the
+//! graph is far smaller than the tree of dialogues. Every node keeps a certified lower and upper
+//! bound, and an estimate between them that leads the search when it cannot close the bounds.
 
 mod plan;
 
@@ -23,11 +23,11 @@ pub(crate) struct Effort {
     pub(crate) beliefs_max: usize,
     /// Gap between the bounds at which the value counts as known.
     pub(crate) tolerance: f64,
-    /// What to do where the search leaves a larger gap.
+    /// Method for closing a larger gap that the search leaves.
     pub(crate) certify: Option<Certify>,
 }
 
-/// How long to bring the bounds together where the search does not.
+/// Effort to bring the bounds together after the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Certify {
     /// Most further beliefs to look at for a better plan.
@@ -53,7 +53,7 @@ pub(crate) struct Node {
     pub(crate) value: Value,
     /// Value of the better of waiting and a pick that is final.
     pub(crate) stop: f64,
-    /// The class of that pick.
+    /// Class of the pick in `stop`.
     pub(crate) class: usize,
     /// Entropy over classes, nats.
     pub(crate) entropy: f64,
@@ -61,7 +61,7 @@ pub(crate) struct Node {
     rest: f64,
 }
 
-/// Something to do that a dialogue can go on after.
+/// Move after which a dialogue can continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Move {
     /// A question.
@@ -80,7 +80,7 @@ pub(crate) struct Branch {
     pub(crate) answers: Vec<(f64, usize)>,
 }
 
-/// What a descent is led by.
+/// Guide of a descent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Lead {
     /// The upper bound: proves that other questions are worse.
@@ -112,7 +112,7 @@ impl<'a> Search<'a> {
         search
     }
 
-    /// The belief that is decided about.
+    /// The belief to decide about.
     pub(crate) fn root(&self) -> &Node {
         &self.nodes[0]
     }
@@ -147,7 +147,7 @@ impl<'a> Search<'a> {
     }
 
     /// Goes down along the leading questions and the most doubtful answers to a question that has
-    /// not been followed, follows it, and tells the beliefs on the way. False if there was none.
+    /// not been followed, follows it, and updates the beliefs on the way. False if there was none.
     fn descend(&mut self, lead: Lead, focus: f64) -> bool {
         let mut path = Vec::new();
         let mut node = 0;
@@ -275,7 +275,7 @@ impl Node {
 }
 
 /// Drops the moves that cannot beat stopping and the least promising beyond [`BRANCHES_MAX`];
-/// returns the upper bound of what was dropped.
+/// returns the upper bound of the dropped ones.
 fn drop_unpromising(branches: &mut Vec<Branch>, stop: f64) -> f64 {
     branches.sort_by(|a, b| b.value.estimate.total_cmp(&a.value.estimate));
     let mut rest = f64::NEG_INFINITY;
@@ -289,8 +289,8 @@ fn drop_unpromising(branches: &mut Vec<Branch>, stop: f64) -> f64 {
     rest
 }
 
-/// Beliefs that agree to about 1e-11 are one, which moves a value by no more than that times what
-/// is at stake in a pick.
+/// Beliefs that agree to about 1e-11 are one, which moves a value by no more than that times the
+/// stake of a pick.
 fn key(mass: &[f64]) -> u128 {
     const STEPS: f64 = (1_u64 << 36) as f64;
     mass.iter()

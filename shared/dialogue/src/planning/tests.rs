@@ -28,7 +28,7 @@ fn random_belief(rng: &mut Rng, objects: usize) -> Belief {
 }
 
 /// Problems with identical objects, lacking attributes, values that no object has, values in doubt,
-/// where the wanted object may not be here, and where every question has a cost of its own.
+/// a possibly absent object, and a cost of its own for every question.
 fn for_many_problems(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Belief, &Reduced, &str)) {
     let check = |problem: &DecisionProblem<'_>, belief: &Belief, label: &str| {
         check(problem, belief, &Reduced::new(problem, belief), label);
@@ -106,8 +106,8 @@ fn objects_that_nothing_tells_apart_are_one_class() {
     assert_eq!(present.interchangeable[0], 0..3);
 }
 
-/// What no question tells apart and is equally probable is picked by the seconds of the pick, and
-/// may be permuted only where pointing at it costs the same.
+/// Equally probable objects that no question distinguishes are picked by the seconds of the pick,
+/// and may be permuted only if pointing at them costs the same.
 #[test]
 fn objects_that_differ_in_seconds_alone() {
     let scene = scene(
@@ -144,7 +144,7 @@ fn the_cheapest_of_equal_questions_is_kept() {
     };
     let before = asked(None);
     assert_eq!(asked(Some(&own)), before);
-    // "Is it small?" tells what "Is it big?" tells.
+    // "Is it small?" is as informative as "Is it big?".
     let pairs = |k: usize| [0, 1].map(|v| Question::Attribute(k.into(), v.into()));
     let size = (0..5).find(|k| model.values((*k).into()) == 2 && before.contains(&pairs(*k)[0]));
     let [first, second] = pairs(size.unwrap());
@@ -164,7 +164,7 @@ fn negligible_objects_are_left_out() {
     assert!((reduced.mass.iter().sum::<f64>() - 1.0).abs() < 1e-15);
 }
 
-/// What stopping is worth at a belief over all objects.
+/// Value of stopping at a belief over all objects.
 fn stop_value(problem: &DecisionProblem<'_>, belief: &Belief) -> f64 {
     let pick = problem.costs.pick_value(belief.probability(belief.most_likely()));
     pick.max(problem.costs.wait_value())
@@ -223,14 +223,14 @@ fn nothing_better_is_dropped() {
             let is_held = |k: AttributeId, v: &ValueId| {
                 (0..model.objects()).any(|i| model.chance(i.into(), k, *v) > 0.0)
             };
-            // What no object has is not offered, although it may show that the wanted one is not here.
+            // A value that no object has is not offered, although it may show an absent object.
             if let Question::Choice(k, options) = question
                 && !options.values().iter().all(|v| is_held(k, v))
             {
                 continue;
             }
             let value = ask_once(problem, belief, question);
-            // A question that tells nothing is asked for ever here, which is never worth it.
+            // An uninformative question is asked for ever here, which is never worth it.
             assert!(value <= best + 1e-6, "{label} {question:?}: {value} above {best}");
         }
     });

@@ -1,4 +1,4 @@
-//! The value for a planner that is told the wanted class, but plays for compensated stakes.
+//! The value for a planner that learns the wanted class, but plays for compensated stakes.
 //!
 //! **Compensation.** To a policy's rewards anything may be added that is zero on average given what
 //! the policy knows: its value stays. A planner that knows more does better all the same, but the
@@ -8,16 +8,16 @@
 //! mean. A pick adds `κ(b_i) = max(0, K + B ln b_i)` if class `i` is wanted and another one is
 //! picked, and takes the mean of that from the picked one. `B` and each class's `K` are free.
 //!
-//! **Told the class.** Of the belief such a planner needs the probability `x` of its class alone, if
-//! it may choose the `p ≥ x` of every question. Written `w(x) = B ln x + r(x)`, the logarithms of
-//! question and belief cancel:
+//! **Told the class.** Of the belief such a planner needs the probability `x` of its class alone,
+//! if it may choose the `p ≥ x` of every question. Written `w(x) = B ln x + r(x)`, the logarithms
+//! of question and belief cancel:
 //!
 //! `r(x) = max(stop, max_p −c + B·I(p) − (1−γ) B (d(p) + ln x) + γ E r(x'))`,
 //!
-//! with `x'` the probability after the answer. `r` is nearly constant, so a step function bounds it:
-//! every cell takes the greatest right side over all `x` and `p` of a pair of cells, term by term.
-//! The iteration starts from a function that this operation does not increase, as is checked, so each
-//! iterate is an upper bound.
+//! with `x'` the probability after the answer. `r` is nearly constant, so a step function bounds
+//! it: every cell takes the greatest right side over all `x` and `p` of a pair of cells, term by
+//! term. The iteration starts from a function that this operation does not increase, as is checked,
+//! so each iterate is an upper bound.
 
 use vocabulary::Costs;
 
@@ -31,19 +31,19 @@ pub(super) struct Told {
     rest: Vec<f64>,
 }
 
-/// What is played for.
+/// Rewards at stake.
 #[derive(Clone, Copy, Debug)]
 struct Stakes {
     costs: Costs,
     channel: Channel,
-    /// Value of picking the class where it is wanted.
+    /// Value of picking the class if it is wanted.
     worth: f64,
     /// `B`.
     price: f64,
     /// `K`.
     credit: f64,
-    /// `−B ln Σ exp(−K_i / B)` of the other classes, whose `Σ y_i (K_i + B ln y_i)` is least where each `y_i` is
-    /// proportional to `exp(−K_i / B)`.
+    /// `−B ln Σ exp(−K_i / B)` of the other classes, whose `Σ y_i (K_i + B ln y_i)` is least if
+    /// each `y_i` is proportional to `exp(−K_i / B)`.
     against: f64,
 }
 
@@ -60,13 +60,13 @@ pub(super) struct Kind {
 pub(super) struct Split {
     /// Probability of the answer that is true of them.
     pub(super) heard: [f64; 2],
-    /// Logarithm of that.
+    /// Logarithm of `heard`.
     pub(super) log: [f64; 2],
     /// `B (I − d)`.
     pub(super) compensation: [f64; 2],
 }
 
-/// A range of the probability of the classes that say yes, and what bounds a question about them.
+/// A range of the probability of the classes that say yes, and the bound for a question about them.
 struct Step {
     /// Probability of yes at both ends.
     yes: [f64; 2],
@@ -76,8 +76,8 @@ struct Step {
     compensation: f64,
 }
 
-/// What the questions of a cell were worth when they were last looked at, from its own range of yes on. They
-/// only fall from sweep to sweep, so most need no second look.
+/// Last computed values of a cell's questions, from its own range of yes on. They only fall from
+/// sweep to sweep, so most need no second look.
 struct Asked {
     worth: Vec<f64>,
     best: usize,
@@ -90,19 +90,19 @@ const OCTAVES: [i32; 2] = [17, 11];
 const CELLS: usize = ((OCTAVES[0] + OCTAVES[1]) as usize) << CELL_BITS;
 /// Stopping earlier leaves the bound less tight, never wrong.
 const SWEEPS_MAX: usize = 60;
-/// `B` is what a nat costs at full capacity where this share of the reward is still ahead.
+/// Share of the reward still ahead at which `B` is the cost of a nat at full capacity.
 const AHEAD: f64 = 0.5;
 /// `K` falls short of the stake by that many questions.
 const SHORT: f64 = 1.5;
 
 impl Told {
-    /// The bounds for the classes of the first kind among those of all, and questions like this one, the
-    /// cheapest; none if they cannot be shown.
+    /// The bounds for the classes of the first kind among those of all, and questions like this
+    /// one, the cheapest; `None` if they cannot be shown.
     pub(super) fn new(costs: &Costs, channel: &Channel, kinds: &[Kind]) -> Option<Self> {
         let (cost, discount) = (channel.price.cost, channel.price.discount);
         let price = (cost + (1.0 - discount) * AHEAD * costs.correct) / channel.capacity;
         let worth = |kind: &Kind| costs.pick_value(kind.share);
-        // The stake of those who know the class: whoever is told of it gains nothing by picking another.
+        // The stake of those who know the class: once told, they gain nothing by another pick.
         let credit = |kind: &Kind| {
             worth(kind).max(costs.wait_value()).max(-costs.wrong) + costs.wrong - SHORT * cost
         };
@@ -153,8 +153,8 @@ impl Told {
         self.stakes.split(yes)
     }
 
-    /// Lowers every cell to what follows from the others; the largest change, or none if a cell would
-    /// rise.
+    /// Lowers every cell to the bound given by the others; returns the largest change, `None` if a
+    /// cell would rise.
     fn sweep(&mut self, steps: &[Step], asked: &mut [Asked]) -> Option<f64> {
         let mut change = 0.0_f64;
         for (cell, asked) in asked.iter_mut().enumerate().rev() {
@@ -192,7 +192,7 @@ impl Told {
         self.rest[cell(low).unwrap_or(0)..=last].iter().copied().fold(below, f64::max)
     }
 
-    /// Whether no question makes `w` exceed the reward where it stands for `w`.
+    /// Whether no question makes `w` exceed the reward if it is used for `w`.
     fn is_bounded_below_the_cells(&self, steps: &[Step]) -> bool {
         let Stakes { costs, channel, price, .. } = self.stakes;
         let of_cell = |(cell, rest): (usize, &f64)| price * span(cell)[1].ln() + rest;
@@ -207,7 +207,7 @@ impl Asked {
         Self { worth: vec![f64::INFINITY; CELLS - cell], best: 0 }
     }
 
-    /// What the best question is worth now.
+    /// Current value of the best question.
     fn best(&mut self, now: impl Fn(usize) -> f64) -> f64 {
         let mut greatest = now(self.best);
         self.worth[self.best] = greatest;
@@ -234,8 +234,8 @@ impl Stakes {
         Split { heard, log, compensation: informs.map(|informs| self.price * (mean - informs)) }
     }
 
-    /// What bounds a question to which classes of a probability in that range say yes, one of them the
-    /// wanted one. `I` is greatest at one half, `d` falls with the probability.
+    /// Bounds for a question to which classes of a probability in that range say yes, one of them
+    /// the wanted one. `I` is greatest at one half, `d` falls with the probability.
     fn step(&self, [low, high]: [f64; 2]) -> Step {
         let Channel { own, other, noise, price, .. } = self.channel;
         let yes = |p: f64| p * own + (1.0 - p) * other;
@@ -264,7 +264,7 @@ impl Stakes {
 
 /// Rounding in units of the costs.
 const ROUNDING: f64 = 1e-9;
-/// Where the odds' bits are cut off.
+/// Number of low bits cut off from the odds.
 const SHIFT: u64 = 52 - CELL_BITS;
 /// The bits of the least odds.
 const FIRST: u64 = ((1023 - OCTAVES[0]) as u64) << CELL_BITS;

@@ -10,12 +10,12 @@ use crate::manager::Preface;
 /// Wordings of one question that take turns soon.
 const VARIANTS: u64 = 4;
 
-/// Most picks whose announcements are foreseen: in a scene of thousands few are ever made, and the sound
-/// of each takes time and space.
+/// Most picks whose announcements are foreseen: in a scene of thousands few are ever made, and the
+/// sound of each takes time and space.
 const PICKS_MAX: usize = 64;
 
-/// Returns the questions of a scene and the announcements of its first picks, the most likely first,
-/// each once. Objects that cannot be fetched are left out where others can.
+/// Returns the questions of a scene and the announcements of its first picks, the most likely
+/// first, each once. Objects that cannot be fetched are left out if others can.
 pub fn foreseen(scene: &Scene) -> Vec<String> {
     let mut questions = vec![Question::None];
     for (k, attribute) in scene.attributes().iter().enumerate() {
@@ -52,7 +52,7 @@ mod tests {
         }
     }
 
-    /// A scene of so many mugs; the last one alone has a place if asked for.
+    /// A scene of `count` mugs; the last one alone has a place if `placed`.
     fn mugs(count: usize, placed: bool) -> Scene {
         let place = "xyz = [0.7, 0.2, 0.0]\nsize = [0.1, 0.1, 0.1]\ngrasp_width = 0.004\nform = \"hollow\"\n";
         let mug = |n: usize| {

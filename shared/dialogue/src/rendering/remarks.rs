@@ -1,12 +1,12 @@
-//! English of the robot's remarks: answers to what the user asks.
+//! English of the robot's remarks: answers to questions of the user.
 
 use scene::{Attribute, AttributeId, ObjectId, Role, Scene, Value, ValueId, definite};
 use vocabulary::ActKind;
 
 use crate::manager::{AboutObjects, Reason, Remark};
 
-/// Length of a list from which it is cut short, bytes: what is said has room for 244, and a question
-/// may follow.
+/// Length of a list from which it is cut short, bytes: a line has room for 244, and a question may
+/// follow.
 const LIST_MAX: usize = 120;
 /// Most objects that are enumerated; different ones would not fit into that length.
 const LISTED_MAX: usize = 30;
@@ -71,7 +71,7 @@ pub(super) fn example(scene: &Scene) -> String {
     format!("You can say what you want, for example: {object}.")
 }
 
-/// Returns what there is to choose from.
+/// Returns the list of things to choose from.
 pub(super) fn inventory(scene: &Scene) -> String {
     let values = scene.attributes().iter().filter(|k| k.values.len() > 1).map(|k| {
         let names: Vec<&str> = k.values.iter().map(|v| v.name.as_str()).collect();
@@ -136,7 +136,7 @@ fn about_objects(scene: &Scene, asked: AboutObjects, words: &[String], names: &[
     }
 }
 
-/// "red cups on the shelf": what the words describe; in plural for these objects, or else one.
+/// "red cups on the shelf": the described kind; in plural for these objects, or else singular.
 pub(super) fn group(scene: &Scene, words: &[String], plural_of: Option<&[ObjectId]>) -> String {
     let attributes = scene.attributes().iter().enumerate();
     let values = attributes.flat_map(|(k, attribute)| {
@@ -225,7 +225,7 @@ fn joined_with(items: &[String], conjunction: &str) -> String {
     }
 }
 
-/// A number in words where people say it so.
+/// Returns a number as people say it, in words if small.
 pub(super) fn number(n: usize) -> String {
     const WORDS: [&str; 13] = [
         "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
@@ -244,7 +244,7 @@ pub(super) fn capitalised(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// What is said of so many mugs that nothing tells apart.
+    /// Returns the remark about `count` identical mugs.
     fn counted(count: usize) -> String {
         let mug =
             |n| format!("[[objects]]\nname = \"m{n}\"\nattributes = {{ colour = \"red\" }}\n");

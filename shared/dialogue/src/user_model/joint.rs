@@ -1,4 +1,4 @@
-//! What is believed about the wanted object and the person's error rate at once.
+//! Joint belief about the wanted object and the person's error rate.
 
 use scene::{Question, Reading};
 use serde::{Deserialize, Serialize};
@@ -20,17 +20,17 @@ pub struct Joint {
 }
 
 impl Joint {
-    /// At the beginning of an interaction, where the one says nothing about the other.
+    /// Joint belief at the beginning of an interaction: object and error rate are independent.
     pub fn new(prior: Belief, person: Person) -> Self {
         Self { person, beliefs: vec![prior; ERROR_RATES.len()] }
     }
 
-    /// The person, with what this interaction has taught about them, for the next one.
+    /// The person as learned so far, for the next interaction.
     pub fn person(&self) -> &Person {
         &self.person
     }
 
-    /// The person, to take in what says nothing about the object.
+    /// The person, for updates that say nothing about the object.
     pub fn person_mut(&mut self) -> &mut Person {
         &mut self.person
     }
@@ -48,8 +48,8 @@ impl Joint {
         Belief::from_probabilities(&sum).unwrap_or_else(|_| self.beliefs[0].clone())
     }
 
-    /// Bayes' rule with what may have been heard, as [`Belief::update_mixture`] has it, for every
-    /// error rate. The model's own error rate plays no part.
+    /// Updates by Bayes' rule, as [`Belief::update_mixture`], for every error rate. The model's own
+    /// error rate plays no part.
     ///
     /// # Panics
     /// As [`Belief::update_mixture`].
@@ -90,8 +90,8 @@ impl Joint {
         sum
     }
 
-    /// Numbers that are equal for what differs by rounding alone, and by nothing that a planner
-    /// minds: the person's error rates and counts, then the belief under each error rate.
+    /// Appends numbers that are equal for beliefs that differ by rounding alone, in planners'
+    /// terms: the person's error rates and counts, then the belief under each error rate.
     pub fn key_into(&self, key: &mut Vec<i64>) {
         self.person.key_into(key);
         for belief in &self.beliefs {
@@ -99,7 +99,7 @@ impl Joint {
         }
     }
 
-    /// What stands for all that have this one's key.
+    /// Returns the representative of all beliefs with this one's key.
     ///
     /// # Errors
     /// Never for a key of its own.

@@ -52,8 +52,8 @@ fn the_posterior_is_that_of_the_joint_distribution() {
     }
 }
 
-/// Twenty fetches for one person: the answers show the robot in the end what was right
-/// alone.
+/// Twenty fetches for one person: the answers show the robot only which object was right in the
+/// end.
 fn acquaintance(params: Params, seed: u64) -> Person {
     let model = Model::new(&bowls(), Params::default());
     let truth = model.with_params(params);
@@ -120,7 +120,7 @@ fn success(planner: &str, seed: u64) -> f64 {
     right as f64 / DIALOGUES as f64
 }
 
-/// What the belief knows about the person, the planner knows as well.
+/// The planner knows the belief about the person as well.
 #[test]
 fn people_who_err_are_asked_more() {
     let adaptive = success("information-seeking", 7_000);

@@ -1,4 +1,4 @@
-//! What was said of values in doubt, against sums by hand.
+//! Evidence about values in doubt, compared with sums by hand.
 
 use scene::{ObjectId, Perceived, Scene};
 use vocabulary::{Params, Rng};
@@ -7,7 +7,7 @@ use super::*;
 use crate::testing::{bowls, heard, markers, random_scene, scene, tools};
 use crate::{Belief, Posterior};
 
-/// Two objects of which one may be red: asking the same again tells no more than a person's error.
+/// Two objects of which one may be red: asking again reveals no more than a person's error.
 #[test]
 fn the_same_answer_again_tells_little_more() {
     let file = markers();
@@ -46,8 +46,7 @@ fn the_same_answer_again_tells_little_more() {
     }
 }
 
-/// What is believed after anything that is certain, against the sum over all that the user may
-/// take the object for.
+/// Belief after certain words, compared with the sum over all possible perceptions of the user.
 #[test]
 fn the_belief_is_the_sum_over_what_the_user_perceives() {
     let seed = 11;
@@ -72,8 +71,8 @@ fn the_belief_is_the_sum_over_what_the_user_perceives() {
     }
 }
 
-/// "Tomato ketchup", where the scene gives the ketchup no flavour: it and the tomato soup stay possible, however
-/// often it is said.
+/// "Tomato ketchup", if the scene gives the ketchup no flavour: it and the tomato soup stay
+/// possible, however often it is said.
 #[test]
 fn an_object_may_be_described_by_what_its_scene_does_not_state() {
     let scene = scene(
@@ -95,7 +94,7 @@ fn an_object_may_be_described_by_what_its_scene_does_not_state() {
     }
 }
 
-/// An answer, some with a word beside it, a request, or a denial.
+/// An answer, some with a further word, a request, or a denial.
 fn random_reading(rng: &mut Rng, scene: &Scene, model: &Model) -> (f64, Question, Reading) {
     let k = AttributeId::from(rng.below(scene.attributes().len()));
     let v = ValueId::from(rng.below(model.values(k)));

@@ -1,10 +1,10 @@
 //! Identifiers of the format, made of any text and readable back.
 //!
 //! An identifier of the format is a letter followed by letters, digits, `_` and `-`. A name here is
-//! a kind and its texts, joined by `__`: `is__color__white`. In the texts, ASCII letters, digits and
-//! `-` stand for themselves; every other byte of their UTF-8 form is written as `_` and two
-//! hexadecimal digits: `is__made_20of__caf_c3_a9`. As `_` itself is written `_5f`, `__` appears only
-//! between parts, and no two names are written alike.
+//! a kind and its texts, joined by `__`: `is__color__white`. In the texts, ASCII letters, digits
+//! and `-` are unchanged; every other byte of their UTF-8 form is written as `_` and two
+//! hexadecimal digits: `is__made_20of__caf_c3_a9`. As `_` itself is written `_5f`, `__` appears
+//! only between parts, and no two names are written alike.
 
 /// Returns the identifier of a kind, itself an identifier without `_`, and its texts.
 pub(super) fn escape(kind: &str, texts: &[&str]) -> String {

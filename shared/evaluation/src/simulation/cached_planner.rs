@@ -20,7 +20,7 @@ const SHARED_MAX: usize = 1 << 19;
 
 impl SharedDecisions {
     fn find(&self, situation: &Situation) -> Option<Arc<Decision>> {
-        // Every entry is whole, also where a thread has panicked.
+        // Every entry is whole, even after a panic of a thread.
         self.0.read().unwrap_or_else(PoisonError::into_inner).get(situation).cloned()
     }
 
@@ -34,9 +34,9 @@ impl SharedDecisions {
 
 /// A planner that is asked once per belief.
 ///
-/// It decides on the belief that represents all of one key ([`Posterior::rounded`]), so a decision is
-/// a function of the key. The planner is asked once for the first step and once for all later ones, as
-/// [`dialogue::evaluate`] does: one that draws random numbers is studied for these draws.
+/// It decides on the belief that represents all of one key ([`Posterior::rounded`]), so a decision
+/// is a function of the key. The planner is asked once for the first step and once for all later
+/// ones, as [`dialogue::evaluate`] does: one that draws random numbers is studied for these draws.
 pub struct CachedPlanner {
     planner: Box<dyn Planner + Send>,
     shared: Option<Arc<SharedDecisions>>,
@@ -86,7 +86,7 @@ impl CachedPlanner {
     }
 }
 
-/// Appends what changes of the problem in the course of an interaction, and from one person to another.
+/// Appends the parts of the problem that change in an interaction, and between people.
 fn problem_into(problem: &DecisionProblem<'_>, key: &mut Vec<i64>) {
     let params = problem.model.params();
     let own = [params.open, params.choice].into_iter().flatten().map(|own| own.epsilon);

@@ -12,7 +12,7 @@ pub(crate) enum Stream {
     Clock = 2,
     /// Dialogues in real time.
     Turns = 3,
-    /// What a person wants, from one dialogue to the next.
+    /// Wishes of a person, from one dialogue to the next.
     Wishes = 4,
 }
 
@@ -24,7 +24,7 @@ pub(crate) fn stream(seed: u64, stream: Stream, number: u64) -> Rng {
     Rng::new(Rng::new(b ^ number).next_u64())
 }
 
-/// True with that probability.
+/// Returns true with the given probability.
 pub(crate) fn chance(rng: &mut Rng, probability: f64) -> bool {
     rng.uniform() < probability
 }

@@ -1,5 +1,5 @@
-//! One interaction in turns, from the request to the hand-over: the user's replies, the clock and the
-//! costs. The dialogue itself is conducted by the dialogue manager.
+//! One interaction in turns, from the request to the hand-over: the user's replies, the clock and
+//! the costs. The dialogue itself is conducted by the dialogue manager.
 
 use dialogue::manager::{Cause, Manager, State, Utterance};
 use dialogue::{Answer, rendering};
@@ -31,7 +31,7 @@ pub struct SimulatedInteraction {
     pub answers: u32,
     /// … for another question than the one that was answered.
     pub misplaced: u32,
-    /// What the robot believed of the object when it decided to pick it.
+    /// Belief about the object when the robot decided to pick it.
     pub stated: Option<f64>,
 }
 
@@ -47,7 +47,7 @@ pub fn interact(
 }
 
 /// Plays the next interaction with a person, whom the manager knows from `state`. A wrong object is
-/// refused until the right one is handed over; what is returned is about the first one.
+/// refused until the right one is handed over; the result is about the first one.
 pub(super) fn interact_again(
     room: &Room<'_>,
     manager: &mut Manager,
@@ -121,7 +121,7 @@ impl<'r, 'a> Play<'r, 'a> {
         }
     }
 
-    /// Talks until a pick is decided; the verdict where none is.
+    /// Talks until a pick is decided; returns the verdict without one.
     fn go_on(&mut self, user: &mut SimulatedUser) -> Result<ObjectId, Verdict> {
         loop {
             let question = self.state.act.question;
@@ -141,7 +141,7 @@ impl<'r, 'a> Play<'r, 'a> {
         }
     }
 
-    /// Hands over what is picked, until it is what the user wants. A user who has an object in the hand
+    /// Hands over picked objects until one is the wanted one. A user who has an object in the hand
     /// does not err.
     fn hand_over(&mut self, user: &mut SimulatedUser) {
         for _ in 0..HAND_OVERS_MAX {
@@ -162,7 +162,7 @@ impl<'r, 'a> Play<'r, 'a> {
         }
     }
 
-    /// Returns the presentation of the standing line, as that question, which began then and ends now.
+    /// Returns the presentation of the standing line, as that question, from then until now.
     fn presentation(&self, question: Question, began: Time) -> Presentation {
         Presentation {
             prompt: self.state.act.prompt,
@@ -175,7 +175,7 @@ impl<'r, 'a> Play<'r, 'a> {
         }
     }
 
-    /// Makes the user's request, or a bare one where the user makes none.
+    /// Makes the user's request, or a bare one if the user makes none.
     fn begin(&mut self, request: &Turn) {
         let before = self.state.ended.clone();
         if self.room.request && matches!(request.reply, Reply::Words(_)) {
@@ -203,7 +203,7 @@ impl<'r, 'a> Play<'r, 'a> {
         self.discount *= self.room.problem.costs.discount;
     }
 
-    /// Presents the standing question, with the arm aiming where it points, and waits for its answer.
+    /// Presents the standing question, with the arm pointing if needed, and waits for its answer.
     fn ask(&mut self, question: Question, user: &mut SimulatedUser) -> Option<Verdict> {
         self.pay(Action::Ask(question));
         self.questions += 1;
@@ -227,7 +227,7 @@ impl<'r, 'a> Play<'r, 'a> {
         None
     }
 
-    /// A turn without a question. Where the user is silent the robot would wait for ever.
+    /// A turn without a question. A silent user would make the robot wait for ever.
     fn wait(&mut self, user: &mut SimulatedUser) -> Option<Verdict> {
         let turn = user.answer(self.room.domain(), Question::None);
         self.waits += 1;
@@ -262,7 +262,7 @@ impl<'r, 'a> Play<'r, 'a> {
         }
     }
 
-    /// Passes on what was said.
+    /// Passes on the user's utterance.
     fn hear(
         &mut self,
         reply: &Reply,
@@ -317,9 +317,8 @@ impl<'r, 'a> Play<'r, 'a> {
         ended.and_then(|ended| Verdict::of(ended.outcome, false)).unwrap_or(Verdict::Cancelled)
     }
 
-    /// Announces the pick. Where the user denies it and is heard before the object is gripped, the arm
-    /// leaves it and comes back, as far as it had got. What is not understood as a denial, or too late,
-    /// changes nothing.
+    /// Announces the pick. If the user denies it and is heard before the object is gripped, the arm
+    /// leaves it and returns. A denial that is not understood, or too late, changes nothing.
     fn is_denied(&mut self, object: ObjectId, user: &mut SimulatedUser) -> bool {
         if !self.room.denials {
             return false;
@@ -334,7 +333,7 @@ impl<'r, 'a> Play<'r, 'a> {
         let speech_s = self.room.pace.speech_s(self.clock, turn.reply.words());
         let heard_s = said_s + reaction_s + speech_s + self.room.pace.recogniser_s(self.clock);
         let grip_s = self.room.motions.map_or(0.0, |motions| motions.grip_s(self.aimed, object));
-        // A user who is no more than probabilities denies in time: that is what `heard` counts.
+        // A user model of mere probabilities denies in time: `heard` accounts for that.
         if heard_s > grip_s && !matches!(turn.reply, Reply::Answer(_)) {
             return false;
         }
@@ -383,7 +382,7 @@ impl<'r, 'a> Play<'r, 'a> {
         }
     }
 
-    /// Returns the seconds of a pick. The robot says what it fetches while it sets out.
+    /// Returns the seconds of a pick. The robot announces the object while it sets out.
     fn fetch_s(&self, object: ObjectId) -> f64 {
         let said_s = self.said_s();
         self.room.motions.map_or(said_s, |motions| motions.pick_s(self.aimed, object).max(said_s))

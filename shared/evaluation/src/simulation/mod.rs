@@ -1,11 +1,11 @@
 //! Studies with simulated people: how often, how soon and with how many questions a robot that
-//! decides by a certain policy brings what is wanted.
+//! decides by a certain policy brings the wanted object.
 //!
 //! This crate is pure: no IO, no clock, no threads. Interaction `n` of a study depends on the seed
 //! and on `n` alone, so that interactions can be shared out among threads as one likes, and every
 //! policy meets the same people. Interactions are counted in [`Tally`]s of a fixed number of them,
 //! merged in their order: sums of floating-point numbers then do not depend on the threads either.
-//! How long everything takes is what the crate `durations` says.
+//! The crate `durations` has the durations.
 //!
 //! | what | where |
 //! |---|---|

@@ -8,8 +8,8 @@ use crate::simulation::draw::{Stream, stream};
 use crate::simulation::interaction::interact_again;
 use crate::simulation::{Room, SimulatedInteraction, SimulatedUser, Tally, UserKind};
 
-/// Counts the dialogue of that number, from 1, with the people `numbers` of a kind. Each person wants
-/// objects in proportion to `1 / rank^zipf`, in an order of their own: with 0, each alike.
+/// Counts the dialogue of that number, from 1, with the people `numbers` of a kind. Each person
+/// wants objects in proportion to `1 / rank^zipf`, in an order of their own: with 0, each alike.
 ///
 /// The manager is one that learns ([`Room::learning_manager`]). Dialogues before the last one are
 /// played, and teach it.
@@ -32,7 +32,7 @@ pub fn acquainted(
     tally
 }
 
-/// Plays so many dialogues with a person, and tells of each its number and its end.
+/// Plays a number of dialogues with a person, and reports each with its number and end.
 fn play(
     room: &Room<'_>,
     manager: &mut Manager,
@@ -72,8 +72,8 @@ mod tests {
     use crate::simulation::testing::House;
     use dialogue::Lookahead;
 
-    /// People who err are known after some dialogues: they get what they want more often, and the robot
-    /// is as sure as it may be.
+    /// People who err are known after some dialogues: they get the wanted object more often, and
+    /// the robot is as sure as it may be.
     #[test]
     fn people_who_err_are_known_after_some_dialogues() {
         let (seed, house) = (11, House::new());

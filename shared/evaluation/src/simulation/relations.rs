@@ -1,5 +1,5 @@
-//! Requests and answers that point to objects by place, order and size, heard by the dialogue manager:
-//! `tests/fixtures/relations/set.txt`, written before the code that it judges.
+//! Requests and answers that point to objects by place, order and size, heard by the dialogue
+//! manager: `tests/fixtures/relations/set.txt`, written before the code that it judges.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -24,7 +24,7 @@ use crate::simulation::{Room, UserKind, interactions};
 const RIGHT_MIN: usize = 59;
 /// Share of the likeliest object's probability from which another one is meant as well.
 const MEANT_SHARE: f64 = 0.5;
-/// Probability of all objects that are meant, from which they are told from the others.
+/// Total probability of the meant objects from which they count as distinguished.
 const TOLD: f64 = 0.8;
 
 /// A robot that asks one question.
@@ -92,7 +92,7 @@ fn heard(manager: &mut Manager, state: &State, text: &str, reader: &Reader) -> S
     manager.next(state, &Cause::Utterance(utterance), accepted)
 }
 
-/// The names of the objects that are plainly meant; none where they are not told from the others.
+/// Returns the names of the objects that are plainly meant; empty if nothing distinguishes them.
 fn meant(scene: &Scene, state: &State) -> BTreeSet<String> {
     let Some(open) = &state.open else { return BTreeSet::new() };
     let belief = open.belief().probabilities();
@@ -172,8 +172,8 @@ fn opened(manager: &mut Manager, first: &State) -> State {
     manager.next(first, &Cause::Utterance(utterance), Time(0))
 }
 
-/// Two identical bowls, remote, with the shipped planner and users who err as the model has it and as people do: how often
-/// the right one is fetched, with the scene as it is and with places.
+/// Two identical bowls, remote, with the shipped planner and users who err as the model has it and
+/// as people do: how often the right one is fetched, with the scene as it is and with places.
 #[test]
 #[allow(clippy::print_stdout, reason = "the table")]
 fn identical_bowls_are_told_apart_by_place() {

@@ -1,4 +1,4 @@
-//! What the interactions of a study share, and its dialogue manager.
+//! Shared parts of a study's interactions, and its dialogue manager.
 
 use dialogue::manager::{Manager, Setup};
 use dialogue::{DecisionProblem, Planner};
@@ -15,7 +15,7 @@ use crate::simulation::users::Domain;
 pub struct Room<'a> {
     /// The objects.
     pub scene: &'a Scene,
-    /// Reads what people say about them.
+    /// Reader of people's words about the objects.
     pub reader: &'a Reader,
     /// Decision rule and costs.
     pub problem: DecisionProblem<'a>,
@@ -27,11 +27,11 @@ pub struct Room<'a> {
     pub pace: &'a Pace,
     /// Duration model of the arm; none: it takes no time.
     pub motions: Option<&'a Motions>,
-    /// What is learned about people, in dialogues with the same ones.
+    /// Settings of learning about people, in dialogues with the same ones.
     pub people: Acquaintance,
     /// `true` if people begin with a request; else the robot begins without knowledge.
     pub request: bool,
-    /// Whether people deny a wrong object that the robot announces, as they can until it is gripped.
+    /// Whether people deny a wrong announced object, as they can until it is gripped.
     pub denials: bool,
 }
 
@@ -41,8 +41,8 @@ impl<'a> Room<'a> {
         Domain { scene: self.scene, model: self.problem.model }
     }
 
-    /// Returns a dialogue manager that decides by a planner. Each utterance follows the question that
-    /// it answers, so it is attributed by its onset.
+    /// Returns a dialogue manager that decides by a planner. Each utterance follows the question
+    /// that it answers, so it is attributed by its onset.
     pub fn manager(&self, planner: CachedPlanner) -> Manager {
         // Nothing is read again but to learn from it.
         self.learning_manager(planner).without_recall()

@@ -23,7 +23,7 @@ pub struct Tally {
     pub seconds: Mean,
     /// Discounted return.
     pub value: Mean,
-    /// What the robot believed of the objects that it decided to pick.
+    /// Belief about the objects that the robot decided to pick.
     pub stated: Mean,
     /// Answers that counted for another question than the one they were given to.
     pub misplaced: u64,

@@ -13,7 +13,7 @@ pub(crate) struct Parsed {
     pub(crate) transition: Vec<Vec<Vec<f64>>>,
     /// `O(s', a, o)` as `[a][s'][o]`.
     pub(crate) observation: Vec<Vec<Vec<f64>>>,
-    /// `R(s, a)` as `[a][s]`: expected, where it depends on `s'`.
+    /// `R(s, a)` as `[a][s]`: its expectation if it depends on `s'`.
     pub(crate) reward: Vec<Vec<f64>>,
 }
 
@@ -33,7 +33,7 @@ impl Names {
         Self(by_name)
     }
 
-    /// The numbers that a name or `*` stands for.
+    /// The numbers denoted by a name or `*`.
     fn all(&self, name: &str) -> Vec<usize> {
         if name == "*" { (0..self.0.len()).collect() } else { vec![self.0[name]] }
     }

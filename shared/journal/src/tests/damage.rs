@@ -3,7 +3,7 @@
 use super::{Entry, TestJournal, entry, header};
 use crate::{Ending, Journal, JournalOpenError, inspect, read};
 
-/// What was acknowledged before the cut is there, and what the cut tore is removed.
+/// Batches acknowledged before the cut remain, and the torn one is removed.
 #[test]
 fn journal_cut_at_any_byte_keeps_the_batches_that_are_whole() {
     let test = TestJournal::new();
@@ -156,8 +156,8 @@ fn journal_drops_an_unacknowledged_batch_of_which_any_sectors_were_written() {
     }
 }
 
-/// Its first byte is the last one of a sector: what follows begins with that sector's mark, and looks
-/// like a frame that was written after a lost one.
+/// The batch's first byte is the last one of a sector: the rest begins with that sector's mark, and
+/// looks like a frame that was written after a lost one.
 #[test]
 fn journal_drops_a_batch_whose_first_byte_alone_is_lost() {
     let found = (0..600).find_map(|length| {

@@ -1,4 +1,4 @@
-//! A rotation that is stopped before each of its steps, and what it keeps.
+//! A rotation stopped before each of its steps, and the files kept.
 
 use std::io;
 

@@ -22,8 +22,8 @@ pub struct ArmPlotArgs {
     /// Object to fetch; the scene's first by default.
     #[arg(long, value_name = "NAME")]
     pub object: Option<String>,
-    /// Limb by its name in the description, or auto for the one with the faster motion; the configured
-    /// one by default.
+    /// Limb by its name in the description, or auto for the one with the faster motion; the
+    /// configured one by default.
     #[arg(long, value_name = "NAME")]
     pub limb: Option<String>,
     /// Picture, as SVG.

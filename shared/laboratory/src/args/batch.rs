@@ -40,8 +40,8 @@ pub struct GroundArgs {
 /// The decision problem: what the robot may do, and what it costs.
 #[derive(Clone, Debug, Args)]
 pub struct ProblemArgs {
-    /// Whether user and robot share the room; the robot points only in mode `present` [default: remote;
-    /// with --config, --profile or --set the configuration's].
+    /// Whether user and robot share the room; the robot points only in mode `present` [default:
+    /// remote; with --config, --profile or --set the configuration's].
     #[arg(long, value_parser = one_of(MODES))]
     pub mode: Option<Mode>,
     /// Exclude questions like "Is it white?".
@@ -60,12 +60,12 @@ pub struct ProblemArgs {
     #[arg(long, value_name = "PRESET", value_parser = cost_names())]
     pub costs: Option<String>,
     /// Probability that a user who hears the wrong object announced denies it in time, 0 to below 1
-    /// [default: 0, every pick is final; with --config, --profile or --set, and in a study without a
-    /// preset, the configuration's].
+    /// [default: 0, every pick is final; with --config, --profile or --set, and in a study without
+    /// a preset, the configuration's].
     #[arg(long, value_name = "C", value_parser = heard)]
     pub announce: Option<f64>,
-    /// The configuration. Its parameters and costs always count; with --config, --profile or --set the
-    /// robot also asks only the kinds of questions that the configuration allows.
+    /// The configuration. Its parameters and costs always count; with --config, --profile or --set
+    /// the robot also asks only the kinds of questions that the configuration allows.
     #[command(flatten)]
     pub config: ConfigArgs,
 }

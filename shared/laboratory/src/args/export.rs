@@ -33,8 +33,8 @@ pub struct PomdpArgs {
 pub struct McapArgs {
     /// A recording, a journal, a flight, or a folder of one kind [default: the recordings of the group].
     ///
-    /// The folder of a group has its recordings in `recordings`, its journals in `journal` and its flights in
-    /// `flight`; `whichone record list` prints where that is.
+    /// The folder of a group has its recordings in `recordings`, its journals in `journal` and its
+    /// flights in `flight`; `whichone record list` prints where that is.
     #[arg(value_name = "SOURCE")]
     pub source: Option<PathBuf>,
     /// The file to write; an existing one is not replaced.

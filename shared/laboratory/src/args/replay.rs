@@ -14,8 +14,8 @@ pub struct ReplayArgs {
     /// Replay the flights of this service only.
     #[arg(long, value_name = "SERVICE")]
     pub service: Option<String>,
-    /// Replay with another setting, e.g. dialogue.planner=entropy, and list the decisions that differ; may
-    /// be repeated. What was heard and seen stays as it was recorded.
+    /// Replay with another setting, e.g. dialogue.planner=entropy, and list the decisions that
+    /// differ; may be repeated. What was heard and seen stays as it was recorded.
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
     pub what_if: Vec<(String, String)>,
 }

@@ -17,8 +17,8 @@ pub struct StudyArgs {
     /// Action other than a study with simulated users.
     #[command(subcommand)]
     pub verb: Option<StudyVerb>,
-    /// The scene: a TOML or JSON file, or the name of a scene of the configuration. A preset has its
-    /// own.
+    /// The scene: a TOML or JSON file, or the name of a scene of the configuration. A preset has
+    /// its own.
     #[arg(long, value_name = "FILE", required_unless_present = "preset")]
     pub scene: Option<PathBuf>,
     /// Policies to compare.
@@ -40,20 +40,20 @@ pub struct StudyArgs {
         default_value_ifs([("preset", "paper-present", "3"), ("preset", "paper-remote", "45")])
     )]
     pub interactions: NonZeroU64,
-    /// Talk in turns with people who give their name, and count the dialogues of these numbers with each of them,
-    /// from 1: the robot comes to know them. A wrong object is refused until the right one comes, and counts as
-    /// wrong.
+    /// Talk in turns with people who give their name, and count the dialogues of these numbers with
+    /// each of them, from 1: the robot comes to know them. A wrong object is refused until the
+    /// right one comes, and counts as wrong.
     #[arg(long, value_name = "N,…", value_delimiter = ',', conflicts_with = "preset")]
     pub dialogues: Vec<NonZeroU32>,
-    /// How much more often these people want some objects than others: in proportion to 1 / rank^S, in an order
-    /// of each person's own.
+    /// How much more often these people want some objects than others: in proportion to 1 / rank^S,
+    /// in an order of each person's own.
     #[arg(long, value_name = "S", default_value_t = 0.0, requires = "dialogues")]
     pub zipf: f64,
     /// Seed of all randomness.
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
-    /// Also simulate dialogues in real time under these rules of turn-taking, or all: naive, onset or mixture,
-    /// joined by + with same, hold, open, fast and wSECONDS.
+    /// Also simulate dialogues in real time under these rules of turn-taking, or all: naive, onset
+    /// or mixture, joined by + with same, hold, open, fast and wSECONDS.
     #[arg(
         long,
         value_name = "RULES,…",
@@ -102,9 +102,9 @@ fn users() -> PossibleValuesParser {
 pub enum StudyVerb {
     /// Report the results of a study with people.
     ///
-    /// People take part on the console's page /study. Prints the success rate, the duration in seconds
-    /// and the number of questions of each policy, each with its 95 % interval, and the differences
-    /// between policies within participants who met several.
+    /// People take part on the console's page /study. Prints the success rate, the duration in
+    /// seconds and the number of questions of each policy, each with its 95 % interval, and the
+    /// differences between policies within participants who met several.
     Report(ReportArgs),
 }
 
@@ -113,8 +113,8 @@ pub enum StudyVerb {
 pub struct ReportArgs {
     /// Folder of the data [default: the group's].
     pub folder: Option<PathBuf>,
-    /// Write interactions.csv, participants.csv, dictionary.csv, study.json, report.json and plots into
-    /// this folder.
+    /// Write interactions.csv, participants.csv, dictionary.csv, study.json, report.json and plots
+    /// into this folder.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// The configuration that names the data's folder.

@@ -85,7 +85,7 @@ fn over_time(pick: &Pick<'_>, heading: &str, value: impl Fn(f64, usize) -> f64) 
 }
 
 /// The gripper's path and the objects' outlines, along x and another axis of frame `base`. Marks
-/// lie where phases end.
+/// are at the ends of phases.
 fn path(pick: &Pick<'_>, heading: &str, label: &str, axis: usize) -> Panel {
     let flat = |at: Vector3<f64>| (at.x, at[axis]);
     let at = |t_s: f64| flat(gripper(pick, t_s));

@@ -72,8 +72,8 @@ fn answer(case: Case) -> Result<Json, String> {
     Ok(json!({ "id": case.id, "belief": belief }))
 }
 
-/// Parses a prior: `"uniform"`, the default, or `{object:weight}`, where objects that are not named
-/// have weight 0.
+/// Parses a prior: `"uniform"`, the default, or `{object:weight}`, where unnamed objects have
+/// weight 0.
 fn prior(scene: &Scene, json: &Json) -> Result<Belief, String> {
     let objects = scene.objects().len();
     let weights = match json {
@@ -108,7 +108,7 @@ impl PaperReader<'_> {
             _ => Reading::default(),
         };
         if let Some(words) = &turn.l_b {
-            // Words outside V are no base words: the model has no factor for them.
+            // Words outside V are not base words: the model has no factor for them.
             reading.base = words.iter().filter_map(|w| self.scene.word_named(w)).collect();
         }
         if let Some(response) = turn.l_r {

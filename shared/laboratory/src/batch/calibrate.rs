@@ -48,7 +48,7 @@ struct Label {
     intent: String,
 }
 
-/// What came of the lines.
+/// Result of reading the lines.
 #[derive(Default)]
 struct Found {
     /// Lines about other scenes.
@@ -64,8 +64,8 @@ struct Found {
 /// Fits the calibration to the lines of `file` and prints it.
 ///
 /// # Errors
-/// The file cannot be read; a line is not a labelled utterance of the scene; no line is about the scene, or the
-/// model answers none.
+/// The file cannot be read; a line is not a labelled utterance of the scene; no line is about the
+/// scene, or the model answers none.
 pub fn calibrate(calibrator: &Calibrator, file: &Path, out: &mut Output<'_>) -> Outcome {
     let text = config::read_file(file).map_err(|error| Failure::file(file, &error))?;
     let mut found = Found::default();
@@ -165,7 +165,7 @@ impl Calibrator {
     }
 }
 
-/// Prints what was found: as text, or with `--json` as one object.
+/// Prints the result: as text, or with `--json` as one object.
 fn print(found: &Found, configured: Calibration, out: &mut Output<'_>) -> Result<(), Failure> {
     let cases = &found.cases;
     let fitted = fit(cases);

@@ -27,7 +27,7 @@ struct Line {
     text: String,
     #[serde(default)]
     last_question: Json,
-    /// The scene that the line was written for, where a file holds lines for several.
+    /// The scene of the line, if a file holds lines for several.
     #[serde(default)]
     scene: Option<String>,
 }
@@ -60,7 +60,7 @@ impl Grounder {
         Ok(answer)
     }
 
-    /// What is said of each value word.
+    /// Returns the polarity of each value word.
     fn mentions(&self, mentions: &[Mention]) -> Json {
         let mention = |it: &Mention| {
             let value = &self.scene.words()[it.word.index()];

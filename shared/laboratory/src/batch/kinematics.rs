@@ -60,8 +60,7 @@ struct Pose {
 
 /// Answers each pose of the chain's tip with
 /// `{"id","ok","q","position_error_m","rotation_error_rad","micros"}`: the posture nearest to
-/// `q_seed` where there is one, else the first found; where there is none, the one that comes
-/// nearest to the pose.
+/// `q_seed` if given, else the first found; without a solution, the one nearest to the pose.
 ///
 /// # Errors
 /// See [`run`].

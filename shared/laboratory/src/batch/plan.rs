@@ -14,11 +14,11 @@ use vocabulary::{Action, Actions, Announce, Costs, Durations};
 
 use super::{parse, run};
 
-/// A scene's decision problem, with what it borrows.
+/// A scene's decision problem, with the data that it borrows.
 pub struct Problem {
     /// The scene.
     pub scene: Scene,
-    /// Its observation model.
+    /// Observation model of the scene.
     pub model: Model,
     /// Costs of actions and rewards of picks.
     pub costs: Costs,
@@ -28,7 +28,7 @@ pub struct Problem {
     pub actions: Actions,
     /// Whether an announced pick can be denied.
     pub announce: Announce,
-    /// The configuration, if there is one.
+    /// Settings of the configuration, if there is one.
     pub settings: Option<Settings>,
 }
 
@@ -55,7 +55,7 @@ struct Line {
     belief: Vec<f64>,
 }
 
-/// Answers each belief with `{"id","action","value","micros"}`, and the planner's `bounds` where an
+/// Answers each belief with `{"id","action","value","micros"}`, and the planner's `bounds` if an
 /// announced pick can be denied.
 ///
 /// # Errors

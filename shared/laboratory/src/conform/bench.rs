@@ -1,5 +1,5 @@
-//! A group of its own for the service under test: folder, shared memory and settings as a supervisor makes them,
-//! and no other process.
+//! A group of its own for the service under test: folder, shared memory and settings as a
+//! supervisor makes them, and no other process.
 
 use std::os::fd::{AsRawFd, OwnedFd, RawFd};
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use service::shm_cleanup::{Admin, remove_leftovers};
 /// Epoch of the group.
 pub(super) const EPOCH: Epoch = Epoch(7);
 
-/// The group. What it has made is removed with it.
+/// The group of a test. Its files are removed with it.
 pub(super) struct Bench {
     pub(super) paths: GroupPaths,
     pub(super) settings: Settings,
@@ -30,14 +30,14 @@ pub(super) struct Bench {
     lifeline: OwnedFd,
     /// The supervisor's end.
     alive: Option<OwnedFd>,
-    /// Every topic, as whoever writes it has filled it.
+    /// Every topic, whoever writes to it.
     watched: Vec<Watched>,
     admin: Option<Admin>,
     /// Holds everything; removed last.
     _home: TemporaryFolder,
 }
 
-/// A topic that is read whoever writes it.
+/// A topic that is read from any writer.
 struct Watched {
     topic: Topic,
     reader: RawReader,
@@ -112,7 +112,7 @@ impl Bench {
         self.paths.log_file(self.service.name())
     }
 
-    /// Returns what was written since the last call, but for what `own` of the tester's topics hold.
+    /// Returns the messages since the last call, except those of the tester's topics `own`.
     pub(super) fn written(&self, own: &[Topic]) -> Result<Vec<Written>, Failure> {
         let mut written = Vec::new();
         for Watched { topic, reader } in &self.watched {
@@ -127,7 +127,7 @@ impl Bench {
         Ok(written)
     }
 
-    /// Removes from shared memory what a process that was killed has left, as the supervisor does after each.
+    /// Removes the shared memory of a killed process, as the supervisor does after each.
     pub(super) fn clean_dead(&self) {
         if let Some(admin) = &self.admin {
             admin.make_way();

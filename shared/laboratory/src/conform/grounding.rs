@@ -145,7 +145,7 @@ pub(super) fn exercise(test: &mut Test<'_>) -> Result<(), Broken> {
     }
 }
 
-/// Utterances of every kind, with what is special about each.
+/// Utterances of every kind, with the special feature of each.
 fn kinds(test: &mut Test<'_>) -> Result<Vec<(&'static str, Utterance)>, Broken> {
     let scene = test.bench.settings.scene.clone();
     let word = scene.words().first().cloned().unwrap_or_default();
@@ -282,7 +282,7 @@ fn burst(test: &mut Test<'_>) -> Result<Kept, Broken> {
     Ok(Kept::Fact(format!("{WINDOW} in {} ms", began.elapsed().as_millis())))
 }
 
-/// Utterances that make no sense, by what is wrong with each.
+/// Malformed utterances, by the fault of each.
 fn senseless(good: &Utterance) -> Vec<(&'static str, Utterance)> {
     let with = |change: &dyn Fn(&mut Utterance)| {
         let mut bad = *good;
@@ -357,7 +357,7 @@ fn resume(test: &mut Test<'_>) -> Result<Kept, Broken> {
     test.speaking()?.utterances.send(&missed)?;
     test.running()?;
     let (_, took) = test.ask(&missed, ANSWER_PATIENCE)?;
-    // What was answered before is asked again until it is applied.
+    // Utterances answered before are asked again until they are applied.
     test.ask(&before, ANSWER_PATIENCE)?;
     Ok(Kept::Fact(format!("{} ms after it was ready again", took.as_millis())))
 }

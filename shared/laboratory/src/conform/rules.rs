@@ -16,13 +16,13 @@ const NOTICE: Duration = Duration::from_millis(400);
 /// Payload larger than any of a client.
 const OVERSIZED_BYTES: usize = 1 << 20;
 
-/// It becomes ready.
+/// The service becomes ready.
 pub(super) fn ready(test: &mut Test<'_>) -> Result<Kept, Broken> {
     let took = test.running()?.ready.unwrap_or_default();
     Ok(Kept::Fact(format!("{} ms after its start", took.as_millis())))
 }
 
-/// It beats.
+/// The service sends heartbeats.
 pub(super) fn beats(test: &mut Test<'_>) -> Result<Kept, Broken> {
     let observed = WATCHDOG + BEAT_MARGIN;
     let subject = test.running()?;
@@ -52,7 +52,7 @@ pub(super) fn beats(test: &mut Test<'_>) -> Result<Kept, Broken> {
     )))
 }
 
-/// Its messages carry the epoch of the group and the number of its start.
+/// Messages carry the epoch of the group and the number of the service's start.
 pub(super) fn identity(test: &mut Test<'_>) -> Result<Kept, Broken> {
     test.exercise()?;
     let incarnation = test.running()?.incarnation;
@@ -82,7 +82,7 @@ pub(super) fn identity(test: &mut Test<'_>) -> Result<Kept, Broken> {
     }
 }
 
-/// It writes its own topics, and those of clients that its kind has a part in, alone.
+/// The service writes only its own topics, and those of clients that its kind takes part in.
 pub(super) fn own_topics(test: &mut Test<'_>) -> Result<Kept, Broken> {
     test.exercise()?;
     test.note_written()?;
@@ -123,7 +123,7 @@ pub(super) fn malformed(test: &mut Test<'_>) -> Result<Kept, Broken> {
     )))
 }
 
-/// Bytes that are no message of the topic.
+/// Returns bytes that are not a message of the topic.
 fn junk(topic: &Topic) -> Vec<(&'static str, Vec<u8>)> {
     let layout = (topic.layout)();
     let len = layout.map_or(64, |layout| layout.size);
@@ -146,7 +146,7 @@ fn junk(topic: &Topic) -> Vec<(&'static str, Vec<u8>)> {
     junk
 }
 
-/// It ends cleanly on request.
+/// The service ends cleanly on request.
 pub(super) fn stop(test: &mut Test<'_>) -> Result<Kept, Broken> {
     let patience = test.stop_deadline();
     let subject = test.running()?;
@@ -158,7 +158,7 @@ pub(super) fn stop(test: &mut Test<'_>) -> Result<Kept, Broken> {
     ended_cleanly(exit, patience, took, "SIGTERM")
 }
 
-/// It ends when its supervisor is gone.
+/// The service ends when its supervisor is gone.
 pub(super) fn orphan(test: &mut Test<'_>) -> Result<Kept, Broken> {
     let patience = test.stop_deadline();
     test.running()?;

@@ -14,7 +14,7 @@ use service::group;
 
 use super::bench::{Bench, EPOCH};
 
-/// Maximum time between two heartbeats that the service is told, the group's default.
+/// Maximum time between two heartbeats, as given to the service: the group's default.
 pub(super) const WATCHDOG: Duration = Duration::from_secs(3);
 /// Interval at which it is looked at.
 const LOOK_EVERY: Duration = Duration::from_millis(5);
@@ -97,7 +97,7 @@ impl Subject {
         }
     }
 
-    /// Looks at it until `fact` is true. Returns whether that was within `patience` and before its end.
+    /// Waits until `fact` is true. Returns whether that was within `patience` and before its end.
     pub(super) fn wait(
         &mut self,
         patience: Duration,
@@ -126,7 +126,7 @@ impl Subject {
         })
     }
 
-    /// Waits for its end.
+    /// Waits for the process's end.
     pub(super) fn await_exit(&mut self, patience: Duration) -> Option<ProcessExit> {
         let until = Instant::now() + patience;
         loop {
@@ -140,7 +140,7 @@ impl Subject {
         }
     }
 
-    /// Asks it to end.
+    /// Asks the process to end.
     pub(super) fn terminate(&self) {
         self.signal(Signal::TERM);
     }
@@ -161,7 +161,7 @@ impl Subject {
     }
 }
 
-/// A program that ships with this one lies beside it; any other is found as a shell finds it.
+/// A program that ships with this one is next to it; any other is found as a shell finds it.
 fn program(name: &str) -> PathBuf {
     let beside = std::env::current_exe().ok().and_then(|own| Some(own.parent()?.join(name)));
     match beside.filter(|path| !name.contains('/') && path.is_file()) {

@@ -26,7 +26,7 @@ use crate::replay::service_of;
 
 /// End of the name of a journal.
 const JOURNAL: &str = "journal";
-/// Folder of kept settings beside the journals.
+/// Folder of kept settings next to the journals.
 const SETTINGS: &str = "settings";
 
 /// Writes the file.
@@ -104,7 +104,7 @@ fn flights_in(source: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(flight::list(source)?.into_iter().filter(is_flight).collect())
 }
 
-/// Writes the steps of flights, one flight after another: what each service was given and what it stated.
+/// Writes the steps of flights, one flight after another: each service's inputs and statements.
 fn steps(flights: &[PathBuf], to: &Path) -> Result<u64, Failure> {
     // Before the copy is begun, which would stay.
     let known = flights.iter().map(|file| Ok((file, flight::head(file)?, service_of(file)?)));
@@ -165,8 +165,8 @@ fn journals_in(source: &Path) -> Vec<(Service, PathBuf)> {
     Service::JOURNALED.into_iter().filter_map(of).collect()
 }
 
-/// The records of a journal. Where their wall time is not known, the last record was written when the file
-/// last changed, which gives that of the others.
+/// The records of a journal. If their wall time is unknown, the last record gets the file's time of
+/// change, from which the others' follow.
 fn records_of(service: Service, file: &Path) -> Result<Vec<Entry>, Failure> {
     let mut program: Command = command(service.name(), "journal");
     program.arg(file).arg("--json").stderr(Stdio::inherit());

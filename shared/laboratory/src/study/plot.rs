@@ -51,7 +51,7 @@ struct Point {
 }
 
 /// Success against seconds, with the intervals of both; a panel for each kind of people. `series`
-/// names what is compared.
+/// names the compared series.
 fn scatter(title: &str, results: &[(&Row, Tally)], series: impl Fn(&Row) -> String) -> Chart {
     let legend = distinct(results.iter().map(|(row, _)| series(row)));
     let people = distinct(results.iter().map(|(row, _)| row.people.name().to_owned()));
@@ -146,7 +146,7 @@ fn shares(tally: &Tally, bins: usize) -> Vec<f64> {
 
 /// Bars, and the mean in the heading.
 fn bars(row: &Row, tally: &Tally, series: usize, (bins, tallest): (usize, f64)) -> Panel {
-    // Every number where there is room for it, else every fifth.
+    // Every number if there is room, else every fifth.
     let name = |n: usize| match n {
         n if n + 1 == bins => format!("{n}+"),
         n if bins <= 12 || n % 5 == 0 => n.to_string(),

@@ -39,7 +39,7 @@ impl Progress {
 }
 
 impl Drop for Progress {
-    /// Leaves the line as it was.
+    /// Restores the line.
     fn drop(&mut self) {
         if self.drawn.is_some() {
             draw("");

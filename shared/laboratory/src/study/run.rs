@@ -1,7 +1,7 @@
 //! The interactions shared out among threads.
 //!
-//! Invariant: what is counted depends on the seed alone. Interactions are counted in pieces of
-//! [`CHUNK`], whichever thread does them, and the pieces are merged in order.
+//! Invariant: counts depend on the seed alone. Interactions are counted in pieces of [`CHUNK`],
+//! whichever thread does them, and the pieces are merged in order.
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -82,7 +82,7 @@ fn merge(rows: usize, pieces: &[Piece], done: &[Option<Tally>]) -> Vec<Tally> {
     tallies
 }
 
-/// What decides in a row: its policy, whether in real time, where a pick is final, and whether it knows people.
+/// Decider of a row: its policy, and whether in real time, with final picks, and knowing people.
 type Decider<'a> = (&'a str, bool, bool);
 
 fn decider(row: &Row) -> Decider<'_> {

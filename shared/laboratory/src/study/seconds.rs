@@ -10,7 +10,7 @@ use super::setup::Setup;
 /// Most rows of a table for people; the data has all.
 const ROWS_MAX: usize = 24;
 
-/// Tables of questions and objects, below a line on what questions cost in this study.
+/// Tables of questions and objects, below a line on the costs of questions in this study.
 pub(super) fn lines(setup: &Setup) -> Vec<String> {
     let durations = setup.durations();
     let room = setup.room();
@@ -47,7 +47,7 @@ pub(super) fn lines(setup: &Setup) -> Vec<String> {
     lines
 }
 
-/// Returns the same with names: where the arm's motions are not known, its seconds are null.
+/// Returns the tables with names: if the arm's motions are unknown, its seconds are null.
 pub(super) fn to_json(setup: &Setup) -> Json {
     let durations = setup.durations();
     let room = setup.room();
@@ -76,7 +76,7 @@ pub(super) fn to_json(setup: &Setup) -> Json {
     })
 }
 
-/// Seconds of a question in words up to its answer; of a choice, which has no cost of its own, by its words.
+/// Seconds of a question in words up to its answer; of a choice, without own costs, by its words.
 fn whole_s(setup: &Setup, durations: &Durations, question: Question) -> f64 {
     let said_s = || setup.room().voice.seconds(&setup.room().scene.phrase(question));
     durations.question_s(question).unwrap_or_else(|| said_s() + setup.answer_s())

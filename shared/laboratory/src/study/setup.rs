@@ -33,7 +33,7 @@ pub(super) struct Setup {
 const PAPER_SCENE: &str = "bowls";
 
 impl Setup {
-    /// Prepares what is asked for: reads the files, and plans every motion of the arm.
+    /// Prepares the study: reads the files, and plans every motion of the arm.
     pub(super) fn new(args: &StudyArgs) -> Result<Self, Failure> {
         let scene = args.scene.as_deref().unwrap_or(Path::new(PAPER_SCENE));
         // A preset has its own problem.
@@ -89,7 +89,7 @@ impl Setup {
         planner_of(&self.problem)
     }
 
-    /// Returns the arm's motions, where objects have places.
+    /// Returns the arm's motions, if objects have places.
     pub(super) fn motions(&self) -> Option<&Motions> {
         self.motions.as_ref()
     }
@@ -110,7 +110,7 @@ impl Setup {
     }
 }
 
-/// Returns the problem of a preset, where nothing else is said.
+/// Returns the problem of a preset, unless the arguments say otherwise.
 fn preset(args: &StudyArgs) -> ProblemArgs {
     let mut problem = args.problem.clone();
     match args.preset {

@@ -66,7 +66,7 @@ fn common(row: &Row, tally: &Tally, seconds: &Mean) -> [String; 5] {
     ]
 }
 
-/// With whom, and in which dialogue.
+/// Returns the kind of people, and the number of the dialogue.
 fn people(row: &Row) -> String {
     let name = row.people.name();
     row.people.dialogue().map_or_else(|| name.to_owned(), |n| format!("{name}, dialogue {n}"))

@@ -94,8 +94,8 @@ fn study_prints_durations_that_can_be_the_costs() {
     assert!(text.contains("Is it in the dishwasher?"), "{text}");
 }
 
-/// `dialogue.open_questions` and `dialogue.attribute_questions` hold as for the running robot; options
-/// and presets restrict them further.
+/// `dialogue.open_questions` and `dialogue.attribute_questions` hold as for the running robot;
+/// options and presets restrict them further.
 #[test]
 fn study_asks_the_questions_that_the_configuration_allows() {
     let actions = |words: &[&str]| -> [bool; 2] {

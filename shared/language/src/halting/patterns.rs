@@ -5,15 +5,15 @@ use std::sync::{Arc, LazyLock};
 
 use crate::vocabulary::halting;
 
-/// Where a pattern may match.
+/// Position at which a pattern may match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     Lead,
-    /// At the opening of what is said in one breath.
+    /// At the opening of a phrase said in one breath.
     Command,
-    /// Where nothing else is said.
+    /// As the only words.
     Alone,
-    /// The same, of words that ask to go on.
+    /// As the only words, of a request to continue.
     Resuming,
     /// Anywhere.
     Danger,

@@ -1,11 +1,11 @@
-//! Answers to a choice: by value, by order, and none of them.
+//! Answers to a choice: by value, by order, or "none of them".
 
 use scene::{AttributeId, Options, Question, Response, ValueId};
 
 use super::scene;
 use crate::Reader;
 
-/// Scene, attribute and what is to choose from; what is said; and what that means: a value, one that is ruled out, an answer.
+/// Scene, attribute and options; utterance; and its meaning: a value, a value ruled out, an answer.
 const CASES: &str = "\
 bowls color white,metallic,clear: white; the white one; it is white; white please; the first one; first => white
 bowls color white,metallic,clear: the first; number one; the 1st one => white

@@ -1,11 +1,11 @@
-//! What people say beside describing and answering: that they cannot tell, that it does not matter,
-//! what was spoken of, several objects, questions to the robot, greetings.
+//! Utterances other than descriptions and answers: not knowing, not minding, references, several
+//! objects, questions to the robot, greetings.
 //!
-//! One utterance a line: `scene ? question : text => meaning`. The meaning lists words said, `-a+b` for
-//! a group ruled out, the response (`yes`, `no`, `cannot_tell`, `does_not_matter`), `!intent`,
+//! One utterance a line: `scene ? question : text => meaning`. The meaning lists words said, `-a+b`
+//! for a group ruled out, the response (`yes`, `no`, `cannot_tell`, `does_not_matter`), `!intent`,
 //! `@reference`, and after a `;` the words of each further object. `_` is a blank inside a value.
 //!
-//! The lines from "orders other than to fetch" on were written before the code for them: 36 of the first 66 were misread then.
+//! The lines from "orders other than to fetch" on predate their code: it misread 36 of 66 then.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -8,7 +8,7 @@ use super::{TOOLS_READERS, fixture, scene, sentences};
 
 use crate::Reader;
 
-/// A name and what it does to a text.
+/// A name and a change of a text's form.
 type Dress<'a> = (&'a str, &'a dyn Fn(&str) -> String);
 
 #[test]

@@ -1,8 +1,8 @@
 //! Words that halt the arm, and words that are near them.
 //!
-//! The first 185 sentences of `halting.txt` were written before any of the code that they judge: 20 of the 94 that
-//! should halted then, and 89 of the 91 others did not. The rest was written after that code and before it
-//! was measured on them: 60 of 80 halted, and 74 of 78 others did not.
+//! The first 185 sentences of `halting.txt` were written before any of the code that they judge: 20
+//! of the 94 that should halted then, and 89 of the 91 others did not. The rest was written after
+//! that code and before it was measured on them: 60 of 80 halted, and 74 of 78 others did not.
 
 use ::vocabulary::Language;
 use scene::{Intent, Question, Scene};
@@ -136,7 +136,7 @@ fn no_scene_takes_a_halting_word_away() {
     }
 }
 
-/// A misspelt set or section would be a hole that nobody sees.
+/// A misspelt set or section would be an undetected gap.
 #[test]
 fn patterns_are_written_in_known_sections_and_sets() {
     let lines: Vec<(&str, &str)> = crate::vocabulary::halting().collect();

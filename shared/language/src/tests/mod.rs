@@ -106,7 +106,7 @@ impl Meaning {
     }
 }
 
-/// Reads every public line; gives how many there are and what went wrong.
+/// Reads every public line; returns their number and the failures.
 fn failures(language: Language, right: impl Fn(&Json, &Meaning) -> bool) -> Vec<String> {
     let scenes = ["bowls", "tools"].map(|name| (name, scene(name)));
     let readers = scenes.each_ref().map(|(_, scene)| Reader::new(scene, language));
@@ -282,7 +282,7 @@ fn reader_uses_the_words_of_each_scene() {
         assert_eq!(read.base, base, "{text}");
         assert_eq!(read.excluded, Vec::<Vec<String>>::new(), "{text}");
     }
-    // What was taken back may be denied as well.
+    // A retracted value may be denied as well.
     let text = "the blue, no, the light blue one";
     assert_eq!(Meaning::read(&reader, &scene, text, Question::None).base, ["light blue"]);
 }

@@ -1,4 +1,4 @@
-//! It understands what it says: every value of every scene as its questions name it.
+//! The reader understands the robot: every value of every scene as its questions name it.
 
 use ::vocabulary::Language;
 use proptest::prelude::*;
@@ -171,7 +171,7 @@ fn echoes(scene: &Scene, k: usize, v: usize) -> Vec<String> {
     texts
 }
 
-/// Returns what is misread of one value.
+/// Returns the misread phrases of one value.
 fn misread(scene: &Scene, reader: &Reader, k: usize, v: usize) -> Vec<String> {
     let word = scene.attributes()[k].values[v].word;
     let asked = Question::Attribute(AttributeId::from(k), ValueId::from(v));

@@ -98,7 +98,7 @@ fn reader_doubts_hedged_content() {
         assert!(word(text) > 0.1, "{text}");
     }
     assert!(word("maybe the clear one") > word("I think the clear one"));
-    // What is said in another sentence is not hedged.
+    // Words in another sentence are not hedged.
     assert_eq!(word("the clear one. I think it's late."), 0.0);
 }
 
@@ -215,7 +215,7 @@ proptest! {
         prop_assert!((readings.iter().map(|(weight, _)| weight).sum::<f64>() - 1.0).abs() < 1e-12);
         prop_assert!(readings.iter().all(|(weight, _)| *weight <= readings[0].0));
         for (_, Reading { doubt, base, excluded, response, .. }) in &readings {
-            // Without a question an answer is all that was said; but "any of them" is said of what is asked for.
+            // Without a question, an answer is the whole utterance; but "any of them" is a request.
             let unasked = matches!(response, Response::None | Response::DoesNotMatter);
             let is_alone = base.is_empty() && excluded.is_empty();
             prop_assert!(question != Question::None || unasked || is_alone);

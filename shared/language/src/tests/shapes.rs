@@ -1,4 +1,4 @@
-//! Values that are no plain adjectives, nouns or places: parts, numbers, names with marks, words of the dialogue.
+//! Values that are not plain adjectives, nouns or places: parts, numbers, names, words of dialogue.
 
 use ::vocabulary::Language;
 use scene::{Question, Response, Scene};
@@ -35,7 +35,7 @@ const SCENES: [(&str, &str); 5] = [
     ),
 ];
 
-/// Noun of the scene, what is said, values wanted, values denied.
+/// Noun of the scene, utterance, values wanted, values denied.
 const SAID: &[(&str, &str, &[&str], &[&str])] = &[
     ("caddy", "get me the lentils", &["lentils"], &[]),
     ("caddy", "some nuts", &["nuts"], &[]),

@@ -5,7 +5,7 @@
 //! A line that starts with `~` is known to be misread by the rules; the judge is not trained on it.
 //!
 //! `cases.txt` grew with the reader. `fresh_1.txt` and `fresh_2.txt` were each written without a
-//! look at what the reader makes of them, and measured before it was changed for them.
+//! look at the reader's results, and measured before it was changed for them.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -78,9 +78,9 @@ pub(super) fn cases(table: &str) -> Vec<Case<'_>> {
     cases
 }
 
-/// Reads a table and demands that 98 lines in 100 are understood, in the most probable reading: the judge is taught by more
-/// than these lines, for which the rules were made. A failure says how many of each
-/// kind were, exactly and in their response.
+/// Reads a table and demands that 98 lines in 100 are understood, in the most probable reading: the
+/// judge is taught by more than these lines, for which the rules were made. A failure says how many
+/// of each kind were, exactly and in their response.
 fn check(table: &str) {
     let mut readers: BTreeMap<&str, (Scene, Reader)> = BTreeMap::new();
     let mut kinds: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
@@ -93,7 +93,7 @@ fn check(table: &str) {
         });
         let read = Meaning::read(reader, scene, case.text, question(scene, case.asked));
         let expected: Vec<Meaning> = case.expected.iter().map(|text| meaning(text)).collect();
-        // What was taken back may be denied as well.
+        // A retracted value may be denied as well.
         let is_repair = case.kind == "self-repair";
         let is_read = |meaning: &Meaning| {
             let excluded = if is_repair { read.excluded.clone() } else { meaning.excluded.clone() };

@@ -1,5 +1,5 @@
-//! Leaving one author out: each one's lines are read by a judge that was trained without them, which tells what to expect of
-//! people whom nobody trained on.
+//! Leave-one-author-out: each author's lines are read by a judge trained without them, which
+//! predicts the performance for new people.
 
 use std::fmt;
 use std::sync::Arc;
@@ -9,17 +9,17 @@ use crate::scenes::Scenes;
 use crate::score::{Score, as_read};
 use crate::sources::{Sources, Taught};
 
-/// Parts into which the tables and templates are cut, to score each with what the others teach.
+/// Number of parts of tables and templates; each is scored by a judge trained on the others.
 const FOLDS: usize = 5;
 
 /// How lines were read that were not trained on.
 #[derive(Clone, Debug, Default)]
 pub struct Unseen {
-    /// What the judge states.
+    /// Score of the judge's statements.
     pub judged: Score,
-    /// What the policy gets.
+    /// Score of the readings that the policy receives.
     pub read: Score,
-    /// The policy's, where each line has one slip.
+    /// Score of the policy's readings if each line has one slip.
     pub slips: Score,
     /// Sums of both parts of the judge.
     pub sums: Vec<Sums>,

@@ -1,4 +1,4 @@
-//! What the judge is trained on, as one number.
+//! Hash of the judge's training inputs.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use scene::StableHash;
 
 use crate::scenes::files;
 
-/// Returns the hash of the lines, the templates, the tables, the scenes and the features: weights of another one are out of date.
+/// Returns the hash of lines, templates, tables, scenes and features: it dates weights.
 ///
 /// # Errors
 /// A file that cannot be read.

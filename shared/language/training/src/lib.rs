@@ -1,7 +1,7 @@
-//! Labelled lines: what people say to the robot, with what they say of each value word.
+//! Labelled lines: utterances to the robot with the polarity of each value word.
 //!
-//! One line is `scene | question | act | utterance`; in the utterance every word that names a value of the scene
-//! stands in brackets with a sign: `[red+]` wanted, `[red-]` denied, `[red0]` neither.
+//! One line is `scene | question | act | utterance`; in the utterance every word that names a value
+//! of the scene is in brackets with a sign: `[red+]` wanted, `[red-]` denied, `[red0]` neither.
 //!
 //! | folder | |
 //! |---|---|

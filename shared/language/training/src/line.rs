@@ -5,11 +5,11 @@ use language::Polarity;
 /// A labelled line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Line {
-    /// Name of its scene.
+    /// Name of the line's scene.
     pub scene: String,
     /// The robot's question before it, in words; empty for none.
     pub question: String,
-    /// What the speaker does: `want`, `yes`, `no`, `unsure`, `stop`, `cancel`, `ask`, `talk`, `other`.
+    /// The speaker's act: `want`, `yes`, `no`, `unsure`, `stop`, `cancel`, `ask`, `talk`, `other`.
     pub act: String,
     /// The words, without marks.
     pub text: String,
@@ -17,12 +17,12 @@ pub struct Line {
     pub marked: Vec<Marked>,
 }
 
-/// A value word with its label.
+/// A labelled value word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Marked {
-    /// The words as they stand in the text.
+    /// The words as written in the text.
     pub surface: String,
-    /// Its polarity: wanted, denied or neither.
+    /// Polarity of the value: wanted, denied or neither.
     pub polarity: Polarity,
 }
 
@@ -68,7 +68,7 @@ impl Marked {
     }
 }
 
-/// Returns the polarity that a sign stands for.
+/// Returns the polarity denoted by a sign.
 pub(crate) fn polarity(sign: char) -> Option<Polarity> {
     match sign {
         '+' => Some(Polarity::Wanted),

@@ -1,6 +1,6 @@
-//! A linear model over hashed features, trained by steps that shrink with what a weight has seen (AdaGrad).
+//! A linear model over hashed features, trained with AdaGrad: steps shrink with past gradients.
 //!
-//! Everything happens in a fixed order, so that the same lines give the same weights on every machine.
+//! The order is fixed, so that the same lines give the same weights on every machine.
 
 use language::ROWS;
 use vocabulary::Rng;
@@ -8,14 +8,14 @@ use vocabulary::Rng;
 /// Pull of each weight towards zero, a step.
 const SHRINK: f64 = 3e-6;
 
-/// What a model learns from: rows of weights, the label's number, how much it counts.
+/// A training example: rows of weights, the label's number, and its weight.
 #[derive(Clone, Debug)]
 pub struct Lesson {
     /// Rows.
     pub rows: Vec<u32>,
     /// Number of the label.
     pub label: usize,
-    /// How much it counts.
+    /// Weight of the example.
     pub weight: f64,
 }
 

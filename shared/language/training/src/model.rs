@@ -48,12 +48,12 @@ impl Model {
     /// Returns the judge that has these weights.
     ///
     /// # Errors
-    /// Never: what is written can be read.
+    /// Never: a written file can be read.
     pub fn judge(&self) -> Result<Judge, String> {
         Judge::from_bytes(&self.bytes(0)).ok_or_else(|| "expected all weights".to_owned())
     }
 
-    /// Returns the file of the weights, with the hash of what they were trained on.
+    /// Returns the file of the weights, with the hash of their training inputs.
     pub fn bytes(&self, hash: u64) -> Vec<u8> {
         let linear = || (0..ROWS).flat_map(|row| self.linear.row(row));
         let step = linear().fold(1e-9, |most: f64, it| most.max(it.abs())) / f64::from(i16::MAX);

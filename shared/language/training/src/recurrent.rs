@@ -1,4 +1,4 @@
-//! Training of the recurrent judge: steps against the gradient (Adam; Kingma and Ba 2015), in a fixed order.
+//! Training of the recurrent judge: gradient steps (Adam; Kingma and Ba 2015) in a fixed order.
 
 use language::recurrent::{
     EMBEDDINGS, HIDDEN, JOINED, PARTS, Recurrent, Sequence, Stated, Step, UNITS, WIDTH, add,
@@ -25,9 +25,9 @@ const GATES: usize = 3 * UNITS;
 /// An utterance with the label of each of its value words that has one, and how much they count.
 #[derive(Clone, Debug)]
 pub struct Utterance {
-    /// What the judge reads.
+    /// Input of the recurrent judge.
     pub sequence: Sequence,
-    /// By value word.
+    /// Label of each value word.
     pub labels: Vec<Option<usize>>,
     /// How much each counts.
     pub weight: f64,
@@ -83,7 +83,7 @@ impl Training {
             return;
         }
         let seen = |rows: &Vec<u32>, random: &mut Rng| -> Vec<u32> {
-            // The first row, what kind of element it is, is always seen.
+            // The first row, the kind of the element, is always seen.
             let is_hidden = random.uniform() < UNSEEN;
             rows.iter().take(if is_hidden { 1 } else { rows.len() }).copied().collect()
         };
@@ -204,7 +204,7 @@ impl Training {
     }
 }
 
-/// The gradients of the sums of a step by input, of those by state, and of the state before it without the gates.
+/// The gradients of a step's sums by input and by state, and of the earlier state without gates.
 fn gates(
     step: &Step,
     before: &[f32; UNITS],
@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     fn gradient_is_that_of_the_loss() {
-        // One row an element: none of it can be hidden.
+        // With one row per element, nothing can be hidden.
         let elements = vec![vec![3], vec![70], vec![500], vec![3]];
         let sequence = Sequence { elements, values: vec![(1, vec![9, 11]), (3, vec![12])] };
         let labels = vec![Some(1), Some(0)];
@@ -273,7 +273,7 @@ mod tests {
             };
             let slope = (at_distance(0.01) - at_distance(-0.01)) / 0.02;
             let found = f64::from(training.gradient[at]);
-            // The functions of the gates have about the slope of those that they stand for.
+            // The gates' functions have about the slope of the functions that they approximate.
             assert!((slope - found).abs() < 0.02 + 0.15 * slope.abs(), "{part}: {slope} {found}");
         }
     }

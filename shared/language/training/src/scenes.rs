@@ -17,7 +17,7 @@ impl Scenes {
     /// Loads the scenes of the project.
     ///
     /// # Errors
-    /// A file that cannot be read, or is no scene.
+    /// A file that cannot be read, or is not a scene.
     pub fn load() -> Result<Self, String> {
         let here = Path::new(env!("CARGO_MANIFEST_DIR"));
         let folders = [
@@ -55,10 +55,10 @@ impl Scenes {
         self.0.keys().map(String::as_str)
     }
 
-    /// Returns a scene and its reader.
+    /// Returns a scene with the reader for it.
     ///
     /// # Errors
-    /// There is no scene of that name.
+    /// The name is not that of a scene.
     pub fn get(&self, name: &str) -> Result<&(Scene, Reader), String> {
         self.0.get(name).ok_or_else(|| format!("scene {name} does not exist"))
     }

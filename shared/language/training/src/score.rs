@@ -1,4 +1,4 @@
-//! How well the reader says what is said of each value word.
+//! Score of the reader's statements about each value word.
 
 use std::fmt;
 
@@ -7,14 +7,14 @@ use scene::{Intent, Reading, Reference, WordId};
 
 use crate::line::{Line, Marked};
 
-/// Least probability of what counts as certain.
+/// Least probability of a certain statement.
 const CERTAIN: f64 = 0.9;
-/// Least probability of what counts as stated.
+/// Least probability at which a polarity counts as stated.
 const STATED: f64 = 0.95;
 /// Bins of the calibration error.
 const BINS: usize = 15;
 
-/// A value word that the reader has found, its label, and what the reader states.
+/// A value word that the reader has found, its label, and the reader's statement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scored {
     /// The label.
@@ -43,7 +43,7 @@ pub struct Score {
 }
 
 impl Score {
-    /// Adds what the reader states of a line.
+    /// Adds the reader's statements about a line.
     pub fn add(&mut self, line: &Line, mentions: &[Mention]) {
         let labels = labels(line, mentions.iter().map(|mention| &*mention.surface));
         self.extra += labels.iter().filter(|label| label.is_none()).count();
@@ -66,12 +66,12 @@ impl Score {
         self.scored.iter().filter(|it| holds(it)).count() as f64 / self.scored.len().max(1) as f64
     }
 
-    /// Share that is right.
+    /// Returns the share of right statements.
     pub fn right(&self) -> f64 {
         self.share(|it| it.best().0 == it.truth)
     }
 
-    /// Share that is certain and wrong.
+    /// Returns the share of certain and wrong statements.
     pub fn certain_and_wrong(&self) -> f64 {
         self.share(|it| it.best().0 != it.truth && it.best().1 >= CERTAIN)
     }
@@ -133,8 +133,8 @@ impl fmt::Display for Score {
     }
 }
 
-/// The label of each value word that the reader has found, by the words that it has found; none where the author has
-/// marked nothing there.
+/// The label of each value word that the reader has found, by the words found; `None` if the author
+/// has marked nothing there.
 pub fn labels<'a>(
     line: &Line,
     surfaces: impl IntoIterator<Item = &'a str>,
@@ -157,8 +157,8 @@ fn is_same(marked: &Marked, surface: &str) -> bool {
     marked.contains(&surface) || surface.contains(&marked)
 }
 
-/// What the weighted readings of an utterance say of its value words, as the policy takes them: wanted are also those of
-/// further objects, and what asks describes no wish.
+/// Polarities of an utterance's value words by its weighted readings, as the policy uses them:
+/// those of further objects are wanted too, and a question is not a wish.
 pub fn as_read(readings: &[(f64, Reading)], mentions: &[Mention]) -> Vec<Mention> {
     let weight = |holds: &dyn Fn(&Reading) -> bool| -> f64 {
         let is_wish = |reading: &Reading| match reading.intent {

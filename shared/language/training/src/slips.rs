@@ -1,4 +1,4 @@
-//! Lines in which one word that is no value is spoilt: what they say stays the same.
+//! Lines with a slip in one word that is not a value: their meaning stays the same.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ use crate::line::Line;
 /// Fewest letters of a word that is spoilt: shorter ones become other words.
 const LETTERS_MIN: usize = 3;
 
-/// Returns the line with one slip of the finger in a word that is no value; none if it has no such word.
+/// Returns the line with a typing error in a word that is not a value, if it has such a word.
 pub fn with_typo(line: &Line, random: &mut Rng) -> Option<Line> {
     let words = plain_words(line);
     let place = words.get(random.below(words.len().max(1)))?.clone();
@@ -26,7 +26,7 @@ pub fn with_typo(line: &Line, random: &mut Rng) -> Option<Line> {
     Some(Line { text, ..line.clone() })
 }
 
-/// The places of the words that are no values.
+/// Returns the positions of words that are not values.
 fn plain_words(line: &Line) -> Vec<Range<usize>> {
     let mut values = Vec::new();
     let mut from = 0;

@@ -1,4 +1,4 @@
-//! What the judge learns from: the authors' lines, the same with a slip, templates, and the reader's own tables.
+//! Training data: the authors' lines, the same with a slip, templates, and the reader's own tables.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -29,30 +29,30 @@ const TABLES: [&str; 4] = [
     "tests/fixtures/utterances/fresh_1.txt",
     "tests/fixtures/utterances/fresh_2.txt",
 ];
-/// Name of what the tables teach, among the sources.
+/// Name of the tables' examples among the sources.
 const OWN_TABLES: &str = "own tables";
 /// How much a lesson of a line with a slip counts.
 const SLIP: f64 = 0.5;
 
-/// An utterance with what it teaches.
+/// An utterance with the training examples from it.
 #[derive(Clone, Debug)]
 pub struct Taught {
     /// The line.
     pub line: Line,
-    /// The question before it.
+    /// The question before the utterance.
     pub asked: Question,
     /// One for each value word with a label.
     pub lessons: Vec<Lesson>,
-    /// The same for the recurrent part.
+    /// The utterance for the recurrent part.
     pub utterance: Utterance,
-    /// The same line with a slip of the finger in a word that is no value.
+    /// The same line with a typing error in a word that is not a value.
     pub slips: Vec<Taught>,
 }
 
-/// What each author, the tables and the templates teach.
+/// Examples from each author, the tables and the templates.
 #[derive(Clone, Debug)]
 pub struct Sources {
-    /// By name.
+    /// Utterances by name of the source.
     pub all: BTreeMap<String, Vec<Taught>>,
     /// Names of the authors.
     pub authors: Vec<String>,
@@ -66,7 +66,7 @@ impl Sources {
     pub fn load(scenes: &Scenes) -> Result<Self, String> {
         let here = Path::new(env!("CARGO_MANIFEST_DIR"));
         let mut all = authors(scenes, &here.join("lines"))?;
-        // Files by whole words are no author's: their lines were made with the judge in mind.
+        // Files by whole words belong to no author: their lines were made with the judge in mind.
         let authors = all.keys().filter(|name| name.len() == 1).cloned().collect();
         for file in TABLES {
             let taught = of_table(scenes, &here.join("../../..").join(file))?;
@@ -78,7 +78,7 @@ impl Sources {
         Ok(Self { all, authors })
     }
 
-    /// Names of what is no author.
+    /// Names of sources that are not authors.
     pub fn others(&self) -> impl Iterator<Item = &str> {
         self.all.keys().map(String::as_str).filter(|name| !self.authors.iter().any(|it| it == name))
     }
@@ -184,7 +184,7 @@ fn of_table(scenes: &Scenes, path: &Path) -> Result<Vec<Taught>, String> {
             };
         let marked = |it: &Example| Marked { surface: it.surface.clone(), polarity: polarity(it) };
         let marked: Vec<Marked> = features.examples.iter().map(marked).collect();
-        // What is taken back the tables leave out, and authors deny it.
+        // The tables omit retracted values, and authors deny them.
         let is_plain = |polarity: &Polarity| !is_repair || *polarity != Polarity::Neither;
         let labels = marked.iter().map(|it| Some(it.polarity).filter(is_plain)).collect();
         let line = Line { scene, text, marked, ..Line::default() };

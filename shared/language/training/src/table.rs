@@ -1,5 +1,5 @@
-//! The reader's own tables, `scene ? question : text => meaning`: a value word that the meaning has is wanted or denied, any
-//! other neither.
+//! The reader's own tables, `scene ? question : text => meaning`: a value word that the meaning has
+//! is wanted or denied, any other neither.
 
 use std::fs;
 use std::path::Path;
@@ -12,22 +12,22 @@ use crate::scenes::Scenes;
 /// A line of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Name of its scene among [`Scenes`].
+    /// Name of the case's scene among [`Scenes`].
     pub scene: String,
-    /// The question before it.
+    /// The question before the utterance.
     pub question: Question,
     /// The words.
     pub text: String,
     /// The words that are wanted, and those that are denied.
     pub said: [Vec<WordId>; 2],
-    /// Something in it is taken back.
+    /// Whether something in the utterance is taken back.
     pub is_repair: bool,
 }
 
 /// Reads a table.
 ///
 /// # Errors
-/// The file cannot be read, or is no table.
+/// The file cannot be read, or is not a table.
 pub fn table(scenes: &Scenes, path: &Path) -> Result<Vec<Row>, String> {
     let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
     let (mut rows, mut is_repair) = (Vec::new(), false);
@@ -59,7 +59,7 @@ fn row(scenes: &Scenes, line: &str) -> Option<Row> {
     Some(Row { scene: name, question, text, said, is_repair: false })
 }
 
-/// The words that a meaning wants and denies. What is put back, or asked for, is no wish.
+/// The words that a meaning wants and denies. Objects to put back, or asked about, are not.
 fn said(scene: &Scene, meaning: &str) -> [Vec<WordId>; 2] {
     const WISHES: [&str; 4] = ["!inform", "!cancel", "!stop", "!stop_and_cancel"];
     let mut said = [Vec::new(), Vec::new()];

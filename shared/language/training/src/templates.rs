@@ -8,11 +8,11 @@ use crate::line::{Line, Marked};
 
 /// Attempts to fill the slots of a template with values that do not contradict each other.
 const ATTEMPTS: usize = 8;
-/// Slots, without the sign of their polarity: those of any question, then of one about an attribute, then of one about a
-/// value.
+/// Slots, without the sign of their polarity: those of any question, then of one about an
+/// attribute, then of one about a value.
 const SLOTS: [&str; 8] = ["", "q", "k", "p", "b", "other", "rival", "asked"];
 
-/// Returns lines made of the templates in a file's text about one scene, `times` of each; the same ones every time.
+/// Returns lines from the templates of a file about one scene, `times` each; reproducible.
 ///
 /// # Errors
 /// The first template that is not of this form, in a sentence.
@@ -59,7 +59,7 @@ fn check(question: &str, template: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Replaces each `(a|b)` by one of its parts, the innermost first, and each `{group}` by a word of the group.
+/// Replaces each `(a|b)` by one part, the innermost first, and each `{group}` by one of its words.
 fn choose(template: &str, random: &mut Rng) -> String {
     let mut chosen = template.to_owned();
     while let Some(end) = chosen.find(')')
@@ -83,7 +83,7 @@ struct Filling<'a> {
     question: String,
     /// The value or the attribute that the question names.
     asked: Option<(usize, Option<usize>)>,
-    /// What is said already, as attribute and value.
+    /// Values said already, as attribute and value.
     said: Vec<(usize, usize)>,
     marked: Vec<Marked>,
 }
@@ -170,7 +170,7 @@ impl<'a> Filling<'a> {
         Some(surface.to_owned())
     }
 
-    /// Says one value of that role.
+    /// Says one value of the given role.
     fn one(&mut self, role: Role, polarity: Polarity) -> Option<String> {
         let (k, v) = self.of_role(role)?;
         self.say(k, v, polarity)

@@ -56,7 +56,7 @@ wire_struct! {
 }
 
 impl AudioChunk {
-    /// The stream ends with this chunk.
+    /// Flag of the stream's last chunk.
     pub const END: u8 = 1;
     /// The person holds a key while speaking, so they may interrupt the robot, and the utterance
     /// ends when the key is released.
@@ -65,12 +65,12 @@ impl AudioChunk {
     /// robot.
     pub const ECHO_FREE: u8 = 4;
 
-    /// The stream that it belongs to.
+    /// The stream that the chunk belongs to.
     pub fn request(&self) -> RequestKey {
         RequestKey(self.stream)
     }
 
-    /// The samples; none where the count makes no sense.
+    /// The samples; empty if the count is invalid.
     pub fn sound(&self) -> &[i16] {
         self.samples.0.get(..self.count as usize).unwrap_or_default()
     }

@@ -17,8 +17,8 @@ wire_struct! {
         sent_ns: u64,
         /// Incarnation of the sender; 0 for a client.
         incarnation: u32,
-        /// Number of the message among those of its writer in this topic, from 1; 0 where the sender does not
-        /// count. A reader sees from a gap how many it has lost.
+        /// Number of the message among those of its writer in this topic, from 1; 0 where the
+        /// sender does not count. A reader sees from a gap how many it has lost.
         sequence: u32,
     }
 }
@@ -139,7 +139,7 @@ impl TryFrom<&AskedQuestion> for Presentation {
     }
 }
 
-/// Farthest coordinate that anybody points at, metres. It keeps a mistyped number out.
+/// Greatest coordinate of a pointing gesture, metres; rejects mistyped numbers.
 pub const POINTED_AT_MAX_M: f64 = 100.0;
 
 wire_struct! {
@@ -162,7 +162,7 @@ impl From<Option<[f64; 3]>> for WireGesture {
 }
 
 impl WireGesture {
-    /// The point that is pointed at, metres, frame `base`; none without a gesture.
+    /// The point indicated by the gesture, metres, frame `base`; `None` without a gesture.
     ///
     /// # Errors
     /// A code or a coordinate that makes no sense.

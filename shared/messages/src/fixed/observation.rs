@@ -93,7 +93,7 @@ impl WireReading {
         (wire, if fits == [true; 3] { Fits::Whole } else { Fits::Cut })
     }
 
-    /// Decodes it. `words` is `|V|` of the scene, `asked` the number of questions.
+    /// Decodes the interpretation. `words` is `|V|` of the scene, `asked` the number of questions.
     ///
     /// # Errors
     /// Counts, codes, doubts, questions or words that make no sense then.
@@ -144,7 +144,7 @@ fn doubts(slots: &[f32], used: usize) -> Result<Vec<f64>, WireError> {
 /// Result of encoding into a fixed layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fits {
-    /// All of it.
+    /// The whole utterance.
     Whole,
     /// Something was left out.
     Cut,

@@ -18,8 +18,8 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// An order to forget what was learned about a person. Clients to policy, sent again until [`PolicyView::forgot`]
-    /// has its key.
+    /// An order to forget what was learned about a person. Clients to policy, sent again until
+    /// [`PolicyView::forgot`] has its key.
     ///
     /// [`PolicyView::forgot`]: crate::PolicyView::forgot
     Forget = "Forget" {
@@ -47,8 +47,8 @@ wire_struct! {
         presentation: u32,
         /// [`ActKind`].
         kind: Code<ActKind>,
-        /// 1 where the question names its object in words alone, as "do you want the blue pen?" does: the arm does not
-        /// point at it. Else 0.
+        /// 1 where the question names its object in words alone, as "do you want the blue pen?"
+        /// does: the arm does not point at it. Else 0.
         in_words: u8,
         /// Zero.
         reserved: [u8; 2],
@@ -92,7 +92,7 @@ impl RobotAct {
         }
     }
 
-    /// Judges what the policy alone can know: its numbers, its question and its text.
+    /// Checks the parts that only the policy knows: its numbers, its question and its text.
     ///
     /// # Errors
     /// A number that nothing counts to, or a question or text that is none.

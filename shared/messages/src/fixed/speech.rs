@@ -230,7 +230,7 @@ wire_struct! {
 }
 
 impl Receipt {
-    /// The injection that it answers.
+    /// The injection that the receipt answers.
     pub fn request(&self) -> RequestKey {
         RequestKey(self.key)
     }

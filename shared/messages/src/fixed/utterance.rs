@@ -143,7 +143,7 @@ impl Utterance {
             .collect()
     }
 
-    /// Sets the questions that it may answer, newest first; those beyond [`ASKED_MAX`] are left out.
+    /// Sets the questions that it may answer, newest first; at most [`ASKED_MAX`].
     pub fn set_asked(&mut self, asked: &[AskedQuestion]) {
         let used = self.asked.iter_mut().zip(asked);
         self.asked_count = used.map(|(slot, asked)| *slot = *asked).count() as u8;

@@ -46,7 +46,7 @@ pub enum Command {
     Grip,
     /// `release`: opens.
     Release,
-    /// `stop`: stays where it is.
+    /// `stop`: hold the position.
     Stop,
     /// `configure`: force with which held objects are pressed, percent.
     Configure(f64),
@@ -140,7 +140,7 @@ wire_struct! {
 }
 
 impl Command {
-    /// The word for it.
+    /// Name of the command in messages.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Calibrate => "calibrate",
@@ -170,7 +170,7 @@ impl EndEffectorCommand {
         }
     }
 
-    /// Decodes it.
+    /// Decodes the command.
     ///
     /// # Errors
     /// A word that no gripper knows, or a `go` or `configure` without its number.

@@ -1,4 +1,4 @@
-//! Joints: what a limb is commanded, and what is measured.
+//! Joints: commands to a limb, and measurements.
 
 use crate::schema::wire_struct;
 use crate::text::FixedText;

@@ -1,7 +1,7 @@
 //! The robot's own topics: commands to and states of a Baxter, in the terms of its interface.
 //!
 //! Messages have the names, fields and meanings of `baxter_core_msgs`, `sensor_msgs` and
-//! `trajectory_msgs`, so that a bridge to ROS copies fields and decides nothing. What differs: a
+//! `trajectory_msgs`, so that a bridge to ROS copies fields and decides nothing. Differences: a
 //! message has a fixed layout, so lists have a length and a bound; header stamps are nanoseconds of
 //! this machine's monotonic clock; booleans are bytes.
 //!

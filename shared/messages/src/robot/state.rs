@@ -1,4 +1,4 @@
-//! The robot as a whole, and external influences on the simulated one: people around it, and faults.
+//! The robot as a whole, and influences on the simulated one: people around it, and faults.
 
 use crate::schema::wire_struct;
 use crate::wire::{Code, wire_enum};

@@ -1,5 +1,5 @@
-//! Everything that goes to and comes from a robot. Limbs are 0, left, and 1, right, as in the pairs of
-//! [`crate::topics::robot`].
+//! Everything that goes to and comes from a robot. Limbs are 0, left, and 1, right, as in the pairs
+//! of [`crate::topics::robot`].
 
 use super::{
     AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, EndpointState,
@@ -8,7 +8,7 @@ use super::{
 use crate::MessageRef;
 use serde::{Deserialize, Serialize};
 
-/// What a robot reports.
+/// A report of the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Report<'a> {
     /// `joint_states`, of all or some joints.

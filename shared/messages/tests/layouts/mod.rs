@@ -1,4 +1,4 @@
-//! Every message type of the topics, by name: what the golden file and the generated bindings list.
+//! Every message type of the topics, by name: listed in the golden file and the generated bindings.
 
 use messages::robot::*;
 use messages::schema::{Field, Schema};

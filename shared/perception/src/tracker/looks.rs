@@ -1,4 +1,4 @@
-//! Looks: which detection is of which object, what is new, and what was missed.
+//! Looks: matching of detections to objects, new objects, and missed ones.
 
 use scene::{ObjectId, Perceived, likeliest};
 use vocabulary::time::{Span, Time};
@@ -20,8 +20,8 @@ const SAME_PLACE_M: f64 = 0.03;
 const AHEAD: Span = Span::from_ms(50);
 
 impl Tracker {
-    /// Takes in a look: detections of known objects, then of candidates; what it should have shown and
-    /// did not was missed.
+    /// Processes a look: detections of known objects, then of candidates; expected objects that it
+    /// did not show were missed.
     pub(super) fn look(
         &mut self,
         source: &str,
@@ -58,7 +58,7 @@ impl Tracker {
         Ok(())
     }
 
-    /// Drops the candidates that were not seen again, and those in whose place a known object was seen instead.
+    /// Drops the candidates not seen again, and those replaced by a sighting of a known object.
     fn drop_candidates(&mut self, at: Time) {
         let moved_m = self.settings.moved_m;
         let is_known = |candidate: &Candidate| {
@@ -102,8 +102,8 @@ impl Tracker {
         shown
     }
 
-    /// Objects and detections that may belong together, the nearest first; a source's own name for an
-    /// object comes before any distance.
+    /// Objects and detections that may belong together, the nearest first; a source's own name for
+    /// an object comes before any distance.
     fn pairs(&self, source: &str, seen: &[&Detection]) -> Vec<(f64, usize, usize)> {
         let mut pairs = Vec::new();
         for (t, track) in self.tracks.iter().enumerate().filter(|(_, it)| !it.object.taken) {
@@ -169,8 +169,8 @@ impl Tracker {
         }
     }
 
-    /// Makes an object of a candidate: the only one of its class that was neither seen in its place since the
-    /// candidate was first seen, nor beside it, has moved there; else it is a new one.
+    /// Makes an object of a candidate: the only one of its class that was neither seen in its place
+    /// since the candidate was first seen, nor beside it, has moved there; else it is a new one.
     fn ripen(&mut self, candidate: usize, shown: &mut Vec<ObjectId>, at: Time) {
         let Candidate { estimate, track, source, since, beside, .. } =
             self.candidates.remove(candidate);
@@ -205,7 +205,7 @@ impl Tracker {
         }
     }
 
-    /// Gives an object a number; none if the table is full, or every number was given.
+    /// Gives an object a number; `None` if the table is full, or all numbers are used.
     pub(super) fn appear(
         &mut self,
         estimate: Estimate,
@@ -234,8 +234,8 @@ impl Tracker {
         Some(number)
     }
 
-    /// Counts the objects that a look should have shown: those that its source has seen before, and that
-    /// the arm does not hide.
+    /// Counts the objects that a look should have shown: those that its source has seen before, and
+    /// that the arm does not hide.
     fn miss(&mut self, source: &str, shown: &[ObjectId], hiding: &Hiding, span: Span) {
         for track in &mut self.tracks {
             let [x, y, z, _] = track.estimate.place;

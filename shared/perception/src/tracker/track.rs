@@ -12,13 +12,13 @@ const MISSES_MIN: u32 = 5;
 
 #[derive(Clone, Debug)]
 pub(super) struct Track {
-    /// As it was last reported.
+    /// The object as last reported.
     pub(super) object: Perceived,
     pub(super) estimate: Estimate,
     /// Source and its name for the object; of those the latest.
     pub(super) track: Option<(String, String)>,
     pub(super) seen: Time,
-    /// When it was last seen where the estimate has it.
+    /// Time of the last sighting at the estimated place.
     pub(super) stood: Time,
     pub(super) missed: Span,
     pub(super) misses: u32,
@@ -31,7 +31,7 @@ pub(super) struct Candidate {
     pub(super) source: String,
     pub(super) since: Time,
     pub(super) seen: Time,
-    /// Objects that a look showed beside it: it is none of them.
+    /// Objects that a look showed beside this one, so that it is another.
     pub(super) beside: Vec<ObjectId>,
 }
 
@@ -66,7 +66,7 @@ impl Track {
         }
     }
 
-    /// Reports the estimate, if it differs by more than a step from what was reported.
+    /// Reports the estimate, if it differs by more than a step from the last report.
     pub(super) fn report(&mut self, moved_m: f64) {
         let Estimate { classes, attributes, place: [x, y, z, yaw], .. } = &self.estimate;
         let object = &mut self.object;

@@ -32,7 +32,7 @@ fn clock() -> WallClock {
     WallClock { offset_ns: 2 * 86_400 * 1_000_000_000 }
 }
 
-/// A ring whose free space is what the cell holds.
+/// Makes a ring with the free space of the cell.
 fn ring(folder: &Path, limits: Recorder) -> (Ring, Rc<Cell<u64>>) {
     let free = Rc::new(Cell::new(1000 * MIB));
     let asked = Rc::clone(&free);
@@ -225,7 +225,7 @@ fn new_file_begins_when_the_wall_clock_is_set() {
     assert_eq!(entries(folder.path()).len(), 2);
 }
 
-/// Writes a message each minute for `minutes`, while the wall clock is `clock`. Returns when it ends.
+/// Writes a message each minute for `minutes`, with the wall clock at `clock`. Returns the end.
 fn record(ring: &mut Ring, from_s: u64, minutes: u64, clock: WallClock) -> u64 {
     for s in (from_s..from_s + minutes * 60).step_by(60) {
         ring.tend(at(s), clock);

@@ -12,16 +12,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Messages that this process's readers of any topic have lost.
 static LOST: AtomicU64 = AtomicU64::new(0);
 
-/// Returns how many messages this process has lost because it did not read them in time. Readers of any
-/// topic count them, for topics with one writer; others see only what they need.
+/// Returns how many messages this process has lost because it did not read them in time. Counted by
+/// readers of any topic, for topics with one writer; other readers see only what they need.
 pub fn lost() -> u64 {
     LOST.load(Ordering::Relaxed)
 }
 
-/// A message of any topic, where it lies in shared memory.
+/// A message of any topic, borrowed from shared memory.
 #[derive(Clone, Copy, Debug)]
 pub enum AnyMessage<'a> {
-    /// Of fixed layout.
+    /// A message of fixed layout.
     Fixed(FixedMessage<'a>),
     /// A payload in postcard; nothing has decoded it yet.
     Encoded(&'a [u8]),
@@ -40,19 +40,19 @@ impl Bus {
     }
 }
 
-/// Reads a topic without knowing its type, and counts what it has lost.
+/// Reader of a topic of unknown type, which counts lost messages.
 #[derive(Debug)]
 pub struct AnyReader {
     receiver: Receiver,
     /// Layout of the topic's messages, unless they are encoded.
     layout: Option<Layout>,
-    /// Incarnation and number of the latest message, where there is one writer.
+    /// Incarnation and number of the latest message, if there is one writer.
     numbers: Option<Cell<(u32, u32)>>,
 }
 
 impl AnyReader {
-    /// Hands over the messages that wait, oldest first, with their stamps. It ends even where a writer
-    /// sends as fast as it is read.
+    /// Hands over pending messages with their stamps, oldest first. It ends even if a writer sends
+    /// as fast as it is read.
     ///
     /// # Errors
     /// iceoryx2 lost its connection to a writer.
@@ -86,8 +86,8 @@ impl AnyReader {
     }
 }
 
-/// Messages between two that followed each other, each with incarnation and number of its writer. A number
-/// of 0 says that none came before, or that the writer does not count.
+/// Messages between two that followed each other, each with incarnation and number of its writer. A
+/// number of 0 says that none came before, or that the writer does not count.
 fn lost_between(before: (u32, u32), next: (u32, u32)) -> u32 {
     let is_counted = before.0 == next.0 && before.1 != 0;
     if is_counted { next.1.saturating_sub(before.1.saturating_add(1)) } else { 0 }

@@ -27,7 +27,7 @@ impl Bus {
         self.encoded_writer_of(topic, None)
     }
 
-    /// Writes a topic of encoded payloads of at most so many bytes each; a larger one is an error.
+    /// Opens a topic for writing encoded payloads of limited size; a larger one is an error.
     ///
     /// # Errors
     /// As [`Bus::writer`].
@@ -57,17 +57,17 @@ impl Bus {
 /// Writes a topic of postcard payloads.
 #[derive(Debug)]
 pub struct EncodedWriter<T: Schema> {
-    /// What a service shows to clients; a later one replaces it.
+    /// Whether the payload is a view for clients; a later one replaces it.
     is_view: bool,
-    /// The last payload was dropped for want of shared memory.
+    /// The last payload was dropped for lack of shared memory.
     is_short: Cell<bool>,
     sender: Rc<Sender>,
     _payload: PhantomData<T>,
 }
 
 impl<T: Schema> EncodedWriter<T> {
-    /// Encodes the payload into shared memory and sends it. Where it needs more memory than was
-    /// reserved and there is none, a service goes on without showing it.
+    /// Encodes the payload into shared memory and sends it. If it needs more memory than was
+    /// reserved and there is none, a service continues without showing it.
     ///
     /// # Errors
     /// The payload cannot be encoded or is too large, or iceoryx2 is out of memory.
@@ -148,7 +148,7 @@ pub struct EncodedReader<T: Schema> {
 }
 
 impl<T: Schema> EncodedReader<T> {
-    /// Decodes the next payload where it lies in shared memory, so that it may borrow bytes and text
+    /// Decodes the next payload in place in shared memory, so that it may borrow bytes and text
     /// from there; an invalid one is logged and skipped, because a client's invalid bytes must not
     /// stop a service.
     ///
@@ -177,8 +177,8 @@ impl<T: Schema + DeserializeOwned> EncodedReader<T> {
         self.take_with(|bytes| postcard::from_bytes(bytes))
     }
 
-    /// Takes what is pending, one payload of each writer in turn. It ends even where a writer sends as
-    /// fast as it is read: what arrives meanwhile wakes the reader again.
+    /// Takes pending payloads, one of each writer in turn. It ends even if a writer sends as fast
+    /// as it is read: later payloads wake the reader again.
     ///
     /// # Errors
     /// As [`EncodedReader::take`].

@@ -1,7 +1,6 @@
 //! Readers and writers of fixed-layout topics.
 //!
-//! A writer never blocks: a slow or stopped reader loses the oldest message, and is sent again what
-//! matters.
+//! A writer never blocks: a slow reader loses the oldest message, and important ones are resent.
 
 use super::gate::reject;
 use super::open::has_messages;
@@ -25,7 +24,8 @@ impl Bus {
     pub fn writer<T: WireMessage>(&self, topic: &Topic) -> Result<Writer<T>, BusError> {
         has_messages::<T>(topic)?;
         let sender = Sender::open(self, topic, None)?;
-        // A state of which only the latest message counts is repeated, and wakes when it has changed.
+        // A state of which only the latest message counts is repeated, and wakes readers if
+        // changed.
         let latest = (topic.buffer == 1 && sender.wakes()).then(Cell::default);
         Ok(Writer { sender, latest })
     }
@@ -46,7 +46,7 @@ impl Bus {
 #[derive(Debug)]
 pub struct Writer<T: WireMessage> {
     sender: Rc<Sender>,
-    /// The message sent last, where the topic is a state that is repeated.
+    /// The message sent last, if the topic is a state that is repeated.
     latest: Option<Cell<Option<T>>>,
 }
 
@@ -60,8 +60,8 @@ impl<T: WireMessage> Writer<T> {
     }
 
     /// Fills a message in shared memory, from its default, sends it and wakes the topic's readers,
-    /// unless it repeats a state: they take that with their next pass. That it was sent does not mean
-    /// that it was received.
+    /// unless it repeats a state: they take that with their next pass. That it was sent does not
+    /// mean that it was received.
     ///
     /// # Errors
     /// iceoryx2 is out of memory.
@@ -98,7 +98,7 @@ impl<T: WireMessage> Writer<T> {
         Ok(())
     }
 
-    /// Returns whether what was sent differs from the last message, where the topic is a `state`.
+    /// Returns whether the sent state differs from the last one, if the topic is a `state`.
     fn is_news(&self, state: Option<T>) -> bool {
         let Some(latest) = &self.latest else { return true };
         state != latest.replace(state)
@@ -131,8 +131,8 @@ impl<T: WireMessage> Reader<T> {
         Ok(None)
     }
 
-    /// Returns every pending message, in order. It ends even where a writer sends as fast as it is read: what
-    /// arrives meanwhile wakes the reader again.
+    /// Returns every pending message, in order. It ends even if a writer sends as fast as it is
+    /// read: later messages wake the reader again.
     ///
     /// # Errors
     /// As [`Reader::take`].

@@ -29,7 +29,7 @@ pub(super) fn reject(topic: &str, error: &dyn std::fmt::Display) {
 pub(super) struct Gate {
     topic: &'static str,
     epoch: Epoch,
-    /// None where several clients write, which have no incarnation.
+    /// `None` for several writing clients, which have no incarnation.
     writer: Option<Writer>,
 }
 

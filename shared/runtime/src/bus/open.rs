@@ -14,7 +14,7 @@ use messages::schema::Schema;
 use messages::topics::{self, NODES_MAX, Topic};
 use std::rc::Rc;
 
-/// Opens the topic, creating it where this process is the first.
+/// Opens the topic, creating it if this process is the first.
 pub(super) fn open_topic(bus: &Bus, topic: &Topic) -> Result<TopicPorts, BusError> {
     let failed = |cause: String| BusError::ipc(topic.name, cause);
     let name = ServiceName::new(topic.name).map_err(|e| failed(format!("{e:?}")))?;
@@ -36,7 +36,7 @@ pub(super) fn open_topic(bus: &Bus, topic: &Topic) -> Result<TopicPorts, BusErro
     builder.open_or_create_with_attributes(&required).map_err(|error| refused(topic, &error))
 }
 
-/// Fails unless the topic has messages of this type and layout: its ports would take their bytes for others.
+/// Fails unless the topic has messages of this type and layout: others would be misread.
 pub(super) fn has_messages<T: Schema>(topic: &Topic) -> Result<(), BusError> {
     let size = |layout: Option<Layout>| layout.map(|layout| layout.size);
     if topic.payload == T::NAME && size((topic.layout)()) == size(T::layout()) {
@@ -77,7 +77,7 @@ pub struct Topics {
 }
 
 impl Topics {
-    /// Opens (or, where this process is the first, creates) every topic and wake-up. The robot's are
+    /// Opens (or, if this process is the first, creates) every topic and wake-up. The robot's are
     /// among them: a bridge in another language can only open what exists.
     ///
     /// # Errors

@@ -10,8 +10,8 @@ const LISTING_BYTES: usize = 64 << 10;
 
 /// Returns the names of this user's files in shared memory that `is_named` accepts.
 ///
-/// iceoryx2 lists them for each port of a dead process, and other groups' segments, of which there may be many,
-/// lie in the same folder: nothing is allocated for those.
+/// iceoryx2 lists them for each port of a dead process, and other groups' segments, of which there
+/// may be many, lie in the same folder: nothing is allocated for those.
 pub(super) fn own_files(is_named: impl Fn(&[u8]) -> bool) -> rustix::io::Result<Vec<FileName>> {
     let own = geteuid().as_raw();
     let folder = open(SHM, OFlags::RDONLY | OFlags::DIRECTORY | OFlags::CLOEXEC, Mode::empty())?;

@@ -1,5 +1,5 @@
-//! Ports that do not know the type of their messages, as those that iceoryx2's bindings for other languages use: the
-//! type's name, size and alignment are data. So the code of a port exists once, and not once for each type.
+//! Ports that do not know the type of their messages, as in iceoryx2's bindings for other
+//! languages: the type's name, size and alignment are data. So there is one code for all types.
 //!
 //! All of iceoryx2's interface that is meant for its bindings is used here and nowhere else.
 
@@ -43,7 +43,7 @@ pub(super) fn with_layout(
     );
     let payload = payload.map_err(|error| format!("{error:?}"))?;
     let stamp = TypeDetail::new::<Stamp>(TypeVariant::FixedSize);
-    // SAFETY: what is made of header and payload is only what these describe, below and in [`messages::layout`].
+    // SAFETY: header and payload are only converted to these types and those in `layout`.
     #[allow(unsafe_code)]
     Ok(unsafe {
         builder
@@ -52,7 +52,7 @@ pub(super) fn with_layout(
     })
 }
 
-/// A message where it lies in shared memory.
+/// A message borrowed from shared memory.
 #[derive(Debug)]
 pub(super) struct Received(Sample<Ipc, [CustomPayloadMarker], CustomHeaderMarker>);
 
@@ -63,7 +63,7 @@ impl Received {
     }
 
     pub(super) fn stamp(&self) -> &Stamp {
-        // SAFETY: the topic's header is a stamp, with its size and alignment; only the port's type does not say so.
+        // SAFETY: the topic's header is a stamp, with its size and alignment, which the type hides.
         #[allow(unsafe_code)]
         unsafe {
             &*ptr::from_ref(self.0.user_header()).cast()
@@ -86,9 +86,9 @@ pub(super) struct Loan(
 );
 
 impl Loan {
-    /// Takes memory: one slot of a fixed layout, or so many bytes.
+    /// Takes memory: one slot of a fixed layout, or a number of bytes.
     pub(super) fn take(port: &SendPort, slots: usize) -> Result<Self, LoanError> {
-        // SAFETY: more than one slot is only taken of bytes, and the memory's size is what its length says.
+        // SAFETY: more than one slot is only taken of bytes, and the memory's size is its length.
         #[allow(unsafe_code)]
         unsafe {
             port.loan_custom_payload(slots).map(Self)
@@ -97,7 +97,7 @@ impl Loan {
 
     pub(super) fn stamp(&mut self, stamp: Stamp) {
         let header = ptr::from_mut(self.0.user_header_mut()).cast::<Stamp>();
-        // SAFETY: the topic's header has the size and alignment of a stamp; only the port's type does not say so.
+        // SAFETY: the topic's header has a stamp's size and alignment, which the type hides.
         #[allow(unsafe_code)]
         unsafe {
             header.write(stamp);

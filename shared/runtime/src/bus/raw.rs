@@ -1,4 +1,4 @@
-//! Topics as bytes, for tests of services: written whatever the bytes mean, and read whoever sent them.
+//! Topics as bytes, for tests of services: written with any content, and read from any writer.
 
 use super::open::notifiers;
 use super::receiver::Receiver;
@@ -73,8 +73,8 @@ pub struct RawReader {
 }
 
 impl RawReader {
-    /// Hands over the messages that wait, oldest first, with their stamps; also those of other epochs and
-    /// incarnations, and those that make no sense.
+    /// Hands over the messages that wait, oldest first, with their stamps; also those of other
+    /// epochs and incarnations, and those that make no sense.
     ///
     /// # Errors
     /// iceoryx2 lost its connection to a writer.

@@ -8,7 +8,7 @@ use super::{Bus, BusError, PortError, create};
 use iceoryx2::port::ReceiveError;
 use messages::topics::Topic;
 
-/// The port of a reader, and its judgement of what arrives.
+/// The port of a reader, with its checks of incoming messages.
 #[derive(Debug)]
 pub(super) struct Receiver {
     pub(super) topic: &'static str,
@@ -60,8 +60,8 @@ impl Receiver {
         self.port.with(|port| Received::take(port).map_err(|error| self.failed(&error)))
     }
 
-    /// Returns the next message of every writer, whoever sent it and when: none gives another one while the first is
-    /// held.
+    /// Returns the next message of every writer, whoever sent it and when: none gives another one
+    /// while the first is held.
     ///
     /// # Errors
     /// As [`Receiver::take`].

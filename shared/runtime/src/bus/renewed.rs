@@ -1,7 +1,7 @@
 //! A port that is made again when iceoryx2 could not connect it.
 //!
-//! iceoryx2 tries each connection between two ports once: where memory or descriptors were short at
-//! that moment, the two stay deaf to one another although both live. A new port is a new try.
+//! iceoryx2 tries each connection between two ports once: if memory or descriptors were short at
+//! that moment, the two stay disconnected although both live. A new port is a new try.
 
 use std::cell::{Cell, RefCell};
 use std::fmt;
@@ -50,7 +50,7 @@ type Create<P> = Box<dyn Fn(&Failing) -> Result<P, BusError>>;
 pub(super) struct Renewed<P> {
     topic: &'static str,
     create: Create<P>,
-    /// None where the last try has failed.
+    /// `None` after a failed try.
     port: RefCell<Option<P>>,
     failing: Failing,
     /// Time of the last try, and the pause after it.
@@ -69,7 +69,7 @@ impl<P> Renewed<P> {
         Ok(Self { topic, create: Box::new(create), port, failing, tried })
     }
 
-    /// Uses the port, after another try to connect it where one is due.
+    /// Uses the port, after another try to connect it if one is due.
     ///
     /// # Errors
     /// The port could not be made again, or `act` fails.

@@ -1,9 +1,9 @@
-//! Segments of shared memory, laid out and named as iceoryx2's own, with three guarantees that those
-//! do not give:
+//! Segments of shared memory, laid out and named as iceoryx2's own, with three guarantees that
+//! those do not give:
 //!
 //! - Every page is reserved before a segment can be opened. A lack of memory is an error of its
-//!   creator, with the figure, and not the death (SIGBUS) of whoever touches the page first.
-//! - No segment is open to another user, and none of another user is used.
+//!   creator, with the figure, and not the death (SIGBUS) of the first process to touch the page.
+//! - No segment is open to another user, and no segment of another user is used.
 //! - Every open ends within its timeout, whatever has become of the file.
 
 use super::own_files::own_files;
@@ -48,7 +48,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(1);
 /// Bytes of a block as the operating system counts them.
 const BLOCK: u64 = 512;
 
-/// What a segment may hold.
+/// Content types of segments.
 pub(crate) trait Content: Send + Sync + Debug + ZeroCopySend {}
 
 impl<T: Send + Sync + Debug + ZeroCopySend> Content for T {}
@@ -60,7 +60,7 @@ pub(crate) struct Segment<T: Send + Sync + Debug + ZeroCopySend> {
     _content: PhantomData<T>,
 }
 
-/// What lies at the beginning of a segment, before the memory that the content allocates for itself.
+/// Start of a segment, before the memory that the content allocates for itself.
 #[repr(C)]
 struct Layout<T> {
     /// Version of iceoryx2; 0 until the content is complete.
@@ -68,7 +68,7 @@ struct Layout<T> {
     content: MaybeUninit<T>,
 }
 
-/// Short: iceoryx2 writes out most of what it makes, for messages that nobody asks for.
+/// Short: iceoryx2 formats most of its objects for log messages that nobody reads.
 impl<T: Content> Debug for Segment<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Segment")
@@ -181,7 +181,7 @@ impl<T: Content> Builder<'_, T> {
         let memory = SharedMemoryBuilder::new(&self.file())
             .creation_mode(CreationMode::CreateExclusive)
             .size(size_of::<Layout<T>>() + self.supplementary_size)
-            // Not readable: nobody opens it before it is complete.
+            // Not readable, so that it is not opened before it is complete.
             .permission(Permission::OWNER_WRITE)
             .zero_memory(false)
             // Removed again by any failure below.
@@ -210,8 +210,8 @@ impl<T: Content> Builder<'_, T> {
         let size = memory.size() - size_of::<Layout<T>>();
         let initialize = self.initialize.as_mut();
         let initialize = initialize.ok_or(DynamicStorageCreateError::InitializationFailed)?;
-        // SAFETY: the mapping begins at a page and is at least as large as a `Layout<T>` with what
-        // the allocator gets behind it; its pages are reserved, it is zeroed (a valid version), and
+        // SAFETY: the mapping begins at a page and is at least as large as a `Layout<T>` with the
+        // allocator's memory behind it; its pages are reserved, it is zeroed (a valid version), and
         // no other process can have opened it.
         #[allow(unsafe_code)]
         let (head, mut allocator) =
@@ -268,7 +268,7 @@ impl<T: Content> Builder<'_, T> {
         };
         let stat = stat(&memory).map_err(|_| DynamicStorageOpenError::InternalError)?;
         check_owner(&file, &stat)?;
-        // The superuser may open what is not readable yet.
+        // The superuser may open a segment that is not readable yet.
         let is_readable = stat.st_mode & 0o400 != 0;
         if !is_readable || memory.size() < size_of::<Layout<T>>() {
             return Ok(None);
@@ -366,8 +366,8 @@ impl<T: Content> NamedConceptMgmt for Segment<T> {
         Storage::does_exist_cfg(name, config)
     }
 
-    /// Lists the owner's segments only: iceoryx2 takes a name that begins like one and does not go on
-    /// like one, which any user can make, for a defect and panics.
+    /// Lists the owner's segments only: iceoryx2 panics on a name that only begins like a
+    /// segment's, which any user can make.
     fn list_cfg(config: &Configuration<T>) -> Result<Vec<FileName>, NamedConceptListError> {
         let (prefix, suffix) = (config.get_prefix().as_bytes(), config.get_suffix().as_bytes());
         let is_named = |name: &[u8]| name.starts_with(prefix) && name.ends_with(suffix);

@@ -1,5 +1,5 @@
-//! Reasons for refusing a segment, which iceoryx2's errors have no room for: noted where the segment
-//! is refused, taken where the error is reported, on the same thread.
+//! Reasons for refusing a segment, which iceoryx2's errors have no room for: noted when the segment
+//! is refused, taken when the error is reported, on the same thread.
 
 use std::cell::RefCell;
 use std::fs;
@@ -8,7 +8,7 @@ use rustix::process::{Resource, getrlimit};
 
 use crate::group::SHM;
 
-/// Descriptors that one port needs at most: its own files, and those of the peers that it connects to.
+/// Most descriptors of one port: its own files, and those of the peers that it connects to.
 const DESCRIPTORS_OF_PORT: u64 = 64;
 
 /// Room of the smallest file, bytes.
@@ -47,7 +47,7 @@ pub enum SegmentError {
     Foreign {
         /// The file in shared memory.
         file: String,
-        /// User id of its owner.
+        /// User id of the segment's owner.
         user: u32,
     },
     /// A segment is empty or was never completed.
@@ -85,8 +85,8 @@ pub(super) fn take() -> Option<SegmentError> {
     NOTED.take()
 }
 
-/// Takes the reason of a failure: the one noted, else that there was no room for a small file of
-/// iceoryx2's either, or no descriptor.
+/// Takes the reason of a failure: the one noted, or else lack of room for a small file of
+/// iceoryx2's, or of a descriptor.
 pub(super) fn of_failure() -> Option<SegmentError> {
     let is_full =
         || rustix::fs::statvfs(SHM).is_ok_and(|stat| stat.f_bavail.min(stat.f_ffree) == 0);

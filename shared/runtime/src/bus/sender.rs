@@ -15,7 +15,7 @@ use std::rc::Rc;
 
 /// First guess at the size of an encoded payload, bytes; it grows as needed.
 const BYTES: usize = 4096;
-/// The same for clients, of which most say a sentence and end: their memory has room for dozens of payloads.
+/// The same for clients, which mostly send a sentence and end: room for dozens of payloads.
 const CLIENT_BYTES: usize = 1024;
 
 /// The port of a writer, with the notifiers of the services that read its topic.
@@ -28,8 +28,8 @@ pub(super) struct Sender {
 }
 
 impl Sender {
-    /// Opens the topic for a writer, known to the bus from now on. Where the most bytes of a message are known, its
-    /// memory is not added to: that costs both ends a table of 288 KiB at once.
+    /// Opens the topic for a writer, known to the bus from now on. If a message's maximum size is
+    /// known, its memory never grows: growing costs both ends a table of 288 KiB at once.
     pub(super) fn open(
         bus: &Bus,
         topic: &Topic,
@@ -67,11 +67,11 @@ impl Sender {
         !self.readers.is_empty()
     }
 
-    /// Sends what `fill` writes into the memory of a message, which has `slots` bytes; one of fixed layout is one
-    /// slot. Nobody is woken.
+    /// Sends a message of `slots` bytes, which `fill` writes in place; one of fixed layout is one
+    /// slot. Wakes no reader.
     ///
     /// # Errors
-    /// The port could not be made again, `fill` fails, or iceoryx2 cannot send; inside, there is no memory.
+    /// The port cannot be made again, `fill` fails, or iceoryx2 cannot send; inner: no memory.
     ///
     /// # Safety
     /// `fill` writes every byte, or fails.

@@ -1,6 +1,6 @@
 //! The variant of iceoryx2's services that a group uses: its `ipc::Service`, with segments that are
-//! reserved, private and never waited for without end (see [`Segment`]). Names and layout in shared memory are the
-//! same, so programs with iceoryx2's own variant take part.
+//! reserved, private and never waited for without end (see [`Segment`]). Names and layout in shared
+//! memory are the same, so programs with iceoryx2's own variant take part.
 
 use super::segment::Segment;
 use iceoryx2::service::Service;

@@ -1,4 +1,4 @@
-//! Wake-ups. An event says only "look": it may come once for many messages, or never where its
+//! Wake-ups. An event says only "look": it may come once for many messages, or never if its
 //! listener was dead, so the woken side always drains everything and also polls from time to time.
 
 use super::{Bus, BusError, Ipc, create};
@@ -22,16 +22,16 @@ pub struct WakeListener {
     _topic: PortFactory<Ipc>,
 }
 
-/// What has ended a sleep.
+/// Reasons that have ended a sleep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Woken<const N: usize> {
     /// A wake-up.
     pub by_wake: bool,
-    /// Which of the sources are readable.
+    /// Whether each of the sources is readable.
     pub sources: [bool; N],
 }
 
-/// Who has joined the group and asks writers for their latest messages.
+/// New members of the group, which ask writers for their latest messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Joined {
     /// A client, which polls.
@@ -98,8 +98,8 @@ impl Bus {
 }
 
 impl WakeListener {
-    /// Sleeps until there is a wake-up, one of `sources` is readable, or `longest` has passed. After an
-    /// interruption everything counts as ready.
+    /// Sleeps until there is a wake-up, one of `sources` is readable, or `longest` has passed.
+    /// After an interruption everything counts as ready.
     pub fn sleep<const N: usize>(
         &self,
         sources: &[Option<BorrowedFd<'_>>; N],
@@ -110,16 +110,16 @@ impl WakeListener {
 
     fn socket(&self) -> BorrowedFd<'_> {
         let descriptor = self.listener.file_descriptor();
-        // SAFETY: the listener holds the descriptor open as long as the result borrows it; nobody closes it
-        // through the result.
+        // SAFETY: the listener holds the descriptor open as long as the result borrows it; it is
+        // not closed through the result.
         #[allow(unsafe_code)]
         unsafe {
             BorrowedFd::borrow_raw(descriptor.native_handle())
         }
     }
 
-    /// Takes all pending wake-ups, to be called before topics are read. Returns who has joined, if
-    /// anybody: its readers wait for [`Bus::connect`].
+    /// Takes all pending wake-ups, to be called before topics are read. Returns new members, if
+    /// any: its readers wait for [`Bus::connect`].
     pub fn take(&self) -> Option<Joined> {
         let mut joined = None;
         let taken = self.listener.try_wait(|event| joined = joined.max(Joined::of_event(event.id)));
@@ -135,7 +135,7 @@ fn sleep<const N: usize>(
     sources: &[Option<BorrowedFd<'_>>; N],
     longest: Span,
 ) -> Woken<N> {
-    // A source that is not there stands as the socket, asked for nothing, so that each keeps its place.
+    // A missing source is replaced by the socket, without events, so that each keeps its place.
     let source = |fd: &Option<_>| match fd {
         Some(fd) => PollFd::from_borrowed_fd(*fd, PollFlags::IN),
         None => PollFd::from_borrowed_fd(socket, PollFlags::empty()),
@@ -153,7 +153,7 @@ fn sleep<const N: usize>(
 }
 
 impl WakeNotifier {
-    /// Opens it now.
+    /// Opens the listener now.
     ///
     /// # Errors
     /// iceoryx2 fails.
@@ -162,7 +162,7 @@ impl WakeNotifier {
         Ok(Self { service, node: Rc::clone(&bus.node), port })
     }
 
-    /// Opens it with its first wake-up.
+    /// Opens the listener with its first wake-up.
     pub(super) fn open_later(bus: &Bus, service: Service) -> Self {
         Self { service, node: Rc::clone(&bus.node), port: OnceCell::new() }
     }
@@ -188,8 +188,8 @@ impl WakeNotifier {
         }
     }
 
-    /// Asks the service for the latest messages of its topics. A failure is harmless: they come with
-    /// its next ones.
+    /// Asks the service for the latest messages of its topics. A failure is harmless: they come
+    /// with its next ones.
     pub(super) fn greet(&self, joins: Joined) {
         let greet = |it: &Notifier<Ipc>| it.notify_with_custom_event_id(joins.event());
         if let Some(Err(error)) = self.notifier().map(greet) {

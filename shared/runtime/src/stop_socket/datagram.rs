@@ -21,7 +21,7 @@ pub(super) const BYTES_MAX: usize = 512;
 #[derive(Debug)]
 pub(super) struct Endpoint {
     socket: OwnedFd,
-    /// Datagrams that were ignored. Any user can send them to a client's address, so they are not logged one by one.
+    /// Datagrams that were ignored. Any user can send them, so they are not logged one by one.
     ignored: AtomicU64,
 }
 
@@ -43,8 +43,8 @@ impl Endpoint {
         sendto(&self.socket, &bytes, SendFlags::NOSIGNAL, to).map(drop)
     }
 
-    /// Returns the next message with its sender's address; none for one that does not count. Root, this process's
-    /// user and those whom `is_peer` accepts are heard.
+    /// Returns the next message with its sender's address; `None` for a message that does not
+    /// count. Senders may be root, this process's user and those whom `is_peer` accepts.
     pub(super) fn receive<T: DeserializeOwned>(
         &self,
         is_peer: impl Fn(Uid) -> bool,
@@ -84,19 +84,19 @@ impl Endpoint {
     }
 }
 
-/// Translation between this process's monotonic clock and the machine's: a container may have a clock of its own, by
-/// which an order would seem to be from the past or the future.
+/// Translation between this process's monotonic clock and the machine's: a container may have a
+/// clock of its own, by which an order would seem to be from the past or the future.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct ClockOffset(i64);
 
 impl ClockOffset {
-    /// The offset of this process's time namespace; 0 where the kernel has none.
+    /// The offset of this process's time namespace; 0 if the kernel has none.
     pub(super) fn of_process() -> Self {
         let offsets = std::fs::read_to_string("/proc/self/timens_offsets");
         Self(offsets.ok().and_then(|text| parse(&text)).unwrap_or_default())
     }
 
-    /// Returns a time of this process in the machine's. 0 stays, because it stands for no time.
+    /// Returns a time of this process in the machine's. 0 stays, because it means no time.
     pub(super) fn machine_ns(self, ns: u64) -> u64 {
         shift(ns, self.0.saturating_neg())
     }

@@ -1,10 +1,10 @@
-//! A stop that outlives whoever gave it.
+//! A stop that outlives its giver.
 //!
-//! A giver repeats its stop only as long as it lives: a command line is interrupted, a page is closed, a service is
-//! killed. What it cannot get confirmed it leaves as a file in the group's folder. The arm's service obeys the file when
-//! it starts, when it has stood still, and before any release; so it counts also where the arm's socket is full or gone.
-//! Its presence alone is the stop; its content, the time at which the stop was given, only keeps it from undoing a later
-//! release.
+//! A giver repeats its stop only as long as it lives: a command line is interrupted, a page is
+//! closed, a service is killed. An unconfirmed stop is left as a file in the group's folder. The
+//! arm's service obeys the file when it starts, when it has come to rest, and before any release;
+//! so it counts even if the arm's socket is full or gone. Its presence alone is the stop; its
+//! content, the time at which the stop was given, only keeps it from undoing a later release.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -21,13 +21,13 @@ pub fn is_kept(paths: &GroupPaths) -> bool {
     is_there(&paths.kept_stop())
 }
 
-/// A link that leads nowhere is there, too.
+/// A link that leads nowhere exists, too.
 fn is_there(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
 
-/// Keeps a stop; `given_ns` is in the machine's time. The latest one is kept. A disk without space may have room for an
-/// empty file.
+/// Keeps a stop; `given_ns` is in the machine's time. The latest one is kept. A disk without space
+/// may have room for an empty file.
 pub(super) fn keep(paths: &GroupPaths, given_ns: u64) -> io::Result<()> {
     let path = paths.kept_stop();
     if is_there(&path) && read(&path).is_none_or(|kept| kept >= given_ns) {
@@ -41,7 +41,7 @@ pub(super) fn keep(paths: &GroupPaths, given_ns: u64) -> io::Result<()> {
     })
 }
 
-/// Returns when the kept stop was given, in the machine's time; none where the file does not tell.
+/// Returns when the kept stop was given, in the machine's time; `None` if the file has none.
 fn read(path: &Path) -> Option<u64> {
     safe_files::read_private(path)?.trim().parse().ok()
 }
@@ -66,7 +66,7 @@ pub struct KeptStop {
 }
 
 impl KeptStop {
-    /// Returns the group's kept stop, if there is one. One whose time cannot be read counts as given now.
+    /// Returns the group's kept stop, if any. One with an unreadable time counts as given now.
     /// # Errors
     /// The process or the system has no descriptor left.
     pub fn find(paths: &GroupPaths) -> io::Result<Option<Self>> {
@@ -89,8 +89,8 @@ impl KeptStop {
         StopOrder { order: MotionOrder::Stop, given_ns: self.progress.given().ns() }
     }
 
-    /// Repeats the stop on the arm's socket where that is due. Returns true once it is carried out, or overruled, and its
-    /// file is removed.
+    /// Repeats the stop on the arm's socket if due. Returns true once it is carried out, or
+    /// overruled, and its file is removed.
     pub fn pass(&mut self) -> bool {
         let now = clock::now();
         self.progress.advance(&self.client, now);

@@ -25,13 +25,13 @@ const HEARD_GRACE: Span = Span::from_ms(1_000);
 /// Time for a release; a later one would surprise.
 pub const RELEASE_PATIENCE: Span = Span::from_ms(5_000);
 
-/// Returns how long an order is repeated unless its giver says otherwise: a stop for as long as the group's folder
-/// `run` exists, because no restart of the arm's service and no hold by an operator may outlast it.
+/// Returns the default time for which an order is repeated: a stop for as long as the group's
+/// folder `run` exists, so that no restart of the arm's service nor hold outlasts it.
 pub fn default_patience(order: MotionOrder) -> Option<Span> {
     (order == MotionOrder::Resume).then_some(RELEASE_PATIENCE)
 }
 
-/// Progress of one order. The caller passes the time: `advance`, then look at `result` and `warning`.
+/// Progress of one order. Callers pass the time: `advance`, then see `result` and `warning`.
 #[derive(Debug)]
 pub struct Progress {
     order: MotionOrder,
@@ -56,8 +56,8 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// An order that was given at `given` and is carried out within `patience`, or has failed; without `patience` it
-    /// is repeated until the arm confirms it, a later order overrules it, or the group ends.
+    /// An order given at `given` and carried out within `patience`, or failed; without `patience`
+    /// it is repeated until the arm confirms it, a later order overrules it, or the group ends.
     pub fn new(order: MotionOrder, given: Time, patience: impl Into<Option<Span>>) -> Self {
         Self {
             order,
@@ -90,15 +90,15 @@ impl Progress {
         self.since
     }
 
-    /// The same order is given again, at `given`. Deadline and warnings count from the first time, so that a flood
-    /// of orders puts off neither.
+    /// Notes that the same order is given again, at `given`. Deadline and warnings count from the
+    /// first time, so that a flood of orders puts off neither.
     pub fn renew(&mut self, given: Time) {
         self.given = given;
         self.sent = None;
         self.forget_answers();
     }
 
-    /// Repeats the order where that is due, and takes in the answers.
+    /// Repeats the order if due, and processes the answers.
     pub fn advance(&mut self, client: &StopClient, now: Time) {
         if self.due(now) {
             self.on_sent(&client.send(self.order, self.given));
@@ -122,8 +122,8 @@ impl Progress {
         }
     }
 
-    /// Keeps a stop that no arm is known to have for the arm's return, because its giver ends. A group that was never
-    /// started has no arm.
+    /// Keeps a stop that no arm is known to have for the arm's return, because its giver ends. A
+    /// group that was never started has no arm.
     /// # Errors
     /// It cannot be kept: nothing repeats it any more.
     pub fn leave(&self, client: &StopClient) -> io::Result<()> {
@@ -139,7 +139,7 @@ impl Progress {
         self.order == MotionOrder::Stop && !is_taken
     }
 
-    /// Returns whether the order is due to be sent, with its time [`Progress::given`], which makes repetitions harmless.
+    /// Returns whether the order is due, with its time [`Progress::given`]: repeating is harmless.
     pub fn due(&mut self, now: Time) -> bool {
         let is_due = self.sent.is_none_or(|sent| now >= sent + RESEND_EVERY);
         if is_due {
@@ -148,7 +148,7 @@ impl Progress {
         is_due
     }
 
-    /// Notes the outcome of sending. A process that has ended may have lost what it answered.
+    /// Notes the outcome of sending. After its end, the answers of a process do not count.
     pub fn on_sent(&mut self, sent: &Result<(), StopError>) {
         self.is_absent = matches!(sent, Err(StopError::Absent));
         match sent {
@@ -175,8 +175,8 @@ impl Progress {
         (self.state, self.rests_since, self.unheard_since) = (None, None, None);
     }
 
-    /// Returns the result once there is one: a stop is latched, at rest and durable, or cannot become durable; a
-    /// release is in force.
+    /// Returns the result once there is one: a stop is latched, at rest and durable, or cannot
+    /// become durable; a release is in force.
     ///
     /// # Errors
     /// As [`super::give`].
@@ -210,7 +210,7 @@ impl Progress {
         is_late.then(|| Err(self.why(now)))
     }
 
-    /// Returns whether the order needs no repetition: it is carried out for good, or a later one is in force.
+    /// Returns whether the order needs no repetition: it is final, or a later one is in force.
     pub fn is_settled(&self, now: Time) -> bool {
         match self.result(now) {
             Some(Ok(state)) => state.durable,
@@ -224,8 +224,8 @@ impl Progress {
         is_contrary && state.in_force_ns > self.given.ns()
     }
 
-    /// Returns a warning for the giver where one is due: soon after the order, and every few seconds while it is not
-    /// confirmed.
+    /// Returns a warning for the giver if one is due: soon after the order, and every few seconds
+    /// while it is not confirmed.
     pub fn warning(&mut self, now: Time) -> Option<StopError> {
         let is_due = match self.warned {
             Some(warned) => now >= warned + WARN_EVERY,
@@ -258,7 +258,7 @@ impl Progress {
 }
 
 impl StopState {
-    /// Returns false where the robot is not heard: that it rests is a belief then.
+    /// Returns false if the robot is silent: its being at rest is then an assumption.
     pub fn is_heard(&self) -> bool {
         !matches!(self.inhibit, MotionInhibit::Unheard | MotionInhibit::Stale)
     }

@@ -7,7 +7,7 @@ use crate::group::GroupPaths;
 use crate::{Time, clock};
 use std::io;
 
-/// The latest stop that the arm has not carried out. It never waits; its owner calls [`RepeatedStop::pass`].
+/// The latest stop that the arm has not carried out. Its owner calls [`RepeatedStop::pass`].
 #[derive(Debug)]
 pub struct RepeatedStop {
     client: StopClient,
@@ -30,7 +30,7 @@ impl RepeatedStop {
         self.pending = Some(progress);
     }
 
-    /// Repeats a pending stop if it is due. Returns the time of one that needs no repetition any more.
+    /// Repeats a pending stop if due. Returns the time of one that needs no more repetition.
     pub fn pass(&mut self) -> Option<Time> {
         let now = clock::now();
         let progress = self.pending.as_mut()?;

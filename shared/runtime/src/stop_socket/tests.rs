@@ -127,7 +127,7 @@ fn stop_that_its_giver_leaves_waits_for_the_arm() {
     assert!(kept.pass() && !is_kept(&paths));
     assert!(KeptStop::find(&paths).unwrap().is_none());
 
-    // What has no time is a stop as well, given now.
+    // A file without a time is a stop as well, given now.
     let before = clock::now().ns();
     let given = || KeptStop::find(&paths).unwrap().unwrap().order().given_ns;
     std::fs::write(paths.kept_stop(), "").unwrap();
@@ -174,7 +174,7 @@ fn stop_that_is_not_answered_is_kept_while_it_is_repeated() {
 
 #[test]
 fn stop_outlasts_every_restart_and_warns_now_and_then() {
-    // Longer than any backoff, hold or upload: a day in which nobody listens.
+    // Longer than any backoff, hold or upload: a day without a listener.
     let mut stop = Progress::new(MotionOrder::Stop, at(1), default_patience(MotionOrder::Stop));
     let mut warnings = Vec::new();
     for ms in (1..86_400_000).step_by(500) {
@@ -302,7 +302,7 @@ fn nonsense_and_floods_are_passed_over() {
         listener.drain(|command, _| panic!("{command:?}"));
     }
     let client = StopClient::open(&paths).unwrap();
-    // The queue of the socket is bounded, and nobody is kept waiting by it.
+    // The queue of the socket is bounded, and never blocks a sender.
     for _ in 0..5_000 {
         client.send(MotionOrder::Stop, Time(7)).unwrap();
     }

@@ -1,4 +1,4 @@
-//! Wordings for all kinds of values, compared with what a careful speaker says.
+//! Wordings for all kinds of values, compared with the phrases of a careful speaker.
 //!
 //! First score, before any rule was made for them: 77 of 223 wordings were not as expected.
 
@@ -19,7 +19,7 @@ fn value(scene: &Scene, name: &str) -> (AttributeId, ValueId) {
     found.unwrap_or_else(|| panic!("no value {name}"))
 }
 
-/// What the robot says on a line of the table, each with what is expected.
+/// Phrases of the robot for a line of the table, each with the expected phrase.
 fn said<'a>(scene: &Scene, line: &'a str) -> Vec<(String, &'a str)> {
     let k = AttributeId::from(0);
     let (of, expected) = line.split_once(": ").expect("a line");

@@ -1,6 +1,6 @@
 const TABLE: &str = include_str!("wordings.txt");
 
-/// The attributes of a scene, `name = value [spoken], …`, as a scene file with an object for each value of the first.
+/// The attributes of a scene, `name = value [spoken], …`, as a file with an object per value.
 fn scene_text(head: &str) -> String {
     let mut parts = head.split(" | ");
     let (noun, attributes) = (parts.next().expect("a noun"), parts.next().expect("attributes"));

@@ -203,7 +203,7 @@ fn disturb(document: &mut Document, steps: &[(u8, usize, usize)]) {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 200, ..ProptestConfig::default() })]
 
-    /// Whatever is changed, the text says afterwards what the document does.
+    /// After any change the text and the document agree.
     #[test]
     fn any_change_is_written_as_it_is_meant(
         steps in proptest::collection::vec((any::<u8>(), 0_usize..40, 0_usize..40), 0..12),
@@ -213,7 +213,7 @@ proptest! {
         for steps in [steps, more] {
             disturb(&mut document, &steps);
             edit.apply(&document).unwrap();
-            // What is written is read again.
+            // The written text is read again.
             document = SceneEdit::parse("s", &edit.text()).unwrap().document().unwrap();
         }
     }

@@ -106,7 +106,7 @@ fn pass(
     commit.state(&mut effects).unwrap()
 }
 
-/// Collects what becomes visible until `holds`.
+/// Collects visible outputs until `holds`.
 fn until(
     commit: &mut Commit<&'static str, u32>,
     mut holds: impl FnMut(&Commit<&'static str, u32>) -> bool,

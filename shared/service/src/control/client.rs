@@ -18,10 +18,10 @@ pub enum CallError {
     /// No answer within the timeout.
     #[error("the supervisor of group {} did not answer within {} s", .0, .1.as_secs_f64())]
     TimedOut(String, Duration),
-    /// The supervisor ended before its answer.
+    /// The supervisor ended before answering.
     #[error("the supervisor of group {0} ended before it answered")]
     Closed(String),
-    /// An invalid answer, e.g. of a supervisor of another version, and what is wrong with it.
+    /// An invalid answer, e.g. of a supervisor of another version, and the reason.
     #[error(
         "invalid answer of the supervisor of group {0}: {1}; help: use one version of all programs"
     )]
@@ -60,8 +60,8 @@ pub fn call(path: &Path, request: &Request, timeout: Duration) -> Result<Reply, 
     send(path, request, timeout)?.wait()
 }
 
-/// Sends a request to the supervisor at control socket `path`, whose reply is waited for later, at most
-/// `timeout`.
+/// Sends a request to the supervisor at control socket `path`, whose reply is waited for later, at
+/// most `timeout`.
 ///
 /// # Errors
 /// It cannot be sent; see [`CallError`].

@@ -13,8 +13,8 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// Status of the group, or why there is none.
 pub type Watched = Result<Box<GroupStatus>, String>;
 
-/// Requests the group's status on a thread of its own, since answers may take a while. `take` gets each one and must not
-/// wait; `pause` waits until the next one is wanted, and returns false to end the thread.
+/// Requests the group's status on its own thread, as answers take time. `take` gets each one and
+/// must not wait; `pause` waits until the next one is wanted, and returns false to end the thread.
 ///
 /// # Errors
 /// The operating system has no thread left.

@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 
-/// Returns the path of the first difference, and what stands there in either: null where one of them has
-/// nothing. The path of equal values is none.
+/// Returns the path of the first difference, with both values there: null if one is missing. `None`
+/// for equal values.
 ///
 /// A path is as in `outputs[0].Act.prompt`.
 pub fn first_difference(a: &Value, b: &Value) -> Option<(String, Value, Value)> {

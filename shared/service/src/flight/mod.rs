@@ -1,8 +1,8 @@
-//! Flight recorder: what a reducer was given and what it stated, so that another build, or the same one on a
-//! desk, can be given the same and has to state the same (docs/replay.md).
+//! Flight recorder: inputs and statements of a reducer, so that another build, or the same one on a
+//! desk, can get the same inputs and must make the same statements (docs/replay.md).
 //!
-//! A flight is one start of a service, or a part of it: one file, which can be replayed by itself, because it
-//! begins with the journal or with a checkpoint of the reducer. Little-endian:
+//! A flight is one start of a service, or a part of it: one file, which can be replayed by itself,
+//! because it begins with the journal or with a checkpoint of the reducer. Little-endian:
 //!
 //! ```text
 //! file    magic 8 | format u32 | frame*
@@ -10,9 +10,9 @@
 //! stream  Head | Beginning | Entry*                                        (postcard)
 //! ```
 //!
-//! A frame holds a pass, after those of the last half second in which only time passed. It is written as soon
-//! as the pass is over and is never synced: what a killed process has done beyond that is in the file, what a
-//! machine without power has done may not be.
+//! A frame holds a pass, after those of the last half second in which only time passed. It is
+//! written as soon as the pass is over and is never synced: after a kill all finished passes are in
+//! the file, after a power failure perhaps not.
 
 mod difference;
 mod reader;
@@ -101,10 +101,10 @@ impl Head {
     }
 }
 
-/// What a node was made from.
+/// Source from which a node was made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Beginning<R, B> {
-    /// The records of its journal.
+    /// The records of the node's journal.
     Journal(R),
     /// A checkpoint: the service had been started before.
     Checkpoint(B),
@@ -115,9 +115,9 @@ enum Beginning<R, B> {
 enum Entry<E, F> {
     /// The node was given this event at this time.
     Event(Time, E),
-    /// The node was told that every record so far is durable.
+    /// The node learned that every record so far is durable.
     Durable,
-    /// What the node has stated since the previous such entry: the end of a pass.
+    /// The statements of the node since the previous such entry: the end of a pass.
     Stated(F),
 }
 

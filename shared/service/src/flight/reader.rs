@@ -17,7 +17,7 @@ use crate::{Effects, Event, Node, Time};
 
 type In<P> = <<P as Program>::Node as Node>::In<'static>;
 type Out<P> = <<P as Program>::Node as Node>::Out;
-/// What a node was given and what it stated, as a flight of the program holds them.
+/// Inputs and statements of a node, as a flight of the program holds them.
 type EntryOf<P> = Entry<Event<In<P>>, Effects<Out<P>, Record<P>>>;
 
 /// The frames of a file, inflated one after another.
@@ -30,7 +30,7 @@ pub(super) struct Flight {
     at: usize,
     /// Whether the file ends in the middle of a frame.
     pub(super) is_torn: bool,
-    /// Where a whole frame that is damaged begins, bytes; nothing after it can be read.
+    /// Offset of a complete but damaged frame, bytes; nothing after it can be read.
     pub(super) damaged_at: Option<u64>,
 }
 
@@ -79,7 +79,7 @@ impl Flight {
         }
     }
 
-    /// As [`Flight::next`] for what every flight begins with.
+    /// As [`Flight::next`] for the first entries of every flight.
     pub(super) fn first<T: DeserializeOwned>(&mut self) -> Result<T, Failure> {
         let path = self.path.clone();
         let found = self.next()?.map(|(value, _)| value);
@@ -152,7 +152,7 @@ fn empty(path: &Path) -> Failure {
     Failure::new(Exit::Config, format!("{}: {what}", path.display()))
 }
 
-/// What could not be read of a flight that is torn or damaged there, for its user.
+/// Returns a note for the user on the unread part of a torn or damaged flight.
 pub fn unread(is_torn: bool, damaged_at: Option<u64>) -> Option<String> {
     match damaged_at {
         Some(at) => Some(format!("damaged at byte {at}; nothing after it is read")),
@@ -180,10 +180,10 @@ pub fn head(path: &Path) -> Result<Head, Failure> {
     Flight::open(path)?.first()
 }
 
-/// What the node of a program was made from.
+/// Source from which the node of a program was made.
 pub(super) type BeginningOf<P> = Beginning<Vec<Record<P>>, Vec<u8>>;
 
-/// What a flight of a program begins with.
+/// Opens a flight of a program; returns its head and its beginning.
 pub(super) fn open<P: Program>(path: &Path) -> Result<(Flight, Head, BeginningOf<P>), Failure> {
     let mut flight = Flight::open(path)?;
     let head: Head = flight.first()?;
@@ -242,13 +242,13 @@ pub struct Line {
     pub pass: u64,
     /// Time, nanoseconds of the monotonic clock.
     pub at_ns: u64,
-    /// What the step is.
+    /// Direction of the step.
     pub direction: Direction,
     /// The event, or the effects.
     pub value: serde_json::Value,
 }
 
-/// Hands every step of a flight to `take`. Returns a note on what could not be read, if anything.
+/// Hands every step of a flight to `take`. Returns a note on the unread part, if any.
 ///
 /// # Errors
 /// The file cannot be read, or is of another build; or `take` fails.

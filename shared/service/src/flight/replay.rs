@@ -1,4 +1,4 @@
-//! Gives this build's reducer what a flight holds, and compares what it states.
+//! Replays a flight with this build's reducer, and compares the statements.
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -45,32 +45,32 @@ pub struct Report {
     pub seconds: f64,
     /// Whether the file ends in the middle of a frame, as that of a killed machine may.
     pub torn: bool,
-    /// Where a damaged frame begins, bytes; nothing after it was replayed.
+    /// Offset of a damaged frame, bytes; nothing after it was replayed.
     pub damaged_at: Option<u64>,
     /// The first difference, at which a replay without changed settings ends.
     pub difference: Option<Difference>,
-    /// With changed settings: the decisions that differ.
+    /// Decisions that differ with changed settings.
     pub decisions: Vec<Changed>,
-    /// With changed settings: passes in which anything else differs.
+    /// Passes in which anything else differs with changed settings.
     pub other_passes: u64,
     /// The difference in the first of them.
     pub other_difference: Option<Difference>,
 }
 
-/// Where records or outputs differ.
+/// Difference of records or outputs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
     /// Number of the pass, from 1.
     pub pass: u64,
     /// Time of its last event, nanoseconds of the monotonic clock.
     pub at_ns: u64,
-    /// The same from the start of the service on, seconds.
+    /// Time from the start of the service, seconds.
     pub after_s: f64,
-    /// Field, e.g. `outputs[0].Act.prompt`; `panic` where the reducer panics.
+    /// Field, e.g. `outputs[0].Act.prompt`; `panic` if the reducer panics.
     pub path: String,
-    /// What was recorded there.
+    /// The recorded value.
     pub recorded: Value,
-    /// What this build states there.
+    /// Value recomputed by this build.
     pub recomputed: Value,
     /// The last events up to there, oldest first: `at_ns` and `event`.
     pub before: Vec<Value>,
@@ -79,11 +79,11 @@ pub struct Difference {
 /// A decision, as replays with other settings compare them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
-    /// Its interaction, 0 outside of one.
+    /// Interaction of the decision, 0 outside of one.
     pub interaction: u64,
-    /// What is done, in words: equal decisions have equal words.
+    /// The decision in words: equal decisions have equal words.
     pub what: String,
-    /// What it is expected to be worth, if that is known.
+    /// Expected value of the decision, if known.
     pub value: Option<f64>,
 }
 
@@ -94,7 +94,7 @@ pub struct Changed {
     pub pass: u64,
     /// Time of its last event, nanoseconds of the monotonic clock.
     pub at_ns: u64,
-    /// The same from the start of the service on, seconds.
+    /// Time from the start of the service, seconds.
     pub after_s: f64,
     /// The recorded decision.
     pub recorded: Option<Decision>,
@@ -102,11 +102,11 @@ pub struct Changed {
     pub recomputed: Option<Decision>,
 }
 
-/// Replays the flight in `file`: exactly, up to the first difference; or, with `changes` to the settings
-/// (`("dialogue.planner", "entropy")`), open loop to its end: the recorded inputs stay what they were.
+/// Replays the flight in `file`: exactly, up to the first difference; or, with `changes` to the
+/// settings (`("dialogue.planner", "entropy")`), open loop to its end: the recorded inputs stay.
 ///
 /// # Errors
-/// The file cannot be read or is of another build; a setting that does not exist or cannot be changed.
+/// The file cannot be read or is of another build; a setting is unknown or cannot change.
 pub fn replay<P: Program>(file: &Path, changes: &[(String, String)]) -> Result<Report, Failure> {
     let (flight, head, beginning) = reader::open::<P>(file)?;
     if let Some((key, _)) = changes.iter().find(|(key, _)| FIXED.contains(&key.as_str())) {
@@ -208,7 +208,7 @@ impl<P: Program> Run<P> {
         }
     }
 
-    /// Compares what was stated in a pass with what this build states.
+    /// Compares the recorded statements of a pass with this build's.
     fn compare(&mut self, recorded: &Fx<P>, bytes: &[u8]) -> Result<(), Failure> {
         self.report.passes += 1;
         let own = reader::encoded(&self.effects).map_err(|error| not_encoded(&error))?;
@@ -224,7 +224,7 @@ impl<P: Program> Run<P> {
         Ok(())
     }
 
-    /// The first difference between what was recorded in this pass and what this build states.
+    /// Returns the first difference between this pass's recorded statements and this build's.
     fn difference_to(&self, recorded: &Fx<P>) -> Result<Difference, Failure> {
         let [a, b] = [recorded, &self.effects].map(serde_json::to_value);
         let (a, b) = (a.map_err(|e| not_encoded(&e))?, b.map_err(|e| not_encoded(&e))?);
@@ -261,7 +261,7 @@ impl<P: Program> Run<P> {
         differs
     }
 
-    /// A difference in this pass: its field, what was recorded there, and what this build states.
+    /// Returns a difference in this pass: its field, the recorded value and this build's.
     fn difference(&self, (path, recorded, recomputed): (String, Value, Value)) -> Difference {
         let event = |bytes: &Vec<u8>| {
             let entry = postcard::from_bytes::<Entry<Event<In<P>>, ()>>(bytes).ok();

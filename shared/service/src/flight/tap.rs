@@ -11,18 +11,18 @@ use super::writer::{Job, Ring, Writer};
 use super::{Beginning, Entry, Head};
 use crate::{Effects, Event, Span, Time};
 
-/// Passes that may wait for the disk. The loop never waits: a flight with a gap could not be replayed, so
-/// with more than that the recording ends.
+/// Passes that may wait for the disk. The loop never waits: a flight with a gap could not be
+/// replayed, so with more than that the recording ends.
 const WAITING_MAX: usize = 1024;
-/// How long passes in which nothing but time passed are kept, so that they are written together, and up
-/// to which size, bytes.
+/// How long passes in which nothing but time passed are kept, so that they are written together,
+/// and up to which size, bytes.
 const ROUTINE_KEPT: Span = Span::from_ms(500);
 const ROUTINE_BYTES_MAX: usize = 4096;
 
 /// Records one flight.
 #[derive(Debug, Default)]
 pub struct Tap {
-    /// None while nothing is recorded.
+    /// `None` while nothing is recorded.
     jobs: Option<Sender<Job>>,
     thread: Option<JoinHandle<()>>,
     head: Option<Head>,
@@ -43,8 +43,8 @@ pub struct Tap {
 }
 
 impl Tap {
-    /// Starts to record into a new file of `ring`. `records` are those that the node was recovered from.
-    /// Where that fails, the service does without a recording.
+    /// Starts to record into a new file of `ring`. `records` are those that the node was recovered
+    /// from. If that fails, the service continues without a recording.
     pub fn start<R: Serialize>(ring: Ring, head: &Head, records: &[R]) -> Self {
         let mut tap = Self::default();
         tap.head = Some(head.clone());
@@ -99,12 +99,12 @@ impl Tap {
         self.add(&Entry::<_, ()>::Event(now, event));
     }
 
-    /// Records that the node was told of durable records.
+    /// Records that the node learned of durable records.
     pub fn durable(&mut self) {
         self.add(&Entry::<(), ()>::Durable);
     }
 
-    /// Records what the node has stated in a pass, before any of it is carried out.
+    /// Records the node's statements of a pass, before any of them is carried out.
     pub fn stated<Out: Serialize, Record: Serialize>(&mut self, effects: &Effects<Out, Record>) {
         if self.has_events {
             self.is_eventful |= !effects.records().is_empty();
@@ -171,8 +171,8 @@ impl Tap {
     }
 }
 
-/// What is recorded is written, also where the main loop panics: the event that it panicked at is in the
-/// flight.
+/// Recorded entries are written even if the main loop panics: the event that it panicked at is in
+/// the flight.
 impl Drop for Tap {
     fn drop(&mut self) {
         self.send();

@@ -1,4 +1,4 @@
-//! A small reducer through recorder and replay, and the recorder where space is short.
+//! A small reducer through recorder and replay, and the recorder when space is short.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -19,7 +19,7 @@ use crate::{Effects, Event, Node, NodeError, Time};
 /// The number that the reducer panics at.
 const UNLUCKY: u32 = 13;
 
-/// Adds up what it is given; journals each sum, and publishes how much of it is durable.
+/// Reducer that adds its inputs, journals each sum, and publishes the durable ones.
 struct Sum {
     sum: u64,
     durable: u64,
@@ -109,7 +109,7 @@ fn start(ring: Ring, started_wall_ns: u64, records: &[u64]) -> Tap {
     Tap::start(ring, &head, records)
 }
 
-/// Records the reducer from 100 on as it is given these numbers; what is due is durable after every other.
+/// Records the reducer from 100 on with these numbers; due ones are durable after every other.
 fn record(folder: &Path, numbers: &[u32]) -> PathBuf {
     let mut tap = start(ring(folder), 1, &[60, 100]);
     let mut node = Sum::recover((), vec![60, 100]).unwrap();
@@ -278,7 +278,7 @@ fn oldest_flights_give_way_and_a_long_one_ends_at_the_limit() {
     drop(tap);
     let own: u64 = sizes(&folder).iter().sum::<u64>() - (3 << 20);
     assert!((2 << 20..=4 << 20).contains(&own), "{own}");
-    // What was recorded up to there is whole.
+    // Everything recorded before is whole.
     let last = list(folder.path()).unwrap().remove(0);
     let mut flight = Flight::open(&last).unwrap();
     assert_eq!(flight.first::<Head>().unwrap().started_wall_ns, 4_000_000);

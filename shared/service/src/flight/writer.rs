@@ -42,8 +42,8 @@ impl Ring {
         Ok((path, file))
     }
 
-    /// Deletes the oldest flights of `service` but `current`, which has `bytes`, until there is space for it
-    /// to grow.
+    /// Deletes the oldest flights of `service` but `current`, which has `bytes`, until there is
+    /// space for it to grow.
     ///
     /// # Errors
     /// There is none.
@@ -80,10 +80,10 @@ impl Ring {
     }
 }
 
-/// Writes a flight anew in as little space as possible: one frame.
+/// Rewrites a flight in as little space as possible: one frame.
 ///
 /// # Errors
-/// The file is no flight, or cannot be written.
+/// The file is not a flight, or cannot be written.
 pub fn pack(path: &Path) -> Result<(), Failure> {
     let bytes = file_of(&Flight::open(path)?.content()?);
     let written =
@@ -157,7 +157,7 @@ impl Writer {
     /// Creates the file.
     ///
     /// # Errors
-    /// It cannot be created, or there is no space for it.
+    /// The file cannot be created, or space is short.
     pub(super) fn create(
         ring: Ring,
         service: String,
@@ -181,7 +181,7 @@ impl Writer {
         })
     }
 
-    /// Writes what comes until the flight ends or cannot be written any further.
+    /// Writes incoming entries until the flight ends or cannot be written any further.
     pub(super) fn run(mut self, jobs: &Receiver<Job>) {
         while let Ok(job) = jobs.recv() {
             let done = match job {

@@ -5,13 +5,13 @@ use vocabulary::{PickOutcome, PickPhase, Task};
 /// A record of the arm: why its state changed, and the state after it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ArmRecord {
-    /// Why it changed.
+    /// Cause of the change.
     pub cause: ArmCause,
     /// The latest pick.
     pub pick: Option<PickRecord>,
-    /// The limb that it moves; none before it moves.
+    /// The moving limb; `None` before it moves.
     pub limb: Option<String>,
-    /// Missed grasps in it.
+    /// Number of missed grasps in the pick.
     pub misses: u32,
     /// The object in the gripper.
     pub held: Option<HeldRecord>,
@@ -47,7 +47,7 @@ pub enum ArmCause {
     Ended,
     /// The motion stop was latched or released.
     Motion {
-        /// Which of both.
+        /// Kind of order.
         order: MotionOrder,
     },
     /// Progress of a motion.
@@ -63,30 +63,30 @@ pub enum ArmCause {
 /// A pick of the arm.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PickRecord {
-    /// Its interaction.
+    /// Interaction of the order.
     pub interaction: u64,
-    /// Its attempt within the interaction, from 1.
+    /// Attempt within the interaction, from 1.
     pub attempt: u32,
-    /// Name of its object.
+    /// Name of the ordered object.
     pub object: String,
-    /// What is done with the object.
+    /// Task with the object.
     pub task: Task,
-    /// Its progress.
+    /// Progress of the pick.
     pub phase: PickPhase,
-    /// Its outcome.
+    /// Outcome of the pick.
     pub outcome: PickOutcome,
 }
 
 /// An object in a gripper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeldRecord {
-    /// Its name.
+    /// Name of the object.
     pub object: String,
     /// Limb of the gripper.
     pub limb: String,
     /// Position of the object in frame `<limb>_gripper`, metres.
     pub position_m: [f64; 3],
-    /// Its rotation there, quaternion x, y, z, w.
+    /// Rotation of the object there, quaternion x, y, z, w.
     pub rotation_xyzw: [f64; 4],
 }
 

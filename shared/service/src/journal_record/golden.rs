@@ -1,4 +1,4 @@
-//! The golden files of `whichone journal --json`, for the tests of the services that write the records.
+//! Golden files of `whichone journal --json`, for the tests of services that write records.
 
 use messages::Service;
 
@@ -9,7 +9,7 @@ use crate::json_schema::with_schema;
 /// Wall time at the beginning of the monotonic clock, milliseconds since 1970.
 const BEGAN_MS: u64 = 1_700_000_000_000;
 
-/// Returns records, each with its time and text, as `whichone journal --json` prints them, numbered from 1.
+/// Returns timed records with texts as `whichone journal --json` prints them, numbered from 1.
 ///
 /// # Panics
 /// If one cannot be written as JSON.

@@ -9,12 +9,12 @@ use serde::ser::{Serialize, Serializer};
 pub struct Named<V>(pub Vec<(String, V)>);
 
 impl<V> Named<V> {
-    /// Returns whether there are none.
+    /// Returns whether the list is empty.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Returns the value of that name.
+    /// Returns the value with the given name.
     pub fn get(&self, name: &str) -> Option<&V> {
         self.0.iter().find(|(known, _)| known == name).map(|(_, value)| value)
     }

@@ -8,19 +8,19 @@ use crate::view::{ActionView, QuestionView};
 /// A record of the policy: why the state of the dialogue changed, and the state after it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PolicyRecord {
-    /// Why it changed.
+    /// Cause of the change.
     pub cause: PolicyCause,
     /// Highest utterance that the state includes.
     pub applied: u64,
     /// The open interaction, 0 for none.
     pub interaction: u64,
-    /// When its first utterance was accepted.
+    /// Time at which the first utterance was accepted.
     pub opened_ns: Option<u64>,
     /// Questions asked in it, repetitions not counted.
     pub questions: u32,
-    /// Probability of each object, by name; empty where no interaction is open.
+    /// Probability of each object, by name; empty if no interaction is open.
     pub belief: Named<f64>,
-    /// Description of each object, by name; empty where the scene is no longer known.
+    /// Description of each object, by name; empty if the scene is no longer known.
     pub objects: Named<String>,
     /// Probability that the wanted object is not here.
     pub absent: f64,
@@ -52,17 +52,17 @@ pub enum PolicyCause {
     Snapshot,
     /// An utterance.
     Utterance {
-        /// Its number.
+        /// Number of the utterance.
         utterance: u64,
         /// Whether it was typed, or given whole in another way.
         typed: bool,
-        /// Name of the person who spoke, where it is known.
+        /// Name of the person who spoke, if known.
         from: Option<String>,
         /// When the user began to speak, or typed.
         onset_ns: u64,
         /// When the user had finished.
         end_ns: u64,
-        /// When it was accepted.
+        /// Time at which the utterance was accepted.
         accepted_ns: u64,
         /// The point that was pointed at, metres, frame `base`.
         gesture_m: Option<[f64; 3]>,
@@ -70,7 +70,7 @@ pub enum PolicyCause {
         more: bool,
         /// A word that the scene does not have.
         unknown: Option<String>,
-        /// Its interpretations as an answer to each question, and to none.
+        /// Interpretations as an answer to each question, and to none.
         interpretations: Vec<InterpretationRecord>,
     },
     /// The response window passed in silence.
@@ -81,9 +81,9 @@ pub enum PolicyCause {
     PickEnded {
         /// The pick's interaction.
         interaction: u64,
-        /// Its attempt.
+        /// Attempt of the pick.
         attempt: u32,
-        /// Its outcome.
+        /// Outcome of the pick.
         outcome: PickOutcome,
     },
     /// The service was started with other settings.
@@ -103,7 +103,7 @@ pub enum PolicyCause {
     Released,
     /// A stop that a user ordered was confirmed by the arm, or not in time.
     StopReport {
-        /// Whether it was confirmed.
+        /// Whether the stop was confirmed.
         confirmed: bool,
     },
     /// A journal of the group was set aside.
@@ -123,9 +123,9 @@ pub enum PolicyCause {
 pub struct InterpretationRecord {
     /// Probability among the interpretations that answer the same question.
     pub weight: f64,
-    /// The question that it answers.
+    /// The question that the utterance answers.
     pub answers: Option<PresentationKey>,
-    /// What it means, in the scene's words, e.g. `yes · white`; empty where the scene is not known.
+    /// Meaning in the scene's words, e.g. `yes · white`; empty if the scene is unknown.
     pub text: String,
     /// The scene's words, as they were said.
     pub base: Vec<String>,
@@ -142,18 +142,18 @@ pub struct InterpretationRecord {
 pub struct PresentationKey {
     /// Number of the line.
     pub prompt: u64,
-    /// Which presentation of it, from 1.
+    /// Number of the prompt's presentation, from 1.
     pub presentation: u32,
 }
 
 /// Key of a pick.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PickKey {
-    /// Its interaction.
+    /// Interaction of the pick.
     pub interaction: u64,
-    /// Its attempt within the interaction, from 1.
+    /// Attempt within the interaction, from 1.
     pub attempt: u32,
-    /// Name of its object.
+    /// Name of the picked object.
     pub object: String,
 }
 
@@ -169,26 +169,26 @@ pub struct UserRecord {
 /// A decision with its reasons. Values are expected discounted returns, seconds of the user's time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DecisionRecord {
-    /// Its number.
+    /// Number of the act.
     pub act: u64,
-    /// Its kind.
+    /// Kind of the act.
     #[serde(rename = "type")]
     pub kind: ActKind,
     /// Number of the line that goes with it, 0 for none.
     pub prompt: u64,
-    /// Which presentation of it.
+    /// Number of the prompt's presentation.
     pub presentation: u32,
-    /// The line; empty where nothing is said, or its scene is no longer known.
+    /// The line; empty for a silent act, or if its scene is no longer known.
     pub text: String,
-    /// The question asked; none where its scene is no longer known.
+    /// The question asked; `None` if its scene is no longer known.
     pub question: Option<QuestionView<String>>,
     /// The pick ordered.
     pub pick: Option<PickKey>,
-    /// The utterance that led to it.
+    /// The utterance that led to the act.
     pub utterance: u64,
-    /// When it was decided.
+    /// Time of the decision.
     pub decided_ns: u64,
-    /// Its value.
+    /// Value of the act.
     pub value_s: f64,
     /// Certified lower and upper bound on the best policy's value.
     pub bounds_s: Option<[f64; 2]>,
@@ -203,7 +203,7 @@ pub struct DecisionRecord {
 pub struct AlternativeRecord {
     /// The action.
     pub action: ActionView<String>,
-    /// Its value.
+    /// Value of the alternative.
     pub value_s: f64,
 }
 
@@ -214,7 +214,7 @@ pub struct EndedRecord {
     pub interaction: u64,
     /// Name of the object that was picked or tried.
     pub object: Option<String>,
-    /// Its outcome.
+    /// Outcome of the interaction.
     pub outcome: Outcome,
     /// Questions asked, repetitions not counted.
     pub questions: u32,

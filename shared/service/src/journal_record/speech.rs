@@ -26,7 +26,7 @@ pub enum SpeechRecord {
 /// An accepted utterance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AcceptedRecord {
-    /// Its number.
+    /// Number of the utterance.
     pub utterance: u64,
     /// The words as they were most likely said; empty for a gesture without words.
     pub text: String,
@@ -34,9 +34,9 @@ pub struct AcceptedRecord {
     pub confidence: f64,
     /// Every hypothesis, most likely first.
     pub hypotheses: Vec<Hypothesis>,
-    /// Where it came from.
+    /// Source of the utterance.
     pub source: Source,
-    /// Name of the person who spoke, where it is known.
+    /// Name of the person who spoke, if known.
     pub from: Option<String>,
     /// The point that was pointed at, metres, frame `base`.
     pub gesture_m: Option<[f64; 3]>,
@@ -46,9 +46,9 @@ pub struct AcceptedRecord {
     pub onset_ns: u64,
     /// When the speech ended.
     pub end_ns: u64,
-    /// Signal-to-noise ratio, decibels; none for text.
+    /// Signal-to-noise ratio, decibels; `None` for text.
     pub snr_db: Option<f32>,
-    /// Which part of the client's sound it is, from 0, and how many there are.
+    /// Index of the part of the client's sound, from 0, and the number of parts.
     pub segment: u32,
     /// Number of parts of the client's sound; 0 while that is not known.
     pub segments: u32,
@@ -61,13 +61,13 @@ pub struct AcceptedRecord {
 pub struct PresentationRecord {
     /// Number of the line.
     pub prompt: u64,
-    /// Which presentation of it, from 1.
+    /// Number of the prompt's presentation, from 1.
     pub presentation: u32,
-    /// The question; none where its scene is no longer known.
+    /// The question; `None` if its scene is no longer known.
     pub question: Option<QuestionView<String>>,
-    /// When its sound began.
+    /// Start of the presentation's sound.
     pub began_ns: u64,
-    /// When its sound ended; none while it lasts.
+    /// End of the sound; `None` while it plays.
     pub ended_ns: Option<u64>,
     /// Whether it was said to its end.
     pub complete: bool,

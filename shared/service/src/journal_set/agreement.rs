@@ -1,7 +1,6 @@
-//! What the journals of a group say about one another. Each service makes durable what it was told
-//! before it acts on it, so at any moment, also after a crash, a receiver's journal holds nothing that
-//! its sender's does not. Where it does, one of them is older than the others: restored from a copy,
-//! or shortened.
+//! Agreement of a group's journals. Each service makes received messages durable before it acts on
+//! them, so at any moment, also after a crash, a receiver's journal holds nothing that its sender's
+//! does not. If it does, one of them is older than the others: restored from a copy, or shortened.
 
 use std::process::{Child, Stdio};
 
@@ -13,12 +12,12 @@ use crate::group::GroupPaths;
 use crate::inspection::{SharedFacts, Verdict};
 use crate::launch;
 
-/// A journal that lacks what another one rests on.
+/// A journal that lacks a basis of another one.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{what}; help: `whichone journal set-aside {}`, with the group down", behind.name())]
 pub struct Behind {
     what: String,
-    /// The service whose journal it is.
+    /// The service whose journal is behind.
     pub behind: Service,
 }
 
@@ -28,7 +27,7 @@ impl From<Behind> for Failure {
     }
 }
 
-/// Checks what the journals of speech, policy and arm say about one another; returns it in words.
+/// Checks the journals of speech, policy and arm against one another; returns the facts in words.
 ///
 /// # Errors
 /// The first journal that is older than another.
@@ -65,20 +64,21 @@ pub fn agree(set: &JournalSet, [speech, policy, arm]: [SharedFacts; 3]) -> Resul
     Ok(format!("nothing applied that was not accepted, {picks} as ordered, epoch {}", set.epoch))
 }
 
-/// Checks the journals of a group that is down, each read by its service's own program; all at once,
-/// because a start waits for it. A service that is not ours to read says nothing about the others.
+/// Checks the journals of a group that is down, each read by its service's own program; all at
+/// once, because a start waits for it. Services that are not ours say nothing about others.
 ///
 /// # Errors
 /// As [`agree`].
 pub fn check_agreement(paths: &GroupPaths, set: &JournalSet) -> Result<(), Behind> {
     let started = Service::JOURNALED.map(|service| start_reading(paths, service));
     let facts = started.map(|child| child.and_then(facts));
-    // What one of them does not tell cannot contradict the others.
+    // Missing facts cannot contradict the others.
     let [Some(speech), Some(policy), Some(arm)] = facts else { return Ok(()) };
     agree(set, [speech, policy, arm]).map(drop)
 }
 
-/// Returns whether the arm of a group that is down may move, by its journal; none where its program cannot tell.
+/// Returns whether the arm of a group that is down may move, by its journal; `None` if its program
+/// cannot tell.
 pub(super) fn is_free(paths: &GroupPaths) -> Option<bool> {
     let facts = start_reading(paths, Service::Arm).and_then(facts)?;
     facts.stopped.map(|stopped| !stopped)
@@ -123,7 +123,7 @@ mod tests {
         let (service, what) =
             behind(&set, [speech(), facts(5, &orders, 0), facts(0, &[(2, 1, 1)], 0)]);
         assert!(service == Service::Policy && what.contains("pick 2.1 of object 1"), "{what}");
-        // What the policy no longer keeps cannot be compared.
+        // Facts that the policy no longer keeps cannot be compared.
         assert!(agree(&set, [speech(), facts(5, &orders[1..], 1), facts(0, &orders, 0)]).is_ok());
     }
 

@@ -1,4 +1,4 @@
-//! Every way in which a journal can be lost between two starts, and what is done about it.
+//! Every way to lose a journal between two starts, and the reaction to it.
 
 use messages::{Epoch, Incarnation};
 
@@ -47,7 +47,7 @@ impl Lab {
         set.check(&self.paths).iter().map(ToString::to_string).collect()
     }
 
-    /// The journal cannot be used, at a service's start as at the supervisor's, and says what to do.
+    /// Asserts that the journal is refused with help at a service's start and at the supervisor's.
     #[track_caller]
     fn assert_lost(&self, service: &str, why: &str) {
         let failure = self.open(service).map(drop).unwrap_err();

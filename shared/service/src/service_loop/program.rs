@@ -1,4 +1,4 @@
-//! What a service consists of: its reducer, and the shell of topics and devices around it.
+//! Parts of a service: its reducer, and the shell of topics and devices around it.
 
 use std::os::fd::BorrowedFd;
 
@@ -20,18 +20,17 @@ pub type Record<P> = <<P as Program>::Node as Node>::Record;
 pub trait Program: Sized {
     /// The service.
     const SERVICE: Service;
-    /// Kind of record in its journal; none for a stateless node. A changed record
-    /// type needs a changed name.
+    /// Kind of record in the journal, if any. A changed record type needs a changed name.
     const RECORD: Option<&'static str>;
     /// Kinds of record of earlier versions that decode as records of this one.
     const OLDER_RECORDS: &'static [&'static str] = &[];
     /// One paragraph for `--help`.
     const ABOUT: &'static str;
-    /// Whether its flights are recorded: not where the reducer only passes things on.
+    /// Whether flights are recorded: not if the reducer only passes things on.
     const RECORDS_FLIGHTS: bool = true;
     /// The reducer.
     type Node: Node;
-    /// Its topics and devices.
+    /// Topics and devices of the service.
     type Shell: Shell<Self::Node>;
 
     /// The node's configuration.
@@ -43,7 +42,7 @@ pub trait Program: Sized {
         settings: &Settings,
     ) -> Result<<Self::Node as Node>::Config, Failure>;
 
-    /// Takes the arguments of the service that has written what is inspected.
+    /// Takes the arguments of the service that has written the inspected journal.
     ///
     /// # Errors
     /// Arguments that the service does not know.
@@ -56,25 +55,25 @@ pub trait Program: Sized {
         Time(0)
     }
 
-    /// Renders a journal record as one line for `whichone journal`, without its time, with the settings
-    /// that were in force, newest first.
+    /// Renders a journal record as one line for `whichone journal`, without its time, with the
+    /// settings that were in force, newest first.
     fn describe(_settings: &[Settings], _record: &Record<Self>) -> String {
         String::new()
     }
 
-    /// Returns a journal record as `whichone journal --json` prints it, with the settings that were in
-    /// force, newest first; none for a stateless service.
+    /// Returns a journal record as `whichone journal --json` prints it, with the settings that were
+    /// in force, newest first; `None` for a stateless service.
     fn explain(_settings: &[Settings], _record: &Record<Self>) -> Option<JournalRecord> {
         None
     }
 
-    /// What was decided with a journal record, as far as that is for replays with other settings to compare.
+    /// Returns the decision of a journal record, if replays with other settings should compare it.
     fn decision(_settings: &Settings, _record: &Record<Self>) -> Option<Decision> {
         None
     }
 
-    /// Checks the invariants of the journal, oldest part first, with the settings that were in force,
-    /// newest first. Returns the verified facts.
+    /// Checks the invariants of the journal, oldest part first, with the settings that were in
+    /// force, newest first. Returns the verified facts.
     ///
     /// # Errors
     /// The first broken invariant, or settings of which none fit.
@@ -85,7 +84,7 @@ pub trait Program: Sized {
         Ok(Vec::new())
     }
 
-    /// What the journals of the others must agree with.
+    /// Returns the facts that the journals of the others must agree with.
     fn shared_facts(_parts: &[Part<Record<Self>>]) -> SharedFacts {
         SharedFacts::default()
     }
@@ -98,14 +97,14 @@ pub trait Program: Sized {
 
 /// The topics and devices of one node.
 pub trait Shell<N: Node>: Sized {
-    /// Opens them.
+    /// Opens topics and devices.
     ///
     /// # Errors
     /// A topic of another schema, or a device that is needed and missing.
     fn open(context: &Context<'_, N::In<'static>>) -> Result<Self, Failure>;
 
-    /// Hands every waiting urgent message to `take`, where it lies: inputs that come before all others, and are taken
-    /// even while the service waits for storage. `is_readable` is that of [`Shell::urgent_fd`].
+    /// Hands every pending urgent message to `take`, in place: inputs that precede all others, even
+    /// while the service waits for storage. `is_readable` is that of [`Shell::urgent_fd`].
     ///
     /// # Errors
     /// A topic cannot be read.
@@ -117,12 +116,12 @@ pub trait Shell<N: Node>: Sized {
         Ok(())
     }
 
-    /// Returns the descriptor that is readable while an urgent message waits, beside the topics.
+    /// Returns a descriptor, besides the topics, that is readable while an urgent message waits.
     fn urgent_fd(&self) -> Option<BorrowedFd<'_>> {
         None
     }
 
-    /// Hands every other waiting message to `take`, where it lies.
+    /// Hands every other pending message to `take`, in place.
     ///
     /// # Errors
     /// A topic cannot be read.

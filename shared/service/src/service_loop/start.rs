@@ -29,8 +29,8 @@ pub fn run<P: Program>() -> ExitCode {
     program(P::SERVICE.name(), P::ABOUT, serve::<P>)
 }
 
-/// Runs a service's program: prints `--help` with its name and `about`, or initialises logging, calls
-/// `serve` with the arguments and returns its exit code.
+/// Runs a service's program: prints `--help` with its name and `about`, or initialises logging,
+/// calls `serve` with the arguments and returns its exit code.
 pub fn program(
     name: &str,
     about: &str,
@@ -102,7 +102,7 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
     drive(lifecycle, &mut service)
 }
 
-/// Begins the recording of this start.
+/// Starts recording this start of the service.
 fn start_tap<P: Program>(
     environment: &Environment,
     settings: &Settings,

@@ -11,7 +11,7 @@ use crate::Time;
 pub struct DialogueView<'a> {
     /// The open interaction, 0 for none.
     pub interaction: u64,
-    /// Name of the person whose interaction it is; empty where nobody in particular speaks.
+    /// Name of the person whose interaction it is; empty if the speaker is unnamed.
     pub from: &'a str,
     /// Highest utterance that is part of it.
     pub applied: u64,
@@ -24,7 +24,7 @@ pub struct DialogueView<'a> {
     pub person: Option<UserView>,
     /// Kind of the decision in force.
     pub decision: ActKind,
-    /// The question in force; none where it is of another scene.
+    /// The question in force; `None` if it is of another scene.
     pub question: Option<QuestionView<&'a str>>,
     /// Whether that question has been put to its end and waits for an answer.
     pub expects_answer: bool,
@@ -116,7 +116,7 @@ pub enum ActionView<Name> {
 pub struct AlternativeView<'a> {
     /// The action.
     pub action: ActionView<&'a str>,
-    /// Its expected discounted return.
+    /// Expected discounted return of the alternative.
     pub value: f64,
 }
 
@@ -127,7 +127,7 @@ pub struct EndedView<'a> {
     pub interaction: u64,
     /// Name of the object that was picked or tried.
     pub object: Option<&'a str>,
-    /// Its outcome.
+    /// Outcome of the interaction.
     pub outcome: Outcome,
     /// Questions that were asked.
     pub questions: u32,
@@ -147,7 +147,7 @@ pub struct DeliveryView<'a> {
 }
 
 impl<'a> DialogueView<'a> {
-    /// Makes the view of what the policy has published; objects by their names in `scene`.
+    /// Makes the view of the policy's publication; objects by their names in `scene`.
     pub fn new(scene: &'a Scene, view: &'a PolicyView, presented: &Presented) -> Self {
         let names = scene.objects().iter().map(|object| object.name.as_str());
         Self {
@@ -189,7 +189,7 @@ impl<'a> DialogueView<'a> {
 }
 
 impl<'a> DeliveryView<'a> {
-    /// Names the object; none where it is not of this scene.
+    /// Names the object; `None` if it is not of this scene.
     fn new(scene: &'a Scene, delivery: Delivery) -> Option<Self> {
         let Delivery { interaction, object, until_ns } = delivery;
         let object = scene.objects().get(usize::from(object))?;
@@ -214,7 +214,7 @@ impl<'a, Name: From<&'a str>> ActionView<Name> {
 }
 
 impl<'a, Name: From<&'a str>> QuestionView<Name> {
-    /// Names a question's parts; none where it is not of this scene.
+    /// Names a question's parts; `None` if it is not of this scene.
     pub fn new(scene: &'a Scene, question: Question) -> Option<Self> {
         scene.contains(question).then(|| match question {
             Question::None => Self::None,

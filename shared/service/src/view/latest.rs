@@ -20,7 +20,7 @@ pub struct LatestTopics {
     hearing: Reader<Hearing>,
     receipts: Reader<Receipt>,
     statuses: Reader<ArmStatus>,
-    /// Where the objects come from perception.
+    /// The table's scene, if the objects come from perception.
     table: Option<TableScene>,
 }
 
@@ -56,7 +56,7 @@ pub struct Latest {
     pub hearing: Option<Hearing>,
     /// State of the arm.
     pub arm: Option<ArmStatus>,
-    /// Highest utterance that was accepted.
+    /// Highest accepted utterance.
     pub accepted: u64,
 }
 
@@ -77,7 +77,7 @@ impl LatestTopics {
         })
     }
 
-    /// Follows the objects on the table as well; what arrives is then about these.
+    /// Follows the objects on the table as well; messages are then about these.
     ///
     /// # Errors
     /// A topic of another schema, or no shared memory.
@@ -85,7 +85,7 @@ impl LatestTopics {
         Ok(Self { table: Some(TableScene::open(bus, file)?), ..self })
     }
 
-    /// Returns the objects on the table, where they come from perception.
+    /// Returns the objects on the table, if they come from perception.
     pub fn table(&self) -> Option<&TableScene> {
         self.table.as_ref()
     }
@@ -97,7 +97,7 @@ impl LatestTopics {
         table.scene().clone()
     }
 
-    /// Receives new messages. Pending utterances are read before the view, which is the newer of both.
+    /// Receives new messages. Pending utterances are read before the view, which is newer.
     pub fn take(&mut self) -> Arrived {
         let mut statuses = Vec::new();
         let receipts = drain(&self.receipts);
@@ -146,7 +146,7 @@ impl Latest {
         applied && self.activity.is_some_and(|activity| activity.pending == 0)
     }
 
-    /// Returns belief and decision for display; none until the policy has published.
+    /// Returns belief and decision for display; `None` until the policy has published.
     pub fn dialogue<'a>(&'a self, scene: &'a Scene) -> Option<DialogueView<'a>> {
         self.view.as_ref().map(|view| DialogueView::new(scene, view, &self.presented))
     }
@@ -180,8 +180,8 @@ pub fn drain<T: WireMessage + Copy>(reader: &Reader<T>) -> Vec<T> {
     all
 }
 
-/// Ignores a broken connection: the service's next incarnation opens another, and until then there is
-/// nothing to receive.
+/// Ignores a broken connection: the service's next incarnation opens another, and until then there
+/// is nothing to receive.
 pub fn quiet<T>(result: Result<Option<T>, PortError>) -> Option<T> {
     result.ok().flatten()
 }

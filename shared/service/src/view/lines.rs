@@ -26,7 +26,7 @@ impl Lines {
         Self { said: VecDeque::new(), last_line: None, before: None, began }
     }
 
-    /// Takes in what has arrived; `latest` includes it. Returns the new lines.
+    /// Processes new messages, which `latest` includes. Returns the new lines.
     pub fn take_in(&mut self, latest: &Latest, receipts: &[Receipt]) -> Vec<(Speaker, String)> {
         if self.before.is_none() {
             self.before = latest.view.as_ref().map(|view| view.applied);

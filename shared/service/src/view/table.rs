@@ -1,5 +1,5 @@
-//! The scene as a client shows it where the objects come from perception: the scene file's words about
-//! the objects of the latest table. Messages that name objects by number are translated at this edge.
+//! The scene as clients show it if objects come from perception: the scene file's words about the
+//! objects of the latest table. Messages that name objects by number are translated at this edge.
 
 use messages::{ArmStatus, Observation, PolicyView, TableView, WorldView, topics};
 use scene::{ObjectId, Question, Scene};
@@ -44,7 +44,7 @@ impl TableScene {
         &self.scene
     }
 
-    /// Takes in what has arrived. Returns the scene if it has changed.
+    /// Processes new messages. Returns the scene if it has changed.
     pub fn take(&mut self) -> Option<&Scene> {
         let view = quiet(self.tables.latest())?;
         let known = |view: &TableView| -> Vec<scene::Perceived> {
@@ -77,8 +77,8 @@ impl TableScene {
         }
     }
 
-    /// Translates a view to the objects' places in the scene. None if it is about another table; the view
-    /// of this one follows. A view of another scene file stays as it is.
+    /// Translates a view to the objects' places in the scene. `None` if it is about another table;
+    /// the view of this one follows. A view of another scene file stays as it is.
     pub fn view(&self, mut view: PolicyView) -> Option<PolicyView> {
         if view.scene_key != self.file.key() {
             return Some(view);

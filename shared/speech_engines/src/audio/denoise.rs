@@ -1,5 +1,5 @@
-//! Noise reduction for speech by a recurrent network that was trained to keep voices: RNNoise (Valin
-//! 2018). It follows noise that begins or changes during the speech.
+//! Noise reduction for speech by a recurrent network that was trained to keep voices: RNNoise
+//! (Valin 2018). It follows noise that begins or changes during the speech.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -13,16 +13,16 @@ use super::snr_db;
 const NETWORK_HZ: u32 = 48_000;
 /// Samples that the network processes at a time; its output is late by as many.
 const FRAME: usize = DenoiseState::FRAME_SIZE;
-/// Audio from which the network learns what the noise is before it hears the first sample: 0.1 s. After
+/// Audio from which the network learns the noise before it hears the first sample: 0.1 s. After
 /// half a second or more it removes more noise, and more of the voice: less is understood.
 const WARM_UP: usize = 10 * FRAME;
-/// Signal-to-noise ratio from which nothing is removed, decibels. Removing noise costs voice: at 25 dB
-/// that breaks more words than it repairs.
+/// Signal-to-noise ratio from which nothing is removed, decibels. Removing noise costs voice: at 25
+/// dB that breaks more words than it repairs.
 const CLEAR_DB: f32 = 18.0;
 
-/// Returns the samples with the noise reduced, and the evidence of a voice in `speech`, which the network
-/// finds on the way. Returns them unchanged, without evidence, where the noise around `speech` is low, or
-/// where too little surrounds it to estimate the noise.
+/// Returns the samples with the noise reduced, and the evidence of a voice in `speech`, which the
+/// network finds on the way. Returns them unchanged, without evidence, if the noise around `speech`
+/// is low, or too little surrounds it to estimate the noise.
 pub fn denoised<'s>(
     samples: &'s [i16],
     speech: &Range<usize>,
@@ -46,16 +46,16 @@ const SUREST: usize = 8;
 /// How much of a sound is a voice.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct VoiceEvidence {
-    /// Probability of a voice in the surest 0.08 s, 0 to 1. The detector of speech takes knocks for a
-    /// voice; they have a lower one.
+    /// Probability of a voice in the surest 0.08 s, 0 to 1. The detector of speech takes knocks for
+    /// a voice; they have a lower one.
     pub probability: f32,
     /// Length of the voiced parts, seconds.
     pub voiced_s: f32,
 }
 
 impl VoiceEvidence {
-    /// Judges `speech` by the probabilities that the network gives each frame, after it has heard what
-    /// precedes.
+    /// Judges `speech` by the probabilities that the network gives each frame, after it has heard
+    /// the preceding audio.
     pub fn in_speech(samples: &[i16], speech: &Range<usize>) -> Self {
         let end = samples.len().min(speech.end + BEHIND);
         Self::of(&voice_probabilities(&samples[..end]), speech)

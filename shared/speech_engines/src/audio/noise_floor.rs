@@ -6,7 +6,7 @@ use super::RATE_HZ;
 use crate::random::{Rng, signed};
 
 /// Highest signal-to-noise ratio, decibels. The acoustic model was trained on microphones in rooms:
-/// it understands 63 % of requests spoken by espeak-ng in digital silence, 95 % with noise at 28 dB.
+/// it understands 63 % of espeak-ng's requests in digital silence, 95 % with noise at 28 dB.
 const FLOOR_DB: f32 = 28.0;
 /// Samples of a block whose power is compared: 20 ms.
 const BLOCK: usize = RATE_HZ as usize / 50;

@@ -7,7 +7,7 @@ const EDGE: usize = 1_600;
 /// Beyond it the noise is that of rounding.
 const LARGEST_DB: f64 = 60.0;
 
-/// Returns the power of the speech over that of its surroundings within `range`, decibels, at most 60.
+/// Returns the power of the speech over its surroundings within `range`, decibels, at most 60.
 pub fn snr_db(samples: &[i16], range: &Range<usize>, speech: &Range<usize>) -> f32 {
     let power = |parts: [&[i16]; 2]| {
         let len = parts.iter().map(|part| part.len()).sum::<usize>().max(1) as f64;

@@ -1,4 +1,4 @@
-//! Trigram language model of what people say about a scene.
+//! Trigram language model of people's sentences about a scene.
 //!
 //! Invariant: the same scene yields the same model, byte for byte, without clock, files or system
 //! randomness.
@@ -16,8 +16,8 @@ pub(crate) fn common_words() -> impl Iterator<Item = &'static str> {
     include_str!("common_words.txt").split_whitespace()
 }
 
-/// Returns the words of a text in the form of the language model: lower case letters and digits with
-/// inner hyphens and apostrophes.
+/// Returns the words of a text in the form of the language model: lower case letters and digits
+/// with inner hyphens and apostrophes.
 pub fn words(text: &str) -> Vec<String> {
     text.split_whitespace()
         .map(|raw| {

@@ -6,8 +6,8 @@ use super::templates::{COVERAGE, PREPOSITIONS, shapes};
 use super::words;
 use crate::random::{Rng, below};
 
-/// Sentences that are drawn besides those that cover every word. More do not help: the model's counts
-/// are stable to a few percent.
+/// Sentences that are drawn besides those that cover every word. More do not help: the model's
+/// counts are stable to a few percent.
 const DRAWN: usize = 4000;
 
 /// Returns sentences about the scene, each a line of words as [`words`] writes them. Equal scenes
@@ -164,7 +164,7 @@ impl<'a> Generator<'a> {
         format!("{article} {} {head} {}", adjectives.join(" "), place.unwrap_or_default())
     }
 
-    /// Returns a phrase like "the white one": one or two values before the noun, or a place after it.
+    /// Returns a phrase like "the white one": one or two values before the noun, or a place after.
     fn short_phrase(&mut self) -> String {
         let Some((k, value)) = self.any_value() else { return format!("the {}", self.head()) };
         let form = self.form(value);

@@ -1,4 +1,4 @@
-//! Shapes of what people say to the robot, with slots that the scene fills.
+//! Sentence shapes of people talking to the robot, with slots that the scene fills.
 
 /// Returns the sentence shapes by weight, in the order of `templates.txt`.
 pub(super) fn shapes() -> Vec<(u32, Vec<&'static str>)> {

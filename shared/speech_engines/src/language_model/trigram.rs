@@ -53,8 +53,8 @@ impl History {
 }
 
 impl Trigram {
-    /// Estimates the model from sentences (words separated by blanks) and `background` words. A word
-    /// in both has both shares; an empty background has none.
+    /// Estimates the model from sentences (words separated by blanks) and `background` words. A
+    /// word in both has both shares; an empty background has none.
     pub(crate) fn train<'b, S: AsRef<str>>(
         sentences: &[S],
         background: impl IntoIterator<Item = &'b str>,
@@ -62,8 +62,8 @@ impl Trigram {
         let background: BTreeSet<&str> = background.into_iter().collect();
         let mut words: BTreeSet<&str> = background.clone();
         words.extend(sentences.iter().flat_map(|s| s.as_ref().split_whitespace()));
-        // The end comes first and the start last, so that the predictable words are numbered without
-        // a gap.
+        // The end comes first and the start last, so that the predictable words are numbered
+        // without a gap.
         let marked = std::iter::once(END).chain(words).chain(std::iter::once(START));
         let words: Vec<String> = marked.map(str::to_owned).collect();
         let index: BTreeMap<&str, u32> =
@@ -148,8 +148,8 @@ impl Trigram {
     }
 }
 
-/// Returns the distribution without history over all words but the start: Witten-Bell with a uniform
-/// distribution, mixed with the uniform one over the background words.
+/// Returns the distribution without history over all words but the start: Witten-Bell with a
+/// uniform distribution, mixed with the uniform one over the background words.
 fn unigrams(once: &History, len: usize, background: &[u32]) -> Vec<f64> {
     let share = if background.is_empty() { 0.0 } else { BACKGROUND };
     let mut p: Vec<f64> =

@@ -1,9 +1,9 @@
 //! The microphone of the robot's computer: a recording program, on a thread of its own.
 //!
-//! Invariant: the thread never blocks on its receiver. Every `StreamEvent::Began` is followed by one
-//! `StreamEvent::Ended`, even if the program dies in the middle of a word; every request to talk is
-//! answered by that or by one `StreamEvent::Silent`. What the receiver does not take in time is
-//! dropped and counted.
+//! Invariant: the thread never blocks on its receiver. Every `StreamEvent::Began` is followed by
+//! one `StreamEvent::Ended`, even if the program dies in the middle of a word; every request to
+//! talk is answered by that or by one `StreamEvent::Silent`. Events that the receiver does not take
+//! in time are dropped and counted.
 
 mod level;
 mod recorder;
@@ -75,8 +75,8 @@ impl Microphone {
         Self(WorkerThread::start(1, run))
     }
 
-    /// Records one utterance with the number `sound`, from now on for `longest` at most. The robot's own
-    /// voice is not masked: the request interrupts it.
+    /// Records one utterance with the number `sound`, from now on for `longest` at most. The
+    /// robot's own voice is not masked: the request interrupts it.
     pub fn talk(&self, sound: u64, longest: Duration) -> Result<(), QueueError> {
         self.0.offer(Talk { sound, longest })
     }

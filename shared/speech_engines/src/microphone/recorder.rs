@@ -12,7 +12,7 @@ use crate::child_process::{ChildProcess, sleep};
 
 /// Lines of standard error that are logged; more only repeat themselves.
 const LINES_MAX: usize = 20;
-/// Longest line that is logged, bytes.
+/// Longest logged line, bytes.
 const LINE_BYTES: usize = 300;
 /// Bytes per read: the capacity of a pipe.
 const READ_BYTES: usize = 1 << 16;
@@ -21,9 +21,9 @@ const THROTTLE: Duration = Duration::from_millis(20);
 /// Time limit for the exit of a program that has closed its output.
 const EXIT_TIMEOUT: Duration = Duration::from_millis(200);
 
-/// Returns the command lines that write one channel of signed 16-bit samples, little-endian, at 16 kHz
-/// to their standard output: of ALSA (package alsa-utils), PipeWire (pipewire-bin) and PulseAudio
-/// (pulseaudio-utils).
+/// Returns the command lines that write one channel of signed 16-bit samples, little-endian, at 16
+/// kHz to their standard output: of ALSA (package alsa-utils), PipeWire (pipewire-bin) and
+/// PulseAudio (pulseaudio-utils).
 pub(crate) fn default_programs() -> Vec<Vec<String>> {
     let command = |words: &[&str]| words.iter().map(|&word| word.to_owned()).collect();
     vec![
@@ -39,7 +39,7 @@ pub(super) struct Recorder {
     stdout: ChildStdout,
     /// First byte of an incomplete sample.
     odd: Option<u8>,
-    /// The first line on its standard error, once that is closed or the line is there.
+    /// The first line on its standard error, once that is closed or has a line.
     complaint: Option<Receiver<String>>,
 }
 
@@ -117,7 +117,7 @@ impl Recorder {
         samples
     }
 
-    /// Returns why the program has closed its output: what it said itself, where it said something.
+    /// Returns why the program has closed its output: its own message, if it gave one.
     fn end(&mut self) -> String {
         let ended = match self.process.wait(EXIT_TIMEOUT, sleep) {
             Ok(_) => format!("{} exited", self.name()),

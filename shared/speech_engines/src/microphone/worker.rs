@@ -116,7 +116,7 @@ impl Worker {
         (self.failures, self.retry_at) = (0, Instant::now());
     }
 
-    /// Reads once from the program, which is started where necessary.
+    /// Reads once from the program, which is started if necessary.
     fn record(&mut self, requests: &Receiver<Talk>) {
         if self.recorder.is_none() {
             if Instant::now() < self.retry_at {
@@ -246,7 +246,7 @@ impl Worker {
         }
     }
 
-    /// Returns the delay before the next attempt. Each program is tried once before the first delay.
+    /// Returns the delay before the next attempt. Each program is tried once before any delay.
     fn retry_delay(&self) -> Duration {
         let programs = self.options.programs.len().max(1) as u32;
         if (1..programs).contains(&self.failures) {

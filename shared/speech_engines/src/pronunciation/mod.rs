@@ -1,7 +1,7 @@
 //! A pronouncing dictionary with the words of a language model.
 //!
-//! Invariant: every requested word is either in the dictionary or among the missing ones. (The decoder
-//! silently drops words without a pronunciation, and takes seconds to load the whole dictionary.)
+//! Invariant: every requested word is either in the dictionary or among the missing ones. (The
+//! decoder silently drops words without one, and takes seconds to load the whole dictionary.)
 
 mod phones;
 mod variants;
@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use crate::child_process;
 
-/// Returns the phones of a word that is not in the dictionary, separated by blanks, if they are known.
+/// Returns the known phones of a word that is not in the dictionary, separated by blanks.
 type LetterToSound = dyn Fn(&str) -> Option<String>;
 
 /// Words with their pronunciations, each a list of phones separated by blanks.
@@ -25,9 +25,9 @@ pub(crate) struct Pronunciations {
 
 impl Pronunciations {
     /// Looks the words up in `dictionary` (in the format of the CMU dictionary: one line per
-    /// pronunciation, further ones of a word marked `word(2)`). Missing words are composed of the parts
-    /// of a hyphenated word ("see-through") or of a compound ("worktop"), otherwise looked up in
-    /// `letter_to_sound`. Regular variants of English are added.
+    /// pronunciation, further ones of a word marked `word(2)`). Missing words are composed of the
+    /// parts of a hyphenated word ("see-through") or of a compound ("worktop"), otherwise looked up
+    /// in `letter_to_sound`. Regular variants of English are added.
     pub(crate) fn collect<'w>(
         words: impl IntoIterator<Item = &'w str>,
         dictionary: &str,
@@ -107,14 +107,14 @@ fn look_up(dictionary: &str, wanted: &HashSet<&str>) -> BTreeMap<String, Vec<Str
 /// Shortest part of a compound: two letters match too often by accident.
 const PART_MIN: usize = 3;
 
-/// Returns every word that could help to pronounce `word`: its parts between hyphens, and both halves
-/// of every split.
+/// Returns every word that could help to pronounce `word`: its parts between hyphens, and both
+/// halves of every split.
 fn parts(word: &str) -> Vec<&str> {
     word.split('-').chain(splits(word).flat_map(|(head, tail)| [head, tail])).collect()
 }
 
-/// Returns the splits of a word into two, the most even ones first, the longer head before the longer
-/// tail.
+/// Returns the splits of a word into two, the most even ones first, the longer head before the
+/// longer tail.
 fn splits(word: &str) -> impl Iterator<Item = (&str, &str)> {
     let mut at: Vec<usize> = (word.char_indices().map(|(i, _)| i))
         .filter(|&i| i >= PART_MIN && word.len() - i >= PART_MIN)

@@ -1,8 +1,8 @@
 //! Mapping of espeak-ng's phoneme names (`espeak-ng -x`, voice `en-us`) to the forty phones of the
 //! acoustic model, which are those of the CMU pronouncing dictionary.
 
-/// Phoneme names with their phones. In the first group `t#` and `t2` are flapped, `n-`, `r-` and `l-`
-/// syllabic; in the second, names with a trailing `@` or `3` carry an American r.
+/// Phoneme names with their phones. In the first group `t#` and `t2` are flapped, `n-`, `r-` and
+/// `l-` syllabic; in the second, names with a trailing `@` or `3` carry an American r.
 const PHONES: &str = "\
     p=P b=B t=T t#=T t2=T d=D k=K x=K g=G f=F v=V T=TH D=DH s=S z=Z S=SH Z=ZH tS=CH dZ=JH h=HH \
     m=M n=N n-=AH+N N=NG l=L l-=AH+L r=R r-=R w=W j=Y \
@@ -10,7 +10,7 @@ const PHONES: &str = "\
     3=ER 3:=ER @=AH @-=AH @2=AH @5=AH @L=AH+L V=AH I=IH I#=IH I2=IH i=IY i:=IY i@=IY+AH i@3=IH+R \
     U=UH U@=UH+R u=UW u:=UW eI=EY aI=AY aI@=AY+AH aI3=AY+ER aU=AW aU3=AW+ER OI=OY oU=OW";
 
-/// Returns the phones of phoneme names separated by blanks; `None` where a name is unknown, because
+/// Returns the phones of phoneme names separated by blanks; `None` if a name is unknown, because
 /// half a pronunciation is worse than none.
 pub(super) fn phones(espeak: &str) -> Option<String> {
     let mut phones = Vec::new();

@@ -1,7 +1,7 @@
 //! Regular variants of pronunciation. Dictionaries of American English list few of them.
 
-/// Returns further pronunciations of the phones, if any: with a flapped T ("metal" as "medal": most of
-/// America), and without an R that no vowel follows ("counter" as "counta": most of England).
+/// Returns further pronunciations of the phones, if any: with a flapped T ("metal" as "medal": most
+/// of America), and without an R that no vowel follows ("counter" as "counta": most of England).
 pub(super) fn variants(phones: &str) -> Vec<String> {
     let phones: Vec<&str> = phones.split(' ').collect();
     [flapped(&phones), without_r(&phones)].into_iter().flatten().collect()

@@ -1,5 +1,5 @@
-//! A recogniser that is a separate program, kept running: samples to its standard input, one line of
-//! JSON back for each utterance. `docs/speech.md` describes the protocol.
+//! A recogniser that is a separate program, kept running: samples to its standard input, one line
+//! of JSON back for each utterance. `docs/speech.md` describes the protocol.
 //!
 //! Invariant: an utterance waits at most for the deadline, an answer is never attributed to another
 //! utterance, and the program's output is bounded. A program that exits or is late is killed and
@@ -23,7 +23,7 @@ use messages::Hypothesis;
 /// Program and limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandOptions {
-    /// The program and its arguments.
+    /// Program of the recogniser, with arguments.
     pub command: Vec<String>,
     /// Time limit from the last sample to the answer; doubled for the first answer, because the
     /// program loads its model meanwhile.
@@ -99,7 +99,7 @@ struct AnswerHypothesis {
     text: String,
     /// Relative to the others'.
     weight: Option<f64>,
-    /// Of each word of the text, 0 to 1.
+    /// Confidence of each word of the text, 0 to 1.
     #[serde(default)]
     confidence: Vec<f32>,
 }
@@ -128,7 +128,7 @@ fn hypotheses(answers: Vec<AnswerHypothesis>) -> Vec<Hypothesis> {
 
 /// The running program.
 struct Program {
-    /// Killed when it is dropped.
+    /// The program's process, killed on drop.
     _process: ChildProcess,
     samples: Sender<Vec<u8>>,
     lines: Receiver<std::io::Result<String>>,
@@ -194,7 +194,7 @@ impl Program {
     }
 }
 
-/// Reads a line; without its end where the program exited or the line is too long.
+/// Reads a line; without its end if the program exited or the line is too long.
 fn next_line(from: &mut impl BufRead) -> std::io::Result<String> {
     let mut line = String::new();
     from.take(LINE_MAX).read_line(&mut line)?;
@@ -205,7 +205,7 @@ fn next_line(from: &mut impl BufRead) -> std::io::Result<String> {
 mod tests {
     use super::*;
 
-    /// Starts a shell that reads each utterance whole, then runs `answer`; `$samples` is its length.
+    /// Starts a shell that reads an utterance whole, then runs `answer`; `$samples` is its length.
     fn shell(answer: &str) -> Command {
         let script = format!(
             "while read -r head; do samples=${{head##*:}}; samples=${{samples%\\}}}}; \

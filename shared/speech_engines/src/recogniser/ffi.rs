@@ -95,8 +95,8 @@ pub(super) enum Passes {
 /// The library's result for one utterance.
 #[derive(Default)]
 pub(super) struct Decoded {
-    /// Words of the best path, including fillers and pronunciation markers, and the length of each in
-    /// [`FRAMES_PER_S`].
+    /// Words of the best path, including fillers and pronunciation markers, and the length of each
+    /// in [`FRAMES_PER_S`].
     pub(super) best: Vec<(String, u32)>,
     /// Texts with the natural logarithms of their scores, not normalised. Best first; a text may
     /// appear more than once (other times or pronunciations).
@@ -128,8 +128,8 @@ impl Decoder {
         let _log = MESSAGE_LOG.write().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the strings are NUL-terminated and outlive the calls, which copy them. The
         // variadic list is pairs of strings ended by a null pointer, as `cmd_ln_init` demands; it
-        // makes a new configuration, or null where it refuses. `ps_init` refuses null, and keeps
-        // a reference of its own to the configuration, so ours is given back on both ways out
+        // makes a new configuration, or null if it refuses. `ps_init` refuses null, and keeps a
+        // reference of its own to the configuration, so ours is given back on both ways out
         // (`cmd_ln_free_r` ignores null).
         let decoder = unsafe {
             (library.err_set_logfile)(log.as_ptr());
@@ -159,15 +159,15 @@ impl Decoder {
         NonNull::new(decoder).map(|decoder| Self { decoder, library })
     }
 
-    /// Decodes one whole utterance of 16 kHz mono samples, with at most `n_best_max` hypotheses of the
-    /// lattice. `None`: the library failed.
+    /// Decodes one whole utterance of 16 kHz mono samples, with at most `n_best_max` hypotheses of
+    /// the lattice. `None`: the library failed.
     pub(super) fn decode(&mut self, pcm: &[i16], n_best_max: usize) -> Option<Decoded> {
         let _log = MESSAGE_LOG.read().unwrap_or_else(PoisonError::into_inner);
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
         // SAFETY: `ps` is alive until `drop`. The samples are only read, and only during the call;
         // `full_utt` (the last argument) says that they are the whole utterance, so that the mean
-        // is taken over all of it. A new stream is begun each time, so that the noise tracker starts
-        // from the same state.
+        // is taken over all of it. A new stream is begun each time, so that the noise tracker
+        // starts from the same state.
         let failed = unsafe {
             (lib.ps_start_stream)(ps) < 0
                 || (lib.ps_start_utt)(ps) < 0
@@ -187,8 +187,8 @@ impl Decoder {
         Some(Decoded { best: self.best(), n_best: self.n_best(n_best_max) })
     }
 
-    /// Begins an utterance that arrives in blocks; one in progress is abandoned. `None`: the library
-    /// failed.
+    /// Begins an utterance that arrives in blocks; one in progress is abandoned. `None`: the
+    /// library failed.
     pub(super) fn begin(&mut self) -> Option<()> {
         let _log = MESSAGE_LOG.read().unwrap_or_else(PoisonError::into_inner);
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
@@ -207,8 +207,8 @@ impl Decoder {
         let _log = MESSAGE_LOG.read().unwrap_or_else(PoisonError::into_inner);
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
         let mut score = 0;
-        // SAFETY: `ps` is alive until `drop`. The samples are only read, and only during the call. A
-        // hypothesis may be asked for at any time; it is null where there is none yet, and else
+        // SAFETY: `ps` is alive until `drop`. The samples are only read, and only during the call.
+        // A hypothesis may be asked for at any time; it is null if there is none yet, and else
         // lives until the next call and is copied at once.
         unsafe {
             if (lib.ps_process_raw)(ps, pcm.as_ptr(), pcm.len(), 0, 0) < 0 {
@@ -244,7 +244,7 @@ impl Decoder {
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
         let mut found = Vec::new();
         // SAFETY: the search starts at its first result (`ps_nbest` advances it once), or is null
-        // where there is none; the library frees it when it runs out and answers null, else it is
+        // if there is none; the library frees it when it runs out and answers null, else it is
         // freed here. The text belongs to the search and is copied at once; it may be null.
         unsafe {
             let logmath = (lib.ps_get_logmath)(ps);
@@ -276,11 +276,11 @@ impl Drop for Decoder {
     }
 }
 
-/// Weight of the language model beside the acoustic model. With the library's own (6.5) decoding takes
-/// a sixth longer and no more is understood; `docs/speech.md` compares values.
+/// Weight of the language model beside the acoustic model. With the library's own (6.5) decoding
+/// takes a sixth longer and no more is understood; `docs/speech.md` compares values.
 const LANGUAGE_WEIGHT: &CStr = c"8.5";
 
-/// The library's frames (its option `-frate`).
+/// Frame rate of the library (its option `-frate`).
 pub(super) const FRAMES_PER_S: f32 = 100.0;
 
 /// The library divides path scores by 2^10 so that they fit into 32 bits (`SENSCR_SHIFT`).

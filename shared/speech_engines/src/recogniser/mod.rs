@@ -57,37 +57,37 @@ impl RecogniserUnavailable {
         }
     }
 
-    /// The library rejected its model.
+    /// Returns the error of a rejected model.
     fn rejected(reason: &str) -> Self {
         Self::Missing(format!("pocketsphinx rejected its model: {reason}"))
     }
 }
 
-/// What a recogniser thinks of an utterance.
+/// Result of recognising an utterance.
 pub type Recognition = Result<FirstView, RecogniseError>;
 
 /// A recogniser of whole utterances.
 pub trait Recogniser: Send {
-    /// Decodes one whole utterance, 16 kHz mono, in which `speech` are the samples of the voice; the
-    /// noise is estimated around it.
+    /// Decodes one whole utterance, 16 kHz mono, in which `speech` are the samples of the voice;
+    /// the noise is estimated around it.
     ///
     /// # Errors
     /// If the backend fails on these samples.
     fn recognise(&mut self, pcm: &[i16], speech: Range<usize>) -> Recognition;
 
-    /// Returns whether decoding is cheap enough to begin before the end of the utterance is certain.
+    /// Returns whether decoding is cheap enough to begin before the utterance's end is certain.
     fn is_quick(&self) -> bool {
         false
     }
 
-    /// Returns a function that opens a decoder of the same words for utterances in progress, if there
-    /// is one. It may be called on another thread.
+    /// Returns a function that opens a decoder of the same words for utterances in progress, if
+    /// there is one. It may be called on another thread.
     fn interim_decoder(&self) -> Option<InterimDecoderOpener> {
         None
     }
 }
 
-/// Opens an [`InterimDecoder`]; logs the error and returns `None` where that fails.
+/// Opens an [`InterimDecoder`]; logs the error and returns `None` if that fails.
 pub type InterimDecoderOpener = Box<dyn FnOnce() -> Option<Box<dyn InterimDecoder>> + Send>;
 
 /// A rough decoder of speech in progress.
@@ -118,7 +118,7 @@ pub enum Backend {
 }
 
 impl Backend {
-    /// Opens the recogniser for a scene. Also returns the words of the scene that it cannot recognise.
+    /// Opens the recogniser for a scene. Also returns the scene's words that it cannot recognise.
     ///
     /// # Errors
     /// If a dependency is missing.
@@ -128,7 +128,7 @@ impl Backend {
     ) -> Result<(Box<dyn Recogniser>, Vec<String>), RecogniserUnavailable> {
         Ok(match self {
             Self::PocketSphinx(options) => {
-                // A good part of what a start of the group costs; what is said meanwhile waits.
+                // A good part of the cost of starting the group; utterances wait meanwhile.
                 let recogniser = in_background(|| PocketSphinx::open(scene, options))?;
                 let unpronounceable = recogniser.unpronounceable().to_vec();
                 (Box::new(recogniser), unpronounceable)

@@ -46,7 +46,7 @@ pub struct PocketSphinx {
     opener: Opener,
 }
 
-/// What is needed to open a decoder.
+/// Parts needed to open a decoder.
 #[derive(Clone)]
 struct Opener {
     library: PathBuf,
@@ -84,7 +84,7 @@ fn library(file: &Path) -> Result<Library, RecogniserUnavailable> {
 }
 
 impl PocketSphinx {
-    /// Opens a decoder with the scene's language model and dictionary, which it makes first where
+    /// Opens a decoder with the scene's language model and dictionary, which it makes first if
     /// necessary. Takes about 0.1 s.
     ///
     /// # Errors
@@ -120,14 +120,14 @@ impl PocketSphinx {
         Ok(Self { decoder, unpronounceable, opener })
     }
 
-    /// Returns the words of the scene that cannot be recognised because their pronunciation is unknown.
+    /// Returns the scene's words that cannot be recognised, as their pronunciation is unknown.
     pub fn unpronounceable(&self) -> &[String] {
         &self.unpronounceable
     }
 }
 
-/// Audio before the voice that is decoded: 0.2 s. The rest of the lead serves to estimate the noise; to
-/// decode it too costs an eighth of the time, and no accuracy is gained.
+/// Audio before the voice that is decoded: 0.2 s. The rest of the lead serves to estimate the
+/// noise; to decode it too costs an eighth of the time, and no accuracy is gained.
 const LEAD: usize = RATE_HZ as usize / 5;
 /// Paths through the lattice that are examined: the same words recur with other times.
 const PATHS_MAX: usize = 100;
@@ -164,7 +164,7 @@ fn failed() -> RecogniseError {
     RecogniseError("pocketsphinx rejected the samples".to_owned())
 }
 
-/// A decoder with a single pass while the audio arrives: less accurate than one of whole utterances.
+/// A single-pass decoder while the audio arrives: less accurate than one of whole utterances.
 struct FirstPass {
     decoder: Decoder,
     samples: Vec<i16>,
@@ -186,9 +186,9 @@ impl InterimDecoder for FirstPass {
     }
 }
 
-/// Divisor of a path's score before it becomes a weight: path scores are overconfident because frames
-/// are not independent. It is the library's own (its option `-ascale`), and with it the words'
-/// confidences are calibrated.
+/// Divisor of a path's score before it becomes a weight: path scores are overconfident because
+/// frames are not independent. It is the library's own (its option `-ascale`), and with it the
+/// words' confidences are calibrated.
 const SCORE_SCALE: f64 = 20.0;
 
 fn weighed(decoded: &Decoded) -> Vec<Hypothesis> {
@@ -207,7 +207,7 @@ fn weighed(decoded: &Decoded) -> Vec<Hypothesis> {
 /// The acoustic model's name for speech without words, such as the end of a drawn-out "nah".
 const SPEECH: &str = "[SPEECH]";
 
-/// Returns the length of the words of a path and of the speech between them, seconds; 0 without a word.
+/// Returns the length of the words of a path and the speech between, seconds; 0 without a word.
 fn words_s(path: &[(String, u32)]) -> f32 {
     let is_word = |word: &str| spelling(word).is_some();
     if !path.iter().any(|(word, _)| is_word(word)) {
@@ -222,7 +222,7 @@ fn plain(text: &str) -> String {
     text.split(' ').filter_map(spelling).collect::<Vec<_>>().join(" ")
 }
 
-/// Returns the word without its pronunciation marker; `None` for silence, noise and sentence markers.
+/// Returns the word without its pronunciation marker; `None` for silence, noise and markers.
 fn spelling(word: &str) -> Option<String> {
     if word.starts_with(['<', '[', '+']) {
         return None;

@@ -23,7 +23,7 @@ pub(super) struct SceneFiles {
 }
 
 impl SceneFiles {
-    /// Returns the files in `work` where they are still valid, otherwise makes them.
+    /// Returns the files in `work` if they are still valid, otherwise makes them.
     pub(super) fn get(
         scene: &Scene,
         pronouncing: &Path,
@@ -44,7 +44,7 @@ impl SceneFiles {
 
     /// Invalidates the files, so that they are made again the next time.
     pub(super) fn invalidate(&self) {
-        // Where it cannot be removed, it cannot be rewritten either, which is reported then.
+        // A file that cannot be removed cannot be rewritten either, which is reported then.
         let _ = fs::remove_file(&self.mark);
     }
 
@@ -87,7 +87,7 @@ fn origin(scene: &Scene, pronouncing: &Path) -> u64 {
     hash.value()
 }
 
-/// Returns length and modification time of a file; empty where they are unknown.
+/// Returns length and modification time of a file; empty if they are unknown.
 fn version(file: &Path) -> String {
     let Ok(metadata) = fs::metadata(file) else { return String::new() };
     let changed = metadata.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());

@@ -12,9 +12,9 @@ use messages::Hypothesis;
 /// Hypotheses that support words. The lighter ones weigh nothing.
 const SUPPORTERS_MAX: usize = 50;
 
-/// Returns the [`N_BEST_MAX`] heaviest texts in order of weight, then of appearance. `paths` are texts with
-/// the logarithm of their score; a text may appear more than once, and texts without words are
-/// ignored. A weight falls by `e` every `scale`.
+/// Returns the [`N_BEST_MAX`] heaviest texts in order of weight, then of appearance. `paths` are
+/// texts with the logarithm of their score; a text may appear more than once, and texts without
+/// words are ignored. A weight falls by `e` every `scale`.
 pub(super) fn hypotheses(paths: &[(String, f64)], scale: f64) -> Vec<Hypothesis> {
     let top = paths.iter().map(|(_, score)| *score).fold(f64::NEG_INFINITY, f64::max);
     let mut place: BTreeMap<&str, usize> = BTreeMap::new();
@@ -51,8 +51,8 @@ fn word_confidence(words: &[&str], supporters: &[(Vec<&str>, f64)]) -> Vec<f64> 
     confidence.into_iter().map(|sum: f64| sum.min(1.0)).collect()
 }
 
-/// Returns the places of `a` whose word is kept when `a` is turned into `b` by the fewest edits (Wagner
-/// and Fischer 1974).
+/// Returns the places of `a` whose word is kept when `a` is turned into `b` by the fewest edits
+/// (Wagner and Fischer 1974).
 fn shared(a: &[&str], b: &[&str]) -> Vec<usize> {
     let width = b.len() + 1;
     let mut edits = vec![0_usize; (a.len() + 1) * width];

@@ -1,4 +1,4 @@
-//! Pauses that close utterances in progress, by what was said so far.
+//! Pauses that close utterances in progress, depending on the words so far.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -28,7 +28,7 @@ pub enum StreamEvent {
         /// The utterance so far.
         segment: SpeechSegment,
     },
-    /// The robot's own voice covers a part of the utterance, which may mean something else without it.
+    /// The robot's own voice covers a part of the utterance, which may change its meaning.
     Cut {
         /// The utterance.
         sound: u64,
@@ -37,12 +37,12 @@ pub enum StreamEvent {
     Ended {
         /// The utterance.
         sound: u64,
-        /// Its samples.
+        /// Samples of the utterance.
         segment: SpeechSegment,
     },
     /// The microphone was opened without speech, or could not be opened.
     Silent {
-        /// The sound that was requested.
+        /// The requested sound.
         sound: u64,
         /// Reason, for users.
         reason: String,
@@ -51,7 +51,7 @@ pub enum StreamEvent {
     Closed {
         /// The stream.
         stream: RequestKey,
-        /// Number of its utterances.
+        /// Number of utterances in the stream.
         utterances: u32,
         /// Samples lost in transit.
         lost: u64,
@@ -76,14 +76,14 @@ pub struct Began {
     pub sound: u64,
     /// When the speech began.
     pub at: Time,
-    /// The stream that contains it.
+    /// The stream that contains the utterance.
     pub stream: RequestKey,
-    /// Number of the utterance within a client's stream: the tenth of a second in which it began. None
-    /// for a microphone's.
+    /// Number of the utterance within a client's stream: the tenth of a second in which it began.
+    /// `None` for a microphone's.
     pub segment: Option<u32>,
-    /// Its source.
+    /// Source of the utterance.
     pub source: Source,
-    /// `true` if it interrupts the robot.
+    /// `true` if the utterance interrupts the robot.
     pub interrupts: bool,
 }
 

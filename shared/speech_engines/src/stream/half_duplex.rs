@@ -1,8 +1,8 @@
 //! Half-duplex listening: nothing is heard while the robot itself speaks.
 //!
-//! Users answer before the echo of the robot's voice is over. An echo only decays: what rises again after
-//! a pause is a user, who is heard from that pause on. Without a pause the beginning of what is heard may
-//! be missing, and with it a "not": such an utterance is marked as cut.
+//! Users answer before the echo of the robot's voice is over. An echo only decays: a sound that
+//! rises after a pause is a user, who is heard from that pause on. Without a pause the beginning of
+//! an utterance may be missing, and with it a "not": such an utterance is marked as cut.
 
 use std::sync::Arc;
 
@@ -21,17 +21,17 @@ const BLOCK: usize = 256;
 const PAUSE: usize = 6;
 /// A pause is at least this far below the voice that follows it, decibels.
 const RISE_DB: f32 = 18.0;
-/// The longest time in which the detector of speech finds a voice that is in progress, and by how much it
-/// may become louder meanwhile, decibels.
+/// The longest time in which the detector of speech finds a voice that is in progress, and by how
+/// much it may become louder meanwhile, decibels.
 const LATE: Span = Span::from_ms(400);
 const LATE_DB: f32 = 10.0;
 
 /// Separation of a stream from the robot's own voice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Duplex {
-    /// It may: the stream is muted while the robot speaks.
+    /// Echo is possible: the stream is muted while the robot speaks.
     Half,
-    /// It does not (headset, echo cancellation, push-to-talk): the user may interrupt the robot.
+    /// No echo (headset, echo cancellation, push-to-talk): the user may interrupt the robot.
     Full,
 }
 
@@ -40,9 +40,9 @@ pub struct MaskedStream {
     stream: Stream,
     mask: Arc<PlaybackMask>,
     own_voice: OwnVoice,
-    /// What follows the robot's voice, until it is known what of it is the user's.
+    /// Sound after the robot's voice, until the user's part of it is known.
     tail: Option<Tail>,
-    /// Level of what follows the echo without a pause, and until when it may be found to be a voice.
+    /// Level of sound that follows the echo without a pause, and end of its test for a voice.
     edge: Option<(f32, Time)>,
 }
 
@@ -50,7 +50,7 @@ pub struct MaskedStream {
 #[derive(Default)]
 struct Tail {
     samples: Vec<i16>,
-    /// Those that may contain the echo.
+    /// Number of samples that may contain the echo.
     echo: usize,
 }
 
@@ -70,8 +70,8 @@ impl MaskedStream {
         }
     }
 
-    /// Processes the next samples; see [`Stream::push`]. An utterance in progress ends when the robot
-    /// begins to speak.
+    /// Processes the next samples; see [`Stream::push`]. An utterance in progress ends when the
+    /// robot begins to speak.
     pub fn push(
         &mut self,
         at: Time,
@@ -115,7 +115,7 @@ impl MaskedStream {
         cut.into_iter().chain(self.stream.finish())
     }
 
-    /// Listens again, from where the user begins in the tail, which ends at `end`.
+    /// Listens again, from the user's beginning in the tail, which ends at `end`.
     fn unmute(&mut self, end: Time, duplex: Duplex, began: Begin<'_>) -> Vec<StreamEvent> {
         let Tail { samples, echo } = self.tail.take().unwrap_or_default();
         let begins = beginning(&samples);
@@ -166,7 +166,7 @@ impl MaskedStream {
     }
 }
 
-/// Returns the first sample of the pause after which a user begins to speak, if there is such a pause.
+/// Returns the first sample of the pause after which a user begins to speak, if any.
 fn beginning(tail: &[i16]) -> Option<usize> {
     let levels: Vec<f32> = tail.chunks_exact(BLOCK).map(level_db).collect();
     let loudest = |levels: &[f32]| levels.iter().copied().fold(f32::MIN, f32::max);
@@ -223,8 +223,8 @@ mod tests {
         spans.collect()
     }
 
-    /// Returns four seconds of a quiet room in which the robot speaks from 1 s to 2 s, and a user, half
-    /// as loud, in these intervals.
+    /// Returns four seconds of a quiet room in which the robot speaks from 1 s to 2 s, and a user,
+    /// half as loud, in these intervals.
     fn room(user: &[(f64, f64)]) -> Vec<i16> {
         let mut rng = Rng::new(1);
         let mut sound: Vec<f64> = (0..64_000).map(|_| f64::from(signed(&mut rng)) * 12.0).collect();
@@ -269,8 +269,8 @@ mod tests {
         assert!((2.29..2.7).contains(&again) && end > 3.8, "{half:?}");
     }
 
-    /// What begins in the tail of the mask is heard from its beginning on, unless it follows the
-    /// robot's voice so closely that it may as well have begun before.
+    /// Speech that begins in the tail of the mask is heard from its beginning on, unless it follows
+    /// the robot's voice so closely that it may have begun before.
     #[test]
     fn half_duplex_hears_answers_from_their_beginning_as_far_as_that_can_be_told() {
         for (what, from, to, expected) in [
@@ -294,7 +294,7 @@ mod tests {
         }
     }
 
-    /// A pause within an utterance that the robot's voice covers is no beginning.
+    /// A pause within an utterance that the robot's voice covers is not a beginning.
     #[test]
     fn half_duplex_does_not_take_the_closure_within_a_word_for_a_beginning() {
         let heard = spans(&room(&[(1.5, 2.18), (2.24, 2.9)]), Duplex::Half);

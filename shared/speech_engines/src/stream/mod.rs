@@ -1,4 +1,4 @@
-//! Live audio: streams, their utterances as they arrive, and what they hear of the robot's own voice.
+//! Live audio: streams, their utterances as they arrive, and the robot's own voice in them.
 
 mod closings;
 mod events;

@@ -8,15 +8,15 @@ use vocabulary::time::{Span, Time};
 /// Playbacks that are remembered: samples arrive some tenths of a second after they were recorded.
 const PLAYBACKS_MAX: usize = 8;
 
-/// What a microphone in the room records of the robot itself.
+/// The robot's own sound in a microphone of the room.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum OwnVoice {
     /// Nothing.
     #[default]
     Silent,
-    /// What remains of its voice in the room and in the buffers of the sound card.
+    /// Rest of the voice in the room and in the buffers of the sound card.
     Echo,
-    /// Its voice.
+    /// The voice itself.
     Speaking,
 }
 
@@ -31,8 +31,8 @@ pub struct PlaybackMask {
 }
 
 impl PlaybackMask {
-    /// Returns the mask of a silent robot; `echo` covers the reverberation of the room and the buffers of
-    /// the sound card.
+    /// Returns the mask of a silent robot; `echo` covers the reverberation of the room and the
+    /// buffers of the sound card.
     pub fn new(echo: Span) -> Self {
         Self { echo, playbacks: Mutex::default() }
     }
@@ -53,7 +53,7 @@ impl PlaybackMask {
         }
     }
 
-    /// Returns what a microphone may record of the robot at `at`.
+    /// Returns the robot's own sound that a microphone may record at `at`.
     pub fn own_voice(&self, at: Time) -> OwnVoice {
         let own_voice = |(began, ended): &(Time, Option<Time>)| match ended {
             _ if at < *began => OwnVoice::Silent,

@@ -1,4 +1,4 @@
-//! An utterance with its samples.
+//! Segments of a stream: utterances with their samples.
 
 use std::ops::Range;
 use std::time::Duration;

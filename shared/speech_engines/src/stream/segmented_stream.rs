@@ -1,9 +1,9 @@
 //! A live audio stream, segmented into utterances as it arrives.
 //!
-//! Invariant: every [`StreamEvent::Began`] is followed by exactly one [`StreamEvent::Ended`], at the
-//! latest at the end of the stream, and all events between them belong to that utterance. Unless speech
-//! continues, one of the [`StreamEvent::Paused`] carries the same segment as the end. Memory is bounded
-//! by the longest utterance.
+//! Invariant: every [`StreamEvent::Began`] is followed by exactly one [`StreamEvent::Ended`], at
+//! the latest at the end of the stream, and all events between them belong to that utterance.
+//! Unless speech continues, one of the [`StreamEvent::Paused`] carries the same segment as the end.
+//! Memory is bounded by the longest utterance.
 
 use std::ops::Range;
 use std::sync::Arc;

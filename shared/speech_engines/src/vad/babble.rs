@@ -1,12 +1,12 @@
 //! Voices in the background: other people who talk, a television.
 //!
-//! The detector of speech finds speech in them all the time, so no utterance would begin or end. The user
-//! is nearer to the microphone: only what is louder than those voices is the user's.
+//! The detector of speech finds speech in them all the time, so no utterance would begin or end.
+//! The user is nearer to the microphone: only sound louder than those voices is the user's.
 
 use std::collections::VecDeque;
 
-/// Frames by which the background is judged: 20 s. Nobody talks to the robot for that long without a
-/// pause.
+/// Frames by which the background is judged: 20 s. Nobody talks to the robot for that long without
+/// a pause.
 const FRAMES: usize = 1_250;
 /// Frames from which on several voices at once are known: 3 s.
 const MANY_FRAMES_MIN: usize = 190;
@@ -15,8 +15,8 @@ const FEW_FRAMES_MIN: usize = 940;
 /// Several voices at once: at least this share of the quieter half of the frames is speech to the
 /// detector (0.02 to 0.1 in steady noise) ...
 const MANY_SHARE_MIN: f32 = 0.12;
-/// ... and their median is at most this far above their 10th percentile, decibels: 5 with six voices, 12
-/// with two, 18 within one request in a quiet room.
+/// ... and their median is at most this far above their 10th percentile, decibels: 5 with six
+/// voices, 12 with two, 18 within one request in a quiet room.
 const MANY_SPREAD_DB: usize = 7;
 /// A few voices: their quieter half is speech nearly always.
 const FEW_SHARE_MIN: f32 = 0.97;
@@ -26,9 +26,9 @@ const ABOVE_SPREAD: f32 = 1.2;
 const ABOVE_DB: (f32, f32) = (4.0, 8.0);
 /// Frames over which the level is averaged: syllables of a voice differ by less than its frames.
 const SMOOTHED: usize = 3;
-/// Frames for which a voice goes on after its level has fallen: soft ends of words.
+/// Frames for which a voice continues after its level has fallen: soft ends of words.
 const HELD: usize = 6;
-/// Digital silence, where the robot's own voice was cut out for instance, decibels: no background.
+/// Level of digital silence, e.g. in place of the robot's own voice, decibels: not background.
 const SILENCE_DB: f32 = -90.0;
 /// Number of levels, 1 dB each, downwards from full scale.
 const LEVELS: usize = 97;
@@ -58,8 +58,8 @@ impl Default for Babble {
 }
 
 impl Babble {
-    /// Takes the next frame, of this level in decibels relative to full scale. Returns whether its speech,
-    /// if it is speech, may be the user's.
+    /// Takes the next frame, of this level in decibels relative to full scale. Returns whether its
+    /// speech, if it is speech, may be the user's.
     pub(super) fn is_user(&mut self, level_db: f32, is_speech: bool) -> bool {
         self.powers.rotate_left(1);
         self.powers[SMOOTHED - 1] = 10_f32.powf(level_db / 10.0);
@@ -101,8 +101,8 @@ impl Babble {
         (many || few).then_some(above_db - median as f32)
     }
 
-    /// Returns the level below which this part of the frames lies, decibels below full scale, and the share
-    /// of speech there.
+    /// Returns the level below which this part of the frames lies, decibels below full scale, and
+    /// the share of speech there.
     fn quieter(&self, part: f32) -> (usize, f32) {
         let wanted = (part * self.frames.len() as f32).ceil() as u32;
         let (mut all, mut speech) = (0, 0);
@@ -125,7 +125,7 @@ mod tests {
     /// Level of the user's voice, decibels.
     const USER_DB: f32 = -25.0;
 
-    /// Takes seconds of a background whose levels are spread evenly around `level_db`; this share is speech.
+    /// Takes seconds of a background with levels spread evenly around `level_db`, partly speech.
     fn background(babble: &mut Babble, seconds: f64, level_db: f32, spread_db: f32, share: f32) {
         let mut rng = Rng::new(7);
         for n in 0..(seconds / 0.016) as usize {

@@ -1,8 +1,8 @@
-//! Loudness of a voice and of what surrounds it.
+//! Loudness of a voice and of its surroundings.
 //!
-//! The detector of speech notices the end of a voice about 90 ms late, whatever the pause is; the level
-//! falls at once. So a frame within a segment is voice only while it is louder than the background and
-//! not far below the voice so far.
+//! The detector of speech notices the end of a voice about 90 ms late, whatever the pause is; the
+//! level falls at once. So a frame within a segment is voice only while it is louder than the
+//! background and not far below the voice so far.
 
 /// Frames this far below the loudest of the segment are quiet, decibels.
 const QUIET_DB: f32 = -35.0;
@@ -21,10 +21,10 @@ const SILENCE_DB: f32 = -96.0;
 /// Levels of a stream, decibels relative to full scale.
 #[derive(Debug)]
 pub(super) struct Loudness {
-    /// Of frames outside segments, and how many there were.
+    /// Level of frames outside segments, and their number.
     background_db: f32,
     background_frames: usize,
-    /// Of the loudest frame of the segment in progress.
+    /// Level of the loudest frame of the segment in progress.
     voice_db: Option<f32>,
 }
 
@@ -35,8 +35,8 @@ impl Default for Loudness {
 }
 
 impl Loudness {
-    /// Takes the level of the next frame. Returns whether it is loud enough for a voice: always outside
-    /// segments, where a soft beginning must not be lost.
+    /// Takes the level of the next frame. Returns whether it is loud enough for a voice: always
+    /// outside segments, lest a soft beginning be lost.
     pub(super) fn is_voice(&mut self, level_db: f32, is_open: bool) -> bool {
         if !is_open {
             self.voice_db = None;

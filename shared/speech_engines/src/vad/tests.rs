@@ -10,8 +10,8 @@ fn track(frames: &str, options: &SegmenterOptions) -> Vec<VadEvent> {
     events
 }
 
-/// Returns settings by which three frames open and two close, with one frame of pre-roll and eight frames
-/// at most.
+/// Returns settings by which three frames open and two close, with one frame of pre-roll and eight
+/// frames at most.
 fn short() -> SegmenterOptions {
     let frame_s = FRAME as f64 / f64::from(RATE_HZ);
     SegmenterOptions {
@@ -178,7 +178,7 @@ fn vad_segment_that_is_released_ends_with_its_voice() {
 #[test]
 fn vad_segment_that_was_released_is_not_followed_by_its_own_tail() {
     let options = SegmenterOptions { early_roll_s: 0.016, ..SegmenterOptions::default() };
-    // The level has fallen for one frame; then the detector alone goes on for six.
+    // The level has fallen for one frame; then the detector alone continues for six.
     for (frames, onsets) in [("####!.######....", 1), ("####!.######.###....", 2)] {
         let events = released(frames, &options);
         let found = events.iter().filter(|event| matches!(event, VadEvent::Onset { .. }));

@@ -1,12 +1,12 @@
 //! The robot's voice: prompts are synthesised by one program and played by another, one after the
 //! other; each can be interrupted.
 //!
-//! Invariant: every accepted prompt yields `Started` and then exactly one of `Ended`, `Interrupted` and
-//! `Failed` (which may also come alone), in order, within a deadline that depends on its length only.
+//! Invariant: every accepted prompt yields `Started` and then exactly one of `Ended`, `Interrupted`
+//! and `Failed` (which may also come alone), in order, within a deadline by its length only.
 //!
-//! `Started` comes when the player has begun; the audio was synthesised before. `Ended` comes when the
-//! player has exited, and not before the duration of the audio has passed since `Started`: some players
-//! return early, and a null device at once. The duration covers the audible part (`trim.rs`).
+//! `Started` comes when the player has begun; the audio was synthesised before. `Ended` comes when
+//! the player has exited, and at least the audio's duration after `Started`: some players return
+//! early, and a null device at once. The duration covers the audible part (`trim.rs`).
 
 mod options;
 mod player;
@@ -39,27 +39,27 @@ pub use synthesis::{SynthesisError, Synthesiser};
 pub struct PlaybackEvent {
     /// Number of the playback.
     pub playback: u64,
-    /// Its new state.
+    /// New state of the playback.
     pub state: PlaybackState,
 }
 
 /// State of a playback.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PlaybackState {
-    /// Its sound began.
+    /// The sound began.
     Started,
-    /// Its sound was played to the end.
+    /// The sound was played to the end.
     Ended,
-    /// It was interrupted, or cancelled before it began.
+    /// The prompt was interrupted, or cancelled before it began.
     Interrupted,
-    /// It could not be spoken, for this reason.
+    /// The prompt could not be spoken, for this reason.
     Failed(String),
 }
 
 /// Output of the voice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum VoiceOutput {
-    /// Prompts are played by this program, or by none for as long as they would take.
+    /// Prompts are played by this program, or silently for their duration.
     Aloud(Player),
     /// Prompts are shown as text only.
     Text {
@@ -71,7 +71,7 @@ pub enum VoiceOutput {
 /// An event of the voice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum VoiceEvent {
-    /// Its output; the first event.
+    /// The output of the voice; the first event.
     Output(VoiceOutput),
     /// Progress of a playback.
     Playback(PlaybackEvent),
@@ -90,7 +90,7 @@ pub struct Voice {
 struct Prompt {
     playback: u64,
     generation: u64,
-    /// Its file in the cache.
+    /// File of the prompt in the cache.
     file: SoundFile,
     text: String,
 }
@@ -193,8 +193,8 @@ impl Speaker {
         }
     }
 
-    /// Returns the next prompt. Meanwhile foreseen prompts are synthesised, one at a time, so that a prompt
-    /// waits for one at most.
+    /// Returns the next prompt. Meanwhile foreseen prompts are synthesised, one at a time, so that
+    /// a prompt waits for one at most.
     fn next(&mut self, prompts: &Receiver<Prompt>) -> Option<Prompt> {
         loop {
             match prompts.try_recv() {
@@ -210,7 +210,7 @@ impl Speaker {
             match self.synthesiser.speak(&text, is_cancelled) {
                 Ok(_) => {}
                 Err(SynthesisError::Cancelled) => self.foreseen.push(text),
-                // A prompt reports what fails when it is spoken.
+                // A failing prompt reports its error when it is spoken.
                 Err(error) => {
                     tracing::debug!(%error, "prompts are not synthesised in advance");
                     self.foreseen.clear();

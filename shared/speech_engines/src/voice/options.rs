@@ -7,12 +7,12 @@ use super::{Player, Program};
 /// Presentation of prompts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VoiceMode {
-    /// Aloud where synthesis and a player work, otherwise as text.
+    /// Aloud if synthesis and a player work, otherwise as text.
     #[default]
     Auto,
-    /// Aloud; where that is impossible every prompt fails.
+    /// Aloud; if that is impossible, every prompt fails.
     Aloud,
-    /// As text: a prompt ends as soon as it starts.
+    /// Printed as text: a prompt ends as soon as it starts.
     Print,
 }
 
@@ -38,7 +38,7 @@ pub struct VoiceOptions {
 }
 
 impl VoiceOptions {
-    /// Returns an American voice at a calm pace, aloud where possible.
+    /// Returns an American voice at a calm pace, aloud if possible.
     pub fn new(work: impl Into<PathBuf>) -> Self {
         Self {
             mode: VoiceMode::Auto,

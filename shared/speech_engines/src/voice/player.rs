@@ -6,13 +6,13 @@ use std::time::Duration;
 
 use crate::child_process::{self, ChildProcess, ProcessError};
 
-/// A program that plays the WAV file named by its last argument, and exits at its end. The name `none`
-/// plays nothing: prompts take as long as they would, without sound.
+/// A program that plays the WAV file named by its last argument, and exits at its end. The name
+/// `none` plays nothing: prompts take as long as they would, without sound.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Player {
     /// The program.
     pub program: String,
-    /// Its arguments before the file.
+    /// Arguments before the file.
     pub arguments: Vec<String>,
 }
 
@@ -30,13 +30,13 @@ impl Player {
         vec![player("aplay", &["-q"]), player("pw-play", &[]), player("paplay", &[])]
     }
 
-    /// Returns whether it plays nothing.
+    /// Returns whether the player plays nothing.
     pub fn is_none(&self) -> bool {
         self.program == "none"
     }
 
-    /// Returns the first of `players` that plays `silence`, a short WAV file: an installed program or a
-    /// listed card may still be unusable.
+    /// Returns the first of `players` that plays `silence`, a short WAV file: an installed program
+    /// or a listed card may still be unusable.
     ///
     /// # Errors
     /// If none does; with the reason for each.

@@ -8,9 +8,9 @@ use crate::child_process::ProcessError;
 /// A program that synthesises a text into a WAV file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Program {
-    /// espeak-ng, at this path.
+    /// The program espeak-ng, by path.
     EspeakNg(PathBuf),
-    /// flite, at this path.
+    /// The program flite, by path.
     Flite(PathBuf),
     /// Another one: its words, with the placeholders `{text}` and `{wav}`.
     Command(Vec<String>),
@@ -20,7 +20,7 @@ pub enum Program {
 const FLITE_WPM: f64 = 165.0;
 
 impl Program {
-    /// Returns its name.
+    /// Returns the program's name.
     pub fn name(&self) -> String {
         match self {
             Self::EspeakNg(path) | Self::Flite(path) => path.display().to_string(),
@@ -38,8 +38,8 @@ impl Program {
         }
     }
 
-    /// Returns the command that synthesises `text` into the file `wav`; `pace` in words per minute. No
-    /// shell interprets the text.
+    /// Returns the command that synthesises `text` into the file `wav`; `pace` in words per minute.
+    /// No shell interprets the text.
     pub(super) fn speak(&self, text: &str, voice: &str, pace: u16, wav: &Path) -> Command {
         match self {
             Self::EspeakNg(path) => {

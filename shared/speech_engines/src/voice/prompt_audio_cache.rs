@@ -18,7 +18,7 @@ pub(super) struct PromptAudioCache {
 }
 
 impl PromptAudioCache {
-    /// Opens the folder, which is created where necessary.
+    /// Opens the folder, which is created if necessary.
     pub(super) fn open(folder: &Path) -> io::Result<Self> {
         fs::create_dir_all(folder)?;
         let mut found = Vec::new();

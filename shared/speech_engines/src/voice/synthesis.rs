@@ -25,7 +25,7 @@ pub enum SynthesisError {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sound {
     pub(super) file: PathBuf,
-    /// Duration of its audible part, seconds.
+    /// Duration of the audible part, seconds.
     pub(super) seconds: f64,
 }
 

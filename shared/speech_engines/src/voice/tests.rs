@@ -14,7 +14,7 @@ const SOUND_SAMPLES: usize = 3_200;
 /// The same.
 const SOUND: Duration = Duration::from_millis(200);
 
-/// The file of a prompt where it does not matter.
+/// An arbitrary file of a prompt.
 const FILE: SoundFile = SoundFile { prompt: 1, presentation: 1 };
 
 /// Programs that stand in for espeak-ng and a player.
@@ -24,8 +24,8 @@ struct Stage {
 }
 
 impl Stage {
-    /// The stand-in for espeak-ng copies a fifth of a second of audio to its output file; the player is
-    /// the given script.
+    /// The stand-in for espeak-ng copies a fifth of a second of audio to its output file; the
+    /// player is the given script.
     fn new(mode: VoiceMode, player: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
@@ -72,7 +72,7 @@ fn voice_synthesises_foreseen_prompts_while_it_is_silent_and_only_once() {
         assert!(begun.elapsed() < PATIENCE, "{}", spoken());
         thread::sleep(Duration::from_millis(5));
     }
-    // The third was begun, so the second is there.
+    // The third was begun, so the second exists.
     voice.speak(1, FILE, "Is it white?").unwrap();
     assert_eq!([events.next(), events.next()], [(1, Started), (1, Ended)]);
     assert_eq!(spoken().lines().filter(|words| *words == "Is it white?").count(), 1);

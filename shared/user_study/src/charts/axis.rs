@@ -9,8 +9,8 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
-    /// True for shares near 1: divided by the logarithm of the share missing to 1, so that 0.99 is as far
-    /// from 0.9 as 0.9 is from 0.
+    /// True for shares near 1: divided by the logarithm of the share missing to 1, so that 0.99 is
+    /// as far from 0.9 as 0.9 is from 0.
     is_of_shares: bool,
     ends: (f64, f64),
     ticks: Vec<(f64, String)>,

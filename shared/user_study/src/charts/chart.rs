@@ -25,10 +25,10 @@ pub struct Chart {
     pub legend: Vec<String>,
 }
 
-/// A pair of axes and what is drawn on it.
+/// A pair of axes with its drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// Line above it, or empty.
+    /// Line above the panel, or empty.
     pub heading: String,
     /// Horizontal axis.
     pub x: Axis,

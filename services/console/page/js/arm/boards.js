@@ -1,7 +1,7 @@
 // @ts-check
 /** Objects whose feet differ by less stand equally high, metres. */
 const LEVEL_M = 0.015;
-/** Objects that are no farther apart stand on one board. */
+/** Distance up to which objects share a board. */
 const CLOSE_M = 0.3;
 /** Margin of a board around the objects on it. */
 const RIM_M = 0.05;
@@ -58,7 +58,7 @@ function under({ xyz: [x, y, z], size: [wide, deep, tall], yaw }) {
   };
 }
 
-/** Of what was handed over: how far before the farthest board a person has it, metres. */
+/** Distance from the farthest board to an object handed over, metres. */
 const REACH_M = 0.3;
 const APART_M = 0.06;
 

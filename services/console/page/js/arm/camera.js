@@ -4,13 +4,13 @@ import { keep, recall } from "../kept.js";
 import { Feed } from "./feed.js";
 import { watchSeen } from "./watch.js";
 
-/** What the part shows: the drawn picture, the camera's, or both. */
+/** Content of the part: the drawn picture, the camera's, or both. */
 const SOURCES = ["model", "camera", "both"];
 
 /**
- * A camera's picture beside or instead of the drawn one, with a switch; nothing where the console has no
+ * A camera's picture next to or instead of the drawn one, with a switch; nothing if the console has no
  * camera.
- * @param {HTMLElement} element the part; its `data-source` says what it shows
+ * @param {HTMLElement} element the part; its `data-source` names the content
  * @param {HTMLElement} stage of the drawn picture
  * @param {{store: any, t: (key: string, args?: object) => string}} page
  */
@@ -38,7 +38,7 @@ function show(camera, element, stage, t) {
   stage.before(sources(element, t));
   stage.after(figure);
   watchSeen(figure, (isSeen) => {
-    // Before its style is loaded, it is seen where only the model was chosen.
+    // Before its style is loaded, it is visible even if only the model was chosen.
     const isChosen = element.dataset.source !== SOURCES[0];
     if (isSeen && isChosen && figure.isConnected) feed.start();
     else feed.stop();

@@ -3,7 +3,7 @@
 export const FIELD_DEG = 32;
 
 /**
- * From where the scene can be looked at: the direction from what is looked at to the eye.
+ * Viewpoints of the scene: the direction from the scene to the eye.
  * @type {Record<string, [number, number, number]>}
  */
 const DIRECTIONS = {
@@ -24,7 +24,7 @@ export const VIEWS = Object.keys(DIRECTIONS);
 /**
  * From where everything between two corners is in the picture, and fills it.
  * @param {string} name one of `VIEWS`
- * @param {{low: number[], high: number[]}} box what must be seen, metres
+ * @param {{low: number[], high: number[]}} box region that must be visible, metres
  * @param {number} aspect width over height of the picture
  * @returns {View}
  */
@@ -36,7 +36,7 @@ export function viewOf(name, { low, high }, aspect) {
   const slopes = [slope * aspect, slope];
   let target = low.map((value, k) => (value + high[k]) / 2);
   let distance = 1;
-  // What is nearer looks larger, so the middle of the picture is found in a few steps.
+  // Nearer things look larger, so the middle of the picture is found in a few steps.
   for (let step = 0; step < 6; step++) {
     distance = Math.max(...corners(low, high).map((corner) => needed(corner, target)));
     const seen = corners(low, high).map((corner) => onto(corner, target, distance));
@@ -70,7 +70,7 @@ export function viewOf(name, { low, high }, aspect) {
 /**
  * Points that must be in the picture: the objects and the robot's upper body and reach.
  * @param {{xyz: number[], size: number[]}[]} places of the objects
- * @param {{low: number[], high: number[]}} robot bounds of the robot as it stands
+ * @param {{low: number[], high: number[]}} robot present bounds of the robot
  * @param {boolean} narrow whether the picture is higher than wide: then the robot's foot is left out
  */
 export function boundsOf(places, robot, narrow = false) {
@@ -84,7 +84,7 @@ export function boundsOf(places, robot, narrow = false) {
   }
   const foot = places.length ? Math.min(...places.map(({ xyz }) => xyz[2])) : 0;
   low[2] = Math.max(low[2], foot - (narrow ? 0.1 : 0.22));
-  // What is behind the robot's back needs no room.
+  // The region behind the robot's back needs no room.
   low[0] = Math.max(low[0], -0.2);
   return { low, high };
 }

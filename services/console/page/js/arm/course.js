@@ -62,7 +62,7 @@ const FRAGMENT = `
     #include <colorspace_fragment>
   }`;
 
-/** The planned way of the gripper: a line of light, faint where the gripper has been already. */
+/** The planned way of the gripper: a line of light, faint along the part already done. */
 export class CourseLine {
   object = new Group();
   #materials = [
@@ -106,7 +106,7 @@ export class CourseLine {
   }
 
   /**
-   * Moves the border between what is over and what is to come.
+   * Moves the border between the past and the coming part.
    * @param {number} seconds since the motion began
    */
   passed(seconds) {

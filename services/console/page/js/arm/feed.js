@@ -42,7 +42,7 @@ export class Feed {
     this.#fetch();
   }
 
-  /** Ends it, so that a camera that nobody looks at sends nothing. */
+  /** Ends it, so that a camera without viewers sends nothing. */
   stop() {
     this.#isOn = false;
     this.#clock.clearTimeout(this.#timer);

@@ -35,7 +35,7 @@ export function disc(rings) {
   return geometry;
 }
 
-/** The light of what the robot believes in, and the ring of what it asks about. */
+/** The light of likely objects, and the ring of the object in question. */
 const LIT = [
   [0.55, 0],
   [0.72, 0.85],
@@ -67,7 +67,7 @@ class Halo extends Mesh {
   /**
    * @param {number} colour
    * @param {number} strength of one
-   * @param {boolean} asked whether it is the sharp ring of what is asked about
+   * @param {boolean} asked whether it is the sharp ring of the object in question
    */
   show(colour, strength, asked) {
     this.geometry = this.#shapes[asked ? 1 : 0];

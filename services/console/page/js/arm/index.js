@@ -109,7 +109,7 @@ function follow(picture, overlay, store, link) {
   });
 }
 
-/** Names what the pointer is over; the operator chooses an object by a click, as in the list. */
+/** Names the object under the pointer; the operator chooses an object by a click, as in the list. */
 function letChoose(overlay, canvas, page) {
   const { store } = page;
   const isMine = () => store.get("now").who === "mine";

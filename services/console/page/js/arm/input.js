@@ -19,7 +19,7 @@ const READ = [
 ];
 
 /**
- * Sends what a person does to the picture.
+ * Sends a person's input to the picture.
  * @param {HTMLElement} stage takes the keys
  * @param {HTMLCanvasElement} canvas
  * @param {(what: string, ...args: any[]) => void} notify

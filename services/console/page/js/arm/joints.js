@@ -27,7 +27,7 @@ export function limbNames(robot) {
 
 /** Messages that are kept. */
 const KEPT = 40;
-/** Messages farther apart than this are no stream: the arm stood between them. */
+/** Gap between messages that are not a stream: the arm rested in between. */
 const STREAM_MS = 120;
 /** Messages whose delays are judged. */
 const JUDGED = 24;
@@ -115,7 +115,7 @@ export class JointBuffer {
     this.#shownMs = Number.NEGATIVE_INFINITY;
   }
 
-  /** The arm stood since the last message, which came at the slow rate of an arm that stands. */
+  /** The arm has rested since the last message, which came at the slow rate of rest. */
   #stoodUntil(atMs, last) {
     this.#states.push({ ...last, at_ms: atMs - STREAM_MS / 4 });
   }

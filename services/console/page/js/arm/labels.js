@@ -1,11 +1,11 @@
 // @ts-check
 import { Vector3 } from "../../vendor/three/build/three.module.js";
 
-/** Where an object behind the camera is said to be: outside the picture, in halves of it. */
+/** Nominal place of an object behind the camera: outside the picture, in halves of it. */
 const OUTSIDE = 1.2;
 
 /**
- * Where the objects are in the picture: the box around each, pixels of the page. That of an object behind
+ * Places of the objects in the picture: the box around each, pixels of the page. That of an object behind
  * the camera is a point outside, on the side to which one would turn.
  * @param {import("./things.js").Things} things
  * @param {any} camera

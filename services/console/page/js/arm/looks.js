@@ -22,7 +22,7 @@ const COLOURS = {
   transparent: 0xbfe3ee,
   wooden: 0xb98b55,
 };
-/** Of what has no colour of its own. */
+/** Colour of things without a colour of their own. */
 const PLAIN = 0xc7a97f;
 
 const SEE_THROUGH = ["clear", "transparent", "glass"];
@@ -57,7 +57,7 @@ const FORMS = {
 /**
  * Returns an object's looks.
  * @param {{name: string, attributes: Record<string, string>, size: number[]}} object
- * @param {string} noun what the scene calls its objects
+ * @param {string} noun the scene's word for its objects
  * @returns {Look}
  */
 export function lookOf({ attributes, size }, noun) {
@@ -89,7 +89,7 @@ function formOf(words, [x, y, z]) {
  * @property {"x"|"y"|"z"} along axis of a lathe, normal of a ring
  * @property {[number, number][]} [profile] of a lathe: distance from the axis, place along it
  * @property {number[]} [size] of a box; radius and thickness of a ring; radius of a ball
- * @property {number} [colour] where it is not the object's
+ * @property {number} [colour] if it is not the object's
  * @property {boolean} [metal] whether it is of bare metal
  */
 

@@ -1,5 +1,5 @@
 // @ts-check
-/** A picture that stands is drawn once more, finely, after this long, milliseconds. */
+/** Time after which a still picture is drawn once more, finely, milliseconds. */
 const STILL_MS = 140;
 
 /** When the picture is drawn: in a frame of the browser's, and only if something has changed. */
@@ -14,7 +14,7 @@ export class Loop {
    * @param {object} does
    * @param {() => boolean} does.isShown whether anybody can see the picture
    * @param {(at: number) => boolean} does.draw draws quickly; whether something still moves
-   * @param {() => void} does.drawFinely what stands
+   * @param {() => void} does.drawFinely draws the still picture
    */
   constructor(does) {
     this.#does = does;

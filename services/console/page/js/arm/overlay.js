@@ -88,7 +88,7 @@ export class Overlay {
   }
 
   /**
-   * Puts the labels beside what they name.
+   * Puts the labels next to their objects.
    * @param {import("./placement.js").Rect[]} boxes of the objects in the picture
    * @param {number} held which object is in the gripper, -1 for none
    */
@@ -132,7 +132,7 @@ export class Overlay {
     else this.#placeSoon();
   }
 
-  /** Measures all labels again; small ones where the picture has no room for large ones. */
+  /** Measures all labels again; small ones if the picture has no room for large ones. */
   #measure() {
     setAttribute(this.list, "data-dense", false);
     this.#read();
@@ -183,7 +183,7 @@ export class Overlay {
 }
 
 /**
- * What tells an object from the others: its label without the noun that all of them share.
+ * Distinctive part of an object's label: without the noun that all of them share.
  * @param {{label?: string, name: string}} object
  * @param {string} noun
  */

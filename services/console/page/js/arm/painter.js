@@ -20,7 +20,7 @@ const FINENESS = [
   { pixels: 2e5, shadow: 512, rich: false },
   { pixels: 9e4, shadow: 256, rich: false },
 ];
-/** First level where the processor draws. */
+/** First level if the processor draws. */
 const FIRST_IN_SOFTWARE = 3;
 /** Names of renderers that have no graphics card. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|basic render|software/i;
@@ -29,7 +29,7 @@ const RATIO_MAX = 2;
 /** Strength of the light that the studio throws on everything. */
 const STUDIO_LIGHT = { light: 0.75, dark: 0.7 };
 
-/** Draws a scene as finely as this machine can while it moves, and finely when it stands. */
+/** Draws a scene as finely as this machine can while it moves, and finely when still. */
 export class Painter {
   #fineness;
   #isSoftware;
@@ -86,7 +86,7 @@ export class Painter {
     scene.environmentIntensity = this.#isDark ? STUDIO_LIGHT.dark : STUDIO_LIGHT.light;
     tableau.setFineness({ shadow, rich, mirrored: this.#studio });
     this.#resize(how === "still" ? this.#finest() : this.ratio);
-    // Without a graphics card the shadows of what moves follow at half the rate.
+    // Without a graphics card the shadows of moving things follow at half the rate.
     this.#isOdd = !this.#isOdd;
     this.renderer.shadowMap.autoUpdate = rich;
     this.renderer.shadowMap.needsUpdate = this.#isOdd || how !== "moving";
@@ -98,7 +98,7 @@ export class Painter {
     this.#fineness.add(intervalMs);
   }
 
-  /** Without a graphics card edges are smoothed by drawing what stands twice as large. */
+  /** Without a graphics card edges are smoothed by drawing still pictures twice as large. */
   #finest() {
     return this.#isSoftware ? RATIO_MAX : Math.min(this.#size.screen, RATIO_MAX);
   }

@@ -4,7 +4,7 @@ import { ArmView } from "./view.js";
 
 /**
  * Draws the picture as messages say. Each names a method of `ArmView`, or of `Questions`; those with
- * an `id` are answered. Runs in a worker, or in the page itself where a worker cannot draw.
+ * an `id` are answered. Runs in a worker, or in the page itself if a worker cannot draw.
  * @param {HTMLCanvasElement|OffscreenCanvas} canvas
  * @param {MessagePort} port to `Picture`; hears first whether the picture can be drawn at all
  */

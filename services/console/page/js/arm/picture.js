@@ -42,7 +42,7 @@ export class Picture {
 
 /**
  * Has the picture be drawn: in a worker, or else by the page itself.
- * @param {{canvas: HTMLCanvasElement}} parts its canvas is another afterwards where a worker had the
+ * @param {{canvas: HTMLCanvasElement}} parts its canvas is another afterwards if a worker had the
  *   first one and could not draw: a canvas can be given away once
  * @param {(message: any) => void} heard
  * @returns {Promise<Picture|null>} null without WebGL

@@ -19,7 +19,7 @@
 const GAP = 3;
 /** Distances from its object at which a label is tried. */
 const DISTANCES = [4, 16, 32, 52, 80, 116];
-/** The sides of an object: of its box and of the label, -1 to 1, and what each costs: above is best. */
+/** The sides of an object: of its box and of the label, -1 to 1, and the cost of each: above is best. */
 const SIDES = [
   [0, -1, 0],
   [1, 0, 3],
@@ -32,7 +32,7 @@ const SIDES = [
 ];
 /** A label farther from its object has a leader. */
 const ADJACENT = 9;
-/** What a place costs, in pixels of distance. */
+/** Cost of a place, in pixels of distance. */
 const COST = {
   overLabel: 6_000,
   overNotice: 6_000,
@@ -42,14 +42,14 @@ const COST = {
 };
 /** A place that costs as much covers something: others are tried all over the picture. */
 const COVERS = COST.overObject;
-/** Most that a label may gain by moving and still stays where it was: it does not jump about. */
+/** Gain up to which a label does not move, so that it does not jump about. */
 const STEADY = 14;
 /** How often every label may choose again, knowing where the others went; once among very many. */
 const SWEEPS = 3;
 const MANY = 24;
 
 /**
- * Places for labels, one for each: beside their objects, inside the frame, off each other, the objects
+ * Places for labels, one for each: next to their objects, inside the frame, off each other, the objects
  * and the notices as far as there is room. A leader that crosses another, or a label over something, is
  * expensive and never forbidden, so that no label is left out.
  * @param {Wish[]} wishes
@@ -123,7 +123,7 @@ function* everywhere({ width, height }, frame) {
   }
 }
 
-/** What a label covers, added to `cost`; it is not counted further than to `limit`. */
+/** Adds the cost of things that a label covers to `cost`, up to `limit`. */
 function covers(label, { boxes, others, notices }, begin, limit) {
   let cost = begin;
   for (const notice of notices) cost += covering(label, notice, COST.overNotice);

@@ -36,7 +36,7 @@ function atLeast({ x, y, width, height }, size) {
 }
 
 /**
- * Reports which object the pointer is over, and which one is clicked; a drag is no click.
+ * Reports which object the pointer is over, and which one is clicked; a drag is not a click.
  * @param {HTMLElement} canvas
  * @param {object} does
  * @param {(point: {x: number, y: number}) => number} does.find the object at a point, -1 for none

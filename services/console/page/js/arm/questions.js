@@ -17,7 +17,7 @@ export class Questions {
     return { ...figures.all, delay_ms: joints.delayMs, ratio: painter.ratio };
   }
 
-  /** Forgets what was measured. */
+  /** Forgets the measurements. */
   clearStats() {
     this.#view.figures.clear();
   }

@@ -18,7 +18,7 @@ const BARE = [0.55, 0.57, 0.6];
 
 /** The robot of a description, at any joint positions. */
 export class RobotModel {
-  /** Joints of the server's messages: what sets each. @type {(((q: number) => void)|null)[]} */
+  /** Joints of the server's messages: the setter of each. @type {(((q: number) => void)|null)[]} */
   #setters;
   #rich;
   #plain;
@@ -29,7 +29,7 @@ export class RobotModel {
   /** @param {import("./elements.js").Tree} description the robot's URDF */
   constructor(description) {
     const loader = new URDFLoader();
-    // What is seen is made here, so that each link is drawn in one call, and capsules too.
+    // The visible shapes are made here, so that each link is drawn in one call, and capsules too.
     loader.parseVisual = false;
     this.object = loader.parse(/** @type {any} */ (new TreeElement(description)));
     this.#rich = new MeshStandardMaterial({ vertexColors: true, roughness: 0.42, metalness: 0.12 });
@@ -78,7 +78,7 @@ export class RobotModel {
     }
   }
 
-  /** Everything that the robot takes up as it stands, metres. */
+  /** Present extent of the robot, metres. */
   bounds() {
     this.object.updateMatrixWorld(true);
     const { min, max } = new Box3().setFromObject(this.object);
@@ -92,7 +92,7 @@ export class RobotModel {
     return frame ? new Vector3().setFromMatrixPosition(frame.matrixWorld).toArray() : null;
   }
 
-  /** Frees what it holds on the graphics card. */
+  /** Frees its memory on the graphics card. */
   dispose() {
     for (const mesh of this.#meshes) mesh.geometry.dispose();
     this.#rich.dispose();
@@ -134,7 +134,7 @@ function fingersOf(robot, limb, side) {
   return fingers;
 }
 
-/** All bodies by the link that carries them: what moves together is drawn in one call. */
+/** All bodies by the link that carries them: parts that move together are drawn in one call. */
 function bodiesOf(robot) {
   const found = new Map();
   for (const link of Object.values(robot.links)) {

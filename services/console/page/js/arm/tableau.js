@@ -22,7 +22,7 @@ const SPECK = {
   ],
 };
 
-/** Contents of the picture: a robot, its room, the objects, and what is known of them. */
+/** Contents of the picture: a robot, its room, the objects, and knowledge about them. */
 export class Tableau {
   scene = new Scene();
   things = new Things();
@@ -52,7 +52,7 @@ export class Tableau {
 
   /**
    * @param {import("./elements.js").Tree} description the robot's URDF
-   * @param {{q: number[], grip: number[]}|undefined} joints where they are, if that is known
+   * @param {{q: number[], grip: number[]}|undefined} joints their positions, if known
    */
   setRobot(description, joints) {
     const robot = new RobotModel(description);
@@ -123,7 +123,7 @@ export class Tableau {
    * @param {object} fineness
    * @param {number} fineness.shadow pixels of the shadows' picture along a side
    * @param {boolean} fineness.rich whether the robot mirrors the room
-   * @param {any} fineness.mirrored what shiny things mirror, a texture
+   * @param {any} fineness.mirrored reflections in shiny things, a texture
    */
   setFineness({ shadow, rich, mirrored }) {
     this.#room.setShadow(shadow);
@@ -132,7 +132,7 @@ export class Tableau {
   }
 
   /**
-   * Brings everything to where it is at an instant.
+   * Moves everything to its place at an instant.
    * @param {number} now milliseconds
    * @param {import("./joints.js").Sample|null} sample the joints then
    * @returns {boolean} whether any object is still on its way

@@ -26,7 +26,7 @@ const SIDES = {
   y: new Matrix4().makeRotationX(-Math.PI / 2),
 };
 
-/** The objects of a scene, each where the world says, or in a gripper. */
+/** The objects of a scene, each at its place in the world, or in a gripper. */
 export class Things {
   object = new Group();
   /** @type {Thing[]} */
@@ -65,13 +65,13 @@ export class Things {
     this.#things[n]?.hold(frame, inFrame);
   }
 
-  /** Marks what the dialogue thinks of each. @param {{belief: number|null, best: boolean, asked: boolean}[]} thoughts */
+  /** Marks the dialogue's belief about each. @param {{belief: number|null, best: boolean, asked: boolean}[]} thoughts */
   mark(thoughts) {
     for (const [n, thing] of this.#things.entries()) thing.mark(thoughts[n]);
   }
 
   /**
-   * Moves what is on its way.
+   * Moves the objects under way.
    * @param {number} now page time, milliseconds
    * @returns {boolean} whether anything still is
    */

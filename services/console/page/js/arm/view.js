@@ -99,7 +99,7 @@ export class ArmView {
    * @param {{at_ms: number, q: number[], grip: number[]}} message
    * @param {number} arrivedMs server time at which the page got it: what waits here for a frame to be
    *   drawn is there in time for the next one
-   * @param {number} clockMs what the server's clock is ahead of the one that all threads of the
+   * @param {number} clockMs lead of the server's clock over the one that all threads of the
    *   browser share: `performance.timeOrigin + performance.now()`
    */
   setJoints(message, arrivedMs, clockMs) {
@@ -109,7 +109,7 @@ export class ArmView {
     if (this.joints.add(message, arrivedMs)) this.#last.fresh = now;
     if (this.#isFresh(now)) this.request();
     if (!isFirst) return;
-    // How far back the camera must be depends on where the arms are.
+    // The camera's distance depends on the arms' postures.
     this.tableau.robot?.pose(message.q, message.grip);
     this.#lookAgain();
   }
@@ -186,7 +186,7 @@ export class ArmView {
   }
 
   #drawFinely() {
-    // What a motion needs is made before the first one, which so does not stutter.
+    // Resources of a motion are made before the first one, lest it stutter.
     if (!this.#isWarm && this.tableau.robot) this.tableau.withSpeck(() => this.#paint("moving"));
     this.#isWarm ||= this.tableau.robot !== null;
     this.#paint("still");

@@ -13,7 +13,7 @@ const OUTCOMES = [
   "vanished",
   "kept",
 ];
-/** Ends of an order that read otherwise where the object was to be put back. */
+/** Ends of an order with other words if the object was to be put back. */
 const OUTCOMES_OF_PUT_BACK = ["unreachable", "cancelled", "missed"];
 
 /**
@@ -40,7 +40,7 @@ export function armWords(now, arm, scene, trajectory, t) {
   }
   if (arm.aimed) return t("arm.aimed");
   if (arm.moving) return t(trajectory && !trajectory.pick ? "arm.moving" : "arm.returning");
-  // How an earlier dialogue ended is no news in this one.
+  // How an earlier dialogue ended is not news in this one.
   if (now.order && arm.phase === "done" && OUTCOMES.includes(arm.outcome)) {
     const own = arm.task === "put_back" && OUTCOMES_OF_PUT_BACK.includes(arm.outcome);
     return t(own ? `arm.put_back.${arm.outcome}` : `arm.outcome.${arm.outcome}`, { object });
@@ -74,7 +74,7 @@ export function indexOf(object, scene) {
 /**
  * Describes the robot's belief in each object and whether it asks about it.
  * @param {Record<string, number>|null|undefined} belief section `belief`, as the list shows it
- * @param {any} question that stands
+ * @param {any} pending question
  * @param {any} scene section `scene`
  * @returns {{belief: number|null, best: boolean, asked: boolean}[]} in the scene's order
  */

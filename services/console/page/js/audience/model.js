@@ -5,7 +5,7 @@ import { banner } from "../model/turn.js";
 const OUTRANKING = ["disconnected", "stopped", "held"];
 
 /**
- * The sentence that the audience reads: the robot's question or announcement, else what is the matter.
+ * The sentence that the audience reads: the robot's question or announcement, else the problem.
  * @param {{now: import("../now.js").Now, dialogue: any, scene: any, delivery: any}} shown
  * @param {(key: string, args?: object) => string} t
  * @returns {string}

@@ -96,14 +96,14 @@ export const effortOf = (end, t) =>
     ? t("history.effort", { n: end.questions, seconds: t.number(end.duration_s, ONE_DIGIT) })
     : "";
 
-/** The time of day; none where it is not known. */
+/** The time of day; none if unknown. */
 export function timeOf(unix_ms, t) {
   if (unix_ms === null) return "–";
   const form = { hour: "2-digit", minute: "2-digit", hourCycle: "h23" };
   return new Date(unix_ms).toLocaleTimeString(t.language(), form);
 }
 
-/** The day in words, relative where it is near. */
+/** The day in words, relative if recent. */
 export function dayOf(unix_ms, t, now = Date.now()) {
   if (unix_ms === null) return t("history.day.unknown");
   const midnight = (ms) => new Date(ms).setHours(0, 0, 0, 0);

@@ -10,7 +10,7 @@ const BARS_MAX = 12;
 const MOVED = 0.005;
 
 /**
- * What the robot believed and why it decided so, after a moment.
+ * Belief of the robot and reasons of its decision, after a moment.
  * @param {any} t
  */
 export function mindView(t) {
@@ -66,7 +66,7 @@ function drawBars(bars, past, { thought, before }, t) {
       setAttribute(name, "title", label);
       setText(share, shareWords(p, t));
       bar.firstElementChild.style.setProperty("inline-size", `${100 * p}%`);
-      // Where it was a moment before.
+      // Position a moment before.
       const was = before?.[n] ?? p;
       bar.lastElementChild.style.setProperty("inset-inline-start", `${100 * was}%`);
       setAttribute(bar.lastElementChild, "data-moved", Math.abs(was - p) > MOVED);

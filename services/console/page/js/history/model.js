@@ -1,10 +1,10 @@
 // @ts-check
 /**
- * What the server has of an interaction; see docs/console.md.
+ * The server's data about an interaction; see docs/console.md.
  * @typedef {object} Moment
  * @property {number} after_ms since the first words
- * @property {any} event its `type`, and what belongs to it
- * @property {{belief: number[], absent: number, decision: any}|null} thought none where it changed neither
+ * @property {any} event its `type`, and further data
+ * @property {{belief: number[], absent: number, decision: any}|null} thought none if it changed neither
  *
  * @typedef {object} End
  * @property {string} outcome
@@ -35,7 +35,7 @@
  * @property {any} event of type `end` for the end
  * @property {any} thought the latest up to here, null before the first
  * @property {number[]|null} before the belief one step earlier
- * @property {string} line what the robot said here, if anything
+ * @property {string} line words of the robot here, if any
  */
 
 /**
@@ -68,7 +68,7 @@ export function stepsOf(past) {
   return steps;
 }
 
-/** What the dialogue writes down of an order of the motion stop, by the order. */
+/** The dialogue's record of an order to the motion stop, by the order. */
 const MOTION = { stop: ["stopped", "stop_confirmed"], resume: ["released"] };
 
 /** Whether a moment says something new: of a stop and a release the arm's own record says the same again. */
@@ -87,7 +87,7 @@ function isNews({ event, thought }, k, moments) {
 export const move = (count, at, by) => Math.max(0, Math.min(count - 1, at + by));
 
 /**
- * Words for what happened: a key of the strings with its arguments.
+ * Words for an event: a key of the strings with its arguments.
  * @param {any} event
  * @param {Interaction} past
  * @returns {{key: string, args: Record<string, any>}}
@@ -144,7 +144,7 @@ export function reasonsOf(decision) {
   };
 }
 
-/** What a shared file is marked with. */
+/** Mark of a shared file. */
 export const FORMAT = "whichone.interaction/1";
 
 /**

@@ -16,9 +16,9 @@ const KEYS = {
 };
 
 /**
- * One interaction: what happened, step by step, and what the robot believed.
+ * One interaction: events, step by step, and the robot's belief.
  * @param {any} t
- * @param {Node[]} tools buttons beside its title
+ * @param {Node[]} tools buttons next to its title
  * @param {"h2"|"h3"} level of its title
  */
 export function oneView(t, tools, level) {
@@ -73,7 +73,7 @@ export function oneView(t, tools, level) {
   }
 
   /**
-   * Shows an interaction; one that is shown already stays where it is.
+   * Shows an interaction; one that is shown already stays unchanged.
    * @param {import("./model.js").Interaction|null} shown
    */
   function show(shown) {
@@ -89,7 +89,7 @@ export function oneView(t, tools, level) {
     note.hidden = note.textContent === "";
     go(isSame ? at : 0);
   }
-  /** Takes a key; true where it moved. */
+  /** Handles a key; true if the view moved. */
   function onKey(event, focus) {
     const to = KEYS[event.key];
     if (!past || !to) return false;

@@ -5,7 +5,7 @@ import { chooseLanguage, loadStrings, t, translate } from "../strings.js";
 import { interactionOf } from "./model.js";
 import { oneView } from "./one.js";
 
-/** Largest file, bytes: many times what an interaction takes. */
+/** Largest file, bytes: many times the size of an interaction. */
 const FILE_MAX = 32 << 20;
 
 await loadStrings(chooseLanguage(location.search, keptLanguage(), navigator.languages));

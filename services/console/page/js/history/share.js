@@ -19,7 +19,7 @@ export function download(past, from) {
 }
 
 /**
- * Copies the address of an interaction; where the browser does not let it, the address bar has it.
+ * Copies the address of an interaction; if the browser forbids it, the address bar has it.
  * @param {number} interaction
  * @returns {Promise<boolean>}
  */

@@ -20,18 +20,18 @@ export class Source {
     return this.list.length >= this.total;
   }
 
-  /** Fetches what is new, and keeps the rest. */
+  /** Fetches new interactions, and keeps the rest. */
   async refresh() {
     const { interactions, total, oldest } = await this.#page(null);
     const last = interactions.at(-1)?.interaction ?? Number.POSITIVE_INFINITY;
     const older = this.list.filter(({ interaction }) => interaction < last);
-    // More than a page is new: what lies between would be missing.
+    // More than a page is new: those in between would be missing.
     const follows = older.length > 0 && this.list.some(({ interaction }) => interaction >= last);
     this.list = follows ? [...interactions, ...older] : interactions;
     [this.total, this.oldest] = [total, oldest];
   }
 
-  /** Fetches older ones; does nothing where there are none. */
+  /** Fetches older ones; does nothing without any. */
   more() {
     if (this.isComplete) return Promise.resolve();
     this.#more ??= this.#older().finally(() => {

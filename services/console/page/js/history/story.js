@@ -15,7 +15,7 @@ const DRAWINGS = {
 const ONE_DIGIT = { minimumFractionDigits: 1, maximumFractionDigits: 1 };
 
 /**
- * What happened in an interaction, in the order of time; each moment can be chosen.
+ * Events of an interaction, in the order of time; each moment can be chosen.
  * @param {any} t
  * @param {(step: number) => void} choose
  */
@@ -62,7 +62,7 @@ function fill(node, past, step, isCurrent, t) {
   const [time, mark, body] = button.children;
   setAttribute(button, "aria-current", isCurrent ? "step" : null);
   setAttribute(button, "tabindex", isCurrent ? "0" : "-1");
-  // What has happened does not change, but for the end of an open interaction.
+  // Past events do not change, except for the end of an open interaction.
   const made = JSON.stringify([step.event, step.line]);
   if (button.dataset.made === made) return;
   button.dataset.made = made;

@@ -4,7 +4,7 @@ import { unlistedOf } from "./ranking.js";
 /**
  * Words that can be said with one press.
  * @typedef {object} Offer
- * @property {string} text what is said
+ * @property {string} text words
  * @property {string|null} key the string to show for it; null: the words themselves
  * @property {"main"|"value"|"aside"|"example"} kind
  */
@@ -74,11 +74,11 @@ function valuesOf({ attribute }, dialogue, scene) {
 }
 
 /**
- * Everything that is offered: answers to a question, after a hand-over what to say of it, examples
- * where nothing is asked for yet.
+ * All offers: answers to a question, remarks after a hand-over, examples
+ * if nothing is requested yet.
  * @param {any} dialogue
  * @param {any} scene
- * @param {object|null|undefined} delivery what was handed over and can be refused
+ * @param {object|null|undefined} delivery the object handed over that can be refused
  * @returns {Offer[]}
  */
 export function offers(dialogue, scene, delivery) {

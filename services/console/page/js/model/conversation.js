@@ -1,10 +1,10 @@
 // @ts-check
 /**
- * What is shown of the conversation: words, ends of requests, and stops. Presentations of one prompt that follow
+ * The visible conversation: words, ends of requests, and stops. Presentations of one prompt that follow
  * each other are one item, with the fullest of their texts. Other notes are events.
  * @template {{who: string, text: string, said?: [number, number], outcome?: string}} L
  * @param {L[]} lines oldest first
- * @returns {{line: L, lines: L[]}[]} `line`: the one to show; `lines`: all that it stands for
+ * @returns {{line: L, lines: L[]}[]} `line`: the one to show; `lines`: all that it represents
  */
 export function conversation(lines) {
   /** @type {{line: L, lines: L[]}[]} */
@@ -22,7 +22,7 @@ export function conversation(lines) {
 }
 
 /**
- * The notes that are no part of the conversation, newest first.
+ * The notes outside the conversation, newest first.
  * @template {{who: string, outcome?: string, unix_ms: number}} L
  * @param {L[]} lines
  * @param {L[]} own the page's own

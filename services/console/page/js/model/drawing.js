@@ -1,5 +1,5 @@
 // @ts-check
-/** Words of colour and what they look like: fill and outline. */
+/** Words of colour and their appearance: fill and outline. */
 const COLOURS = {
   white: ["#fafaf7", "#a9aaa4"],
   black: ["#2c2e31", "#6c7076"],
@@ -22,7 +22,7 @@ const COLOURS = {
   clear: ["#cfe6ee", "#7ba5b4"],
   transparent: ["#cfe6ee", "#7ba5b4"],
 };
-/** Words of kind and the form that stands for them. */
+/** Words of kind and their form. */
 const FORMS = {
   bowl: ["bowl", "basin", "dish"],
   cup: ["cup", "mug", "teacup"],

@@ -15,7 +15,7 @@
  */
 
 /**
- * What a state is to a person: held is not failed, and neither is waiting for space.
+ * Meaning of a state to a person: held is not failed, and neither is waiting for space.
  * @type {Record<State, {tone: Tone, act: "restart"|"start"|"release"|"retry"}>}
  */
 const STATES = {
@@ -39,13 +39,13 @@ const STATES = {
  */
 export function noteOf({ state, why, says, last_exit }, t) {
   const exit = last_exit ? t("services.ended", { how: last_exit.text }) : null;
-  // Of what is held or switched off the state says the same.
+  // A state of held or switched off already says the same.
   const reason = tone(state) === "off" ? null : why;
   return [reason, says, exit].filter(Boolean).join("; ");
 }
 
 /**
- * What keeps a robot that is held: a service and its state.
+ * Cause of a held robot: a service and its state.
  * @param {import("../now.js").Now} now
  * @param {(key: string, args?: object) => string} t
  */
@@ -64,7 +64,7 @@ export function tone(state) {
 }
 
 /**
- * The name of what its button does: `services.act.NAME` of the strings.
+ * Name of its button's action: `services.act.NAME` of the strings.
  * @param {State} state
  */
 export function actOf(state) {

@@ -5,7 +5,7 @@ export const HOLD_MS = 1_000;
 export const QUIET_MS = 2_000;
 /**
  * Most that one step adds, milliseconds. A busy page sees a release late: a hold takes many steps, and
- * between two of them the browser delivers what has happened.
+ * between two of them the browser delivers events.
  */
 const STEP_MS = 100;
 

@@ -39,7 +39,7 @@ export function rankListed(before, objects, belief) {
 }
 
 /**
- * Which cards are shown, where there are too many: the first ones and those that matter in any case.
+ * The cards shown if there are too many: the first ones and those that matter in any case.
  * @param {number[]} order
  * @param {number[]} belief
  * @param {number} most
@@ -88,7 +88,7 @@ export function strip(belief, most) {
 }
 
 /**
- * A probability as a share that is read off easily: never "100 %" or "0 %" where it is not.
+ * A probability as a share that is read off easily: never "100 %" or "0 %" unless exact.
  * @param {number} p
  * @returns {{sign: ""|"<"|">", share: number}}
  */

@@ -46,11 +46,11 @@ export function decidedAction(dialogue, aim) {
   return { type: dialogue.decision === "wait" ? "wait" : "say" };
 }
 
-/** Least loss that a whole bar stands for, seconds: one that is shown as none has no bar. */
+/** Least loss of a whole bar, seconds: one that is shown as none has no bar. */
 const BAR_MIN_S = 1;
 
 /**
- * The decision and the best others, best first, each with what it loses against the best.
+ * The decision and the best others, best first, each with its loss against the best.
  * @param {any} dialogue
  * @param {string|null} aim
  * @param {number} most
@@ -71,11 +71,11 @@ export function ranked(dialogue, aim, most) {
   });
 }
 
-/** Objects of that probability are what an answer tells apart. */
+/** Least probability of objects that an answer distinguishes. */
 const LIKELY = 0.01;
 
 /**
- * What an answer to the question would tell, or how sure a pick is: a key of the strings with its figures.
+ * Information of an answer to the question, or certainty of a pick: a key of the strings with its figures.
  * @param {any} dialogue
  * @param {string|null} aim
  * @param {any} scene

@@ -24,7 +24,7 @@ const STATES = {
 const TO_OPERATOR = ["idle", "listening", "hearing", "asked", "speaking"];
 
 /**
- * Summarises whose turn it is in one sign: what the state says, else who acts.
+ * Summarises whose turn it is in one sign: the state, else the actor.
  * @param {import("../now.js").Now} now for viewers it is the operator's turn
  * @returns {Banner}
  */

@@ -1,7 +1,7 @@
 // @ts-check
 import { addressOf } from "../place.js";
 
-/** A request that was refused, with every problem of the scene where that is why. */
+/** A request that was refused, with every problem of the scene if that is the reason. */
 export class Refused extends Error {
   /** @param {number} status @param {{error?: string, problems?: any[], details?: string[]}} answer */
   constructor(status, { error, problems, details }) {

@@ -7,7 +7,7 @@ const SPOT_M = 0.05;
 const SPOTS = 16;
 /** Clearances that are tried for a new object one after the other, metres. */
 const LOOSE_M = [0.08, 0.05, CLOSE_M];
-/** What a new object is where no other one shows the way. */
+/** Defaults of a new object without another one as a model. */
 const PLAIN = { attributes: {}, size: [0.1, 0.03, 0.05], grasp_width: 0.03 };
 
 /** Rounds metres to tenths of a millimetre: a file has no longer numbers. @param {number} m */
@@ -63,7 +63,7 @@ export function addObject(document, like, { spot, table_z_m }) {
 }
 
 /**
- * The free place nearest to the middle of what the arm reaches.
+ * The free place nearest to the middle of the arm's reach.
  * @param {any[]} objects
  * @param {number[]} size of the new one
  * @param {number} z of its centre
@@ -102,7 +102,7 @@ export function turnTo(object, radians) {
   object.yaw = yaw === 0 && object.yaw == null ? null : yaw;
 }
 
-/** Sets the extents; what stands on something stays there. @param {any} object @param {number[]} size */
+/** Sets the extents; an object on another one stays there. @param {any} object @param {number[]} size */
 export function resize(object, size) {
   if (object.xyz) object.xyz[2] = rounded(object.xyz[2] + (size[2] - (object.size?.[2] ?? 0)) / 2);
   object.size = size;
@@ -171,7 +171,7 @@ export function renameValue(document, k, v, name) {
 }
 
 /**
- * What a problem is about.
+ * Subject of a problem.
  * @param {{key: string}} problem
  * @returns {{kind: "object"|"attribute"|"scene", n: number}}
  */

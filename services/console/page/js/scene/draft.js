@@ -10,7 +10,7 @@ export class Draft {
   #before = [];
   /** @type {any[]} documents that were undone, latest first */
   #after = [];
-  /** What the last step changed: a step of the same continues it. */
+  /** Subject of the last step: a step of the same continues it. */
   #last = "";
 
   /**
@@ -81,7 +81,7 @@ export class Draft {
   }
 
   /**
-   * Takes over what the server has written. The steps before belong to another text, whose entries have other
+   * Adopts the server's text. The steps before belong to another text, whose entries have other
    * numbers: they are gone.
    * @param {{name: string, text: string, hash: string, document: any}} saved
    */

@@ -2,7 +2,7 @@
 import { h } from "../dom.js";
 
 /**
- * Fields of a form that follow a document. What a person types is taken over when it is complete; what changes
+ * Fields of a form that follow a document. Input is adopted when it is complete; what changes
  * elsewhere comes into the fields that are not being typed in.
  * @param {(change: (document: any) => void, what: string) => void} change
  */
@@ -18,7 +18,7 @@ export function fieldSet(change) {
       if (node.validity && !node.validity.valid) return;
       change((document) => write(document, node[property]), what);
     });
-    // What cannot be taken over does not stay in the field.
+    // Invalid input does not stay in the field.
     node.addEventListener("blur", () => show());
     all.push({ node, read, property });
     return node;
@@ -37,7 +37,7 @@ export function fieldSet(change) {
   }
 
   /**
-   * A number in a unit of its own; empty where it is null and may be.
+   * A number in a unit of its own; empty if it is null and may be.
    * @param {string} label
    * @param {object} about
    * @param {string} about.unit

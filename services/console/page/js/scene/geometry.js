@@ -32,10 +32,10 @@ export function corners({ xyz: [x, y], size: [long, wide], yaw }) {
 }
 
 /**
- * The clearance between two footprints and where it is least; null where one object is above the other.
+ * The clearance between two footprints and the place of the least; null if one object is above the other.
  * @param {Thing} a
  * @param {Thing} b
- * @returns {{gap: number, from: number[], to: number[]}|null} `gap` is 0 where they overlap
+ * @returns {{gap: number, from: number[], to: number[]}|null} `gap` is 0 if they overlap
  */
 export function clearance(a, b) {
   const apart = Math.abs(a.xyz[2] - b.xyz[2]) - (a.size[2] + b.size[2]) / 2;
@@ -54,7 +54,7 @@ export function clearance(a, b) {
 }
 
 /**
- * The object that stands nearest to another one, at its height.
+ * The object nearest to another one, at its height.
  * @param {any[]} objects of a scene document
  * @param {number} n
  * @returns {{other: number, gap: number, from: number[], to: number[]}|null}

@@ -17,7 +17,7 @@ export function keepDraft(draft) {
   }
 }
 
-/** @returns {any} what was kept, or null */
+/** @returns {any} the stored draft, or null */
 export function keptDraft() {
   try {
     return JSON.parse(tabStorage()?.getItem(KEY) ?? "null");

@@ -75,7 +75,7 @@ export function objectPanel(t, documentNow, n, { change, spot }) {
   function valueField({ name: attribute, values }) {
     const options = values.map((value) => [value.name, value.name]);
     const held = own().attributes?.[attribute];
-    // What the file has and the attribute has not stays to be seen.
+    // A value in the file that the attribute lacks stays visible.
     if (held && !values.some((value) => value.name === held)) options.push([held, held]);
     return fields.choice(
       attribute,
@@ -94,7 +94,7 @@ export function objectPanel(t, documentNow, n, { change, spot }) {
       more: { required: true, min: -500, max: 500 },
     });
   }
-  /** People measure where an object stands, not where its middle is. */
+  /** People measure from an object's base, not from its middle. */
   function underside() {
     const half = (object) => (object.size?.[2] ?? 0) / 2;
     return fields.number(t("scene.object.z"), {

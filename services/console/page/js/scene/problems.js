@@ -3,7 +3,7 @@ import { h } from "../dom.js";
 import { about, proposedPlace } from "./document.js";
 
 /**
- * Every problem of the scene, each with a way to what it is about and, where one is proposed, its move.
+ * Every problem of the scene, each with a link to its subject and, if one is proposed, its move.
  * @param {any} t
  * @param {object} does
  * @param {(what: {kind: string, n: number}) => void} does.go

@@ -1,7 +1,7 @@
 // @ts-check
 /** Spacing of the finest places, metres. */
 export const CELL_M = 0.05;
-/** Spacings in cells: the coarse places are all asked for, the finer ones only where the answer changes. */
+/** Spacings in cells: all coarse places are requested, finer ones only if the answer changes. */
 const LEVELS = [4, 2, 1];
 /** The places in cells: x from, to, y from, to. */
 const AREA = [-4, 28, -28, 28];
@@ -9,7 +9,7 @@ const AREA = [-4, 28, -28, 28];
 const BATCH = 48;
 
 /**
- * What of an object its reach depends on.
+ * Properties of an object on which its reach depends.
  * @param {any} object
  * @returns {string} "" for one without a place
  */
@@ -20,7 +20,7 @@ export function reachKey(object) {
 }
 
 /**
- * Where the arm can fetch an object that stands alone, by asking for few places.
+ * Places where the arm can fetch a lone object, by few requests.
  */
 export class ReachMap {
   /** @type {Map<string, string|null>} limb by place in cells; null: none */

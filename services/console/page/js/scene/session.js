@@ -15,7 +15,7 @@ const MAPS_MAX = 24;
 const UNCHECKED = { state: "checking", problems: [], warnings: [], words: [], error: "" };
 
 /**
- * What the editor knows and does: the draft, the chosen object, the checks and the reach. It asks the server
+ * State and actions of the editor: the draft, the chosen object, the checks and the reach. It asks the server
  * when nothing has changed for a moment, and gives up questions that are out of date.
  */
 export class SceneSession {
@@ -31,7 +31,7 @@ export class SceneSession {
   findings = { ...UNCHECKED, state: "idle" };
   /** Returns whether a request of the user is under way. */
   isBusy = false;
-  /** What went wrong last, or is going on. */
+  /** The last failure, or the work in progress. */
   note = "";
   /** @type {Map<string, ReachMap>} */
   #maps = new Map();
@@ -64,7 +64,7 @@ export class SceneSession {
     return this.document.objects[this.chosen ?? -1] ?? null;
   }
 
-  /** Where the chosen object can be fetched, as far as that is known. */
+  /** Places where the chosen object can be fetched, as far as known. */
   get reach() {
     return this.#maps.get(reachKey(this.object)) ?? null;
   }
@@ -280,7 +280,7 @@ export class SceneSession {
     throw new Error(this.t("scene.not_switched"));
   }
 
-  /** Does something with the server; says what went wrong. */
+  /** Does something with the server; reports failures. */
   async #attempt(work) {
     this.isBusy = true;
     this.note = "";

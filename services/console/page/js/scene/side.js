@@ -54,7 +54,7 @@ export function sideView(t, session, focus) {
     show("object");
     focus(n);
   }
-  /** Shows what a problem is about. @param {{kind: string, n: number}} what */
+  /** Shows the subject of a problem. @param {{kind: string, n: number}} what */
   function go({ kind, n }) {
     if (kind === "object") return goTo(n);
     show("words");
@@ -102,7 +102,7 @@ export function sideView(t, session, focus) {
     const { attributes } = session.document;
     const names = attributes.map(({ name, values }) => [name, values.map((value) => value.name)]);
     const structure = attributes.map(({ values }) => values.length);
-    // A form is made again where it has other fields.
+    // A form is made again if it has other fields.
     const key = JSON.stringify(panel === "words" ? structure : [session.chosen, names]) + panel;
     const isOther = form?.key !== key || formOf !== session.draft;
     if (!isOther) return form?.show();

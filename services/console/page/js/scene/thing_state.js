@@ -2,7 +2,7 @@
 import { nearest } from "./geometry.js";
 
 /**
- * What is known of the chosen object, in words: reach, clearance, and how the robot names it.
+ * State of the chosen object, in words: reach, clearance, and how the robot names it.
  * @param {import("./session.js").SceneSession} session
  * @param {any} t
  * @returns {string}

@@ -5,7 +5,7 @@ import { drawingOf } from "../model/drawing.js";
 import { moveBy, toMillimetre, turnTo } from "./document.js";
 import { CLOSE_M, isPlaced, nearest } from "./geometry.js";
 
-/** What the picture shows at least, metres: x from, to, y from, to. */
+/** Least region of the picture, metres: x from, to, y from, to. */
 const VIEW_M = [-0.3, 1.25, -1.05, 1.05];
 /** Margin around objects that stand farther away, metres. */
 const MARGIN_M = 0.2;
@@ -39,7 +39,7 @@ export function topView(t, { choose, change, settle }) {
   const svg = s("svg", { class: "table-top", role: "group", "aria-label": t("scene.top") });
   svg.append(...Object.values(layers));
   const element = h("div", { class: "top-frame" }, svg);
-  /** @type {any} what was drawn last */
+  /** @type {any} the last drawing */
   let shown = null;
   /** @type {{n: number, turns: boolean, dx: number, dy: number}|null} */
   let drag = null;
@@ -55,7 +55,7 @@ export function topView(t, { choose, change, settle }) {
     const [x, y] = at(event);
     const [ox, oy] = shown.document.objects[n].xyz;
     drag = { n, turns, dx: ox - x, dy: oy - y };
-    // What the keys have moved before is undone on its own.
+    // Earlier moves by keys are undone separately.
     settle();
     svg.setPointerCapture(event.pointerId);
     setAttribute(svg, "data-drag", true);
@@ -109,7 +109,7 @@ export function topView(t, { choose, change, settle }) {
     return true;
   }
 
-  /** Where an event is, metres in frame `base`. */
+  /** Place of an event, metres in frame `base`. */
   function at(event) {
     const matrix = /** @type {SVGSVGElement} */ (svg).getScreenCTM()?.inverse();
     const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(matrix);
@@ -137,7 +137,7 @@ export function topView(t, { choose, change, settle }) {
     shown = what;
     const { document, robot, chosen, reach, wrong, canEdit } = what;
     const placed = [...document.objects.entries()].filter(([, object]) => isPlaced(object));
-    // While something is dragged the picture stands still.
+    // While something is dragged the picture does not move.
     if (!drag) drawGrid(placed.map(([, object]) => object));
     drawBoards(placed.map(([, object]) => object));
     drawReach(reach);
@@ -290,7 +290,7 @@ function fillThing(node, object, noun, t) {
   const degrees = ((object.yaw ?? 0) * 180) / Math.PI;
   setAttribute(body, "transform", `rotate(${-degrees})`);
   const isHollow = object.form === "hollow";
-  // What is as long as wide and hollow is round more often than not.
+  // Hollow objects as long as wide are mostly round.
   const isRound = isHollow && Math.abs(width - height) < 1;
   const [outer, inner] = body.children;
   rectangle(outer, width, height, isRound ? width / 2 : 6);

@@ -1,5 +1,5 @@
 // @ts-check
-// Who speaks from this browser. The name is kept here alone and goes with what is said.
+// Who speaks from this browser. The name is kept here alone and is sent with the user's words.
 import { h } from "../dom.js";
 import { keep, recall } from "../kept.js";
 
@@ -7,7 +7,7 @@ import { keep, recall } from "../kept.js";
 const BYTES_MAX = 64;
 
 /**
- * The name as it may be sent: without spaces around it and without its end where it is too long.
+ * The name as it may be sent: without spaces around it and without its end if it is too long.
  * @param {string} text
  */
 export function nameOf(text) {
@@ -17,11 +17,11 @@ export function nameOf(text) {
   return characters.join("").trimEnd();
 }
 
-/** The name that was set on this browser; empty: nobody in particular. */
+/** The name that was set on this browser; empty for an unnamed person. */
 export const whoSpeaks = () => nameOf(recall("from") ?? "");
 
 /**
- * The field for the name, with what becomes of it.
+ * The field for the name, with its use.
  * @param {any} t
  * @param {() => void} renamed the other viewers are to see the new name
  */

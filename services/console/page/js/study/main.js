@@ -60,7 +60,7 @@ let hasVoice = false;
 const dialog = withdrawDialog(t, (deletes) => ask("withdraw", { delete: deletes }));
 at("withdraw").addEventListener("click", () => openSheet(dialog, store));
 
-/** Does a verb of the study's; says so where it fails. */
+/** Does a verb of the study's; reports a failure. */
 async function ask(verb, args = {}) {
   const done = await attempt(link.do(`study.${verb}`, { page: secret.value, ...args }), context);
   if (done?.participant) me = done.participant;

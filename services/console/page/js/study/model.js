@@ -96,7 +96,7 @@ export function lastHeard(lines, since) {
 /**
  * The answers as the server takes them, and the ids of required ones that are missing.
  * @param {any[]} items the questionnaire
- * @param {(id: string) => string|null} value what was chosen or written
+ * @param {(id: string) => string|null} value the choice or text
  * @returns {{answers: Record<string, string|number>, missing: string[]}}
  */
 export function answersOf(items, value) {

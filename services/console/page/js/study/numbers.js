@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * A number with its interval: `[value, interval]`, each empty where there is none.
+ * A number with its interval: `[value, interval]`, each empty if missing.
  * @param {number|null|undefined} value
  * @param {number|null|undefined} low
  * @param {number|null|undefined} high

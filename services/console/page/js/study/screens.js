@@ -7,7 +7,7 @@ import { questionnaire } from "./questionnaire.js";
 
 /**
  * @typedef {object} Shown
- * @property {any} person the participant, where there is one
+ * @property {any} person the participant, if any
  * @property {any} study the section
  * @property {any} scene
  * @property {(key: string, args?: object) => string} t

@@ -77,7 +77,7 @@ export function mountActions(element, { store, t, stop: send, hold }) {
     // On Resume itself Space holds; everywhere else it is a press.
     if (event.code === "Space" && !event.target.closest?.(".resume-hold")) notice();
   };
-  // STOP is in what covers the page: the full screen, or a sheet.
+  // STOP is in the cover of the page: the full screen, or a sheet.
   const place = () => {
     const full = document.fullscreenElement;
     const host = full ?? store.get("cover") ?? element;
@@ -120,7 +120,7 @@ export function mountActions(element, { store, t, stop: send, hold }) {
 }
 
 /**
- * What there is to say of the stop, the gravest first.
+ * Remarks about the stop, the gravest first.
  * @param {{get: (section: string) => any}} store
  * @returns {"unsent"|"down"|"unconfirmed"|"sending"|"stopped"|"idle"}
  */

@@ -10,7 +10,7 @@ import { deliveryOf } from "../stop.js";
  * @param {HTMLElement} element a region that interrupts
  * @param {HTMLElement} polite a region that waits
  * @param {{link: any, store: any, t: (key: string, args?: object) => string, isParticipant?: boolean}} context
- *   a participant has no Resume, and is told what to do
+ *   a participant has no Resume, and gets instructions
  */
 export function mountAlarm(element, polite, { link, store, t, isParticipant = false }) {
   const text = h("p", { class: "alarm-text" });

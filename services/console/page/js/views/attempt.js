@@ -23,7 +23,7 @@ export async function attempt(promise, { t }) {
 }
 
 /**
- * Says that words are kept although nothing follows yet, and why; nothing where all is well.
+ * Says that words are kept although nothing follows yet, and why; nothing if all is well.
  * @param {any} done the server's answer to words
  * @param {(key: string, args?: object) => string} t
  */

@@ -20,7 +20,7 @@ const FIXED =
   "(min-width: 1101px) and (min-height: 640px), (max-width: 640px) and (min-height: 780px), (min-width: 641px) and (max-width: 1100px)";
 
 /**
- * The objects with what the robot believes, the likely ones first. The operator says one by a press.
+ * The objects with the robot's belief, the likely ones first. The operator says one by a press.
  * @param {HTMLElement} element
  * @param {{link: any, store: any, t: any, readOnly?: boolean}} context
  */
@@ -45,7 +45,7 @@ export function mountCards(element, context) {
     draw();
   });
 
-  /** The height that there is for the cards, where the page does not scroll. */
+  /** Height available for the cards, if the page does not scroll. */
   let height = null;
   const fixed = matchMedia(FIXED);
   new ResizeObserver(() => {
@@ -96,7 +96,7 @@ export function mountCards(element, context) {
     stands = standing;
     const left = others + unlisted.count;
     more.hidden = left === 0 && !all;
-    // What the server does not list cannot be shown.
+    // Objects that the server does not list cannot be shown.
     more.disabled = others === 0 && !all;
     const args = { n: left, share: t.percent(rest + unlisted.share, 1) };
     setText(more, all && others === 0 ? t("objects.fewer") : t("objects.more", args));

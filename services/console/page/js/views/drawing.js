@@ -109,7 +109,7 @@ export function drawObject({ form, fill, outline, finish, scale }) {
   return s("svg", frame, s("g", { ...style, transform: move }, ...parts, shine));
 }
 
-/** A streak of light on what is of glass or metal. */
+/** A streak of light on glass or metal. */
 const SHINE = {
   bowl: "M14 33c2 7 5 11 8 13",
   ball: "M15 30c1-7 6-12 12-13",

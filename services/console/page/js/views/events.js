@@ -7,7 +7,7 @@ import { noteWords } from "../model/notes.js";
 const MOST = 30;
 
 /**
- * What happened besides the conversation: services, stops, and this page's connection.
+ * Events besides the conversation: services, stops, and this page's connection.
  * @param {HTMLElement} element
  * @param {{store: any, t: any}} context
  */

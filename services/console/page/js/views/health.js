@@ -7,12 +7,12 @@ import { mountLatency } from "./latency.js";
 import { mountServices } from "./services.js";
 
 /**
- * Matches pages with enough room, or nothing beside, where everything is shown from the beginning.
+ * Matches pages with enough room, or with nothing next to it, in which everything is shown at once.
  */
 const ROOMY = "(min-height: 1300px), (max-width: 1100px)";
 
 /**
- * In a line how the group is doing; opened, its services, how soon it answers, and what has happened.
+ * In a line how the group is doing; opened, its services, how soon it answers, and events.
  * @param {HTMLElement} element
  * @param {{link: any, store: any, t: any}} context
  */

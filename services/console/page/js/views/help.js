@@ -7,7 +7,7 @@ import { openSheet } from "../sheet.js";
 import { press } from "./press.js";
 
 /**
- * The dialog that explains what can be said and the keys, and the keys themselves.
+ * The dialog that explains phrases and keys, and the keys themselves.
  * @param {{store: any, link: any, t: any}} context
  * @returns {() => void} opens the dialog
  */
@@ -40,7 +40,7 @@ export function mountHelp(context) {
   return open;
 }
 
-/** What a person can do by words, each with phrases that do it. */
+/** Actions by words, each with its phrases. */
 const SAY = ["ask", "answer", "correct", "back", "end", "why"];
 
 function sayable(what, t) {

@@ -44,7 +44,7 @@ function circumstances(line, t) {
     notes.push(h("span", { class: "note strong", text: why }));
   }
   for (const { question, share } of line.answers ?? []) {
-    // What the robot announced is no question: to say that it was answered would confuse.
+    // An announcement is not a question: to say that it was answered would confuse.
     if (share < SMALL || !question.endsWith("?")) continue;
     const percent = share < SURE ? ` ${t.percent(share)}` : "";
     notes.push(h("span", { class: "note", text: t("line.answers", { question }) + percent }));
@@ -60,7 +60,7 @@ function circumstances(line, t) {
   return notes;
 }
 
-/** What each recogniser thought. */
+/** Result of each recogniser. */
 function views({ first, second }, t) {
   if (second === undefined) return t("line.second.late", { first });
   return second ? t("line.second.heard", { first, second }) : t("line.second.silent", { first });

@@ -84,7 +84,7 @@ export function mountQuestion(element, context) {
     const offered = state.is === "stopped" ? all.filter(({ kind }) => kind !== "example") : all;
     keyed(quick, offered, ({ text, kind }) => `${kind} ${text}`, makeOffer);
     correct.hidden = !mine || !(dialogue?.interaction > 0);
-    // To a question "no" is beside it already.
+    // A question has "no" next to it already.
     notThat.hidden = offered.some(({ text }) => text === "no");
     if (fresh && dialogue?.prompt !== prompt) awaitVoice(dialogue?.prompt ?? null);
     const heard = store.get("speaking")?.prompt === dialogue?.prompt;
@@ -129,7 +129,7 @@ export function mountQuestion(element, context) {
  */
 
 /**
- * What stands in large type.
+ * Text in large type.
  * @param {import("../now.js").Now} now
  * @param {any} dialogue
  * @param {any} scene
@@ -163,7 +163,7 @@ function present(now, dialogue, scene, delivery, t) {
   return { kind, kicker: t(`question.${kind}`), words: t(`question.${kind}.words`), ...own };
 }
 
-/** A stop comes first; the question that stands, or what comes after, is below it. @returns {Headline} */
+/** A stop comes first; the pending question, or its successor, is below it. @returns {Headline} */
 function stopped(now, dialogue, scene, t) {
   const key = now.atRest ? "turn.stopped" : "turn.stopping";
   const head = { kind: "stopped", kicker: "", words: t(key), more: t(`${key}.more`) };

@@ -12,14 +12,14 @@ const MANY_S = 10;
 const ACTIONS_MAX = 4;
 
 /**
- * The reasons of a decision: the best other actions and what each would lose.
+ * The reasons of a decision: the best other actions and the loss of each.
  * @param {any} t
  */
 export function reasonsView(t) {
   const sentence = h("p", { class: "why-sentence" });
   const list = h("ol", { class: "why-list" });
   const figures = h("p", { class: "why-proof" });
-  // For those who want it: the sentence above says what matters.
+  // For those who want it: the sentence above has the essence.
   const proven = h(
     "details",
     { class: "why-more" },

@@ -8,7 +8,7 @@ import { reason, waiting } from "./attempt.js";
 const TEXT_MAX = 500;
 
 /**
- * The line for typing. What was refused comes back into it, with the reason.
+ * The line for typing. Refused words come back into it, with the reason.
  * @param {HTMLElement} element
  * @param {{link: any, store: any, t: any}} context
  */

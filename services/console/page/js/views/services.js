@@ -4,7 +4,7 @@ import { icon } from "../icons.js";
 import { actOf, noteOf, tone } from "../model/health.js";
 import { attempt } from "./attempt.js";
 
-/** Pictures of what a button does. */
+/** Pictures of buttons' actions. */
 const ICONS = { restart: "again", retry: "again", start: "play", release: "play" };
 
 /**

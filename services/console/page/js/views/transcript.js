@@ -3,11 +3,11 @@ import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { conversation } from "../model/conversation.js";
 import { makeLine } from "./line.js";
 
-/** So near to its end the transcript follows what is added, pixels. */
+/** Distance from its end at which the transcript follows new lines, pixels. */
 const NEAR_PX = 80;
 
 /**
- * The conversation, with what was understood of each utterance, and what is being said right now.
+ * The conversation, with the understood meaning of each utterance, and the words in progress.
  * @param {HTMLElement} element
  * @param {{store: any, t: any}} context
  */
@@ -44,7 +44,7 @@ export function mountTranscript(element, { store, t }) {
   }
   new ResizeObserver(() => follows && toEnd()).observe(list);
 
-  /** A line that was sent again is another object: what it is part of is redrawn. */
+  /** A line that was sent again is another object: its parent is redrawn. */
   const versions = new WeakMap();
   let version = 0;
   const versionOf = (line) => {
@@ -68,7 +68,7 @@ export function mountTranscript(element, { store, t }) {
     last = newest;
     setAttribute(element, "data-empty", lines.length === 0);
   });
-  /** The question that stands is marked: a narrow page shows it once, in large type. */
+  /** The pending question is marked: a narrow page shows it once, in large type. */
   function mark(node, { line }) {
     const dialogue = store.get("dialogue");
     const stands = dialogue?.interaction > 0 && line.said?.[0] === dialogue.prompt;

@@ -31,7 +31,7 @@ export function mountWhy(element, { store, t }) {
   store.subscribe(["dialogue", "scene", "now"], draw);
 }
 
-/** Why there is no decision to explain, if there is none for a reason. */
+/** Reason for a missing decision, if there is one. */
 function unknown(now, t) {
   if (now.is === "disconnected") return t("question.disconnected");
   return now.is === "held" ? serviceWords(now, t) : null;

@@ -12,8 +12,8 @@ const KEY = "whichone.voice";
  */
 
 /**
- * The robot takes out noise itself, and what a browser takes out of a voice is missing to it; echo
- * only the browser can take out, since it knows what it plays.
+ * The robot takes out noise itself, and misses the parts of a voice that a browser removes; echo
+ * only the browser can remove, since it knows its own sound.
  * @type {Choices}
  */
 export const DEFAULTS = {
@@ -47,7 +47,7 @@ export function keep(storage, choices) {
 /**
  * Returns whether a person may interrupt the robot by speaking: its voice is not in the microphone.
  * @param {Choices} choices
- * @param {MediaTrackSettings} measured what the browser does, not what was wished
+ * @param {MediaTrackSettings} measured the browser's settings, not the requested ones
  * @param {boolean} muted whether the robot is silent on this page; then it may sound elsewhere
  */
 export function isEchoFree(choices, measured, muted) {

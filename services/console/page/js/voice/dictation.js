@@ -30,7 +30,7 @@ export class Dictation {
     return this.#session !== null || this.#next();
   }
 
-  /** Takes what was said so far and ends. */
+  /** Takes the words so far and ends. */
   stop() {
     this.#wanted = false;
     this.#session?.stop();

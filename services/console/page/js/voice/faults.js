@@ -21,7 +21,7 @@ const RECOGNITION = {
 
 /**
  * @param {{name?: string, message?: string}} error of `getUserMedia` or of an audio context
- * @returns {string} key of the words that say what is wrong and what helps
+ * @returns {string} key of the words with fault and remedy
  */
 export function microphoneFault(error) {
   return `voice.fault.${MICROPHONE[error?.name ?? ""] ?? "microphone"}`;

@@ -66,7 +66,7 @@ export class Microphone {
   }
 }
 
-/** A context at the robot's rate; where the browser refuses it, one at the device's own. */
+/** A context at the robot's rate; if the browser refuses it, one at the device's own. */
 async function sourceOf(stream) {
   for (const options of [{ sampleRate: RATE }, {}]) {
     const context = new AudioContext({ ...options, latencyHint: "interactive" });

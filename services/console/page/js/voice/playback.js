@@ -9,11 +9,11 @@ const KEPT_MAX = 8;
 /** Buffer between the page and the loudspeaker, seconds: the shortest that the browser has. By default
  *  Chromium's is 42 ms, which a person waits for. */
 const LATENCY_S = 0;
-/** Name of the measure from the end of what a person said to the first sound of the answer. */
+/** Name of the measure from the end of a person's words to the first sound of the answer. */
 export const REPLY = "voice:reply";
 
 /**
- * Plays what the robot says.
+ * Plays the robot's lines.
  * @param {{link: any, store: any, storage: Storage|null, notify: () => void}} context `notify` is called
  *   when `locked`, `muted` or `sounds` has changed
  */
@@ -73,7 +73,7 @@ class Playback {
     this.#notify();
   }
 
-  /** The person speaks: the robot is silent here at once, and stays so for what it was saying. */
+  /** The person speaks: the robot is silent here at once, and stays so for that line. */
   hush() {
     this.#hushed = keyOf(this.#store.get("speaking"));
     this.#look();
@@ -89,8 +89,8 @@ class Playback {
   }
 
   /**
-   * A person has ended at this page time: what sounds after it is the answer to it, which may have
-   * arrived before the receipt of what was said.
+   * A person has ended at this page time: the next sound is the answer, which may have
+   * arrived before the receipt of the words.
    */
   heard(endedAt) {
     this.#endedAt = endedAt;
@@ -171,7 +171,7 @@ class Playback {
     return sound;
   }
 
-  /** From the end of what the person said to the first sound that leaves the loudspeaker. */
+  /** From the end of the person's words to the first sound that leaves the loudspeaker. */
   #measure() {
     const [start, end] = [this.#endedAt, this.#soundedAt];
     if (!(end > start)) return;

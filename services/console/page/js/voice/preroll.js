@@ -23,7 +23,7 @@ export class PreRoll {
     }
   }
 
-  /** Takes what is kept, oldest first. @returns {{samples: Int16Array, takenMs: number}[]} */
+  /** Takes the stored samples, oldest first. @returns {{samples: Int16Array, takenMs: number}[]} */
   take() {
     const pieces = this.#pieces;
     this.#pieces = [];

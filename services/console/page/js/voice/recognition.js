@@ -2,7 +2,7 @@
 /** Words that are offered besides the best ones, at most. */
 const ALTERNATIVES_MAX = 4;
 
-/** The browser's own recogniser, where it has one. @returns {any} */
+/** The browser's own recogniser, if it has one. @returns {any} */
 export function recognitionOf(scope = /** @type {any} */ (globalThis)) {
   return scope.SpeechRecognition ?? scope.webkitSpeechRecognition ?? null;
 }
@@ -20,7 +20,7 @@ export function utterance(results) {
   }
   const [best, ...others] = [...texts];
   if (!best) return null;
-  // Without a number of their own the others share what the best one leaves.
+  // Without a number of their own the others share the rest of the best one's.
   const rest = (1 - (best[1] || 0.7)) / Math.max(1, others.length);
   const alternatives = others.slice(0, ALTERNATIVES_MAX).map(([text, confidence]) => ({
     text,

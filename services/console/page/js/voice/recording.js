@@ -10,7 +10,7 @@ const PRE_ROLL_MS = 400;
 /** Time for which the microphone stays open for the next press. */
 const WARM_MS = 20_000;
 
-/** A microphone and what of its sound goes to the robot. */
+/** A microphone and the part of its sound that goes to the robot. */
 export class Recording {
   #link;
   #notify;
@@ -109,7 +109,7 @@ export class Recording {
     this.#warm = window.setTimeout(() => this.close(), WARM_MS);
   }
 
-  /** The connection is gone, and with it what the server knew of the stream. */
+  /** The connection is gone, and with it the server's state of the stream. */
   lose() {
     this.#stream = null;
   }

@@ -18,11 +18,11 @@ export function keyOf(speaking) {
  * Schedules the loudspeaker for the robot's current sentence.
  * @param {object} now
  * @param {Speaking|null|undefined} now.speaking
- * @param {string} now.playing what sounds, as `keyOf`; empty for nothing
+ * @param {string} now.playing the sounding line, as `keyOf`; empty for nothing
  * @param {number} [now.lengthS] how long that sound is
- * @param {string} now.hushed what is not to be heard: a person spoke over it
+ * @param {string} now.hushed the silenced line: a person spoke over it
  * @param {boolean} now.muted
- * @returns {{stop: boolean, start: Speaking|null}} `stop` what sounds; `start` this
+ * @returns {{stop: boolean, start: Speaking|null}} `stop` the sounding line; `start` this
  */
 export function plan({ speaking, playing, lengthS = 0, hushed, muted }) {
   const key = keyOf(speaking);
@@ -30,7 +30,7 @@ export function plan({ speaking, playing, lengthS = 0, hushed, muted }) {
   const short = playing === key && saidMs < lengthS * 1_000 - SHORT_MS;
   const broken = short || speaking?.state === "interrupted" || speaking?.state === "silent";
   const wanted = !muted && key !== hushed && !broken;
-  // What was said to its end may still sound here for a moment.
+  // A finished line may still sound here for a moment.
   const stop = playing !== "" && !(wanted && playing === key);
   const begins = speaking?.state === "speaking" && Boolean(speaking.url) && playing !== key;
   return { stop, start: wanted && begins ? speaking : null };
@@ -41,7 +41,7 @@ export function plan({ speaking, playing, lengthS = 0, hushed, muted }) {
  * @param {number} beganMs server time at which it began
  * @param {number} nowMs server time
  * @param {number} lengthS
- * @returns {number|null} seconds from its beginning, null where it is over
+ * @returns {number|null} seconds from its beginning, null if it is over
  */
 export function offsetS(beganMs, nowMs, lengthS) {
   const late = nowMs - beganMs;

@@ -8,7 +8,7 @@
  * @property {boolean} handsFree
  * @property {boolean} isOpening
  * @property {boolean} isOpen
- * @property {string|null} standing what keeps the person from talking
+ * @property {string|null} standing reason why the person cannot talk
  */
 
 /**

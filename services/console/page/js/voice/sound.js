@@ -42,7 +42,7 @@ export class Chunker {
   }
 
   /**
-   * @param {Float32Array} samples -1 to 1; what exceeds it is clipped
+   * @param {Float32Array} samples -1 to 1; larger ones are clipped
    * @param {(piece: Int16Array, behind: number) => void} take gets each full piece, a new array
    *   each time, and how many of `samples` came behind it
    */

@@ -2,7 +2,7 @@
 import { encode, FRAME_SAMPLES_MAX } from "./frame.js";
 import { RATE } from "./sound.js";
 
-/** Bytes that may wait on the connection, two seconds of sound; what comes then is left out. */
+/** Bytes that may wait on the connection, two seconds of sound; later sound is left out. */
 const BACKLOG_MAX = 64_000;
 
 /** Sound on its way to the robot. */

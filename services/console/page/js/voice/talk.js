@@ -5,14 +5,14 @@ import { microphoneFault, recognitionFault, standingFault } from "./faults.js";
 import { idle, pressed, talks } from "./press.js";
 import { Recording } from "./recording.js";
 
-/** Sound from behind the release that belongs to what was said: the robot ends it with the voice. */
+/** Sound after the release that belongs to the utterance: the robot ends it with the voice. */
 const TAIL_MS = 250;
 /** Longest talk after a click. */
 const LATCHED_MS = 30_000;
 
 /** @typedef {{key: string, args?: Record<string, any>}} Words key of a text, and its parts */
 
-/** The person's side of the conversation: talking, and what becomes of it. */
+/** The person's side of the conversation: talking, and its results. */
 export class Talk {
   #link;
   #store;

@@ -51,7 +51,7 @@ export function build(element, { t, hasBrowser, toggle, choose, choices, setting
 }
 
 /**
- * Shows what holds.
+ * Shows the present settings.
  * @param {ReturnType<typeof build>} view
  * @param {object} now
  * @param {ReturnType<typeof import("./sign.js").sign>} now.sign

@@ -7,7 +7,7 @@ const PIECE = 320;
 
 const scope = /** @type {any} */ (globalThis);
 
-/** Posts what the microphone hears in pieces, each with when its last sample was processed. */
+/** Posts the microphone's sound in pieces, each with its last sample's time of processing. */
 class Capture extends scope.AudioWorkletProcessor {
   #chunker = new Chunker(PIECE);
   #resampler = scope.sampleRate === RATE ? null : new Resampler(scope.sampleRate, RATE);

@@ -1,4 +1,4 @@
-//! Where the first recogniser is in doubt.
+//! Tests with a doubtful first recogniser.
 
 use super::*;
 use crate::hearing::SecondView;
@@ -48,8 +48,8 @@ impl Network for Sure {
     }
 }
 
-/// Starts a worker with an unsure first recogniser; returns also the lengths of what the second one
-/// hears, and its permission to answer.
+/// Starts a worker with an unsure first recogniser; returns also the lengths of the second one's
+/// segments, and its permission to answer.
 fn unsure() -> (AsrWorker, Receiver<In<'static>>, Receiver<usize>, Sender<()>) {
     let ((heard, hears), (go, permission)) = (unbounded(), unbounded());
     let second = SecondOpinion::with(move || Some(Box::new(Sure { heard, permission })));
@@ -95,7 +95,7 @@ fn asr_worker_asks_the_second_recogniser_where_the_first_is_in_doubt() {
     );
 }
 
-/// It is done the sooner.
+/// Both listen at once, to save time.
 #[test]
 fn both_recognisers_listen_at_once() {
     let ((heard, hears), (go, permission)) = (unbounded(), unbounded());

@@ -16,7 +16,7 @@ fn any(said: &[&str]) -> Reading {
     Reading { response: Response::DoesNotMatter, ..words(said) }
 }
 
-/// Answers truthfully for that object until the robot picks, and returns the attributes asked about.
+/// Answers truthfully for the object until the robot picks; returns the attributes asked about.
 fn until_pick(manager: &mut Manager, mut state: State, wanted: &str) -> (State, Vec<AttributeId>) {
     let scene = settings().scene;
     let object = scene.object_named(wanted).unwrap();
@@ -48,8 +48,8 @@ fn an_attribute_that_the_user_cannot_tell_is_not_asked_about_again() {
     assert!(!asked.contains(&k) && end.act.kind == ActKind::Pick, "{asked:?}");
 }
 
-/// Where nothing else tells them apart, they are named, one is offered, and it is taken only if the
-/// user cannot tell once more.
+/// If nothing else distinguishes them, they are named, one is offered, and it is taken only if the
+/// user again does not know.
 #[test]
 fn objects_that_the_user_cannot_tell_apart_are_named() {
     let mut manager = manager();
@@ -72,7 +72,7 @@ fn objects_that_the_user_cannot_tell_apart_are_named() {
     assert!(["metal", "metal2"].contains(&name.as_str()), "{name}");
 }
 
-/// Words that tell nothing new, such as a late answer to another question, are no consent: the offer stands, once more.
+/// Words that tell nothing new, such as a late answer to another question, are not consent.
 #[test]
 fn an_offer_that_is_not_answered_is_repeated_and_not_taken() {
     let mut manager = manager();
@@ -117,7 +117,7 @@ fn a_user_who_wants_any_gets_one_at_once() {
     assert_eq!((no_request.open.is_none(), no_request.act.kind), (true, ActKind::Say));
 }
 
-/// It is kept by names, and until the end of the interaction only.
+/// Concessions are kept by names, and until the end of the interaction only.
 #[test]
 fn concessions_end_with_the_interaction() {
     let mut manager = manager();

@@ -1,4 +1,4 @@
-//! What is said while the arm fetches.
+//! Utterances while the arm fetches.
 
 use super::fixture::{
     answer, at, belief, delivered, first, manager, remark, reply, settings, text, typed, words,
@@ -31,7 +31,7 @@ fn a_denial_calls_the_pick_off_and_the_words_before_it_still_count() {
     assert_eq!((open.id, open.evidence.len()), (pick.interaction, 3));
     let before = belief(&state)[object.index()];
     assert!(belief(&after)[object.index()] < 0.5 * before, "{:?}", belief(&after));
-    // White ones are still likelier than what was never spoken of, and the denied one is not.
+    // White ones are still likelier than any that were never mentioned, and the denied one is not.
     let scene = settings().scene;
     let of = |name: &str| belief(&after)[scene.object_named(name).unwrap().index()];
     assert!(of("white2") > of("metal2") && of("metal2") > belief(&after)[object.index()]);
@@ -84,7 +84,7 @@ fn an_object_ruled_out_in_words_is_denied_too() {
 fn words_that_fit_or_are_about_something_else_leave_the_arm_alone() {
     let mut manager = manager();
     let (state, ..) = fetching(&mut manager);
-    // A "no" to nothing that the robot has said is not about what it fetches.
+    // A "no" without a preceding line of the robot is not about the object being fetched.
     let readings = [
         answer(Response::Yes),
         answer(Response::No),
@@ -108,7 +108,7 @@ fn words_that_make_it_unlikely_call_it_off_without_a_no() {
     assert_eq!(after.act.kind, ActKind::Cancel);
 }
 
-/// Its answer comes while the robot has hardly begun to say what it fetches.
+/// The answer arrives while the robot has hardly begun to announce the object.
 #[test]
 fn a_late_no_to_the_question_before_denies_nothing() {
     let mut manager = manager();
@@ -164,7 +164,7 @@ fn a_user_who_wants_nothing_any_more_after_a_denial_gets_nothing() {
     assert_eq!(ended.ended.map(|ended| ended.outcome), Some(Outcome::Cancelled));
 }
 
-/// Only where they are certain: what may be misheard replaces nothing.
+/// Only if they are certain: a possibly misheard word replaces nothing.
 #[test]
 fn words_replace_those_of_the_same_attribute_where_they_are_certain() {
     let remembers_white = |doubt: Doubt| {

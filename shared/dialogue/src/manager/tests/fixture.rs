@@ -14,7 +14,7 @@ use vocabulary::{
 const BOWLS: &str = include_str!("../../../../../config/scenes/bowls.toml");
 const MARKERS: &str = include_str!("../../../../../config/scenes/markers.toml");
 
-/// What a manager is made of; a test changes what it is about.
+/// Parts of a manager; each test changes those that it is about.
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
     pub(super) scene: Scene,

@@ -9,7 +9,7 @@ use vocabulary::ids::PromptId;
 use vocabulary::{ActKind, PickOutcome, Rng};
 
 /// Whole dialogues with a person who sometimes lies, falls silent, speaks late or starts over: the
-/// journal folds again to the same states. So it is with gestures, and where deliveries, the user or the robot's own seconds count.
+/// journal folds again to the same states. Also with gestures, or if deliveries or users count.
 #[test]
 fn journals_fold_again_bit_for_bit() {
     let cases: [(Change, u64); 5] = [

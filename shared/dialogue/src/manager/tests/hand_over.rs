@@ -77,7 +77,7 @@ fn thanks_and_another_wish_are_no_refusals() {
     assert_eq!(text(&thanked), "You are welcome.");
     let agreed = reply(&mut manager, &end, answer(Response::Yes));
     assert_eq!((agreed.open.is_none(), text(&agreed).as_str()), (true, "All right."));
-    // "Yes" means nothing where it answers nothing.
+    // "Yes" means nothing without a question.
     let Cause::Utterance(mut yes) = heard(end.applied.0 + 1, end.act.prompt, answer(Response::Yes))
     else {
         unreachable!("an utterance")

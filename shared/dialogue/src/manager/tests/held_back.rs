@@ -25,7 +25,7 @@ fn a_pick_while_stopped_is_announced_and_not_ordered() {
     let confirmed = reply(&mut manager, &resumed, answer(Response::Yes));
     assert_eq!(confirmed.act.kind, ActKind::Pick);
     assert_eq!(text(&confirmed), "I will get the clear bowl.");
-    // Whoever says it again means it, too.
+    // A repetition means it, too.
     let again = remark(&mut manager, &resumed, words(&["clear"]));
     assert_eq!(again.act.kind, ActKind::Pick);
 }
@@ -59,7 +59,7 @@ fn a_pick_denied_or_withdrawn_while_stopped_does_not_start() {
     assert_eq!((other.act.kind, other.act.pick), (ActKind::Say, None));
 }
 
-/// What was ordered before the stop goes on with its release, as the operator wishes.
+/// A pick ordered before the stop continues with the release, as the operator wishes.
 #[test]
 fn a_stop_changes_no_order() {
     let mut manager = manager();
@@ -120,7 +120,7 @@ fn yes_go_on_confirms_a_pick_that_waits_for_the_release() {
     assert_eq!(text(&confirmed), "All right, once you resume.");
 }
 
-/// "Yes, the big metallic one" is no yes to the clear one.
+/// "Yes, the big metallic one" does not confirm the clear one.
 #[test]
 fn a_yes_with_words_of_another_object_confirms_nothing() {
     let mut manager = manager();

@@ -1,5 +1,5 @@
-//! What was called off and cannot go back: the robot asks what becomes of it, and decides nothing else
-//! until it knows.
+//! A cancelled object that cannot go back: the robot asks for a decision about it, and decides
+//! nothing else before.
 
 use super::fixture::{answer, at, belief, delivered, first, manager, remark, reply, text, words};
 use crate::manager::{Cause, Manager, MotionStop, State};

@@ -63,7 +63,7 @@ struct Talks {
     ends: Vec<(User, State)>,
 }
 
-/// Of the bowls and of the tools.
+/// Conversations about the bowls and about the tools.
 static TALKS: LazyLock<[Talks; 2]> = LazyLock::new(|| {
     [settings(), settings_of(TOOLS)].map(|settings| {
         let mut manager = settings.manager();
@@ -92,7 +92,7 @@ fn no_misbelief_leads_round_in_circles() {
     }
 }
 
-/// Where what is said fits no object, none is fetched without a word.
+/// If the description fits no object, none is fetched without asking.
 #[test]
 fn what_fits_nothing_is_offered_before_it_is_fetched() {
     for Talks { settings, ends } in &*TALKS {
@@ -111,7 +111,7 @@ fn what_fits_nothing_is_offered_before_it_is_fetched() {
                 continue;
             }
             let picked = end.act.pick.expect("a pick").1;
-            // An attribute that was not asked about is no misfit.
+            // An attribute that was not asked about is not a misfit.
             let denies = asked(end).iter().any(|question| match question {
                 Question::Attribute(k, v) => {
                     (perceived(user, *k) == Some(*v)) != model.has(picked, *k, *v)

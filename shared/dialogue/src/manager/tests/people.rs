@@ -1,4 +1,4 @@
-//! What is learned about people who give their name.
+//! Learning about people who give their name.
 
 use super::fixture::{
     Settings, answer, at, belief, delivered, heard, reply, settings_with, typed, words,
@@ -25,8 +25,8 @@ fn from(name: &str, cause: Cause) -> Cause {
     }
 }
 
-/// Plays an interaction with a person who errs with that probability, to the delivery of what is wanted,
-/// and returns what happened.
+/// Plays an interaction with a person who errs with that probability, to the delivery of the wanted
+/// object, and returns its course.
 fn talk(manager: &mut Manager, state: &State, name: &str, errs: f64, seed: u64) -> Vec<Record> {
     let model = manager.model().clone();
     let mut rng = Rng::new(seed);
@@ -91,7 +91,7 @@ fn people_who_err_are_told_from_those_who_do_not() {
     assert_eq!(known, [("Ann", 20), ("Bob", 20)]);
 }
 
-/// Who gives no name is treated as ever, bit for bit, whoever is known.
+/// Unnamed users are treated as ever, bit for bit, whoever is known.
 #[test]
 fn of_nobody_nothing_is_learned() {
     let mut manager = manager();
@@ -182,7 +182,7 @@ fn the_prior_is_by_what_a_person_had_fetched_after_some_deliveries() {
     assert!((belief(&manager.next(&state, &anybody, at(999)))[5] - 1.0 / 6.0).abs() < 1e-12);
 }
 
-/// A person can be forgotten at any moment; what is under way goes on as with anybody.
+/// A person can be forgotten at any moment; the interaction continues as with an unnamed user.
 #[test]
 fn forgetting_leaves_nothing() {
     let mut manager = manager();
@@ -283,7 +283,7 @@ fn wrong_words_are_told_from_right_ones() {
     assert!(count(&wrong).wrong > 0.99, "{:?}", count(&wrong));
 }
 
-/// A person's name travels with the utterance, in journals too; without one the bytes are those of before.
+/// A person's name travels with the utterance, in journals too; without one nothing changes.
 #[test]
 fn an_utterance_of_nobody_has_the_bytes_of_before() {
     let said = typed(1, PromptId(0), Reading::default());

@@ -1,4 +1,4 @@
-//! What is learned about the person goes on from one interaction to the next.
+//! Knowledge about the person is kept from one interaction to the next.
 
 use super::fixture::{
     Settings, answer, asked, at, delivered, heard, manager, reply, settings, settings_with, typed,
@@ -94,7 +94,7 @@ fn reconfiguration_learns_nothing_twice() {
         assert_eq!(again.open.as_ref().unwrap().posterior, state.open.as_ref().unwrap().posterior);
         assert_eq!(again.users.person, state.users.person);
     }
-    // Another planner takes people as configured, and keeps what is known for later.
+    // Another planner assumes people as configured, and keeps the knowledge for later.
     let plain = settings().manager().next(&state, &Cause::Reconfigured, at(20));
     assert!(plain.open.as_ref().unwrap().posterior.person().is_none());
     assert_eq!(plain.users.person, state.users.person);

@@ -1,4 +1,4 @@
-//! What is believed before anything is said: alike, by history, or that it may not be here.
+//! Priors of the belief: uniform, by history, or with a possibly absent object.
 
 use super::fixture::{
     Change, Settings, answer, asked, at, belief, delivered, manager, markers, remark, reply,
@@ -21,7 +21,7 @@ fn manager_with(change: Change) -> Manager {
     settings_with(change).manager()
 }
 
-/// Has `name` asked for with every word that it has, and delivered.
+/// Requests `name` with every word that it has, up to its delivery.
 fn deliver(manager: &mut Manager, state: &State, name: &str) -> State {
     let scene = settings().scene;
     let wanted = scene.object_named(name).unwrap();

@@ -1,4 +1,4 @@
-//! "Put it back": what was handed over goes back to its place, and what was open goes on.
+//! "Put it back": the delivered object goes back, and the open interaction continues.
 
 use super::fixture::{
     answer, at, delivered, first, heard, manager, remark, reply, settings, text, words,
@@ -160,7 +160,7 @@ fn putting_back_has_its_turn_after_a_fetch() {
     assert_eq!((other.act.kind, object(&other).as_str()), (ActKind::PutBack, "white"));
 }
 
-/// With nothing handed over, what is being fetched is meant.
+/// Without an object handed over, the one being fetched is meant.
 #[test]
 fn the_fetch_is_called_off_where_nothing_was_handed_over() {
     let mut manager = manager();

@@ -45,8 +45,8 @@ fn a_request_that_is_withdrawn_is_withdrawn_whole() {
     assert_eq!(called_off.act.kind, ActKind::Cancel);
 }
 
-/// Words of another object after a hand-over are the next request, though they are no answer that
-/// fits.
+/// Words of another object after a hand-over are the next request, though they do not fit as an
+/// answer.
 #[test]
 fn the_next_request_is_no_refusal() {
     let mut manager = manager();

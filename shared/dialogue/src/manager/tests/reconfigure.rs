@@ -62,7 +62,7 @@ fn a_bowl_that_is_gone_drops_out_and_a_new_one_counts_with_the_words_said() {
     assert!(text(&after).starts_with(&format!("{said}{new}")), "{}", text(&after));
 }
 
-/// What is scored again under the same scene is the very belief that there was.
+/// Scoring again under the same scene gives exactly the same belief.
 #[test]
 fn the_same_scene_gives_the_same_belief_bit_for_bit() {
     for seed in 0..12 {
@@ -138,7 +138,7 @@ fn a_pick_whose_object_is_gone_ends_the_interaction_and_another_goes_on() {
     let moved = manager.next(&state, &Cause::Reconfigured, at(2));
     let metal2 = changed.scene.object_named("metal2").unwrap();
     assert_eq!(moved.act.pick, Some((pick, metal2)), "the same order with the new number");
-    // The arm was restarted too, and has left what it had not yet grasped.
+    // The arm was restarted too, and has left the object that it had not yet grasped.
     let left = Cause::PickEnded { pick, outcome: PickOutcome::Cancelled };
     let again = manager.next(&moved, &left, at(3));
     let second = PickId { attempt: pick.attempt + 1, ..pick };

@@ -38,7 +38,7 @@ fn cancels(intent: Intent) -> bool {
     matches!(intent, Intent::Cancel | Intent::StopAndCancel)
 }
 
-/// At rest, while a question stands, while the arm fetches, and while a pick is called off.
+/// At rest, with a pending question, while the arm fetches, and while a pick is cancelled.
 fn situations(manager: &mut Manager) -> Vec<State> {
     let rest = manager.first();
     let asking = first(manager, words(&["white"]));
@@ -52,7 +52,7 @@ fn everything_typed_is_answered() {
     let mut manager = manager();
     for state in situations(&mut manager) {
         let talk = TALK.into_iter().map(intent);
-        // A question that is on its way is the answer to what is said of the object.
+        // A question under way answers the remark about the object.
         let said = (state.act.kind != ActKind::Ask).then(|| answer(Response::Yes));
         for reading in talk.chain([intent(Intent::PutBack)]).chain(said) {
             let after = remark(&mut manager, &state, reading.clone());
@@ -63,7 +63,7 @@ fn everything_typed_is_answered() {
     }
 }
 
-/// The arm's order stands whatever is said about other things.
+/// The arm's order remains valid whatever is said about other things.
 #[test]
 fn an_answer_changes_no_order() {
     let mut manager = manager();
@@ -186,7 +186,7 @@ fn a_user_who_starts_over_is_asked_for_the_object() {
     assert_eq!(clear.act.kind, ActKind::Pick);
 }
 
-/// Nothing begins with a request for what is not here; of another way to say a quality it may.
+/// A request for an absent object starts nothing; a synonym of a quality may.
 #[test]
 fn absence_from_the_scene_is_said_at_once() {
     let mut manager = manager();

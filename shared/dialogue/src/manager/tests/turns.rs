@@ -1,4 +1,4 @@
-//! Which question an answer counts for, and when the robot holds back.
+//! Attribution of answers to questions, and waiting for the user's turn.
 
 use super::fixture::{
     answer, asked, at, belief, first, manager, remark, settings, settings_with, typed, words,
@@ -96,8 +96,8 @@ fn a_doubled_answer_does_not_answer_the_question_that_begins() {
     assert!(after < 0.1 * before, "naive attribution takes it for an answer: {before} {after}");
 }
 
-/// A question sounded twice: which time it was answered is open, but not that it was. A quick answer
-/// to the next question must not be taken for another answer to it.
+/// A question sounded twice: which time it was answered is open, but not that it was. A quick
+/// answer to the next question must not be taken for another answer to it.
 #[test]
 fn an_answer_to_a_repeated_question_answers_it() {
     for typed in [true, false] {

@@ -1,10 +1,10 @@
-//! A better plan where the search cannot close the bounds, by policy iteration on the beliefs that the plan leads to.
+//! Better plans if the search cannot close the bounds, by policy iteration on a plan's beliefs.
 //!
-//! The plan asks at each belief what is estimated to be best. Rolled out, a question's estimate is what the plan
-//! achieves, and that of a question which was never followed is still a guess one step ahead, often too low by more
-//! than the two differ. So at the beliefs that the plan is likely to lead to, the questions that look best are all
-//! followed and the plan is rolled out after each; the best becomes the plan. That is repeated while it gains
-//! anything, then with more questions.
+//! The plan takes at each belief the question estimated to be best. Rolled out, a question's
+//! estimate is the plan's result, and that of a question never followed is still a guess one step
+//! ahead, often too low by more than their difference. So at the beliefs that the plan is likely to
+//! lead to, the questions that look best are all followed and the plan is rolled out after each;
+//! the best becomes the plan. That is repeated while it gains anything, then with more questions.
 
 use super::{DEPTH_MAX, Lead, Search};
 
@@ -16,9 +16,9 @@ const ROLL_OUTS_MAX: usize = 8;
 const RARE: f64 = 1e-3;
 /// How many questions are compared at a belief, at first and at last.
 const COMPARED: std::ops::RangeInclusive<usize> = 2..=8;
-/// What a repetition has to gain for another one, as a share of the gap between the bounds.
+/// Least gain for another repetition, as a share of the gap between the bounds.
 const GAIN_MIN: f64 = 1e-4;
-/// Beliefs that are passed for each one that may be looked at: what is known is passed quickly, but over many paths.
+/// Beliefs passed for each one that may be examined: known ones are quick, but on many paths.
 const PASSED: usize = 200;
 
 /// How much work is left.
@@ -47,9 +47,9 @@ struct Reached {
 const ROOT: Reached = Reached { node: 0, probability: 1.0, depth: 0 };
 
 impl Search<'_> {
-    /// Follows the plan that looks best through every dialogue that is at all likely, so that the lower
-    /// bound is what the plan achieves, and does so again while that makes a better plan look best.
-    /// Looks at `beliefs_max` beliefs in all at most.
+    /// Follows the plan that looks best through every dialogue that is at all likely, so that the
+    /// lower bound is the plan's value, and repeats while that makes a better plan look best. Looks
+    /// at `beliefs_max` beliefs in all at most.
     pub(crate) fn roll_out(&mut self, beliefs_max: usize) {
         let mut work = Work::new(beliefs_max);
         for _ in 0..ROLL_OUTS_MAX {
@@ -61,7 +61,7 @@ impl Search<'_> {
         }
     }
 
-    /// Looks for a better plan than the one that was rolled out. Looks at `beliefs_max` beliefs in all at most.
+    /// Looks for a better plan than the one rolled out, at `beliefs_max` beliefs at most.
     pub(crate) fn improve(&mut self, beliefs_max: usize) {
         let mut work = Work::new(beliefs_max);
         for compared in COMPARED {
@@ -103,14 +103,14 @@ impl Search<'_> {
         at.depth >= DEPTH_MAX || self.nodes.len() >= work.beliefs_max || work.passes == 0
     }
 
-    /// The move of the plan; none where it stops.
+    /// The move of the plan; `None` if it stops.
     fn planned(&self, node: usize) -> Option<usize> {
         let node = &self.nodes[node];
         let leading = node.leading(Lead::Expectation)?;
         (node.branches[leading].value.estimate > node.stop).then_some(leading)
     }
 
-    /// Makes a move, goes on after each answer, and takes the move's value from there.
+    /// Makes a move, continues after each answer, and takes the move's value from there.
     fn take(
         &mut self,
         at: Reached,
@@ -132,7 +132,7 @@ impl Search<'_> {
 }
 
 impl super::Node {
-    /// The moves of the greatest estimates that can be better than what is achieved.
+    /// The moves of the greatest estimates that may improve on the achieved value.
     fn most_promising(&self, count: usize) -> Vec<usize> {
         let can_be_better = |branch: &usize| self.branches[*branch].value.upper > self.value.lower;
         let mut moves: Vec<usize> = (0..self.branches.len()).filter(can_be_better).collect();

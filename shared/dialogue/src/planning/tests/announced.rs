@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// The same problems, where picks can be denied.
+/// The same problems, with picks that can be denied.
 fn for_many_announced(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Reduced, &str)) {
     for_many_problems(seed, |problem, belief, _, label| {
         for (heard, cost_s) in [(0.3, 0.02), (0.8, 0.2), (0.95, 0.0)] {
@@ -15,7 +15,7 @@ fn for_many_announced(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Reduced, 
     });
 }
 
-/// What an announced pick is worth, from the equation, given what follows a denial.
+/// Value of an announced pick by the equation, given the value after a denial.
 fn announced(
     problem: &DecisionProblem<'_>,
     mass: &[f64],
@@ -75,7 +75,7 @@ fn no_announced_pick_beats_the_upper_bound() {
     });
 }
 
-/// Objects that no question tells apart can be told apart by announcing one.
+/// Announcing distinguishes objects that no question does.
 #[test]
 fn announcing_tells_doubles_apart() {
     let double = r#"{"attributes":{"color":"red"},"name":"#;

@@ -58,7 +58,7 @@ fn improving_raises_the_lower_bound_up_to_the_value() {
     });
 }
 
-/// Where the bounds stay apart, the plan beats the one-step `lookahead` by what its first questions are worth.
+/// If a gap remains, the plan beats the one-step `lookahead` by the value of its first questions.
 #[test]
 fn improving_finds_a_better_plan_on_a_hard_scene() {
     let model =
@@ -132,7 +132,7 @@ fn revealed_errors_bound_the_value() {
             assert!(upper <= before + 1e-9, "{label}: {upper} above {before}");
             before = upper;
         }
-        // What was known before changes the order of the search, and what it has to look at, not the bound.
+        // Previous results change the order and the extent of the search, not the bound.
         let afresh = Revealed::of(reduced, &problem.costs);
         let afresh = afresh.map_or(f64::NAN, |mut easier| easier.upper(100_000, f64::NEG_INFINITY));
         let again = easier.upper(100_000, f64::NEG_INFINITY);
@@ -140,7 +140,7 @@ fn revealed_errors_bound_the_value() {
     });
 }
 
-/// No question improves on the value of being told the class, whatever it splits.
+/// No question improves on the value of learning the class, whatever it splits.
 #[test]
 fn no_question_beats_being_told_the_class() {
     let (seed, mut rng) = (83, Rng::new(83));
@@ -168,8 +168,8 @@ fn no_question_beats_being_told_the_class() {
                 let asked = channel.price.pay(after) + split.compensation[0];
                 let label = format!("seed {seed} {name} {params:?} x {x} p {p}");
                 assert!(asked <= value(x) + 1e-6, "{label}: {asked} above {}", value(x));
-                // Least is paid for the others where they are all alike; among those of its own kind it is the
-                // same compensation.
+                // Least is paid for the others if they are all alike; among those of its own kind
+                // it is the same compensation.
                 let others =
                     (1.0 - x) / x * told.compensation(((1.0 - x) / (classes - 1) as f64).ln());
                 let picked = costs.pick_value(share) - others;

@@ -8,8 +8,8 @@ use crate::planning::Reduced;
 use crate::testing::scene_of;
 use crate::{Belief, Model};
 
-/// The choices that matter: of all values, or of two of them; a choice of all but one tells what the choice
-/// of all tells, and one of two values what a yes/no question tells.
+/// The choices that matter: of all values, or of two of them; a choice of all but one is as
+/// informative as the choice of all, and one of two values as a yes/no question.
 #[test]
 fn choices_that_tell_the_same_are_asked_once() {
     let asked = |values: usize| -> Vec<usize> {

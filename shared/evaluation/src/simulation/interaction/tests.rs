@@ -120,7 +120,7 @@ fn interaction_without_an_end_has_the_value_of_waiting() {
     );
 }
 
-/// "No" while the arm is on its way: it comes back, and the robot goes on knowing better.
+/// "No" while the arm is on its way: it comes back, and the robot knows better.
 #[test]
 fn denied_pick_costs_time_and_teaches() {
     let house = House::new();

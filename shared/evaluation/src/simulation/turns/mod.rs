@@ -1,10 +1,10 @@
 //! Dialogues in real time: who speaks when, and which question an answer counts for.
 //!
-//! In a dialogue of turns, as [`crate::simulation::interact`] conducts it, an answer follows its question. In
-//! real time the robot listens for a while, plans, and may ask the next question just as the person
-//! answers the last. The paper lost many of its interactions to that (section 6). This is a
-//! simulation of discrete events with the robot's rules of turn-taking as parts to be combined. A pick
-//! is final in it.
+//! In a dialogue of turns, as [`crate::simulation::interact`] conducts it, an answer follows its
+//! question. In real time the robot listens for a while, plans, and may ask the next question just
+//! as the person answers the last. The paper lost many of its interactions to that (section 6).
+//! This is a simulation of discrete events with the robot's rules of turn-taking as parts to be
+//! combined. A pick is final in it.
 //!
 //! | file | holds |
 //! |---|---|

@@ -7,7 +7,7 @@ use vocabulary::Attribution;
 /// The robot's turn-taking rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
-    /// Which question an answer counts for.
+    /// Attribution of answers to questions.
     pub attribution: Attribution,
     /// `true` if a question that got no answer is asked again; else the next best one is.
     pub same: bool,
@@ -40,7 +40,7 @@ const FAST_S: f64 = 0.01;
 const WINDOW_MAX_S: f64 = 600.0;
 
 impl Default for Rules {
-    /// As in the paper's web interface: push-to-talk, naive.
+    /// The rules of the paper's web interface: push-to-talk, naive.
     fn default() -> Self {
         let (window_s, planner_s) = PAPER;
         let attribution = Attribution::Naive;
@@ -64,7 +64,7 @@ impl Rules {
         "open+mixture+hold+same+fast+w2.5",
     ];
 
-    /// The rules of that name: parts joined by `+`, in any order. What is not named is as in the
+    /// Parses the name of rules: parts joined by `+`, in any order. Other rules are as in the
     /// paper.
     ///
     /// # Errors

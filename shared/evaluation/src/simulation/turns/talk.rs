@@ -1,5 +1,5 @@
-//! A dialogue in real time: the user's speech, the robot's voice and the clock. The dialogue itself is
-//! conducted by the dialogue manager.
+//! A dialogue in real time: the user's speech, the robot's voice and the clock. The dialogue itself
+//! is conducted by the dialogue manager.
 
 use dialogue::manager::{Cause, Floor, Manager, State, Utterance};
 use scene::Question;
@@ -95,8 +95,8 @@ impl Talk<'_> {
         }
     }
 
-    /// Spends the time that planning takes; returns whether its decision still stands. A naive robot
-    /// does not listen meanwhile.
+    /// Spends the time that planning takes; returns whether its decision is still valid. A naive
+    /// robot does not listen meanwhile.
     fn plan(&mut self) -> bool {
         let planned = self.state.act.id;
         let done_s = self.now_s + self.rules.planner_s;
@@ -151,7 +151,7 @@ impl Talk<'_> {
     /// Listens until the decision changes or the response window has passed.
     fn listen(&mut self) {
         let standing = self.state.act.id;
-        // What arrived while the robot spoke ends its listening at once.
+        // Utterances that arrived while the robot spoke end its listening at once.
         self.take_in(self.now_s);
         let mut until_s = self.now_s + self.manager.response_window_s(&self.state);
         while self.state.act.id == standing && !self.is_deferred() {
@@ -171,7 +171,7 @@ impl Talk<'_> {
         }
     }
 
-    /// Takes in what arrives until then.
+    /// Processes arrivals until the given time.
     fn take_in(&mut self, until_s: f64) {
         while let Some(utterance) = self.user.result(until_s) {
             self.now_s = self.now_s.max(utterance.result_s);

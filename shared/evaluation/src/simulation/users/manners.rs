@@ -22,7 +22,7 @@ pub struct Manners {
     yes: &'static [&'static str],
     no: &'static [&'static str],
     it_is: &'static str,
-    /// Probability of naming a value by a synonym, where it has one.
+    /// Probability of naming a value by a synonym, if it has one.
     synonyms: f64,
     /// Probability of each number of values in the request: none, one, two, ….
     request: &'static [f64],
@@ -34,7 +34,7 @@ pub struct Manners {
     late: f64,
     /// Probability of saying something while the robot waits.
     speaks_up: f64,
-    /// Probability of attending to what the robot announces.
+    /// Probability of attending to the robot's announcements.
     attends: f64,
     /// Answers to a yes/no question: plain, by value, hedged, corrected, with another value, asking
     /// for a repetition.
@@ -139,7 +139,7 @@ impl Speaker<'_> {
         self.say(&text)
     }
 
-    /// What is said to the announcement of an object: nothing to the right one, but for a slip.
+    /// Returns the reaction to an announced object: none to the right one, except for a slip.
     pub(super) fn objection(&mut self, object: ObjectId) -> Turn {
         let manners = self.manners;
         let (model, question) = (self.domain.model, Question::Point(object));

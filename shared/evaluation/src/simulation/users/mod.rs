@@ -1,4 +1,4 @@
-//! The simulated user: what is wanted, what is said, and when.
+//! The simulated user: wishes, words and timing.
 //!
 //! One [`SimulatedUser`] serves the study, the simulations, the tests with real sound and
 //! `whichone await pick --answer-as`. It never keeps the scene: each call names the [`Domain`], so
@@ -13,8 +13,8 @@
 //! | `noisy` | wrong in 5 to 20 % and silent in 20 to 30 % of the cases, drawn per user | one word, through a recogniser that drops and confuses words |
 //! | `human` | mostly right; by value, with corrections, hedges, more than was asked, and late | sentences, through a better recogniser |
 //!
-//! [`TimedUser`] adds reaction times and turn-taking errors. Words are read by the `language` crate,
-//! as the grounding service does it.
+//! [`TimedUser`] adds reaction times and turn-taking errors. Words are read by the `language`
+//! crate, as the grounding service does it.
 
 mod manners;
 mod recogniser;
@@ -50,7 +50,7 @@ const NOISY_ATTENDS: f64 = 0.6;
 pub struct Domain<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// The observation model of that scene.
+    /// The observation model of the scene.
     pub model: &'a Model,
 }
 
@@ -66,7 +66,7 @@ pub enum Reply {
 }
 
 impl Reply {
-    /// The most probable words; none of a silence or of an answer that is not in words.
+    /// The most probable words; `None` for silence or an answer without words.
     pub fn text(&self) -> Option<&str> {
         match self {
             Self::Words(hypotheses) => hypotheses.first().map(|(text, _)| text.as_str()),
@@ -121,13 +121,13 @@ impl From<Reply> for Turn {
 /// A kind of user by name, as `whichone study` has them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum UserKind {
-    /// As the planner expects users to be.
+    /// Answers as the planner expects.
     Model,
-    /// Without errors.
+    /// Answers without errors.
     Truthful,
     /// Often silent, often wrong, badly recognised.
     Noisy,
-    /// As people talk.
+    /// Talks as people do.
     Human,
     /// Takes each value for another one in that many of a hundred cases, and sticks to it.
     Mistaken(u8),
@@ -151,12 +151,12 @@ impl UserKind {
         ("wrong-10", Self::Wrong(10)),
     ];
 
-    /// The kind of that name.
+    /// Returns the kind of the given name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, kind)| *kind)
     }
 
-    /// Its name.
+    /// Returns the kind's name.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, kind)| *kind == self).map_or("", |(name, _)| name)
     }
@@ -173,7 +173,7 @@ impl UserKind {
 pub enum Policy {
     /// The answer distribution of the observation model.
     Model,
-    /// The same with errors of one's own.
+    /// Answers with errors of one's own.
     Erring(Errors),
     /// Always right, in one word; with probability `by_value` a yes or no is replaced by the value
     /// itself ("it is white").
@@ -190,7 +190,7 @@ pub enum Policy {
     },
     /// One word, often wrong or missing, through a bad recogniser.
     Noisy,
-    /// Sentences, as these manners have them.
+    /// Full sentences with these manners.
     Talkative(&'static Manners),
 }
 
@@ -212,7 +212,7 @@ impl From<UserKind> for Policy {
     }
 }
 
-/// A [`Policy`] with its traits drawn.
+/// A [`Policy`] with drawn traits.
 #[derive(Clone, Debug)]
 enum Traits {
     Model(dialogue::ModelUser),
@@ -266,7 +266,7 @@ impl SimulatedUser {
         Self { wanted: Some(wanted), traits: Traits::Scripted(turns.into()), rng: Rng::new(0) }
     }
 
-    /// The wanted object; `None` where the scene does not have it.
+    /// The wanted object; `None` if the scene does not have it.
     pub fn wanted(&self) -> Option<ObjectId> {
         self.wanted
     }
@@ -303,9 +303,9 @@ impl SimulatedUser {
         }
     }
 
-    /// Returns what is said to the announcement that the robot gets an object: nothing where it is
-    /// taken for the wanted one, or not attended to. Users who answer as the model has it object with
-    /// its probabilities; how others attend to the robot does not depend on what it expects.
+    /// Returns the reaction to the announcement of an object: a silence if it is taken for the
+    /// wanted one, or not attended to. Users who answer as the model has it object with its
+    /// probabilities; the attention of others does not depend on the robot's expectation.
     pub fn objection(&mut self, domain: Domain<'_>, announce: Announce, object: ObjectId) -> Turn {
         let this = Question::Point(object);
         let rng = &mut self.rng;
@@ -402,7 +402,7 @@ fn answer_or_slip(
     }
     let mut others = spoken_answers(model, question);
     others.retain(|answer| *answer != truth);
-    // The true one where there is no other.
+    // The true one without alternatives.
     one_of(rng, &others).copied().unwrap_or(truth)
 }
 

@@ -8,7 +8,7 @@ use crate::simulation::draw::{chance, one_of};
 
 /// Words that replace others, besides the scene's own.
 const FILLERS: [&str; 8] = ["the", "a", "uh", "it", "one", "and", "to", "ball"];
-/// Weight of the first hypothesis, where the recogniser wavers between it and the words said.
+/// Weight of the first hypothesis, if the recogniser wavers between it and the words said.
 const PREFERRED: f64 = 0.65;
 
 /// A channel from words to words.
@@ -28,7 +28,7 @@ impl Recogniser {
     /// One word in ten is lost or wrong: a far microphone.
     pub(super) const BAD: Self = Self { drop: 0.05, confuse: 0.05 };
 
-    /// Returns the hypotheses for `text`. Where words were confused, the second one is right.
+    /// Returns the hypotheses for `text`. If words were confused, the second one is right.
     pub(super) fn hear(&self, text: &str, scene: &Scene, rng: &mut Rng) -> Reply {
         let mut heard: Vec<&str> = Vec::new();
         let mut confused = false;

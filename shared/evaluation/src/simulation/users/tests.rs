@@ -119,8 +119,8 @@ fn user_denies_an_absent_object_and_never_describes_it() {
     }
 }
 
-/// The times of the answers to two questions, each of two seconds, with a pause of five between: a late
-/// answer begins before the next question does.
+/// The times of the answers to two questions, each of two seconds, with a pause of five between: a
+/// late answer begins before the next question does.
 fn answers(habits: Habits, seed: u64) -> Vec<(u64, f64, bool)> {
     let house = House::new();
     let policy = Policy::Truthful { by_value: 0.0 };

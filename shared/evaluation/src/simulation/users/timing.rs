@@ -1,5 +1,5 @@
-//! When a user speaks: reaction times, and answers that come late, early, into the next question, or
-//! twice. Times are seconds since the dialogue began.
+//! When a user speaks: reaction times, and answers that come late, early, into the next question,
+//! or twice. Times are seconds since the dialogue began.
 
 use preflight::Pace;
 use scene::Question;
@@ -33,8 +33,8 @@ pub struct Timing {
     pub pace: Pace,
     /// Bounds of the reaction time, seconds.
     pub reaction_s: (f64, f64),
-    /// Delay between the decision to speak and speech, seconds: with push-to-talk, the click and the
-    /// pause after it.
+    /// Delay between the decision to speak and speech, seconds: with push-to-talk, the click and
+    /// the pause after it.
     pub click_s: f64,
     /// Pause between two utterances, seconds.
     pub breath_s: f64,
@@ -73,7 +73,7 @@ pub struct TimedKind {
     pub random: f64,
     /// Probability that the recogniser loses an answer.
     pub lost: f64,
-    /// With push-to-talk: the click and the pause after it, seconds.
+    /// Click of push-to-talk and the pause after it, seconds.
     pub click_s: f64,
 }
 
@@ -83,7 +83,7 @@ impl TimedKind {
     /// Always answers, is always right and always recognised.
     pub const TRUTHFUL: Self = Self { answers: 1.0, random: 0.0, lost: 0.0, click_s: 1.4 };
 
-    /// Draws a user. With an `open` microphone there is no click.
+    /// Draws a user. With an `open` microphone no click is needed.
     pub fn user(&self, domain: Domain<'_>, pace: &Pace, open: bool, rng: Rng) -> TimedUser {
         let Self { answers, random, lost, click_s } = *self;
         let user = SimulatedUser::wanting_any(Policy::Unreliable { answers, random }, domain, rng);
@@ -104,14 +104,14 @@ enum Habit {
     Doubled,
 }
 
-/// An utterance with its times.
+/// An utterance of a user with its times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedUtterance {
     /// The prompt that it answers; 0 for the request.
     pub prompt: u64,
-    /// The question that it answers.
+    /// The question that the utterance answers.
     pub question: Question,
-    /// Its recognition result; silence if the recogniser loses it.
+    /// Recognition result; silence if the recogniser loses the utterance.
     pub reply: Reply,
     /// `true` if it repeats an earlier answer.
     pub again: bool,
@@ -154,7 +154,7 @@ impl TimedUser {
         &self.user
     }
 
-    /// The user without timing, to change what is wanted or to draw from the same generator.
+    /// The user without timing, to change the wanted object or to draw from the same generator.
     pub fn user_mut(&mut self) -> &mut SimulatedUser {
         &mut self.user
     }
@@ -189,8 +189,8 @@ impl TimedUser {
         if self.habits.iter().any(|(known, _)| *known == prompt) {
             return;
         }
-        // The robot has understood something and asks on: what was answered is not answered again,
-        // but for deliberate repetitions.
+        // The robot has understood something and asks on: the answer is not repeated, except
+        // deliberately.
         let Self { upcoming, answered, .. } = self;
         upcoming.retain(|plan| plan.again || !answered.contains(&plan.prompt));
         let within =

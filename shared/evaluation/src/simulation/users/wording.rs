@@ -9,7 +9,7 @@ use crate::simulation::draw::{chance, one_of};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wording<'a> {
     pub(super) scene: &'a Scene,
-    /// Probability that a value is named by a synonym, where it has one.
+    /// Probability that a value is named by a synonym, if it has one.
     pub(super) synonyms: f64,
 }
 
@@ -33,7 +33,7 @@ impl<'a> Wording<'a> {
         value.spoken.replace(&value.name, &word)
     }
 
-    /// The value as it stands after a noun.
+    /// The value in its form after a noun.
     fn after_noun(&self, (k, v): (AttributeId, ValueId), rng: &mut Rng) -> String {
         let value = self.of((k, v));
         let word = self.value((k, v), rng);
@@ -79,7 +79,7 @@ pub(super) fn own_values(
     named
 }
 
-/// Draws an index with these probabilities; the last one where they fall short of 1.
+/// Draws an index with these probabilities; the last one if their sum is below 1.
 pub(super) fn number(probabilities: &[f64], rng: &mut Rng) -> usize {
     let drawn = rng.index(probabilities.iter().copied());
     drawn.unwrap_or(probabilities.len().saturating_sub(1))

@@ -1,5 +1,5 @@
-//! `cargo run -p reader_training --bin synonyms`: scores words that no scene lists. Each is said in scenes of eight values, with
-//! the one that it stands for and without.
+//! `cargo run -p reader_training --bin synonyms`: scores words that no scene lists. Each is said in
+//! scenes of eight values, with the one that it stands for and without.
 
 #![allow(clippy::print_stdout, reason = "a program for the terminal")]
 
@@ -16,7 +16,7 @@ const WORDS: &str = include_str!("../../synonyms.txt");
 const VALUES: usize = 8;
 const SCENES: usize = 6;
 
-/// A value, and what is said for it.
+/// A value with synonyms that no scene lists.
 struct Listed {
     is_thing: bool,
     name: &'static str,
@@ -24,7 +24,7 @@ struct Listed {
 }
 
 impl Listed {
-    /// Whether one of the words of both may stand for either.
+    /// Returns whether a word of both may replace either.
     fn is_like(&self, other: &Self) -> bool {
         let words = |it: &Self| it.said.iter().copied().chain([it.name]).collect::<Vec<_>>();
         let others = words(other);

@@ -1,5 +1,5 @@
-//! `cargo run --release -p reader_training --bin train`: prints how each author's lines are read by a judge that was trained on
-//! the others alone. With `--write` it trains on all of them, and replaces `vocabulary/judge.bin`.
+//! `cargo run --release -p reader_training --bin train`: scores each author's lines with a judge
+//! trained on the others. `--write` trains on all, and replaces `vocabulary/judge.bin`.
 
 #![allow(clippy::print_stdout, reason = "a program for the terminal")]
 

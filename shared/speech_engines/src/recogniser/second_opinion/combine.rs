@@ -1,24 +1,24 @@
 //! Two recognisers' views of an utterance as one list of hypotheses.
 //!
-//! The weight of a hypothesis is its weight with the first recogniser times a power of its likelihood
-//! with the second: a log-linear combination. What both find likely is certain, and what only one of
-//! them finds likely shares the weight with what the other one prefers: doubt that the belief
-//! accounts for.
+//! The weight of a hypothesis is its weight with the first recogniser times a power of its
+//! likelihood with the second: a log-linear combination. Texts that both find likely are certain; a
+//! text that only one finds likely shares the weight with the other's favourite: doubt that the
+//! belief accounts for.
 
 use super::Opinion;
 use crate::recogniser::word_confidence::hypotheses;
 use messages::Hypothesis;
 
-/// Exponent of the second recogniser's likelihood. Its words are not independent, and neither are its
-/// errors of those of the first one.
+/// Exponent of the second recogniser's likelihood. Its words are not independent, and neither are
+/// its errors of those of the first one.
 const EXPONENT: f64 = 0.5;
 /// Weight, with the first recogniser, of words that only the second one heard.
 const UNHEARD: f64 = 0.01;
 /// Largest share of words that only the second recogniser heard.
 const ALONE_MAX: f64 = 0.5;
 
-/// Returns the hypotheses of both, heaviest first. The second recogniser never acts alone: without any of
-/// the first one there is none, and words that it alone heard are at least as doubtful as a coin.
+/// Returns the hypotheses of both, heaviest first. The second recogniser never acts alone: without
+/// any of the first one there is none, and words of its own are at least as doubtful as a coin.
 pub(super) fn combined(first: &[Hypothesis], opinion: &Opinion) -> Vec<Hypothesis> {
     let total: f64 = first.iter().map(|hypothesis| hypothesis.weight).sum();
     let mut texts: Vec<(String, f64)> = (first.iter().zip(&opinion.ln_likelihood))

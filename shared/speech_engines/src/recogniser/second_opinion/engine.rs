@@ -23,11 +23,11 @@ const FRAMES_PER_S: usize = 50;
 const SILENCE_S: usize = 2;
 /// Tokens of its own words, for each second of sound; more is a repetition.
 const TOKENS_PER_S: usize = 8;
-/// The library rejects sound shorter than 0.1 s; shorter sound is padded with silence to this length.
+/// The library rejects sound shorter than 0.1 s; such sound is padded with silence to this length.
 const SAMPLES_MIN: usize = RATE_HZ as usize / 5;
 /// Tokens of the prompt: it may use half of the network's text, and costs time.
 const PROMPT_MAX: usize = 96;
-/// A candidate that is so much less likely than the likeliest one is abandoned, natural logarithm.
+/// Gap to the likeliest candidate at which one is abandoned, natural logarithm.
 const HOPELESS: f64 = 7.0;
 
 /// The network, and its state for one utterance.
@@ -35,16 +35,16 @@ pub(super) struct Engine {
     context: WhisperContext,
     state: WhisperState,
     threads: usize,
-    /// What was said before, as far as the network is told.
+    /// Earlier words, as far as the network gets them.
     prompt: Vec<WhisperTokenId>,
-    /// Length of what comes before the start of the text: a marker and the prompt.
+    /// Length of the part before the text: a marker and the prompt.
     before: usize,
     /// Start of the text, language and task.
     start: Vec<WhisperTokenId>,
 }
 
 impl Engine {
-    /// Loads the model; `prompt` is an example of what people say. The error is for the operator.
+    /// Loads the model; `prompt` is an example of a user's words. The error is for the operator.
     pub(super) fn open(model: &Path, prompt: &str) -> Result<Self, String> {
         safe_files::open_regular(model).map_err(|error| error.to_string())?;
         // Otherwise the library writes dozens of lines to standard error.
@@ -111,7 +111,7 @@ impl Engine {
         self.state.full(params, &samples)
     }
 
-    /// Returns its own words; what it says over and over, as it does where it is lost, once.
+    /// Returns the network's own words; endless repetitions, which a lost network makes, only once.
     fn own_words(&self) -> Result<String, WhisperError> {
         let Some(segment) = self.state.get_segment(0) else { return Ok(String::new()) };
         let mut bytes = Vec::new();
@@ -147,8 +147,8 @@ impl Engine {
         Ok((no_speech, row))
     }
 
-    /// Decodes one token behind `past` others. Returns the logarithms of the probabilities of the next.
-    /// (Of several tokens the library returns another row than the last one.)
+    /// Decodes one token behind `past` others. Returns the logarithms of the probabilities of the
+    /// next. (Of several tokens the library returns another row than the last one.)
     fn next(&mut self, token: WhisperTokenId, past: usize) -> Result<Vec<f32>, WhisperError> {
         self.state.decode(&[token], past, self.threads)?;
         Ok(log_softmax(self.state.get_logits()?))
@@ -173,15 +173,15 @@ impl Network for Engine {
     }
 }
 
-/// Scores texts token by token: what begins alike is computed once.
+/// Scorer of texts token by token: common beginnings are computed once.
 struct Scorer<'e> {
     engine: &'e mut Engine,
     limit: &'e Limit,
 }
 
 impl Scorer<'_> {
-    /// Returns the logarithm of each text's likelihood; of an abandoned one an upper bound. `first` is
-    /// the row of the first token. `None`: too late.
+    /// Returns the logarithm of each text's likelihood; of an abandoned one an upper bound. `first`
+    /// is the row of the first token. `None`: too late.
     fn score(
         &mut self,
         first: Vec<f32>,
@@ -234,7 +234,7 @@ fn without_remarks(text: &str) -> String {
 }
 
 /// Returns the words that a text repeats from its first word to its last, which may be cut off; the
-/// text itself if it is no repetition.
+/// text itself if it is not a repetition.
 fn without_repetitions(words: &[String]) -> &[String] {
     let repeats = |length: &usize| {
         words.chunks(*length).skip(1).all(|next| words[..*length].starts_with(next))
@@ -252,7 +252,7 @@ fn log_softmax(logits: &[f32]) -> Vec<f32> {
     logits.iter().map(|logit| logit - ln_sum).collect()
 }
 
-/// Makes the library give up where the limit is over. `limit` must outlive the use of the parameters.
+/// Makes the library stop once the limit is over. `limit` must outlive the use of the parameters.
 #[allow(unsafe_code, reason = "the binding's safe form reads the closure as another type")]
 fn abort_at(params: &mut FullParams<'_, '_>, limit: &Limit) {
     unsafe extern "C" fn is_over(limit: *mut c_void) -> bool {

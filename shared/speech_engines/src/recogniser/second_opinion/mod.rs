@@ -1,8 +1,8 @@
-//! A second opinion on utterances: a network that was trained on many voices scores what the first
-//! recogniser heard, beside words of its own. It needs a model file of the operator's, and the feature
-//! `whisper`, because building its library takes a C++ compiler, cmake and libclang.
+//! A second opinion on utterances: a network that was trained on many voices scores the first
+//! recogniser's texts, and adds words of its own. It needs a model file of the operator's, and the
+//! feature `whisper`, because building its library takes a C++ compiler, cmake and libclang.
 //!
-//! Invariant: it never acts alone and never delays. Without it, and where it is late, the first
+//! Invariant: it never acts alone and never delays. Without it, and if it is late, the first
 //! recogniser's hypotheses count as they are.
 
 mod combine;
@@ -23,16 +23,16 @@ use super::RecogniserUnavailable;
 use crate::worker_thread::WorkerThread;
 use messages::Hypothesis;
 
-/// What the second recogniser thinks of an utterance.
+/// The second recogniser's result for an utterance.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Opinion {
-    /// Its own words, empty if it heard none.
+    /// The network's own words, empty if it heard none.
     pub text: String,
     /// Logarithm of the likelihood of its own words.
     pub ln_own: f64,
     /// Logarithm of the likelihood of each of the first recogniser's hypotheses.
     pub ln_likelihood: Vec<f64>,
-    /// Probability that there is no speech, 0 to 1.
+    /// Probability of no speech, 0 to 1.
     pub no_speech: f32,
 }
 
@@ -40,7 +40,7 @@ pub struct Opinion {
 const NO_SPEECH: f32 = 0.4;
 
 impl Opinion {
-    /// Returns whether it heard no speech.
+    /// Returns whether the network heard no speech.
     pub fn is_silence(&self) -> bool {
         self.no_speech > NO_SPEECH
     }
@@ -87,8 +87,8 @@ pub struct PendingOpinion {
 
 /// A network that listens to utterances.
 pub trait Network {
-    /// Returns what it thinks of the samples; asks for the first recogniser's texts when its own words are
-    /// known. `None`: it was too late or not needed any more, or it failed.
+    /// Returns the opinion on the samples; asks for the first recogniser's texts when its own words
+    /// are known. `None`: it was too late or not needed any more, or it failed.
     fn opinion(
         &mut self,
         samples: &[i16],
@@ -132,8 +132,8 @@ const NICENESS: i32 = 5;
 const WAITING_MAX: usize = 8;
 
 impl SecondOpinion {
-    /// Starts the thread, which first loads a model for the sentences of a scene; until then there is no
-    /// opinion.
+    /// Starts the thread, which first loads a model for the sentences of a scene; until then it has
+    /// no opinion.
     pub fn start(model: PathBuf, scene: Scene) -> Self {
         Self::with(move || match load(&model, &scene) {
             Ok(network) => Some(network),
@@ -150,7 +150,7 @@ impl SecondOpinion {
             let Some(mut network) = open() else { return };
             // Without the permission it runs at normal priority.
             let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), NICENESS);
-            // What was dropped meanwhile would only keep the next utterance waiting.
+            // Work dropped meanwhile would only delay the next utterance.
             for Job { samples, candidates, opinion, limit } in
                 jobs.iter().filter(|job| !job.limit.is_over())
             {
@@ -184,12 +184,12 @@ impl PendingOpinion {
         let _ = self.candidates.try_send(texts);
     }
 
-    /// Returns where the opinion arrives; disconnected where there will be none.
+    /// Returns the opinion's channel; disconnected if there will be none.
     pub fn opinion(&self) -> &Receiver<Opinion> {
         &self.opinion
     }
 
-    /// Returns when it is late.
+    /// Returns the time after which the opinion is late.
     pub fn until(&self) -> Instant {
         self.limit.until
     }

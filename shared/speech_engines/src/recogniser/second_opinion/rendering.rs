@@ -1,4 +1,4 @@
-//! Words as they are written in books and subtitles, which is what a network was trained on.
+//! Words as they are written in books and subtitles, the training data of networks.
 
 use scene::Scene;
 
@@ -33,8 +33,8 @@ fn capitalise(word: &str, text: &mut String) {
     text.push_str(rest.as_str());
 }
 
-/// Returns an example of a dialogue with each value of the scene once. Lists of questions and answers
-/// would be repeated as if they had been said.
+/// Returns an example of a dialogue with each value of the scene once. Lists of questions and
+/// answers would be repeated as if they had been said.
 pub(super) fn example(scene: &Scene) -> String {
     let values = scene.attributes().iter().flat_map(|attribute| &attribute.values);
     let mut values: Vec<&str> = values.map(|value| value.spoken.as_str()).collect();
