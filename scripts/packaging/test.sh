@@ -51,7 +51,7 @@ next_deb() {
     local tree="$out/next"
     rm -rf "$tree"
     cp -al "$out/deb" "$tree"
-    sed "s/^Version: .*/Version: $version+next/" "$out/deb/DEBIAN/control" >"$tree/DEBIAN/control.new"
+    sed "s/^Version: .*/&+next/" "$out/deb/DEBIAN/control" >"$tree/DEBIAN/control.new"
     mv "$tree/DEBIAN/control.new" "$tree/DEBIAN/control"
     dpkg-deb -Znone --root-owner-group --build "$tree" "$out/next.deb" >/dev/null
 }

@@ -397,8 +397,8 @@ fn list(all: usize, sites: &[Site]) -> Result<(), Failure> {
     let (mut listed, mut speaking) = (0, 0);
     for list in lists {
         let output = list.wait_with_output().map_err(failed("whichone fleet"))?;
-        let robots: Vec<serde_json::Value> =
-            serde_json::from_slice(&output.stdout).unwrap_or_default();
+        let printed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+        let robots = printed["robots"].as_array().cloned().unwrap_or_default();
         listed += robots.len();
         speaking += robots.iter().filter(|robot| !robot["presence"].is_null()).count();
     }

@@ -182,7 +182,7 @@ fn an_intact_journal_is_listed_and_verified() {
     let since = String::from_utf8(since.stdout).expect("text");
     assert!(since.contains("utterance 2") && !since.contains("utterance 1"), "{since}");
     lab.check(&["--verify"], 0, "2 states reproduced bit for bit from the one before");
-    lab.check(&["--verify", "--json"], 0, "{\"ok\":true,\"records\":2,");
+    lab.check(&["--verify", "--json"], 0, "{\"schema\":1,\"ok\":true,\"records\":2,");
 }
 
 #[test]

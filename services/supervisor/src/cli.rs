@@ -58,7 +58,6 @@ pub fn run() -> ExitCode {
     // Also of what the services create: they inherit it.
     rustix::process::umask(rustix::fs::Mode::RWXG | rustix::fs::Mode::RWXO);
     let _log = service::logging::init();
-    service::logging::identify();
     end_on_panic();
     allow_descriptors();
     // Before the first segment of shared memory, which is a file too.

@@ -105,19 +105,22 @@ impl<'a> Output<'a> {
     /// # Errors
     /// The output is closed or full.
     pub fn json(&mut self, value: &impl Serialize) -> Result<(), Failure> {
-        self.queue_json(value)?;
+        let json = to_json(value)?;
+        self.queue_text(&if self.json { with_schema(&json) } else { json })?;
         self.flush()
     }
 
-    /// Prints a value as one line of JSON some time before [`Output::flush`] returns.
+    /// Prints a line of a batch tool, some time before [`Output::flush`] returns: JSON in the form of its input, which
+    /// has no schema.
     ///
     /// # Errors
     /// The output is closed or full.
     pub fn queue_json(&mut self, value: &impl Serialize) -> Result<(), Failure> {
-        let json = serde_json::to_string(value).map_err(|e| Failure::output(e.into()))?;
-        // Batch tools print JSON in any case, in the format of their input.
-        let json = if self.json { with_schema(&json) } else { json };
-        writeln!(self.sink, "{}", printable_json(&json)).map_err(Failure::output)
+        self.queue_text(&to_json(value)?)
+    }
+
+    fn queue_text(&mut self, json: &str) -> Result<(), Failure> {
+        writeln!(self.sink, "{}", printable_json(json)).map_err(Failure::output)
     }
 
     /// Prints text of this program's own as it is, at once.
@@ -136,6 +139,10 @@ impl<'a> Output<'a> {
     pub fn flush(&mut self) -> Result<(), Failure> {
         self.sink.flush().map_err(Failure::output)
     }
+}
+
+fn to_json(value: &impl Serialize) -> Result<String, Failure> {
+    serde_json::to_string(value).map_err(|error| Failure::output(error.into()))
 }
 
 impl Style {

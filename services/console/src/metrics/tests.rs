@@ -21,18 +21,19 @@ fn metrics_are_exported_under_their_names() {
     metrics.viewers.set(3);
     metrics.frames.inc_by(2);
     metrics.latency.observe(0.5);
-    let lines = [
+    // The commit and the features are registered by programs alone.
+    let build = format!(
+        "whichone_build_info{{version=\"{}\",commit=\"unknown\",features=\"\",target=\"{}\"}} 1.0",
+        build_info::VERSION,
+        build_info::TARGET
+    );
+    let lines: [&str; 6] = [
         "whichone_console_viewers 3",
         "whichone_console_frames_total 2",
         "whichone_console_answer_seconds_count 1",
         "whichone_picks_total{outcome=\"delivered\"} 0",
         "whichone_recordings_files 0.0",
-        // The commit is registered by programs alone.
-        &format!(
-            "whichone_build_info{{version=\"{}\",commit=\"unknown\",features=\"\",target=\"{}\"}} 1.0",
-            build_info::VERSION,
-            build_info::TARGET
-        ),
+        &build,
     ];
     assert_prints(&metrics, &lines);
 }

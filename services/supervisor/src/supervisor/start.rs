@@ -84,6 +84,7 @@ pub(super) fn start(
     let taken = previous_run::take_group(&paths)?;
     let configuration = load(None).map_err(StartError::Config)?;
     logging::set_json(configuration.spec.log.json);
+    logging::identify();
     let group = Group::new(&configuration.spec)?;
     let alive = previous_run::await_end(&paths, longest_stop(&configuration.spec))?;
     let raised = raise(&paths, &configuration, alive, fresh);

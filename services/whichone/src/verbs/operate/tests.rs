@@ -50,7 +50,7 @@ fn verbs_send_their_requests() {
     let (asked, printed, _) =
         run(done(), true, |paths, out| on_service(paths, Request::Start, arm(), out));
     assert_eq!(asked["verb"], "start");
-    assert_eq!(printed, "{\"message\":\"arm is so\"}\n");
+    assert_eq!(printed, "{\"schema\":1,\"message\":\"arm is so\"}\n");
     let (asked, ..) = run(done(), false, |paths, out| {
         let (service, command) = ("arm".to_owned(), vec!["python3".to_owned()]);
         swap(paths, SwapArgs { service, command, timeout: Duration::from_secs(1) }, out)
