@@ -102,7 +102,7 @@ rclpy_python() {
         control_msgs "${python%/bin/python}" && printf '%s\n' "$python"
 }
 
-# For Home Assistant: its core and what its voice pipeline needs. HOME_ASSISTANT_PYTHON names an interpreter of that version.
+# For Home Assistant: its core and what its voice pipeline needs. HOME_ASSISTANT_PYTHON names an interpreter for it.
 home_assistant_needs="no Python 3.13 with packages of PyPI, which Home Assistant 2025.4 needs (HOME_ASSISTANT_PYTHON)"
 home_assistant_python() {
     local python

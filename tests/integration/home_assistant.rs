@@ -1,4 +1,4 @@
-//! The integration for Home Assistant: its fake robot serves answers that a real console gave, and a console still gives.
+//! The integration for Home Assistant: its fake robot serves answers that a real console gave, and still gives.
 //!
 //! `WHICHONE_BLESS=1` records them again.
 
@@ -15,9 +15,9 @@ const FIXTURES: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../shared/sdk/home-assistant/tests/fixtures/console.json"
 );
-/// Values that differ from run to run, or with the moment.
-const VARYING: [&str; 8] =
-    ["id", "name", "version", "prompt", "phase", "moving", "seconds", "remaining_s"];
+/// Values that differ from run to run, with the moment, or in the last digit between processors.
+const VARYING: [&str; 9] =
+    ["id", "name", "version", "prompt", "phase", "moving", "seconds", "remaining_s", "belief"];
 
 /// Answers by name, as they are asked for.
 #[derive(Default)]
@@ -101,6 +101,10 @@ fn record_answers(recorder: &mut Recorder) {
     recorder.post("nothing_open", &hall, "/cancel");
     recorder.say("stopped", &hall, "k7", says("stop"));
     recorder.post("stop", &hall, "/motion/stop");
+    wait_for("the line about it", 10.0, || {
+        let state = hall.get("/state").body;
+        state["text"].as_str().is_some_and(|text| text.starts_with("I have stopped")).then_some(())
+    });
     recorder.get("state_stopped", &hall, "/state");
     recorder.post("too_soon", &hall, "/motion/resume");
     let resumed = wait_for("the release", 20.0, || {

@@ -251,7 +251,7 @@ async fn utter(
     }
 }
 
-/// Returns the latest prompt that the person was shown. One that was not said yet would have the speech service wait for it.
+/// Returns the latest prompt that the person was shown. For one that was not said yet the speech service would wait.
 fn seen(api: &Api, words: &Words, state: &State) -> Result<u64, Problem> {
     let Some(seen) = words.seen else { return Ok(api.conversations().shown(&words.conversation)) };
     if seen > state.prompt && !state.inner.is_known {
