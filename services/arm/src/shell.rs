@@ -78,7 +78,9 @@ fn driver<D: Drivers>(settings: &Settings) -> Result<&'static Driver, Diagnostic
 }
 
 /// The way to the robot, if the driver moves one.
-fn connected<D: Drivers>(context: &Context<'_, In<'static>>) -> Result<Option<Box<dyn Port>>, Failure> {
+fn connected<D: Drivers>(
+    context: &Context<'_, In<'static>>,
+) -> Result<Option<Box<dyn Port>>, Failure> {
     let settings = context.settings;
     let Some(connect) = driver::<D>(settings)?.connect else { return Ok(None) };
     let setup = ArmSetup::new(settings)?;

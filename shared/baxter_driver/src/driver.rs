@@ -322,7 +322,12 @@ impl ArmDriver for BaxterDriver {
             let tolerance_rad = self.settings.path_tolerance_rad;
             let left = set.moved && error_rad > tolerance_rad;
             let setting = "arm.baxter.path_tolerance_rad";
-            left.then(|| Fault::Path { joint: self.joint(limb, joint), error_rad, tolerance_rad, setting })
+            left.then(|| Fault::Path {
+                joint: self.joint(limb, joint),
+                error_rad,
+                tolerance_rad,
+                setting,
+            })
         })
     }
 

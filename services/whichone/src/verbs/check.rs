@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use arm_driver::Drivers;
 use command_line::Outcome;
 use command_line::configuration;
 use command_line::output::{Ink, Output, note, table};
 use config::{Examined, ServiceConfig, Settings};
-use arm_driver::Drivers;
 use diagnostics::{Diagnostic, Diagnostics};
 use drivers::Shipped;
 use language::word_findings;
