@@ -207,14 +207,13 @@ impl FeetechDriver {
         if alarms.iter().any(Option::is_some) {
             return MotionInhibit::Error;
         }
+        if !was_ready {
+            return MotionInhibit::Unheard;
+        }
         if now.since(reading.at) > Span::from_s(self.settings.tolerances.stale_s) {
             return MotionInhibit::Stale;
         }
-        match (reading.is_ready, was_ready) {
-            (true, _) => MotionInhibit::None,
-            (false, true) => MotionInhibit::Error,
-            (false, false) => MotionInhibit::Unheard,
-        }
+        if reading.is_ready { MotionInhibit::None } else { MotionInhibit::Error }
     }
 
     /// Returns whether servos that do not hold shall do so: none has a fault, and none is hot.
