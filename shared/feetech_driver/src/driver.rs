@@ -24,6 +24,8 @@ const HEALED: Span = Span::from_ms(1_000);
 const FINGERS_MAX_S: f64 = 6.0;
 /// Greatest torque of an STS3215 at 7.4 V, newton metres, by its data sheet.
 const STALL_NM: f64 = 1.9;
+/// A joint measured at most this far outside of its limits counts as on them, radians.
+const LIMIT_SLACK_RAD: f64 = 0.03;
 /// The limb: robots with two have two buses.
 const LIMB: Limb = Limb::Only;
 
@@ -132,8 +134,9 @@ impl FeetechDriver {
 
     fn measure(&mut self, reading: &Reading, now: Time) {
         let (jaw, measured) = (&mut self.state.jaw, &mut self.state.measured);
+        let limits = self.robot.arm(LIMB).limits.position;
         for (place, servo) in reading.servos[..self.joints].iter().enumerate() {
-            measured.posture.joints[LIMB][place] = servo.value;
+            measured.posture.joints[LIMB][place] = on_limit(servo.value, limits.0[place]);
             measured.velocity[LIMB][place] = servo.speed;
             measured.effort[LIMB][place] = servo.load * STALL_NM;
         }
@@ -204,14 +207,13 @@ impl FeetechDriver {
         if alarms.iter().any(Option::is_some) {
             return MotionInhibit::Error;
         }
+        if !was_ready {
+            return MotionInhibit::Unheard;
+        }
         if now.since(reading.at) > Span::from_s(self.settings.tolerances.stale_s) {
             return MotionInhibit::Stale;
         }
-        match (reading.is_ready, was_ready) {
-            (true, _) => MotionInhibit::None,
-            (false, true) => MotionInhibit::Error,
-            (false, false) => MotionInhibit::Unheard,
-        }
+        if reading.is_ready { MotionInhibit::None } else { MotionInhibit::Error }
     }
 
     /// Returns whether servos that do not hold shall do so: none has a fault, and none is hot.
@@ -362,4 +364,10 @@ impl ArmDriver for FeetechDriver {
     fn beat(&self) -> Option<Span> {
         Some(BEAT)
     }
+}
+
+/// Returns a position on the limit if it is a little beyond that.
+fn on_limit(position: f64, (lower, upper): (f64, f64)) -> f64 {
+    let within = position.clamp(lower, upper);
+    if (within - position).abs() <= LIMIT_SLACK_RAD { within } else { position }
 }

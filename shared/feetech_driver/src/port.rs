@@ -68,6 +68,12 @@ impl Mailbox {
         content.heard.push_back(heard);
     }
 
+    /// Waits for so long. Returns whether the end has come.
+    fn ends_within(&self, longest: Duration) -> bool {
+        let waited = self.changed.wait_timeout_while(self.content(), longest, |it| !it.ends);
+        waited.unwrap_or_else(PoisonError::into_inner).0.ends
+    }
+
     /// Waits for an order, or for so long. Returns the latest order; `None` at the end.
     fn wait(&self, longest: Duration) -> Option<Told> {
         let content = self.content();
@@ -135,10 +141,9 @@ fn serve(with: &Use, mailbox: &Mailbox) {
             Err(ended) => ended,
         };
         mailbox.put(Heard::Unusable(format!("{}: {reason}", with.port.display())));
-        if mailbox.content().ends {
+        if mailbox.ends_within(REOPEN_EVERY) {
             return;
         }
-        thread::sleep(REOPEN_EVERY);
         // What was ordered before is over.
         mailbox.content().told = Told::default();
     }

@@ -192,15 +192,18 @@ impl<L: Line> Session<L> {
         let answers =
             self.bus.ping(self.ids[place]).map_err(|trouble| Ended(trouble.to_string()))?;
         self.unanswered[place] = if answers { 0 } else { self.unanswered[place] + 1 };
-        let missing = self
-            .layout
-            .members
-            .iter()
-            .zip(&self.unanswered)
-            .filter(|(_, count)| **count >= UNANSWERED_MAX);
+        let all = self.ids.len();
+        if self.failures < FAILURES_MAX + UNANSWERED_MAX * all as u32 {
+            return Ok(None);
+        }
+        let missing = self.layout.members.iter().zip(&self.unanswered);
+        let missing = missing.filter(|(_, count)| **count >= UNANSWERED_MAX);
         let missing: Vec<String> = missing.map(|(member, _)| member.name()).collect();
-        Ok((!missing.is_empty())
-            .then(|| Heard::Unusable(format!("no answer of {}", missing.join(", ")))))
+        Ok(match missing.len() {
+            0 => None,
+            some if some == all => Some(Heard::Unusable("no servo answers any more".to_owned())),
+            _ => Some(Heard::Unusable(format!("no answer of {}", missing.join(", ")))),
+        })
     }
 
     fn judge(&mut self, states: &[State], asked: Time) -> Result<Option<Heard>, Ended> {

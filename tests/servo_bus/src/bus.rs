@@ -9,8 +9,8 @@ use crate::servo::Servo;
 const STEP_S: f64 = 0.002;
 /// Time of a byte at 1,000,000 baud, seconds.
 const BYTE_S: f64 = 10e-6;
-/// Speed from which a servo moves, steps/s.
-const MOVES: f64 = 20.0;
+/// Speed from which a servo moves, steps/s: 0.05 rad/s.
+const MOVES: f64 = 33.0;
 const EVERYONE: u8 = 0xfe;
 const BAUDS: [u32; 5] = [1_000_000, 500_000, 250_000, 128_000, 115_200];
 

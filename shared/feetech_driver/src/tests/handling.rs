@@ -80,7 +80,7 @@ fn goals_lie_no_further_ahead_than_a_tenth_of_a_second_and_death_means_rest() {
     assert!(furthest <= lead + 12.0, "{furthest} of {lead} steps");
     let died_s = rig.now_s();
     let mut bus = rig.bus.borrow_mut();
-    while bus.servos.iter().any(|servo| servo.speed.abs() > 20.0) {
+    while bus.servos.iter().any(|servo| servo.speed.abs() > 33.0) {
         let next_s = bus.now_s() + 0.001;
         bus.advance_to(next_s);
     }

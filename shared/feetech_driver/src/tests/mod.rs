@@ -105,7 +105,7 @@ fn settings() -> Feetech {
         speed_max_rad_s: 1.5,
         torque: Torques { joints_percent: 100.0, grip_percent: 40.0, hold_percent: 20.0 },
         tolerances: Tolerances {
-            path_rad: 0.15,
+            path_rad: 0.2,
             goal_rad: 0.03,
             goal_time_s: 1.5,
             still_rad_s: 0.05,
