@@ -59,7 +59,7 @@ mod ros2_rclpy_controllers {
         eprintln!("{count} dialogues: {seen}");
         let of = |key: &str| seen[key].as_u64().unwrap();
         assert_eq!((of("refused"), of("aborted")), (0, 0), "{seen}");
-        assert!(of("replaced") > of("succeeded") && of("succeeded") >= 4 * count as u64, "{seen}");
+        assert!(of("replaced") > of("succeeded") && of("succeeded") >= 3 * count as u64, "{seen}");
         group.verify_journals();
         group.down();
     }
@@ -111,8 +111,8 @@ mod ros2_rclpy_controllers {
     #[ignore = "needs rclpy with control_msgs, and whichone-trajectory built with ros2/dds"]
     fn arm_comes_to_rest_when_its_process_the_bridge_or_both_are_killed() {
         let mut controllers = Controllers::start(&[]);
-        let slow = "group.restart.backoff_first_ms=3000";
-        let group = controllers.group(&[slow, "group.restart.backoff_max_ms=3000"]);
+        let stays = |service: &str| format!("group.services.{service}.restart=never");
+        let group = controllers.group(&[&stays("arm"), &stays("trajectory")]);
         for killed in [&["arm"][..], &["trajectory"], &["arm", "trajectory"]] {
             set_out(&group, &mut controllers);
             let since = controllers.now();
@@ -120,7 +120,8 @@ mod ros2_rclpy_controllers {
             let seconds = controllers.rest_after(since);
             eprintln!("{killed:?} killed: rest after {seconds:.3} s");
             assert!(seconds <= REST_S, "{killed:?}: {seconds} s");
-            // Both return, and the pick goes on.
+            // They return, and the pick goes on.
+            killed.iter().for_each(|service| drop(group.must(&["start", service])));
             let outcome = group.await_pick(None);
             assert_eq!(outcome["outcome"], "delivered", "{killed:?}: {outcome}\n{}", group.logs());
             wait_for_arm(&group, "rest", |arm| arm["moving"] == false);

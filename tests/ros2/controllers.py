@@ -103,12 +103,14 @@ class Goal:
     """An accepted goal and how it ends."""
 
     def __init__(self, handle, q, v, now):
-        self.handle, self.end = handle, None
+        self.handle, self.end, self.over = handle, None, Future()
         request = handle.request
         order = [request.trajectory.joint_names.index(name) for name in JOINTS]
         stamp = seconds(request.trajectory.header.stamp)
         begin = now + (stamp - time.time() if stamp else 0.0)
         self.states = [(now, list(q), list(v))]
+        first = request.trajectory.points[0].time_from_start
+        self.late_s = now - begin - seconds(first) if stamp else -1.0
         for point in request.trajectory.points:
             at = begin + seconds(point.time_from_start)
             velocities = point.velocities or [0.0] * len(JOINTS)
@@ -143,6 +145,7 @@ class Arm(Node):
         self.blocked = self.frozen = self.deaf = False
         self.active = self.present = True
         self.counts = {"accepted": 0, "refused": 0, "replaced": 0, "cancelled": 0, "aborted": 0, "succeeded": 0}
+        self.latest_s = -1.0
         self.refusals, self.fastest, self.moved_at, self.jump = [], 0.0, time.monotonic(), 0.0
         self.finger, self.finger_goal = options.open, None
         self.server = ActionServer(
@@ -177,6 +180,7 @@ class Arm(Node):
         with self.lock:
             before = self.goal
             self.goal = Goal(handle, self.q, self.v, time.monotonic())
+            self.latest_s = max(self.latest_s, self.goal.late_s)
             if before is not None and before.end is None:
                 before.end = ("replaced", -1, "Current goal preempted by new incoming action.")
             self.waiting.append(self.goal)
@@ -191,7 +195,6 @@ class Arm(Node):
 
     async def execute(self, handle):
         own = next(goal for goal in self.waiting if goal.handle.goal_id == handle.goal_id)
-        own.over = Future()
         await own.over
         self.waiting.remove(own)
         kind, code, text = own.end
@@ -319,6 +322,7 @@ class Arm(Node):
                 "q": self.q,
                 "speed": max(map(abs, self.v)),
                 "fastest": self.fastest,
+                "latest_s": self.latest_s,
                 "moved_at": self.moved_at,
                 "now": now,
                 "executing": self.goal is not None and self.goal.end is None,
@@ -347,6 +351,11 @@ class Stranger:
 
 def main():
     rclpy.init()
+    try:
+        # Controllers have real-time priority.
+        os.nice(-10)
+    except PermissionError:
+        pass
     arm, executor = Arm(), SingleThreadedExecutor()
     executor.add_node(arm)
 

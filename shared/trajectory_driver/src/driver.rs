@@ -18,8 +18,6 @@ use sequence::{Next, Sequence};
 const BEAT: Span = Span::from_ms(20);
 /// Timeout of a finger command, seconds.
 const FINGERS_MAX_S: f64 = 8.0;
-/// Time after which a window that the controller has not accepted is missed, seconds.
-const ACCEPT_MAX: Span = Span::from_ms(1_000);
 
 /// The driver.
 #[derive(Clone, Debug)]
@@ -44,8 +42,6 @@ struct DriverState {
     number: u64,
     /// Windows up to this one are void: their ends say nothing.
     void: u64,
-    /// Posture that the latest command wants, if its motion is being sent.
-    commanded: Option<Joints>,
     /// The latest order, and when it was sent.
     sent: Option<(Motion, Time)>,
     now: Time,
@@ -74,7 +70,6 @@ impl TrajectoryDriver {
             stopping: None,
             number: 0,
             void: 0,
-            commanded: None,
             sent: None,
             now: Time(0),
             inhibit: MotionInhibit::Unheard,
@@ -123,6 +118,9 @@ impl TrajectoryDriver {
         if report.condition != self.state.report.condition {
             log(report.condition);
         }
+        if let Some(sequence) = &mut self.state.sequence {
+            sequence.on_accepted(report.accepted);
+        }
         if let Some((number, _)) = self.state.stopping
             && report.stopped >= number
         {
@@ -165,7 +163,7 @@ impl TrajectoryDriver {
     /// Gives up the motion and the fingers' command: their ends say nothing any more.
     fn abandon(&mut self) {
         let state = &mut self.state;
-        (state.sequence, state.commanded, state.void) = (None, None, state.number);
+        (state.sequence, state.void) = (None, state.number);
         state.fingers.forget();
     }
 
@@ -215,7 +213,6 @@ impl ArmDriver for TrajectoryDriver {
             return;
         }
         if command.limb == self.limb {
-            self.state.commanded = self.state.sequence.as_ref().map(|_| command.q);
             self.state.fingers.want(command.fingers, &self.settings.gripper, self.state.now);
         }
     }
@@ -232,13 +229,14 @@ impl ArmDriver for TrajectoryDriver {
             None if begins => Next::Window(0.0),
             None => return,
         };
-        if let Next::Window(ahead_s) = next {
-            let number = self.next_number();
-            if self.state.sequence.is_none() {
+        let Next::Window(ahead_s) = next else { return };
+        let number = self.next_number();
+        match &mut self.state.sequence {
+            Some(sequence) => sequence.send(motion, (t_s, ahead_s), (number, now), joints),
+            None => {
                 self.state.void = number - 1;
+                self.state.sequence = Some(Sequence::begin(motion, t_s, (number, now), joints));
             }
-            let sequence = Sequence::send(motion, (t_s, ahead_s), (number, now), joints);
-            self.state.sequence = Some(sequence);
         }
     }
 
@@ -294,13 +292,10 @@ impl ArmDriver for TrajectoryDriver {
         if let Some(why) = why {
             return Some(Fault::Controller { limb, why });
         }
-        if sequence.age(self.state.now) > ACCEPT_MAX
-            && self.state.report.accepted < sequence.number()
-        {
-            let why = "has not accepted a motion within 1 s; help: look at its log";
-            return Some(Fault::Controller { limb, why });
-        }
-        let (joint, error_rad) = self.furthest(&self.state.commanded?);
+        let Source::Sensors(at) = self.measured.at else { return None };
+        let mut expected = self.measured.posture.joints[limb];
+        expected.iter_mut().zip(sequence.expected(at)?).for_each(|(own, q)| *own = q);
+        let (joint, error_rad) = self.furthest(&expected);
         let tolerance_rad = self.settings.path_tolerance_rad;
         let setting = "arm.trajectory.path_tolerance_rad";
         (error_rad > tolerance_rad).then_some(Fault::Path {
@@ -318,7 +313,7 @@ impl ArmDriver for TrajectoryDriver {
         let measured_there = error_rad <= tolerance_rad && self.velocity_is_low();
         let there = measured_there && self.is_confirmed();
         if there {
-            (self.state.sequence, self.state.commanded) = (None, None);
+            self.state.sequence = None;
         } else if late_s > self.settings.goal_time_s && measured_there {
             let why = "has not reported the end of a motion; help: look at its log";
             return Err(Fault::Controller { limb, why });

@@ -9,7 +9,7 @@ use messages::MotionInhibit;
 use messages::robot::{Order, Report};
 use service::{Span, Time};
 
-use crate::window::{EVERY_S, LEAD_S, part};
+use crate::window::{EVERY_S, LEAD_S, PATH_S, part};
 use crate::{
     ArmOrder, Condition, ControllerReport, Controllers, Ending, FingerEnd, JointMeasurement,
     Motion, TrajectoryDriver, Window,
@@ -44,6 +44,7 @@ struct Bench {
     /// Every window, once.
     windows: Vec<Window>,
     follows: bool,
+    accepts: bool,
 }
 
 impl Bench {
@@ -62,6 +63,7 @@ impl Bench {
             order: ArmOrder::default(),
             windows: Vec::new(),
             follows: true,
+            accepts: true,
         };
         bench.pass(None);
         bench
@@ -87,6 +89,9 @@ impl Bench {
     }
 
     fn hear(&mut self) {
+        if self.accepts {
+            self.report.accepted = self.number();
+        }
         let fingers = self.report.joints.as_ref().and_then(|joints| joints.fingers);
         self.report.joints = Some(JointMeasurement {
             at_ns: self.now.ns(),
@@ -155,7 +160,7 @@ fn window_is_on_the_path_and_ends_at_rest_within_its_bound() {
     let whole = motion.duration_s();
     for n in 0..=100 {
         let from_s = whole * f64::from(n) / 100.0;
-        let part = part(&motion, from_s, 7);
+        let part = part(&motion, (from_s, PATH_S), 7);
         let (first, last) = (&part.points[0], part.points.last().unwrap());
         assert!(part.points.windows(2).all(|two| two[1].t_s > two[0].t_s + 0.009), "{part:?}");
         assert!((first.t_s - LEAD_S).abs() < 1e-9 || part.points.len() == 1);
@@ -233,6 +238,21 @@ fn arm_that_was_held_up_for_longer_than_its_windows_stops_and_waits_for_rest() {
     bench.pass(None);
     assert_eq!(bench.driver.inhibit(), MotionInhibit::None);
     assert!(bench.driver.is_still(), "{:?}", bench.qd);
+}
+
+#[test]
+fn windows_that_are_not_accepted_are_not_followed_by_others_that_the_arm_would_have_to_catch_up() {
+    // From the first one on, and in the middle.
+    for (accepted_s, at_most) in [(0.0, 1), (0.5, 3)] {
+        let (mut bench, motion) = (Bench::new(), motion(1.2));
+        bench.accepts = accepted_s > 0.0;
+        bench.run(&motion, 0.0, f64::max(accepted_s, 0.1));
+        let before = if bench.accepts { bench.windows.len() } else { 0 };
+        bench.accepts = false;
+        bench.run(&motion, f64::max(accepted_s, 0.1), accepted_s + 0.5);
+        assert!(bench.windows.len() - before <= at_most, "{} {before}", bench.windows.len());
+        assert!(matches!(bench.order.motion, Motion::Stop(_)), "{:?}", bench.order.motion);
+    }
 }
 
 #[test]

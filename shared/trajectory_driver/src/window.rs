@@ -10,8 +10,11 @@ pub const EVERY_S: f64 = 0.1;
 /// interpolates to where the motion will be and does not run after where it was.
 pub const LEAD_S: f64 = 0.05;
 /// Part of the motion in a window, seconds, if its ramp is short.
-const PATH_S: f64 = 0.4;
-/// The least of it: three windows may be lost.
+pub const PATH_S: f64 = 0.4;
+/// The same in the first window of a motion, which is replaced once the controller has accepted it: if it comes late,
+/// there is little to catch up.
+pub const FIRST_PATH_S: f64 = 0.2;
+/// The least of a later one: two windows may be lost.
 const PATH_MIN_S: f64 = 0.25;
 /// Time from a window's begin to rest at most, seconds, where the ramp allows: so long the arm moves on when nobody
 /// sends the next window.
@@ -34,12 +37,13 @@ pub struct Part {
     pub is_last: bool,
 }
 
-/// Returns the window that begins `from_s` seconds into the motion of an arm with so many joints.
-pub fn part(motion: &Trajectory, from_s: f64, joints: usize) -> Part {
+/// Returns the window that begins `from_s` seconds into the motion of an arm with so many joints, with `path_s` of the
+/// motion at most.
+pub fn part(motion: &Trajectory, (from_s, path_s): (f64, f64), joints: usize) -> Part {
     let end_s = motion.duration_s();
     let from_s = from_s.min(end_s);
     let ends_at_rest = is_still(&motion.state(end_s));
-    let mut path_s = PATH_S;
+    let mut path_s = path_s;
     loop {
         if ends_at_rest && from_s + path_s >= end_s {
             let path_s = end_s - from_s;

@@ -96,12 +96,12 @@ const PROBE_EVERY: Span = Span::from_ms(500);
 const QUIET: Span = Span::from_ms(1_000);
 /// Age of the latest answer beyond which a server is silent.
 const SILENT: Span = Span::from_ms(2_500);
-/// Longest time to the answer to a goal.
-const ANSWER_WITHIN: Span = Span::from_ms(500);
 
 /// Whether an action server lives: nothing else tells that it is there.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Liveness {
+    /// Longest time to the answer to a goal.
+    within: Span,
     heard: Option<Time>,
     probed: Option<Time>,
     /// The oldest goal that waits for its answer.
@@ -109,9 +109,22 @@ pub struct Liveness {
 }
 
 impl Liveness {
-    /// Takes in any answer.
+    /// Returns the liveness of a server before its first answer; to a goal it is to answer `within` a time.
+    pub fn new(within: Span) -> Self {
+        Self { within, heard: None, probed: None, asked: None }
+    }
+
+    /// Takes in any answer to a request. Statuses are none: those of a server that hangs are still delivered.
     pub fn on_answer(&mut self, now: Time) {
         self.heard = Some(now);
+        if self.is_overdue(now) {
+            // The goal was lost, and the server lives.
+            self.asked = None;
+        }
+    }
+
+    fn is_overdue(&self, now: Time) -> bool {
+        self.asked.is_some_and(|asked| now.since(asked) > self.within)
     }
 
     /// Takes in that a goal was sent.
@@ -127,7 +140,8 @@ impl Liveness {
     /// Returns whether a probe is due, and counts it as sent.
     pub fn probes(&mut self, now: Time) -> bool {
         let is_quiet = self.heard.is_none_or(|heard| now.since(heard) > QUIET);
-        let is_due = is_quiet && self.probed.is_none_or(|at| now.since(at) >= PROBE_EVERY);
+        let is_due = (is_quiet || self.is_overdue(now))
+            && self.probed.is_none_or(|at| now.since(at) >= PROBE_EVERY);
         if is_due {
             self.probed = Some(now);
         }
@@ -141,7 +155,6 @@ impl Liveness {
 
     /// Returns whether a server that has answered before does not any more.
     pub fn is_silent(&self, now: Time) -> bool {
-        self.heard.is_some_and(|heard| now.since(heard) > SILENT)
-            || self.asked.is_some_and(|asked| now.since(asked) > ANSWER_WITHIN)
+        self.heard.is_some_and(|heard| now.since(heard) > SILENT) || self.is_overdue(now)
     }
 }

@@ -16,6 +16,8 @@ use stop::Stop;
 
 /// Age of the arm's latest order beyond which its process counts as dead.
 const ARM_SILENT: Span = Span::from_ms(150);
+/// Longest time to the answer to a goal: a window lasts little longer.
+const ANSWER_WITHIN: Span = Span::from_ms(300);
 /// Goals that are remembered: more than a controller can have under way.
 const GOALS_MAX: usize = 32;
 /// Time for which a result is waited for after the status has ended.
@@ -83,7 +85,7 @@ impl Controller {
             tolerances,
             still_rad_s,
             identity,
-            liveness: Liveness::default(),
+            liveness: Liveness::new(ANSWER_WITHIN),
             sent: VecDeque::new(),
             newest: 0,
             accepted: 0,
@@ -98,7 +100,9 @@ impl Controller {
 
     /// Takes in an answer.
     pub fn on_answer(&mut self, answer: Answer<TrajectoryResult>, now: Time) {
-        self.liveness.on_answer(now);
+        if !matches!(answer, Answer::Statuses(_)) {
+            self.liveness.on_answer(now);
+        }
         match answer {
             Answer::Accepted(id, is_accepted) => self.on_accepted(&id, is_accepted),
             Answer::Ended(id, status, result) => self.on_end(&id, status, Some(&result)),
@@ -131,7 +135,8 @@ impl Controller {
     /// aborted or cancelled, unless a tolerance was violated.
     fn on_end(&mut self, id: &GoalId, status: i8, result: Option<&TrajectoryResult>) {
         let newest = self.newest;
-        let Some(goal) = self.sent.iter_mut().find(|goal| goal.id == *id) else { return };
+        let own = self.sent.iter_mut().find(|goal| goal.id == *id && !goal.is_over);
+        let Some(goal) = own else { return };
         goal.is_over = true;
         let (window, code) = (goal.window, result.map_or(0, |result| result.error_code));
         let Some(ending) = judged(status, code) else { return };

@@ -1,6 +1,6 @@
 //! The gripper's controller as the bridge sees it.
 
-use service::Time;
+use service::{Span, Time};
 use trajectory_driver::{FingerEnd, FingerOrder};
 
 use super::actions::{Answer, GoalId, Identity, Liveness, Request, status};
@@ -14,13 +14,28 @@ pub struct FingerResult {
     pub reached: bool,
 }
 
+/// Longest time to the answer to a command. Nothing hurries: the arm waits for its fingers.
+const ANSWER_WITHIN: Span = Span::from_ms(1_500);
+/// Time after which a command that was not accepted is sent again: the server may not have known this client yet.
+const AGAIN_AFTER: Span = Span::from_ms(1_700);
+
+/// A command that was sent.
+#[derive(Clone, Copy, Debug)]
+struct Sent {
+    order: FingerOrder,
+    id: GoalId,
+    at: Time,
+    is_accepted: bool,
+    is_over: bool,
+}
+
 /// The gripper's controller.
 #[derive(Debug)]
 pub struct FingerController {
     identity: Identity,
     liveness: Liveness,
-    /// The newest command and its goal; whether it is over.
-    sent: Option<(FingerOrder, GoalId, bool)>,
+    /// The newest command.
+    sent: Option<Sent>,
     end: Option<FingerEnd>,
     cancelled: Option<u64>,
 }
@@ -28,35 +43,42 @@ pub struct FingerController {
 impl FingerController {
     /// Returns a gripper before its first answer.
     pub fn new(identity: Identity) -> Self {
-        Self { identity, liveness: Liveness::default(), sent: None, end: None, cancelled: None }
+        let liveness = Liveness::new(ANSWER_WITHIN);
+        Self { identity, liveness, sent: None, end: None, cancelled: None }
     }
 
     /// Takes in an answer.
     pub fn on_answer(&mut self, answer: Answer<FingerResult>, now: Time) {
+        if matches!(answer, Answer::Statuses(_)) {
+            return;
+        }
         self.liveness.on_answer(now);
-        let (id, result) = match answer {
-            Answer::Accepted(_, true) => return self.liveness.on_accepted(),
-            Answer::Accepted(id, false) => {
+        match answer {
+            Answer::Accepted(id, is_accepted) => {
                 self.liveness.on_accepted();
-                (id, FingerResult::default())
+                if let Some(sent) = self.sent.as_mut().filter(|sent| sent.id == id) {
+                    sent.is_accepted = true;
+                }
+                if !is_accepted {
+                    self.on_end(&id, FingerResult::default());
+                }
             }
+            Answer::Ended(id, status::CANCELED, _) => self.on_end(&id, FingerResult::default()),
             // A grasp stalls, and ends as aborted or succeeded after the controller's settings: the status of a goal that
             // was not cancelled says nothing.
-            Answer::Ended(id, status::CANCELED, _) => (id, FingerResult::default()),
             Answer::Ended(id, status, result) => {
                 let reached = result.reached || status == status::SUCCEEDED && !result.stalled;
-                (id, FingerResult { reached, ..result })
+                self.on_end(&id, FingerResult { reached, ..result });
             }
-            Answer::Cancelled(_) | Answer::Probed | Answer::Statuses(_) => return,
-        };
-        if let Some((order, own, is_over)) = &mut self.sent
-            && *own == id
-        {
-            *is_over = true;
-            let FingerOrder { number, closes, .. } = *order;
-            let FingerResult { stalled, reached } = result;
-            self.end = Some(FingerEnd { number, closes, stalled, reached });
+            Answer::Cancelled(_) | Answer::Probed | Answer::Statuses(_) => {}
         }
+    }
+
+    fn on_end(&mut self, id: &GoalId, FingerResult { stalled, reached }: FingerResult) {
+        let Some(sent) = self.sent.as_mut().filter(|sent| sent.id == *id) else { return };
+        sent.is_over = true;
+        let FingerOrder { number, closes, .. } = sent.order;
+        self.end = Some(FingerEnd { number, closes, stalled, reached });
     }
 
     /// Returns the latest end of a command.
@@ -77,18 +99,19 @@ impl FingerController {
         now: Time,
     ) -> Vec<Request<FingerOrder>> {
         let mut requests = Vec::new();
-        if let Some((own, _, false)) = self.sent
-            && stops
-            && self.cancelled != Some(own.number)
-        {
-            self.cancelled = Some(own.number);
+        let under_way = self.sent.filter(|sent| !sent.is_over).map(|sent| sent.order.number);
+        if stops && under_way.is_some() && self.cancelled != under_way {
+            self.cancelled = under_way;
             requests.push(Request::CancelAll);
         }
-        let is_new =
-            |order: &FingerOrder| self.sent.is_none_or(|(own, ..)| order.number > own.number);
-        if let Some(order) = order.filter(is_new).filter(|_| !stops && self.is_ready(now)) {
+        let is_due = |order: &FingerOrder| match &self.sent {
+            None => true,
+            Some(sent) if order.number > sent.order.number => true,
+            Some(sent) => !sent.is_accepted && !sent.is_over && now.since(sent.at) > AGAIN_AFTER,
+        };
+        if let Some(order) = order.filter(is_due).filter(|_| !stops && self.is_ready(now)) {
             let id = self.identity.next();
-            self.sent = Some((order, id, false));
+            self.sent = Some(Sent { order, id, at: now, is_accepted: false, is_over: false });
             self.liveness.on_goal(now);
             requests.push(Request::Goal(id, order));
         }

@@ -250,9 +250,16 @@ fn goals_at_the_start_are_cancelled_if_ours_and_named_if_of_others() {
 fn controller_that_does_not_answer_is_silent() {
     let mut bench = Bench::new();
     bench.follow(1);
-    (0..40).for_each(|_| bench.follow(1));
+    (0..28).for_each(|_| bench.follow(1));
     assert_eq!(bench.controller.condition(bench.now), Condition::Ready);
-    (0..20).for_each(|_| bench.follow(1));
+    // Statuses of a server that hangs are still delivered.
+    bench.answer(Answer::Statuses(Vec::new()));
+    bench.now = bench.now + Span::from_ms(30);
+    assert_eq!(bench.controller.condition(bench.now), Condition::Silent);
+    // It lives, and the goal was lost.
+    bench.answer(Answer::Probed);
+    assert_eq!(bench.controller.condition(bench.now), Condition::Ready);
+    bench.now = bench.now + Span::from_ms(3_000);
     assert_eq!(bench.controller.condition(bench.now), Condition::Silent);
     let unheard = Controller::new(Vec::new(), WITHIN, 0.05, Identity::new(9, Time(0)));
     assert_eq!(unheard.condition(bench.now), Condition::Unheard);
