@@ -200,6 +200,28 @@ fn wrong_commands_are_answered_with_what_is_expected() {
     }
 }
 
+/// As the page calls it: through the module's memory.
+#[test]
+#[allow(unsafe_code, reason = "writes and reads where the functions say")]
+fn functions_take_a_command_and_return_its_answer() {
+    use demo::abi::{whichone_command, whichone_input, whichone_output};
+    let call = |command: &str| -> Value {
+        let (place, bytes) = (whichone_input(command.len()), command.as_bytes());
+        // SAFETY: the function has made room for that many bytes, which nobody else uses.
+        unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), place, bytes.len()) };
+        let length = whichone_command();
+        // SAFETY: the answer has that length and stays until the next command.
+        let answer = unsafe { std::slice::from_raw_parts(whichone_output(), length) };
+        serde_json::from_slice(answer).unwrap()
+    };
+    assert_eq!(call(r#"{"do":"scenes"}"#)["scenes"][0], "bowls");
+    call(r#"{"do":"open","scene":"markers"}"#);
+    let answer = call(r#"{"do":"say","text":"the red one","at_ms":5}"#);
+    assert_eq!(answer["sections"]["dialogue"]["decision"], "pick", "{answer}");
+    assert!(whichone_input(64 * 1024 + 1).is_null());
+    assert!(call(r#"{"do":"look"}"#)["error"].as_str().unwrap().contains("at_ms"));
+}
+
 /// The console's views show these sections, so their keys are the console's.
 #[test]
 fn sections_have_the_keys_of_the_console() {

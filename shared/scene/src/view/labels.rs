@@ -48,3 +48,21 @@ impl Label {
         Self { description, unique }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn objects_of_equal_values_are_numbered() {
+        let head =
+            "name = \"s\"\nnoun = \"mug\"\n[[attributes]]\nname = \"colour\"\nvalues = [\"red\"]\n";
+        let mug =
+            |n| format!("[[objects]]\nname = \"m{n}\"\nattributes = {{ colour = \"red\" }}\n");
+        let mugs: String = (0..3).map(mug).collect();
+        let scene = Scene::from_toml("s", &format!("{head}{mugs}")).unwrap();
+        let labels = Labels::new(&scene);
+        let label = |n: u16| labels.of(&scene, ObjectId(n)).map(|label| label.unique.as_str());
+        assert_eq!([0, 2, 3].map(label), [Some("mug 1"), Some("mug 3"), None]);
+    }
+}
