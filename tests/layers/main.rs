@@ -81,8 +81,16 @@ fn dependents(package: &str) -> BTreeSet<String> {
 /// `vocabulary`.
 #[test]
 fn few_crates_depend_on_the_dialogue() {
-    let allowed =
-        ["evaluation", "laboratory", "policy", "setup", "speech", "whichone", "whichone-tests"];
+    let allowed = [
+        "demo",
+        "evaluation",
+        "laboratory",
+        "policy",
+        "setup",
+        "speech",
+        "whichone",
+        "whichone-tests",
+    ];
     assert_eq!(dependents("dialogue"), allowed.map(str::to_owned).into());
 }
 
@@ -91,6 +99,7 @@ fn few_crates_depend_on_the_dialogue() {
 fn few_crates_depend_on_the_language() {
     let allowed = [
         "console",
+        "demo",
         "evaluation",
         "grounding",
         "laboratory",
@@ -142,6 +151,17 @@ fn sdk_links_little() {
     for absent in heavy {
         assert!(!tree.contains(absent), "whichone-sdk depends on {absent}");
     }
+}
+
+/// The demo is built for pages, which have neither files nor processes, and nothing is built on it.
+#[test]
+fn demo_needs_no_operating_system() {
+    let tree = tree("demo", "99");
+    assert!(tree.contains("dialogue") && tree.contains("language"), "{tree:?}");
+    for absent in ["messages", "config", "safe_files", "runtime", "service", "libc", "rustix"] {
+        assert!(!tree.contains(absent), "demo depends on {absent}");
+    }
+    assert_eq!(dependents("demo"), BTreeSet::new());
 }
 
 #[test]

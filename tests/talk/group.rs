@@ -81,6 +81,16 @@ struct Inboxes {
     arm: Vec<arm::In<'static>>,
 }
 
+/// A robot that a person talks to.
+pub(crate) trait Robot {
+    fn now(&self) -> Time;
+    fn seen(&self) -> &Seen;
+    /// Gives it an input of its user.
+    fn put(&mut self, input: Input);
+    /// Lets time pass, to its next event at most.
+    fn advance(&mut self);
+}
+
 /// All services, a voice, and a world.
 pub(crate) struct Group {
     speech: Host<SpeechNode>,
@@ -96,8 +106,61 @@ pub(crate) struct Group {
     latest_pick: Option<PickId>,
     latest_delivery: Option<PickId>,
     texts: u64,
-    pub(crate) now: Time,
-    pub(crate) seen: Seen,
+    now: Time,
+    seen: Seen,
+}
+
+impl Robot for Group {
+    fn now(&self) -> Time {
+        self.now
+    }
+
+    fn seen(&self) -> &Seen {
+        &self.seen
+    }
+
+    fn put(&mut self, input: Input) {
+        match input {
+            Input::Text(text) => {
+                self.texts += 1;
+                let mut key = [0; 16];
+                key[..8].copy_from_slice(&self.texts.to_le_bytes());
+                let (key, sound) = (RequestKey(key), Sound::Text(text));
+                let injection = Injection::new(key, sound);
+                self.inboxes.speech.push(speech::In::Injection(injection));
+            }
+            Input::Motion(order) => {
+                let order = StopOrder { order, given_ns: self.now.ns() };
+                self.inboxes.arm.push(arm::In::StopOrder(order, Caller::named(b"an operator")));
+            }
+        }
+    }
+
+    /// Passes all messages on, then leaps to the next event.
+    fn advance(&mut self) {
+        if let Some(saying) = self.saying.take_if(|saying| saying.ends <= self.now) {
+            self.end_line(saying.playback, PlaybackState::Ended);
+        }
+        self.pass();
+        let is_idle = self.inboxes.speech.is_empty()
+            && self.inboxes.grounding.is_empty()
+            && self.inboxes.policy.is_empty()
+            && self.inboxes.arm.is_empty();
+        let soonest = self.now + STEP;
+        if !is_idle {
+            self.now = soonest;
+            return;
+        }
+        let deadlines = [
+            self.speech.deadline(),
+            self.grounding.deadline(),
+            self.policy.deadline(),
+            self.arm.deadline(),
+            self.saying.as_ref().map(|saying| saying.ends),
+        ];
+        let next = deadlines.into_iter().flatten().min().unwrap_or(self.now + LEAP);
+        self.now = next.clamp(soonest, self.now + LEAP);
+    }
 }
 
 impl Group {
@@ -126,50 +189,6 @@ impl Group {
         let outputs = group.speech.start(group.now, &mut group.faults);
         group.route_speech(outputs);
         group
-    }
-
-    /// Gives the group an input of its user.
-    pub(crate) fn put(&mut self, input: Input) {
-        match input {
-            Input::Text(text) => {
-                self.texts += 1;
-                let mut key = [0; 16];
-                key[..8].copy_from_slice(&self.texts.to_le_bytes());
-                let (key, sound) = (RequestKey(key), Sound::Text(text));
-                let injection = Injection::new(key, sound);
-                self.inboxes.speech.push(speech::In::Injection(injection));
-            }
-            Input::Motion(order) => {
-                let order = StopOrder { order, given_ns: self.now.ns() };
-                self.inboxes.arm.push(arm::In::StopOrder(order, Caller::named(b"an operator")));
-            }
-        }
-    }
-
-    /// Passes all messages on, then leaps to the next event.
-    pub(crate) fn advance(&mut self) {
-        if let Some(saying) = self.saying.take_if(|saying| saying.ends <= self.now) {
-            self.end_line(saying.playback, PlaybackState::Ended);
-        }
-        self.pass();
-        let is_idle = self.inboxes.speech.is_empty()
-            && self.inboxes.grounding.is_empty()
-            && self.inboxes.policy.is_empty()
-            && self.inboxes.arm.is_empty();
-        let soonest = self.now + STEP;
-        if !is_idle {
-            self.now = soonest;
-            return;
-        }
-        let deadlines = [
-            self.speech.deadline(),
-            self.grounding.deadline(),
-            self.policy.deadline(),
-            self.arm.deadline(),
-            self.saying.as_ref().map(|saying| saying.ends),
-        ];
-        let next = deadlines.into_iter().flatten().min().unwrap_or(self.now + LEAP);
-        self.now = next.clamp(soonest, self.now + LEAP);
     }
 
     fn pass(&mut self) {

@@ -13,6 +13,7 @@
 
 mod case;
 mod group;
+mod page;
 mod person;
 mod verdict;
 
@@ -23,10 +24,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use case::{Case, Check};
 use config::Settings;
-use group::Group;
+use group::{Group, Robot};
+use page::{Held, Page};
 use person::Person;
 use scene::Scene;
-use service::Time;
+use service::{Span, Time};
 use verdict::Verdict;
 use whichone_tests::settings;
 
@@ -80,14 +82,20 @@ fn check_names(case: &Case, scene: &Scene) {
 fn hold(case: &Case, settings: &Settings) -> Verdict {
     check_names(case, &settings.scene);
     let mut group = Group::new(settings);
-    let mut person = Person::new(case, &settings.scene);
-    while group.now < END && !person.is_done {
-        group.advance();
-        if let Some(input) = person.look(group.now, &group.seen) {
-            group.put(input);
+    let person = talk(case, &settings.scene, &mut group);
+    verdict::judge(case, &settings.scene, &person, group.seen())
+}
+
+/// Has the case's person talk to a robot until both are done.
+fn talk<'a>(case: &'a Case, scene: &'a Scene, robot: &mut impl Robot) -> Person<'a> {
+    let mut person = Person::new(case, scene);
+    while robot.now() < END && !person.is_done {
+        robot.advance();
+        if let Some(input) = person.look(robot.now(), robot.seen()) {
+            robot.put(input);
         }
     }
-    verdict::judge(case, &settings.scene, &person, &group.seen)
+    person
 }
 
 /// Holds all dialogues, two at a time.
@@ -244,4 +252,53 @@ fn dialogues_go_as_people_expect() {
     if wish.is_none() {
         Bounds::read().check(&score);
     }
+}
+
+/// Time after a fetch in which the robot says how it has ended.
+const AFTERWARDS: Span = Span::from_ms(1_000);
+
+/// Has the cases' persons talk to the services and to the demo, and compares. Both have the shipped configuration.
+fn compare_with_demo(is_chosen: impl Fn(&Case) -> bool) {
+    let shipped = |case: &Case| case.scene.file_stem().is_some_and(|scene| scene == "bowls");
+    let mut cases = case::read_all(folder());
+    cases.retain(|case| shipped(case) && is_chosen(case));
+    assert!(cases.len() >= 10, "{} cases", cases.len());
+    let config = folder().join("../../config");
+    let settings = preflight::load(&config, None, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let mut differ = Vec::new();
+    for case in &cases {
+        let (mut group, mut page) = (Group::new(&settings), Page::new(&settings.scene));
+        let (services, demo) =
+            (held(case, &settings, &mut group), held(case, &settings, &mut page));
+        if services != demo {
+            let Case { place, name, .. } = case;
+            differ.push(format!("{place} {name}: services {services:#?}, demo {demo:#?}"));
+        }
+    }
+    assert!(differ.is_empty(), "{} of {}:\n{}", differ.len(), cases.len(), differ.join("\n"));
+}
+
+/// Holds a dialogue, up to the end of what is fetched and what the robot says of it.
+fn held(case: &Case, settings: &Settings, robot: &mut impl Robot) -> Held {
+    talk(case, &settings.scene, robot);
+    let mut until = robot.now() + AFTERWARDS;
+    while robot.now() < until.min(END) {
+        robot.advance();
+        if robot.seen().is_fetching && !robot.seen().is_stopped {
+            until = robot.now() + AFTERWARDS;
+        }
+    }
+    Held::of(robot.seen())
+}
+
+#[test]
+fn demo_holds_the_same_dialogues_as_the_services() {
+    compare_with_demo(|case| {
+        ["bowls:", "fresh_rest:"].iter().any(|file| case.place.starts_with(file))
+    });
+}
+
+#[test]
+fn demo_holds_every_dialogue_about_the_bowls_as_the_services() {
+    compare_with_demo(|_| true);
 }

@@ -2,7 +2,7 @@
 
 use language::Reader;
 use messages::Hypothesis;
-use scene::{Question, Reading, Role, Scene, UnknownWord};
+use scene::{Question, Reading, Scene, UnknownWord};
 use whichone_sdk::grounding::Grounder;
 
 /// Reads by the rules of this reader.
@@ -18,11 +18,8 @@ impl Grounder for Rules<'_> {
         self.0.readings(&heard.text, &heard.word_confidence, question)
     }
 
-    /// A kind of thing rather than a quality.
     fn unknown(&mut self, best: &Hypothesis, _scene: &Scene) -> Option<UnknownWord> {
-        let mut words = self.0.unknown_words(&best.text);
-        let kind = words.iter().position(|word| word.role == Role::Kind);
-        (!words.is_empty()).then(|| words.swap_remove(kind.unwrap_or(0)))
+        self.0.unknown_word(&best.text)
     }
 }
 

@@ -5,8 +5,8 @@ use dialogue::rendering;
 use messages::{Delivery, FixedText, PolicyView, RobotAct, WireCode};
 use scene::{ObjectId, Question, Scene};
 use service::Span;
+use vocabulary::Action;
 use vocabulary::ids::UtteranceSeq;
-use vocabulary::{ActKind, Action};
 
 /// Returns the standing decision as it is published.
 pub(crate) fn act(manager: &Manager, state: &State) -> RobotAct {
@@ -21,7 +21,7 @@ pub(crate) fn act(manager: &Manager, state: &State) -> RobotAct {
         presentation: act.presentation,
         kind: act.kind.code(),
         in_words: u8::from(act.is_in_words()),
-        question: numbered(scene, answerable(manager, state)).into(),
+        question: numbered(scene, manager.answerable(state)).into(),
         object: act.pick.map_or(0, |(_, object)| scene.number(object).0.into()),
         attempt: act.pick.map_or(0, |(pick, _)| pick.attempt),
         decided_ns: act.decided.ns(),
@@ -48,30 +48,6 @@ fn numbered(scene: &Scene, question: Question) -> Question {
 /// Returns the object's number; one past the scene's objects, for an absent one, stays as it is.
 fn number(scene: &Scene, object: ObjectId) -> ObjectId {
     if object.index() < scene.objects().len() { scene.number(object) } else { ObjectId(u16::MAX) }
-}
-
-/// Returns the question that waits for an answer: that of the act, or whether a pick that was
-/// decided while the motion stop was latched, or is offered instead, shall start.
-fn asked(manager: &Manager, state: &State) -> Question {
-    let act = &state.act;
-    let confirmable = || {
-        let decided = state.confirmable(act.prompt).or_else(|| state.goes_back(act.prompt));
-        decided.or_else(|| manager.offered(state))
-    };
-    let confirmable = (act.kind == ActKind::Say).then(confirmable).flatten();
-    confirmable.map_or(act.question, Question::Point)
-}
-
-/// Returns the question as which the act's line can be answered: "I will get the white bowl" can be
-/// denied like "this one?", also after the hand-over.
-fn answerable(manager: &Manager, state: &State) -> Question {
-    let act = &state.act;
-    let deniable = match (act.kind, act.pick) {
-        (ActKind::Pick | ActKind::PutBack, Some((_, object))) => Some(object),
-        (ActKind::Say, _) => manager.offered(state).or_else(|| state.refusable(act.prompt)),
-        _ => None,
-    };
-    deniable.map_or_else(|| asked(manager, state), Question::Point)
 }
 
 /// Returns the object handed over last, while it can be refused.
@@ -111,7 +87,7 @@ pub(crate) fn view(manager: &Manager, state: &State, rejected: u64) -> PolicyVie
         absent,
         person: manager.user_params(state),
         objects,
-        question: numbered(scene, asked(manager, state)),
+        question: numbered(scene, manager.asked(state)),
         prompt: state.act.prompt.0,
         text: rendering::text(manager.scene(), &state.act),
         decision: state.act.kind,

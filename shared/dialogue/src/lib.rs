@@ -76,7 +76,7 @@ pub use confusion::{Confusion, NotAConfusion};
 pub use decision::Decision;
 pub use evaluate::{Evaluation, evaluate};
 pub use lesson::{Count, Lesson};
-pub use model::Model;
+pub use model::{CERTAIN_SMOOTHING, Model};
 pub use model_user::{Errors, ModelUser};
 pub use observation::{CERTAIN_DOUBT, Naming, log_likelihood};
 pub use planner::{DecisionProblem, Planner, Step};

@@ -12,6 +12,10 @@ mod misperception;
 mod tables;
 mod words;
 
+/// Smoothing of words that are certain. Their values are doubted by the rates of misperception, and once
+/// is enough; above 0, so that words that contradict one another leave a belief.
+pub const CERTAIN_SMOOTHING: f64 = 1e-6;
+
 /// Data of a scene for equations (4)–(7), attribute by attribute.
 ///
 /// Values lie column-wise (one small integer per object and attribute), so that the likelihood of

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ::vocabulary::Language;
-use scene::{Intent, Question, Reading, Reference, Response, Scene, UnknownWord, WordId};
+use scene::{Intent, Question, Reading, Reference, Response, Role, Scene, UnknownWord, WordId};
 use words::{Tokens, normalise};
 
 use crate::answer::response;
@@ -98,6 +98,14 @@ impl Reader {
                 unknown_words(&tokens, tags, clauses, &related)
             }
         }
+    }
+
+    /// Returns the one of these words about which the robot says that the scene lacks it: a kind of thing rather
+    /// than a quality.
+    pub fn unknown_word(&self, text: &str) -> Option<UnknownWord> {
+        let mut words = self.unknown_words(text);
+        let kind = words.iter().position(|word| word.role == Role::Kind);
+        (!words.is_empty()).then(|| words.swap_remove(kind.unwrap_or(0)))
     }
 
     /// Returns the alternative readings of an utterance that followed `last_question`, each with

@@ -36,10 +36,7 @@ mod repeated;
 
 pub use kept::{KeptStop, is_kept};
 pub use repeated::RepeatedStop;
-
-/// Time after a stop in which no release counts, whoever gives either: a frightened person presses
-/// repeatedly, and two people press at once.
-pub const RESUME_AFTER: Span = Span::from_ms(2_000);
+pub use vocabulary::RESUME_AFTER;
 
 /// Most datagrams of one pass.
 const DATAGRAMS_MAX: usize = 64;

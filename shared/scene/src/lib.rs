@@ -58,6 +58,7 @@ mod role;
 mod spoken;
 mod stable_hash;
 mod toml_form;
+pub mod view;
 mod wording;
 
 #[cfg(test)]

@@ -14,12 +14,11 @@ use messages::{
 use scene::Scene;
 use serde::Serialize;
 
-pub use dialogue::{
-    ActionView, AlternativeView, DeliveryView, DialogueView, EndedView, QuestionView, UserView,
-};
+pub use dialogue::{AlternativeView, DeliveryView, DialogueView, EndedView, UserView};
 pub use latest::{Arrived, Latest, LatestTopics, PromptId, drain, quiet};
 pub use lines::Lines;
 pub use table::TableScene;
+pub use vocabulary::named::{ActionView, QuestionView};
 
 use crate::Time;
 

@@ -5,13 +5,9 @@
 use config::Settings;
 use dialogue::manager::{Manager, Setup};
 use dialogue::registry::{self, UnknownPlanner};
-use dialogue::{Confusion, Model, NotAConfusion};
+use dialogue::{CERTAIN_SMOOTHING, Confusion, Model, NotAConfusion};
 use scene::Scene;
 use vocabulary::Language;
-
-/// Smoothing of words that are certain. Their values are doubted by the rates of misperception, and
-/// once is enough; above 0, so that words that contradict one another leave a belief.
-const CERTAIN_SMOOTHING: f64 = 1e-6;
 
 /// Error of building a dialogue manager from settings.
 #[derive(Debug, thiserror::Error)]

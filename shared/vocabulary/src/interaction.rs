@@ -4,6 +4,7 @@ use scene::ObjectId;
 use serde::{Deserialize, Serialize};
 
 use crate::ids::{InteractionId, UtteranceSeq};
+use crate::time::Span;
 
 /// Kind of a decision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -101,6 +102,10 @@ pub enum PickOutcome {
     /// of it until the next order for it.
     Kept,
 }
+
+/// Time after a motion stop in which no release counts, whoever gives either: a frightened person presses again and
+/// again, and two people press at once.
+pub const RESUME_AFTER: Span = Span::from_ms(2_000);
 
 /// Outcome of an interaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

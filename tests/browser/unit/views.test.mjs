@@ -350,6 +350,7 @@ describe("how an object is drawn", () => {
     assert.notEqual(of({ color: "red" }).fill, of({ color: "blue" }).fill);
     assert.equal(of({ kind: "coffee mug" }).form, "cup");
     assert.equal(of({}, "blocks").form, "box");
+    assert.equal(of({ color: "red", location: "tray" }, "block").form, "box", "not what it is in");
   });
 
   it("falls back on its size, and on a box", () => {

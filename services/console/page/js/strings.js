@@ -73,10 +73,12 @@ export function chooseLanguage(search, kept, wished) {
 /**
  * Loads the tables of a language; missing words are in English.
  * @param {string} language
+ * @param {string[]} [parts] of a page that has more words, `strings/PART.CODE.json`: they count first
  */
-export async function loadStrings(language) {
+export async function loadStrings(language, parts = []) {
   const codes = [...new Set([language, LANGUAGES[0]])];
-  const tables = await Promise.all(codes.map(table));
+  const names = codes.flatMap((code) => [...parts.map((part) => `${part}.${code}`), code]);
+  const tables = await Promise.all(names.map(table));
   current = translator(language, tables);
   document.documentElement.lang = language;
 }
@@ -88,13 +90,13 @@ const TRY_AGAIN_MS = 400;
 
 /**
  * Without its words the page still works, stop first of all: it shows their keys then.
- * @param {string} code
+ * @param {string} name
  * @returns {Promise<Record<string, string>>}
  */
-async function table(code) {
+async function table(name) {
   for (let attempt = 1; attempt <= TRIES; attempt++) {
     try {
-      const answer = await fetch(addressOf(`/strings/${code}.json`));
+      const answer = await fetch(addressOf(`/strings/${name}.json`));
       return answer.ok ? await answer.json() : {};
     } catch {
       await new Promise((resolve) => setTimeout(resolve, TRY_AGAIN_MS));

@@ -1,7 +1,6 @@
 //! The objects that pages list: those that have a place; of the others all of a small scene, and of
 //! a large one those that the dialogue is about at the moment.
 
-use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 use messages::{ArmStatus, PolicyView};
@@ -12,50 +11,6 @@ use vocabulary::Action;
 pub(super) const WHOLE_MAX: usize = 64;
 /// Likeliest objects that are listed of a larger scene.
 pub(super) const LIKELIEST_MAX: usize = 24;
-
-/// Words for objects, found when they are first needed: in a scene of thousands few ever are.
-#[derive(Debug)]
-pub(super) struct Labels(Vec<OnceCell<Label>>);
-
-/// Words for an object.
-#[derive(Debug)]
-pub(super) struct Label {
-    /// The robot's own words for it, which it also understands.
-    pub(super) description: String,
-    /// Words for the object, numbered if objects have the same values.
-    pub(super) unique: String,
-}
-
-impl Labels {
-    pub(super) fn new(scene: &Scene) -> Self {
-        Self(scene.objects().iter().map(|_| OnceCell::new()).collect())
-    }
-
-    /// Returns the words for an object of the scene; `None` if it has no such object.
-    pub(super) fn of(&self, scene: &Scene, object: ObjectId) -> Option<&Label> {
-        let cell = self.0.get(object.index())?;
-        Some(cell.get_or_init(|| Label::new(scene, object)))
-    }
-
-    /// Returns the unique words for an object; its name if the scene has no such object.
-    pub(super) fn unique<'a>(&'a self, scene: &Scene, object: ObjectId, name: &'a str) -> &'a str {
-        self.of(scene, object).map_or(name, |label| &label.unique)
-    }
-}
-
-impl Label {
-    fn new(scene: &Scene, object: ObjectId) -> Self {
-        let description = scene.describe(object);
-        let values = &scene.object(object).values;
-        let same =
-            |objects: &[scene::Object]| objects.iter().filter(|o| o.values == *values).count();
-        let unique = match same(scene.objects()) {
-            0 | 1 => description.clone(),
-            _ => format!("{description} {}", same(&scene.objects()[..object.index()]) + 1),
-        };
-        Self { description, unique }
-    }
-}
 
 /// The objects that are listed besides `standing` for now: all of a small scene; of a large one the
 /// likeliest, and those that the decision or the arm is about.
@@ -132,12 +87,5 @@ mod tests {
         assert!(listed.contains(&ObjectId(60)) && listed.contains(&ObjectId(64)), "{listed:?}");
         assert!(!listed.contains(&ObjectId(1)), "it is listed already: {listed:?}");
         assert!(listed.len() <= LIKELIEST_MAX + 1, "{listed:?}");
-    }
-
-    #[test]
-    fn objects_of_equal_values_are_numbered() {
-        let (scene, labels) = (mugs(3), Labels::new(&mugs(3)));
-        let label = |n: u16| labels.of(&scene, ObjectId(n)).map(|label| label.unique.as_str());
-        assert_eq!([0, 2, 3].map(label), [Some("mug 1"), Some("mug 3"), None]);
     }
 }

@@ -3,7 +3,6 @@
 //! Pure: no IO, no clock, no thread. Messages come in any order and more than once (a service that
 //! is restarted repeats its latest); folding one twice changes nothing.
 
-mod examples;
 mod latency;
 pub mod line;
 mod listed;
@@ -23,6 +22,7 @@ use messages::{
     TrajectoryView, WorldView,
 };
 use page_part::{DialogueEvent, Now, Robot};
+use scene::view::{Labels, SceneView, objects};
 use scene::{ObjectId, Scene};
 use serde::Serialize;
 use service::status::{GroupStatus, ServiceStatus};
@@ -34,8 +34,7 @@ pub use transcript::Transcript;
 use turn::Turn;
 
 use crate::understood;
-use listed::Labels;
-use sections::{SceneSection, SpeakingSection, TrajectorySection, TurnSection, WorldSection};
+use sections::{SpeakingSection, TrajectorySection, TurnSection, WorldSection};
 use services::missing;
 
 /// Utterances whose readings are remembered.
@@ -279,8 +278,7 @@ impl ViewModel {
         }
         let mut sections = Sections(Vec::new());
         if std::mem::take(&mut self.is_scene_changed) {
-            sections
-                .put("scene", Some(SceneSection::new(&self.scene, &self.labels, &self.standing)));
+            sections.put("scene", Some(SceneView::new(&self.scene, &self.labels, &self.standing)));
         }
         let Latest { view, presented, hearing, arm, .. } = &self.latest;
         let view = view.as_ref().filter(|view| view.scene_key == self.scene.key());
@@ -292,7 +290,7 @@ impl ViewModel {
             DialogueView { belief, ..dialogue }
         };
         // Before the belief, which names them.
-        let objects = sections::objects(&self.scene, &self.labels, further.iter().copied());
+        let objects = objects(&self.scene, &self.labels, further.iter().copied());
         sections.put("further", Some(objects));
         sections.put("dialogue", view.map(dialogue));
         let speaking = self.prompts.of(presented);

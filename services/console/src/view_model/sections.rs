@@ -1,110 +1,14 @@
-//! Sections of the page that only the console has: scene, objects, trajectory, speaking and turn.
-//! The others are those of [`service::view`].
+//! Sections of the page that only the console has: trajectory, speaking and turn. The scene is that
+//! of [`scene::view`], the others are those of [`service::view`].
 
 use messages::{MotionPhase, PresentationState, Presented, TrajectoryView, WorldView};
-use scene::{ObjectId, Scene};
-use serde::{Serialize, Serializer};
+use scene::ObjectId;
+use serde::Serialize;
 use service::Time;
 
-use super::examples::examples;
-use super::listed::{Label, Labels};
 use super::prompts::Prompt;
 use super::turn::{Actor, Turn, TurnState};
 use crate::hub::ms;
-
-#[derive(Debug, Serialize)]
-pub(super) struct SceneSection<'a> {
-    key: String,
-    name: &'a str,
-    noun: &'a str,
-    attributes: Vec<Attribute<'a>>,
-    /// Number of objects in the scene.
-    count: usize,
-    /// Objects that have a place; the section `further` has others.
-    objects: Vec<ObjectSection<'a>>,
-    /// Requests that the robot understands, as a help for users.
-    examples: Vec<String>,
-}
-
-#[derive(Debug, Serialize)]
-struct Attribute<'a> {
-    name: &'a str,
-    values: Vec<Value<'a>>,
-}
-
-#[derive(Debug, Serialize)]
-struct Value<'a> {
-    name: &'a str,
-    spoken: &'a str,
-}
-
-#[derive(Debug, Serialize)]
-pub(super) struct ObjectSection<'a> {
-    name: &'a str,
-    /// Unique: objects with the same description are numbered.
-    label: &'a str,
-    /// The robot's own words for it, which it also understands.
-    description: &'a str,
-    #[serde(serialize_with = "map")]
-    attributes: Vec<(&'a str, &'a str)>,
-    xyz: Option<[f64; 3]>,
-    size: Option<[f64; 3]>,
-    yaw: Option<f64>,
-}
-
-impl<'a> SceneSection<'a> {
-    pub(super) fn new(scene: &'a Scene, labels: &'a Labels, listed: &[ObjectId]) -> Self {
-        let attributes = scene.attributes().iter().map(|attribute| Attribute {
-            name: &attribute.name,
-            values: (attribute.values.iter())
-                .map(|value| Value { name: &value.name, spoken: &value.spoken })
-                .collect(),
-        });
-        Self {
-            key: format!("{:016x}", scene.key()),
-            name: scene.name(),
-            noun: scene.noun(),
-            attributes: attributes.collect(),
-            count: scene.objects().len(),
-            objects: objects(scene, labels, listed.iter().copied()),
-            examples: examples(scene),
-        }
-    }
-}
-
-/// Describes objects of the scene.
-pub(super) fn objects<'a>(
-    scene: &'a Scene,
-    labels: &'a Labels,
-    listed: impl Iterator<Item = ObjectId>,
-) -> Vec<ObjectSection<'a>> {
-    listed.filter_map(|i| ObjectSection::new(scene, i, labels.of(scene, i)?)).collect()
-}
-
-impl<'a> ObjectSection<'a> {
-    fn new(scene: &'a Scene, object: ObjectId, label: &'a Label) -> Option<Self> {
-        let object = scene.objects().get(object.index())?;
-        let values = scene.attributes().iter().zip(&object.values);
-        Some(Self {
-            name: &object.name,
-            label: &label.unique,
-            description: &label.description,
-            attributes: values
-                .filter_map(|(attribute, value)| {
-                    let value = &attribute.values[(*value)?.index()];
-                    Some((attribute.name.as_str(), value.name.as_str()))
-                })
-                .collect(),
-            xyz: object.placement.map(|placed| placed.xyz),
-            size: object.placement.map(|placed| placed.size),
-            yaw: object.placement.map(|placed| placed.yaw),
-        })
-    }
-}
-
-fn map<S: Serializer>(pairs: &[(&str, &str)], to: S) -> Result<S::Ok, S::Error> {
-    to.collect_map(pairs.iter().copied())
-}
 
 /// The section `world`: the objects of the section `scene`, in its order; poses to a tenth of a
 /// millimetre.

@@ -4,12 +4,12 @@ use std::collections::{BTreeSet, VecDeque};
 
 use messages::{Ended, Outcome, Presented, Receipt, ReceiptStatus, SecondState, Source};
 use scene::Scene;
+use scene::view::Labels;
 use service::Time;
 use service::status::ServiceStatus;
 use service::view::Speaker;
 
 use super::line::{Line, Note, Recognisers};
-use super::listed::Labels;
 use super::prompts::Prompt;
 use super::understood::Understood;
 use crate::hub::board::LINES_MAX;

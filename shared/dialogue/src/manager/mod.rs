@@ -18,7 +18,7 @@
 //! | `replies.rs` | answers to what the user asks |
 //! | `people.rs`, `acquaint.rs` | people who gave their name, and what is learned about them |
 //! | `beliefs.rs`, `pointing.rs` | prior, updates, the user model, gestures |
-//! | `acts.rs` | decisions as standing acts |
+//! | `acts.rs`, `answerable.rs` | decisions as standing acts; the question as which their lines can be answered |
 //! | `put_back.rs` | putting back what was handed over |
 //! | `kept.rs` | what was called off and cannot go back |
 //! | `floor.rs` | deferred decisions and response windows |
@@ -28,6 +28,7 @@
 
 mod acquaint;
 mod acts;
+mod answerable;
 mod attribution;
 mod beliefs;
 mod concede;

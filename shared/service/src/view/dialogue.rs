@@ -1,7 +1,8 @@
 use messages::{ActKind, Delivery, Outcome, PolicyView, Presented};
-use scene::{Question, Scene, ValueId};
+use scene::Scene;
 use serde::ser::{Serialize, Serializer};
-use vocabulary::{Action, Attributed};
+use vocabulary::Attributed;
+use vocabulary::named::{ActionView, QuestionView};
 
 use super::ms;
 use crate::Time;
@@ -59,56 +60,6 @@ pub struct UserView {
     pub p_l: f64,
     /// Probability that an answer is wrong.
     pub epsilon: f64,
-}
-
-/// A question, in the scene's names.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case")]
-pub enum QuestionView<Name> {
-    /// No question.
-    None,
-    /// "Is it this one?"
-    Point {
-        /// The object's name.
-        object: Name,
-    },
-    /// "Is it white?"
-    Attr {
-        /// The attribute's name.
-        attribute: Name,
-        /// The value's name.
-        value: Name,
-    },
-    /// "What colour is it?"
-    Which {
-        /// The attribute's name.
-        attribute: Name,
-    },
-    /// "White, metallic or clear?"
-    Choice {
-        /// The attribute's name.
-        attribute: Name,
-        /// The values' names.
-        values: Vec<Name>,
-    },
-}
-
-/// An action, in the scene's names.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case")]
-pub enum ActionView<Name> {
-    /// Do nothing for a turn.
-    Wait,
-    /// Fetch an object.
-    Pick {
-        /// The object's name.
-        object: Name,
-    },
-    /// Conclude that the wanted object is not here.
-    NotHere,
-    /// Ask a question.
-    #[serde(untagged)]
-    Ask(QuestionView<Name>),
 }
 
 /// An action that the planner has weighed.
@@ -194,52 +145,6 @@ impl<'a> DeliveryView<'a> {
         let Delivery { interaction, object, until_ns } = delivery;
         let object = scene.objects().get(usize::from(object))?;
         Some(Self { interaction, object: &object.name, until_ms: ms(Time(until_ns)) })
-    }
-}
-
-impl<'a, Name: From<&'a str>> ActionView<Name> {
-    /// Names an action's parts.
-    pub fn new(scene: &'a Scene, action: Action) -> Self {
-        match action {
-            Action::Wait => Self::Wait,
-            Action::Pick(object) => match scene.objects().get(object.index()) {
-                Some(object) => Self::Pick { object: object.name.as_str().into() },
-                None => Self::NotHere,
-            },
-            Action::Ask(question) => {
-                Self::Ask(QuestionView::new(scene, question).unwrap_or(QuestionView::None))
-            }
-        }
-    }
-}
-
-impl<'a, Name: From<&'a str>> QuestionView<Name> {
-    /// Names a question's parts; `None` if it is not of this scene.
-    pub fn new(scene: &'a Scene, question: Question) -> Option<Self> {
-        scene.contains(question).then(|| match question {
-            Question::None => Self::None,
-            Question::Point(object) => {
-                Self::Point { object: scene.object(object).name.as_str().into() }
-            }
-            Question::Attribute(attribute, value) => {
-                let attribute = &scene.attributes()[attribute.index()];
-                Self::Attr {
-                    attribute: attribute.name.as_str().into(),
-                    value: attribute.values[value.index()].name.as_str().into(),
-                }
-            }
-            Question::Which(attribute) => Self::Which {
-                attribute: scene.attributes()[attribute.index()].name.as_str().into(),
-            },
-            Question::Choice(attribute, options) => {
-                let attribute = &scene.attributes()[attribute.index()];
-                let name = |v: &ValueId| attribute.values[v.index()].name.as_str().into();
-                Self::Choice {
-                    attribute: attribute.name.as_str().into(),
-                    values: options.values().iter().map(name).collect(),
-                }
-            }
-        })
     }
 }
 

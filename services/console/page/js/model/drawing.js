@@ -41,6 +41,8 @@ const FORMS = {
   spoon: ["spoon", "ladle", "spatula"],
   fork: ["fork", "knife", "whisk", "cutlery"],
 };
+/** Attributes that say where an object is and not what: what stands in the tray is no tray. */
+const PLACES = ["location", "place", "position"];
 const GLASSY = ["clear", "transparent", "glass", "see-through"];
 const SHINY = ["metal", "metallic", "steel", "silver", "chrome", "aluminium", "aluminum", "gold"];
 const SMALL = ["small", "little", "tiny", "short", "mini"];
@@ -63,7 +65,8 @@ const NEUTRAL = ["#b9bdc2", "#787d84"];
  * @returns {Drawing}
  */
 export function drawingOf(object, noun) {
-  const values = Object.values(object.attributes ?? {}).map((value) => String(value).toLowerCase());
+  const own = Object.entries(object.attributes ?? {}).filter(([name]) => !PLACES.includes(name));
+  const values = own.map(([, value]) => String(value).toLowerCase());
   const words = values.flatMap((value) => [value, ...value.split(/[\s_-]+/)]);
   const has = (list) => words.some((word) => list.includes(word));
   const colour = words.find((word) => Object.hasOwn(COLOURS, word));

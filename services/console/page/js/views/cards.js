@@ -22,7 +22,8 @@ const FIXED =
 /**
  * The objects with the robot's belief, the likely ones first. The operator says one by a press.
  * @param {HTMLElement} element
- * @param {{link: any, store: any, t: any, readOnly?: boolean}} context
+ * @param {{link: any, store: any, t: any, readOnly?: boolean, grows?: boolean}} context `grows`: the list is as
+ *   tall as its cards
  */
 export function mountCards(element, context) {
   const { store, t } = context;
@@ -47,7 +48,7 @@ export function mountCards(element, context) {
 
   /** Height available for the cards, if the page does not scroll. */
   let height = null;
-  const fixed = matchMedia(FIXED);
+  const fixed = matchMedia(context.grows ? "not all" : FIXED);
   new ResizeObserver(() => {
     const now = fixed.matches ? element.clientHeight : null;
     if (now === height) return;

@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
-use scene::{ObjectId, Role, Scene, ValueId};
+use crate::{ObjectId, Role, Scene, ValueId};
 
 /// Most objects of which the one with the shortest description is chosen.
 const DESCRIBED_MAX: usize = 32;
 
 /// Returns up to three requests: by kind, by a description of one object, by place.
-pub(super) fn examples(scene: &Scene) -> Vec<String> {
+pub fn examples(scene: &Scene) -> Vec<String> {
     let objects = || (0..scene.objects().len()).map(ObjectId::from);
     let mut alike: HashMap<&str, usize> = HashMap::new();
     for object in objects() {
