@@ -20,7 +20,7 @@ const PASS_S: f64 = 0.01;
 
 fn settings() -> Controllers {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
-    config::register([], [crate::DRIVER.about]);
+    config::register(&[], [crate::DRIVER.about]);
     Settings::load(folder, None, &[]).unwrap().part().unwrap()
 }
 
