@@ -16,8 +16,18 @@ const FIXTURES: &str = concat!(
     "/../shared/sdk/home-assistant/tests/fixtures/console.json"
 );
 /// Values that differ from run to run, with the moment, or in the last digit between processors.
-const VARYING: [&str; 9] =
-    ["id", "name", "version", "prompt", "phase", "moving", "seconds", "remaining_s", "belief"];
+const VARYING: [&str; 10] = [
+    "id",
+    "name",
+    "version",
+    "prompt",
+    "utterance",
+    "phase",
+    "moving",
+    "seconds",
+    "remaining_s",
+    "belief",
+];
 
 /// Answers by name, as they are asked for.
 #[derive(Default)]

@@ -75,6 +75,14 @@ mod tests {
     }
 
     #[test]
+    fn several_secrets_are_a_wrong_one() {
+        let mut twice = headers(&[("authorization", "Bearer x")]);
+        assert_eq!((authorizations(&twice), bearer(&twice)), (1, Some("x")));
+        twice.append(header::AUTHORIZATION, "Bearer x".parse().unwrap());
+        assert_eq!((authorizations(&twice), bearer(&twice)), (2, Some("")));
+    }
+
+    #[test]
     fn pages_of_other_sites_are_not_own() {
         let own = |origin, host| is_own(&headers(&[("origin", origin), ("host", host)]));
         assert!(own("http://localhost:8377", "localhost:8377"));
