@@ -1,8 +1,8 @@
 """Packages the crates that `whichone-sdk` is made of as they would be published, and builds them from their packages.
 
 The argument is a folder, which is replaced: a workspace of copies, in which each crate is called `whichone-NAME` and
-keeps NAME as the name that code imports. In the registry the plain names are others'. `cargo publish --workspace` in that
-folder publishes them."""
+keeps NAME as the name that code imports. In the registry the plain names are others'. `cargo publish --workspace` in
+that folder publishes them."""
 
 import json
 import pathlib
