@@ -206,6 +206,9 @@ mod ros2_rclpy_controllers {
         group.wait_for_log("trajectory", "another client");
         assert!(controllers.look()["speed"].as_f64().unwrap() > 0.0, "it is not ours to stop");
         wait_for_arm(&group, "the stranger's end", |arm| arm["hindrance"] == "none");
+        // It has moved the arm, which would go to rest: so the stop is latched.
+        group.release_stop();
+        wait_for_arm(&group, "the way to rest", |arm| arm["stopped"] == false);
         // One that comes between.
         set_out(&group, &mut controllers);
         let since = controllers.now();

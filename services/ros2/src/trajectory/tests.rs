@@ -127,13 +127,15 @@ fn ends_of_goals_that_were_replaced_here_say_nothing() {
     bench.answer(Answer::Ended(bench.goals[0].0, status::ABORTED, result(-1)));
     assert_eq!(bench.ended(), None);
     bench.answer(Answer::Accepted(bench.goals[1].0, true));
-    bench.answer(Answer::Ended(bench.goals[0].0, status::CANCELED, result(0)));
+    bench.follow(3);
+    bench.answer(Answer::Ended(bench.goals[1].0, status::CANCELED, result(0)));
     assert_eq!((bench.ended(), bench.controller.facts().0), (None, 2));
     // A violated tolerance is none of ours.
-    bench.answer(Answer::Ended(bench.goals[0].0, status::ABORTED, result(-4)));
-    assert_eq!(bench.ended(), Some((1, Ending::Aborted(-4))));
-    bench.answer(Answer::Ended(bench.goals[1].0, status::SUCCEEDED, result(0)));
-    assert_eq!(bench.ended(), Some((2, Ending::Succeeded)));
+    bench.follow(4);
+    bench.answer(Answer::Ended(bench.goals[2].0, status::ABORTED, result(-4)));
+    assert_eq!(bench.ended(), Some((3, Ending::Aborted(-4))));
+    bench.answer(Answer::Ended(bench.goals[3].0, status::SUCCEEDED, result(0)));
+    assert_eq!(bench.ended(), Some((4, Ending::Succeeded)));
 }
 
 #[test]
