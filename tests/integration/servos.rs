@@ -10,7 +10,7 @@ use std::time::Duration;
 use rustix::process::Signal;
 use serde_json::{Value, json};
 use tempfile::TempDir;
-use whichone_tests::{Group, UR5E, program, run, wait_for};
+use whichone_tests::{Ended, Group, UR5E, program, run, wait_for};
 
 /// Most steps per second of a servo at rest: 0.05 rad/s, as for the driver.
 const STILL: f64 = 33.0;
@@ -169,7 +169,8 @@ fn servos_deliver_and_a_killed_arm_rests_within_the_lead_of_its_goals() {
         let rest_s = bench.rested_s() - killed["now_s"].as_f64().unwrap();
         let way = Bench::way(&killed, &bench.state());
         println!("killed in motion: at rest {rest_s:.3} s and {way:.0} steps later");
-        assert!(rest_s < 0.15 && way < 98.0, "{rest_s} s, {way} steps");
+        // A tenth of a second of motion. The time is that of the servos' own position loop, and of a busy machine.
+        assert!(way < 98.0 && rest_s < 0.3, "{rest_s} s, {way} steps");
         group.wait_for_restart("arm", before);
     });
     assert_delivered(&group, &outcome, "red_large");
@@ -204,80 +205,69 @@ fn hot_servo_stops_the_others_names_its_joint_and_latches() {
     group.down();
 }
 
-#[test]
-fn port_has_one_user_and_missing_things_are_named() {
-    let bench = Bench::new();
-    let mut group = Group::with_config(bench.config());
-    let settings = bench.settings();
-    let set = |settings: &[String]| -> Vec<String> {
-        settings.iter().flat_map(|setting| ["--set".to_owned(), setting.clone()]).collect()
-    };
+/// Runs a verb with the configuration of the arm.
+fn call(bench: &Bench, group: &Group, words: &[&str], settings: &[String]) -> Ended {
     let config = bench.config().display().to_string();
-    let call = |group: &Group, words: &[&str], set: &[String]| {
-        let words = words
-            .iter()
-            .copied()
-            .chain(["--config", &config])
-            .chain(set.iter().map(String::as_str));
-        group.call(&words.collect::<Vec<_>>())
-    };
-    let right = call(&group, &["check"], &set(&settings));
+    let set = settings.iter().flat_map(|setting| ["--set", setting.as_str()]);
+    let words = words.iter().copied().chain(["--config", &config]).chain(set);
+    group.call(&words.collect::<Vec<_>>())
+}
+
+#[test]
+fn missing_port_and_calibration_are_named() {
+    let bench = Bench::new();
+    let (group, settings) = (Group::with_config(bench.config()), bench.settings());
+    let right = call(&bench, &group, &["check"], &settings);
     assert_eq!(right.code, Some(0), "{right:?}");
     let wrong = settings.iter().map(|setting| match setting.split_once('=') {
         Some(("arm.feetech.port", _)) => "arm.feetech.port=/dev/no-such-port".to_owned(),
         Some(("arm.feetech.calibration", file)) => format!("arm.feetech.calibration={file}x"),
         _ => setting.clone(),
     });
-    let wrong = call(&group, &["check"], &set(&wrong.collect::<Vec<_>>()));
+    let wrong = call(&bench, &group, &["check"], &wrong.collect::<Vec<_>>());
     assert_eq!(wrong.code, Some(78), "{wrong:?}");
     for part in
         ["arm.feetech.port: /dev/no-such-port: no such device; help:", "arm.jsonx", "2 problems"]
     {
         assert!(wrong.stderr.contains(part), "{part}: {wrong:?}");
     }
+}
+
+#[test]
+fn calibration_is_written_and_every_servo_released_while_no_group_uses_them() {
+    let bench = Bench::new();
+    let (mut group, settings) = (Group::with_config(bench.config()), bench.settings());
     bench.tell("byte 3 11 0");
-    let servos = call(&group, &["robot", "servos"], &set(&settings));
+    let servos = call(&bench, &group, &["robot", "servos"], &settings);
     assert_eq!(servos.code, Some(1), "{servos:?}");
     assert!(servos.stdout.contains("elbow_joint") && servos.stdout.contains("7.4 V"), "{servos:?}");
     assert!(
         servos.stderr.contains("servo 3 (elbow_joint) has range_max 3840, the file 4095"),
         "{servos:?}"
     );
-    let written = call(&group, &["robot", "servos", "--write-calibration"], &set(&settings));
+    let written = call(&bench, &group, &["robot", "servos", "--write-calibration"], &settings);
     assert_eq!(written.code, Some(0), "{written:?}");
     bench.tell("dip");
     let state = bench.state();
-    assert_eq!(
-        (&state["servos"][2]["range"], &state["servos"][2]["lock"]),
-        (&json!([0, 4095]), &json!(1)),
-        "{state}"
-    );
+    let servo = &state["servos"][2];
+    assert_eq!((&servo["range"], &servo["lock"]), (&json!([0, 4095]), &json!(1)), "{state}");
     let started: Vec<&str> = settings.iter().map(String::as_str).collect();
     assert_eq!(group.start(&started).code, Some(0), "{}", group.logs());
     wait_for("the servos hold", 10.0, || {
         Some(group.arm()).filter(|arm| arm["hindrance"] == "none")
     });
-    let second = call(&group, &["robot", "servos"], &set(&settings));
+    let second = call(&bench, &group, &["robot", "servos"], &settings);
     assert!(
         second.code == Some(78) && second.stderr.contains("another program uses it"),
         "{second:?}"
     );
     group.down();
-    let holding = call(
-        &Group::with_config(bench.config()),
-        &["robot", "servos", "--write-calibration"],
-        &set(&settings),
-    );
-    assert!(
-        holding.code == Some(1) && holding.stderr.contains("expected servos without torque"),
-        "{holding:?}"
-    );
+    let group = Group::with_config(bench.config());
+    let holding = call(&bench, &group, &["robot", "servos", "--write-calibration"], &settings);
+    let refused = holding.stderr.contains("expected servos without torque");
+    assert!(holding.code == Some(1) && refused, "{holding:?}");
     bench.tell("dead 2");
-    let released = call(
-        &Group::with_config(bench.config()),
-        &["robot", "servos", "--release"],
-        &set(&settings),
-    );
+    let released = call(&bench, &group, &["robot", "servos", "--release"], &settings);
     assert_eq!(released.code, Some(1), "{released:?}");
     let lines = released.stdout.lines().filter(|line| line.ends_with("released")).count();
     assert_eq!(lines, 6, "every other one: {released:?}");

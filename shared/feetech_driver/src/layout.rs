@@ -114,16 +114,9 @@ impl Layout {
             let unit = Unit::Angle { zero_rad, reversed };
             members.push(Member { joint: joint.clone(), calibrated: *calibrated, unit });
         }
-        let gripper = &settings.gripper;
-        match calibration.servos.get(gripper) {
-            None => problems.push(without_servo(&file, "of the gripper", gripper, calibration)),
-            Some(calibrated) => {
-                members.push(Member {
-                    joint: gripper.clone(),
-                    calibrated: *calibrated,
-                    unit: Unit::Percent,
-                });
-            }
+        match jaw(&settings.gripper, &file, calibration) {
+            Ok(jaw) => members.push(jaw),
+            Err(problem) => problems.push(problem),
         }
         if problems.is_empty() { Ok(Self { members }) } else { Err(problems) }
     }
@@ -131,6 +124,14 @@ impl Layout {
     pub(crate) fn ids(&self) -> Vec<u8> {
         self.members.iter().map(Member::id).collect()
     }
+}
+
+/// The servo of the jaw.
+fn jaw(servo: &str, file: &str, calibration: &Calibration) -> Result<Member, Diagnostic> {
+    let calibrated = calibration.servos.get(servo);
+    let calibrated =
+        calibrated.ok_or_else(|| without_servo(file, "of the gripper", servo, calibration))?;
+    Ok(Member { joint: servo.to_owned(), calibrated: *calibrated, unit: Unit::Percent })
 }
 
 fn without_servo(file: &str, joint: &str, servo: &str, calibration: &Calibration) -> Diagnostic {

@@ -66,23 +66,20 @@ mod tests {
     use service::Span;
 
     fn state(position: i32, speed: i32) -> State {
-        let still = (Errors(0), 1, 254, 0, 0, 0);
-        let (errors, torque, acceleration, goal, speed_limit, torque_limit) = still;
-        let own = State {
+        State {
             id: 1,
-            errors,
-            torque,
-            acceleration,
-            goal,
-            speed_limit,
-            torque_limit,
+            errors: Errors(0),
+            torque: 1,
+            acceleration: 254,
+            goal: 0,
+            speed_limit: 0,
+            torque_limit: 0,
             position,
             speed,
             load: 0,
             decivolts: 74,
             celsius: 30,
-        };
-        own
+        }
     }
 
     #[test]

@@ -47,31 +47,35 @@ fn run(cycles: u32, chance: f64, seed: u64) -> Counts {
             counts.readings += 1;
             counts.longest_s = counts.longest_s.max(rig.now_s() - accepted_s);
             accepted_s = rig.now_s();
-            let sampled = rig.bus.borrow().sampled.clone();
-            let truths = layout
-                .members
-                .iter()
-                .zip(&sampled)
-                .map(|(member, steps)| member.value(i32::from(*steps)));
-            let off = reading.servos.iter().zip(truths).any(|(servo, truth)| servo.value != truth);
-            counts.wrong += u32::from(off);
+            counts.wrong += u32::from(!is_true(reading, &rig, &layout));
         }
-        if let Some(since_s) = stop {
-            let has_goals = (0..7).all(|place| {
-                let steps = layout.members[place].steps(rig.told.goals[place]);
-                rig.bus.borrow().servos[place].word(42) == steps
-            });
-            let took_s = rig.now_s() - since_s;
-            if has_goals {
-                counts.longest_stop_s = counts.longest_stop_s.max(took_s);
-                stop = None;
-            } else if took_s > STOP_MAX_S {
-                (counts.missed, stop) = (counts.missed + 1, None);
-            }
+        let Some(since_s) = stop else { continue };
+        let took_s = rig.now_s() - since_s;
+        if has_goals(&rig, &layout) {
+            counts.longest_stop_s = counts.longest_stop_s.max(took_s);
+            stop = None;
+        } else if took_s > STOP_MAX_S {
+            (counts.missed, stop) = (counts.missed + 1, None);
         }
     }
     assert!(rig.faults.is_empty() || chance > 0.0, "{:?}", rig.faults);
     counts
+}
+
+/// Returns whether the positions are those of the servos when they were read last, to the step.
+fn is_true(reading: &Reading, rig: &Rig, layout: &Layout) -> bool {
+    let bus = rig.bus.borrow();
+    let truths = layout.members.iter().zip(&bus.sampled);
+    let truths = truths.map(|(member, steps)| member.value(i32::from(*steps)));
+    reading.servos.iter().zip(truths).all(|(servo, truth)| servo.value == truth)
+}
+
+/// Returns whether every servo has the goal that the driver wants.
+fn has_goals(rig: &Rig, layout: &Layout) -> bool {
+    let bus = rig.bus.borrow();
+    let wanted =
+        layout.members.iter().zip(&rig.told.goals).map(|(member, goal)| member.steps(*goal));
+    bus.servos.iter().zip(wanted).all(|(servo, steps)| servo.word(42) == steps)
 }
 
 #[test]
