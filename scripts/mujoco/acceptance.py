@@ -19,17 +19,20 @@ import mujoco
 import numpy as np
 
 from hand import Hand, named
+from jaw import JawHand, exclude, is_jawed
 from limb import JOINTS
 from model import Model, placed
 
 ROOT = Path(__file__).resolve().parents[2]
-URDF = ROOT / "config/robots/baxter.urdf"
-SCENES = ("bowls", "markers", "tools")
+# The scenes of each robot.
+SCENES = {"baxter": ("bowls", "markers", "tools"), "so101": ("so101-blocks",)}
 # Interval of the commands, as the driver sends them, and steps of the simulation in between.
 HZ, STEPS = 100, 10
 # Limits of the acceptance.
 ERROR_RAD, TORQUE_SHARE = 0.01, 0.8
 PLACE_M = 0.002
+# A jaw pushes the object to the fixed finger, and presses from one side.
+JAW_PLACE_M = 0.004
 # A trial with misplaced objects may end this far from the plan; it is held and handed over then.
 TRIAL_M = 0.02
 # Slope that a scene states for each form of bowls: a round wall's chord over the depth of the fingers.
@@ -52,9 +55,11 @@ def with_walls(name, wall_deg, folder):
     return str(path)
 
 
-def plan(whichone, name, target):
+def plan(whichone, name, target, robot="baxter"):
     words = [whichone, "arm", "plot", "--json", "--samples-hz", str(HZ), "--scene", name,
              "--object", target]
+    # The profile of another robot has its name.
+    words += [] if robot == "baxter" else ["--profile", robot]
     ended = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
     if ended.returncode:
         raise SystemExit(f"{name}/{target}: {ended.stderr.strip()}")
@@ -68,19 +73,26 @@ def pose(data, body):
 class Run:
     """One pick."""
 
-    def __init__(self, plan, objects, **conditions):
+    def __init__(self, plan, objects, robot="baxter", **conditions):
         self.plan, self.limb = plan, plan["limb"]
         target = plan["object"]
-        built = Model(URDF.read_text(encoding="utf-8"), objects, **conditions)
+        urdf = ROOT / f"config/robots/{robot}.urdf"
+        built = Model(urdf.read_text(encoding="utf-8"), objects, **conditions)
+        self.is_jawed = is_jawed(built.robot)
+        if self.is_jawed:
+            exclude(built, f"object/{target}")
         self.model = mujoco.MjModel.from_xml_string(built.text())
         self.data = mujoco.MjData(self.model)
         self.target = f"object/{target}"
         self.arm = [named(self.model, mujoco.mjtObj.mjOBJ_ACTUATOR, name) for name in plan["joints"]]
         self.joints = [self.model.jnt_qposadr[self.model.actuator_trnid[a, 0]] for a in self.arm]
-        self.hands = {limb: Hand(self.model, self.data, limb) for limb in ("left", "right")}
-        self.hand = self.hands[self.limb]
-        # As the arm sets it before the fingers first move.
-        self.hand.configure(100.0)
+        if self.is_jawed:
+            self.hand = JawHand(self.model, self.data)
+        else:
+            self.hands = {limb: Hand(self.model, self.data, limb) for limb in ("left", "right")}
+            self.hand = self.hands[self.limb]
+            # As the arm sets it before the fingers first move.
+            self.hand.configure(100.0)
         self.body = named(self.model, mujoco.mjtObj.mjOBJ_BODY, self.target)
         self.gripper = named(self.model, mujoco.mjtObj.mjOBJ_BODY, f"{self.limb}_gripper")
         self.ratio = [self.model.actuator_biasprm[a, 2] / self.model.actuator_biasprm[a, 1]
@@ -93,9 +105,14 @@ class Run:
 
     def begin(self):
         model, data = self.model, self.data
+        first = self.plan["samples"][0]
+        if self.is_jawed:
+            data.qpos[self.joints] = data.ctrl[self.arm] = first["q"]
+            self.hand.begin(first["width_m"])
+            return mujoco.mj_forward(model, data)
         # The other arm rests with the joints of this one.
         for side, hand in self.hands.items():
-            for joint, q in zip(JOINTS, self.plan["samples"][0]["q"]):
+            for joint, q in zip(JOINTS, first["q"]):
                 actuator = named(model, mujoco.mjtObj.mjOBJ_ACTUATOR, f"{side}_{joint}")
                 at = model.jnt_qposadr[model.actuator_trnid[actuator, 0]]
                 data.qpos[at] = data.ctrl[actuator] = q
@@ -105,10 +122,16 @@ class Run:
 
     def command(self, sample, closing):
         # Once closed on the object, the fingers press.
-        travel = 0.0 if closing else (sample["width_m"] - self.hand.stop_m) / 2
-        self.data.ctrl[self.hand.motor] = min(max(travel, 0.0), self.hand.open_travel)
+        if self.is_jawed:
+            self.hand.command(sample["width_m"], closing)
+        else:
+            self.command_fingers(sample, closing)
         for actuator, q, qd, ratio in zip(self.arm, sample["q"], sample["qd"], self.ratio):
             self.data.ctrl[actuator] = q + ratio * qd
+
+    def command_fingers(self, sample, closing):
+        travel = 0.0 if closing else (sample["width_m"] - self.hand.stop_m) / 2
+        self.data.ctrl[self.hand.motor] = min(max(travel, 0.0), self.hand.open_travel)
 
     def step(self):
         for _ in range(STEPS):
@@ -128,7 +151,8 @@ class Run:
             has_target = self.target in (a, b)
             if kinds <= {"board", "object"} and (kinds != {"object"} or not has_target):
                 continue
-            if "finger_tip" in a and b == self.target:
+            is_tip = self.hand.is_tip(a) if self.is_jawed else "finger_tip" in a
+            if is_tip and b == self.target:
                 continue
             # What is let go falls, here without a person who takes it.
             if kinds == {"object"} and self.is_released:
@@ -195,13 +219,15 @@ def line(result, found):
 def accept(arguments):
     """Every object of the shipped scenes, undisturbed."""
     good = total = 0
-    for name in SCENES:
+    robot = arguments.robot
+    for name in SCENES[robot]:
         objects = scene(name)
         for item in objects:
             if arguments.object not in (None, item["name"]):
                 continue
-            result = Run(plan(arguments.whichone, name, item["name"]), objects).run()
-            found = problems(result, PLACE_M)
+            planned = plan(arguments.whichone, name, item["name"], robot)
+            result = Run(planned, objects, robot).run()
+            found = problems(result, JAW_PLACE_M if robot == "so101" else PLACE_M)
             print(line(result, found), flush=True)
             good, total = good + (not found), total + 1
     print(f"{good} of {total} picks as planned")
@@ -232,7 +258,7 @@ def trials(arguments):
     print(f"seed {arguments.seed}")
     kinds = []
     with tempfile.TemporaryDirectory() as folder:
-        for name in SCENES:
+        for name in SCENES["baxter"]:
             objects = scene(name)
             for item in objects:
                 for form in arguments.walls if is_bowl(item) else ["straight"]:
@@ -262,6 +288,7 @@ def main():
     verbs = parser.add_subparsers(dest="verb", required=True)
     shipped = verbs.add_parser("accept", help=accept.__doc__)
     shipped.add_argument("--object", metavar="NAME", help="this one alone")
+    shipped.add_argument("--robot", choices=SCENES, default="baxter")
     random_trials = verbs.add_parser("trials", help=trials.__doc__)
     random_trials.add_argument("--count", type=int, default=480)
     random_trials.add_argument("--seed", type=int, default=1)

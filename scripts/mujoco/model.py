@@ -111,7 +111,7 @@ class Model:
             ET.SubElement(body, "inertial", pos="0 0 0", mass="0.001", diaginertia="1e-6 1e-6 1e-6")
         if joint is not None and joint.get("type") != "fixed":
             self.joint(body, joint)
-        hand = "gripper" in name or name.endswith("_hand")
+        hand = "gripper" in name or name.endswith(("_hand", "_jaw"))
         for shape in link.findall("visual" if hand else "collision"):
             self.shape(body, name, shape)
         for child in self.children.get(name, []):

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use whichone_tests::Group;
+use whichone_tests::{Group, settings_of};
 
 /// Imports a robot into a configuration of its own, and has a block fetched in a dialogue.
 fn delivers(file: &str, name: &str) {
@@ -18,17 +18,7 @@ fn delivers(file: &str, name: &str) {
     group.must(&["check", "--config", &written, "--profile", name]);
     let again = group.call(&["robot", "import", &file, "--name", name, "--config", &written]);
     assert_eq!(again.code, Some(64), "an existing file is not replaced: {again:?}");
-    let profile =
-        std::fs::read_to_string(config.join("profiles").join(name).with_extension("toml"));
-    let profile = profile.unwrap();
-    let settings: Vec<String> = profile
-        .lines()
-        .filter_map(|line| {
-            let (key, value) = line.split_once(" = ")?;
-            let table = if key == "scene" { "group" } else { "arm" };
-            Some(format!("{table}.{key}={value}"))
-        })
-        .collect();
+    let settings = settings_of(&config.join("profiles").join(name).with_extension("toml"));
     let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
     let ended = group.start(&settings);
     assert_eq!(ended.code, Some(0), "{ended:?}\n{}", group.logs());
@@ -49,7 +39,13 @@ fn imported_xarm7_without_a_gripper_delivers() {
     delivers("xarm7/xarm7.urdf", "xarm7");
 }
 
-/// Lifts, continuous joints and linkages: see `only_nightly`.
+/// Five joints, and one jaw that turns.
+#[test]
+fn imported_so101_delivers() {
+    delivers("so101/so101.urdf", "own101");
+}
+
+/// Lifts, continuous joints and linkages, and more arms of five joints: see `only_nightly`.
 #[test]
 fn other_imported_robots_deliver() {
     for (file, name) in [
@@ -58,6 +54,8 @@ fn other_imported_robots_deliver() {
         ("xarm6_with_gripper.urdf", "xarm6"),
         ("ur5.urdf", "ur5"),
         ("iiwa7.urdf", "iiwa7"),
+        ("so100.urdf", "so100"),
+        ("widowx.urdf", "widowx"),
     ] {
         delivers(file, name);
     }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use whichone_tests::{Group, program, wait_for};
+use whichone_tests::{Group, program, settings_of, wait_for};
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
 /// Longest time for an event on an idle machine, seconds.
@@ -316,16 +316,53 @@ fn what_was_handed_over_is_taken_back_and_stands_in_its_place() {
 #[test]
 #[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
 fn every_shipped_pick_succeeds_in_a_physics_engine() {
+    let output = accepted(&[]);
+    assert!(output.ends_with("18 of 18 picks as planned\n"), "{output}");
+}
+
+/// Carries out planned picks in the engine, and returns what it says of them.
+fn accepted(options: &[&str]) -> String {
     let python = std::env::var("WHICHONE_PHYSICS").expect("WHICHONE_PHYSICS names a Python");
     let ended = Command::new(python)
         .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/../scripts/mujoco/acceptance.py"))
         .arg("--whichone")
         .arg(program("whichone"))
         .arg("accept")
+        .args(options)
         .output()
         .unwrap();
-    let output = String::from_utf8_lossy(&ended.stdout);
+    let output = String::from_utf8_lossy(&ended.stdout).into_owned();
     let errors = String::from_utf8_lossy(&ended.stderr);
     assert!(ended.status.success(), "{output}{errors}");
-    assert!(output.ends_with("18 of 18 picks as planned\n"), "{output}");
+    output
+}
+
+/// Dialogues with the arm of five joints, and the pick that each has led to carried out with its jaw in the engine.
+fn dialogues_with_one_jaw(objects: &[&str]) {
+    let profile = concat!(env!("CARGO_MANIFEST_DIR"), "/../config/profiles/so101.toml");
+    let settings = settings_of(std::path::Path::new(profile));
+    let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+    let group = Group::up(&settings);
+    for object in objects {
+        let outcome = group.fetch("get me a block", object);
+        assert_delivered(&group, &outcome, object);
+        let output = accepted(&["--robot", "so101", "--object", object]);
+        println!("{output}");
+        assert!(output.ends_with("1 of 1 picks as planned\n"), "{output}");
+    }
+    group.down();
+}
+
+#[test]
+#[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+fn dialogue_with_one_jaw_ends_with_a_block_handed_over() {
+    dialogues_with_one_jaw(&["green_large"]);
+}
+
+#[test]
+#[ignore = "needs MuJoCo for Python, which scripts/test installs: WHICHONE_PHYSICS"]
+fn twelve_dialogues_with_one_jaw_end_with_blocks_handed_over() {
+    const BLOCKS: [&str; 6] =
+        ["red_small", "red_large", "blue_small", "blue_large", "green_small", "green_large"];
+    dialogues_with_one_jaw(&[BLOCKS, BLOCKS].concat());
 }

@@ -18,9 +18,9 @@ const BOUNDS: [Bound; 3] = [
         name: "lines of the core, with its tests",
         first: 135_525.0,
         // Choice questions, relations from geometry, users who take a value for another one, what is learned about each,
-        // budgets of whatever others send, the recurrent part of the reader's judge, and a setting of earlier versions that
-        // is read with a warning.
-        at_most: 126_560.0,
+        // budgets of whatever others send, the recurrent part of the reader's judge, a setting of earlier versions that
+        // is read with a warning, and arms of five joints with a jaw: their closed form, tilted grasps, the arc of the tip.
+        at_most: 127_000.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {

@@ -42,6 +42,21 @@ pub const UR5E: [&str; 4] = [
     "arm.table_z_m=0.0",
 ];
 
+/// Returns the settings of a profile of `robot import`: a group has the profile for tests.
+///
+/// # Panics
+/// If there is no such file.
+pub fn settings_of(profile: &Path) -> Vec<String> {
+    let text =
+        std::fs::read_to_string(profile).unwrap_or_else(|e| panic!("{}: {e}", profile.display()));
+    let settings = text.lines().filter_map(|line| {
+        let (key, value) = line.split_once(" = ")?;
+        let table = if key == "scene" { "group" } else { "arm" };
+        Some(format!("{table}.{key}={value}"))
+    });
+    settings.collect()
+}
+
 /// The shipped configuration with the profile for tests, and these settings over it.
 ///
 /// # Panics

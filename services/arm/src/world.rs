@@ -140,7 +140,8 @@ impl World {
         limb: Limb,
         measured: &Measured,
     ) -> Option<Held> {
-        let in_gripper = self.gripper(limb, measured).inverse() * self.place(object)?.isometry();
+        let fingers = &self.robot.arm(limb).gripper;
+        let in_gripper = self.place(object)?.in_gripper(&self.gripper(limb, measured), fingers);
         Some(Held { object, limb, in_gripper: to_array(&in_gripper) })
     }
 

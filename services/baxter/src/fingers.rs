@@ -164,7 +164,7 @@ mod tests {
     use super::*;
 
     const GRIPPER: Gripper =
-        Gripper { stop_m: -0.003, open_m: 0.038, beyond_m: 0.0035, force_n: 20.0 };
+        Gripper { stop_m: -0.003, open_m: 0.038, beyond_m: 0.0035, force_n: 20.0, jaw: None };
 
     fn say(fingers: &mut Fingers, command: Command, sequence: u32) -> Option<Event> {
         fingers.command(&EndEffectorCommand::new(0, command, "test", sequence), &GRIPPER)

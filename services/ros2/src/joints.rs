@@ -31,7 +31,7 @@ impl JointNames {
         }
         for finger in self.0.fingers() {
             name.push(finger.name.clone());
-            position.push(finger.position_m(states.gripper_percent[finger.limb]));
+            position.push(finger.position(states.gripper_percent[finger.limb]));
             velocity.push(0.0);
             effort.push(0.0);
         }

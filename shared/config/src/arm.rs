@@ -35,6 +35,8 @@ pub struct Motion {
     pub hand_over_xyz_m: [f64; 3],
     /// Height of the table, metres.
     pub table_z_m: f64,
+    /// Near edge of the table, x in metres.
+    pub table_near_m: f64,
     /// Opening of the gripper before a grasp, per cent of its range.
     pub grip_open_percent: f64,
     /// Distance from the gripper to an object that it points at, metres.
@@ -84,6 +86,7 @@ fn motion(f: &mut Fields<'_>) -> Motion {
         hover_m: f.number("hover_m", 0.02..=0.5),
         hand_over_xyz_m: f.triple("hand_over_xyz"),
         table_z_m: f.number("table_z_m", -1.0..=1.0),
+        table_near_m: f.number("table_near_m", -2.0..=2.0),
         grip_open_percent: f.number("grip_open_percent", 1.0..=100.0),
         standoff_m: f.number("standoff_m", 0.05..=1.0),
         point_s: f.number("point_s", 0.0..=60.0),

@@ -138,9 +138,9 @@ fn to_json(pick: &Pick<'_>, samples_hz: Option<f64>) -> Json {
 /// and a quaternion x, y, z, w.
 fn object_in_gripper(pick: &Pick<'_>) -> Option<[f64; 7]> {
     let (_, closed_s) = pick.plan.span_s(Phase::Close)?;
-    let chain = &pick.robot.arm(pick.plan.limb()).chain;
-    let gripper = chain.forward(&pick.plan.at(closed_s).q);
-    let pose = gripper.inverse() * pick.places[pick.object].isometry();
+    let arm = pick.robot.arm(pick.plan.limb());
+    let gripper = arm.chain.forward(&pick.plan.at(closed_s).q);
+    let pose = pick.places[pick.object].in_gripper(&gripper, &arm.gripper);
     let (p, r) = (pose.translation, pose.rotation);
     Some([p.x, p.y, p.z, r.i, r.j, r.k, r.w])
 }

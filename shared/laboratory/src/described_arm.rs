@@ -12,7 +12,7 @@ use service::exit::{Exit, Failure};
 
 use crate::args::WhichArm;
 
-/// An arm of six or seven joints, and which of the robot's links it is about.
+/// An arm, and which of the robot's links it is about.
 #[derive(Debug)]
 pub struct DescribedArm {
     robot: Cow<'static, Robot>,
@@ -47,7 +47,7 @@ impl DescribedArm {
         self.links.iter().map(move |&link| (self.robot.links()[link].name.as_str(), poses[link]))
     }
 
-    /// Number of joints, six or seven.
+    /// Number of joints.
     pub fn joints(&self) -> usize {
         self.places.iter().flatten().count()
     }
@@ -73,13 +73,10 @@ impl DescribedArm {
             format!("{error}; it has {}", names.join(", "))
         })?;
         let movable: Vec<&Joint> = chain.movable().collect();
-        if !matches!(movable.len(), 6 | 7) {
-            let names: Vec<&str> = movable.iter().map(|joint| joint.name.as_str()).collect();
+        if movable.is_empty() {
+            let name = robot.name();
             return Err(format!(
-                "{} of robot {:?}'s joints move link {tip:?} ({}); an arm has 6 or 7",
-                movable.len(),
-                robot.name(),
-                if names.is_empty() { "none".to_owned() } else { names.join(", ") },
+                "no joint of robot {name:?} moves link {tip:?}; help: name the last link of an arm"
             ));
         }
         let mut places = vec![None; robot.joints().len()];
@@ -160,11 +157,13 @@ mod tests {
     fn rejected_arms_name_the_reason() {
         let seven = fixture("seven_joints.urdf");
         let error = |robot, limb, tip| arm(robot, limb, tip).unwrap_err().to_string();
-        assert_eq!(
-            error(Some(&seven), None, Some("link_3")),
-            "3 of robot \"seven_joints\"'s joints move link \"link_3\" (a1, a2, a3); an arm has 6 or 7"
+        let short = arm(Some(&seven), None, Some("link_3")).unwrap();
+        assert_eq!((short.joints(), short.links(&[0.0; 3]).count()), (3, 5));
+        let refused = short.chain().unwrap_err().to_string();
+        assert!(refused.contains("3 moving joints that are not five to seven"), "{refused}");
+        assert!(
+            error(None, None, Some("pedestal")).contains("no joint of robot \"baxter\" moves link")
         );
-        assert!(error(None, None, Some("pedestal")).contains("0 of robot \"baxter\"'s joints"));
         let unknown = error(Some(&seven), Some(Limb::Left), None);
         assert!(
             unknown.contains("has no link \"left_gripper\"; it has world, link_0"),

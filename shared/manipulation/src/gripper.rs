@@ -9,6 +9,8 @@
 //! Numbers from baxter_common 1.2.0 and baxter_interface 1.2.0, BSD-3-Clause, Copyright (c) 2013-2015
 //! Rethink Robotics.
 
+use robot_model::Jaw;
+
 /// Travel of one finger, metres.
 const FINGER_TRAVEL_M: f64 = 0.020833;
 
@@ -17,6 +19,9 @@ const STROKE_M: f64 = 2.0 * FINGER_TRAVEL_M;
 
 /// Seconds for the whole travel at the SDK's default velocity.
 const STROKE_S: f64 = 1.0;
+
+/// Room between a fixed finger and an object before the jaw closes, metres.
+const JAW_ROOM_M: f64 = 0.004;
 
 /// Change of the distance between the fingers per second, m/s.
 pub const SPEED_M_S: f64 = STROKE_M / STROKE_S;
@@ -37,12 +42,16 @@ pub struct Gripper {
     pub beyond_m: f64,
     /// Force of each finger, newtons.
     pub force_n: f64,
+    /// The jaw of a gripper whose other finger does not move; none for two that move alike.
+    // What is recorded is a Baxter's, which has none.
+    #[serde(skip)]
+    pub jaw: Option<Jaw>,
 }
 
 impl Default for Gripper {
     /// Fingers that close entirely and open by their whole travel: for descriptions without fingers.
     fn default() -> Self {
-        Self { stop_m: 0.0, open_m: STROKE_M, beyond_m: 0.0, force_n: 20.0 }
+        Self { stop_m: 0.0, open_m: STROKE_M, beyond_m: 0.0, force_n: 20.0, jaw: None }
     }
 }
 
@@ -76,6 +85,21 @@ impl Gripper {
         object_m.clamp(self.closed_m(), self.open_m)
     }
 
+    /// Returns how far from the middle of an object the frame `<limb>_gripper` stands before the fingers close, along
+    /// its y axis, metres. A fixed finger comes down beside the object with some room, and the jaw pushes it there.
+    pub(crate) fn aside_m(&self, object_m: f64) -> f64 {
+        let room_m = (0.5 * (self.open_m - object_m)).clamp(0.0, JAW_ROOM_M);
+        self.jaw.map_or(0.0, |_| 0.5 * object_m + room_m)
+    }
+
+    /// Returns how far an object that is `object_m` wide at the fingers, its middle at `y_m` along the travel of the
+    /// fingers, is pushed when they close: a jaw pushes it to the fixed finger; metres.
+    pub(crate) fn push_m(&self, object_m: f64, y_m: f64) -> f64 {
+        let room_m = y_m - 0.5 * object_m;
+        let is_beside = self.jaw.is_some() && (0.0..=1.5 * JAW_ROOM_M).contains(&room_m);
+        if is_beside { -room_m } else { 0.0 }
+    }
+
     /// Returns whether fingers that stopped closing at `width_m` have something between
     /// them. Width alone cannot distinguish an object thinner than the dead zone from none.
     pub fn holds(&self, width_m: f64) -> bool {
@@ -106,9 +130,10 @@ mod tests {
     use crate::samples::fixture;
 
     /// Fingers that stay 16 mm apart when closed, and such that meet 4 mm before the end.
-    const APART: Gripper = Gripper { stop_m: 0.016, open_m: 0.0577, beyond_m: 0.0, force_n: 20.0 };
+    const APART: Gripper =
+        Gripper { stop_m: 0.016, open_m: 0.0577, beyond_m: 0.0, force_n: 20.0, jaw: None };
     const MEETING: Gripper =
-        Gripper { stop_m: -0.004, open_m: 0.0377, beyond_m: 0.0035, force_n: 20.0 };
+        Gripper { stop_m: -0.004, open_m: 0.0377, beyond_m: 0.0035, force_n: 20.0, jaw: None };
 
     #[test]
     fn gripper_percent_and_width_are_inverse() {

@@ -1,4 +1,4 @@
-//! Motion planning for a robot with one or two arms of six or seven joints, such as Baxter: forward and inverse
+//! Motion planning for a robot with one or two arms of five to seven joints, such as Baxter: forward and inverse
 //! kinematics, collision checking, trajectories, and plans that fetch an object, put it back or
 //! point at it.
 //!

@@ -51,6 +51,7 @@ fn plan_settings(motion: &config::Motion) -> PlanSettings {
         hover_m: motion.hover_m,
         hand_over_xyz_m: motion.hand_over_xyz_m,
         table_z_m: motion.table_z_m,
+        table_near_m: motion.table_near_m,
         open_percent: motion.grip_open_percent,
         standoff_m: motion.standoff_m,
         point_s: motion.point_s,

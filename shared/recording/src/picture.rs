@@ -220,7 +220,7 @@ impl Painter {
         });
         let fingers = self.joints.fingers().iter().map(|finger| JointState {
             name: finger.name.clone(),
-            position: finger.position_m(states.gripper_percent[finger.limb]),
+            position: finger.position(states.gripper_percent[finger.limb]),
             ..JointState::default()
         });
         JointStates { timestamp, joints: own.chain(fingers).collect() }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use crate::place::Placed;
+use crate::site::Site;
 
 /// Colours of the blocks, two of each.
 const COLOURS: [&str; 3] = ["red", "blue", "green"];
@@ -45,10 +46,17 @@ pub(crate) fn scene(name: &str, placed: &Placed) -> String {
 pub(crate) fn profile(name: &str, placed: &Placed) -> String {
     let [x, y, z] = placed.hand_over_m;
     let table = placed.table_z_m;
+    let Site { near_m, hover_m, standoff_m, .. } = placed.site;
+    let small = match placed.site.is_small() {
+        true => format!(
+            "table_near_m = {near_m:?}\nhover_m = {hover_m:?}\nstandoff_m = {standoff_m:?}\n"
+        ),
+        false => String::new(),
+    };
     format!(
         "#:schema ../schemas/profile.json\n\
          # {name} in a simulated world, written by `whichone robot import` (docs/robots.md).\n\n\
          [group]\nscene = \"{name}-blocks\"\n\n\
-         [arm]\nrobot = \"{name}\"\nhand_over_xyz = [{x:?}, {y:?}, {z:?}]\ntable_z_m = {table:?}\n"
+         [arm]\nrobot = \"{name}\"\nhand_over_xyz = [{x:?}, {y:?}, {z:?}]\ntable_z_m = {table:?}\n{small}"
     )
 }

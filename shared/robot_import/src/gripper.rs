@@ -1,5 +1,7 @@
 //! The gripper: its frame, its opening, and how its fingers move.
 
+mod jaw;
+
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use robot_model::JointKind;
 
@@ -10,17 +12,18 @@ use crate::structure::Arm;
 
 /// Opening and force where the description has none: of a common two-finger gripper.
 const OPEN_M: f64 = 0.05;
-const FORCE_N: f64 = 20.0;
+pub(super) const FORCE_N: f64 = 20.0;
 
 /// Length of a gripper that is assumed on a flange, and of fingers without meshes, metres.
 pub(crate) const LENGTH_M: f64 = 0.12;
 const FINGER_M: f64 = 0.05;
+const JAW_M: f64 = 0.08;
 
 /// Shapes within this of the fingertips face each other, metres.
-const TIP_M: f64 = 0.015;
+pub(super) const TIP_M: f64 = 0.015;
 
 /// Least opening that makes a gripper, metres.
-const OPENING_MIN_M: f64 = 0.012;
+pub(super) const OPENING_MIN_M: f64 = 0.012;
 
 /// Length from which on links that are fixed to the last one are a hand, metres.
 const HAND_M: f64 = 0.06;
@@ -39,6 +42,15 @@ pub(crate) struct Gripper {
     pub(crate) open: Vec<f64>,
     /// Whether a gripper of [`LENGTH_M`] is drawn on the flange.
     pub(crate) is_drawn: bool,
+    /// The jaw that turns, of a gripper whose other finger does not move.
+    pub(crate) jaw: Option<Turning>,
+}
+
+pub(crate) use jaw::Turning;
+
+/// Length of fingers without meshes, metres. The jaw of a small arm turns about an axis at its wrist.
+fn assumed_m(arm: &Arm) -> f64 {
+    if arm.fingers.len() == 1 && arm.joints.len() == 5 { JAW_M } else { FINGER_M }
 }
 
 /// What the parts of the robot look like.
@@ -52,7 +64,15 @@ pub(crate) fn find(
     open_m: Option<f64>,
     findings: &mut Findings,
 ) -> Gripper {
-    let mut gripper = match leading(source, arm) {
+    let leader = leading(source, arm);
+    if let Some(gripper) = leader.and_then(|joint| jaw::find(source, arm, joint, hulls, findings)) {
+        if open_m.is_some() {
+            findings
+                .ignored("--opening-mm: how far a jaw opens follows from its shape and its joint");
+        }
+        return gripper;
+    }
+    let mut gripper = match leader {
         Some(leader) => fingers(source, arm, leader, hulls, findings),
         None => without_fingers(source, arm, hulls, findings),
     };
@@ -110,7 +130,7 @@ fn fingers(
     if tip.1 {
         findings.assumed(format!(
             "the fingers are {:.0} mm long: their meshes are missing",
-            FINGER_M * 1e3
+            assumed_m(arm) * 1e3
         ));
     }
     Gripper {
@@ -120,6 +140,7 @@ fn fingers(
         force_n: force(joint, findings),
         open,
         is_drawn: false,
+        jaw: None,
     }
 }
 
@@ -137,7 +158,8 @@ fn axes(
     let hand = (to_last * poses[arm.hand]).translation.vector;
     let out = (reach - hand) - axis * (reach - hand).dot(&axis);
     let z = out.try_normalize(1e-4).unwrap_or_else(|| outwards(source, arm, poses));
-    let z = snapped(z, &axis);
+    // An arm of five joints approaches along its last one.
+    let z = if arm.joints.len() == 5 { outwards(source, arm, poses) } else { snapped(z, &axis) };
     let y = if joint.kind == JointKind::Prismatic { axis } else { axis.cross(&z) };
     ((y - z * y.dot(&z)).normalize(), z)
 }
@@ -320,14 +342,15 @@ fn tip(
     let to_last = poses[arm.last].inverse();
     let mut shapes: Vec<Hull> =
         tips.iter().flat_map(|link| solid(source, hulls, &to_last, poses, *link)).collect();
-    if tips.len() == 1 {
+    // Of a small arm without meshes the hand is a guess, and no longer than its wrist.
+    if tips.len() == 1 && !(arm.joints.len() == 5 && shapes.is_empty()) {
         shapes.extend(solid(source, hulls, &to_last, poses, arm.hand));
     }
     let middle = reach(source, arm, poses, tips, hulls);
     let x = y.cross(z);
     if shapes.is_empty() {
         let base = (to_last * poses[arm.hand]).translation.vector;
-        let end = middle.dot(z).max(base.dot(z)) + FINGER_M;
+        let end = middle.dot(z).max(base.dot(z)) + assumed_m(arm);
         return (x * middle.dot(&x) + y * base.dot(y) + z * end, true);
     }
     let end = shapes.iter().map(|it| it.extent(z).1).fold(f64::MIN, f64::max);
@@ -382,5 +405,6 @@ fn without_fingers(source: &Source, arm: &Arm, hulls: &Hulls, findings: &mut Fin
         force_n: FORCE_N,
         open,
         is_drawn: !is_hand,
+        jaw: None,
     }
 }

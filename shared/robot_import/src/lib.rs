@@ -11,7 +11,7 @@
 //! | base, lift, arm, gripper | `structure.rs`, `gripper.rs` |
 //! | hulls and their distances, capsules round them | `points.rs`, `capsule.rs`, `shapes.rs` |
 //! | collision pairs by sampling | `pairs.rs` |
-//! | table, posture of rest, hand-over, blocks | `place.rs` |
+//! | table, posture of rest, hand-over, blocks | `place.rs`, `site.rs` |
 //! | the files | `write.rs`, `configuration.rs` |
 //!
 //! Units are metres, radians and newtons. The same file gives the same result.
@@ -28,6 +28,7 @@ mod published;
 mod read;
 mod report;
 mod shapes;
+mod site;
 mod source;
 mod structure;
 mod write;
@@ -39,7 +40,7 @@ use std::path::Path;
 
 use diagnostics::{Diagnostic, Diagnostics};
 use manipulation::Robot;
-use nalgebra::{Isometry3, Translation3};
+use nalgebra::{Isometry3, Translation3, Vector3};
 
 pub use options::{Gripper, Options};
 pub use report::{Finding, Findings, Fit, Kind, PairCounts};
@@ -49,6 +50,7 @@ use pairs::{Pair, Random};
 use place::{BLOCKS, CLEARANCES_M, Placed, Progress};
 use points::Hull;
 use shapes::Shape;
+use site::Site;
 use source::Source;
 use write::Import;
 
@@ -139,7 +141,10 @@ fn imported(
         names: write::Names::default(),
         bounds,
         shapes: Vec::new(),
-        mount: Isometry3::from_parts(rest[arm.base].translation, Default::default()),
+        mount: Isometry3::from_parts(
+            rest[arm.base].translation,
+            site::ahead(&source, &arm, &gripper, &rest),
+        ),
         rest,
         pairs,
         fat: Vec::new(),
@@ -204,9 +209,18 @@ impl Import<'_> {
         let mut all = Vec::new();
         for (link, own) in hulls.iter().enumerate() {
             let is_hand = source.is_below(link, self.arm.last);
-            let tips = is_hand.then(|| self.rest[link].inverse() * tips);
+            // A jaw that closes reaches further out than an open one.
+            let closed = self
+                .gripper
+                .jaw
+                .as_ref()
+                .map(|jaw| source.poses(&jaw.closed))
+                .map(|poses| poses[link].inverse() * poses[self.arm.last] * self.gripper.frame);
+            let open = self.rest[link].inverse() * tips;
+            let tips =
+                if is_hand { std::iter::once(open).chain(closed).collect() } else { Vec::new() };
             let shapes = if self.is_of_arm(link) {
-                shapes::of_arm(own, tips.as_ref())
+                shapes::of_arm(own, &tips)
             } else {
                 shapes::of_body(own, &self.rest[link])
             };
@@ -325,13 +339,13 @@ impl Import<'_> {
         label: &str,
         findings: &mut Findings,
     ) -> Result<Placed, Diagnostics> {
-        let base = self.mount;
+        let (base, site) = (self.mount, site::of(self, self.floor_m(hulls) > -ON_TABLE_M));
         let middle =
             self.bounds.iter().map(|bounds| 0.5 * (bounds.range.0 + bounds.range.1)).collect();
         let placeholder = [("neutral", middle)];
         let mut best = Progress::default();
-        for behind_m in BEHIND_M {
-            self.mount = base * Translation3::new(-behind_m, 0.0, 0.0);
+        for behind_m in if site.is_small() { &BEHIND_M[..1] } else { &BEHIND_M } {
+            self.mount = base * Translation3::new(-*behind_m, 0.0, 0.0);
             let robot = self.robot(&placeholder).map_err(|what| {
                 Diagnostic::new(
                     label,
@@ -340,13 +354,13 @@ impl Import<'_> {
                     "report it: the files that import writes must be readable",
                 )
             })?;
-            for table_z_m in self.tables(hulls) {
+            for table_z_m in self.tables(hulls, site) {
                 let with_rest = |postures: &[(&'static str, manipulation::Joints)]| {
                     self.robot(&self.postures(postures)).ok()
                 };
-                match place::on_table(&robot, self.gripper, table_z_m, with_rest) {
+                match place::on_table(&robot, self.gripper, (site, table_z_m), with_rest) {
                     Ok(placed) => {
-                        self.tell(behind_m, &placed, findings);
+                        self.tell(*behind_m, &placed, findings);
                         return Ok(placed);
                     }
                     Err(progress) => best = best.max(progress),
@@ -357,21 +371,27 @@ impl Import<'_> {
     }
 
     /// Heights of the table, metres in frame base.
-    fn tables(&self, hulls: &[Vec<Hull>]) -> Vec<f64> {
-        let body = (0..hulls.len()).filter(|link| !self.is_of_arm(*link));
-        let lowest = |link: usize| {
-            let origin = self.rest[link].translation.z;
-            let placed = hulls[link].iter().map(|hull| hull.at(&self.rest[link]));
-            placed.map(|hull| hull.extent(&nalgebra::Vector3::z()).0).fold(origin, f64::min)
-        };
-        let floor =
-            body.map(lowest).fold(self.mount.translation.z, f64::min) - self.mount.translation.z;
+    fn tables(&self, hulls: &[Vec<Hull>], site: &Site) -> Vec<f64> {
+        let floor = self.floor_m(hulls);
         let round = |m: f64| (m * 1e3).round() / 1e3 + 0.0;
-        if floor > -ON_TABLE_M {
+        if site.is_small() {
+            vec![round(floor)]
+        } else if floor > -ON_TABLE_M {
             STANDING_M.iter().map(|step| round(floor + step)).collect()
         } else {
             MOUNTED_M.to_vec()
         }
+    }
+
+    /// Height of the lowest part of what does not move with the arm, metres in frame base.
+    fn floor_m(&self, hulls: &[Vec<Hull>]) -> f64 {
+        let body = (0..hulls.len()).filter(|link| !self.is_of_arm(*link));
+        let lowest = |link: usize| {
+            let origin = self.rest[link].translation.z;
+            let placed = hulls[link].iter().map(|hull| hull.at(&self.rest[link]));
+            placed.map(|hull| hull.extent(&Vector3::z()).0).fold(origin, f64::min)
+        };
+        body.map(lowest).fold(self.mount.translation.z, f64::min) - self.mount.translation.z
     }
 
     fn tell(&self, behind_m: f64, placed: &Placed, findings: &mut Findings) {
@@ -380,11 +400,15 @@ impl Import<'_> {
             0.0 => String::new(),
             m => format!(", {:.0} mm behind it, so that the table begins within reach", m * 1e3),
         };
-        findings.chosen(format!("frame base: at {base}, upright, x as in the file{behind}"));
+        let x =
+            if self.mount.rotation.angle() > 1e-6 { "ahead of the arm" } else { "as in the file" };
+        findings.chosen(format!("frame base: at {base}, upright, x {x}{behind}"));
         let table = placed.table_z_m * 1e3;
-        findings.assumed(format!(
-            "table: {table:.0} mm from frame base in height, from 400 mm ahead of it"
-        ));
+        let edge = match placed.site.is_small() {
+            true => "all around it, since the arm is small and stands there".to_owned(),
+            false => format!("from {:.0} mm ahead of it", placed.site.near_m * 1e3),
+        };
+        findings.assumed(format!("table: {table:.0} mm from frame base in height, {edge}"));
         let [x, y, z] = placed.hand_over_m;
         findings.chosen(format!("hand-over: at {x} {y} {z} m"));
         let (asked, kept) = (CLEARANCES_M[0] * 1e3, placed.clearance_m * 1e3);

@@ -9,6 +9,7 @@ use manipulation::{
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 use crate::gripper::Gripper;
+use crate::site::Site;
 
 /// Clearances of the posture of rest that are tried, metres: the first is what it should have.
 pub(crate) const CLEARANCES_M: [f64; 3] = [0.03, 0.02, 0.01];
@@ -16,24 +17,13 @@ pub(crate) const CLEARANCES_M: [f64; 3] = [0.03, 0.02, 0.01];
 /// Margin between the arm and itself in the configuration, metres.
 const MARGIN_M: f64 = 0.01;
 
-/// Table that the planner assumes, metres in frame base: near and far edge, half of its width.
-const TABLE_X_M: (f64, f64) = (0.4, 1.5);
+/// Length of the table that the planner assumes, and half of its width, metres.
+const TABLE_FAR_M: f64 = 1.1;
 const TABLE_Y_M: f64 = 1.2;
 
-/// Grid of places on the table, metres.
-const GRID_M: f64 = 0.06;
+/// Size of the grid of places on the table.
 const GRID_X: i32 = 14;
 const GRID_Y: i32 = 8;
-
-/// Height of the hover above a grasp, and of a grasp above the table, metres.
-const HOVER_M: f64 = 0.15;
-const GRASP_M: f64 = 0.02;
-
-/// Heights above the table at which the arm may rest, metres.
-const REST_M: [f64; 5] = [0.30, 0.36, 0.25, 0.42, 0.50];
-
-/// Distance between the middles of two blocks at least, metres.
-const APART_M: f64 = 0.14;
 
 /// Places that are looked at for the blocks of one hand-over: an object that cannot be fetched takes a while.
 const LOOKS_MAX: usize = 60;
@@ -44,6 +34,7 @@ pub(crate) const BLOCKS: usize = 6;
 /// What fits the robot.
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
+    pub(crate) site: &'static Site,
     pub(crate) table_z_m: f64,
     pub(crate) hand_over_m: [f64; 3],
     /// Named postures, the first is `neutral`.
@@ -68,8 +59,8 @@ pub(crate) struct Progress {
 }
 
 /// Returns the table at a height.
-fn table(z_m: f64) -> Cuboid {
-    let (near, far) = TABLE_X_M;
+fn table(site: &Site, z_m: f64) -> Cuboid {
+    let (near, far) = (site.near_m, site.near_m.max(0.0) + TABLE_FAR_M);
     Cuboid {
         centre: [0.5 * (near + far), 0.0, z_m - 0.25],
         size: [far - near, 2.0 * TABLE_Y_M, 0.5],
@@ -110,6 +101,7 @@ type Place = ([f64; 2], Joints);
 /// found quickly; only the first place is searched for.
 struct Places<'a> {
     robot: &'a Robot,
+    site: &'a Site,
     table_z_m: f64,
     table: Cuboid,
 }
@@ -118,7 +110,7 @@ impl Places<'_> {
     /// Returns the places, the nearest to their middle first.
     fn all(&self) -> Vec<[f64; 2]> {
         let cell = |(x, y): (i32, i32)| {
-            [TABLE_X_M.0 + 0.05 + f64::from(x) * GRID_M, f64::from(y) * GRID_M]
+            [self.site.from_m + f64::from(x) * self.site.grid_m, f64::from(y) * self.site.grid_m]
         };
         let Some((first, posture)) = STARTS.iter().find_map(|at| {
             let mut found = yaws(4).filter_map(|yaw| self.searched(cell(*at), yaw));
@@ -154,7 +146,7 @@ impl Places<'_> {
     }
 
     fn hover_m(&self) -> f64 {
-        self.table_z_m + GRASP_M + HOVER_M
+        self.table_z_m + self.site.grasp_m + self.site.hover_m
     }
 
     /// Returns a clear posture above a place from which the gripper reaches down to it.
@@ -177,7 +169,7 @@ impl Places<'_> {
     fn descends(&self, q: &Joints) -> bool {
         let chain = &self.robot.arm(Limb::Only).chain;
         let mut grasp = chain.forward(q);
-        grasp.translation.z = self.table_z_m + GRASP_M;
+        grasp.translation.z = self.table_z_m + self.site.grasp_m;
         let is_clear = |q: &Joints| clearance(self.robot, q, &self.table) > 0.0;
         is_clear(q) && chain.line(q, &grasp).is_ok_and(|way| way.iter().all(is_clear))
     }
@@ -219,8 +211,12 @@ const COMFORTABLE: f64 = 0.1;
 ///
 /// # Errors
 /// What is in the way in the posture with the greatest clearance.
-fn rest(robot: &Robot, at: [f64; 2], table_z_m: f64) -> Result<(Joints, f64), String> {
-    let (chain, table) = (&robot.arm(Limb::Only).chain, table(table_z_m));
+fn rest(
+    robot: &Robot,
+    at: [f64; 2],
+    (site, table_z_m): (&Site, f64),
+) -> Result<(Joints, f64), String> {
+    let (chain, table) = (&robot.arm(Limb::Only).chain, table(site, table_z_m));
     let ranges = &chain.limits().0[..chain.joints()];
     let comfort = |q: &Joints| {
         let shares = ranges.iter().zip(q).map(|((low, high), at)| {
@@ -233,7 +229,7 @@ fn rest(robot: &Robot, at: [f64; 2], table_z_m: f64) -> Result<(Joints, f64), St
     // The best of each clearance, the greatest first.
     let mut best: [Option<(f64, Joints)>; CLEARANCES_M.len()] = [None; CLEARANCES_M.len()];
     let mut widest = Gap::none(f64::NEG_INFINITY);
-    for height_m in REST_M {
+    for height_m in site.rest_m {
         let targets = yaws(4).map(|yaw| down([at[0], at[1], table_z_m + height_m], yaw));
         for q in targets.flat_map(|target| distinct(chain, &target)) {
             let (comfort, gap) = (comfort(&q), gap(robot, &q, &table));
@@ -265,10 +261,11 @@ fn rest(robot: &Robot, at: [f64; 2], table_z_m: f64) -> Result<(Joints, f64), St
 ///
 /// # Errors
 /// What is in the way.
-fn rest_near(robot: &Robot, middle: [f64; 2], table_z_m: f64) -> Result<(Joints, f64), String> {
+fn rest_near(robot: &Robot, middle: [f64; 2], site: (&Site, f64)) -> Result<(Joints, f64), String> {
     let mut found: Result<(Joints, f64), String> = Err(String::new());
-    for x in [middle[0] - 0.06, middle[0], middle[0] - 0.12, middle[0] + 0.06] {
-        let next = rest(robot, [x, 0.0], table_z_m);
+    let step_m = site.0.grid_m;
+    for x in [-step_m, 0.0, -2.0 * step_m, step_m].map(|by| middle[0] + by) {
+        let next = rest(robot, [x, 0.0], site);
         let is_better = match (&next, &found) {
             (Ok(next), Ok(found)) => next.1 > found.1,
             (_, Err(_)) => true,
@@ -298,16 +295,21 @@ fn around(robot: &Robot, neutral: Joints) -> Vec<(&'static str, Joints)> {
 }
 
 /// Widths of a small and of a large block, metres.
-fn widths(gripper: &Gripper) -> [f64; 2] {
+fn widths(gripper: &Gripper, site: &Site) -> [f64; 2] {
     let range = gripper.open_m - gripper.closed_m;
     let at = |share: f64| gripper.closed_m + share * range;
     let rounded = |m: f64| (m * 1e3).floor() / 1e3;
-    let small = rounded(at(0.45).min(0.03).max(at(0.2)));
-    let large = rounded(at(0.7).min(0.045).max(small + 0.004).min(at(0.9)));
+    let small = rounded(at(0.45).min(site.widths_m[0]).max(at(0.2)));
+    let large = rounded(at(0.7).min(site.widths_m[1]).max(small + 0.004).min(at(0.9)));
     [small, large]
 }
 
-fn block(number: usize, [x, y]: [f64; 2], table_z_m: f64, widths: &[f64; 2]) -> ObjectPose {
+fn block(
+    number: usize,
+    [x, y]: [f64; 2],
+    (site, table_z_m): (&Site, f64),
+    widths: &[f64; 2],
+) -> ObjectPose {
     let width = widths[number % 2];
     let size_m =
         if number.is_multiple_of(2) { [width; 3] } else { [1.5 * width, width, 1.5 * width] };
@@ -317,17 +319,19 @@ fn block(number: usize, [x, y]: [f64; 2], table_z_m: f64, widths: &[f64; 2]) -> 
         yaw_rad: 0.0,
         size_m,
         grasp_width_m: size_m[1],
-        mass_kg: Some(if number.is_multiple_of(2) { 0.02 } else { 0.1 }),
+        mass_kg: Some(site.masses_kg[number % 2]),
         wall_rad: 0.0,
         hollow: false,
     }
 }
 
 /// Settings of plans as they will be in the profile; the others are those of `arm.toml`.
-fn settings(table_z_m: f64, hand_over_xyz_m: [f64; 3]) -> PlanSettings {
+fn settings((site, table_z_m): (&Site, f64), hand_over_xyz_m: [f64; 3]) -> PlanSettings {
     PlanSettings {
         speed_ratio: 0.6,
-        hover_m: HOVER_M,
+        hover_m: site.hover_m,
+        standoff_m: site.standoff_m,
+        table_near_m: site.near_m,
         hand_over_xyz_m,
         table_z_m,
         margin_m: MARGIN_M,
@@ -342,29 +346,29 @@ fn settings(table_z_m: f64, hand_over_xyz_m: [f64; 3]) -> PlanSettings {
 pub(crate) fn on_table(
     robot: &Robot,
     gripper: &Gripper,
-    table_z_m: f64,
+    (site, table_z_m): (&'static Site, f64),
     with_rest: impl Fn(&[(&'static str, Joints)]) -> Option<Robot>,
 ) -> Result<Placed, Progress> {
-    let places = Places { robot, table_z_m, table: table(table_z_m) }.all();
+    let places = Places { robot, site, table_z_m, table: table(site, table_z_m) }.all();
     let mut progress = Progress { places: places.len(), ..Progress::default() };
     let Some(&middle) = places.first().filter(|_| places.len() >= BLOCKS) else {
         return Err(progress);
     };
-    let (neutral, clearance_m) = match rest_near(robot, middle, table_z_m) {
+    let (neutral, clearance_m) = match rest_near(robot, middle, (site, table_z_m)) {
         Ok(found) => found,
         Err(why) => return Err(Progress { why, ..progress }),
     };
     progress.rests = true;
     let postures = around(robot, neutral);
     let Some(robot) = with_rest(&postures) else { return Err(progress) };
-    let widths = widths(gripper);
-    for hand_over_m in hand_overs(&places, middle, table_z_m) {
-        let plan = settings(table_z_m, hand_over_m);
-        let (blocks, mut why) = blocks(&robot, &places, hand_over_m, &widths, &plan);
+    let widths = widths(gripper, site);
+    for hand_over_m in hand_overs(&places, middle, (site, table_z_m)) {
+        let plan = settings((site, table_z_m), hand_over_m);
+        let (blocks, mut why) = blocks(&robot, (&places, site), hand_over_m, &widths, &plan);
         if let Some(error) = unplanned(&robot, &blocks, &plan) {
             why = error;
         } else if blocks.len() == BLOCKS {
-            return Ok(Placed { table_z_m, hand_over_m, postures, clearance_m, blocks });
+            return Ok(Placed { site, table_z_m, hand_over_m, postures, clearance_m, blocks });
         }
         if blocks.len() > progress.blocks || progress.blocks == 0 {
             (progress.blocks, progress.why) = (blocks.len(), why);
@@ -385,13 +389,19 @@ fn unplanned(robot: &Robot, blocks: &[ObjectPose], plan: &PlanSettings) -> Optio
 }
 
 /// Places of the hand-over that are tried: to the left of what the arm reaches, then nearer and to the right.
-fn hand_overs(places: &[[f64; 2]], middle: [f64; 2], table_z_m: f64) -> Vec<[f64; 3]> {
+fn hand_overs(
+    places: &[[f64; 2]],
+    middle: [f64; 2],
+    (site, table_z_m): (&Site, f64),
+) -> Vec<[f64; 3]> {
     let left = places.iter().map(|at| at[1]).fold(0.0, f64::max);
     let right = places.iter().map(|at| at[1]).fold(0.0, f64::min);
     let mut all = Vec::new();
     for share in [0.9, 0.75, 0.6] {
-        for x in [middle[0] - 0.05, middle[0] - 0.1, middle[0]] {
-            for (side, z) in [(left, 0.25), (right, 0.25), (left, 0.2), (right, 0.2)] {
+        let back_m = if site.is_small() { 0.02 } else { 0.05 };
+        let [high, low] = site.hand_over_m;
+        for x in [middle[0] - back_m, middle[0] - 2.0 * back_m, middle[0]] {
+            for (side, z) in [(left, high), (right, high), (left, low), (right, low)] {
                 let round = |m: f64| (m * 100.0).round() / 100.0;
                 all.push([round(x), round(share * side), round(table_z_m + z)]);
             }
@@ -403,13 +413,13 @@ fn hand_overs(places: &[[f64; 2]], middle: [f64; 2], table_z_m: f64) -> Vec<[f64
 /// Returns as many blocks as can be fetched, each with all others in place, and why the last one that was tried cannot.
 fn blocks(
     robot: &Robot,
-    places: &[[f64; 2]],
+    (places, site): (&[[f64; 2]], &Site),
     hand_over_m: [f64; 3],
     widths: &[f64; 2],
     plan: &PlanSettings,
 ) -> (Vec<ObjectPose>, String) {
     let (mut placed, mut why) = (Vec::<ObjectPose>::new(), String::new());
-    let is_far = |at: &[f64; 2], x: f64, y: f64| (at[0] - x).hypot(at[1] - y) >= APART_M;
+    let is_far = |at: &[f64; 2], x: f64, y: f64| (at[0] - x).hypot(at[1] - y) >= site.apart_m;
     let fetches = |placed: &[ObjectPose], i: usize| {
         let others = placed.iter().enumerate().filter(|(j, _)| *j != i);
         let others: Vec<Cuboid> = others.map(|(_, it)| it.cuboid()).collect();
@@ -421,7 +431,7 @@ fn blocks(
         {
             continue;
         }
-        placed.push(block(placed.len(), *at, plan.table_z_m, widths));
+        placed.push(block(placed.len(), *at, (site, plan.table_z_m), widths));
         let last = placed.len() - 1;
         let mut all = (0..=last).rev().map(|i| fetches(&placed, i));
         if let Some(error) = all.find_map(Result::err) {

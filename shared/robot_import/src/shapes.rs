@@ -153,11 +153,9 @@ fn spaced(source: &Source, arm: &Arm, link: usize, radius: f64) -> Vec<Hull> {
 }
 
 /// Returns the shapes of a link of the arm; those of the hand end at the fingertips.
-pub(crate) fn of_arm(hulls: &[Hull], tips: Option<&Isometry3<f64>>) -> Vec<Shape> {
+pub(crate) fn of_arm(hulls: &[Hull], tips: &[Isometry3<f64>]) -> Vec<Shape> {
     let capsules = hulls.iter().flat_map(|hull| enclosing(hull, CUTS));
-    capsules
-        .map(|capsule| Shape::Capsule(tips.map_or(capsule, |tips| ended(capsule, tips))))
-        .collect()
+    capsules.map(|capsule| Shape::Capsule(tips.iter().fold(capsule, ended))).collect()
 }
 
 /// Moves ends of a capsule back that reach beyond the fingertips: they would touch what objects stand on.

@@ -15,7 +15,7 @@ const GRIPPER_MAX: usize = 14;
 const FINGER_MAX: usize = 3;
 
 /// A jaw turns from about zero by no more than this, radians: a wrist turns further, or to both sides.
-const JAW_MAX: f64 = 2.2;
+const JAW_MAX: f64 = 2.3;
 const JAW_CLOSED: f64 = 0.25;
 
 /// The arm that fetches.
@@ -25,7 +25,7 @@ pub(crate) struct Arm {
     pub(crate) base: usize,
     /// Sliding joints below the base: they stand still.
     pub(crate) lift: Vec<usize>,
-    /// Its turning joints, shoulder first: six or seven.
+    /// Its turning joints, shoulder first: five to seven.
     pub(crate) joints: Vec<usize>,
     /// The link that the last one moves.
     pub(crate) last: usize,
@@ -45,7 +45,7 @@ struct Limb {
 /// Finds the arm.
 ///
 /// # Errors
-/// There is none with six or seven turning joints, or a link that was asked for does not exist.
+/// There is none with five to seven turning joints, or a link that was asked for does not exist.
 pub(crate) fn find(
     source: &Source,
     options: &Options,
@@ -210,7 +210,7 @@ fn arm(
     let (lift, joints) = limb.way.split_at(first.unwrap_or(limb.way.len()));
     let count = joints.len();
     let all_turn = joints.iter().all(|joint| source.joints[*joint].turns());
-    if !all_turn || !matches!(count, 6 | 7) {
+    if !all_turn || !matches!(count, 5..=7) {
         return Err(refusal(source, joints, &limb.fingers));
     }
     let last = source.joints[joints[count - 1]].child;
@@ -270,14 +270,14 @@ fn refusal(source: &Source, joints: &[usize], fingers: &[usize]) -> Diagnostic {
         count => format!("{count} joints of a gripper behind them"),
     };
     let what = format!(
-        "expected an arm of six or seven turning joints, found {}: {}, with {gripper}",
+        "expected an arm of five to seven turning joints, found {}: {}, with {gripper}",
         joints.len(),
         list.join(", ")
     );
     let help = match joints.len() {
-        0..=5 => {
-            "arms of fewer joints cannot take every pose, and their inverse kinematics are missing; if the arm is longer, \
-             name its ends: --base LINK --tip LINK"
+        0..=4 => {
+            "an arm of fewer joints cannot grasp from above in every direction; if the arm is longer, name its ends: \
+             --base LINK --tip LINK"
         }
         _ => "name the link that the arm hangs on and the one at its end: --base LINK --tip LINK",
     };

@@ -57,7 +57,9 @@ impl Names {
     pub(crate) fn new(import: &Import<'_>, findings: &mut Findings) -> Self {
         let source = import.source;
         let mut taken: HashSet<String> =
-            ["base", "arm_gripper", "arm_finger_1", "arm_finger_2"].map(str::to_owned).into();
+            ["base", "arm_gripper", "arm_jaw", "arm_finger_1", "arm_finger_2"]
+                .map(str::to_owned)
+                .into();
         let mut links = Vec::new();
         for link in &source.links {
             let mut name = link.name.clone();
@@ -232,13 +234,30 @@ fn carried(out: &mut String, import: &Import<'_>, carrier: usize) {
     let own = &import.source.joints[carrier];
     let name = &import.names.joints[carrier];
     let (parent, child) = (&import.names.links[own.parent], &import.names.links[own.child]);
+    if let Some(jaw) = import.gripper.jaw.as_ref().filter(|jaw| jaw.joint == carrier) {
+        let ((low, high), velocity) =
+            (own.span(), own.velocity.filter(|it| *it > 0.0).unwrap_or(VELOCITY));
+        let effort = (jaw.torque_nm * 1e3).round() / 1e3;
+        return turning(out, (name, parent, child), own, ((low, high), velocity, effort));
+    }
     let Some(at) = import.arm.joints.iter().position(|joint| *joint == carrier) else {
         // In the file's posture of rest, with open fingers.
         let pose = import.rest[own.parent].inverse() * import.rest[own.child];
         joint(out, name, "fixed", parent, child, &pose);
         return line(out, format_args!("  </joint>"));
     };
-    let Bounds { range: (low, high), velocity, effort } = &import.bounds[at];
+    let Bounds { range, velocity, effort } = &import.bounds[at];
+    turning(out, (name, parent, child), own, (*range, *velocity, *effort));
+}
+
+/// Writes a turning joint of the file by the names of itself, its parent and its child, with its bounds: position,
+/// velocity and effort.
+fn turning(
+    out: &mut String,
+    (name, parent, child): (&str, &str, &str),
+    own: &crate::source::Joint,
+    ((low, high), velocity, effort): ((f64, f64), f64, f64),
+) {
     joint(out, name, "revolute", parent, child, &own.origin);
     line(out, format_args!("    <axis xyz=\"{}\"/>", numbers(&own.axis)));
     line(
@@ -285,6 +304,9 @@ fn geometry(shape: &Shape) -> (Isometry3<f64>, String) {
 fn gripper(out: &mut String, import: &Import<'_>) {
     let gripper = import.gripper;
     let last = &import.names.links[import.arm.last];
+    if let Some(jaw) = &gripper.jaw {
+        return one_jaw(out, import, jaw);
+    }
     line(
         out,
         format_args!(
@@ -315,6 +337,38 @@ fn gripper(out: &mut String, import: &Import<'_>) {
             out,
             format_args!(
                 "  <link name=\"{link}\"><visual><origin xyz=\"0 {y} -0.02\"/><geometry><box size=\"0.02 0.01 0.04\"/></geometry></visual></link>"
+            ),
+        );
+    }
+}
+
+/// Thickness and length of a drawn fingertip, metres.
+const PAD_M: [f64; 2] = [0.004, 0.025];
+
+/// Writes the frames of the fixed finger's and of the jaw's tip, and the pads between which an object is held.
+fn one_jaw(out: &mut String, import: &Import<'_>, jaw: &crate::gripper::Turning) {
+    line(
+        out,
+        format_args!(
+            "  <!-- At the tips of the fixed finger and of the jaw, on their inner faces: z out of the fingers, y towards \
+             the jaw. -->"
+        ),
+    );
+    let links = &import.names.links;
+    let ends = [
+        ("arm_gripper", import.arm.last, &import.gripper.frame, -1.0),
+        ("arm_jaw", import.source.joints[jaw.joint].child, &jaw.tip, 1.0),
+    ];
+    for (name, parent, frame, side) in ends {
+        joint(out, &format!("{name}_mount"), "fixed", &links[parent], name, frame);
+        line(out, format_args!("  </joint>"));
+        let [thick, long] = PAD_M;
+        let (y, z, broad) = (0.5 * side * thick, -0.5 * long, up(jaw.breadth_m));
+        line(
+            out,
+            format_args!(
+                "  <link name=\"{name}\"><visual><origin xyz=\"0 {y} {z}\"/><geometry>\
+                 <box size=\"{broad} {thick} {long}\"/></geometry></visual></link>"
             ),
         );
     }

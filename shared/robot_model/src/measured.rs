@@ -1,6 +1,6 @@
 //! The joints of a description under the names by which their values are measured.
 
-use crate::{JointKind, Robot};
+use crate::{Jaw, JointKind, Robot};
 
 /// Order of a limb's joints from the shoulder on, by the ends of their names.
 const LIMB_JOINTS: [&str; 7] = ["s0", "s1", "e0", "e1", "w0", "w1", "w2"];
@@ -17,23 +17,25 @@ pub struct MeasuredJoints {
     fingers: Vec<Finger>,
 }
 
-/// A sliding joint of a gripper.
+/// A joint of a gripper: one that slides, or a jaw that turns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finger {
     /// Its limb: 0 left or only, 1 right.
     pub limb: usize,
     /// Name of the joint.
     pub name: String,
-    /// Position of the closed and of the open gripper, metres.
+    /// Position, or opening of a jaw, of the closed and of the open gripper, metres.
     closed_m: f64,
     open_m: f64,
+    jaw: Option<Jaw>,
 }
 
 impl Finger {
-    /// Returns the joint's position, metres, at an opening of the gripper in percent of its range.
-    pub fn position_m(&self, percent: f64) -> f64 {
+    /// Returns the joint's position, metres or radians, at an opening of the gripper in percent of its range.
+    pub fn position(&self, percent: f64) -> f64 {
         let open = percent.clamp(0.0, 100.0) / 100.0;
-        self.closed_m + (self.open_m - self.closed_m) * open
+        let at_m = self.closed_m + (self.open_m - self.closed_m) * open;
+        self.jaw.map_or(at_m, |jaw| jaw.angle_rad(at_m))
     }
 }
 
@@ -99,10 +101,15 @@ fn joints(robot: &Robot, link: Option<&str>) -> Vec<String> {
     chain.iter().flat_map(|it| it.movable()).map(|joint| joint.name.clone()).collect()
 }
 
-/// Returns the sliding joints that the gripper of a limb carries. Those that mimic another follow it by
+/// Returns the sliding joints that the gripper of a limb carries, or its jaw. Those that mimic another follow it by
 /// their description.
 fn fingers_of(robot: &Robot, limb: usize, link: Option<&str>) -> Vec<Finger> {
     let Some(chain) = link.and_then(|link| robot.chain(link).ok()) else { return Vec::new() };
+    if let Some(jaw) = link.and_then(|link| robot.jaw(link.strip_suffix(GRIPPER)?)) {
+        let name = robot.joints()[jaw.link - 1].name.clone();
+        let (closed_m, open_m) = jaw.ends_m();
+        return vec![Finger { limb, name, closed_m: closed_m.max(0.0), open_m, jaw: Some(jaw) }];
+    }
     // From the last joint of the arm on: where the gripper's link is beside its fingers, too.
     let Some(hand) = chain.movable().next_back().map(|joint| joint.child) else {
         return Vec::new();
@@ -127,7 +134,7 @@ fn fingers_of(robot: &Robot, limb: usize, link: Option<&str>) -> Vec<Finger> {
         }
         let (low, high) = (limits.lower, limits.upper);
         let (closed_m, open_m) = if low.abs() <= high.abs() { (low, high) } else { (high, low) };
-        found.push(Finger { limb, name: joint.name.clone(), closed_m, open_m });
+        found.push(Finger { limb, name: joint.name.clone(), closed_m, open_m, jaw: None });
     }
     found
 }

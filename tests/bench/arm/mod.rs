@@ -6,6 +6,7 @@
 
 mod checks;
 mod damped;
+mod five;
 mod inverse;
 mod motion;
 mod python;
@@ -21,6 +22,7 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
     let effort = if quick { Effort::QUICK } else { Effort::FULL };
     kinematics(report, &BAXTER, effort);
     kinematics(report, &UR5E, effort);
+    five::measure(report, effort);
     refusal::reference(report);
     checks::clearance(report);
     motion::measure(report);

@@ -21,16 +21,22 @@ pub(super) static BAXTER: LazyLock<Subject> = LazyLock::new(|| Subject {
 });
 
 /// One arm of six joints.
-pub(super) static UR5E: LazyLock<Subject> = LazyLock::new(|| {
-    let urdf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../config/robots/ur5e.urdf");
+pub(super) static UR5E: LazyLock<Subject> = LazyLock::new(|| shipped("UR5e"));
+
+/// One arm of five joints.
+pub(super) static SO101: LazyLock<Subject> = LazyLock::new(|| shipped("SO101"));
+
+fn shipped(name: &'static str) -> Subject {
+    let file = format!("../config/robots/{}.urdf", name.to_lowercase());
+    let urdf = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
     let read = |path: &Path| {
         std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
     };
     let description = Description::parse(&read(&urdf), Some(&read(&urdf.with_extension("srdf"))));
     let description = description.unwrap_or_else(|error| panic!("{}: {error}", urdf.display()));
     let robot = Robot::from_description(&description).unwrap_or_else(|error| panic!("{error}"));
-    Subject { name: "UR5e", urdf, robot }
-});
+    Subject { name, urdf, robot }
+}
 
 impl Subject {
     pub(super) fn limbs(&self) -> &'static [Limb] {

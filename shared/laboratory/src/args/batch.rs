@@ -108,7 +108,7 @@ pub struct WhichArm {
     /// The arm that ends in the link NAME_gripper: left or right of Baxter, arm of the UR5e.
     #[arg(long, value_name = "NAME")]
     pub limb: Option<String>,
-    /// The last link of an arm with six or seven joints, of any robot.
+    /// The last link of an arm, of any robot; with five to seven joints for ik.
     #[arg(long, value_name = "LINK")]
     pub tip: Option<String>,
 }

@@ -28,10 +28,12 @@ impl Scenes {
         ];
         let mut scenes = BTreeMap::new();
         for path in folders.iter().flat_map(|folder| files(&here.join(folder))) {
-            if path.extension().is_none_or(|extension| extension != "toml") {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            // The words of a scene that `robot import` writes are those of `blocks`.
+            let is_imported = stem.ends_with("-blocks");
+            if is_imported || path.extension().is_none_or(|extension| extension != "toml") {
                 continue;
             }
-            let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let is_fixture = path.components().any(|part| part.as_os_str() == "utterances");
             let name = if is_fixture { format!("table {stem}") } else { stem };
             let text = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;

@@ -132,9 +132,17 @@ impl<'a> ArmShape<'a> {
         gap
     }
 
-    /// Gap between the whole arm and a box of the surroundings, if it is below `within_m`.
+    /// Gap between the whole arm and a box of the surroundings, if it is below `within_m`. The link of the first joint,
+    /// which turns in place, may touch what the arm stands on.
     pub fn to_cuboid(&self, name: &'static str, cuboid: &Cuboid, within_m: f64) -> Gap {
-        self.some_to_cuboid(0..self.capsules.len(), name, cuboid, within_m)
+        let first = usize::from(cuboid.is_below(&self.arm.chain.shoulder()));
+        let all = 0..self.capsules.len();
+        self.some_to_cuboid(
+            all.filter(|i| self.arm.enclosures[*i].joint >= first),
+            name,
+            cuboid,
+            within_m,
+        )
     }
 
     fn some_to_cuboid(

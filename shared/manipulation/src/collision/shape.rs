@@ -50,6 +50,12 @@ impl Cuboid {
         Self { centre, size, yaw: 0.0 }
     }
 
+    /// Returns whether a point is straight above the box.
+    pub(crate) fn is_below(&self, p: &Vector3<f64>) -> bool {
+        let (p, [x, y, z]) = (self.local(p), self.size);
+        2.0 * p.x.abs() < x && 2.0 * p.y.abs() < y && 2.0 * p.z > z
+    }
+
     /// Returns a point of `base` in the box's own axes, from its centre.
     #[inline]
     fn local(&self, p: &Vector3<f64>) -> Vector3<f64> {

@@ -132,7 +132,7 @@ impl<'a> Choice<'a> {
 
     /// Returns the scene once the object is held.
     pub(crate) fn carrying(&self, object: &ObjectPose) -> PlanningScene<'a> {
-        let in_gripper = self.grasp.gripper.inverse() * object.isometry();
+        let in_gripper = object.in_gripper(&self.grasp.gripper, &self.scene.arm.gripper);
         self.scene.carrying(object, &in_gripper)
     }
 }

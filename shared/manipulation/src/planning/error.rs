@@ -26,6 +26,18 @@ pub enum PlanError {
         /// Distance from the goal at the nearest posture, metres.
         distance_m: f64,
     },
+    /// A place that an arm of five joints reaches, but not from straight above, nor with a tilt that holds.
+    #[error(
+        "the {limb} arm, of five joints, cannot approach {at} from above: {off_deg:.0} degrees off at best"
+    )]
+    Approach {
+        /// Goal of the motion.
+        at: &'static str,
+        /// The arm.
+        limb: Limb,
+        /// Least angle between its approach and straight down, degrees.
+        off_deg: f64,
+    },
     /// Reachable, but not in the straight line that is needed.
     #[error("the {limb} arm cannot go straight to {at}: {line}")]
     Line {

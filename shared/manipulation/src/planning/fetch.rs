@@ -6,6 +6,8 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use super::error::PlanError;
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
+use super::tilt::tilted_at;
+use crate::kinematics::chain::Chain;
 use crate::kinematics::limb::{Joints, Limb};
 
 /// The carry from above the grasp to where the object is handed over.
@@ -62,7 +64,7 @@ impl Carry {
     }
 
     /// To `raised_m` above the hand over, where what is held is upright: straight, else turned about
-    /// the vertical and through joint space.
+    /// the vertical and through joint space; of five joints tilted too.
     fn to(
         scene: &PlanningScene<'_>,
         from: &Joints,
@@ -70,20 +72,15 @@ impl Carry {
         search: Search,
     ) -> Result<Self, PlanError> {
         let limb = scene.limb;
-        let upright = scene.upright(&scene.chain.forward(from));
-        let target = |turn: f64| {
-            let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn);
-            let place = Vector3::from(scene.settings.hand_over_m(limb));
-            let place = place + Vector3::z() * raised_m;
-            Isometry3::from_parts(place.into(), turn * upright)
-        };
-        if let Some(waypoints) = straight(scene, from, &target(0.0)) {
+        let place = Vector3::from(scene.settings.hand_over_m(limb)) + Vector3::z() * raised_m;
+        let rotation = scene.upright(&scene.chain.forward(from));
+        let upright = Isometry3::from_parts(place.into(), rotation);
+        if let Some(waypoints) = straight(scene, from, &upright) {
             return Ok(Self { waypoints, straight: true });
         }
         let mut error = None;
         let mut tried = Vec::with_capacity(TURNS_TRIED);
-        for turn in (0..TURNS).map(turn_of) {
-            let target = target(turn);
+        for (turn, target) in targets(scene.chain, &upright) {
             if tried.iter().any(|other: &f64| (other - turn).abs() < TURNS_APART_RAD) {
                 continue;
             }
@@ -105,7 +102,9 @@ impl Carry {
                     Err(blocked) => error = Some(blocked),
                 }
             }
-            tried.push(turn);
+            if turn.abs() <= PI {
+                tried.push(turn);
+            }
             if tried.len() >= TURNS_TRIED {
                 break;
             }
@@ -117,6 +116,17 @@ impl Carry {
     pub(crate) fn end(&self) -> &Joints {
         &self.waypoints[self.waypoints.len() - 1]
     }
+}
+
+/// Returns the upright gripper turned about the vertical, with the turns; of five joints tilted as well.
+fn targets(chain: &Chain, upright: &Isometry3<f64>) -> impl Iterator<Item = (f64, Isometry3<f64>)> {
+    let upright = *upright;
+    let turned = move |turn: f64| {
+        let rotation = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn) * upright.rotation;
+        (turn, Isometry3::from_parts(upright.translation, rotation))
+    };
+    let tilted = chain.five().map(|arm| tilted_at(arm, &upright));
+    (0..TURNS).map(turn_of).map(turned).chain(tilted.into_iter().flatten())
 }
 
 /// 0, then to either side further and further, radians.

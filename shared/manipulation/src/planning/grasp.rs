@@ -128,6 +128,13 @@ impl ObjectPose {
         )
     }
 
+    /// Returns its pose in a gripper that closes on it with its frame at `at`.
+    pub fn in_gripper(&self, at: &Isometry3<f64>, gripper: &Gripper) -> Isometry3<f64> {
+        let mut pose = at.inverse() * self.isometry();
+        pose.translation.y += gripper.push_m(self.grasp_width_m, pose.translation.y);
+        pose
+    }
+
     /// Height of its top in `base`, metres.
     pub fn top_z_m(&self) -> f64 {
         self.xyz_m[2] + 0.5 * self.size_m[2]
@@ -177,7 +184,14 @@ impl ObjectPose {
             Some(mass_kg) if mass_kg > most_kg => {
                 Err(GraspError::TooHeavy { mass_kg, most_kg, force_n: gripper.force_n })
             }
-            _ => Ok(grasps),
+            _ if gripper.jaw.is_none() => Ok(grasps),
+            _ => {
+                let aside = Translation3::new(0.0, -gripper.aside_m(width_m), 0.0);
+                Ok(grasps
+                    .into_iter()
+                    .map(|it| Grasp { gripper: it.gripper * aside, ..it })
+                    .collect())
+            }
         }
     }
 
@@ -216,6 +230,8 @@ impl ObjectPose {
         [1, 0]
             .into_iter()
             .filter(|&axis| self.size_m[axis] <= gripper.open_m)
+            // A fixed finger comes down beside the width that is gripped, which is the narrow one.
+            .filter(|&axis| gripper.jaw.is_none() || self.size_m[axis] <= self.size_m[1 - axis])
             .flat_map(|axis| {
                 let along = self.yaw_rad + if axis == 1 { FRAC_PI_2 } else { 0.0 };
                 self.both_ways(self.xyz_m[0], self.xyz_m[1], z, along)

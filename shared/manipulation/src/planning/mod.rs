@@ -13,6 +13,7 @@ mod posture;
 mod put_back;
 mod retreat;
 mod static_obstacles;
+mod tilt;
 
 pub use deliver::{plan_delivery, plan_return, plan_withdrawal};
 pub use error::PlanError;

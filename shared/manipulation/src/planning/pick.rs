@@ -5,6 +5,7 @@ use super::deliver::{CORNER, deliver, fingers};
 use super::error::{Furthest, PlanError};
 use super::fetch::{ABOVE, Carry, GRASP, HOME};
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
+use super::tilt::by_tilt;
 use crate::collision::Cuboid;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::planning::grasp::{Grasp, GraspError, ObjectPose};
@@ -40,8 +41,9 @@ pub fn plan_pick(
     settings: &PlanSettings,
 ) -> Result<Timeline, PlanError> {
     let scenes = planning_scenes(robot, object, limb, arms, others, settings)?;
-    let grasps = |arm: &Arm| object.grasps(&arm.gripper);
-    cheapest(grasps, &scenes, |choice, search| choice.plan(object, search))
+    by_tilt(object, &scenes, |grasps| {
+        cheapest(grasps, &scenes, |choice, search| choice.plan(object, search))
+    })
 }
 
 /// Returns the cheapest of the complete plans that `plan` makes of choices; see [`plan_pick`].
@@ -125,13 +127,20 @@ pub fn fetching_limb(
     settings: &PlanSettings,
 ) -> Result<Limb, PlanError> {
     let scenes = planning_scenes(robot, object, limb, &robot.neutral(), others, settings)?;
+    by_tilt(object, &scenes, |grasps| fetching(object, &scenes, grasps))
+}
+
+fn fetching(
+    object: &ObjectPose,
+    scenes: &[PlanningScene<'_>],
+    grasps: &dyn Fn(&Arm) -> Result<Vec<Grasp>, GraspError>,
+) -> Result<Limb, PlanError> {
     let mut furthest = Furthest::default();
-    for scene in &scenes {
+    for scene in scenes {
         if let Some(gap) = scene.blocked(&scene.q) {
             furthest.add(AT_REST, PlanError::Blocked { at: HOME, limb: scene.limb, gap });
             continue;
         }
-        let grasps = |arm: &Arm| object.grasps(&arm.gripper);
         let mut choices = Choices::new(grasps, std::slice::from_ref(scene), &mut furthest);
         // As many as a plan would try.
         for _ in 0..TRIES {
@@ -191,7 +200,7 @@ impl Choice<'_> {
         let width_m = scene.arm.gripper.closed_on(self.grasp.width_m);
         let lift: Vec<Joints> = descent.iter().rev().copied().collect();
         let at_grasp = lift[0];
-        let in_gripper = self.grasp.gripper.inverse() * object.isometry();
+        let in_gripper = object.in_gripper(&self.grasp.gripper, &scene.arm.gripper);
         let held = (object, &in_gripper, width_m);
         let delivery = deliver(scene, &carrying, lift, held, search);
         let delivery = delivery.map_err(|error| (6, error))?;

@@ -28,6 +28,8 @@ pub struct PlanSettings {
     pub hand_over_xyz_m: [f64; 3],
     /// Height of the table's top. An object that stands lower (in a rack, in a drawer) lowers it.
     pub table_z_m: f64,
+    /// Near edge of the table, x in frame `base`. A small arm stands on it.
+    pub table_near_m: f64,
     /// Position to which the gripper opens, percent of its range.
     pub open_percent: f64,
     /// Distance from the gripper to the centre of an object that it points at.
@@ -47,6 +49,7 @@ impl Default for PlanSettings {
             hover_m: 0.15,
             hand_over_xyz_m: [0.80, 0.30, 0.22],
             table_z_m: -0.155,
+            table_near_m: 0.4,
             open_percent: 100.0,
             standoff_m: 0.25,
             point_s: 1.0,
@@ -98,7 +101,11 @@ impl<'a> PlanningScene<'a> {
         let arm = robot.arm(limb);
         let limb = arm.limb;
         refuse_outside(arm.chain.limits(), &arms[limb])?;
-        let mut surroundings = static_obstacles::table(settings.table_z_m, place_m, lowest_z_m);
+        let mut surroundings = static_obstacles::table(
+            (settings.table_near_m, settings.table_z_m),
+            place_m,
+            lowest_z_m,
+        );
         surroundings.extend(static_obstacles::objects(others, settings.table_z_m));
         Ok(Self {
             limb,
@@ -131,6 +138,11 @@ impl<'a> PlanningScene<'a> {
 
     /// Adds the board that the object to be fetched stands on, as wide as the hand.
     pub(crate) fn with_board_under(mut self, object: &Cuboid) -> Self {
+        let rest_m = self.settings.table_z_m + static_obstacles::THICKNESS_M;
+        if self.settings.table_near_m < 0.0 && object.centre[2] - 0.5 * object.size[2] < rest_m {
+            // It stands on the table all around.
+            return self;
+        }
         self.board = Some(self.surroundings.len());
         self.surroundings.push(static_obstacles::board(object, HAND_M));
         self

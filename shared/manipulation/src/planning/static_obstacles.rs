@@ -5,20 +5,25 @@ use crate::collision::Cuboid;
 /// A box and what to call it.
 pub(crate) type Obstacle = (&'static str, Cuboid);
 
-/// Returns the table: from in front of the trunk to beyond the arms' reach, solid below its top.
+/// Returns the table: from its near edge to beyond the arms' reach, solid below its top.
 /// Where the arm is to reach lower than that, into a rack or a drawer, there is an opening round
 /// the place.
-pub(crate) fn table(top_z_m: f64, place_m: [f64; 3], lowest_z_m: f64) -> Vec<Obstacle> {
+pub(crate) fn table(
+    (near_m, top_z_m): (f64, f64),
+    place_m: [f64; 3],
+    lowest_z_m: f64,
+) -> Vec<Obstacle> {
+    let whole = (near_m, near_m.max(0.0) + TABLE_FAR_M);
     if lowest_z_m >= top_z_m {
-        return vec![slab(TABLE_X_M, TABLE_Y_M, top_z_m)];
+        return vec![slab(whole, TABLE_Y_M, top_z_m)];
     }
     let [x, y, _] = place_m;
     let (near, far) = (x - OPENING_M, x + OPENING_M);
     let (right, left) = (y - OPENING_M, y + OPENING_M);
     vec![
-        slab(TABLE_X_M, TABLE_Y_M, lowest_z_m),
-        slab((TABLE_X_M.0, near), TABLE_Y_M, top_z_m),
-        slab((far, TABLE_X_M.1), TABLE_Y_M, top_z_m),
+        slab(whole, TABLE_Y_M, lowest_z_m),
+        slab((whole.0, near), TABLE_Y_M, top_z_m),
+        slab((far, whole.1), TABLE_Y_M, top_z_m),
         slab((near, far), (TABLE_Y_M.0, right), top_z_m),
         slab((near, far), (left, TABLE_Y_M.1), top_z_m),
     ]
@@ -55,15 +60,15 @@ pub(crate) fn board(object: &Cuboid, margin_m: f64) -> Obstacle {
     ("shelf", board)
 }
 
-/// The table's bounds ahead of the robot and across, metres.
-const TABLE_X_M: (f64, f64) = (0.4, 1.5);
+/// The table's length, at least as far as the robot reaches, and its bounds across, metres.
+const TABLE_FAR_M: f64 = 1.1;
 const TABLE_Y_M: (f64, f64) = (-1.2, 1.2);
 
 /// From the middle of an opening in the table to its edges, metres.
 const OPENING_M: f64 = 0.2;
 
 /// Thickness of a board, metres.
-const THICKNESS_M: f64 = 0.02;
+pub(crate) const THICKNESS_M: f64 = 0.02;
 
 /// Extent of the boards beyond other objects, metres: no more than is certain.
 pub(crate) const NEIGHBOUR_M: f64 = 0.02;
@@ -84,7 +89,7 @@ mod tests {
 
     #[test]
     fn a_table_is_solid_below_its_top() {
-        let table = table(-0.15, [0.7, 0.0, -0.1], -0.12);
+        let table = table((0.4, -0.15), [0.7, 0.0, -0.1], -0.12);
         assert_eq!(table.len(), 1);
         assert!(inside(&table, [0.7, 0.0, -0.16]) && !inside(&table, [0.7, 0.0, -0.14]));
         assert!(!inside(&table, [0.3, 0.0, -0.16]), "the trunk is not in the table");
@@ -92,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_rack_below_the_top_is_open_round_the_place_only() {
-        let table = table(-0.15, [0.7, -0.4, -0.2], -0.22);
+        let table = table((0.4, -0.15), [0.7, -0.4, -0.2], -0.22);
         assert!(!inside(&table, [0.7, -0.4, -0.2]) && inside(&table, [0.7, -0.4, -0.23]));
         assert!(inside(&table, [0.7, 0.1, -0.2]) && inside(&table, [1.0, -0.4, -0.2]));
         assert!(inside(&table, [0.45, -0.4, -0.2]) && inside(&table, [0.7, -0.7, -0.2]));

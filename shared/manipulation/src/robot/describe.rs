@@ -9,7 +9,7 @@ use robot_model::{Body as Shaped, Joint, JointKind, Limits, Robot as Description
 use super::fingers::gripper;
 use super::{Arm, Body, Enclosure, Robot, Touch};
 use crate::collision::{ArmShape, Capsule, Cuboid};
-use crate::kinematics::chain::{Axis, Chain, ZeroPosture};
+use crate::kinematics::chain::{Axis, Chain, Five, ZeroPosture};
 use crate::kinematics::limb::{Joints, Limb};
 use crate::kinematics::limits::{MotionLimits, PositionLimits};
 
@@ -39,7 +39,7 @@ const BODY_SHAPES_MAX: usize = 512;
 
 impl Robot {
     /// Returns the robot of a description: two limbs that end in the links `left_gripper` and
-    /// `right_gripper`, or one that ends in a link `<name>_gripper`, each on six or seven turning
+    /// `right_gripper`, or one that ends in a link `<name>_gripper`, each on five to seven turning
     /// joints. A group `<name>_arm` has a posture `neutral`, in which the limb rests; other postures
     /// of its are used as via postures where the limb is clear there.
     ///
@@ -88,7 +88,7 @@ fn limb_names(description: &Description) -> Result<Vec<String>, Unsuitable> {
 
 impl Chain {
     /// Returns the chain from the root to the link `tip` of any described robot; it must hang on
-    /// six or seven turning joints.
+    /// five to seven turning joints.
     ///
     /// # Errors
     /// [`Unsuitable`] if the link is missing, or for another number of joints.
@@ -120,6 +120,7 @@ fn arm(
         of(&|limits| limits.jerk.unwrap_or_else(|| JERK_PER_S * acceleration(limits))),
     );
     let chain = Chain::new(&posture(description, &joints, &tip), limits.position);
+    approaching(&chain, name)?;
     let enclosures = enclosures(description, name, &joints, &chain)?;
     few_enough(&format!("limb {name:?}"), enclosures.len(), LIMB_SHAPES_MAX)?;
     let touch = Touch::new(&chain, &enclosures, may_touch(description, name));
@@ -140,6 +141,20 @@ fn arm(
     };
     arm.via_postures = via_postures(description, &joints, &arm);
     Ok(arm)
+}
+
+/// # Errors
+/// An arm of five joints does not belong to the family whose approaches can be planned.
+fn approaching(chain: &Chain, name: &str) -> Result<(), Unsuitable> {
+    if chain.joints() != 5 || chain.five().is_some_and(Five::approaches) {
+        return Ok(());
+    }
+    Err(Unsuitable {
+        what: format!("the five joints of limb {name:?} are no arm that can grasp"),
+        help: format!(
+            "an arm of five joints pans, pitches with three parallel joints, and rolls about the z axis of {name}_gripper"
+        ),
+    })
 }
 
 fn fast_enough(joint: &Joint) -> Result<(), Unsuitable> {
@@ -169,23 +184,23 @@ fn few_enough(what: &str, shapes: usize, most: usize) -> Result<(), Unsuitable> 
     })
 }
 
-/// Returns the six or seven joints that move `tip`, shoulder first.
+/// Returns the five to seven joints that move `tip`, shoulder first.
 fn joints<'a>(description: &'a Description, tip: &str) -> Result<Vec<&'a Joint>, Unsuitable> {
     let chain = description.chain(tip).map_err(|error| Unsuitable {
         what: error.to_string(),
-        help: "name the link at the end of a limb of six or seven turning joints".to_owned(),
+        help: "name the link at the end of a limb of five to seven turning joints".to_owned(),
     })?;
     let joints: Vec<&Joint> = chain.movable().collect();
     let turning = joints.iter().all(|joint| joint.kind == JointKind::Revolute);
-    if turning && matches!(joints.len(), 6 | 7) {
+    if turning && matches!(joints.len(), 5..=7) {
         return Ok(joints);
     }
     let count = joints.len();
     Err(Unsuitable {
         what: format!(
-            "link {tip:?} hangs on {count} moving joints that are not six or seven revolute ones"
+            "link {tip:?} hangs on {count} moving joints that are not five to seven revolute ones"
         ),
-        help: "limbs of six or seven revolute joints with limits are supported".to_owned(),
+        help: "limbs of five to seven revolute joints with limits are supported".to_owned(),
     })
 }
 
@@ -268,7 +283,11 @@ fn enclosures(
     joints: &[&Joint],
     chain: &Chain,
 ) -> Result<Vec<Enclosure>, Unsuitable> {
-    let poses = description.poses(|_| 0.0);
+    // An open jaw takes more room than a closed one.
+    let jaw = description.jaw(limb);
+    let open =
+        |joint: &Joint| jaw.filter(|jaw| jaw.link == joint.child).map_or(0.0, |jaw| jaw.open_rad());
+    let poses = description.poses(open);
     let frames = chain.frames(&[0.0; 7]);
     let mut enclosures = Vec::new();
     for (index, link) in description.links().iter().enumerate() {

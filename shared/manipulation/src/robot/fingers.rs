@@ -20,12 +20,15 @@ struct Tip {
 
 /// Returns the gripper of a limb: two fingers on prismatic joints below the parent of
 /// `<limb>_gripper`, whose shapes (for collision, or else for drawing) face each other along the y axis of
-/// that frame. A description without such joints gets [`Gripper::default`].
+/// that frame; or one jaw, see [`Description::jaw`]. A description without such joints gets [`Gripper::default`].
 ///
 /// # Errors
 /// [`Unsuitable`] for fingers that have no shapes at the tips, or that never open.
 pub(super) fn gripper(description: &Description, limb: &str) -> Result<Gripper, Unsuitable> {
     let name = format!("{limb}_gripper");
+    if let Some(gripper) = one_jaw(description, limb) {
+        return Ok(gripper);
+    }
     let Some((frame, [a, b])) = of(description, limb) else { return Ok(Gripper::default()) };
     let refuse = |what: &str| Unsuitable {
         what: format!("the fingers of {name:?} {what}"),
@@ -54,11 +57,21 @@ pub(super) fn gripper(description: &Description, limb: &str) -> Result<Gripper, 
         open_m: one_m.max(other_m),
         beyond_m: beyond_m.max(0.0),
         force_n: description.carrier(a).and_then(|joint| joint.limits).map_or(0.0, |l| l.effort),
+        jaw: None,
     };
     if gripper.open_m - gripper.closed_m() < 1e-3 {
         return Err(refuse("never open"));
     }
     Ok(gripper)
+}
+
+/// Returns the gripper of a jaw, see [`Description::jaw`].
+fn one_jaw(description: &Description, limb: &str) -> Option<Gripper> {
+    let jaw = description.jaw(limb)?;
+    let (stop_m, open_m) = jaw.ends_m();
+    let limits = description.carrier(jaw.link).and_then(|joint| joint.limits);
+    let force_n = limits.map_or(0.0, |limits| limits.effort) / jaw.radius_m();
+    Some(Gripper { stop_m, open_m, beyond_m: jaw.beyond_m(), force_n, jaw: Some(jaw) })
 }
 
 /// Returns the link `<limb>_gripper` and those of the two fingers, if it has two.

@@ -17,7 +17,7 @@ use crate::kinematics::limits::MotionLimits;
 
 pub use describe::Unsuitable;
 
-/// A robot of one or two limbs with six or seven turning joints each. Copies share what it holds.
+/// A robot of one or two limbs with five to seven turning joints each. Copies share what it holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
     description: Arc<Description>,
@@ -32,7 +32,7 @@ pub struct Arm {
     pub limb: Limb,
     /// Its name in the description: the link at its end is `<name>_gripper`.
     pub name: String,
-    /// Its joints' names in the description, shoulder first: six or seven.
+    /// Its joints' names in the description, shoulder first: five to seven.
     pub joint_names: Vec<String>,
     /// Its fingers.
     pub gripper: Gripper,
@@ -135,7 +135,7 @@ impl Robot {
                     "limb {name} has no collision shapes: its plans keep it off nothing but by chance"
                 ));
             }
-            if fingers::of(&self.description, name).is_none() {
+            if arm.gripper.jaw.is_none() && fingers::of(&self.description, name).is_none() {
                 let (open_mm, force_n) = (arm.gripper.open_m * 1e3, arm.gripper.force_n);
                 all.push(format!(
                     "limb {name} has no two fingers on prismatic joints: they are taken to open {open_mm:.1} mm and to \

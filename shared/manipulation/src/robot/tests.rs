@@ -121,7 +121,7 @@ fn robot_names_what_a_description_lacks() {
     assert!(error.contains("found 0") && error.contains("arm_gripper"), "{error}");
     let one_sided = robot_model::BAXTER_URDF.replace("\"right_gripper\"", "\"right_hook\"");
     let error = Robot::from_description(&described(&one_sided)).unwrap_err().to_string();
-    assert!(error.contains("right_gripper") && error.contains("six or seven"), "{error}");
+    assert!(error.contains("right_gripper") && error.contains("five to seven"), "{error}");
     let error = Chain::from_description(&iiwa, iiwa.root().name.as_str()).unwrap_err().to_string();
     assert!(error.contains("0 moving joints"), "{error}");
     let unposed = described(robot_model::BAXTER_URDF);

@@ -2,6 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod five_joints;
+#[path = "../../../manipulation/src/random.rs"]
+#[allow(dead_code, reason = "a part is needed")]
+mod random;
+
 use std::path::{Path, PathBuf};
 
 use manipulation::{Cuboid, ObjectPose, PlanSettings, Robot, fetching_limb, plan_pick};
@@ -61,6 +66,13 @@ fn blocks(imported: &Imported) -> (Vec<ObjectPose>, PlanSettings) {
         table_z_m: numbers(&imported.profile, "table_z_m")[0][0],
         ..PlanSettings::default()
     };
+    let of = |key: &str, or: f64| numbers(&imported.profile, key).first().map_or(or, |it| it[0]);
+    let plan = PlanSettings {
+        table_near_m: of("table_near_m", plan.table_near_m),
+        hover_m: of("hover_m", plan.hover_m),
+        standoff_m: of("standoff_m", plan.standoff_m),
+        ..plan
+    };
     (blocks.collect(), plan)
 }
 
@@ -98,6 +110,9 @@ fetches! {
     iiwa7_without_meshes_fetches_every_block: "iiwa7.urdf",
     jaco_with_continuous_joints_fetches_every_block: "jaco.urdf",
     fetch_on_its_lift_fetches_every_block: "fetch.urdf",
+    so101_with_one_jaw_fetches_every_block: "so101/so101.urdf",
+    so100_without_meshes_fetches_every_block: "so100.urdf",
+    widowx_without_meshes_fetches_every_block: "widowx.urdf",
 }
 
 /// Published files disable the pairs that sampling finds; the comparison counts those that stay checked, too.
@@ -171,11 +186,16 @@ fn lift_stands_still_and_is_named() {
 }
 
 #[test]
-fn arms_of_five_joints_are_refused_with_the_reason() {
-    for name in ["so101.urdf", "widowx.urdf"] {
-        let text = refused(name, &options()).faults.to_string();
-        assert!(text.contains("found 5: ") && text.contains("inverse kinematics"), "{text}");
-    }
+fn arms_of_four_joints_are_refused_with_the_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(file("widowx.urdf")).unwrap();
+    let stiff =
+        text.replacen("name=\"joint_5\" type=\"revolute\"", "name=\"joint_5\" type=\"fixed\"", 1);
+    assert_ne!(stiff, text);
+    let own = folder.path().join("four.urdf");
+    std::fs::write(&own, stiff).unwrap();
+    let text = import(&own, &options()).map(|it| it.profile).unwrap_err().faults.to_string();
+    assert!(text.contains("found 4: ") && text.contains("fewer joints cannot grasp"), "{text}");
     let options = Options { tip: Some("link_ee".to_owned()), ..options() };
     let text = refused("xarm7/xarm7.urdf", &options).faults.to_string();
     assert!(text.contains("link_eef"), "{text}");

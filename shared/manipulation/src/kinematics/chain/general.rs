@@ -1,11 +1,12 @@
-//! A chain of six or seven turning joints of any kind.
+//! A chain of five to seven turning joints of any kind.
 
+use super::five::Five;
 use super::frame::Frame;
-use super::six::Six;
+use super::six::{Found, Six};
 use super::zero::ZeroPosture;
 use crate::kinematics::chain::trig::sin_cos;
 use crate::kinematics::limb::Joints;
-use nalgebra::Vector3;
+use nalgebra::{Isometry3, Vector3};
 
 /// Each joint turns about the z axis of its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,8 +17,25 @@ pub(crate) struct General {
     tool: Frame,
     /// Number of joints that move; those behind stand at zero.
     joints: usize,
-    /// Closed form, for six joints of a known family.
-    six: Option<Six>,
+    /// Closed form, for five or six joints of a known family.
+    closed: Option<Closed>,
+}
+
+/// A closed form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Closed {
+    Five(Five),
+    Six(Six),
+}
+
+impl Closed {
+    /// Returns every posture that takes the tool to `target`; see [`Six::postures`].
+    pub(crate) fn postures(&self, target: &Isometry3<f64>, last_rad: f64) -> Vec<Found> {
+        match self {
+            Self::Five(arm) => arm.postures(target),
+            Self::Six(arm) => arm.postures(target, last_rad),
+        }
+    }
 }
 
 impl General {
@@ -33,8 +51,12 @@ impl General {
             if i == 0 { frames[0] } else { frames[i - 1].relative(&frames[i]) }
         });
         let joints = posture.joints;
-        let six = (joints == 6).then(|| Six::of(posture)).flatten();
-        Self { steps, tool: frames[6].relative(&Frame::from(&posture.tool)), joints, six }
+        let closed = match joints {
+            5 => Five::of(posture).map(Closed::Five),
+            6 => Six::of(posture).map(Closed::Six),
+            _ => None,
+        };
+        Self { steps, tool: frames[6].relative(&Frame::from(&posture.tool)), joints, closed }
     }
 
     /// Returns the number of joints that move.
@@ -43,8 +65,8 @@ impl General {
     }
 
     /// Returns the closed form, if there is one.
-    pub(crate) fn six(&self) -> Option<&Six> {
-        self.six.as_ref()
+    pub(crate) fn closed(&self) -> Option<&Closed> {
+        self.closed.as_ref()
     }
 
     /// Returns a point of the first axis, in `base`, metres.

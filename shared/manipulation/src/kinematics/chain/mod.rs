@@ -1,6 +1,7 @@
 //! One limb's kinematic chain: forward kinematics and the geometric Jacobian.
 
 mod alternating;
+mod five;
 mod frame;
 mod general;
 mod line;
@@ -11,11 +12,13 @@ mod zero;
 use nalgebra::{Isometry3, SMatrix, Vector3};
 
 pub(crate) use alternating::Alternating;
+pub(crate) use five::Five;
 pub use frame::Frame;
 pub(crate) use frame::positive;
+pub(crate) use general::Closed;
 use general::General;
 pub use line::LineError;
-pub(crate) use six::{Found, Six};
+pub(crate) use six::Found;
 pub(crate) use zero::{Axis, ZeroPosture};
 
 use crate::kinematics::limb::Joints;
@@ -56,7 +59,7 @@ impl Chain {
         Self { geometry, limits }
     }
 
-    /// Number of joints that move, six or seven; the others stand at zero.
+    /// Number of joints that move, five to seven; the others stand at zero.
     pub fn joints(&self) -> usize {
         match &self.geometry {
             Geometry::Alternating(_) => 7,

@@ -129,7 +129,9 @@ impl Six {
             let corner = self.axes[3].point;
             let at = before * nalgebra::Point3::from(corner);
             let sense = |joint: usize| self.axes[joint].direction.dot(&along);
-            for (second, third, reaches) in self.triangle(&corner, &at.coords) {
+            for (second, third, reaches) in
+                triangle(&self.axes[1], &self.axes[2], &corner, &at.coords)
+            {
                 let fourth = sense(3) * (sum - second - sense(2) * third);
                 add([second, third, fourth, fifth, sixth], near && reaches);
             }
@@ -139,7 +141,9 @@ impl Six {
     fn wrist(&self, rest: &Isometry3<f64>, last_rad: f64, add: &mut impl FnMut([f64; 5], bool)) {
         let at = rest * nalgebra::Point3::from(self.wrist);
         let along = self.axes[3].direction;
-        for (second, third, reaches) in self.triangle(&self.wrist, &at.coords) {
+        for (second, third, reaches) in
+            triangle(&self.axes[1], &self.axes[2], &self.wrist, &at.coords)
+        {
             let before = turned(&self.axes[1], second) * turned(&self.axes[2], third);
             let hand = before.rotation.inverse() * rest.rotation;
             for (fifth, sixth, near) in self.last_two(&along, &hand, last_rad) {
@@ -169,26 +173,27 @@ impl Six {
             (turn, last, near)
         })
     }
+}
 
-    /// Returns second and third joint that take the point `corner`, carried by the third, to `at`.
-    fn triangle(
-        &self,
-        corner: &Vector3<f64>,
-        at: &Vector3<f64>,
-    ) -> impl Iterator<Item = (f64, f64, bool)> {
-        let (second, third) = (self.axes[1], self.axes[2]);
-        let along = second.direction;
-        let flat = |v: Vector3<f64>| v - along * along.dot(&v);
-        let upper = flat(third.point - second.point);
-        let lower = flat(corner - third.point);
-        let goal = flat(at - second.point);
-        let square = 0.5 * (goal.norm_squared() - upper.norm_squared() - lower.norm_squared());
-        let (turns, near) = turns(&third, &lower, &upper, square);
-        turns.into_iter().map(move |turn| {
-            let reached = upper + turned(&third, turn).rotation * lower;
-            (angle_between(&reached, &goal, &along).unwrap_or(0.0), turn, near)
-        })
-    }
+/// Returns the turns of two parallel axes that take the point `corner`, carried by the second, to `at`.
+pub(super) fn triangle(
+    first: &Axis,
+    second: &Axis,
+    corner: &Vector3<f64>,
+    at: &Vector3<f64>,
+) -> impl Iterator<Item = (f64, f64, bool)> + use<> {
+    let along = first.direction;
+    let flat = |v: Vector3<f64>| v - along * along.dot(&v);
+    let upper = flat(second.point - first.point);
+    let lower = flat(corner - second.point);
+    let goal = flat(at - first.point);
+    let square = 0.5 * (goal.norm_squared() - upper.norm_squared() - lower.norm_squared());
+    let (turns, near) = turns(second, &lower, &upper, square);
+    let second = *second;
+    turns.into_iter().map(move |turn| {
+        let reached = upper + turned(&second, turn).rotation * lower;
+        (angle_between(&reached, &goal, &along).unwrap_or(0.0), turn, near)
+    })
 }
 
 /// Returns the point where two axes meet, if they do and are not parallel.
@@ -206,7 +211,12 @@ fn meeting(a: &Axis, b: &Axis) -> Option<Vector3<f64>> {
 
 /// Returns the turns about `axis` after which the component of `v` along `direction` is `goal`, and
 /// whether there are any. If not, the turn that comes nearest.
-fn turns(axis: &Axis, v: &Vector3<f64>, direction: &Vector3<f64>, goal: f64) -> (Vec<f64>, bool) {
+pub(super) fn turns(
+    axis: &Axis,
+    v: &Vector3<f64>,
+    direction: &Vector3<f64>,
+    goal: f64,
+) -> (Vec<f64>, bool) {
     let h = &axis.direction;
     let still = h * h.dot(v);
     let (a, b) = (direction.dot(&(v - still)), direction.dot(&h.cross(v)));
@@ -222,14 +232,18 @@ fn turns(axis: &Axis, v: &Vector3<f64>, direction: &Vector3<f64>, goal: f64) -> 
 }
 
 /// Returns the motion of a turn about an axis.
-fn turned(axis: &Axis, angle: f64) -> Isometry3<f64> {
+pub(super) fn turned(axis: &Axis, angle: f64) -> Isometry3<f64> {
     let rotation = UnitQuaternion::from_axis_angle(&Unit::new_unchecked(axis.direction), angle);
     let translation = axis.point - rotation * axis.point;
     Isometry3::from_parts(translation.into(), rotation)
 }
 
 /// Returns the turn about `axis` that takes `a` over `b`; none where either lies along the axis.
-fn angle_between(a: &Vector3<f64>, b: &Vector3<f64>, axis: &Vector3<f64>) -> Option<f64> {
+pub(super) fn angle_between(
+    a: &Vector3<f64>,
+    b: &Vector3<f64>,
+    axis: &Vector3<f64>,
+) -> Option<f64> {
     let (a, b) = (a - axis * axis.dot(a), b - axis * axis.dot(b));
     let sound = a.norm() > SINGULAR && b.norm() > SINGULAR;
     sound.then(|| axis.dot(&a.cross(&b)).atan2(a.dot(&b)))
@@ -244,6 +258,6 @@ fn angle_of(rotation: &UnitQuaternion<f64>, axis: &Vector3<f64>) -> f64 {
 }
 
 /// Returns the same turn from −π to π.
-fn within_half_turn(angle: f64) -> f64 {
+pub(super) fn within_half_turn(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }

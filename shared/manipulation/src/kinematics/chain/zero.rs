@@ -7,9 +7,9 @@ use nalgebra::{Isometry3, Vector3};
 /// (the product of exponentials, Brockett 1984).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ZeroPosture {
-    /// The axes, from the shoulder to the wrist. Where there are six, the last is repeated.
+    /// The axes, from the shoulder to the wrist. Where there are fewer, the last is repeated.
     pub(crate) axes: [Axis; 7],
-    /// Number of joints: six or seven.
+    /// Number of joints: five to seven.
     pub(crate) joints: usize,
     /// Pose of the tool frame, `<limb>_gripper`.
     pub(crate) tool: Isometry3<f64>,

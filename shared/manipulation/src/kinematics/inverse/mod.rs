@@ -1,12 +1,14 @@
 //! Inverse kinematics: a semi-analytic sweep over s0, then refinement within the limits. Limbs that
-//! are not of Baxter's family are refined from many postures instead; those with six joints are
-//! solved in closed form where they belong to a family that has one.
+//! are not of Baxter's family are refined from many postures instead; those with five or six joints
+//! are solved in closed form where they belong to a family that has one.
 //!
 //! Every result has passed forward kinematics and the limits: an answer is
-//! within [`TOLERANCE_M`] and [`TOLERANCE_RAD`] of the target and inside every joint limit to the
+//! within [`TOLERANCE_M`] and [`TOLERANCE_RAD`] (of five joints 1e-4) of the target and inside every joint limit to the
 //! last bit, or it is an [`Unreachable`].
 
+mod closed;
 mod closer;
+mod five;
 mod goal;
 mod hidden;
 mod line_search;
@@ -14,7 +16,6 @@ mod nearest;
 mod posture;
 mod refine;
 mod restarts;
-mod six;
 mod slice;
 mod solve;
 #[cfg(test)]
@@ -22,7 +23,7 @@ mod tests;
 
 use nalgebra::Isometry3;
 
-use crate::kinematics::chain::{Chain, Geometry};
+use crate::kinematics::chain::{Chain, Closed, Geometry};
 use crate::kinematics::limb::Joints;
 use goal::{Aim, Goal};
 use refine::Refined;
@@ -79,8 +80,8 @@ impl Chain {
                 let goal = Goal::new(self, target);
                 match self.geometry() {
                     Geometry::Alternating(arm) => solve::first(&Aim::new(goal, arm)),
-                    Geometry::General(arm) => match arm.six() {
-                        Some(arm) => six::first(&goal, arm),
+                    Geometry::General(arm) => match arm.closed() {
+                        Some(arm) => closed::first(&goal, arm),
                         None => restarts::first(&goal),
                     },
                 }
@@ -102,21 +103,27 @@ impl Chain {
         let goal = Goal::new(self, target);
         match self.geometry() {
             Geometry::Alternating(arm) => nearest::nearest(&Aim::new(goal, arm), seed),
-            Geometry::General(arm) => match arm.six() {
-                Some(arm) => six::nearest(&goal, arm, seed),
+            Geometry::General(arm) => match arm.closed() {
+                Some(arm) => closed::nearest(&goal, arm, seed),
                 None => restarts::nearest(&goal, seed),
             },
         }
     }
 
     /// Returns the posture that reaches `target` with the shortest steps from `q`: the same branch,
-    /// as long as the target is near. For following a motion; [`Chain::inverse`] is for finding
+    /// as long as the target is near; of five joints, the nearest posture. For following a motion;
+    /// [`Chain::inverse`] is for finding
     /// one.
     ///
     /// # Errors
     /// [`Unreachable`] if the steps end at the limits or at a singularity short of the target.
     pub fn track(&self, target: &Isometry3<f64>, q: &Joints) -> Result<IkSolution, Unreachable> {
         let goal = Goal::new(self, target);
+        if let Geometry::General(chain) = self.geometry()
+            && let Some(arm @ Closed::Five(_)) = chain.closed()
+        {
+            return closed::nearest(&goal, arm, q);
+        }
         let refined = refine::refine(&goal, q, TRACK_STEPS);
         IkSolution::accept(&goal, &refined).ok_or_else(|| refined.into())
     }
@@ -128,8 +135,8 @@ impl Chain {
         let goal = Goal::new(self, target);
         match self.geometry() {
             Geometry::Alternating(arm) => solve::all(&Aim::new(goal, arm)),
-            Geometry::General(arm) => match arm.six() {
-                Some(arm) => six::all(&goal, arm),
+            Geometry::General(arm) => match arm.closed() {
+                Some(arm) => closed::all(&goal, arm),
                 None => restarts::all(&goal),
             },
         }
@@ -142,8 +149,10 @@ const TRACK_STEPS: usize = 20;
 impl IkSolution {
     /// Returns the answer if `refined` is one.
     fn accept(goal: &Goal<'_>, refined: &Refined) -> Option<Self> {
+        let is_five = goal.chain.joints() == 5;
         let exact = refined.position_error_m <= TOLERANCE_M
-            && refined.rotation_error_rad <= TOLERANCE_RAD
+            && refined.rotation_error_rad
+                <= if is_five { five::TOLERANCE_RAD } else { TOLERANCE_RAD }
             && goal.chain.limits().within(&refined.q);
         exact.then_some(Self {
             q: refined.q,

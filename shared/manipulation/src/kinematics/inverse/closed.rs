@@ -1,15 +1,15 @@
-//! Inverse kinematics of arms with six joints that have a closed form: every branch, at every whole
-//! turn that the limits allow.
+//! Inverse kinematics of arms with five or six joints that have a closed form: every branch, at every
+//! whole turn that the limits allow.
 
 use std::f64::consts::TAU;
 
 use super::goal::Goal;
 use super::refine::{Refined, refine};
-use super::{IkSolution, Unreachable, restarts};
-use crate::kinematics::chain::{Found, Six};
+use super::{IkSolution, Unreachable, five, restarts};
+use crate::kinematics::chain::{Closed, Found};
 use crate::kinematics::limb::{Joints, distance};
 
-/// Number of joints.
+/// Number of joints; of five, the sixth stands at zero.
 const JOINTS: usize = 6;
 
 /// Refinement steps of a posture that the closed form found, and of one that only comes near.
@@ -25,7 +25,7 @@ const NEAR_MISS: f64 = 2e-2;
 const ROUNDING_RAD: f64 = 1e-9;
 
 /// Returns a posture that reaches the goal, or the one that comes nearest.
-pub(crate) fn first(goal: &Goal<'_>, arm: &Six) -> Result<IkSolution, Refined> {
+pub(crate) fn first(goal: &Goal<'_>, arm: &Closed) -> Result<IkSolution, Refined> {
     let middle = goal.chain.limits().middle();
     if !goal.is_finite() {
         return Err(Refined::at(goal, middle));
@@ -40,25 +40,31 @@ pub(crate) fn first(goal: &Goal<'_>, arm: &Six) -> Result<IkSolution, Refined> {
 /// Returns the posture that reaches the goal at the least joint distance from `seed`.
 pub(crate) fn nearest(
     goal: &Goal<'_>,
-    arm: &Six,
+    arm: &Closed,
     seed: &Joints,
 ) -> Result<IkSolution, Unreachable> {
     if !goal.is_finite() || seed.iter().any(|q| !q.is_finite()) {
         return first(goal, arm).map_err(Unreachable::from);
     }
+    let is_five = matches!(arm, Closed::Five(_));
     let found = arm.postures(&goal.tool.isometry(), seed[JOINTS - 1]);
     let best = found
         .iter()
         .filter(|found| found.reaches)
         .filter_map(|found| turned(goal, found, seed))
         .filter_map(|q| exact(goal, &q))
-        .chain(IkSolution::accept(goal, &refine(goal, seed, POLISH)))
+        .chain(if is_five { None } else { IkSolution::accept(goal, &refine(goal, seed, POLISH)) })
         .min_by(|a, b| distance(&a.q, seed).total_cmp(&distance(&b.q, seed)));
-    best.map_or_else(|| near(goal, arm, &found).map_err(Unreachable::from), Ok)
+    match best {
+        Some(best) => Ok(best),
+        // A plan asks many times; where the position is reached, its error is not used.
+        None if is_five => Err(refine(goal, seed, POLISH).into()),
+        None => near(goal, arm, &found).map_err(Unreachable::from),
+    }
 }
 
 /// Returns every posture that reaches the goal, also those that differ by whole turns.
-pub(crate) fn all(goal: &Goal<'_>, arm: &Six) -> Vec<Joints> {
+pub(crate) fn all(goal: &Goal<'_>, arm: &Closed) -> Vec<Joints> {
     if !goal.is_finite() {
         return Vec::new();
     }
@@ -70,7 +76,7 @@ pub(crate) fn all(goal: &Goal<'_>, arm: &Six) -> Vec<Joints> {
         .filter_map(|found| turned(goal, found, &middle))
         .filter_map(|q| exact(goal, &q));
     let mut all: Vec<Joints> = exact.flat_map(|answer| at_all_turns(goal, &answer.q)).collect();
-    if all.is_empty() {
+    if all.is_empty() && matches!(arm, Closed::Six(_)) {
         all.extend(near(goal, arm, &found).ok().map(|answer| answer.q));
     }
     all
@@ -78,7 +84,7 @@ pub(crate) fn all(goal: &Goal<'_>, arm: &Six) -> Vec<Joints> {
 
 /// Returns the posture with each joint at the whole turn nearest to `seed` that lies within its
 /// limits; none where a joint has no such turn.
-fn turned(goal: &Goal<'_>, found: &Found, seed: &Joints) -> Option<Joints> {
+pub(super) fn turned(goal: &Goal<'_>, found: &Found, seed: &Joints) -> Option<Joints> {
     let mut q = found.q;
     for j in 0..JOINTS {
         let options = turns(goal, j, q[j]);
@@ -114,13 +120,17 @@ fn at_all_turns(goal: &Goal<'_>, q: &Joints) -> Vec<Joints> {
 
 /// Returns the posture as an answer, refined where the arm deviates from its family.
 fn exact(goal: &Goal<'_>, q: &Joints) -> Option<IkSolution> {
+    let refined = || (goal.chain.joints() > 5).then(|| refine(goal, q, POLISH));
     IkSolution::accept(goal, &Refined::at(goal, *q))
-        .or_else(|| IkSolution::accept(goal, &refine(goal, q, POLISH)))
+        .or_else(|| IkSolution::accept(goal, &refined()?))
 }
 
 /// Returns a solution refined from postures that nearly fit, or the nearest.
-fn near(goal: &Goal<'_>, arm: &Six, found: &[Found]) -> Result<IkSolution, Refined> {
-    let is_complete = found.iter().all(|found| arm.is_isolated(&found.q));
+fn near(goal: &Goal<'_>, arm: &Closed, found: &[Found]) -> Result<IkSolution, Refined> {
+    let is_complete = match arm {
+        Closed::Five(arm) => return Err(five::nearest_approach(goal, arm)),
+        Closed::Six(arm) => found.iter().all(|found| arm.is_isolated(&found.q)),
+    };
     let limits = goal.chain.limits();
     let mut best = refine(goal, &limits.middle(), STEPS);
     for found in found {
@@ -164,7 +174,7 @@ mod tests {
         let mut random = Random::seeded(seed);
         for chain in [chain(UR5E, "arm_gripper"), chain(SPHERICAL, "flange")] {
             let Geometry::General(general) = chain.geometry() else { panic!("six joints") };
-            let arm = general.six().expect("a family");
+            let arm = general.closed().expect("a family");
             let (mut narrow, mut tried) = (0, 0);
             while narrow < 40 {
                 tried += 1;
