@@ -2,6 +2,8 @@
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
+use std::f64::consts::{FRAC_PI_4, FRAC_PI_6};
+
 use super::error::PlanError;
 use super::fetch::GRASP;
 use super::grasp::{Grasp, GraspError, ObjectPose};
@@ -10,9 +12,8 @@ use crate::kinematics::chain::Five;
 use crate::kinematics::inverse::TOLERANCE_M;
 use crate::robot::Arm;
 
-/// Tilts that are tried where the gripper cannot come from straight above, radians: 15, 30 and 45 degrees.
-const TILTS_RAD: [f64; 3] =
-    [0.261_799_387_799_149_4, 0.523_598_775_598_298_8, 0.785_398_163_397_448_3];
+/// Tilts that are tried if the gripper cannot come from straight above, radians: 15, 30 and 45 degrees.
+const TILTS_RAD: [f64; 3] = [FRAC_PI_4 / 3.0, FRAC_PI_6, FRAC_PI_4];
 
 /// Most that the fingers may be turned against the sides of an object, radians.
 const ASKEW_RAD: f64 = 0.12;
