@@ -1,6 +1,6 @@
 //! The driver `trajectory` against controllers of ros2_control over rclpy: dialogues, stops, kills and every fault.
 
-use rustix::process::Signal;
+use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use whichone_tests::controllers::Controllers;
 use whichone_tests::{Group, wait_for};
@@ -115,8 +115,10 @@ mod ros2_rclpy_controllers {
         let group = controllers.group(&[&stays("arm"), &stays("trajectory")]);
         for killed in [&["arm"][..], &["trajectory"], &["arm", "trajectory"]] {
             set_out(&group, &mut controllers);
+            let pids: Vec<Pid> = killed.iter().map(|service| group.pid(service)).collect();
+            controllers.wait_for_speed(FAST_RAD_S);
             let since = controllers.now();
-            killed.iter().for_each(|service| group.signal(service, Signal::KILL));
+            pids.into_iter().for_each(|pid| kill_process(pid, Signal::KILL).unwrap());
             let seconds = controllers.rest_after(since);
             eprintln!("{killed:?} killed: rest after {seconds:.3} s");
             assert!(seconds <= REST_S, "{killed:?}: {seconds} s");

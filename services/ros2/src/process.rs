@@ -9,8 +9,8 @@ use std::fs;
 const NAME: &str = "RustDDS";
 /// Interval at which they are counted.
 const COUNT_EVERY: Span = Span::from_ms(250);
-/// Most memory of the process, bytes. The DDS implementation believes what a peer says of the length of its message, and
-/// of the number of peers; beyond this the process ends, and the supervisor starts it again.
+/// Most memory of the process, bytes. The DDS implementation believes what a peer says of the length of its message,
+/// and of the number of peers; beyond this the process ends, and the supervisor starts it again.
 const MEMORY_MAX: u64 = 512 << 20;
 
 /// Limits the memory of this process.
