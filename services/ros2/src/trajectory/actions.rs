@@ -70,7 +70,7 @@ impl Identity {
     }
 
     /// Returns the identity of another goal.
-    pub fn next(&mut self) -> GoalId {
+    pub fn next_goal(&mut self) -> GoalId {
         self.count = self.count.wrapping_add(1);
         let mut id = [0; 16];
         id[..8].copy_from_slice(&self.group);

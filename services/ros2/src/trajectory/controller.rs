@@ -221,7 +221,7 @@ impl Controller {
             requests.push(self.send(window.number, goal, now));
         }
         if self.liveness.probes(now) {
-            requests.push(Request::Probe(self.identity.next()));
+            requests.push(Request::Probe(self.identity.next_goal()));
         }
         requests
     }
@@ -283,7 +283,7 @@ impl Controller {
     }
 
     fn send(&mut self, window: u64, goal: TrajectoryGoal, now: Time) -> Request<TrajectoryGoal> {
-        let id = self.identity.next();
+        let id = self.identity.next_goal();
         if self.sent.len() == GOALS_MAX {
             self.sent.pop_front();
         }

@@ -110,13 +110,13 @@ impl FingerController {
             Some(sent) => !sent.is_accepted && !sent.is_over && now.since(sent.at) > AGAIN_AFTER,
         };
         if let Some(order) = order.filter(is_due).filter(|_| !stops && self.is_ready(now)) {
-            let id = self.identity.next();
+            let id = self.identity.next_goal();
             self.sent = Some(Sent { order, id, at: now, is_accepted: false, is_over: false });
             self.liveness.on_goal(now);
             requests.push(Request::Goal(id, order));
         }
         if self.liveness.probes(now) {
-            requests.push(Request::Probe(self.identity.next()));
+            requests.push(Request::Probe(self.identity.next_goal()));
         }
         requests
     }

@@ -229,7 +229,7 @@ fn dead_arm_is_stopped_within_its_silence() {
 fn goals_at_the_start_are_cancelled_if_ours_and_named_if_of_others() {
     let mut bench = Bench::new();
     let mut former = Identity::new(9, Time(3_000_000));
-    let id = former.next();
+    let id = former.next_goal();
     bench.answer(Answer::Statuses(vec![(id, 2), ([8; 16], status::SUCCEEDED)]));
     bench.order(Motion::Rest);
     assert_eq!(bench.cancels, 1);

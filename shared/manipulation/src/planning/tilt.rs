@@ -1,8 +1,8 @@
 //! Grasps of arms with five joints: straight down, or tilted in the plane in which the arm reaches out.
 
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
-
 use std::f64::consts::{FRAC_PI_4, FRAC_PI_6};
+
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use super::error::PlanError;
 use super::fetch::GRASP;
