@@ -347,7 +347,6 @@ fn dialogues_with_one_jaw(objects: &[&str]) {
         let outcome = group.fetch("get me a block", object);
         assert_delivered(&group, &outcome, object);
         let output = accepted(&["--robot", "so101", "--object", object]);
-        println!("{output}");
         assert!(output.ends_with("1 of 1 picks as planned\n"), "{output}");
     }
     group.down();
