@@ -2,6 +2,9 @@
 
 use super::*;
 
+/// A name, and what befalls a servo.
+type Case<'a> = (&'a str, &'a dyn Fn(&mut servo_bus::Servo));
+
 /// Longest time from the fault of one servo to the rest of the others, seconds.
 const REST_MAX_S: f64 = 0.1;
 
@@ -50,8 +53,7 @@ fn each_overloaded_hot_or_underfed_servo_is_named_and_the_others_hold_within_a_t
         };
         let heat = |servo: &mut servo_bus::Servo| servo.celsius = 75.0;
         let dip = |servo: &mut servo_bus::Servo| servo.volts = 3.6;
-        let cases: [(&str, &dyn Fn(&mut servo_bus::Servo)); 3] =
-            [("overload", &overload), ("overheated", &heat), ("voltage", &dip)];
+        let cases: [Case; 3] = [("overload", &overload), ("overheated", &heat), ("voltage", &dip)];
         // The jaw does not swing, and is not overloaded by standing still.
         for (reason, happen) in
             cases.into_iter().filter(|(reason, _)| place != JAW || *reason != "overload")
