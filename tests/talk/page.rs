@@ -121,10 +121,10 @@ impl Page {
         }
         let is_cancelled = self.sections["dialogue"]["decision"] == "cancel";
         self.seen.is_fetching = arm["phase"] != "done" && !is_cancelled;
-        if arm["phase"] == "done" && !std::mem::replace(&mut self.is_over, true) {
-            if arm["outcome"] == "put_back" {
-                self.seen.put_back.push((now, object));
-            }
+        let is_done = arm["phase"] == "done";
+        let is_news = is_done && !std::mem::replace(&mut self.is_over, true);
+        if is_news && arm["outcome"] == "put_back" {
+            self.seen.put_back.push((now, object));
         }
     }
 }
