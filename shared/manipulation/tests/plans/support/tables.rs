@@ -196,6 +196,7 @@ fn reason(error: &PlanError) -> &'static str {
         PlanError::Grasp(_) => "not to be grasped otherwise",
         PlanError::Start(_) => "a start outside the limits",
         PlanError::Unreachable { .. } => "out of reach",
+        PlanError::Approach { .. } => "not from above",
         PlanError::Line { .. } => "no straight line to the grasp",
         PlanError::Blocked { .. } => "no room for the arm",
         PlanError::Stuck { .. } => "a start in collision",
