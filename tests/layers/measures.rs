@@ -20,7 +20,9 @@ const BOUNDS: [Bound; 3] = [
         // Choice questions, relations from geometry, users who take a value for another one, what is learned about each,
         // budgets of whatever others send, the recurrent part of the reader's judge, a setting of earlier versions that
         // is read with a warning, and arms of five joints with a jaw: their closed form, tilted grasps, the arc of the tip.
-        at_most: 127_000.0,
+        // Then the build's identity and the schema of JSON output, a service that stays down through a killed supervisor,
+        // and drivers that look ahead, stop by themselves and examine the machine.
+        at_most: 127_500.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {

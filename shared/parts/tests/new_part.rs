@@ -136,7 +136,10 @@ fn a_new_part_is_known_once_it_is_registered() {
     let schema = |name: &str| &schemas.iter().find(|section| section.name == name).unwrap().schema;
     assert_eq!(schema("lamp")["properties"]["brightness"]["maximum"], 1.0);
     let arm = &schema("arm")["properties"];
-    assert_eq!(arm["driver"]["enum"], serde_json::json!(["kinematic", "baxter", "crane", "lift"]));
+    assert_eq!(
+        arm["driver"]["enum"],
+        serde_json::json!(["kinematic", "baxter", "feetech", "trajectory", "crane", "lift"])
+    );
     assert_eq!(arm["crane"]["properties"]["rope_m"]["maximum"], 9.0);
     assert_eq!(schema("console")["properties"]["shade"]["properties"]["drawn"]["type"], "boolean");
 }
@@ -156,7 +159,7 @@ fn drivers_are_known(folder: &Path) {
     );
     refused(
         &[("arm.driver", "crne"), ("arm.crane.rope_m", "10")],
-        "arm.driver: expected one of kinematic, baxter, crane, lift, found `crne`; help: did you mean `crane`?",
+        "arm.driver: expected one of kinematic, baxter, feetech, trajectory, crane, lift, found `crne`; help: did you mean `crane`?",
     );
     refused(&[("arm.crane.rope_m", "10")], "rope_m: expected a value from 0 to 9, found 10");
     refused(
@@ -165,7 +168,10 @@ fn drivers_are_known(folder: &Path) {
          --features hoist` in a checkout",
     );
     let own = [("arm.driver", "mine"), ("arm.mine.port", "/dev/ttyUSB0")];
-    refused(&own, "arm.driver: expected one of kinematic, baxter, crane, lift, found `mine`");
+    refused(
+        &own,
+        "arm.driver: expected one of kinematic, baxter, feetech, trajectory, crane, lift, found `mine`",
+    );
     refused(&own, "arm.mine: unknown key");
     let program = ("group.services.arm.command", "[\"my-arm\"]");
     let settings = load(folder, &[&own[..], &[program]].concat()).unwrap();

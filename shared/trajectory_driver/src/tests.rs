@@ -20,7 +20,6 @@ const PASS_S: f64 = 0.01;
 
 fn settings() -> Controllers {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
-    config::register(&[], [crate::DRIVER.about]);
     Settings::load(folder, None, &[]).unwrap().part().unwrap()
 }
 
