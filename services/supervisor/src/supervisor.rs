@@ -228,10 +228,11 @@ impl Supervisor {
 
     /// Carries out an operator's order for a service, which outlives the supervisor.
     fn order(&mut self, service: usize, order: Event, now: Time) {
+        // First: the disk may be slow.
+        self.give(service, order, now);
         if self.put_down.note(&self.services[service].spec.name, order) {
             self.put_down.write(&self.around.paths.put_down());
         }
-        self.give(service, order, now);
     }
 
     /// Passes an event to a service and carries out the effects.

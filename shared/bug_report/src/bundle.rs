@@ -5,7 +5,7 @@ use std::path::Path;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use safe_files::{OutputFolder, check_new_output, write_new_output};
+use safe_files::{OutputFolder, Readers, check_new_output, write_new_output};
 use service::exit::{Exit, Failure};
 
 /// List of the files, in the report itself.
@@ -57,7 +57,9 @@ impl Bundle {
     /// The path exists, or it cannot be written.
     pub(crate) fn write(&self, path: &Path) -> Result<(), Failure> {
         let written = match is_archive(path) {
-            true => self.archive(path).and_then(|bytes| write_new_output(path, &bytes)),
+            true => {
+                self.archive(path).and_then(|bytes| write_new_output(path, &bytes, Readers::Owner))
+            }
             false => self.write_folder(path),
         };
         written.map_err(|error| Failure::file(path, &error))
@@ -75,7 +77,7 @@ impl Bundle {
         for (name, content) in all.chain([(CONTENTS, contents.as_bytes())]) {
             let file = path.join(name);
             let (Some(folder), Some(name)) = (file.parent(), file.file_name()) else { continue };
-            OutputFolder::open(folder)?.write_new(name, content)?;
+            OutputFolder::open(folder)?.write_new(name, content, Readers::Owner)?;
         }
         Ok(())
     }

@@ -29,6 +29,9 @@ const CONFIG_FOLDERS: [&str; 3] = ["", "profiles", "scenes"];
 /// The reason for which journals and flights are left out.
 const WORDS: &str = "it holds what people said; add it with --with-words";
 
+/// Signs of a line of a log that holds people's words: a message, and the field `text` in both formats.
+const WORDS_IN_LOGS: [&str; 3] = ["not in the audit", " text=", "\"text\":"];
+
 /// Verbs whose output is a file of the report.
 const VERBS: [(&str, &[&str]); 4] = [
     ("version.json", &["--version", "--json"]),
@@ -88,19 +91,20 @@ impl Collection<'_> {
         let running = self.texts.iter().find(|(name, _)| name == "status.json");
         let status =
             running.and_then(|(_, text)| serde_json::from_str::<serde_json::Value>(text).ok());
-        let running = status.and_then(|status| status["config"].as_str().map(PathBuf::from));
-        let running = running.filter(|_| !args.config.is_given());
+        let status = status.filter(|_| !args.config.is_given()).unwrap_or_default();
+        let running = status["config"].as_str().map(PathBuf::from);
         let folder = match running.map_or_else(|| configuration::folder(&args.config), Ok) {
             Ok(folder) => folder,
             Err(error) => return self.bundle.leave_out("config", error.to_string()),
         };
         let place = folder.display().to_string();
         let mut words = vec!["check", "--json", "--values", "--config", &place];
-        if let Some(profile) = &args.config.profile {
-            words.extend(["--profile", profile]);
-        }
-        let set: Vec<String> =
-            args.config.set.iter().map(|(key, value)| format!("{key}={value}")).collect();
+        let profile = args.config.profile.as_deref().or(status["profile"].as_str());
+        words.extend(profile.into_iter().flat_map(|profile| ["--profile", profile]));
+        let in_force: Vec<(String, String)> =
+            serde_json::from_value(status["set"].clone()).unwrap_or_default();
+        let set = if args.config.is_given() { &args.config.set } else { &in_force };
+        let set: Vec<String> = set.iter().map(|(key, value)| format!("{key}={value}")).collect();
         words.extend(set.iter().flat_map(|set| ["--set", set]));
         self.output("check.json", &words);
         self.texts.push(("config/FOLDER.txt".to_owned(), format!("{place}\n")));
@@ -132,9 +136,11 @@ impl Collection<'_> {
         }
     }
 
-    /// The log without orders that found no room in an audit: they are logged whole, with what was said.
+    /// The log without lines that hold people's words: orders that found no room in an audit, and texts, such as speech
+    /// that was not meant for the robot and is in no journal.
     fn log(&self, text: &str) -> String {
-        let is_kept = |line: &&str| self.with_words || !line.contains("not in the audit");
+        let holds_words = |line: &str| WORDS_IN_LOGS.iter().any(|sign| line.contains(sign));
+        let is_kept = |line: &&str| self.with_words || !holds_words(line);
         text.lines().filter(is_kept).flat_map(|line| [line, "\n"]).collect()
     }
 
@@ -156,9 +162,24 @@ impl Collection<'_> {
                     }
                     self.texts.push((name, clean));
                 }
-                Err(error) => self.bundle.leave_out(name, error),
+                Err(error) => {
+                    self.bundle.leave_out(name, error);
+                    if service == Service::Speech && !self.with_words {
+                        self.leave_out_logs();
+                    }
+                }
             }
             self.raw(&file, &format!("journal/{}", file_name(&file)));
+        }
+    }
+
+    /// Removes the logs: without the journal it is not known what people said.
+    fn leave_out_logs(&mut self) {
+        for (name, _) in self.texts.extract_if(.., |(name, _)| name.starts_with("log/")) {
+            self.bundle.leave_out(
+                name,
+                "the journal of speech, which tells people's words, cannot be read",
+            );
         }
     }
 

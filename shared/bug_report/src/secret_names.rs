@@ -24,7 +24,7 @@ const ENDINGS: [&str; 14] = [
 /// Names that end so and are none.
 const HARMLESS: [&str; 4] = ["dont_pin", "to_pin", "unknown_key", "idempotency_key"];
 
-/// Longest distance of a value from its name, characters.
+/// Longest distance of a value from its name, characters that are no blanks.
 const GAP_MAX: usize = 8;
 
 /// Replaces secrets that a name or a form gives away, and adds them to `found`.
@@ -91,16 +91,18 @@ fn value_of(name: &str, rest: &str) -> Option<(usize, usize)> {
 
 /// Bytes between a name and its value: spaces, quotes and one sign.
 fn gap(rest: &str) -> usize {
-    let mut has_sign = false;
-    for (at, it) in rest.char_indices().take(GAP_MAX) {
+    let (mut has_sign, mut marks) = (false, 0);
+    for (at, it) in rest.char_indices() {
         let is_sign = ['=', ':', ','].contains(&it);
-        let is_between = is_sign && !has_sign || [' ', '\t', '"', '\'', '\\'].contains(&it);
-        if !is_between {
+        let is_blank = [' ', '\t'].contains(&it);
+        let is_between = is_sign && !has_sign || is_blank || ['"', '\'', '\\'].contains(&it);
+        marks += usize::from(!is_blank);
+        if !is_between || marks > GAP_MAX {
             return at;
         }
         has_sign |= is_sign;
     }
-    rest.len().min(GAP_MAX)
+    rest.len()
 }
 
 /// Bytes of a value: to the closing quote, or bracket, or the end of the word.

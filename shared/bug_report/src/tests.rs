@@ -14,8 +14,9 @@ use crate::words::without_words;
 const SECRET: &str = "s3cr3t-Value_42";
 
 /// Every way to write a secret, `@` for the secret.
-const SHOWN: [&str; 24] = [
+const SHOWN: [&str; 25] = [
     "password = \"@\"",
+    "password        = \"@\"",
     "api_key = '@'  # mine",
     "key = \"@\"",
     "token = \"\"\"@\"\"\"",

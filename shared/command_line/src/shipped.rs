@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use safe_files::{OutputFolder, TemporaryFolder};
+use safe_files::{OutputFolder, Readers, TemporaryFolder};
 use scene::StableHash;
 use service::exit::{Exit, Failure};
 use service::folders::make_private;
@@ -44,7 +44,7 @@ fn write_files(files: Files, folder: &Path) -> Result<usize, Failure> {
         let file = folder.join(path);
         let (Some(parent), Some(name)) = (file.parent(), file.file_name()) else { continue };
         OutputFolder::open(parent)
-            .and_then(|folder| folder.write_new(name, text.as_bytes()))
+            .and_then(|folder| folder.write_new(name, text.as_bytes(), Readers::AsBefore))
             .map_err(|error| Failure::file(&file, &error))?;
     }
     Ok(files.len())

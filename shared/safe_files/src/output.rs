@@ -48,8 +48,13 @@ impl OutputFolder {
     ///
     /// # Errors
     /// `AlreadyExists`, or it cannot be written.
-    pub fn write_new(&self, name: impl AsRef<OsStr>, content: &[u8]) -> io::Result<()> {
-        new_in(&self.0, name.as_ref(), content)
+    pub fn write_new(
+        &self,
+        name: impl AsRef<OsStr>,
+        content: &[u8],
+        readers: Readers,
+    ) -> io::Result<()> {
+        new_in(&self.0, name.as_ref(), content, readers)
     }
 }
 
@@ -66,10 +71,10 @@ pub fn write_output(path: &Path, content: &[u8]) -> io::Result<()> {
 ///
 /// # Errors
 /// `AlreadyExists`, it cannot be written, or a link of another user leads to it.
-pub fn write_new_output(path: &Path, content: &[u8]) -> io::Result<()> {
+pub fn write_new_output(path: &Path, content: &[u8], readers: Readers) -> io::Result<()> {
     let name = path.file_name().ok_or(ErrorKind::IsADirectory)?;
     let (folder, _) = walk(folder_of(path), End::Existing)?;
-    new_in(&folder, name, content)
+    new_in(&folder, name, content, readers)
 }
 
 /// Checks that no link of another user leads to a new file that a user has named.
@@ -80,8 +85,8 @@ pub fn check_new_output(path: &Path) -> io::Result<()> {
     walk(folder_of(path), End::Existing).map(drop)
 }
 
-fn new_in(folder: &OwnedFd, name: &OsStr, content: &[u8]) -> io::Result<()> {
-    let mut draft = Draft::of(&path_in(folder, name), Readers::AsBefore)?;
+fn new_in(folder: &OwnedFd, name: &OsStr, content: &[u8], readers: Readers) -> io::Result<()> {
+    let mut draft = Draft::of(&path_in(folder, name), readers)?;
     draft.write_all(content)?;
     draft.put_if_absent()
 }

@@ -14,7 +14,7 @@ fn folders_are_created_and_files_replaced() {
     folder.write("study.csv", b"two").unwrap();
     let file = top.path().join("b/c/study.csv");
     assert_eq!(fs::read_to_string(&file).unwrap(), "two");
-    let error = folder.write_new("study.csv", b"three").unwrap_err();
+    let error = folder.write_new("study.csv", b"three", Readers::AsBefore).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::AlreadyExists);
     write_output(&file, b"four").unwrap();
     assert_eq!(fs::read_to_string(&file).unwrap(), "four");

@@ -164,7 +164,9 @@ impl Supervisor {
         {
             tracing::error!(folder = %paths.run().display(), %error, "not removed");
         }
-        put_down::forget(&paths.put_down());
+        if ending.cause == Cause::Asked {
+            put_down::forget(&paths.put_down());
+        }
         let killed = self.services.iter().filter(|service| {
             service.ended.as_ref().is_some_and(|ended| ended.killed && ended.at >= ending.since)
         });

@@ -1,9 +1,10 @@
-//! The services that an operator has put down. They stay down if the supervisor is killed, or begins the group anew:
-//! what is held for a person's sake must not start because something else failed. An orderly end forgets them.
+//! The services that an operator has put down. They stay down if the supervisor is killed, fails, is restarted by the
+//! init system, or begins the group anew: a service that is held for a person's sake must not start because something
+//! else failed. `whichone down` alone forgets them.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::Path;
+use std::{fs, io};
 
 use serde::{Deserialize, Serialize};
 
@@ -19,20 +20,20 @@ pub(super) struct PutDown {
 }
 
 impl PutDown {
-    /// Reads what a killed supervisor has left, if it did.
-    pub(super) fn read(path: &Path) -> Self {
-        let text = match safe_files::read_regular(path) {
-            Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Self::default(),
-            Err(error) => {
-                tracing::error!(file = %path.display(), %error, "services that were held may start");
-                return Self::default();
-            }
+    /// Reads what an earlier supervisor of the group has left, if anything.
+    ///
+    /// # Errors
+    /// The file is damaged or cannot be read: which services may start is not known.
+    pub(super) fn read(path: &Path) -> io::Result<Self> {
+        let named = |error: io::Error| {
+            let help = "help: remove the file if no service is to be held";
+            io::Error::new(error.kind(), format!("{}: {error}; {help}", path.display()))
         };
-        serde_json::from_str(&text).unwrap_or_else(|error| {
-            tracing::error!(file = %path.display(), %error, "services that were held may start");
-            Self::default()
-        })
+        match safe_files::read_regular(path) {
+            Ok(text) => serde_json::from_str(&text).map_err(|error| named(error.into())),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Self::default()),
+            Err(error) => Err(named(error)),
+        }
     }
 
     /// Takes in an operator's order for a service. Returns whether that changes anything.
@@ -80,7 +81,7 @@ impl PutDown {
     }
 }
 
-/// Removes the file: the group has ended in order.
+/// Removes the file: the operator has ended the group.
 pub(super) fn forget(path: &Path) {
     if let Err(error) = safe_files::absent_is_fine(fs::remove_file(path)) {
         tracing::warn!(file = %path.display(), %error, "not removed");
@@ -95,19 +96,20 @@ mod tests {
     fn orders_are_kept_as_they_stand() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("put_down");
-        assert_eq!(PutDown::read(&path), PutDown::default());
+        assert_eq!(PutDown::read(&path).unwrap(), PutDown::default());
         let mut put_down = PutDown::default();
         assert!(put_down.note("arm", Event::Hold) && !put_down.note("arm", Event::Hold));
         assert!(put_down.note("ros1", Event::Stop) && put_down.note("ros1", Event::Hold));
         assert!(put_down.note("ros1", Event::Release), "it stays stopped");
         put_down.write(&path);
-        assert_eq!(PutDown::read(&path), put_down);
+        assert_eq!(PutDown::read(&path).unwrap(), put_down);
         assert!(put_down.held.contains("arm") && put_down.stopped.contains("ros1"));
         assert!(put_down.note("ros1", Event::Start) && put_down.note("arm", Event::Restart));
         assert_eq!(put_down, PutDown::default());
         for damaged in ["", "{", "[]", r#"{"held":[1]}"#] {
             fs::write(&path, damaged).unwrap();
-            assert_eq!(PutDown::read(&path), PutDown::default(), "{damaged}");
+            let error = PutDown::read(&path).unwrap_err().to_string();
+            assert!(error.contains("put_down") && error.contains("help: "), "{damaged}: {error}");
         }
         forget(&path);
         forget(&path);

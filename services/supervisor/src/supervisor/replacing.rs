@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::Supervisor;
 use super::requests::done;
 use crate::Time;
-use crate::machine::Event;
+use crate::machine::{Event, ServiceState};
 use crate::server::Client;
 use crate::service::Command;
 use crate::swap::{Move, Swap};
@@ -36,12 +36,16 @@ impl Supervisor {
         if let Err(error) = find_program(&words, &directory) {
             return Err(Refusal::new(RefusalKind::Usage, error.to_string()));
         }
+        if self.group.machine(service).state() == ServiceState::Held {
+            let why = format!("{0} is held; help: whichone release {0}", self.name(service));
+            return Err(Refusal::new(RefusalKind::NotReached, why));
+        }
         tracing::info!(service = self.name(service), command = words.join(" "), "swap");
         let swap = Swap::new(self.group.machine(service));
         let previous = self.services[service].replace_command(Some(Command { words, directory }));
         let replacement = Replacement { swap, client, previous, refused: None };
         self.replacements.insert(service, replacement);
-        self.give(service, Event::Restart, now);
+        self.order(service, Event::Restart, now);
         Ok(())
     }
 

@@ -86,6 +86,8 @@ pub(super) fn start(
     logging::set_json(configuration.spec.log.json);
     logging::identify();
     let group = Group::new(&configuration.spec)?;
+    let put_down =
+        PutDown::read(&paths.put_down()).map_err(failed("services that are put down"))?;
     let alive = previous_run::await_end(&paths, longest_stop(&configuration.spec))?;
     let raised = raise(&paths, &configuration, alive, fresh);
     let (admin, signals, server, around) = raised.inspect_err(|_| {
@@ -99,7 +101,6 @@ pub(super) fn start(
         Notifier::default()
     });
     let services = configuration.spec.services.iter().cloned().map(Service::new).collect();
-    let put_down = PutDown::read(&around.paths.put_down());
     let now = started.elapsed();
     let mut supervisor = Supervisor {
         started,

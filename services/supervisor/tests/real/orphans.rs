@@ -49,6 +49,26 @@ fn what_an_operator_put_down_stays_down_when_the_supervisor_is_killed() {
 }
 
 #[test]
+fn held_service_stays_so_when_the_group_fails_and_is_not_swapped() {
+    let critical = with(service("policy", &[]), "critical", json!(true));
+    let mut group = Group::ready(vec![service("arm", &[]), critical]);
+    group.done(&Request::Hold(Target::new("arm", WAIT_MS)));
+    let command = Request::Swap {
+        service: "arm".into(),
+        command: vec!["sleep".into(), "9".into()],
+        directory: "/".into(),
+    };
+    let refusal = group.refused(&command);
+    assert!(refusal.message.contains("whichone release arm"), "{}", refusal.message);
+    // As by an init system: asked to end by a signal, and started again.
+    send(group.supervisor_pid(), Signal::TERM);
+    group.wait_end();
+    group.run();
+    group.until_ready("policy", 1);
+    assert_eq!(group.service("arm").actual, Actual::Held);
+}
+
+#[test]
 fn program_without_a_lifeline_ends_with_its_supervisor() {
     let sleep = json!({ "name": "arm", "command": ["sleep", "1000"] });
     let mut group = Group::start(vec![sleep]);

@@ -53,15 +53,14 @@ fn new(args: &SceneNewArgs, out: &mut Output<'_>) -> Outcome {
     let mut edit = SceneEdit::parse(&label, &text)?;
     let placed = place::places(&mut edit, &label, &args.config)?.placed;
     load(&args.config, TextFile::new(&*label, edit.text()))?.verdict()?;
-    safe_files::write_new_output(&path, edit.text().as_bytes()).map_err(|error| {
-        match error.kind() {
+    safe_files::write_new_output(&path, edit.text().as_bytes(), safe_files::Readers::AsBefore)
+        .map_err(|error| match error.kind() {
             ErrorKind::AlreadyExists => {
                 let what = format!("{label}: there is a file already; help: choose another name");
                 Failure::new(Exit::Usage, what)
             }
             _ => Failure::file(&path, &error),
-        }
-    })?;
+        })?;
     if out.is_json() {
         out.json(&json!({ "file": path, "objects": placed.len() }))?;
     } else {
