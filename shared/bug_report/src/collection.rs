@@ -136,10 +136,8 @@ impl Collection<'_> {
         }
     }
 
-    /// The log without lines that hold people's words: orders that found no room in an audit, and texts, such as speech
-    /// that was not meant for the robot and is in no journal.
+    /// The log without lines that hold people's words.
     fn log(&self, text: &str) -> String {
-        let holds_words = |line: &str| WORDS_IN_LOGS.iter().any(|sign| line.contains(sign));
         let is_kept = |line: &&str| self.with_words || !holds_words(line);
         text.lines().filter(is_kept).flat_map(|line| [line, "\n"]).collect()
     }
@@ -226,6 +224,12 @@ impl Collection<'_> {
         }
         self.bundle
     }
+}
+
+/// Whether a line of a log holds people's words: an order that found no room in an audit, or a text, such as speech that
+/// was not meant for the robot and is in no journal.
+pub(crate) fn holds_words(line: &str) -> bool {
+    WORDS_IN_LOGS.iter().any(|sign| line.contains(sign))
 }
 
 /// Regular files of a folder with this ending, sorted.

@@ -7,6 +7,7 @@ use std::process::Command;
 use service::group::GroupPaths;
 
 use crate::bundle::{Bundle, check_free};
+use crate::collection::holds_words;
 use crate::secret_names::without_secrets;
 use crate::secrets::Scrubber;
 use crate::words::without_words;
@@ -181,4 +182,18 @@ fn archive_is_read_by_tar_and_replaces_nothing() {
     let as_folder = folder.path().join("report-folder");
     bundle.write(&as_folder).unwrap();
     assert_eq!(fs::read_to_string(as_folder.join("version.json")).unwrap(), "{}\n");
+}
+
+#[test]
+fn lines_of_logs_with_what_people_said_are_told_from_others() {
+    for line in [
+        r#"INFO speech::asr_worker::worker: speech rejected: not meant for the robot text="see you at the bank" score=0.2"#,
+        r#"{"level":"INFO","fields":{"message":"speech rejected","text":"see you at the bank","score":0.2}}"#,
+        "WARN console: not in the audit: say the pills are in the drawer",
+    ] {
+        assert!(holds_words(line), "{line}");
+    }
+    for line in ["INFO supervisor: started service=arm", "INFO speech: questions are shown as text reason=none"] {
+        assert!(!holds_words(line), "{line}");
+    }
 }
