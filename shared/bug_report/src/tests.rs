@@ -193,7 +193,10 @@ fn lines_of_logs_with_what_people_said_are_told_from_others() {
     ] {
         assert!(holds_words(line), "{line}");
     }
-    for line in ["INFO supervisor: started service=arm", "INFO speech: questions are shown as text reason=none"] {
+    for line in [
+        "INFO supervisor: started service=arm",
+        "INFO speech: questions are shown as text reason=none",
+    ] {
         assert!(!holds_words(line), "{line}");
     }
 }

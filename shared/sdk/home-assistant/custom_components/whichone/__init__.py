@@ -9,7 +9,7 @@ from homeassistant.helpers.aiohttp_client import async_get_clientsession
 from . import issues
 from .api import Robot
 from .link import Link, WhichoneEntry
-from .sentences import Sentences
+from .sentences import SENTENCES, Sentences
 
 PLATFORMS = [Platform.BUTTON, Platform.CONVERSATION, Platform.EVENT, Platform.SENSOR]
 
@@ -20,9 +20,9 @@ async def async_setup_entry(hass: HomeAssistant, entry: WhichoneEntry) -> bool:
     entry.runtime_data = link = Link(hass, entry, robot)
     await link.begin()
     await hass.config_entries.async_forward_entry_setups(entry, PLATFORMS)
-    sentences = Sentences(hass, entry)
-    entry.async_on_unload(sentences.end)
-    await sentences.begin()
+    sentences = hass.data.setdefault(SENTENCES, Sentences(hass))
+    entry.async_on_unload(lambda: sentences.remove(entry))
+    await sentences.add(entry)
     entry.async_create_background_task(hass, link.follow(), f"whichone events of {entry.title}")
     return True
 

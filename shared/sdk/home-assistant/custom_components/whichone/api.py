@@ -40,6 +40,10 @@ class Problem(RobotError):
         self.code, self.detail = code, detail
 
 
+class BegunAfresh(RobotError):
+    """The robot has begun afresh, and what the words answer is gone."""
+
+
 @dataclass(frozen=True)
 class Words:
     """A sentence, with what does not change when it is sent again."""

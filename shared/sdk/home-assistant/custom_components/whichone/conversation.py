@@ -18,10 +18,11 @@ from homeassistant.helpers.entity_platform import AddEntitiesCallback
 from homeassistant.util import ulid
 
 from . import issues, spoken
-from .api import InvalidToken, Problem, RobotError, Words
+from .api import BegunAfresh, InvalidToken, Problem, RobotError, Words
 from .const import CONF_NAME_PEOPLE
 from .entity import WhichoneEntity
 from .link import WhichoneEntry
+from .stops import is_stop, stop
 from .whose import conversation_of, name_of
 
 PARALLEL_UPDATES = 0  # a stop never waits for an earlier sentence
@@ -44,7 +45,8 @@ class Agent(WhichoneEntity, ConversationEntity):
         """Begin without an open dialogue."""
         super().__init__(entry, "robot")
         self._entry = entry
-        self._shown: OrderedDict[str, int] = OrderedDict()
+        # The number of that line, and whether it waits for an answer.
+        self._shown: OrderedDict[str, tuple[int, bool]] = OrderedDict()
 
     @property
     def available(self) -> bool:
@@ -61,7 +63,8 @@ class Agent(WhichoneEntity, ConversationEntity):
         response = intent.IntentResponse(language=user_input.language)
         waits = False
         try:
-            reply = await self._say(user_input, chat_log.conversation_id)
+            reply = await self._stop(user_input) if is_stop(user_input.text) else None
+            reply = reply or await self._say(user_input, chat_log.conversation_id)
         except RobotError as error:
             text = await self._on_error(error, user_input.language)
             response.async_set_error(intent.IntentResponseErrorCode.FAILED_TO_HANDLE, text)

@@ -14,7 +14,7 @@ from homeassistant.exceptions import ConfigEntryAuthFailed, ConfigEntryError
 
 from . import issues
 from .api import Event, InvalidToken, Problem, Robot, RobotError
-from .const import API, BACKOFF_S, DOMAIN
+from .const import API, ARM_LOOKS, ARM_PAUSE_S, BACKOFF_S, DOMAIN
 
 _LOGGER = logging.getLogger(__name__)
 
@@ -44,15 +44,27 @@ class Link:
         self._last: str | None = None
         self._listeners: list[Listener] = []
         self._nudged = asyncio.Event()
+        # The arm moves, or has been at rest for a few looks only.
+        self._may_move = False
+        self._looks_at_rest = 0
+        self._looking: asyncio.Task[None] | None = None
 
     @property
     def is_busy(self) -> bool:
+        """The robot is engaged, or its arm moves nevertheless, such as home after a request."""
+        return self.is_engaged or self._may_move
+
+    @property
+    def is_engaged(self) -> bool:
         """The robot talks with someone, or fetches something; without a connection, as when that ended."""
         return bool(self.state.get("interaction")) or self.state.get("state") in ("fetching", "asking")
 
     @callback
     def listen(self, listener: Listener) -> Callable[[], None]:
-        """Call `listener` after each event, and with `None` after each change of the connection."""
+        """Call `listener` after each event, and with `None` after each change of the connection.
+
+        Once an arm is at rest that may have moved, it is called with an event `arm`, which is not the robot's.
+        """
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
@@ -68,6 +80,7 @@ class Link:
             await self._check()
             self.state = await self.robot.state()
             self.is_connected = True
+            self._may_move = self._arm_moves
         except InvalidToken as error:
             raise ConfigEntryAuthFailed(translation_domain=DOMAIN, translation_key="invalid_token") from error
         except Mismatch as error:
@@ -119,18 +132,51 @@ class Link:
     def _take(self, event: Event | None) -> None:
         if event is None:
             self._set_connected(True)
+            if self._may_move:
+                self._look()
             return
         self._last = event.id or self._last
         match event.name:
             case "snapshot":
                 self.state = event.data
+                if self._arm_moves:
+                    self._look()
             case "state" | "line":
                 self.state |= event.data
             case "question":
                 self.state |= event.data
             case "ended":
                 self.state |= {"interaction": 0, "ended": event.data}
+        if event.name in ("state", "question", "line", "ended"):
+            self._look()
         self._notify(event)
+
+    @property
+    def _arm_moves(self) -> bool:
+        return bool((self.state.get("arm") or {}).get("moving"))
+
+    @callback
+    def _look(self) -> None:
+        """Take the arm for a moving one until it was seen at rest a few times."""
+        self._may_move, self._looks_at_rest = True, 0
+        if self._looking is None or self._looking.done():
+            self._looking = self._entry.async_create_background_task(
+                self._hass, self._look_until_at_rest(), f"whichone arm of {self._entry.title}"
+            )
+
+    async def _look_until_at_rest(self) -> None:
+        while self._looks_at_rest < ARM_LOOKS:
+            await asyncio.sleep(ARM_PAUSE_S)
+            try:
+                state = await self.robot.state()
+            except RobotError as error:
+                if isinstance(error, InvalidToken) or not self.is_connected:
+                    return  # goes on with the connection
+                continue
+            self.state |= {"arm": state.get("arm")}
+            self._looks_at_rest = 0 if self._arm_moves else self._looks_at_rest + 1
+        self._may_move = False
+        self._notify(Event(None, "arm", self.state["arm"] or {}))
 
     @callback
     def _set_connected(self, is_connected: bool) -> None:

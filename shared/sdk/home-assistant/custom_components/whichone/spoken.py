@@ -5,7 +5,7 @@ from __future__ import annotations
 from homeassistant.core import HomeAssistant
 from homeassistant.helpers.translation import async_get_translations
 
-from .api import CannotConnect, InvalidToken, Problem, RobotError
+from .api import BegunAfresh, CannotConnect, InvalidToken, Problem, RobotError
 from .const import DOMAIN
 
 # What is said for a refusal of the robot; its own sentence for those that are not listed.
@@ -19,13 +19,16 @@ _SAID = {
 }
 
 
-async def sentence(hass: HomeAssistant, language: str, key: str) -> str:
+async def sentence(hass: HomeAssistant, language: str, key: str, **placeholders: str) -> str:
     """Return a sentence: in English if it is not translated."""
     path = f"component.{DOMAIN}.exceptions.{key}.message"
     for choice in (language, "en"):
         texts = await async_get_translations(hass, choice, "exceptions", [DOMAIN])
         if path in texts:
-            return texts[path]
+            text = texts[path]
+            for name, value in placeholders.items():
+                text = text.replace(f"{{{name}}}", value)
+            return text
     return key
 
 
@@ -34,6 +37,8 @@ async def error(hass: HomeAssistant, language: str, failure: RobotError) -> str:
     match failure:
         case InvalidToken():
             key = "invalid_token"
+        case BegunAfresh():
+            key = "begun_afresh"
         case Problem() if failure.code in _SAID:
             key = _SAID[failure.code]
         case Problem():
