@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections import OrderedDict
 from typing import Any, Literal
 
@@ -22,8 +23,10 @@ from .api import BegunAfresh, InvalidToken, Problem, RobotError, Words
 from .const import CONF_NAME_PEOPLE
 from .entity import WhichoneEntity
 from .link import WhichoneEntry
-from .stops import is_stop, stop
+from .stops import is_stop
 from .whose import conversation_of, name_of
+
+_LOGGER = logging.getLogger(__name__)
 
 PARALLEL_UPDATES = 0  # a stop never waits for an earlier sentence
 
@@ -61,12 +64,20 @@ class Agent(WhichoneEntity, ConversationEntity):
     async def _async_handle_message(self, user_input: ConversationInput, chat_log: ChatLog) -> ConversationResult:
         """Say it to the robot. The microphone stays open exactly if the robot waits for an answer."""
         response = intent.IntentResponse(language=user_input.language)
-        waits = False
+        waits, stops = False, is_stop(user_input.text)
         try:
-            reply = await self._stop(user_input) if is_stop(user_input.text) else None
-            reply = reply or await self._say(user_input, chat_log.conversation_id)
+            if stops and await self._stop():
+                text = await spoken.sentence(self.hass, user_input.language, "stopped")
+                reply = {"kind": "stopped", "text": text, "expects_answer": False}
+            else:
+                reply = await self._say(user_input, chat_log.conversation_id)
+            if stops and reply["kind"] != "stopped":
+                raise RobotError("the robot did not take it for a stop")
         except RobotError as error:
             text = await self._on_error(error, user_input.language)
+            if stops:
+                _LOGGER.error("the stop of %s is not confirmed: %s", self._entry.title, error)
+                text = await spoken.sentence(self.hass, user_input.language, "not_stopped_aloud")
             response.async_set_error(intent.IntentResponseErrorCode.FAILED_TO_HANDLE, text)
         else:
             text, waits = reply["text"], bool(reply["expects_answer"])
@@ -76,25 +87,41 @@ class Agent(WhichoneEntity, ConversationEntity):
         chat_log.async_add_assistant_content_without_tools(AssistantContent(user_input.agent_id, text))
         return ConversationResult(response, chat_log.conversation_id, continue_conversation=waits)
 
+    async def _stop(self) -> bool:
+        """Stop the arm as the button does. A token may have the right to talk alone: then the words stop it."""
+        try:
+            await self.link.robot.stop()
+        except Problem as problem:
+            if problem.code != "right":
+                raise
+            return False
+        self.link.nudge()
+        return True
+
     async def _say(self, user_input: ConversationInput, conversation_id: str) -> dict[str, Any]:
         """Say it under a key of its own, and remember which line the person is given."""
         user = user_input.context.user_id
         satellite = getattr(user_input, "satellite_id", None)  # newer than Home Assistant 2025.4
         whose = conversation_of(satellite, user_input.device_id, user, conversation_id)
         person = await name_of(self.hass, user) if self._entry.options.get(CONF_NAME_PEOPLE) else None
-        words = Words(user_input.text, ulid.ulid_now(), whose, self._shown.get(whose), person)
+        seen, is_question = self._shown.get(whose, (None, False))
+        words = Words(user_input.text, ulid.ulid_now(), whose, seen, person)
         try:
             reply = await self.link.robot.say(words)
         except Problem as problem:
-            if problem.code != "invalid" or words.seen is None:
+            if problem.code != "invalid" or seen is None or not problem.detail.startswith("seen:"):
                 raise
             # The robot begins afresh: its lines are numbered anew.
             self._shown.pop(whose, None)
+            if is_question:
+                # Without its question an answer would be a request, or the answer to someone else's question.
+                self.link.nudge()
+                raise BegunAfresh("the question is gone") from problem
             reply = await self.link.robot.say(Words(words.text, ulid.ulid_now(), whose, None, person))
         self.link.nudge()
         issues.clear(self.hass, self._entry, issues.RIGHTS)
         if reply["prompt"]:
-            self._shown[whose] = reply["prompt"]
+            self._shown[whose] = reply["prompt"], bool(reply["expects_answer"])
             self._shown.move_to_end(whose)
             if len(self._shown) > _SHOWN_MAX:
                 self._shown.popitem(last=False)
