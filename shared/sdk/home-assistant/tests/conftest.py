@@ -51,10 +51,10 @@ async def fake(core):
     await robot.end()
 
 
-async def connected(hass, url, token, unique_id):
+async def connected(hass, url, token, unique_id, title="robot"):
     """Set up a robot and wait until its events come."""
     data = {"url": url, "token": token}
-    entry = MockConfigEntry(domain="whichone", unique_id=unique_id, title="robot", data=data)
+    entry = MockConfigEntry(domain="whichone", unique_id=unique_id, title=title, data=data)
     entry.add_to_hass(hass)
     assert await hass.config_entries.async_setup(entry.entry_id)
     await hass.async_block_till_done()
@@ -68,6 +68,19 @@ async def entry(core, fake):
     await until(lambda: fake.resumed_after)
     yield entry
     await core.config_entries.async_unload(entry.entry_id)
+
+
+@pytest.fixture
+async def second(core, entry):
+    """Return another recorded robot, which is set up as well."""
+    robot = Fake()
+    robot.info = {"id": "another", "name": "garage"}
+    await robot.start()
+    second = await connected(core, robot.url, TOKEN, "another", "garage")
+    await until(lambda: robot.resumed_after)
+    yield robot
+    await core.config_entries.async_unload(second.entry_id)
+    await robot.end()
 
 
 async def until(fact, seconds=10.0):

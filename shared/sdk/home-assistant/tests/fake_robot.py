@@ -37,6 +37,8 @@ class Fake:
         self.script: list[str] = []
         self.answers = {"info": "info", "state": "state_idle", "motion/stop": "stop", "motion/resume": "resumed"}
         self.info: dict[str, Any] = {}
+        self.arm_moves = False
+        self.stop_takes_s = 0.0
         self.token = TOKEN
         self.said: list[dict[str, Any]] = []
         self.keys: list[str] = []
@@ -119,7 +121,15 @@ class Fake:
             return web.json_response(ANSWERS["info"]["body"] | self.info)
         if path != "info" and self._is_refused(request):
             return answer("no_token")
+        if path == "motion/stop":
+            await asyncio.sleep(self.stop_takes_s)
+        if path == "state" and self.arm_moves:
+            return web.json_response(self._state())
         return answer(self.answers[path])
+
+    def _state(self) -> dict[str, Any]:
+        state = ANSWERS[self.answers["state"]]["body"]
+        return state | {"arm": state["arm"] | {"moving": self.arm_moves}}
 
     async def _events(self, request: web.Request) -> web.StreamResponse:
         if self._is_refused(request):
@@ -131,7 +141,7 @@ class Fake:
         if last:
             missed = self._kept[int(last.removeprefix("fake-")) :]
         else:
-            state = json.dumps(ANSWERS[self.answers["state"]]["body"])
+            state = json.dumps(self._state())
             missed = [f"id: fake-{len(self._kept)}\nevent: snapshot\ndata: {state}\n\n".encode()]
         for frame in [b": alive\n\n", *missed]:
             await response.write(frame)

@@ -8,6 +8,7 @@ from homeassistant.core import Context
 from homeassistant.helpers.chat_session import async_get_chat_session
 
 from custom_components.whichone import api, const
+from custom_components.whichone.stops import is_stop
 from custom_components.whichone.whose import conversation_of, name_of
 from fake_robot import reply_of
 from talk import say, spoken
@@ -93,11 +94,57 @@ async def test_robot_that_is_away_is_said_and_the_agent_stays(core, fake, entry,
 
 
 async def test_lines_are_numbered_anew_after_a_fresh_start(core, fake, entry):
+    fake.script = ["fetching", "unseen_line", "question"]
+    await say(core, "get me the clear bowl", device="hall")
+    assert (await say(core, "get me the bowl", device="hall")).continue_conversation
+    assert [words.get("seen") for words in fake.said] == [None, reply_of("fetching")["prompt"], None]
+    assert fake.keys[1] != fake.keys[2]
+
+
+async def test_answer_to_a_question_that_is_gone_is_not_said_again(core, fake, entry):
     fake.script = ["question", "unseen_line", "question"]
     await say(core, "get me the bowl", device="hall")
+    result = await say(core, "the clear one", device="hall")
+    assert spoken(result) == "I have begun afresh. Please say your request again."
+    assert not result.continue_conversation
+    assert [words["text"] for words in fake.said] == ["get me the bowl", "the clear one"]
     assert (await say(core, "get me the bowl", device="hall")).continue_conversation
-    assert [words.get("seen") for words in fake.said] == [None, reply_of("question")["prompt"], None]
-    assert fake.keys[1] != fake.keys[2]
+    assert "seen" not in fake.said[-1]
+
+
+@pytest.mark.parametrize("text", ["stop", "Stop, stop!", "Please stop now.", "Stop the robot!", "Stopp den Roboter!"])
+async def test_stop_to_the_agent_is_the_stop_itself(core, fake, entry, text):
+    fake.script = ["question"]
+    first = await say(core, "get me the bowl")
+    result = await say(core, text, first.conversation_id)
+    assert spoken(result) == "I have stopped."
+    assert not result.continue_conversation
+    assert fake.asked.count("motion/stop") == 1
+    assert len(fake.said) == 1
+
+
+async def test_stop_to_the_agent_of_a_robot_that_is_away_is_not_confirmed(core, fake, entry, monkeypatch):
+    monkeypatch.setattr(api, "STOP_RETRY_S", 0.2)
+    fake.script = ["question"]
+    first = await say(core, "get me the bowl")
+    await fake.end()
+    async with asyncio.timeout(3):
+        result = await say(core, "stop", first.conversation_id)
+    assert spoken(result) == "The robot has not confirmed the stop! Use its emergency stop."
+
+
+async def test_words_stop_where_the_token_may_only_talk(core, fake, entry):
+    fake.answers["motion/stop"] = "right"
+    fake.script = ["stopped", "question"]
+    assert spoken(await say(core, "stop")) == reply_of("stopped")["text"]
+    # What the robot did not take for a stop is none.
+    assert "has not confirmed the stop" in spoken(await say(core, "Stopp den Roboter!"))
+    assert [words["text"] for words in fake.said] == ["stop", "Stopp den Roboter!"]
+
+
+@pytest.mark.parametrize("text", ["stop, not that one", "do not stop", "the one beside the bus stop", ""])
+def test_other_words_are_no_stop(text):
+    assert not is_stop(text)
 
 
 async def test_dialogue_is_the_satellites_else_the_devices_else_the_users(core, fake, entry, hass_admin_user):

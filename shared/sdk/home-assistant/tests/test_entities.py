@@ -63,7 +63,7 @@ async def test_events_go_on_where_they_ended(core, fake, entry):
     await until(lambda: state(core, "dialogue").attributes.get("event_type") == "ended")
     assert fake.resumed_after[0] is None
     assert fake.resumed_after[1] == "fake-2"
-    assert not entry.runtime_data.is_busy
+    await until(lambda: not entry.runtime_data.is_busy)
     # The end of a stream is no outage, such as a gateway's after a minute.
     assert None not in seen
     stop()

@@ -19,8 +19,8 @@ RETRY_S: Final = 15.0
 STOP_RETRY_S: Final = 5.0
 # Pause before a request is sent again, seconds.
 PAUSE_S: Final = 0.4
-# Pause between looks at an arm that may move, seconds, and looks at rest after which it does not: events tell nothing of
-# it, and an arm may set out a moment after them.
+# Pause between looks at an arm that may move, seconds, and looks at rest after which it does not: no event tells of it,
+# and an arm may set out a moment after an event.
 ARM_PAUSE_S: Final = 1.0
 ARM_LOOKS: Final = 3
 # A stream of events that is silent for longer is dead: the robot sends a comment every 15 s.
