@@ -15,6 +15,8 @@ use crate::{
     Motion, TrajectoryDriver, Window,
 };
 
+mod fingers;
+
 const LIMB: Limb = Limb::Left;
 const PASS_S: f64 = 0.01;
 
