@@ -16,6 +16,7 @@ use crate::{
 };
 
 mod fingers;
+mod names;
 
 const LIMB: Limb = Limb::Left;
 const PASS_S: f64 = 0.01;

@@ -104,6 +104,17 @@ fn joints_that_turn_back_have_not_stopped() {
 }
 
 #[test]
+fn joints_have_stopped_once_they_have_stood_for_a_tenth_of_a_second() {
+    let mut bench = Bench::new();
+    bench.passes(1, &Motion::Stop(5));
+    bench.answer(Answer::Cancelled(0));
+    bench.passes(9, &Motion::Stop(5));
+    assert_eq!((bench.stopped(), bench.goals.len()), (0, 0), "90 ms, and no goal holds the arm");
+    bench.passes(2, &Motion::Stop(5));
+    assert_eq!(bench.stopped(), 5);
+}
+
+#[test]
 fn goal_that_may_be_under_way_beside_a_refused_one_is_stopped() {
     let mut bench = Bench::new();
     bench.follow(1);
