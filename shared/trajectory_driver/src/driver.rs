@@ -164,7 +164,7 @@ impl TrajectoryDriver {
     fn abandon(&mut self) {
         let state = &mut self.state;
         (state.sequence, state.void) = (None, state.number);
-        state.fingers.forget();
+        state.fingers.forget(state.now);
     }
 
     /// The latest end that counts for the motion under way.
@@ -257,7 +257,7 @@ impl ArmDriver for TrajectoryDriver {
     fn begin_pass(&mut self, now: Time, _: [bool; 2]) {
         (self.state.now, self.state.fresh) = (now, false);
         self.state.inhibit = self.find_inhibit();
-        self.measured.holding[self.limb] = self.state.fingers.holding();
+        self.measured.holding[self.limb] = self.state.fingers.holding(now);
         if self.state.inhibit != MotionInhibit::None && self.state.sequence.is_some() {
             self.begin_stop();
         }
@@ -324,7 +324,7 @@ impl ArmDriver for TrajectoryDriver {
         if command.fingers == Fingers::Stay {
             return Ok(there);
         }
-        let Ok(done) = self.state.fingers.has_settled() else {
+        let Ok(done) = self.state.fingers.has_settled(&self.settings.gripper) else {
             let why = "has a gripper that did not carry out its command; help: look at its log";
             return Err(Fault::Controller { limb, why });
         };
@@ -339,7 +339,7 @@ impl ArmDriver for TrajectoryDriver {
         self.state.stopping.is_none()
             && self.joints_are_fresh()
             && self.velocity_is_low()
-            && !self.state.fingers.is_moving()
+            && !self.state.fingers.is_moving(self.state.now)
     }
 
     fn hold_here(&mut self) {
@@ -381,7 +381,9 @@ fn log(condition: Condition) {
     match condition {
         Condition::Ready => tracing::info!("the controllers answer"),
         Condition::Unheard => tracing::warn!("the controllers have not answered yet"),
-        Condition::Silent => tracing::warn!("the arm's controller does not answer any more"),
+        Condition::Silent => tracing::warn!(
+            "the arm's controller does not answer any more, or the bridge has stopped the arm; its log says which"
+        ),
         Condition::NoGripper => tracing::warn!("the gripper's controller does not answer"),
         Condition::Foreign => tracing::warn!(
             "another client moves the arm; help: end its goal, which the bridge's log names"

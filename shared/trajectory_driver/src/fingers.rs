@@ -3,11 +3,11 @@
 use arm_driver::Fingers;
 use manipulation::gripper::{self, Gripper};
 use serde::{Deserialize, Serialize};
-use service::Time;
+use service::{Span, Time};
 
-use crate::{FingerEnd, FingerOrder, GripperController};
+use crate::{CANCEL_FINGERS_MS, FingerEnd, FingerOrder, GripperController};
 
-/// Share of the fingers' travel by which they may miss an open position, per cent.
+/// Share of the fingers' travel by which they may miss the position to which they open, per cent.
 const OPEN_SLACK_PERCENT: f64 = 5.0;
 
 /// The gripper of the limb.
@@ -16,6 +16,8 @@ pub(crate) struct FingerState {
     geometry: Gripper,
     /// The command in force.
     order: Option<FingerOrder>,
+    /// Number of the latest command that was cancelled before its end, and when.
+    cancelled: Option<(u64, Time)>,
     /// Latest end of a command, of this process or one before.
     end: Option<FingerEnd>,
     /// Measured share of the travel, per cent.
@@ -24,7 +26,7 @@ pub(crate) struct FingerState {
 
 impl FingerState {
     pub(crate) fn new(geometry: &Gripper) -> Self {
-        Self { geometry: *geometry, order: None, end: None, percent: None }
+        Self { geometry: *geometry, order: None, cancelled: None, end: None, percent: None }
     }
 
     /// Takes over a report. Returns the measured width, metres.
@@ -51,7 +53,9 @@ impl FingerState {
             return;
         }
         // A number that a process before this one cannot have used.
-        let number = self.order.map_or(now.ns() / 1_000_000, |order| order.number + 1).max(1);
+        let before =
+            self.order.map(|order| order.number).max(self.cancelled.map(|(number, _)| number));
+        let number = (now.ns() / 1_000_000).max(before.unwrap_or(0) + 1);
         self.order = Some(FingerOrder { number, position, closes });
     }
 
@@ -61,8 +65,11 @@ impl FingerState {
     }
 
     /// Forgets the command, which is cancelled: the next one is sent anew.
-    pub(crate) fn forget(&mut self) {
-        self.order = None;
+    pub(crate) fn forget(&mut self, now: Time) {
+        let own_end = self.own_end();
+        if let Some(order) = self.order.take().filter(|_| own_end.is_none()) {
+            self.cancelled = Some((order.number, now));
+        }
     }
 
     fn own_end(&self) -> Option<FingerEnd> {
@@ -70,35 +77,40 @@ impl FingerState {
         self.end.filter(|end| end.number == order.number)
     }
 
-    pub(crate) fn is_moving(&self) -> bool {
+    /// Returns whether the end of the command in force, or of a cancelled one, is awaited.
+    pub(crate) fn is_moving(&self, now: Time) -> bool {
+        let is_cancelling = |(number, at): (u64, Time)| {
+            self.end.is_none_or(|end| end.number < number)
+                && now.since(at) <= Span::from_ms(CANCEL_FINGERS_MS)
+        };
         self.order.is_some() && self.own_end().is_none()
+            || self.cancelled.is_some_and(is_cancelling)
     }
 
     /// Returns whether the fingers have completed their command; `Err` if their controller has not carried it out.
-    pub(crate) fn has_settled(&self) -> Result<bool, ()> {
+    pub(crate) fn has_settled(&self, controller: &GripperController) -> Result<bool, ()> {
         let Some(order) = self.order else { return Ok(true) };
         match self.own_end() {
             None => Ok(false),
             Some(end) if end.reached || end.closes && end.stalled => Ok(true),
-            // Fingers that stall just before their open position are open.
-            Some(end) if end.stalled && self.is_at(&order) => Ok(true),
+            // Fingers that stall just before the position to which they open are open.
+            Some(end) if end.stalled && self.is_at(controller.percent(order.position)) => Ok(true),
             Some(_) => Err(()),
         }
     }
 
-    fn is_at(&self, order: &FingerOrder) -> bool {
-        let wanted = if order.closes { 0.0 } else { 100.0 };
+    fn is_at(&self, wanted: f64) -> bool {
         self.percent.is_some_and(|percent| (percent - wanted).abs() < OPEN_SLACK_PERCENT)
     }
 
     /// Returns whether something is between the fingers: they stopped at it, whatever the status of the command, and
     /// stand apart.
-    pub(crate) fn holding(&self) -> Option<bool> {
+    pub(crate) fn holding(&self, now: Time) -> Option<bool> {
         if self.percent.is_some_and(|percent| percent <= 100.0 * gripper::DEAD_ZONE) {
             return Some(false);
         }
         match self.end {
-            _ if self.is_moving() => None,
+            _ if self.is_moving(now) => None,
             Some(end) if end.closes && end.stalled => Some(true),
             Some(end) if end.reached => Some(false),
             _ => None,

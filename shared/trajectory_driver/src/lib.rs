@@ -28,6 +28,9 @@ pub(crate) const NAME: &str = "trajectory";
 /// Longest time between two orders, milliseconds.
 pub const ORDER_EVERY_MS: u64 = 40;
 
+/// Longest time for which the end of a cancelled command to the fingers is awaited, milliseconds.
+pub const CANCEL_FINGERS_MS: u64 = 2_000;
+
 /// The driver `trajectory`.
 pub static DRIVER: Driver = Driver {
     about: &config::Driver {

@@ -129,7 +129,8 @@ pub enum Condition {
     Unheard,
     /// They answer.
     Ready,
-    /// They have answered before and do not any more.
+    /// They have answered before and do not any more; or the bridge has stopped the arm by itself, and no order without
+    /// a motion has come since.
     Silent,
     /// A goal of another client is being executed.
     Foreign,

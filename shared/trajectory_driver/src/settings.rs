@@ -102,8 +102,9 @@ fn joints(f: &mut Fields<'_>) -> Vec<String> {
             f.problem("joints", what, "name each joint of the arm once, shoulder first");
         }
     }
-    if !joints.is_empty() && !(6..=7).contains(&joints.len()) && !f.is_wrong("joints") {
-        let what = format!("expected the names of six or seven joints, found {}", joints.len());
+    if !joints.is_empty() && !(5..=7).contains(&joints.len()) && !f.is_wrong("joints") {
+        let what =
+            format!("expected the names of five, six or seven joints, found {}", joints.len());
         f.problem("joints", what, "name each joint of the arm, shoulder first, or write []");
     }
     joints

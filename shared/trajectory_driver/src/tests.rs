@@ -15,6 +15,9 @@ use crate::{
     Motion, TrajectoryDriver, Window,
 };
 
+mod fingers;
+mod names;
+
 const LIMB: Limb = Limb::Left;
 const PASS_S: f64 = 0.01;
 

@@ -31,7 +31,7 @@ const LOOK_EVERY: Span = Span::from_ms(10);
 const REPORT_EVERY: Span = Span::from_ms(5);
 /// Longest interval of two reports.
 const REPEAT_EVERY: Span = Span::from_ms(100);
-/// Time for which the end of this process waits for the arm to come to rest.
+/// Time for which the end of this process waits for arm and fingers to come to rest.
 const END_WITHIN: Span = Span::from_ms(1_000);
 
 /// Runs the service until it is shut down.
@@ -139,7 +139,7 @@ impl Bridge {
             self.domain.arm.send(request, &mut self.losses);
         }
         let order = self.order.as_ref().and_then(|order| order.fingers);
-        let stops = self.controller.is_stopping();
+        let stops = self.controller.stops_fingers(&facts);
         for request in self.fingers.decide(order, stops, now) {
             self.domain.gripper.send(request, &mut self.losses);
         }
@@ -199,9 +199,8 @@ impl Cycle for Bridge {
         self.act(now);
         self.report(now)?;
         self.threads.count(now)?;
-        let ends = self
-            .ending
-            .is_some_and(|since| !self.controller.is_stopping() || now.since(since) > END_WITHIN);
+        let is_stopping = self.controller.is_stopping() || self.fingers.is_stopping();
+        let ends = self.ending.is_some_and(|since| !is_stopping || now.since(since) > END_WITHIN);
         Ok(if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }
 

@@ -30,6 +30,8 @@ struct Sent {
     /// Number of its window; 0 for one that holds the arm.
     window: u64,
     is_over: bool,
+    /// A newer one was accepted: the controller does not execute it any more.
+    is_replaced: bool,
     /// When its status was seen to have ended, and the status.
     over: Option<(Time, i8)>,
 }
@@ -49,6 +51,8 @@ pub struct Controller {
     ended: Option<(u64, Ending)>,
     stop: Option<Stop>,
     stopped: u64,
+    /// When a stop of the bridge's own began that no order of the arm has acknowledged.
+    halted: Option<Time>,
     /// A goal of another client that is being executed.
     foreign: Option<GoalId>,
     /// Goals of this group that are not over, by their latest statuses.
@@ -68,6 +72,14 @@ pub struct Facts<'a> {
     pub is_ending: bool,
     /// Now.
     pub now: Time,
+}
+
+impl Facts<'_> {
+    /// Returns whether nothing stands behind the order any more: its arm is silent, or this process ends.
+    pub fn is_dead(&self) -> bool {
+        let age = self.order.map(|order| self.now.since(Time(order.at_ns)));
+        self.is_ending || age.is_none_or(|age| age > ARM_SILENT)
+    }
 }
 
 type Requests = Vec<Request<TrajectoryGoal>>;
@@ -92,6 +104,7 @@ impl Controller {
             ended: None,
             stop: None,
             stopped: 0,
+            halted: None,
             foreign: None,
             has_active: false,
             has_former: false,
@@ -118,13 +131,14 @@ impl Controller {
 
     fn on_accepted(&mut self, id: &GoalId, is_accepted: bool) {
         self.liveness.on_accepted();
-        let Some(goal) = self.sent.iter_mut().find(|goal| goal.id == *id) else { return };
-        let window = goal.window;
+        let Some(n) = self.sent.iter().position(|goal| goal.id == *id) else { return };
+        let window = self.sent[n].window;
         if is_accepted {
             self.accepted = self.accepted.max(window);
+            self.sent.iter_mut().take(n).for_each(|goal| goal.is_replaced = true);
             return;
         }
-        goal.is_over = true;
+        self.sent[n].is_over = true;
         if window == self.newest && window > 0 {
             tracing::error!("the controller refused a goal; help: is it active? Its log says more");
             self.ended = Some((window, Ending::Refused));
@@ -171,13 +185,14 @@ impl Controller {
         }
     }
 
-    /// Returns whether the controller can be used.
+    /// Returns whether the controller can be used. After a stop of the bridge's own it cannot, until the arm knows of
+    /// it: the arm would go on with its plan, and the controller would catch up in a leap.
     pub fn condition(&self, now: Time) -> Condition {
         if self.foreign.is_some() {
             Condition::Foreign
         } else if !self.liveness.is_heard() {
             Condition::Unheard
-        } else if self.liveness.is_silent(now) {
+        } else if self.liveness.is_silent(now) || self.halted.is_some() {
             Condition::Silent
         } else {
             Condition::Ready
@@ -194,9 +209,14 @@ impl Controller {
         self.stop.is_some()
     }
 
+    /// Returns whether the fingers are to stop, and to begin nothing.
+    pub fn stops_fingers(&self, facts: &Facts<'_>) -> bool {
+        self.is_stopping() || self.halted.is_some() || facts.is_dead()
+    }
+
     /// Returns whether a goal of this process may be under way.
     fn has_goal(&self) -> bool {
-        self.sent.back().is_some_and(|goal| !goal.is_over)
+        self.sent.iter().any(|goal| !goal.is_over && !goal.is_replaced)
     }
 
     /// Decides what is asked of the controller. `stamp` returns the controller's time for one of this machine.
@@ -214,6 +234,7 @@ impl Controller {
         let mut requests = Requests::new();
         if let Some(Motion::Follow(window)) = facts.order.map(|order| &order.motion)
             && window.number > self.newest
+            && !facts.is_dead()
             && self.condition(now) == Condition::Ready
         {
             self.newest = window.number;
@@ -229,14 +250,12 @@ impl Controller {
     /// Begins a stop if the arm orders one, or its process is dead with a goal under way, or a goal of an earlier process
     /// of this group is executed still.
     fn watch(&mut self, facts: &Facts<'_>) {
-        let now = facts.now;
+        self.take_acknowledgement(facts.order);
         let ordered = match facts.order.map(|order| &order.motion) {
             Some(Motion::Stop(number)) if *number > self.stopped => Some(*number),
             _ => None,
         };
-        let age = facts.order.map(|order| now.since(Time(order.at_ns)));
-        let is_dead = age.is_none_or(|age| age > ARM_SILENT) || facts.is_ending;
-        let goes_on = (is_dead && self.has_goal()) || self.has_former;
+        let goes_on = (facts.is_dead() && self.has_goal()) || self.has_former;
         match (&mut self.stop, ordered) {
             (Some(stop), Some(number)) => stop.number = number,
             (None, Some(number)) => self.stop = Some(Stop::new(number)),
@@ -245,8 +264,21 @@ impl Controller {
                     "a goal is under way and the arm's process does not go on; stopping"
                 );
                 self.stop = Some(Stop::new(0));
+                self.halted = Some(facts.now);
             }
             _ => {}
+        }
+    }
+
+    /// A later order that follows nothing shows that the arm has given up the motion that the bridge stopped.
+    fn take_acknowledgement(&mut self, order: Option<&ArmOrder>) {
+        let is_acknowledged = |halted: &Time| {
+            order.is_some_and(|order| {
+                order.at_ns > halted.ns() && !matches!(order.motion, Motion::Follow(_))
+            })
+        };
+        if self.halted.as_ref().is_some_and(is_acknowledged) {
+            self.halted = None;
         }
     }
 
@@ -265,7 +297,7 @@ impl Controller {
         if wants.is_done {
             let number = self.stop.take().map_or(0, |stop| stop.number);
             self.stopped = self.stopped.max(number);
-            // Its end may never be told.
+            // Their ends may never be told.
             self.sent.iter_mut().for_each(|goal| goal.is_over = true);
             self.has_former = false;
         }
@@ -287,7 +319,7 @@ impl Controller {
         if self.sent.len() == GOALS_MAX {
             self.sent.pop_front();
         }
-        self.sent.push_back(Sent { id, window, is_over: false, over: None });
+        self.sent.push_back(Sent { id, window, is_over: false, is_replaced: false, over: None });
         self.liveness.on_goal(now);
         Request::Goal(id, goal)
     }

@@ -1,7 +1,7 @@
 //! The gripper's controller as the bridge sees it.
 
 use service::{Span, Time};
-use trajectory_driver::{FingerEnd, FingerOrder};
+use trajectory_driver::{CANCEL_FINGERS_MS, FingerEnd, FingerOrder};
 
 use super::actions::{Answer, GoalId, Identity, Liveness, Request, status};
 
@@ -19,6 +19,11 @@ const ANSWER_WITHIN: Span = Span::from_ms(1_500);
 /// Time after which a command that was not accepted is sent again: the server may not have known this client yet.
 const AGAIN_AFTER: Span = Span::from_ms(1_700);
 
+/// Interval of requests to cancel a command: one may arrive before its goal, or be lost.
+const CANCEL_EVERY: Span = Span::from_ms(50);
+/// Longest time for which a command is cancelled; then it counts as over.
+const CANCEL_WITHIN: Span = Span::from_ms(CANCEL_FINGERS_MS);
+
 /// A command that was sent.
 #[derive(Clone, Copy, Debug)]
 struct Sent {
@@ -27,6 +32,8 @@ struct Sent {
     at: Time,
     is_accepted: bool,
     is_over: bool,
+    /// When it was cancelled first, and last.
+    cancelled: Option<(Time, Time)>,
 }
 
 /// The gripper's controller.
@@ -37,14 +44,13 @@ pub struct FingerController {
     /// The newest command.
     sent: Option<Sent>,
     end: Option<FingerEnd>,
-    cancelled: Option<u64>,
 }
 
 impl FingerController {
     /// Returns a gripper before its first answer.
     pub fn new(identity: Identity) -> Self {
         let liveness = Liveness::new(ANSWER_WITHIN);
-        Self { identity, liveness, sent: None, end: None, cancelled: None }
+        Self { identity, liveness, sent: None, end: None }
     }
 
     /// Takes in an answer.
@@ -91,7 +97,13 @@ impl FingerController {
         self.liveness.is_heard() && !self.liveness.is_silent(now)
     }
 
-    /// Decides what is asked of the controller; a stop of the arm, `stops`, cancels the command under way.
+    /// Returns whether a command is being cancelled and its end is not known.
+    pub fn is_stopping(&self) -> bool {
+        self.sent.is_some_and(|sent| !sent.is_over && sent.cancelled.is_some())
+    }
+
+    /// Decides what is asked of the controller; a stop of the arm, `stops`, cancels the command under way. It is
+    /// cancelled until its end is told, after the stop too; until then no other one is sent.
     pub fn decide(
         &mut self,
         order: Option<FingerOrder>,
@@ -99,19 +111,19 @@ impl FingerController {
         now: Time,
     ) -> Vec<Request<FingerOrder>> {
         let mut requests = Vec::new();
-        let under_way = self.sent.filter(|sent| !sent.is_over).map(|sent| sent.order.number);
-        if stops && under_way.is_some() && self.cancelled != under_way {
-            self.cancelled = under_way;
+        if self.cancels(stops, now) {
             requests.push(Request::CancelAll);
         }
+        let is_barred = stops || self.is_stopping() || !self.is_ready(now);
         let is_due = |order: &FingerOrder| match &self.sent {
             None => true,
             Some(sent) if order.number > sent.order.number => true,
             Some(sent) => !sent.is_accepted && !sent.is_over && now.since(sent.at) > AGAIN_AFTER,
         };
-        if let Some(order) = order.filter(is_due).filter(|_| !stops && self.is_ready(now)) {
+        if let Some(order) = order.filter(is_due).filter(|_| !is_barred) {
             let id = self.identity.next_goal();
-            self.sent = Some(Sent { order, id, at: now, is_accepted: false, is_over: false });
+            let (is_accepted, is_over, cancelled) = (false, false, None);
+            self.sent = Some(Sent { order, id, at: now, is_accepted, is_over, cancelled });
             self.liveness.on_goal(now);
             requests.push(Request::Goal(id, order));
         }
@@ -119,5 +131,26 @@ impl FingerController {
             requests.push(Request::Probe(self.identity.next_goal()));
         }
         requests
+    }
+
+    /// Returns whether a request to cancel is due, and counts it as sent.
+    fn cancels(&mut self, stops: bool, now: Time) -> bool {
+        let Some(sent) = self.sent.as_mut().filter(|sent| !sent.is_over) else { return false };
+        let first = match sent.cancelled {
+            None if !stops => return false,
+            None => now,
+            Some((first, _)) if now.since(first) > CANCEL_WITHIN => {
+                tracing::warn!(
+                    "the gripper's controller does not tell the end of a cancelled command"
+                );
+                let id = sent.id;
+                self.on_end(&id, FingerResult::default());
+                return false;
+            }
+            Some((_, last)) if now.since(last) < CANCEL_EVERY => return false,
+            Some((first, _)) => first,
+        };
+        sent.cancelled = Some((first, now));
+        true
     }
 }

@@ -12,6 +12,7 @@ use super::joints::JointReader;
 use super::types::{Tolerances, TrajectoryGoal, TrajectoryResult};
 use crate::types::{Header, JointState, Time as RosTime};
 
+mod stops;
 #[cfg(feature = "dds")]
 mod wire;
 
@@ -173,7 +174,7 @@ fn stop_cancels_until_it_is_answered_and_the_joints_stand() {
     (0..20).for_each(|_| bench.order(Motion::Stop(5)));
     assert_eq!(bench.controller.facts().2, 0, "it is answered, and the joints move");
     bench.joints.qd = vec![0.0; 2];
-    (0..3).for_each(|_| bench.order(Motion::Stop(5)));
+    (0..30).for_each(|_| bench.order(Motion::Stop(5)));
     assert_eq!(bench.controller.facts().2, 5);
     let cancels = bench.cancels;
     (0..20).for_each(|_| bench.order(Motion::Stop(5)));
@@ -192,7 +193,7 @@ fn joint_states_that_stand_still_prove_no_stop() {
     }
     assert_eq!(bench.controller.facts().2, 0, "frozen");
     assert!(bench.cancels > 30);
-    (0..3).for_each(|_| bench.order(Motion::Stop(5)));
+    (0..12).for_each(|_| bench.order(Motion::Stop(5)));
     assert_eq!(bench.controller.facts().2, 5);
 }
 
@@ -217,7 +218,7 @@ fn dead_arm_is_stopped_within_its_silence() {
     assert_eq!(bench.cancels, 1);
     bench.answer(Answer::Cancelled(0));
     bench.joints.qd = vec![0.0; 2];
-    (0..5).for_each(|_| bench.pass());
+    (0..30).for_each(|_| bench.pass());
     assert!(!bench.controller.is_stopping());
     // A goal that has ended is not stopped again.
     let cancels = bench.cancels;
@@ -235,7 +236,7 @@ fn goals_at_the_start_are_cancelled_if_ours_and_named_if_of_others() {
     assert_eq!(bench.cancels, 1);
     bench.answer(Answer::Statuses(vec![(id, status::CANCELED)]));
     bench.answer(Answer::Cancelled(0));
-    (0..5).for_each(|_| bench.order(Motion::Rest));
+    (0..15).for_each(|_| bench.order(Motion::Rest));
     assert!(!bench.controller.is_stopping());
     assert_eq!(bench.controller.condition(bench.now), Condition::Ready);
 

@@ -14,6 +14,8 @@ pub(super) const HOLD_S: f64 = 0.2;
 const STALE: Span = Span::from_ms(150);
 /// Joint states in a row in which the joints must stand after the controller's answer.
 const STILL_MIN: u32 = 3;
+/// Time for which they must stand in them: joints that turn back stand for a moment too.
+const STILL_FOR: Span = Span::from_ms(100);
 /// Time for which they must stand without an answer: longer than any window lasts.
 const STILL_WITHOUT: Span = Span::from_ms(750);
 
@@ -76,8 +78,9 @@ impl Stop {
             Some(joints) => self.count(joints.at_ns, moving.is_some()),
             None => self.still_since = None,
         }
+        let is_held = self.held.is_some_and(|at| now.since(at) < Span::from_s(HOLD_S));
         let stood = self.still_since.is_some_and(|since| now.since(since) > STILL_WITHOUT);
-        if self.still.1 >= STILL_MIN || stood {
+        if !is_held && (self.has_stood() || stood) {
             return Wants { is_done: true, ..Wants::default() };
         }
         let due = |last: Option<Time>, every| last.is_none_or(|at| now.since(at) >= every);
@@ -90,6 +93,14 @@ impl Stop {
             self.held = Some(now);
         }
         Wants { cancels, holds_at, is_done: false }
+    }
+
+    /// Returns whether the joints have stood for long enough since the answer, by the times of joint states.
+    fn has_stood(&self) -> bool {
+        let (latest, count) = self.still;
+        let since =
+            self.still_since.zip(self.answered).map(|(still, answered)| still.max(answered));
+        count >= STILL_MIN && since.is_some_and(|since| Time(latest).since(since) >= STILL_FOR)
     }
 
     fn count(&mut self, at_ns: u64, is_moving: bool) {
