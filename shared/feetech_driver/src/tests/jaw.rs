@@ -59,6 +59,45 @@ fn closed_jaw_holds_nothing() {
     assert!((rig.driver.measured().posture.width_m[0] - 0.04).abs() < 0.003);
 }
 
+/// The motion stop's commands leave the fingers as they are, and are no fault.
+#[test]
+fn stop_keeps_a_closing_jaw_where_it_is() {
+    let mut rig = Rig::new();
+    rig.until_ready(3.0);
+    command(&mut rig, Fingers::Open(0.04));
+    for _ in 0..30 {
+        let closing = rig.stay(GRIP);
+        rig.pass(Some(closing));
+    }
+    assert!(rig.speeds()[JAW] < -300.0, "it closes: {} steps/s", rig.speeds()[JAW]);
+    let stopped = rig.steps(JAW);
+    for _ in 0..100 {
+        let stay = rig.stay(Fingers::Stay);
+        rig.pass(Some(stay));
+    }
+    let goal = f64::from(rig.bus.borrow().servos[JAW].word(42));
+    // It brakes within 0.1 s of its motion, and moves back no further than that.
+    assert!((goal - stopped).abs() < 90.0, "goal {goal}, stopped at {stopped}");
+    assert!((rig.steps(JAW) - stopped).abs() < 90.0, "{} {stopped}", rig.steps(JAW));
+    // Once it may move, it closes.
+    command(&mut rig, GRIP);
+    assert_eq!(holding(&mut rig), Some(false));
+    assert!(rig.driver.measured().posture.width_m[0] < 0.005);
+}
+
+#[test]
+fn stop_keeps_what_the_jaw_has_met() {
+    let mut rig = grasped(Some(40.0));
+    rig.rest(0.5);
+    for _ in 0..100 {
+        let stay = rig.stay(Fingers::Stay);
+        rig.pass(Some(stay));
+    }
+    assert_eq!(holding(&mut rig), Some(true));
+    let goal = rig.bus.borrow().servos[JAW].word(42);
+    assert!(f64::from(goal) < rig.steps(JAW) - 20.0, "it still presses");
+}
+
 #[test]
 fn lost_object_is_noticed_and_a_stop_keeps_hold() {
     let mut rig = grasped(Some(40.0));
