@@ -65,16 +65,11 @@ fn stop_keeps_a_closing_jaw_where_it_is() {
     let mut rig = Rig::new();
     rig.until_ready(3.0);
     command(&mut rig, Fingers::Open(0.04));
-    for _ in 0..30 {
-        let closing = rig.stay(GRIP);
-        rig.pass(Some(closing));
-    }
+    let [closing, stay] = [GRIP, Fingers::Stay].map(|fingers| rig.stay(fingers));
+    (0..30).for_each(|_| rig.pass(Some(closing)));
     assert!(rig.speeds()[JAW] < -300.0, "it closes: {} steps/s", rig.speeds()[JAW]);
     let stopped = rig.steps(JAW);
-    for _ in 0..100 {
-        let stay = rig.stay(Fingers::Stay);
-        rig.pass(Some(stay));
-    }
+    (0..100).for_each(|_| rig.pass(Some(stay)));
     let goal = f64::from(rig.bus.borrow().servos[JAW].word(42));
     // It brakes within 0.1 s of its motion, and moves back no further than that.
     assert!((goal - stopped).abs() < 90.0, "goal {goal}, stopped at {stopped}");
@@ -86,21 +81,11 @@ fn stop_keeps_a_closing_jaw_where_it_is() {
 }
 
 #[test]
-fn stop_keeps_what_the_jaw_has_met() {
-    let mut rig = grasped(Some(40.0));
-    rig.rest(0.5);
-    for _ in 0..100 {
-        let stay = rig.stay(Fingers::Stay);
-        rig.pass(Some(stay));
-    }
-    assert_eq!(holding(&mut rig), Some(true));
-    let goal = rig.bus.borrow().servos[JAW].word(42);
-    assert!(f64::from(goal) < rig.steps(JAW) - 20.0, "it still presses");
-}
-
-#[test]
 fn lost_object_is_noticed_and_a_stop_keeps_hold() {
     let mut rig = grasped(Some(40.0));
+    let stay = rig.stay(Fingers::Stay);
+    (0..100).for_each(|_| rig.pass(Some(stay)));
+    assert_eq!(holding(&mut rig), Some(true), "after a command to stay");
     rig.driver.hold_here();
     rig.rest(2.0);
     assert_eq!(holding(&mut rig), Some(true), "after a stop");
