@@ -212,7 +212,7 @@ impl Jaw {
 /// the range of its joint in the robot's file, of which the open gripper uses a part. `None` for two fingers.
 fn arc(gripper: &Gripper) -> Option<Vec<(f64, f64)>> {
     let jaw = gripper.jaw?;
-    let ((closed_rad, end_rad), met_rad) = (jaw.range_rad(), jaw.angle_rad(gripper.closed_m()));
+    let ((closed_rad, end_rad), met_rad) = (jaw.range_rad, jaw.angle_rad(gripper.closed_m()));
     let percent = |angle: f64| 100.0 * (angle - closed_rad) / (end_rad - closed_rad);
     let mut curve: Vec<(f64, f64)> = Vec::new();
     for k in 0..=ARC_PARTS {

@@ -25,8 +25,8 @@ pub struct Jaw {
     /// Positions of the joint, closed and open, radians.
     closed_rad: f64,
     open_rad: f64,
-    /// The limit of the joint at which the tip is furthest, radians: the open gripper may stop before.
-    end_rad: f64,
+    /// Limits of its joint, radians: the closed one, then the other, which the open gripper may not reach.
+    pub range_rad: (f64, f64),
 }
 
 impl Jaw {
@@ -49,7 +49,7 @@ impl Jaw {
             sense,
             closed_rad: limits.0,
             open_rad: limits.1,
-            end_rad: limits.1,
+            range_rad: limits,
         };
         let (closed_rad, end_rad) = match whole.opening_m(limits.0) < whole.opening_m(limits.1) {
             true => limits,
@@ -58,17 +58,12 @@ impl Jaw {
         let met_rad = Self { closed_rad, open_rad: end_rad, ..whole }
             .angle_rad(whole.opening_m(closed_rad).max(0.0));
         let way_rad = (end_rad - met_rad).clamp(-OPEN_MAX_RAD, OPEN_MAX_RAD);
-        Self { closed_rad, open_rad: met_rad + way_rad, end_rad, ..whole }
+        Self { closed_rad, open_rad: met_rad + way_rad, range_rad: (closed_rad, end_rad), ..whole }
     }
 
     /// Position of its joint in the open gripper, radians.
     pub fn open_rad(&self) -> f64 {
         self.open_rad
-    }
-
-    /// Limits of its joint, radians: the closed one, then the other, which the open gripper may not reach.
-    pub fn range_rad(&self) -> (f64, f64) {
-        (self.closed_rad, self.end_rad)
     }
 
     /// Distance of its tip from its axis, metres.
