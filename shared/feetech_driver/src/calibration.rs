@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::env;
 use std::f64::consts::TAU;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use diagnostics::Diagnostic;
@@ -13,7 +14,7 @@ use crate::registers::STEPS;
 /// Folders of lerobot's releases below that of calibrations, the newest first.
 const RELEASES: [&str; 3] = ["so_follower", "so101_follower", "so100_follower"];
 /// Most bytes of a calibration file; six servos take 800.
-const BYTES_MAX: usize = 64 * 1024;
+const BYTES_MAX: u64 = 64 * 1024;
 /// The last step of a turn.
 const STEP_MAX: u16 = 4095;
 /// Greatest homing offset: its register has 11 bits and a sign.
@@ -113,13 +114,7 @@ impl Calibration {
                 "calibrate the arm again: `lerobot-calibrate --robot.type=so101_follower …`",
             )
         };
-        let text = safe_files::read_regular(file).map_err(|error| wrong("", error.to_string()))?;
-        if text.len() > BYTES_MAX {
-            return Err(wrong(
-                "",
-                format!("expected at most {BYTES_MAX} bytes, found {}", text.len()),
-            ));
-        }
+        let text = text_of(file).map_err(|error| wrong("", error.to_string()))?;
         let servos: BTreeMap<String, Calibrated> = serde_json::from_str(&text)
             .map_err(|error| wrong("", format!("not a calibration of lerobot: {error}")))?;
         let mut of_id = BTreeMap::new();
@@ -133,6 +128,18 @@ impl Calibration {
         }
         Ok(Self { file: file.to_owned(), servos })
     }
+}
+
+/// Reads a file of at most [`BYTES_MAX`], and not the rest of a longer one.
+fn text_of(file: &Path) -> io::Result<String> {
+    let open = safe_files::open_regular(file)?;
+    let size = open.metadata()?.len();
+    if size > BYTES_MAX {
+        let what = format!("expected at most {BYTES_MAX} bytes, found {size}");
+        return Err(io::Error::new(io::ErrorKind::InvalidData, what));
+    }
+    // It may grow meanwhile.
+    io::read_to_string(open.take(BYTES_MAX))
 }
 
 /// Returns the places at which lerobot keeps the calibration of the robot with this id, the newest release first.
@@ -199,6 +206,16 @@ mod tests {
             let problem = read(&text).unwrap_err();
             assert!(problem.contains(word) && problem.contains("arm.json"), "{problem}");
         }
+    }
+
+    /// 8 TB, of which no byte is on the disk.
+    #[test]
+    fn file_that_is_too_long_is_not_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("arm.json");
+        std::fs::File::create(&file).unwrap().set_len(8 << 40).unwrap();
+        let problem = Calibration::read(&file).unwrap_err().to_string();
+        assert!(problem.contains("expected at most 65536 bytes, found 8796093022208"), "{problem}");
     }
 
     #[test]

@@ -52,7 +52,7 @@ struct State {
     alarms: Vec<Option<String>>,
     /// Part and reason of a fault that has not been taken.
     fault: Option<(String, String)>,
-    /// When a servo was last found with a fault.
+    /// When a servo was last found with a fault, or the bus as unusable.
     alarmed: Option<Time>,
     jaw: Jaw,
     /// Commanded positions; `None`: as measured.
@@ -141,7 +141,7 @@ impl FeetechDriver {
             measured.effort[LIMB][place] = servo.load * STALL_NM;
         }
         let jaw_servo = &reading.servos[self.joints];
-        if jaw_servo.has_let_go {
+        if !jaw_servo.holds {
             jaw.let_go();
         }
         jaw.on_servo(jaw_servo, now);
@@ -189,7 +189,10 @@ impl FeetechDriver {
         ));
     }
 
-    fn on_unusable(&mut self, reason: String) {
+    fn on_unusable(&mut self, reason: String, now: Time) {
+        if self.state.was_ready {
+            self.state.alarmed = Some(now);
+        }
         if self.state.unusable.as_ref() == Some(&reason) {
             return;
         }
@@ -231,7 +234,7 @@ impl FeetechDriver {
         for (j, servo) in
             reading.iter().flat_map(|reading| &reading.servos[..self.joints]).enumerate()
         {
-            if servo.has_let_go || !was_ready {
+            if !servo.holds || !was_ready {
                 q[j] = here[j];
             }
         }
@@ -284,7 +287,7 @@ impl ArmDriver for FeetechDriver {
     fn on_report(&mut self, report: &Report<'_>, now: Time) {
         match Heard::of(report) {
             Some(Heard::Reading(reading)) => self.on_reading(reading, now),
-            Some(Heard::Unusable(reason)) => self.on_unusable(reason),
+            Some(Heard::Unusable(reason)) => self.on_unusable(reason, now),
             None => {}
         }
     }

@@ -25,6 +25,8 @@ const CLOSED: f64 = 3.0;
 const THERE: f64 = 3.0;
 /// A held object has slipped or given way if the jaw closes by more, percent: it nearly reaches its goal.
 const SLIPPED: f64 = 1.8;
+/// Parts of the curve of a jaw that turns: its width is 0.1 mm off between them.
+const ARC_PARTS: i32 = 8;
 /// Time for which it must stand, before its position means something.
 const STEADY: Span = Span::from_ms(150);
 /// Time after which a jaw that stands elsewhere will not go on.
@@ -68,7 +70,8 @@ impl Jaw {
         let Torques { grip_percent, hold_percent, .. } = settings.torque;
         let point = |Opening { percent, width_m }: &Opening| (*percent, *width_m);
         let curve = match settings.openings.is_empty() {
-            true => vec![(0.0, gripper.closed_m()), (100.0, gripper.open_m)],
+            true => arc(gripper)
+                .unwrap_or_else(|| vec![(0.0, gripper.closed_m()), (100.0, gripper.open_m)]),
             false => settings.openings.iter().map(point).collect(),
         };
         Self {
@@ -98,7 +101,7 @@ impl Jaw {
     pub(crate) fn want(&mut self, fingers: Fingers, now: Time) {
         let is_new = |aim: &Aim, to: f64| !matches!(aim, Aim::Go(goal, _) if *goal == to);
         match fingers {
-            Fingers::Stay if matches!(self.aim, Aim::Go(..)) => self.hold_here(),
+            Fingers::Stay if matches!(self.aim, Aim::Go(..) | Aim::Grip(_)) => self.hold_here(),
             Fingers::Stay => {}
             Fingers::Open(width_m) => {
                 let reversed: Vec<(f64, f64)> =
@@ -117,7 +120,7 @@ impl Jaw {
     pub(crate) fn hold_here(&mut self) {
         if !matches!(self.aim, Aim::Holds(_) | Aim::Unknown) {
             (self.aim, self.goal) =
-                if self.presses() { (Aim::Unknown, None) } else { (Aim::Stay, self.percent) };
+                if self.grasps() { (Aim::Unknown, None) } else { (Aim::Stay, self.percent) };
         }
     }
 
@@ -169,6 +172,11 @@ impl Jaw {
         self.percent.is_some_and(|percent| percent > CLOSED) && self.load.abs() >= PRESSES
     }
 
+    /// It presses, and stands: the load of a jaw that moves is that of its motion.
+    fn grasps(&self) -> bool {
+        self.presses() && self.steady_since.is_some()
+    }
+
     fn stands_for(&self, span: Span, now: Time) -> bool {
         self.steady_since.is_some_and(|since| now.since(since) >= span)
     }
@@ -200,6 +208,23 @@ impl Jaw {
     }
 }
 
+/// The curve of a jaw that turns: percent and width, metres, from closed to open. The recorded range of its servo is
+/// the range of its joint in the robot's file, of which the open gripper uses a part. `None` for two fingers.
+fn arc(gripper: &Gripper) -> Option<Vec<(f64, f64)>> {
+    let jaw = gripper.jaw?;
+    let ((closed_rad, end_rad), met_rad) = (jaw.range_rad, jaw.angle_rad(gripper.closed_m()));
+    let percent = |angle: f64| 100.0 * (angle - closed_rad) / (end_rad - closed_rad);
+    let mut curve: Vec<(f64, f64)> = Vec::new();
+    for k in 0..=ARC_PARTS {
+        let angle = met_rad + (jaw.open_rad() - met_rad) * f64::from(k) / f64::from(ARC_PARTS);
+        let width_m = jaw.opening_m(angle);
+        if curve.last().is_none_or(|(_, before)| *before < width_m) {
+            curve.push((percent(angle), width_m));
+        }
+    }
+    Some(curve)
+}
+
 /// The value at `x` of a curve through ascending points.
 fn along(points: &[(f64, f64)], x: f64) -> f64 {
     let after = points.iter().position(|(at, _)| *at >= x);
@@ -216,6 +241,39 @@ fn along(points: &[(f64, f64)], x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tests::{robot_of, settings};
+
+    /// Moves to a width, and returns where the jaw's goal comes to rest, percent.
+    fn goal_of(jaw: &mut Jaw, width_m: f64) -> f64 {
+        let servo = |value| Servo { value, holds: true, ..Servo::default() };
+        let mut goal = 0.0;
+        for pass in 1..1000 {
+            let now = Time(pass * 10_000_000);
+            jaw.on_servo(&servo(goal), now);
+            jaw.want(Fingers::Open(width_m), now);
+            (goal, _) = jaw.advance(now).unwrap();
+        }
+        goal
+    }
+
+    #[test]
+    fn jaw_that_turns_opens_to_its_angle_and_no_further() {
+        let robot = robot_of("so101", &|text| text);
+        let gripper = robot.arm(manipulation::Limb::Only).gripper;
+        let turns = gripper.jaw.expect("a jaw");
+        let mut jaw = Jaw::new(&settings(), &gripper);
+        // The limits of the joint in the file.
+        let percent = |angle: f64| 100.0 * (angle + 0.174533) / (1.74533 + 0.174533);
+        let open = goal_of(&mut jaw, gripper.open_m);
+        assert!((open - percent(turns.open_rad())).abs() < 1e-6 && open < 60.0, "{open} %");
+        for width_m in [0.01, 0.02, 0.04] {
+            let goal = goal_of(&mut jaw, width_m);
+            let width = turns.opening_m(-0.174533 + 0.01 * goal * (1.74533 + 0.174533));
+            assert!((width - width_m).abs() < 2e-4, "{width_m} m: {goal} %, {width} m");
+            let shown_m = jaw.width_m().unwrap();
+            assert!((shown_m - width_m).abs() < 2e-4, "{width_m} m: shown {shown_m} m");
+        }
+    }
 
     #[test]
     fn curve_of_the_jaw_is_followed_between_its_points_and_kept_at_its_ends() {

@@ -7,7 +7,7 @@ use manipulation::{Limb, Robot};
 
 use crate::calibration::{Calibrated, Calibration};
 use crate::registers::STEPS;
-use crate::settings::Feetech;
+use crate::settings::{Feetech, JointEntry};
 
 /// How far a joint's limits may exceed its servo's recorded range, radians.
 const EXCESS_RAD: f64 = 0.05;
@@ -83,7 +83,8 @@ impl Layout {
     /// Finds the servo of each joint.
     ///
     /// # Errors
-    /// Joints without a servo, and joints that may move further than theirs: all of them.
+    /// Joints without a servo, joints that may move further than theirs, entries of `joints` that are of no joint, and
+    /// servos that would move two: all of them.
     pub(crate) fn new(
         settings: &Feetech,
         robot: &Robot,
@@ -91,7 +92,7 @@ impl Layout {
     ) -> Result<Self, Vec<Diagnostic>> {
         let arm = robot.arm(Limb::Only);
         let file = calibration.file.display().to_string();
-        let (mut members, mut problems) = (Vec::new(), Vec::new());
+        let (mut members, mut problems) = (Vec::new(), entries(&settings.joints, &arm.joint_names));
         let limits = arm.limits.position.0;
         for (joint, (lower, upper)) in arm.joint_names.iter().zip(limits) {
             let entry = settings.joints.iter().find(|entry| entry.joint == *joint);
@@ -118,12 +119,52 @@ impl Layout {
             Ok(jaw) => members.push(jaw),
             Err(problem) => problems.push(problem),
         }
+        problems.extend(shared(&members));
         if problems.is_empty() { Ok(Self { members }) } else { Err(problems) }
     }
 
     pub(crate) fn ids(&self) -> Vec<u8> {
         self.members.iter().map(Member::id).collect()
     }
+}
+
+/// What is wrong with the entries of joints: joints that the robot does not have, or that have two entries.
+fn entries(entries: &[JointEntry], joints: &[String]) -> Vec<Diagnostic> {
+    let mut problems = Vec::new();
+    for (place, JointEntry { joint, .. }) in entries.iter().enumerate() {
+        if !joints.contains(joint) {
+            let what = format!("joint `{joint}` is unknown: expected one of {}", joints.join(", "));
+            let near = diagnostics::nearest(joint, joints.iter().map(String::as_str));
+            let help = near.map_or_else(
+                || "remove the entry".to_owned(),
+                |near| format!("write `joint = \"{near}\"`, or remove the entry"),
+            );
+            problems.push(of_joints(what, help));
+        } else if entries[..place].iter().any(|before| before.joint == *joint) {
+            let what = format!("joint `{joint}` has two entries");
+            problems.push(of_joints(what, "remove one of them".to_owned()));
+        }
+    }
+    problems
+}
+
+/// Servos that move two joints, or a joint and the jaw.
+fn shared(members: &[Member]) -> Vec<Diagnostic> {
+    let mut problems = Vec::new();
+    for (place, member) in members.iter().enumerate() {
+        if let Some(before) = members[..place].iter().find(|before| before.id() == member.id()) {
+            let what =
+                format!("{} and {} have the servo {}", before.joint, member.joint, member.id());
+            let help =
+                "give each joint a servo of its own, and the jaw another one: arm.feetech.gripper";
+            problems.push(of_joints(what, help.to_owned()));
+        }
+    }
+    problems
+}
+
+fn of_joints(what: String, help: String) -> Diagnostic {
+    Diagnostic::new("arm.toml", "arm.feetech.joints", what, help)
 }
 
 /// The servo of the jaw.

@@ -3,7 +3,7 @@
 //! | contents | file |
 //! |---|---|
 //! | packets, registers | `packet.rs`, `registers.rs` |
-//! | serial line, requests with their answers | `line.rs`, `bus.rs` |
+//! | serial line, who else has opened it, requests with their answers | `line.rs`, `holder.rs`, `bus.rs` |
 //! | lerobot's calibration, servos of joints | `calibration.rs`, `layout.rs` |
 //! | what is on the bus, one exchange, whether it can be true | `handshake.rs`, `session.rs`, `plausible.rs` |
 //! | the thread that uses the bus | `port.rs`, `traffic.rs` |
@@ -14,6 +14,7 @@ mod bus;
 mod calibration;
 mod driver;
 mod handshake;
+mod holder;
 mod jaw;
 mod layout;
 mod line;

@@ -3,15 +3,19 @@
 use std::fs;
 use std::io;
 use std::os::fd::OwnedFd;
+use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{FlockOperation, Mode, OFlags, flock};
 use rustix::io::Errno;
 use rustix::termios::{
-    ControlModes, OptionalActions, QueueSelector, ioctl_tiocexcl, tcflush, tcgetattr, tcsetattr,
+    ControlModes, OptionalActions, QueueSelector, ioctl_tiocexcl, ioctl_tiocnxcl, tcflush,
+    tcgetattr, tcsetattr,
 };
 use service::{Span, Time, clock};
+
+use crate::holder::{Holder, holder_of};
 
 /// Longest time for which a write may wait for the device.
 const SEND_MAX: Span = Span::from_ms(50);
@@ -47,6 +51,8 @@ pub(crate) enum PortProblem {
         "another program uses it; help: end that program: a lerobot script, a terminal, or another group"
     )]
     Busy,
+    #[error("another program uses it: {0}; help: end that program")]
+    Held(Holder),
     #[error("not a serial port; help: look into /dev/serial/by-id")]
     NoTerminal,
     #[error("{0}")]
@@ -68,17 +74,26 @@ impl From<Errno> for PortProblem {
 /// Returns why the port cannot be opened; `None` if it can. It is not touched.
 pub(crate) fn problem_of(port: &Path) -> Option<PortProblem> {
     use rustix::fs::{Access, access};
-    access(port, Access::READ_OK | Access::WRITE_OK).err().map(PortProblem::from)
+    if let Err(error) = access(port, Access::READ_OK | Access::WRITE_OK) {
+        return Some(error.into());
+    }
+    let is_device = fs::metadata(port).is_ok_and(|it| it.file_type().is_char_device());
+    (!is_device).then_some(PortProblem::NoTerminal)
 }
 
 impl SerialLine {
     /// Opens the port for this process alone: no other can open it (`TIOCEXCL`), unless it has root's rights, and
-    /// none that locks it as this one does (`flock`).
+    /// none that locks it as this one does (`flock`). Those that have opened it before are looked for ([`holder_of`]).
     pub(crate) fn open(port: &Path, baud: u32) -> Result<Self, PortProblem> {
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
         let fd = rustix::fs::open(port, flags, Mode::empty())?;
         flock(&fd, FlockOperation::NonBlockingLockExclusive)?;
         ioctl_tiocexcl(&fd)?;
+        // After it, so that no other opens the port between the look and the lock.
+        if let Some(holder) = holder_of(&fd)? {
+            ioctl_tiocnxcl(&fd)?;
+            return Err(PortProblem::Held(holder));
+        }
         let mut attributes = tcgetattr(&fd)?;
         attributes.make_raw();
         attributes.control_modes |= ControlModes::CREAD | ControlModes::CLOCAL;

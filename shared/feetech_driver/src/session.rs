@@ -260,6 +260,7 @@ impl<L: Line> Session<L> {
             volts: f64::from(state.decivolts) / 10.0,
             celsius: state.celsius,
             errors: state.errors,
+            holds: self.holds[place],
             has_let_go: self.is_on && !self.holds[place],
             is_cool: state.celsius.saturating_add(COOLER) <= self.servos.heat_limits[place],
         }

@@ -25,7 +25,8 @@ pub struct Feetech {
     pub gripper: String,
     /// Joints whose servo has another name, zero or direction.
     pub joints: Vec<JointEntry>,
-    /// Width between the fingertips by the servo's position, ascending in both; empty: in proportion.
+    /// Width between the fingertips by the servo's position, ascending in both; empty: in proportion, or by the arc
+    /// of a jaw that turns.
     pub openings: Vec<Opening>,
     /// Greatest speed of the joints, rad/s: the servos themselves keep it.
     pub speed_max_rad_s: f64,

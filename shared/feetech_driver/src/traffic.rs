@@ -27,7 +27,7 @@ pub(crate) struct Reading {
 }
 
 /// State of one servo.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Servo {
     /// Radians, or percent of the jaw.
     pub(crate) value: f64,
@@ -38,6 +38,8 @@ pub(crate) struct Servo {
     pub(crate) volts: f64,
     pub(crate) celsius: u8,
     pub(crate) errors: Errors,
+    /// It holds, with the settings that it was told.
+    pub(crate) holds: bool,
     /// It was told to hold, and does not, or has lost its settings: it has restarted, or let go.
     pub(crate) has_let_go: bool,
     /// It is cool enough to hold again.

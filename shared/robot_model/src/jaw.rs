@@ -25,6 +25,8 @@ pub struct Jaw {
     /// Positions of the joint, closed and open, radians.
     closed_rad: f64,
     open_rad: f64,
+    /// Limits of its joint, radians: the closed one, then the other, which the open gripper may not reach.
+    pub range_rad: (f64, f64),
 }
 
 impl Jaw {
@@ -47,6 +49,7 @@ impl Jaw {
             sense,
             closed_rad: limits.0,
             open_rad: limits.1,
+            range_rad: limits,
         };
         let (closed_rad, end_rad) = match whole.opening_m(limits.0) < whole.opening_m(limits.1) {
             true => limits,
@@ -55,7 +58,7 @@ impl Jaw {
         let met_rad = Self { closed_rad, open_rad: end_rad, ..whole }
             .angle_rad(whole.opening_m(closed_rad).max(0.0));
         let way_rad = (end_rad - met_rad).clamp(-OPEN_MAX_RAD, OPEN_MAX_RAD);
-        Self { closed_rad, open_rad: met_rad + way_rad, ..whole }
+        Self { closed_rad, open_rad: met_rad + way_rad, range_rad: (closed_rad, end_rad), ..whole }
     }
 
     /// Position of its joint in the open gripper, radians.

@@ -2,10 +2,11 @@
 
 use std::io;
 use std::os::fd::OwnedFd;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{Mode, OFlags};
+use rustix::io::Errno;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
@@ -14,9 +15,8 @@ use crate::Bus;
 /// A pseudo-terminal whose other end a program opens as a serial port.
 #[derive(Debug)]
 pub struct Terminal {
+    /// Outlives the programs that use the port, and keeps its settings.
     end: OwnedFd,
-    /// Kept open, so that the bus outlives the programs that use it.
-    port: OwnedFd,
     path: String,
     start: Instant,
 }
@@ -36,7 +36,7 @@ impl Terminal {
         let mut attributes = tcgetattr(&port)?;
         attributes.make_raw();
         tcsetattr(&port, OptionalActions::Now, &attributes)?;
-        Ok(Self { end, port, path, start: Instant::now() })
+        Ok(Self { end, path, start: Instant::now() })
     }
 
     /// The path of the port.
@@ -55,12 +55,24 @@ impl Terminal {
             Err(rustix::io::Errno::INTR) => return Ok(()),
             polled => polled?,
         };
-        bus.baud = tcgetattr(&self.port)?.output_speed();
+        let came = fds[0].revents();
+        if came.contains(PollFlags::HUP) && !came.contains(PollFlags::IN) {
+            // No program has opened the port: this says so at once, and again and again.
+            std::thread::sleep(Duration::from_millis(1));
+            bus.advance_to(self.start.elapsed().as_secs_f64());
+            drop(bus.give());
+            return Ok(());
+        }
+        // Of the port: this end has no settings of its own.
+        bus.baud = tcgetattr(&self.end)?.output_speed();
         bus.advance_to(self.start.elapsed().as_secs_f64());
-        if fds[0].revents().contains(PollFlags::IN) {
+        if came.contains(PollFlags::IN) {
             let mut bytes = [0; 1024];
-            let count = rustix::io::read(&self.end, &mut bytes)?;
-            bus.take(&bytes[..count]);
+            match rustix::io::read(&self.end, &mut bytes) {
+                // The program has ended meanwhile.
+                Err(Errno::IO) => {}
+                count => bus.take(&bytes[..count?]),
+            }
         }
         let bytes = bus.give();
         if !bytes.is_empty() {

@@ -168,6 +168,38 @@ fn joints_without_a_servo_and_joints_that_move_further_are_named() {
     assert!(wrist.contains("joint wrist_1_joint may move from -1.500 to 1.500 rad"), "{wrist}");
 }
 
+/// Joints and their servos.
+type Pairs<'a> = &'a [(&'a str, &'a str)];
+
+#[test]
+fn entries_of_no_joint_and_servos_of_two_are_named() {
+    let problems = |pairs: Pairs, gripper: &str| -> Vec<String> {
+        let mut own = settings();
+        own.gripper = gripper.to_owned();
+        own.joints.extend(pairs.iter().map(|(joint, servo)| crate::settings::JointEntry {
+            joint: (*joint).to_owned(),
+            servo: (*servo).to_owned(),
+            zero_rad: 0.0,
+            reversed: false,
+        }));
+        let problems = Layout::new(&own, &robot(), &calibration()).err().unwrap_or_default();
+        problems.iter().map(ToString::to_string).collect()
+    };
+    let own = ("elbow_joint", "elbow_joint");
+    assert_eq!(problems(&[own], "gripper"), Vec::<String>::new());
+    let cases: [(Pairs, &str, &str); 4] = [
+        (&[("elbow_jiont", "elbow_joint")], "gripper", "write `joint = \"elbow_joint\"`"),
+        (&[own, own], "gripper", "joint `elbow_joint` has two entries; help: remove one"),
+        (&[("elbow_joint", "wrist_1_joint")], "gripper", "elbow_joint and wrist_1_joint have the"),
+        (&[], "elbow_joint", "elbow_joint and elbow_joint have the servo 3"),
+    ];
+    for (pairs, gripper, words) in cases {
+        let found = problems(pairs, gripper);
+        let [problem] = &found[..] else { panic!("{words}: {found:?}") };
+        assert!(problem.contains("arm.feetech.joints") && problem.contains(words), "{problem}");
+    }
+}
+
 #[test]
 fn servos_of_other_names_zeros_and_directions_are_mapped() {
     let mut own = settings();

@@ -59,9 +59,33 @@ fn closed_jaw_holds_nothing() {
     assert!((rig.driver.measured().posture.width_m[0] - 0.04).abs() < 0.003);
 }
 
+/// The motion stop's commands leave the fingers as they are, and are no fault.
+#[test]
+fn stop_keeps_a_closing_jaw_where_it_is() {
+    let mut rig = Rig::new();
+    rig.until_ready(3.0);
+    command(&mut rig, Fingers::Open(0.04));
+    let [closing, stay] = [GRIP, Fingers::Stay].map(|fingers| rig.stay(fingers));
+    (0..30).for_each(|_| rig.pass(Some(closing)));
+    assert!(rig.speeds()[JAW] < -300.0, "it closes: {} steps/s", rig.speeds()[JAW]);
+    let stopped = rig.steps(JAW);
+    (0..100).for_each(|_| rig.pass(Some(stay)));
+    let goal = f64::from(rig.bus.borrow().servos[JAW].word(42));
+    // It brakes within 0.1 s of its motion, and moves back no further than that.
+    assert!((goal - stopped).abs() < 90.0, "goal {goal}, stopped at {stopped}");
+    assert!((rig.steps(JAW) - stopped).abs() < 90.0, "{} {stopped}", rig.steps(JAW));
+    // Once it may move, it closes.
+    command(&mut rig, GRIP);
+    assert_eq!(holding(&mut rig), Some(false));
+    assert!(rig.driver.measured().posture.width_m[0] < 0.005);
+}
+
 #[test]
 fn lost_object_is_noticed_and_a_stop_keeps_hold() {
     let mut rig = grasped(Some(40.0));
+    let stay = rig.stay(Fingers::Stay);
+    (0..100).for_each(|_| rig.pass(Some(stay)));
+    assert_eq!(holding(&mut rig), Some(true), "after a command to stay");
     rig.driver.hold_here();
     rig.rest(2.0);
     assert_eq!(holding(&mut rig), Some(true), "after a stop");

@@ -3,6 +3,7 @@
 mod faults;
 mod handling;
 mod jaw;
+mod port;
 mod protection;
 
 use std::cell::RefCell;
@@ -93,7 +94,7 @@ fn calibration() -> Calibration {
     Calibration { file: PathBuf::from("/arm.json"), servos: servos.collect() }
 }
 
-fn settings() -> Feetech {
+pub(crate) fn settings() -> Feetech {
     Feetech {
         port: PathBuf::from("/dev/null"),
         baud: 1_000_000,
@@ -116,21 +117,26 @@ fn settings() -> Feetech {
 
 /// An arm of six joints that turn by half a turn at most.
 fn robot() -> Robot {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/robots/ur5e");
-    let read = |ending: &str| std::fs::read_to_string(format!("{folder}.{ending}")).unwrap();
     let narrow = "\"-1.5\" upper=\"1.5\"";
     let wide = ["6.283185307179586", "3.141592653589793"]
         .map(|most| format!("\"-{most}\" upper=\"{most}\""));
-    let urdf = wide.iter().fold(read("urdf"), |text, wide| text.replace(wide, narrow));
     let postures =
         [("-2.0", "-1.4"), ("2.0", "1.4"), ("-1.8", "-1.4"), ("-1.5708", "-1.4"), ("1.5", "1.4")];
     let value = |text: &str| format!("value=\"{text}\"");
-    let srdf = postures
-        .iter()
-        .fold(read("srdf"), |text, (old, new)| text.replace(&value(old), &value(new)));
-    let srdf = TextFile::new("ur5e.srdf", srdf);
-    let description =
-        robot_model::Robot::read(&TextFile::new("ur5e.urdf", urdf), Some(&srdf)).unwrap();
+    robot_of("ur5e", &|text| {
+        let text = wide.iter().fold(text, |text, wide| text.replace(wide, narrow));
+        postures.iter().fold(text, |text, (old, new)| text.replace(&value(old), &value(new)))
+    })
+}
+
+/// A robot that ships, its files changed.
+pub(crate) fn robot_of(name: &str, change: &dyn Fn(String) -> String) -> Robot {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/robots");
+    let read = |ending: &str| {
+        let text = std::fs::read_to_string(format!("{folder}/{name}.{ending}")).unwrap();
+        TextFile::new(format!("{name}.{ending}"), change(text))
+    };
+    let description = robot_model::Robot::read(&read("urdf"), Some(&read("srdf"))).unwrap();
     Robot::from_description(&description).unwrap()
 }
 

@@ -99,6 +99,29 @@ fn hot_servo_holds_again_where_it_stands_once_it_is_cool_and_not_before() {
     );
 }
 
+/// The session that begins then has told no servo to hold.
+#[test]
+fn joint_that_is_limp_when_the_port_is_opened_anew_stays_where_it_is_put() {
+    let mut rig = Rig::new();
+    rig.until_ready(3.0);
+    rig.bus.borrow_mut().servos[1].celsius = 75.0;
+    rig.rest(0.2);
+    assert!(!rig.bus.borrow().servos[1].holds());
+    rig.session = Err(Ended("unplugged".to_owned()));
+    rig.rest(1.5);
+    assert!(rig.session.is_ok());
+    for _ in 0..100 {
+        let at = rig.steps(1) + 1.0;
+        rig.bus.borrow_mut().servos[1].stand_at(at);
+        rig.pass(None);
+    }
+    let put = rig.steps(1);
+    rig.bus.borrow_mut().servos[1].celsius = 55.0;
+    rig.until_ready(4.0);
+    rig.rest(1.0);
+    assert!((rig.steps(1) - put).abs() < 6.0, "{put} {}", rig.steps(1));
+}
+
 /// lerobot notices nothing, and reads 97 degrees where the joint stands at 0.
 #[test]
 fn power_dip_is_noticed_and_a_servo_that_has_lost_its_calibration_is_refused() {
