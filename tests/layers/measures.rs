@@ -22,7 +22,7 @@ const BOUNDS: [Bound; 3] = [
         // is read with a warning, and arms of five joints with a jaw: their closed form, tilted grasps, the arc of the tip.
         // Then the build's identity and the schema of JSON output, a service that stays down through a killed supervisor,
         // and drivers that look ahead, stop by themselves and examine the machine.
-        at_most: 127_500.0,
+        at_most: 127_560.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {
