@@ -140,7 +140,7 @@ fn participant_completes_the_study_and_its_files() {
     }
     let people = table(&group, "participants.csv");
     assert_eq!((&*people[0]["status"], &*people[0]["q_again"]), ("complete", "4"));
-    let results = report(&group);
+    let mut results = report(&group);
     assert_eq!(results["participants"]["complete"], 1);
     assert_eq!(
         (&results["all"]["interactions"], &results["all"]["success"]),
@@ -148,6 +148,8 @@ fn participant_completes_the_study_and_its_files() {
     );
     let (_, _, served) = http(&group.console(), "GET", "/study/report.json", &[], "");
     let served: Json = serde_json::from_str(&served).expect("JSON");
+    // Outputs of the command line name their schema.
+    assert_eq!(results.as_object_mut().expect("an object").remove("schema"), Some(json!(1)));
     assert_eq!(served, results, "page and command line agree");
     let (status, head, _) = http(&group.console(), "GET", "/study/success.svg", &[], "");
     assert!(status == 200 && head.contains("image/svg+xml"), "{head}");
