@@ -21,5 +21,5 @@ for file in sys.argv[1:]:
         sys.exit(f"{file}: expected dependencies of each component, found a difference: {sorted(stray)}")
     unlicensed = [component.name for component in bom.components if not component.licenses]
     if unlicensed:
-        sys.exit(f"{file}: expected a licence of each component, found none of {unlicensed}")
+        sys.exit(f"{file}: expected a licence of each component, found none for {unlicensed}")
     print(f"SBOM: CycloneDX 1.6, {len(bom.components)} components with their dependencies: valid")

@@ -13,7 +13,7 @@ impl ArmNode {
         let inhibit = self.driver.inhibit();
         if inhibit != self.inhibit {
             self.inhibit = inhibit;
-            log(inhibit);
+            log(inhibit, self.driver.remedy_for_silence());
         }
         use MotionInhibit::{Disabled, Error, Stopped};
         if matches!(inhibit, Stopped | Error | Disabled) {
@@ -61,7 +61,7 @@ impl ArmNode {
 }
 
 /// Logs the reason, and the remedy for the operator.
-fn log(inhibit: MotionInhibit) {
+fn log(inhibit: MotionInhibit, remedy_for_silence: &str) {
     let (what, help) = match inhibit {
         MotionInhibit::None => return tracing::info!("the robot can move"),
         MotionInhibit::Calibrating => return tracing::info!("a gripper is not calibrated yet"),
@@ -77,11 +77,9 @@ fn log(inhibit: MotionInhibit) {
             "the robot is disabled; a motion under way is stopped",
             "enable the robot, then: whichone resume-motion",
         ),
-        MotionInhibit::Unheard => (
-            "no messages from the robot, or from a part of it",
-            "a Baxter: start its bridge or whichone-baxter, and with one gripper only set arm.limb; \
-             servos: whichone robot servos",
-        ),
+        MotionInhibit::Unheard => {
+            ("no messages from the robot, or from a part of it", remedy_for_silence)
+        }
         MotionInhibit::Stale => (
             "joint states are stale; halting",
             "check the robot's bridge and network; the arm resumes with fresh joint states",

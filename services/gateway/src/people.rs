@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use roster::Name;
-use safe_files::{load_private, replace_private_synced};
+use safe_files::{read_private, replace_private_synced};
 use serde::{Deserialize, Serialize};
 use service::console_link::{is_token, random_secret};
 use service::exit::{Exit, Failure};
@@ -68,7 +68,7 @@ impl People {
             return Ok(Self::default());
         }
         let bad = |what: String| Failure::new(Exit::Config, format!("{}: {what}", path.display()));
-        let text = load_private(path).map_err(|error| bad(error.to_string()))?;
+        let text = read_private(path).map_err(|error| bad(error.to_string()))?;
         let people: Self = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
         people.check().map_err(bad)?;
         Ok(people)

@@ -328,7 +328,7 @@ pub enum Verb {
     /// Checks programs, configuration, folders, shared memory, leftovers of killed groups, the
     /// recogniser, the voice and the microphone.
     Doctor(ConfigArgs),
-    /// Collect what a maintainer needs to see, as one archive: version, machine, configuration, logs, journals.
+    /// Collect diagnostics for a maintainer in one archive: version, machine, configuration, logs, journals.
     ///
     /// Keys, passwords and tokens are left out, and so is what people said, unless --with-words is given. What is in the
     /// archive, and what is not, is listed. No running group is needed.

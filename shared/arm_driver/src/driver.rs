@@ -50,6 +50,11 @@ pub trait ArmDriver {
         MotionInhibit::None
     }
 
+    /// Returns the remedy for a robot that is not heard, in the imperative.
+    fn remedy_for_silence(&self) -> &'static str {
+        "start the robot"
+    }
+
     /// Returns the fault of a limb that does not follow its commands.
     fn fault(&self) -> Option<Fault> {
         None

@@ -11,5 +11,5 @@ mod registration;
 
 pub use driver::ArmDriver;
 pub use fault::Fault;
-pub use motion::{Command, Fingers, Grip, Measured, Posture, Source};
+pub use motion::{Command, Fingers, Grip, Measured, Posture, Source, furthest};
 pub use registration::{Configured, Connect, Driver, Drivers, Examine, Port, Start, named};

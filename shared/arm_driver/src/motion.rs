@@ -42,6 +42,13 @@ pub enum Source {
 }
 
 impl Measured {
+    /// Measurements of a robot that has not reported yet: at rest, in the posture that the journal remembers.
+    pub fn remembered(posture: Posture, accuracy_rad: f64) -> Self {
+        let still = [[0.0; 7]; 2];
+        let (velocity, effort, holding) = (still, still, [None; 2]);
+        Self { posture, velocity, effort, holding, at: Source::Memory, accuracy_rad }
+    }
+
     /// Returns whether the limb is in its neutral posture.
     pub fn is_at_rest(&self, robot: &Robot, limb: Limb) -> bool {
         let rest = self.posture.joints[limb].iter().zip(&robot.arm(limb).neutral);
@@ -52,6 +59,13 @@ impl Measured {
     pub fn holds(&self, limb: Limb) -> Option<bool> {
         self.holding[limb]
     }
+}
+
+/// Returns the joint of a limb at which two postures differ most, and by how much, radians.
+pub fn furthest<'r>(robot: &'r Robot, limb: Limb, a: &Joints, b: &Joints) -> (&'r str, f64) {
+    let distances = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+    let named = robot.arm(limb).joint_names.iter().map(String::as_str).zip(distances);
+    named.max_by(|(_, x), (_, y)| x.total_cmp(y)).unwrap_or(("", 0.0))
 }
 
 /// Set point of a limb.

@@ -24,7 +24,7 @@ pub struct Driver {
     pub configure: fn(&Settings, &Robot) -> Result<Configured, Diagnostics>,
     /// The way to the robot; `None` for a model, which has no robot.
     pub connect: Option<Connect>,
-    /// Looks for what the driver needs on this machine, such as devices; `None` if it needs nothing.
+    /// Looks for the driver's needs on this machine, such as devices; `None` if it has none.
     pub examine: Option<Examine>,
 }
 

@@ -5,7 +5,7 @@
 //! position mode is never used. Each limb gets a command in every pass, also while it stands: a
 //! limb that hears none for 0.2 s takes over the position that it happens to have.
 
-use arm_driver::{ArmDriver, Command, Fault, Fingers, Measured, Source, Start};
+use arm_driver::{ArmDriver, Command, Fault, Fingers, Measured, Source, Start, furthest};
 use manipulation::{Joints, Limb, PositionLimits, Robot};
 use messages::MotionInhibit;
 use messages::robot::{
@@ -72,19 +72,11 @@ impl BaxterDriver {
     /// journal remembers.
     pub fn new(settings: Baxter, start: &Start<'_>) -> Self {
         let Start { robot, limb, posture, .. } = *start;
-        let still = [[0.0; 7]; 2];
         let mut used = [false; 2];
         for own in robot.limbs() {
             used[*own] = limb.is_none_or(|limb| limb == *own);
         }
-        let measured = Measured {
-            posture,
-            velocity: still,
-            effort: still,
-            holding: [None; 2],
-            at: Source::Memory,
-            accuracy_rad: 2.0 * settings.goal_tolerance_rad,
-        };
+        let measured = Measured::remembered(posture, 2.0 * settings.goal_tolerance_rad);
         Self {
             settings,
             robot: robot.clone(),
@@ -175,15 +167,6 @@ impl BaxterDriver {
         matches!(self.inhibit, None | Stale | Gripper | Calibrating)
     }
 
-    /// The joint of a limb that is furthest from a posture, and how far, radians.
-    fn furthest(&self, limb: Limb, from: &Joints) -> (usize, f64) {
-        furthest(from, &self.measured_of(limb))
-    }
-
-    fn joint(&self, limb: Limb, place: usize) -> String {
-        self.robot.arm(limb).joint_names.get(place).cloned().unwrap_or_default()
-    }
-
     fn measured_of(&self, limb: Limb) -> Joints {
         self.measured.posture.joints[limb]
     }
@@ -196,7 +179,8 @@ impl BaxterDriver {
         set.moved = moving;
         let hold = set.q.unwrap_or(q);
         // A person moved a limb at rest by its cuff: it stays where it was put.
-        let hold = if !moving && furthest(&hold, &q).1 > path { q } else { hold };
+        let hold =
+            if !moving && furthest(&self.robot, limb, &hold, &q).1 > path { q } else { hold };
         set.q = Some(hold);
         if set.sent.is_some_and(|sent| now.since(sent) < COMMAND_EVERY) {
             return;
@@ -315,25 +299,24 @@ impl ArmDriver for BaxterDriver {
         self.inhibit
     }
 
+    fn remedy_for_silence(&self) -> &'static str {
+        "start the robot's bridge or whichone-baxter; with one gripper only, set arm.limb"
+    }
+
     fn fault(&self) -> Option<Fault> {
         self.robot.limbs().iter().copied().find_map(|limb| {
             let set = &self.limbs[limb];
-            let (joint, error_rad) = self.furthest(limb, &set.q?);
+            let (joint, error_rad) = furthest(&self.robot, limb, &set.q?, &self.measured_of(limb));
             let tolerance_rad = self.settings.path_tolerance_rad;
             let left = set.moved && error_rad > tolerance_rad;
             let setting = "arm.baxter.path_tolerance_rad";
-            left.then(|| Fault::Path {
-                joint: self.joint(limb, joint),
-                error_rad,
-                tolerance_rad,
-                setting,
-            })
+            left.then(|| Fault::Path { joint: joint.to_owned(), error_rad, tolerance_rad, setting })
         })
     }
 
     fn has_arrived(&mut self, command: &Command, late_s: f64) -> Result<bool, Fault> {
         let limb = command.limb;
-        let (joint, error_rad) = self.furthest(limb, &command.q);
+        let (joint, error_rad) = furthest(&self.robot, limb, &command.q, &self.measured_of(limb));
         let tolerance_rad = self.settings.goal_tolerance_rad;
         let velocity = &self.measured.velocity[limb];
         let still = velocity.iter().all(|v| v.abs() < self.settings.still_rad_s);
@@ -343,7 +326,7 @@ impl ArmDriver for BaxterDriver {
         self.limbs[limb].arrived = there.then_some(command.q);
         if !there && late_s > self.settings.goal_time_s {
             let settings = "arm.baxter.goal_tolerance_rad, goal_time_s";
-            let joint = self.joint(limb, joint);
+            let joint = joint.to_owned();
             return Err(Fault::Goal { joint, error_rad, tolerance_rad, late_s, settings });
         }
         let gripper = &self.grippers[limb];
@@ -373,12 +356,6 @@ impl ArmDriver for BaxterDriver {
     fn beat(&self) -> Option<Span> {
         Some(BEAT)
     }
-}
-
-/// Returns the place of the joint at which two postures differ most, and by how much, radians.
-fn furthest(a: &Joints, b: &Joints) -> (usize, f64) {
-    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs()).enumerate();
-    differences.max_by(|(_, x), (_, y)| x.total_cmp(y)).unwrap_or((0, 0.0))
 }
 
 /// Returns the posture with joints on their limits that are measured a little beyond them.

@@ -17,7 +17,7 @@ const BYTES_MAX: usize = 256 << 20;
 /// Bytes of a header and of a block of a tar archive.
 const BLOCK: usize = 512;
 
-/// Files in memory, and what is not among them.
+/// Files in memory, and the omissions with their reasons.
 #[derive(Debug, Default)]
 pub(crate) struct Bundle {
     files: Vec<(String, Vec<u8>)>,
@@ -36,7 +36,7 @@ impl Bundle {
         self.files.push((name, content));
     }
 
-    /// Notes what is not in the report, and why.
+    /// Notes an omission and its reason.
     pub(crate) fn leave_out(&mut self, what: impl Into<String>, why: impl Into<String>) {
         self.left_out.push((what.into(), why.into()));
     }

@@ -1,4 +1,4 @@
-//! Everything that a report holds, in the order of collection: what names files of keys comes before what is scrubbed.
+//! Everything that a report holds, in the order of collection: texts that name files of keys come before texts to scrub.
 
 use std::fs;
 use std::io::{Read, Seek, SeekFrom};
@@ -72,7 +72,7 @@ struct Collection<'a> {
 }
 
 impl Collection<'_> {
-    /// Adds what a verb of this program prints.
+    /// Adds the output of a verb of this program.
     fn output(&mut self, name: &str, words: &[&str]) -> Option<String> {
         match own_program::output(self.paths, words) {
             Ok(text) => {

@@ -1,8 +1,8 @@
-//! `whichone report`: what a maintainer needs to see of a group, in one archive or folder.
+//! `whichone report`: diagnostics of a group for a maintainer, in one archive or folder.
 //!
 //! | contents | file |
 //! |---|---|
-//! | what is collected, and from where | `collection.rs`, `own_program.rs`, `machine.rs` |
+//! | sources | `collection.rs`, `own_program.rs`, `machine.rs` |
 //! | keys, passwords and tokens, which never leave | `secrets.rs`, `secret_names.rs` |
 //! | what people said, which leaves on request only | `words.rs` |
 //! | the archive or the folder | `bundle.rs` |
@@ -39,7 +39,7 @@ use bundle::Bundle;
 /// Arguments of `report`.
 #[derive(Debug, Args)]
 pub struct ReportArgs {
-    /// The configuration, where it is not the running group's.
+    /// The configuration, if it is not the running group's.
     #[command(flatten)]
     pub config: ConfigArgs,
     /// The new file, which ends in `.tar.gz`, or else a new folder [default: whichone-report-GROUP-TIME.tar.gz here].
@@ -50,7 +50,7 @@ pub struct ReportArgs {
     pub with_words: bool,
 }
 
-/// Collects a report, writes it and lists what is in it.
+/// Collects a report, writes it and lists its contents.
 ///
 /// # Errors
 /// The output exists already or cannot be written.

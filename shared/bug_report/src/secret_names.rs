@@ -165,7 +165,7 @@ fn without_user_of_addresses(text: &str, found: &mut Vec<String>) -> String {
     clean
 }
 
-/// `Bearer SECRET`, where no name is before it.
+/// `Bearer SECRET` without a name before it.
 fn without_schemes(text: &str, found: &mut Vec<String>) -> String {
     let mut clean = String::with_capacity(text.len());
     let mut rest = text;

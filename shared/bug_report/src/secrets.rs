@@ -73,7 +73,7 @@ impl Scrubber {
         self.secrets.extend(found.filter(|it| it.len() >= LEN_MIN).map(str::to_owned));
     }
 
-    /// Learns what people said, so that it is found wherever else it stands.
+    /// Learns people's words, to find them in every other text.
     pub(crate) fn learn_words(&mut self, words: impl IntoIterator<Item = String>) {
         self.words.extend(words);
     }
@@ -106,7 +106,7 @@ fn longest_first(texts: &BTreeSet<String>) -> Vec<&str> {
     texts
 }
 
-/// Replaces a phrase where it does not stand inside of other words.
+/// Replaces a phrase unless it is a part of other words.
 fn without_phrase(text: &str, phrase: &str) -> String {
     let mut clean = String::new();
     let mut from = 0;

@@ -1,10 +1,10 @@
-//! What people said, in the lines of `whichone journal --json`.
+//! People's words in the lines of `whichone journal --json`.
 
 use std::collections::BTreeSet;
 
 use serde_json::Value as Json;
 
-/// What stands in the place of a text.
+/// Placeholder of a text.
 const LEFT_OUT: &str = "(words left out)";
 
 /// Keys whose texts are words of the program or of the scene, if they look like such. Every other text of a record may

@@ -32,7 +32,7 @@ pub struct BuildInfo {
     pub target: String,
 }
 
-/// Registers what the linked program knows of its build; the first call counts. `commit` is a hash and a day,
+/// Registers the identity of the linked program; the first call counts. `commit` is a hash and a day,
 /// separated by a space.
 pub fn register(commit: Option<&str>, features: impl IntoIterator<Item = &'static str>) {
     let _ = REGISTERED.set(BuildInfo::new(commit, features));

@@ -27,7 +27,7 @@ fn instance() -> MutexGuard<'static, Instance> {
     INSTANCE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes room for a command of that many bytes and returns its address; null where it is longer than 64 KiB.
+/// Makes room for a command of that many bytes and returns its address; null if it is longer than 64 KiB.
 #[unsafe(no_mangle)]
 pub extern "C" fn whichone_input(bytes: usize) -> *mut u8 {
     if bytes > COMMAND_BYTES_MAX {

@@ -36,7 +36,7 @@ pub(crate) struct Order {
 /// The arm and the objects in its reach.
 #[derive(Clone, Debug)]
 pub(crate) struct Arm {
-    /// Where each object stands, metres, frame `base`; none where that is unknown.
+    /// Place of each object, metres, frame `base`; `None` if unknown.
     places: Vec<Option<[f64; 3]>>,
     /// Objects that a user has.
     with_user: Vec<bool>,
@@ -79,7 +79,7 @@ impl Arm {
         self.mover.at()
     }
 
-    /// Returns where an object is; none where a user has it, or its place is unknown.
+    /// Returns the place of an object; `None` if a user has it, or it is unknown.
     pub(crate) fn place_of(&self, object: ObjectId) -> Option<[f64; 3]> {
         if self.held == Some(object) {
             return Some(self.mover.at());
@@ -115,7 +115,7 @@ impl Arm {
         self.stopped = Some(now);
     }
 
-    /// Releases the motion stop; returns false where the stop is too young.
+    /// Releases the motion stop; returns false if the stop is too young.
     pub(crate) fn resume(&mut self, now: Time) -> bool {
         let is_old = self.stopped.is_none_or(|at| now >= at + RESUME_AFTER);
         if is_old {

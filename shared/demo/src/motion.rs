@@ -57,7 +57,7 @@ impl Mover {
         self.legs.iter().map(|leg| leg.seconds).sum::<f64>() - self.t_s
     }
 
-    /// Replaces the movements by ones that begin where the gripper is.
+    /// Replaces the movements by ones that begin at the gripper's place.
     pub(crate) fn go(&mut self, steps: &[(Kind, [f64; 3], f64)]) {
         (self.from, self.t_s) = (self.at, 0.0);
         self.legs.clear();

@@ -123,7 +123,7 @@ struct TurnSection {
 }
 
 impl Session {
-    /// Returns what the page shows of the scene.
+    /// Returns the scene for the page.
     pub(crate) fn scene_sections(&self) -> SceneSections<'_> {
         let scene = self.scene();
         let placed: Vec<ObjectId> = scene.placed().collect();

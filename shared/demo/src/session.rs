@@ -1,4 +1,4 @@
-//! One dialogue: what the user says and does, and what follows from it.
+//! One dialogue: the user's words and actions, and the robot's.
 
 use dialogue::manager::{Cause, Manager, State, Utterance};
 use dialogue::rendering;
@@ -70,7 +70,7 @@ impl Session {
         self.watch_arm();
     }
 
-    /// Releases the motion stop; returns false where it is too young to be released.
+    /// Releases the motion stop; returns false if it is too young.
     pub fn resume(&mut self) -> bool {
         let is_released = self.arm.resume(self.now);
         self.watch_arm();

@@ -62,7 +62,7 @@ impl Session {
         }
     }
 
-    /// Returns what is known of both voices. Nobody speaks here: what is typed is heard at once.
+    /// Returns the state of both voices. Typed words are heard at once.
     fn floor(&self) -> Floor {
         let presented = self.voice.presented();
         let ended: Option<Time> = presented.ended.filter(|_| presented.complete);

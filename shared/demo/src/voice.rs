@@ -48,7 +48,7 @@ impl Voice {
         true
     }
 
-    /// Breaks off what is presented; it can be answered all the same.
+    /// Breaks off the present line; it can still be answered.
     pub(crate) fn interrupt(&mut self, now: Time) {
         let Some((put, _)) = self.playing.take() else { return };
         let put = Presentation { ended: (now > put.began).then_some(now), ..put };

@@ -204,12 +204,12 @@ fn wrong_commands_are_answered_with_what_is_expected() {
 
 /// As the page calls it: through the module's memory.
 #[test]
-#[allow(unsafe_code, reason = "writes and reads where the functions say")]
+#[allow(unsafe_code, reason = "reads and writes at the addresses that the functions return")]
 fn functions_take_a_command_and_return_its_answer() {
     use demo::abi::{whichone_command, whichone_input, whichone_output};
     let call = |command: &str| -> Value {
         let (place, bytes) = (whichone_input(command.len()), command.as_bytes());
-        // SAFETY: the function has made room for that many bytes, which nobody else uses.
+        // SAFETY: the function has made room for that many bytes, which no other code uses.
         unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), place, bytes.len()) };
         let length = whichone_command();
         // SAFETY: the answer has that length and stays until the next command.

@@ -1,6 +1,6 @@
 //! The driver: set points to goals, readings to measurements and faults.
 
-use arm_driver::{ArmDriver, Command, Fault, Fingers, Measured, Source, Start};
+use arm_driver::{ArmDriver, Command, Fault, Fingers, Measured, Source, Start, furthest};
 use manipulation::{Joints, Limb, Robot};
 use messages::MotionInhibit;
 use messages::robot::{Order, Report};
@@ -73,15 +73,7 @@ impl FeetechDriver {
     pub fn new(settings: Feetech, start: &Start<'_>) -> Self {
         let Start { robot, posture, .. } = *start;
         let joints = robot.arm(LIMB).joint_names.len();
-        let still = [[0.0; 7]; 2];
-        let measured = Measured {
-            posture,
-            velocity: still,
-            effort: still,
-            holding: [None; 2],
-            at: Source::Memory,
-            accuracy_rad: 2.0 * settings.tolerances.goal_rad,
-        };
+        let measured = Measured::remembered(posture, 2.0 * settings.tolerances.goal_rad);
         let state = State {
             measured,
             reading: None,
@@ -248,14 +240,6 @@ impl FeetechDriver {
         (0..self.joints).map(|j| q[j].clamp(here[j] - lead(j), here[j] + lead(j))).collect()
     }
 
-    /// The joint that differs most from a posture, and by how much, radians.
-    fn furthest(&self, from: &Joints) -> (String, f64) {
-        let here = self.q();
-        let differences = (0..self.joints).map(|j| (j, (from[j] - here[j]).abs()));
-        let (place, most) = differences.max_by(|(_, a), (_, b)| a.total_cmp(b)).unwrap_or((0, 0.0));
-        (self.joint(place).to_owned(), most)
-    }
-
     fn stands(&self) -> bool {
         self.state.measured.velocity[LIMB]
             .iter()
@@ -303,8 +287,9 @@ impl ArmDriver for FeetechDriver {
         let moves = std::mem::take(&mut self.state.moves);
         self.state.moved = moves;
         let held = self.state.q.unwrap_or(here);
-        // A person has moved an arm at rest: it stays where it was put.
-        let was_pushed = !moves && self.furthest(&held).1 > self.settings.tolerances.path_rad;
+        // A person has moved an arm at rest: it keeps its new posture.
+        let was_pushed = !moves
+            && furthest(&self.robot, LIMB, &held, &here).1 > self.settings.tolerances.path_rad;
         let q = if was_pushed { here } else { self.with_loose(held) };
         let is_heard = self.state.reading.is_some() && self.state.unusable.is_none();
         if self.state.sent.is_some_and(|sent| now.since(sent) < ORDER_EVERY) || !is_heard {
@@ -321,19 +306,23 @@ impl ArmDriver for FeetechDriver {
         self.state.inhibit
     }
 
+    fn remedy_for_silence(&self) -> &'static str {
+        "switch on the servos' supply and look at the plugs: whichone robot servos"
+    }
+
     fn fault(&self) -> Option<Fault> {
         if let Some((part, reason)) = self.state.fault.clone() {
             return Some(Fault::Part { part, reason });
         }
-        let (joint, error_rad) = self.furthest(&self.state.q?);
+        let (joint, error_rad) = furthest(&self.robot, LIMB, &self.state.q?, &self.q());
         let tolerance_rad = self.settings.tolerances.path_rad;
         let left = self.state.moved && error_rad > tolerance_rad;
         let setting = "arm.feetech.path_tolerance_rad";
-        left.then_some(Fault::Path { joint, error_rad, tolerance_rad, setting })
+        left.then(|| Fault::Path { joint: joint.to_owned(), error_rad, tolerance_rad, setting })
     }
 
     fn has_arrived(&mut self, command: &Command, late_s: f64) -> Result<bool, Fault> {
-        let (joint, error_rad) = self.furthest(&command.q);
+        let (joint, error_rad) = furthest(&self.robot, LIMB, &command.q, &self.q());
         let tolerance_rad = self.settings.tolerances.goal_rad;
         // Once it has arrived only the fingers are waited for: noise takes nothing back.
         let is_there = error_rad <= tolerance_rad && self.stands();
@@ -341,6 +330,7 @@ impl ArmDriver for FeetechDriver {
         self.state.arrived = there.then_some(command.q);
         if !there && late_s > self.settings.tolerances.goal_time_s {
             let settings = "arm.feetech.goal_tolerance_rad, goal_time_s";
+            let joint = joint.to_owned();
             return Err(Fault::Goal { joint, error_rad, tolerance_rad, late_s, settings });
         }
         let done = command.fingers == Fingers::Stay || self.state.jaw.has_settled(self.state.now);

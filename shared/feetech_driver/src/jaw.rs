@@ -32,7 +32,7 @@ const STEADY: Span = Span::from_ms(150);
 /// Time after which a jaw that stands elsewhere will not go on.
 const STUCK: Span = Span::from_ms(600);
 
-/// The jaw and what it was told.
+/// The jaw and its latest order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Jaw {
     /// Percent and width, metres, ascending.
@@ -116,7 +116,7 @@ impl Jaw {
         }
     }
 
-    /// Stops where it is; what it holds it keeps.
+    /// Stops in place; keeps hold of an object.
     pub(crate) fn hold_here(&mut self) {
         if !matches!(self.aim, Aim::Holds(_) | Aim::Unknown) {
             (self.aim, self.goal) =

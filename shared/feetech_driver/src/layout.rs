@@ -18,7 +18,7 @@ pub(crate) struct Layout {
     pub(crate) members: Vec<Member>,
 }
 
-/// A servo and what it moves.
+/// A servo and the part that it moves.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Member {
     /// The joint; of the jaw the servo's name.

@@ -5,10 +5,10 @@
 //! | packets, registers | `packet.rs`, `registers.rs` |
 //! | serial line, who else has opened it, requests with their answers | `line.rs`, `holder.rs`, `bus.rs` |
 //! | lerobot's calibration, servos of joints | `calibration.rs`, `layout.rs` |
-//! | what is on the bus, one exchange, whether it can be true | `handshake.rs`, `session.rs`, `plausible.rs` |
+//! | servos on the bus, one exchange, plausibility | `handshake.rs`, `session.rs`, `plausible.rs` |
 //! | the thread that uses the bus | `port.rs`, `traffic.rs` |
 //! | set points to goals, readings to measurements and faults | `driver.rs`, `jaw.rs` |
-//! | what a person does with the servos | `service_desk.rs` |
+//! | a person's orders to the servos | `service_desk.rs` |
 
 mod bus;
 mod calibration;

@@ -19,7 +19,7 @@ use crate::holder::{Holder, holder_of};
 
 /// Longest time for which a write may wait for the device.
 const SEND_MAX: Span = Span::from_ms(50);
-/// Delay after which an FTDI adapter hands over what it has, milliseconds.
+/// Delay after which an FTDI adapter passes on received bytes, milliseconds.
 const LATENCY_MS: &str = "1";
 
 /// A half-duplex line with a clock.
@@ -169,7 +169,7 @@ impl Line for SerialLine {
     }
 }
 
-/// FTDI adapters hand over what they have after 16 ms, unless told otherwise: too late for 100 readings a second.
+/// FTDI adapters pass on received bytes after 16 ms by default: too late for 100 readings a second.
 fn shorten_latency(port: &Path) {
     let device = fs::canonicalize(port).unwrap_or_default();
     let Some(name) = device.file_name() else { return };

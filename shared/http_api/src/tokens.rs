@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 
 use roster::Name;
-use safe_files::{load_private, replace_private_synced};
+use safe_files::{read_private, replace_private_synced};
 use serde::{Deserialize, Serialize};
 use service::console_link::{is_token, random_secret};
 use service::exit::{Exit, Failure};
@@ -92,7 +92,7 @@ impl Tokens {
                 "expected at most {FILE_MAX} bytes; help: remove what is no token"
             )));
         }
-        let text = load_private(path).map_err(|error| bad(error.to_string()))?;
+        let text = read_private(path).map_err(|error| bad(error.to_string()))?;
         let tokens: Self = toml::from_str(&text).map_err(|error| bad(error.to_string()))?;
         for (name, Token { secret, .. }) in &tokens.0 {
             if name.as_str() == OWNER {

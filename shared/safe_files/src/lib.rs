@@ -26,5 +26,5 @@ pub use draft::{
 };
 pub use older::{absent_is_fine, make_room, suffixed};
 pub use output::{OutputFolder, check_new_output, write_new_output, write_output};
-pub use regular::{load_private, open_regular, read_private, read_regular};
+pub use regular::{open_regular, read_private, read_regular};
 pub use temporary::TemporaryFolder;

@@ -29,16 +29,11 @@ pub fn read_regular(path: &Path) -> io::Result<String> {
     io::read_to_string(open_regular(path)?)
 }
 
-/// Reads a file of this user that no other user can read or change; none otherwise.
-pub fn read_private(path: &Path) -> Option<String> {
-    load_private(path).ok()
-}
-
-/// As [`read_private`], with the reason if there is none.
+/// Reads a file of this user that no other user can read or change.
 ///
 /// # Errors
 /// It cannot be read, is not a file of this user alone, or is not UTF-8.
-pub fn load_private(path: &Path) -> io::Result<String> {
+pub fn read_private(path: &Path) -> io::Result<String> {
     let file = fs::symlink_metadata(path)?;
     let is_own = file.uid() == geteuid().as_raw();
     if !file.is_file() || !is_own || file.mode() & 0o077 != 0 {
@@ -76,11 +71,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("http.tokens");
         crate::replace_private(&file, b"# caf\xe9\n").unwrap();
-        let error = load_private(&file).unwrap_err().to_string();
+        let error = read_private(&file).unwrap_err().to_string();
         assert!(error.contains("expected UTF-8") && error.contains("offset 5"), "{error}");
-        assert_eq!(read_private(&file), None);
         fs::set_permissions(&file, Permissions::from_mode(0o640)).unwrap();
-        assert!(load_private(&file).unwrap_err().to_string().contains("chmod 600"));
+        assert!(read_private(&file).unwrap_err().to_string().contains("chmod 600"));
     }
 
     #[test]
@@ -88,15 +82,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("console.token");
         crate::replace_private(&file, "secret\n").unwrap();
-        assert_eq!(read_private(&file).as_deref(), Some("secret\n"));
+        assert_eq!(read_private(&file).unwrap(), "secret\n");
         for mode in [0o640, 0o602, 0o604] {
             fs::set_permissions(&file, Permissions::from_mode(mode)).unwrap();
-            assert_eq!(read_private(&file), None, "{mode:o}");
+            assert!(read_private(&file).is_err(), "{mode:o}");
         }
         fs::set_permissions(&file, Permissions::from_mode(0o600)).unwrap();
         let link = folder.path().join("link");
         symlink(&file, &link).unwrap();
-        assert_eq!(read_private(&link), None);
+        assert!(read_private(&link).is_err());
     }
 
     #[test]

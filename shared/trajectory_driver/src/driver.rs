@@ -3,7 +3,7 @@
 
 mod sequence;
 
-use arm_driver::{ArmDriver, Command, Fault, Fingers, Measured, Source, Start};
+use arm_driver::{ArmDriver, Command, Fault, Fingers, Measured, Source, Start, furthest};
 use manipulation::{Joints, Limb, Robot, Trajectory};
 use messages::MotionInhibit;
 use messages::robot::{Order, Report};
@@ -54,15 +54,7 @@ impl TrajectoryDriver {
     pub fn new(settings: Controllers, start: &Start<'_>) -> Self {
         let Start { robot, limb, posture, .. } = *start;
         let limb = limb.unwrap_or(robot.limbs()[0]);
-        let still = [[0.0; 7]; 2];
-        let measured = Measured {
-            posture,
-            velocity: still,
-            effort: still,
-            holding: [None; 2],
-            at: Source::Memory,
-            accuracy_rad: 2.0 * settings.goal_tolerance_rad,
-        };
+        let measured = Measured::remembered(posture, 2.0 * settings.goal_tolerance_rad);
         let state = DriverState {
             report: ControllerReport::default(),
             fingers: FingerState::new(&robot.arm(limb).gripper),
@@ -78,12 +70,8 @@ impl TrajectoryDriver {
         Self { settings, robot: robot.clone(), limb, measured, state }
     }
 
-    /// The joint that is measured furthest from a posture, and its distance, radians.
-    fn furthest(&self, from: &Joints) -> (String, f64) {
-        let measured = self.measured.posture.joints[self.limb];
-        let distances = from.iter().zip(measured).map(|(a, b)| (a - b).abs());
-        let named = self.robot.arm(self.limb).joint_names.iter().cloned().zip(distances);
-        named.max_by(|(_, x), (_, y)| x.total_cmp(y)).unwrap_or_default()
+    fn q(&self) -> &Joints {
+        &self.measured.posture.joints[self.limb]
     }
 
     fn joints(&self) -> usize {
@@ -178,7 +166,7 @@ impl TrajectoryDriver {
     }
 
     fn begins_here(&self, motion: &Trajectory) -> bool {
-        let (_, off) = self.furthest(&motion.start());
+        let (_, off) = furthest(&self.robot, self.limb, &motion.start(), self.q());
         off <= 4.0 * self.settings.goal_tolerance_rad
     }
 
@@ -284,6 +272,10 @@ impl ArmDriver for TrajectoryDriver {
         self.state.inhibit
     }
 
+    fn remedy_for_silence(&self) -> &'static str {
+        "start the controllers and their joint states; the log of the service trajectory names what is missing"
+    }
+
     fn fault(&self) -> Option<Fault> {
         let limb = self.limb;
         let sequence = self.state.sequence.as_ref()?;
@@ -295,11 +287,11 @@ impl ArmDriver for TrajectoryDriver {
         let Source::Sensors(at) = self.measured.at else { return None };
         let mut expected = self.measured.posture.joints[limb];
         expected.iter_mut().zip(sequence.expected(at)?).for_each(|(own, q)| *own = q);
-        let (joint, error_rad) = self.furthest(&expected);
+        let (joint, error_rad) = furthest(&self.robot, limb, &expected, self.q());
         let tolerance_rad = self.settings.path_tolerance_rad;
         let setting = "arm.trajectory.path_tolerance_rad";
-        (error_rad > tolerance_rad).then_some(Fault::Path {
-            joint,
+        (error_rad > tolerance_rad).then(|| Fault::Path {
+            joint: joint.to_owned(),
             error_rad,
             tolerance_rad,
             setting,
@@ -308,7 +300,8 @@ impl ArmDriver for TrajectoryDriver {
 
     fn has_arrived(&mut self, command: &Command, late_s: f64) -> Result<bool, Fault> {
         let limb = command.limb;
-        let (joint, error_rad) = self.furthest(&command.q);
+        let here = self.measured.posture.joints[limb];
+        let (joint, error_rad) = furthest(&self.robot, limb, &command.q, &here);
         let tolerance_rad = self.settings.goal_tolerance_rad;
         let measured_there = error_rad <= tolerance_rad && self.velocity_is_low();
         let there = measured_there && self.is_confirmed();
@@ -319,6 +312,7 @@ impl ArmDriver for TrajectoryDriver {
             return Err(Fault::Controller { limb, why });
         } else if late_s > self.settings.goal_time_s {
             let settings = "arm.trajectory.goal_tolerance_rad, goal_time_s";
+            let joint = joint.to_owned();
             return Err(Fault::Goal { joint, error_rad, tolerance_rad, late_s, settings });
         }
         if command.fingers == Fingers::Stay {

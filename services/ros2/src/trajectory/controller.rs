@@ -219,7 +219,7 @@ impl Controller {
         self.sent.iter().any(|goal| !goal.is_over && !goal.is_replaced)
     }
 
-    /// Decides what is asked of the controller. `stamp` returns the controller's time for one of this machine.
+    /// Decides on the requests to the controller. `stamp` returns the controller's time for one of this machine.
     pub fn decide(
         &mut self,
         facts: &Facts<'_>,
@@ -334,7 +334,7 @@ impl Controller {
         self.goal(stamp.unwrap_or_default(), points.collect())
     }
 
-    /// Holds the arm where it was measured: it works when requests to cancel are lost.
+    /// Holds the arm in its measured posture, in case requests to cancel are lost.
     fn hold(&self, q: &[f64]) -> TrajectoryGoal {
         let point = JointTrajectoryPoint {
             positions: q.to_vec(),

@@ -102,7 +102,7 @@ impl FingerController {
         self.sent.is_some_and(|sent| !sent.is_over && sent.cancelled.is_some())
     }
 
-    /// Decides what is asked of the controller; a stop of the arm, `stops`, cancels the command under way. It is
+    /// Decides on the requests to the controller; a stop of the arm, `stops`, cancels the command under way. It is
     /// cancelled until its end is told, after the stop too; until then no other one is sent.
     pub fn decide(
         &mut self,

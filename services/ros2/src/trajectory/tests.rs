@@ -165,7 +165,7 @@ fn stop_cancels_until_it_is_answered_and_the_joints_stand() {
     bench.joints.qd = vec![0.4, 0.0];
     (0..20).for_each(|_| bench.order(Motion::Stop(5)));
     assert!((4..=5).contains(&bench.cancels), "{}", bench.cancels);
-    // Beside them the arm is held where it was measured.
+    // Meanwhile another goal holds the arm in its measured posture.
     let holds: Vec<_> = bench.goals[1..].iter().map(|(_, goal)| &goal.trajectory).collect();
     assert!((2..=3).contains(&holds.len()) && holds[0].points.len() == 1);
     assert_eq!(holds[0].points[0].positions, [0.5, -0.5]);

@@ -43,7 +43,7 @@ pub(super) fn keep(paths: &GroupPaths, given_ns: u64) -> io::Result<()> {
 
 /// Returns when the kept stop was given, in the machine's time; `None` if the file has none.
 fn read(path: &Path) -> Option<u64> {
-    safe_files::read_private(path)?.trim().parse().ok()
+    safe_files::read_private(path).ok()?.trim().parse().ok()
 }
 
 /// Removes a stop that the arm has carried out.

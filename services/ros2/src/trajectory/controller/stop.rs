@@ -8,7 +8,7 @@ use trajectory_driver::JointMeasurement;
 const CANCEL_EVERY: Span = Span::from_ms(50);
 /// Interval of goals that hold the arm, while it moves.
 const HOLD_EVERY: Span = Span::from_ms(100);
-/// Time in which such a goal brings the arm to where it was measured, seconds.
+/// Duration of such a goal, seconds.
 pub(super) const HOLD_S: f64 = 0.2;
 /// Age beyond which a joint state proves nothing.
 const STALE: Span = Span::from_ms(150);

@@ -33,7 +33,7 @@ document.title = t("demo.title");
 if (robot) begin(robot);
 else complain(t("demo.missing"));
 
-/** Says what is wrong, above everything. @param {string} text */
+/** Shows an error above everything. @param {string} text */
 function complain(text) {
   at("trouble").textContent = text;
   at("trouble").hidden = false;

@@ -1,4 +1,4 @@
-// The robot in this page: what the console's page calls its link to a server is here a WebAssembly module.
+// The robot in this page: a WebAssembly module takes the place of the console's link to a server.
 // Its sections are those of docs/console.md, so the console's views show them.
 
 /** Longest wait between two looks at the robot, milliseconds: while nothing moves, and while the arm does. */
@@ -97,7 +97,7 @@ export class Robot {
     return this.toServer(performance.now());
   }
 
-  /** The words that deny what is asked about or fetched. */
+  /** Words that deny the object in question. */
   #notThat() {
     if (this.#dialogue.decision !== "pick") return "no";
     const object = this.#scene.objects.find(({ name }) => name === this.#arm?.object);

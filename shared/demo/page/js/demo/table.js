@@ -24,7 +24,7 @@ const FINGERS_CLOSED = ["closing", "holding", "returning"];
 const PLACE = /^(in|on|at|under|inside|behind|near|by|next) /;
 
 /**
- * The table from above: the objects with what is believed, and the arm.
+ * The table from above: the objects with their belief, and the arm.
  * @param {HTMLElement} element
  * @param {{store: any, t: any}} context
  */
@@ -203,14 +203,14 @@ function armOf(words) {
   return { node, show };
 }
 
-/** The elbow of two links from the shoulder to a place; stretched where it is too far. */
+/** The elbow of two links from the shoulder to a place; stretched if it is too far. */
 function elbow(x, y) {
   const [dx, dy] = [x - SHOULDER[0], y - SHOULDER[1]];
   const [a, b] = LINKS;
   const far = Math.max(1, Math.hypot(dx, dy));
   const along = (a * a - b * b + far * far) / (2 * far);
   const aside = Math.sqrt(Math.max(0, a * a - along * along));
-  // Away from the middle, so that it does not cover what is fetched.
+  // Away from the middle, so that it does not cover the object.
   const side = x > 0 ? 1 : -1;
   return [
     SHOULDER[0] + (along * dx - side * aside * dy) / far,
