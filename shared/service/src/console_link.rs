@@ -25,7 +25,7 @@ pub fn sessions_file(paths: &GroupPaths) -> PathBuf {
 
 /// Returns the group's token; `None` before the console's first start.
 pub fn token(paths: &GroupPaths) -> Option<String> {
-    read_private(&token_file(paths))?.lines().next().map(str::to_owned)
+    read_private(&token_file(paths)).ok()?.lines().next().map(str::to_owned)
 }
 
 /// Returns the address of the page, while one is served.
