@@ -124,8 +124,9 @@ pub fn open(paths: &GroupPaths, rules: Rules) -> io::Result<(Arc<Api>, Feed)> {
 /// Reads the group's identifier, or makes one.
 fn own_id(paths: &GroupPaths) -> io::Result<String> {
     let file = paths.root().join("http.id");
-    if let Some(id) = read_private(&file).map(|id| id.trim().to_owned()).filter(|id| is_token(id)) {
-        return Ok(id);
+    let kept = read_private(&file).unwrap_or_default().trim().to_owned();
+    if is_token(&kept) {
+        return Ok(kept);
     }
     let id: String = random_secret()?.chars().take(16).collect();
     replace_private_synced(&file, format!("{id}\n"))?;

@@ -207,7 +207,7 @@ mod tests {
         let running = by_token(&file);
         replace_private(&file, "my-own-word-123\n").unwrap();
         let browser = logged_in(&running, "localhost:8377", 0);
-        assert_eq!(read_private(&file).as_deref(), Some("my-own-word-123\n"));
+        assert_eq!(read_private(&file).unwrap(), "my-own-word-123\n");
         let restarted = by_token(&file);
         let bearer = headers(&[("authorization", "Bearer my-own-word-123")]);
         assert!(restarted.is_known(&bearer, 1));
