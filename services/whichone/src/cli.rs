@@ -330,8 +330,8 @@ pub enum Verb {
     Doctor(ConfigArgs),
     /// Collect diagnostics for a maintainer in one archive: version, machine, configuration, logs, journals.
     ///
-    /// Keys, passwords and tokens are left out, and so is what people said, unless --with-words is given. What is in the
-    /// archive, and what is not, is listed. No running group is needed.
+    /// Keys, passwords, tokens and people's words are left out; --with-words adds the words. The archive lists its
+    /// contents and omissions. The group need not run.
     Report(bug_report::ReportArgs),
     /// Print the licences of the libraries in this program.
     Licences,
