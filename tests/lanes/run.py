@@ -263,6 +263,13 @@ def failed_in(output):
     return sorted(set(named))
 
 
+def end_of(result):
+    """How a program ended that reports no failed test, and the test that it was in."""
+    begun = re.findall(r"^test (\S+) \.\.\. $", result.output, re.M)
+    how = f"killed by {signal.Signals(-result.code).name}" if result.code < 0 else f"exit {result.code}"
+    return f"{how} in {begun[-1]}" if begun else how
+
+
 def read_json(path, default):
     try:
         return json.loads(path.read_text())
@@ -398,7 +405,8 @@ def judge(lane, runner, leftovers, began):
         say(f"\n==== {result.program.name} (exit {result.code})\n{result.output}")
     # A program that was killed reports no failed test.
     is_sudden = any(result.code < 0 or not result.failed for result in bad)
-    broken = [f"{program.name} {test}" for program, test in failed] or [r.program.name for r in bad]
+    broken = [f"{program.name} {test}" for program, test in failed]
+    broken += [f"{result.program.name}, {end_of(result)}" for result in bad if result.code < 0 or not result.failed]
     is_good = not bad
     if failed and not is_sudden and len(failed) <= TRIED_AGAIN:
         passed, slow, broken = runner.try_again(failed)

@@ -1,8 +1,10 @@
 //! The serial port, and robots that ship.
 
 use std::fs::{File, OpenOptions};
+use std::os::unix::fs::OpenOptionsExt;
 use std::process::{Child, Command as Program, Stdio};
 
+use rustix::fs::OFlags;
 use servo_bus::Terminal;
 
 use super::*;
@@ -13,7 +15,10 @@ struct Earlier(Child);
 
 impl Earlier {
     fn on(port: &str) -> Self {
-        let port = OpenOptions::new().read(true).write(true).open(port).unwrap();
+        // The first of a session to open a terminal without this flag ends with it, by SIGHUP.
+        let flags = OFlags::NOCTTY.bits().cast_signed();
+        let port = OpenOptions::new().read(true).write(true).custom_flags(flags).open(port);
+        let port = port.unwrap();
         Self(Program::new("sleep").arg("60").stdin(Stdio::from(port)).spawn().unwrap())
     }
 }
