@@ -1,4 +1,4 @@
-//! The recovery protocol of ARCHITECTURE.md in small: a client, speech, policy and arm with their
+//! The recovery protocol of docs/journals.md in small: a client, speech, policy and arm with their
 //! journals, and a bus that loses, doubles and reorders. Numbers are given and judged by the real
 //! `messages::{outbox, inbox, pick}`.
 //!
