@@ -199,7 +199,8 @@ prepare_tests() {
 # prepare_browser: sets `browser` to "ready", or to what the tests of the page lack.
 prepare_browser() {
     browser=ready
-    if [[ -n $(install chromium fonts-dejavu-core) ]]; then
+    # Chromium without windows takes a fifth less processor time.
+    if [[ -n $(install chromium-headless-shell fonts-dejavu-core) && -n $(install chromium fonts-dejavu-core) ]]; then
         browser="chromium"
     elif ! { { command -v node && command -v npm; } >/dev/null || [[ -z $(install nodejs npm) ]]; }; then
         browser="node and npm"

@@ -10,11 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use whichone_tests::fuzz::{self, Mutator, Target};
-
-fn number(variable: &str) -> Option<u64> {
-    let text = std::env::var(variable).ok()?;
-    Some(text.parse().unwrap_or_else(|_| panic!("{variable}: expected a number, found {text}")))
-}
+use whichone_tests::number;
 
 fn check(target: &Target, origin: &str, input: &[u8]) {
     let run = AssertUnwindSafe(|| (target.run)(input));

@@ -1,8 +1,8 @@
 //! Random dialogues, with and without faults, replay exactly.
 
 use config::Settings;
-use whichone_tests::settings;
 use whichone_tests::simulated_group::{Faults, GroupUser, SimulatedGroup};
+use whichone_tests::{number, settings};
 
 use crate::replay_all;
 
@@ -10,7 +10,6 @@ use crate::replay_all;
 const SEEDS: u64 = 12;
 
 fn seeds() -> Vec<u64> {
-    let number = |name| std::env::var(name).ok().map(|text| text.parse().expect("a number"));
     match number("WHICHONE_SEED") {
         Some(seed) => vec![seed],
         None => (0..number("WHICHONE_SEEDS").unwrap_or(SEEDS)).collect(),

@@ -1,6 +1,6 @@
 //! Ambiguous requests end with the right object.
 
-use whichone_tests::{Group, UR5E};
+use whichone_tests::{Group, UR5E, number};
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
 
@@ -17,10 +17,11 @@ fn fetch_all(group: &Group, rounds: usize, questions_max: u64) {
     }
 }
 
+/// WHICHONE_DIALOGUES asks for more.
 #[test]
-fn remote_mode_delivers_in_a_hundred_dialogues() {
+fn remote_mode_delivers_in_many_dialogues() {
     let group = Group::up(&["dialogue.open_questions=false"]);
-    fetch_all(&group, 100, 3);
+    fetch_all(&group, number("WHICHONE_DIALOGUES").unwrap_or(24) as usize, 3);
     group.verify_journals();
     group.down();
 }

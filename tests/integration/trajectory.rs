@@ -3,7 +3,7 @@
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use whichone_tests::controllers::Controllers;
-use whichone_tests::{Group, wait_for};
+use whichone_tests::{Group, number, wait_for};
 
 /// Longest time from a death to rest: a window and its ramp.
 const REST_S: f64 = 0.65;
@@ -15,10 +15,6 @@ const WANTED: [&str; 4] = ["red_small", "blue_small", "red_large", "blue_large"]
 
 fn wait_for_arm(group: &Group, what: &str, holds: impl Fn(&Value) -> bool) {
     wait_for(what, 60.0, || Some(group.arm()).filter(&holds));
-}
-
-fn number(name: &str, otherwise: usize) -> usize {
-    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(otherwise)
 }
 
 fn fetch(group: &Group, object: &str) {
@@ -51,7 +47,7 @@ mod ros2_rclpy_controllers {
     fn dialogues_end_with_the_right_object() {
         let mut controllers = Controllers::start(&[]);
         let group = controllers.group(&[]);
-        let count = number("WHICHONE_DIALOGUES", 10);
+        let count = number("WHICHONE_DIALOGUES").unwrap_or(10) as usize;
         for n in 0..count {
             fetch(&group, WANTED[n % WANTED.len()]);
         }
@@ -86,7 +82,7 @@ mod ros2_rclpy_controllers {
         let mut controllers = Controllers::start(&[]);
         let group = controllers.group(&[]);
         let mut seconds: Vec<f64> = Vec::new();
-        let count = number("WHICHONE_STOPS", 20);
+        let count = number("WHICHONE_STOPS").unwrap_or(20) as usize;
         for _ in 0..count {
             if group.arm()["phase"] != "moving" {
                 group.say("get me the small red block");

@@ -12,10 +12,10 @@ use config::Settings;
 use messages::{PickOutcome, PickPhase};
 use scene::ObjectId;
 use service::Span;
-use whichone_tests::settings;
 use whichone_tests::simulated_group::{Fault, Faults, SimulatedGroup};
+use whichone_tests::{number, settings};
 
-use crate::{checkers, number};
+use crate::checkers;
 
 /// Dialogues of the short run.
 const SEEDS: u64 = 40;

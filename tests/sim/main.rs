@@ -19,16 +19,11 @@ mod objects;
 mod turns;
 
 use config::Settings;
-use whichone_tests::settings;
 use whichone_tests::simulated_group::{Faults, GroupUser, SimulatedGroup};
+use whichone_tests::{number, settings};
 
 /// Dialogues with faults, each with its own seed; WHICHONE_SEEDS asks for more.
 const SEEDS: u64 = 40;
-
-fn number(variable: &str) -> Option<u64> {
-    let text = std::env::var(variable).ok()?;
-    Some(text.parse().unwrap_or_else(|_| panic!("{variable}: expected a number, found {text}")))
-}
 
 fn seeds(count: u64) -> Vec<u64> {
     match number("WHICHONE_SEED") {

@@ -1,14 +1,15 @@
 //! Objects from perception: the right one is fetched from where it is, whatever appears, moves or
 //! vanishes meanwhile.
 
+use whichone_tests::number;
 use whichone_tests::simulated_group::{Faults, Tally, at_best, perceive};
 
 const DIALOGUES: u64 = 20;
 
 /// `right_min` is the least share of dialogues with the wanted object.
 fn check(mode: &str, right_min: f64) -> Tally {
-    let seed = crate::number("WHICHONE_SEED").unwrap_or(1);
-    let dialogues = crate::number("WHICHONE_SEEDS").unwrap_or(DIALOGUES);
+    let seed = number("WHICHONE_SEED").unwrap_or(1);
+    let dialogues = number("WHICHONE_SEEDS").unwrap_or(DIALOGUES);
     let found = perceive(mode, dialogues, seed, |_| Faults::none());
     let stories = || found.stories.join("\n\n");
     assert_eq!((found.beside, found.twice), (0, 0), "seed {seed}: {}", stories());
@@ -32,7 +33,7 @@ fn perceived_objects_are_fetched_for_a_user_in_another_room() {
 /// mistaken both. That bounds what answers can achieve without pointing.
 #[test]
 fn perceived_objects_that_the_camera_mistakes_bound_what_answers_achieve() {
-    let share = at_best(20_000, crate::number("WHICHONE_SEED").unwrap_or(1));
+    let share = at_best(20_000, number("WHICHONE_SEED").unwrap_or(1));
     println!("right at best, every value known: {:.2} %", 100.0 * share);
     assert!((0.98..0.99).contains(&share), "{share}");
 }

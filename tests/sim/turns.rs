@@ -1,14 +1,15 @@
 //! Answers that come late, early, into the next question, and twice: each counts for the question
 //! that it answers, so that timing causes no wrong pick.
 
+use whichone_tests::number;
 use whichone_tests::simulated_group::{Count, study};
 
 const DIALOGUES: u64 = 60;
 
 #[test]
 fn policy_credits_badly_timed_answers_to_their_questions() {
-    let seed = crate::number("WHICHONE_SEED").unwrap_or(1);
-    let counts = study(crate::number("WHICHONE_SEEDS").unwrap_or(DIALOGUES), seed);
+    let seed = number("WHICHONE_SEED").unwrap_or(1);
+    let counts = study(number("WHICHONE_SEEDS").unwrap_or(DIALOGUES), seed);
     let of =
         |rule: &str| -> Vec<&Count> { counts.iter().filter(|count| count.rule == rule).collect() };
     let sum = |rule: &str, of_count: fn(&Count) -> f64| -> f64 {

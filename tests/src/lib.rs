@@ -67,6 +67,15 @@ pub fn settings(over: &[(&str, &str)]) -> Settings {
     preflight::load(config, Some("ci"), &over).unwrap_or_else(|e| panic!("{e}"))
 }
 
+/// Returns the number in an environment variable, by which tests take another seed or go on for longer.
+///
+/// # Panics
+/// If it holds no number.
+pub fn number(variable: &str) -> Option<u64> {
+    let text = std::env::var(variable).ok()?;
+    Some(text.parse().unwrap_or_else(|_| panic!("{variable}: expected a number, found {text}")))
+}
+
 /// How much longer than on an idle machine a fact may take: a deadline ends what hangs, and judges no speed.
 const BUSY: f64 = 4.0;
 

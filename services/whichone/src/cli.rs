@@ -10,6 +10,7 @@ use diagnostics::nearest;
 use service::group::{ENV_GROUP, GroupName};
 
 mod group;
+mod headings;
 mod link;
 mod objects;
 mod people;
@@ -127,7 +128,7 @@ impl Cli {
         let command = Self::command();
         let group = command.get_arguments().find(|argument| argument.get_id() == "group");
         let listed = group.expect("an argument of every verb").clone();
-        command.mut_subcommands(|verb| match verb.get_name() {
+        let command = command.mut_subcommands(|verb| match verb.get_name() {
             // The results of a study with people are a group's.
             "study" => verb
                 .arg(listed.clone().hide(true))
@@ -138,7 +139,8 @@ impl Cli {
                 .mut_subcommand("mcap", |mcap| mcap.arg(listed.clone())),
             name if WITHOUT_GROUP.contains(&name) => verb.arg(listed.clone().hide(true)),
             _ => verb,
-        })
+        });
+        headings::with_headings(command)
     }
 
     /// Parses a command line, program name first.

@@ -6,6 +6,7 @@ import { tmpdir } from "node:os";
 /** Where Chromium is; the first of its usual places, or what WHICHONE_CHROMIUM says. */
 export const CHROMIUM = [
   process.env.WHICHONE_CHROMIUM,
+  "/usr/bin/chromium-headless-shell",
   "/usr/bin/chromium",
   "/usr/bin/chromium-browser",
   "/usr/bin/google-chrome",

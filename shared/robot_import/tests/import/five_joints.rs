@@ -1,8 +1,6 @@
 //! Arms of five joints: every posture is found again, and what they cannot take is refused with the least error. The
 //! targets and their best answers were computed by other code (`five_joints_so101.json`).
 
-use std::sync::LazyLock;
-
 use manipulation::{Chain, Joints};
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use robot_model::Robot;
@@ -169,14 +167,12 @@ fn five_joints_reach_what_can_be_reached_and_miss_by_the_least_angle() {
     assert_eq!(counts, Counts([[300, 0], [73, 227], [11, 239]]));
 }
 
-/// The imported robot, which takes a while.
-static SO101: LazyLock<robot_import::Imported> =
-    LazyLock::new(|| super::imported("so101/so101.urdf"));
+const SO101: &str = "so101/so101.urdf";
 
 /// The jaw of the imported robot is that of the meshes: parallel at 0 rad, where its faces are 15.8 mm apart.
 #[test]
 fn jaw_opens_as_its_meshes_do() {
-    let robot = super::robot(&SO101);
+    let robot = super::robot(&super::imported(SO101));
     let gripper = robot.arm(robot.limbs()[0]).gripper;
     let jaw = gripper.jaw.unwrap();
     assert!((jaw.opening_m(0.0) - 0.0158).abs() < 3e-4, "{}", jaw.opening_m(0.0));
@@ -202,8 +198,8 @@ fn jaw_opens_as_its_meshes_do() {
 /// Straight down first; further out tilted in the plane of the arm; and then refused with the angle that is missing.
 #[test]
 fn five_joints_grasp_from_above_then_tilted_and_then_not() {
-    let robot = super::robot(&SO101);
-    let (blocks, plan) = super::blocks(&SO101);
+    let robot = super::robot(&super::imported(SO101));
+    let (blocks, plan) = super::blocks(&super::imported(SO101));
     let chain = &robot.arm(robot.limbs()[0]).chain;
     let tilt_deg = |x: f64| {
         let block = manipulation::ObjectPose { xyz_m: [x, 0.0, blocks[0].xyz_m[2]], ..blocks[0] };

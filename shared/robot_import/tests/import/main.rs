@@ -7,7 +7,9 @@ mod five_joints;
 #[allow(dead_code, reason = "a part is needed")]
 mod random;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use manipulation::{Cuboid, ObjectPose, PlanSettings, Robot, fetching_limb, plan_pick};
 use robot_import::{Gripper, Imported, Kind, Options, Refused, import};
@@ -20,8 +22,13 @@ fn options() -> Options {
     Options { name: "own".to_owned(), ..Options::default() }
 }
 
-fn imported(name: &str) -> Imported {
-    import(&file(name), &options()).unwrap_or_else(|refused| panic!("{name}: {refused:#?}"))
+/// What becomes of a file, which is imported once: the same file gives the same robot.
+fn imported(name: &'static str) -> Arc<Imported> {
+    static IMPORTED: Mutex<BTreeMap<&str, Arc<OnceLock<Arc<Imported>>>>> =
+        Mutex::new(BTreeMap::new());
+    let once = Arc::clone(IMPORTED.lock().unwrap().entry(name).or_default());
+    let first = || import(&file(name), &options()).unwrap_or_else(|it| panic!("{name}: {it:#?}"));
+    Arc::clone(once.get_or_init(|| Arc::new(first())))
 }
 
 fn refused(name: &str, options: &Options) -> Box<Refused> {
@@ -77,7 +84,7 @@ fn blocks(imported: &Imported) -> (Vec<ObjectPose>, PlanSettings) {
 }
 
 /// Every block can be fetched among the others, and a whole motion is planned for each.
-fn fetches_every_block(name: &str) {
+fn fetches_every_block(name: &'static str) {
     let imported = imported(name);
     let robot = robot(&imported);
     let (blocks, plan) = blocks(&imported);
@@ -165,10 +172,10 @@ fn grippers_are_found_by_their_joints() {
         ("fetch.urdf", "2 sliding fingers, 0 coupled"),
         ("z1.urdf", "one turning jaw"),
     ] {
-        let findings = imported(name).findings;
+        let findings = &imported(name).findings;
         assert!(findings.of(Kind::Chosen).any(|it| it.contains(expected)), "{name}: {findings:#?}");
     }
-    let findings = imported("jaco.urdf").findings;
+    let findings = &imported("jaco.urdf").findings;
     let assumed: Vec<&str> = findings.of(Kind::Assumed).collect();
     for expected in ["no joint moves a finger", "turns without end", "spacing of their joints"] {
         assert!(assumed.iter().any(|it| it.contains(expected)), "{expected}: {assumed:#?}");
@@ -180,7 +187,7 @@ fn grippers_are_found_by_their_joints() {
 
 #[test]
 fn lift_stands_still_and_is_named() {
-    let findings = imported("fetch.urdf").findings;
+    let findings = &imported("fetch.urdf").findings;
     assert!(findings.of(Kind::Assumed).any(|it| it.contains("torso_lift_joint")), "{findings:#?}");
     assert!(findings.of(Kind::Chosen).any(|it| it.contains("torso_lift_link")), "{findings:#?}");
 }
@@ -230,6 +237,6 @@ fn missing_limits_are_assumed_and_listed() {
 
 #[test]
 fn same_file_gives_the_same_robot() {
-    let (a, b) = (imported("iiwa7.urdf"), imported("iiwa7.urdf"));
-    assert_eq!(a, b);
+    let again = import(&file("iiwa7.urdf"), &options()).unwrap();
+    assert_eq!(*imported("iiwa7.urdf"), again);
 }
