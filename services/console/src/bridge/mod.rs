@@ -12,6 +12,7 @@ use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use config::Settings;
+use group_metrics::Tally;
 use messages::{
     Injection, InteractionId, JointStates, Observation, Outcome, Partial, RobotAct, Service,
     SoundFile, TrajectoryView, WorldView, topics,
@@ -30,7 +31,6 @@ use crate::hub::command::{Command, Motion, Verb, typed};
 use crate::hub::outbound::{Answer, Interim, Joints, PageMessage};
 use crate::hub::{Hub, ViewerId};
 use crate::live::feed::Feed;
-use crate::metrics::Tally;
 use crate::server::App;
 use crate::view_model::{Transcript, ViewModel};
 use crate::voice::Voice;

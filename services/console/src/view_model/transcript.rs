@@ -7,11 +7,10 @@ use scene::Scene;
 use scene::view::Labels;
 use service::Time;
 use service::status::ServiceStatus;
-use service::view::Speaker;
+use service::view::{Speaker, Understood};
 
 use super::line::{Line, Note, Recognisers};
 use super::prompts::Prompt;
-use super::understood::Understood;
 use crate::hub::board::LINES_MAX;
 use crate::hub::ms;
 use page_part::Now;

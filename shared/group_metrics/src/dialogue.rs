@@ -135,6 +135,7 @@ impl Tally {
         Self { began, ended: None, questions: None, pick: None, receipts: VecDeque::new() }
     }
 
+    /// Counts questions, and interactions that have ended.
     pub fn on_view(&mut self, view: &PolicyView, metrics: &DialogueMetrics) {
         let before = match self.questions {
             Some((interaction, questions)) if interaction == view.interaction => questions,
@@ -154,6 +155,7 @@ impl Tally {
         }
     }
 
+    /// Counts picks that have ended.
     pub fn on_arm(&mut self, arm: &ArmStatus, metrics: &DialogueMetrics) {
         let pick = (arm.interaction, arm.attempt, arm.task.get(), arm.outcome.get());
         let is_new = self.pick.is_some_and(|known| known != pick);
@@ -163,6 +165,7 @@ impl Tally {
         }
     }
 
+    /// Counts utterances.
     pub fn on_receipt(&mut self, receipt: &Receipt, metrics: &DialogueMetrics) {
         let key = (receipt.key, receipt.segment);
         let was_before = Time(receipt.onset_ns.max(receipt.end_ns)) < self.began;
@@ -181,6 +184,7 @@ impl Tally {
         }
     }
 
+    /// Takes over the level of the microphone.
     pub fn on_hearing(&self, hearing: &Hearing, metrics: &DialogueMetrics) {
         metrics.level.set(hearing.level_db.into());
     }
