@@ -4,13 +4,13 @@
 use std::time::{Duration, Instant};
 
 use config::Settings;
+use laboratory::TruthfulUser;
 use messages::{Activity, Outcome, PresentationState, Presented, PromptId, Sound, topics};
 use rustix::process::Signal;
 use service::client::Client;
 use service::submission::Submission;
 use service::view::{Latest, LatestTopics};
 use service::{Span, Time, clock};
-use whichone::verbs::TruthfulUser;
 use whichone_tests::Group;
 
 use crate::console_voice::ALOUD;
