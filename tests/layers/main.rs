@@ -85,6 +85,7 @@ fn few_crates_depend_on_the_dialogue() {
         "demo",
         "evaluation",
         "laboratory",
+        "planner_program",
         "policy",
         "setup",
         "speech",
