@@ -12,6 +12,7 @@ use prometheus_client::metrics::histogram::{Histogram, exponential_buckets, line
 use prometheus_client::registry::Registry;
 use serde::Serialize;
 use service::Time;
+use service::bounded::push_bounded;
 use std::sync::atomic::AtomicU64;
 
 /// One label and its value.
@@ -172,10 +173,7 @@ impl Tally {
         if receipt.status == ReceiptStatus::Over || was_before || self.receipts.contains(&key) {
             return;
         }
-        if self.receipts.len() == RECEIPTS_MAX {
-            self.receipts.pop_front();
-        }
-        self.receipts.push_back(key);
+        push_bounded(&mut self.receipts, RECEIPTS_MAX, key);
         metrics.utterances.get_or_create(&result(&receipt.status.get())).inc();
         // Of text there is nothing to recognise.
         if receipt.snr_db > 0.0 {

@@ -25,6 +25,7 @@ use page_part::{DialogueEvent, Now, Robot};
 use scene::view::{Labels, SceneView, objects};
 use scene::{ObjectId, Scene};
 use serde::Serialize;
+use service::bounded::push_bounded;
 use service::status::{GroupStatus, ServiceStatus};
 use service::view::{ArmView, DialogueView, HearingView, Latest, Readings};
 use service::{Span, Time};
@@ -197,10 +198,7 @@ impl ViewModel {
         self.latency.on_observation(observation);
         let Some(readings) = Readings::of_observation(&self.scene, observation) else { return };
         if self.readings.iter().all(|known| known.seq != readings.seq) {
-            if self.readings.len() == READINGS_MAX {
-                self.readings.pop_front();
-            }
-            self.readings.push_back(readings);
+            push_bounded(&mut self.readings, READINGS_MAX, readings);
         }
         self.attribute();
     }
