@@ -1,5 +1,5 @@
-//! Verbs for evaluation of the robot, for development of its services, and for authors of scenes and configurations, without
-//! a running robot.
+//! Verbs for evaluation of the robot, for development of its services, and for authors of scenes and
+//! configurations, without a running robot.
 //!
 //! The table of verbs lists [`Verb`] whole, [`conform`], [`replay`], [`check`] and [`scene`] singly; [`run`] runs it.
 

@@ -1,4 +1,5 @@
-//! The history on the console's page: past interactions, assembled from the group's journals and kept in a bounded store.
+//! The history on the console's page: past interactions, assembled from the group's journals and kept
+//! in a bounded store.
 //!
 //! The journals are the only source, so the history is the same whether the console was running or
 //! not. They are read when someone looks at the history and when an interaction has ended, by a

@@ -1,8 +1,9 @@
 //! The scene editor of the console's page: scene files of the group's configuration are read,
 //! checked, written and put into force for operators.
 //!
-//! The console serves the [`routes`] and tells by [`Operators`] which page is the operator's. Checks plan motions, which takes up to seconds, so that all of it runs on one thread of low
-//! priority. Neither the main loop nor the server waits for it; abandoned requests are skipped.
+//! The console serves the [`routes`] and tells by [`Operators`] which page is the operator's. Checks
+//! plan motions, which takes up to seconds, so that all of it runs on one thread of low priority.
+//! Neither the main loop nor the server waits for it; abandoned requests are skipped.
 
 mod desk;
 mod http;
