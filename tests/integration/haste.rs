@@ -4,13 +4,13 @@
 use std::time::{Duration, Instant};
 
 use config::Settings;
+use laboratory::TruthfulUser;
 use messages::{Activity, Outcome, PresentationState, Presented, PromptId, Sound, topics};
 use rustix::process::Signal;
 use service::client::Client;
 use service::submission::Submission;
 use service::view::{Latest, LatestTopics};
 use service::{Span, Time, clock};
-use whichone::verbs::TruthfulUser;
 use whichone_tests::{Group, number};
 
 use crate::console_voice::ALOUD;
@@ -45,7 +45,7 @@ fn fetch(group: &Group, wanted: &str, after: Duration, kills: bool, tally: &mut 
     let settings = Settings::load_snapshot(&group.paths().run()).unwrap();
     let client = Client::join(group.paths()).unwrap();
     let writer = client.bus().encoded_writer(&topics::INJECTION).unwrap();
-    let mut all = LatestTopics::open(client.bus()).unwrap();
+    let (mut all, _) = LatestTopics::open(client.bus(), &settings).unwrap();
     let mut user = TruthfulUser::new(&settings.scene, wanted, false).unwrap();
     let mut latest = Latest::default();
     let (mut said, mut last) = (None::<Sent>, None);

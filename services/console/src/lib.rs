@@ -5,7 +5,8 @@
 //! [`server`] is a small asynchronous runtime that serves pages and sockets. Between them is the
 //! [`hub`]: the bridge puts the newest text of each section on a board, from which every viewer
 //! takes the unseen ones; a slow viewer skips versions, and no queue grows. The [`live`] view shows
-//! robotics viewers every message; slow ones lose some. The [`metrics`] are for Prometheus.
+//! robotics viewers every message; slow ones lose some. Studies, the history, the editor of scenes,
+//! the interface for programs and the metrics are crates of their own.
 
 #![allow(
     unreachable_pub,
@@ -14,14 +15,10 @@
 )]
 
 mod bridge;
-mod history;
 mod hub;
 mod live;
-mod metrics;
-mod scenes;
 mod server;
 mod service;
-mod understood;
 mod view_model;
 mod viewer;
 mod voice;

@@ -7,8 +7,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use config::{Recogniser, Settings, Voice};
+use group_metrics::Metrics;
 use http_api::{Api, Feed, Rules};
 use messages::Service;
+use page_history::History;
+use page_scenes::{Desk, Scenes};
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use service::bus::WakeListener;
 use service::client::Client;
@@ -22,13 +25,10 @@ use service::worker_channel;
 use service::{Span, Time};
 
 use crate::bridge::{self, Bridge, Inbox};
-use crate::history::History;
 use crate::hub::command::{Command, Motion};
 use crate::hub::outbound::{CameraSettings, PageSettings, VoiceSettings};
 use crate::hub::{Channels, Hub};
 use crate::live::{self, Live};
-use crate::metrics::Metrics;
-use crate::scenes::{Desk, Scenes};
 use crate::server::limits::Limits;
 use crate::server::web::Web;
 use crate::server::{Access, App};
@@ -94,8 +94,9 @@ impl Console {
         let (limits, is_live_possible) = limits(settings.console.viewers_max);
         let history = History::start(paths).map_err(failed("history's thread"))?;
         let in_force = settings.scene_file().text.clone();
-        let desk = Desk::new(paths.control_socket(), in_force, scenes_lock(settings));
-        let scenes = Scenes::start(desk).map_err(failed("scene editor's thread"))?;
+        let (socket, lock) = (paths.control_socket(), scenes_lock(settings));
+        let desk = Desk::new(socket, in_force, lock, language::word_findings);
+        let scenes = Arc::new(Scenes::start(desk).map_err(failed("scene editor's thread"))?);
         let session = random_secret().map_err(failed("session"))?;
         let access = Arc::new(access(settings, paths)?);
         let hub = Hub::new(channels, limits.viewers, handover, Metrics::new(paths.recordings()));

@@ -8,8 +8,8 @@ use model_reader::Calibration;
 use model_reader::{ModelReading, calibrated, parse, utterance};
 use scene::{Intent, Question, Reading, Reference, Response, Scene};
 use serde::{Deserialize, Serialize};
+use service::bounded::push_bounded;
 use service::{Effects, Never, Span, Time};
-
 use whichone_sdk::grounding::{Grounded, Heard, put_readings};
 
 use crate::io::{ModelAnswer, ModelRequest, Out};
@@ -164,10 +164,7 @@ impl ModelQueue {
             done.observation.grounded_ns = now.ns();
             let recent = &mut self.memory.recent;
             recent.retain(|known| known.seq != done.observation.seq);
-            if recent.len() == RECENT_MAX {
-                recent.pop_front();
-            }
-            recent.push_back(done.observation.clone());
+            push_bounded(recent, RECENT_MAX, done.observation.clone());
             fx.publish(Out::Observation(done.observation));
         }
     }

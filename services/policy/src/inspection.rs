@@ -13,8 +13,6 @@ use service::inspection::{Part, SharedFacts};
 use service::journal_set::NUMBERS_SKIPPED;
 use vocabulary::{ActKind, Action, Outcome, PickOutcome};
 
-use crate::planner_program;
-
 /// Renders a record as one line. Without its scene, the robot's words are left out.
 pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
     let Record { cause, state, .. } = record;

@@ -9,7 +9,6 @@ mod inspection;
 mod journal_record;
 mod perceived;
 pub mod planner;
-mod planner_program;
 mod policy_cache;
 pub mod shell;
 mod view;

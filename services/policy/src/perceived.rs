@@ -8,6 +8,7 @@ use messages::{ArmStatus, Change, ChangeAnswer, Sighting, TableObject, TableView
 use perception::{Hiding, Live, Refusal, Settings, Tracker};
 use scene::ObjectId;
 use service::Time;
+use service::bounded::push_bounded;
 use vocabulary::{PickPhase, Table};
 
 use crate::{Fx, Out, PolicyNode};
@@ -54,14 +55,11 @@ impl Perceived {
 
     fn answer(&mut self, key: u64, outcome: Result<ObjectId, &Refusal>) {
         self.answers.retain(|answer| answer.key != key);
-        if self.answers.len() == ANSWERS_MAX {
-            self.answers.pop_front();
-        }
         let (object, refusal) = match outcome {
             Ok(object) => (object.0, String::new()),
             Err(refusal) => (0, refusal.to_string()),
         };
-        self.answers.push_back(ChangeAnswer { key, object, refusal });
+        push_bounded(&mut self.answers, ANSWERS_MAX, ChangeAnswer { key, object, refusal });
     }
 
     /// Returns the state of each object of the table.

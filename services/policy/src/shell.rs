@@ -1,8 +1,6 @@
 //! The policy's topics and configuration.
 
-use crate::{
-    Config, In, Out, PolicyNode, inspection, journal_record, planner_program, policy_cache,
-};
+use crate::{Config, In, Out, PolicyNode, inspection, journal_record, policy_cache};
 use config::Settings;
 use dialogue::manager::Record;
 use messages::Service;

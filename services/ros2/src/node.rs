@@ -101,11 +101,7 @@ impl Node {
         let client = Client::of_service(environment, NAME)?;
         let bus = client.bus();
         let wake_listener = bus.wake_listener(Service::Other(NAME))?;
-        let mut latest = LatestTopics::open(bus)?;
-        if settings.group.perception.enabled {
-            latest = latest.with_table(bus, &settings.scene)?;
-        }
-        let scene = latest.set_scene(settings.scene.clone());
+        let (latest, scene) = LatestTopics::open(bus, settings)?;
         let group = Group {
             latest,
             joints: bus.reader(&topics::JOINTS)?,

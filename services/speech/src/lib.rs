@@ -5,7 +5,6 @@
 //! heard only once it was spoken to its end.
 
 mod asr_worker;
-mod bounded;
 mod doctor;
 mod endpointing;
 pub mod hearing;

@@ -8,6 +8,7 @@ use messages::{
     ASKED_MAX, ActId, ActKind, ArmStatus, PresentationState, Presented, PromptId, RobotAct,
 };
 use scene::Question;
+use service::bounded::push_bounded;
 use service::{Span, Time};
 use std::collections::VecDeque;
 use vocabulary::Presentation;
@@ -66,10 +67,7 @@ impl PromptPlayer {
             self.last = Some(presentation);
         }
         if presentation.question != Question::None {
-            if self.presentations.len() >= PRESENTATIONS_MAX {
-                self.presentations.pop_front();
-            }
-            self.presentations.push_back(presentation);
+            push_bounded(&mut self.presentations, PRESENTATIONS_MAX, presentation);
         }
     }
 

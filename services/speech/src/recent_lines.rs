@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use service::bounded::push_bounded;
 use service::{Span, Time};
 
 /// Time after its end in which a line may sound again: by another device, or a network's delay.
@@ -26,10 +27,8 @@ struct Line {
 impl RecentLines {
     /// Adds a line that is to be spoken.
     pub(crate) fn add(&mut self, text: &str) {
-        if self.0.len() >= LINES_MAX {
-            self.0.pop_front();
-        }
-        self.0.push_back(Line { text: text.to_owned(), began: None, ended: None });
+        let line = Line { text: text.to_owned(), began: None, ended: None };
+        push_bounded(&mut self.0, LINES_MAX, line);
     }
 
     /// The latest line sounds from now on.

@@ -1,6 +1,6 @@
 //! A supervisor for tests: the real one, with a group that a small JSON file describes.
 //!
-//! Arguments: the group's name, the file, and optionally `--fresh`.
+//! Arguments: the group's name and the file.
 
 #![expect(clippy::unwrap_used, reason = "a fixture fails loudly")]
 
@@ -62,8 +62,7 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let paths = GroupPaths::resolve(&GroupName::new(&arguments[0]).unwrap()).unwrap();
     let file = PathBuf::from(&arguments[1]);
-    let fresh = arguments.iter().any(|argument| argument == "--fresh");
-    match Supervisor::start(paths, Box::new(move |scene| load(&file, scene)), fresh) {
+    match Supervisor::start(paths, Box::new(move |scene| load(&file, scene)), false) {
         Ok(supervisor) => supervisor.run().code(),
         Err(error) => {
             tracing::error!("{error}");

@@ -23,10 +23,6 @@ fn main() -> ExitCode {
         [] | ["ready"] => serve(|_| None, Ending::Prompt),
         ["never-ready"] => wait_for_the_end(),
         ["exits", code] => ExitCode::from(code.parse::<u8>().unwrap()),
-        ["crashes-after", ms] => {
-            let ms = Duration::from_millis(ms.parse().unwrap());
-            serve(move |since| (since > ms).then_some(3), Ending::Prompt)
-        }
         ["short-of", what] => {
             notify(&format!("X_SHORTAGE={what}"));
             serve(|since| (since > PASS * 5).then_some(1), Ending::Prompt)

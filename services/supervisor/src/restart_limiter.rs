@@ -93,14 +93,9 @@ impl RestartLimiter {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::group::tests;
 
-    const LIMITS: RestartLimits = RestartLimits {
-        exits_max: 100,
-        window: Duration::from_secs(60),
-        backoff_first: Duration::from_millis(100),
-        backoff_max: Duration::from_secs(5),
-        backoff_reset: Duration::from_secs(30),
-    };
+    const LIMITS: RestartLimits = RestartLimits { exits_max: 100, ..tests::LIMITS };
 
     fn pause(ms: u64) -> Verdict {
         Verdict::After(Duration::from_millis(ms))

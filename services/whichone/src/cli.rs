@@ -15,19 +15,17 @@ mod link;
 mod objects;
 mod people;
 mod record;
-mod scene;
 mod talk;
 
 pub use command_line::args::ConfigArgs;
 pub use group::{
-    CheckArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, StopArgs,
-    SwapArgs, UpArgs, WaitFor,
+    ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, StopArgs, SwapArgs,
+    UpArgs, WaitFor,
 };
 pub use link::LinkArgs;
 pub use objects::{ObjectsArgs, ObjectsVerb, PlaceArgs};
 pub use people::{PeopleArgs, PeopleVerb};
 pub use record::{OpenArgs, RecordVerb, RecorderArgs};
-pub use scene::{SceneCheckArgs, SceneNewArgs, ScenePlaceArgs, SceneShowArgs, SceneVerb};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalAction, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
 
@@ -214,7 +212,7 @@ pub enum Verb {
     /// Reload the configuration and restart the affected services.
     Reload(ReloadArgs),
     /// Check a configuration: list every problem, or the services that would run.
-    Check(CheckArgs),
+    Check(laboratory::args::CheckArgs),
     /// Write the shipped configuration into a folder, to be edited: each key is explained there.
     ///
     /// A configuration is looked for in this order: `--config`, `$WHICHONE_CONFIG`, `./config`, `config` beside
@@ -229,7 +227,7 @@ pub enum Verb {
     Scene {
         /// Action.
         #[command(subcommand)]
-        what: SceneVerb,
+        what: laboratory::args::SceneVerb,
     },
     /// Replace the program of a service while the dialogue continues.
     ///

@@ -2,7 +2,8 @@
 //!
 //! A verb that talks to a group holds no state of its own: it asks the supervisor over its control
 //! socket, or is one more client of the group's topics, and can be killed at any moment without
-//! harm. Verbs for evaluation and development are in `laboratory`; what both share is in `command_line`.
+//! harm. Verbs for evaluation, development and authors of scenes are in `laboratory`; what both share
+//! is in `command_line`.
 
 use std::ffi::OsString;
 

@@ -11,7 +11,6 @@ use crate::cli::{Awaited, Cli, ServiceArgs, StopArgs, Verb};
 mod availability;
 mod await_pick;
 mod chat;
-mod check;
 mod completion;
 mod console;
 mod conversation;
@@ -29,14 +28,13 @@ mod objects;
 mod operate;
 mod people;
 mod record;
-mod scene;
 mod speak;
 mod status;
 mod up;
 mod watch;
 mod words;
 
-pub use await_pick::{TruthfulUser, Waiting};
+pub use await_pick::Waiting;
 
 /// Executes the verb of the command line.
 ///
@@ -61,7 +59,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Token(args) => http_api::verb::token(&paths()?, &args, out),
         Verb::Logs(args) => logs::logs(&paths()?, &args, out),
         Verb::Reload(args) => operate::reload(&paths()?, args, out),
-        Verb::Check(args) => check::check(&args, out),
+        Verb::Check(args) => laboratory::check(&args, out),
         Verb::Swap(args) => operate::swap(&paths()?, args, out),
         Verb::Conform(args) => laboratory::conform(&args, out),
         Verb::Say(args) => speak::say(&paths()?, &args, out),
@@ -84,7 +82,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Gateway(args) => Err(link::gateway(args)),
         Verb::Record { what } => record::record(&paths()?, what, out),
         Verb::Replay(args) => laboratory::replay(paths, &args, out),
-        Verb::Scene { what } => scene::scene(what, out),
+        Verb::Scene { what } => laboratory::scene(what, out),
         Verb::Journal(args) => inspection::journal(&paths()?, &args, out),
         Verb::Completions { shell } => completion::completions(shell, out),
         Verb::Complete { line } => completion::complete(&line, out),

@@ -167,14 +167,6 @@ fn closed_output_pipe_is_not_a_failure() {
 }
 
 #[test]
-fn completions_are_made_for_the_common_shells() {
-    let home = Home::new();
-    for shell in ["bash", "zsh", "fish"] {
-        home.check(&format!("completions {shell}"), 0, "stop-motion");
-    }
-}
-
-#[test]
 fn every_verb_that_reads_a_file_refuses_a_pipe_at_once() {
     let home = Home::new();
     for name in ["pipe", "pipe.toml", "pipe.mcap", "arm-1.flight", "speech.journal"] {

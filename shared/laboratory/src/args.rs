@@ -6,6 +6,7 @@ mod conform;
 mod export;
 mod replay;
 mod robot;
+mod scene;
 mod study;
 
 pub use arm::{ArmPlotArgs, ArmVerb};
@@ -14,4 +15,7 @@ pub use conform::ConformArgs;
 pub use export::{ExportVerb, McapArgs, PomdpArgs};
 pub use replay::ReplayArgs;
 pub use robot::{ImportArgs, RobotVerb, ServosArgs};
+pub use scene::{
+    CheckArgs, SceneCheckArgs, SceneNewArgs, ScenePlaceArgs, SceneShowArgs, SceneVerb,
+};
 pub use study::{ALL, Preset, ReportArgs, StudyArgs, StudyVerb};

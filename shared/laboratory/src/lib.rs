@@ -1,6 +1,7 @@
-//! Verbs for evaluation of the robot and development of its services, without a running robot.
+//! Verbs for evaluation of the robot, for development of its services, and for authors of scenes and
+//! configurations, without a running robot.
 //!
-//! The table of verbs lists [`Verb`] whole, [`conform`] and [`replay`] singly; [`run`] runs it.
+//! The table of verbs lists [`Verb`] whole, [`conform`], [`replay`], [`check`] and [`scene`] singly; [`run`] runs it.
 
 use clap::Subcommand;
 use command_line::Outcome;
@@ -16,17 +17,23 @@ use described_arm::DescribedArm;
 pub mod args;
 mod arm;
 pub mod batch;
+mod check;
 mod conform;
 pub mod described_arm;
 mod export;
 mod planning;
 mod replay;
 mod robot;
+mod scene;
 mod servos;
 mod study;
+mod truthful_user;
 
+pub use check::check;
 pub use conform::conform;
 pub use replay::replay;
+pub use scene::scene;
+pub use truthful_user::TruthfulUser;
 
 /// The verbs that stand together in the list.
 #[derive(Debug, Subcommand)]

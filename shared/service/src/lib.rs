@@ -50,6 +50,7 @@
 //! ```
 
 pub mod audio;
+pub mod bounded;
 mod commit;
 pub mod console_link;
 pub mod control;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::exit::ProcessExit;
 
 /// A group at one moment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroupStatus {
     /// Name of the group.
     pub name: String,
@@ -47,7 +47,7 @@ pub struct GroupStatus {
 }
 
 /// A service at one moment. Properties of a running process are `None` while there is none.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ServiceStatus {
     /// Name of the service.
     pub name: String,
@@ -204,10 +204,11 @@ pub struct LastExit {
 }
 
 /// State of a group as a whole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum GroupState {
     /// Services are being started for the first time.
+    #[default]
     Starting,
     /// Every service that is wanted up is ready and short of nothing.
     Ready,
@@ -218,20 +219,22 @@ pub enum GroupState {
 }
 
 /// Desired state of a service.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Wanted {
     /// Running.
+    #[default]
     Up,
     /// Not running.
     Down,
 }
 
 /// Actual state of a service.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Actual {
     /// Not running; if wanted up, waiting for the services in its `after` list.
+    #[default]
     Down,
     /// Running, not ready yet.
     Starting,

@@ -7,6 +7,7 @@ mod dialogue;
 mod latest;
 mod lines;
 mod table;
+mod understood;
 
 use messages::{
     ArmStatus, EarState, Hearing, MicrophoneState, MotionInhibit, PickOutcome, PickPhase, Task,
@@ -18,6 +19,7 @@ pub use dialogue::{AlternativeView, DeliveryView, DialogueView, EndedView, UserV
 pub use latest::{Arrived, Latest, LatestTopics, PromptId, drain, quiet};
 pub use lines::Lines;
 pub use table::TableScene;
+pub use understood::{Answered, Meaning, Readings, Understood};
 pub use vocabulary::named::{ActionView, QuestionView};
 
 use crate::Time;

@@ -3,6 +3,7 @@
 
 use std::collections::VecDeque;
 
+use laboratory::TruthfulUser;
 use messages::{
     ActKind, Activity, Injection, Outcome, PresentationState, Presented, PromptId, ReceiptStatus,
     RequestKey, Sound,
@@ -11,7 +12,7 @@ use scene::Scene;
 use service::submission::Submission;
 use service::view::{Arrived, Latest};
 use service::{Span, Time};
-use whichone::verbs::{TruthfulUser, Waiting};
+use whichone::verbs::Waiting;
 
 /// Receipts that a new client still gets.
 const RECEIPTS: usize = messages::topics::WINDOW;

@@ -4,7 +4,6 @@
 use super::*;
 use crate::world::World;
 use std::sync::Arc;
-use vocabulary::Rng;
 
 const OBJECT: u16 = 4;
 
@@ -327,25 +326,8 @@ fn killed_at_any_point_it_goes_back_once() {
         machine.robot.expect_only_picks();
         machine.run(0.01 * random.below(25) as f64);
         machine.act(cancel(1, object));
-        let (mut left, mut stopped) = (6, false);
-        let until = machine.now + Span::from_s(60.0);
-        while !(machine.phase() == PickPhase::Done && machine.rests()) {
-            assert!(machine.now < until, "seed {seed}: stuck; {:?}", machine.node.state());
-            if random.below(if stopped { 30 } else { 150 }) == 0 {
-                stopped = !stopped;
-                machine.motion(if stopped { MotionOrder::Stop } else { MotionOrder::Resume });
-            }
-            if left > 0 && random.below(20) == 0 {
-                left -= 1;
-                let death = [Death::Unsynced, Death::Unseen, Death::Seen][random.below(3)];
-                machine.go(Some(death));
-                stopped = machine.journal.last().is_some_and(|record| record.state.stopped);
-                machine.now = machine.now + Span::from_ms(200);
-                machine.restart();
-            } else {
-                machine.go(None);
-            }
-        }
+        let is_over = |m: &Machine| m.phase() == PickPhase::Done && m.rests();
+        machine.endures((seed, &mut random, 20), Machine::restart, is_over);
         match machine.outcome() {
             PickOutcome::Delivered => machine.assert_delivered(1, object),
             _ if machine.entered(key(1), PickPhase::Returning) == 0 => {

@@ -1,7 +1,5 @@
 //! A slow or full disk: what moves is stopped all the same, and nothing begins that is not durable.
 
-use vocabulary::Rng;
-
 use super::*;
 
 impl Machine {

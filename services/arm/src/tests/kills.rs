@@ -1,36 +1,46 @@
 //! Killed at any point, any number of times, the arm brings the ordered object once.
 
-use vocabulary::Rng;
-
 use super::*;
 
-/// A pick with up to `kills` deaths anywhere in it, and now and then a motion stop.
-fn story(seed: u64, kills: u32, restart: fn(&mut Machine)) {
+impl Machine {
+    /// Runs until that is so, with up to six deaths in between, one in `often` passes, and now and then a motion stop.
+    pub(super) fn endures(
+        &mut self,
+        (seed, random, often): (u64, &mut Rng, usize),
+        restart: fn(&mut Self),
+        is_over: impl Fn(&Self) -> bool,
+    ) {
+        let (mut left, mut stopped) = (6, false);
+        let until = self.now + Span::from_s(60.0);
+        while !is_over(self) {
+            assert!(self.now < until, "seed {seed}: stuck; {:?}", self.node.state());
+            if random.below(if stopped { 30 } else { 150 }) == 0 {
+                stopped = !stopped;
+                self.motion(if stopped { MotionOrder::Stop } else { MotionOrder::Resume });
+            }
+            if left > 0 && random.below(often) == 0 {
+                left -= 1;
+                self.go(Some([Death::Unsynced, Death::Unseen, Death::Seen][random.below(3)]));
+                // A command that was dropped with the process is given again by who gave it.
+                stopped = self.journal.last().is_some_and(|record| record.state.stopped);
+                self.now = self.now + Span::from_ms(200);
+                restart(self);
+            } else {
+                self.go(None);
+            }
+        }
+    }
+}
+
+/// A pick with deaths anywhere in it, and now and then a motion stop.
+fn story(seed: u64, restart: fn(&mut Machine)) {
     let mut random = Rng::new(seed);
     let object = random.below(OBJECTS.into()) as u16;
     let mut machine = Machine::new(config_at(10.0));
     machine.robot.expect_only_picks();
     machine.act(pick(1, object));
-    let (mut left, mut stopped) = (kills, false);
-    let until = machine.now + Span::from_s(60.0);
-    while !(machine.outcome() == PickOutcome::Delivered && machine.rests()) {
-        assert!(machine.now < until, "seed {seed}: stuck; {:?}", machine.node.state());
-        if random.below(if stopped { 30 } else { 150 }) == 0 {
-            stopped = !stopped;
-            machine.motion(if stopped { MotionOrder::Stop } else { MotionOrder::Resume });
-        }
-        if left > 0 && random.below(30) == 0 {
-            left -= 1;
-            let death = [Death::Unsynced, Death::Unseen, Death::Seen][random.below(3)];
-            machine.go(Some(death));
-            // A command that was dropped with the process is given again by who gave it.
-            stopped = machine.journal.last().is_some_and(|record| record.state.stopped);
-            machine.now = machine.now + Span::from_ms(200);
-            restart(&mut machine);
-        } else {
-            machine.go(None);
-        }
-    }
+    let is_over = |m: &Machine| m.outcome() == PickOutcome::Delivered && m.rests();
+    machine.endures((seed, &mut random, 30), restart, is_over);
     machine.assert_delivered(1, object);
     for pair in machine.journal.windows(2) {
         let phases = [&pair[0], &pair[1]].map(|r| r.state.pick.map(|pick| pick.phase));
@@ -41,14 +51,14 @@ fn story(seed: u64, kills: u32, restart: fn(&mut Machine)) {
 #[test]
 fn on_the_model_that_the_journal_describes() {
     for seed in 0..24 {
-        story(seed, 6, Machine::restart_from_journal);
+        story(seed, Machine::restart_from_journal);
     }
 }
 
 #[test]
 fn on_a_robot_that_stands_where_it_was() {
     for seed in 100..124 {
-        story(seed, 6, |machine| {
+        story(seed, |machine| {
             let grasps = machine.robot.grasps();
             assert!(grasps <= 1, "{grasps} grasps");
             machine.restart();

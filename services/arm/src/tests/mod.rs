@@ -39,6 +39,7 @@ use service::stop_socket::{Caller, RESUME_AFTER, StopOrder, StopState};
 use service::{Effects, Event, Node, Span, Time};
 use std::path::Path;
 use std::sync::OnceLock;
+use vocabulary::Rng;
 
 const OBJECTS: u16 = 6;
 

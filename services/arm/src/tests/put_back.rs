@@ -2,7 +2,6 @@
 
 use super::*;
 use messages::Task;
-use vocabulary::Rng;
 
 /// Returns the policy's order to put back what that interaction delivered.
 fn put_back(interaction: u64, object: u16) -> RobotAct {
@@ -97,31 +96,14 @@ fn remaining_seconds_count_down_to_the_release() {
     assert!((promised - took).abs() < 0.4, "promised {promised} s, took {took} s");
 }
 
-/// Putting back with up to six deaths anywhere in it, and now and then a motion stop.
+/// Putting back with deaths anywhere in it, and now and then a motion stop.
 fn story(seed: u64, restart: fn(&mut Machine)) {
     let mut random = Rng::new(seed);
     let object = random.below(OBJECTS.into()) as u16;
     let mut machine = delivered(config_at(10.0), object);
     machine.act(put_back(1, object));
-    let (mut left, mut stopped) = (6, false);
-    let until = machine.now + Span::from_s(60.0);
-    while !(machine.outcome() == PickOutcome::PutBack && machine.rests()) {
-        assert!(machine.now < until, "seed {seed}: stuck; {:?}", machine.node.state());
-        if random.below(if stopped { 30 } else { 150 }) == 0 {
-            stopped = !stopped;
-            machine.motion(if stopped { MotionOrder::Stop } else { MotionOrder::Resume });
-        }
-        if left > 0 && random.below(30) == 0 {
-            left -= 1;
-            machine.go(Some([Death::Unsynced, Death::Unseen, Death::Seen][random.below(3)]));
-            // A command that was dropped with the process is given again by who gave it.
-            stopped = machine.journal.last().is_some_and(|record| record.state.stopped);
-            machine.now = machine.now + Span::from_ms(200);
-            restart(&mut machine);
-        } else {
-            machine.go(None);
-        }
-    }
+    let is_over = |m: &Machine| m.outcome() == PickOutcome::PutBack && m.rests();
+    machine.endures((seed, &mut random, 30), restart, is_over);
     assert_put_back(&machine, object);
 }
 

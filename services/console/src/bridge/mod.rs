@@ -12,6 +12,7 @@ use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use config::Settings;
+use group_metrics::Tally;
 use messages::{
     Injection, InteractionId, JointStates, Observation, Outcome, Partial, RobotAct, Service,
     SoundFile, TrajectoryView, WorldView, topics,
@@ -30,7 +31,6 @@ use crate::hub::command::{Command, Motion, Verb, typed};
 use crate::hub::outbound::{Answer, Interim, Joints, PageMessage};
 use crate::hub::{Hub, ViewerId};
 use crate::live::feed::Feed;
-use crate::metrics::Tally;
 use crate::server::App;
 use crate::view_model::{Transcript, ViewModel};
 use crate::voice::Voice;
@@ -92,13 +92,9 @@ struct Topics {
 }
 
 impl Topics {
-    fn open(bus: &Bus, settings: &Settings) -> Result<Self, BusError> {
-        let latest = LatestTopics::open(bus)?;
+    fn open(bus: &Bus, latest: LatestTopics) -> Result<Self, BusError> {
         Ok(Self {
-            latest: match settings.group.perception.enabled {
-                true => latest.with_table(bus, &settings.scene)?,
-                false => latest,
-            },
+            latest,
             acts: bus.reader(&topics::ACT)?,
             partials: bus.reader(&topics::PARTIAL)?,
             observations: bus.reader(&topics::OBSERVATION)?,
@@ -120,14 +116,11 @@ impl Bridge {
         let bus = client.bus();
         let failed =
             |error| Failure::new(Exit::NotReached, format!("the motion stop's socket: {error}"));
-        let scene = match settings.group.perception.enabled {
-            true => settings.scene.with_objects(&[]),
-            false => settings.scene.clone(),
-        };
+        let (latest, scene) = LatestTopics::open(bus, settings)?;
         let lines = LineStore::in_folder(&paths.run(), "console.lines");
         let transcript = Transcript::after(lines.read(), now().unix_ms);
         Ok(Self {
-            topics: Topics::open(bus, settings)?,
+            topics: Topics::open(bus, latest)?,
             injections: bus.encoded_writer(&topics::INJECTION)?,
             model: ViewModel::new(scene, transcript),
             voice: Voice::default(),

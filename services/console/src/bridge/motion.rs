@@ -158,20 +158,17 @@ fn why_in_a_word(why: &StopError, group: Option<&GroupStatus>) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::{Value as Json, json};
+    use serde_json::Value as Json;
+    use service::status::ServiceStatus;
     use service::stop_socket::StopState;
 
     use super::*;
     use crate::hub::tests::{Page, hub, received};
     use crate::hub::{Role, ViewerId};
 
-    fn group(state: &str) -> GroupStatus {
-        let arm = json!({ "name": "arm", "wanted": "up", "actual": "down", "state": state,
-                          "incarnation": 1, "restarts": 0 });
-        let group = json!({ "name": "lab", "state": "ready", "supervisor_pid": 7, "version": "0",
-                            "epoch": 1, "uptime_s": 1.0, "scene": "bowls", "config": "/c",
-                            "strays_killed": 0, "services": [arm] });
-        serde_json::from_value(group).unwrap()
+    fn group(state: ServiceState) -> GroupStatus {
+        let arm = ServiceStatus { name: "arm".to_owned(), state, ..ServiceStatus::default() };
+        GroupStatus { services: vec![arm], ..GroupStatus::default() }
     }
 
     fn at(ms: u64) -> Time {
@@ -217,7 +214,7 @@ mod tests {
     fn stop_of_an_absent_arm_raises_an_alarm_that_stays() {
         let Page { hub, .. } = hub();
         let (viewer, mut frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
-        let ((_home, mut motions), held) = (motions(), group("held"));
+        let ((_home, mut motions), held) = (motions(), group(ServiceState::Held));
         stops(&hub, viewer, &mut motions, true, 1);
         motions.judge(Some(&held), &hub, at(1_000));
         assert_eq!(section(&motions, &held)["unconfirmed"], Json::Null);
@@ -228,7 +225,7 @@ mod tests {
         assert!(late["ok"] == false && late["error"].as_str().unwrap().contains("emergency stop"));
         // Pressed again, an hour later, by a service that is back and silent: still not confirmed.
         stops(&hub, viewer, &mut motions, true, 3_600_000);
-        let ready = group("ready");
+        let ready = group(ServiceState::Ready);
         motions.judge(Some(&ready), &hub, at(3_600_000));
         assert_eq!(section(&motions, &ready)["unconfirmed"]["why"], "silent");
         assert_eq!(received(&mut frames)["ok"], false, "answered at once");
@@ -267,7 +264,7 @@ mod tests {
     fn stop_of_an_arm_that_still_moves_is_not_confirmed_and_raises_its_own_alarm() {
         let Page { hub, .. } = hub();
         let (viewer, mut frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
-        let ((_home, mut motions), ready) = (motions(), group("ready"));
+        let ((_home, mut motions), ready) = (motions(), group(ServiceState::Ready));
         stops(&hub, viewer, &mut motions, true, 1);
         let moving = StopState { at_rest: false, ..answer(1, true) };
         confirm(&mut motions, moving, &hub, at(950));
@@ -292,7 +289,7 @@ mod tests {
     fn late_release_is_given_up() {
         let Page { hub, .. } = hub();
         let (viewer, mut frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
-        let ((_home, mut motions), ready) = (motions(), group("ready"));
+        let ((_home, mut motions), ready) = (motions(), group(ServiceState::Ready));
         stops(&hub, viewer, &mut motions, true, 0);
         stops(&hub, viewer, &mut motions, false, 1);
         assert_eq!(received(&mut frames)["stopped"], false, "the stop is over");

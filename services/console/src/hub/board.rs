@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use service::bounded::push_bounded;
 use tokio::sync::watch;
 
 /// Most lines of the transcript.
@@ -83,11 +84,8 @@ impl Board {
     pub fn partial(&self, stream: &str, frame: String) {
         let mut state = self.state();
         state.partials.retain(|(known, _)| known != stream);
-        if state.partials.len() == PARTIALS_MAX {
-            state.partials.pop_front();
-        }
         let item = Item { revision: state.revision + 1, text: frame.into() };
-        state.partials.push_back((stream.to_owned(), item));
+        push_bounded(&mut state.partials, PARTIALS_MAX, (stream.to_owned(), item));
         self.publish(&mut state);
     }
 
@@ -97,12 +95,7 @@ impl Board {
         let item = Item { revision: state.revision + 1, text: text.into() };
         match state.lines.iter_mut().find(|(known, _)| *known == id) {
             Some((_, before)) => *before = item,
-            None => {
-                if state.lines.len() == LINES_MAX {
-                    state.lines.pop_front();
-                }
-                state.lines.push_back((id, item));
-            }
+            None => push_bounded(&mut state.lines, LINES_MAX, (id, item)),
         }
         self.publish(&mut state);
     }

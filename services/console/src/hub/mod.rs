@@ -13,12 +13,12 @@ pub(crate) mod tests;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use group_metrics::Metrics;
 use serde::Serialize;
 use service::worker_channel::DeviceSender;
 use service::{Span, Time};
 use tokio::sync::{mpsc, watch};
 
-use crate::metrics::Metrics;
 use board::Board;
 use command::{Command, Motion, Verb};
 use lease::{Lease, Taken};

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use config::Settings;
+use group_metrics::Metrics;
 use recording::clock::WallClock;
 use recording::group_reader::{GroupReader, Sample};
 use service::bus::Bus;
 use service::{Span, Time};
 
 use super::Live;
-use crate::metrics::Metrics;
 
 /// Interval between two looks at all topics. Their buffers hold ten times as much.
 const LOOK_EVERY: Span = Span::from_ms(30);

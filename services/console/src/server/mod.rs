@@ -20,18 +20,18 @@ use axum::http::{HeaderMap, Method, Response, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Redirect};
 use axum::routing::get;
+use page_history::History;
 use page_part::Files;
+use page_scenes::{Operators, Scenes};
 use web_server::connections::{Gate, Of};
 use web_server::login::{form_limit, pause, token_of};
 use web_server::request::{bearer, text, wants_page};
 use web_server::security::{content_policy, harden};
 use web_server::sessions::unix_s;
 
-use crate::history::History;
 use crate::hub::Hub;
 use crate::hub::outbound::PageSettings;
 use crate::live::Live;
-use crate::scenes::Scenes;
 pub use access::Access;
 pub use routes::page_asset;
 
@@ -44,7 +44,7 @@ pub struct App {
     pub hub: Hub,
     pub live: Live,
     pub history: Arc<History>,
-    pub scenes: Scenes,
+    pub scenes: Arc<Scenes>,
     pub access: Arc<Access>,
     /// The interface for programs.
     pub http: Arc<http_api::Api>,
@@ -56,6 +56,12 @@ pub struct App {
     pub voice_dir: Option<PathBuf>,
     /// Files of studies.
     pub study: Box<dyn Files>,
+}
+
+impl Operators for App {
+    fn must_operate(&self, session: &str) -> Result<(), String> {
+        self.hub.must_operate(session)
+    }
 }
 
 /// Serves a listener until the hub ends.
@@ -86,13 +92,12 @@ fn router(app: Arc<App>) -> Router {
     Router::new()
         .route("/ws", get(routes::socket))
         .route("/api/state", get(routes::state))
-        .route("/api/history", get(routes::history))
-        .route("/api/history/{interaction}", get(routes::interaction))
         .route("/metrics", get(routes::metrics))
         .route("/robot.urdf", get(routes::urdf))
         .route("/voice/{line}", get(routes::voice))
         .route("/study/{file}", get(routes::study))
-        .merge(crate::scenes::routes())
+        .merge(page_history::routes(Arc::clone(&app.history)))
+        .merge(page_scenes::routes(Arc::clone(&app.scenes), Arc::clone(&app) as Arc<dyn Operators>))
         .fallback(routes::asset)
         .layer(middleware::from_fn_with_state(Arc::clone(&app), admit))
         // The routes below are open without the token, or check it themselves.

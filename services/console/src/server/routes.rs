@@ -3,17 +3,14 @@
 use std::sync::Arc;
 
 use axum::body::{Body, Bytes};
-use axum::extract::rejection::{PathRejection, QueryRejection};
 use axum::extract::ws::WebSocketUpgrade;
-use axum::extract::{ConnectInfo, Path, Query, State};
+use axum::extract::{ConnectInfo, Path, State};
 use axum::http::{HeaderMap, Method, Response, StatusCode, Uri, header};
 use axum::response::{AppendHeaders, IntoResponse, Redirect};
 use messages::SoundFile;
 use recording::live::SUBPROTOCOL;
-use serde::{Deserialize, Serialize};
 use service::Span;
 use service::clock;
-use tokio::task::JoinHandle;
 use web_server::connections::Of;
 use web_server::login::{form_field, pause, secret_of, stepping_stone};
 use web_server::request::{bearer, is_own, origin, wants_page};
@@ -21,7 +18,6 @@ use web_server::sessions::unix_s;
 
 use super::message::FRAME_BYTES_MAX;
 use super::{Access, App, assets, socket as sockets};
-use crate::history::PAGE_MAX;
 use crate::hub::Role;
 use crate::live;
 
@@ -112,73 +108,10 @@ pub(super) async fn state(State(app): State<Arc<App>>) -> Response<Body> {
     (json, app.hub.board.all()).into_response()
 }
 
-/// The requested part of the history: at most `limit` interactions before number `before`.
-#[derive(Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub(super) struct Part {
-    before: u64,
-    limit: usize,
-}
-
-impl Default for Part {
-    fn default() -> Self {
-        Self { before: u64::MAX, limit: PAGE_MAX }
-    }
-}
-
-impl Part {
-    fn of(query: Result<Query<Self>, QueryRejection>) -> Result<Self, String> {
-        let form = format!("expected before=N and limit=M, whole numbers, M from 1 to {PAGE_MAX}");
-        match query {
-            Ok(Query(part)) if (1..=PAGE_MAX).contains(&part.limit) => Ok(part),
-            Ok(Query(part)) => Err(format!("{form}; found limit={}\n", part.limit)),
-            Err(error) => Err(format!("{form}; {}\n", error.body_text())),
-        }
-    }
-}
-
-/// A part of the list of past interactions, newest first.
-pub(super) async fn history(
-    State(app): State<Arc<App>>,
-    query: Result<Query<Part>, QueryRejection>,
-) -> Response<Body> {
-    match Part::of(query) {
-        Ok(Part { before, limit }) => {
-            let history = Arc::clone(&app.history);
-            as_json(tokio::task::spawn_blocking(move || Some(history.page(before, limit)))).await
-        }
-        Err(why) => (StatusCode::BAD_REQUEST, why).into_response(),
-    }
-}
-
-/// One interaction with everything that happened in it.
-pub(super) async fn interaction(
-    State(app): State<Arc<App>>,
-    number: Result<Path<u64>, PathRejection>,
-) -> Response<Body> {
-    let Ok(Path(number)) = number else {
-        let why = "expected /api/history/N with the number N of an interaction\n";
-        return (StatusCode::BAD_REQUEST, why).into_response();
-    };
-    let history = Arc::clone(&app.history);
-    as_json(tokio::task::spawn_blocking(move || history.interaction(number))).await
-}
-
 /// A file of the studies.
 pub(super) async fn study(State(app): State<Arc<App>>, Path(name): Path<String>) -> Response<Body> {
     let answer = tokio::task::spawn_blocking(move || app.study.read(&name)).await;
     answer.unwrap_or_else(|_| StatusCode::INTERNAL_SERVER_ERROR.into_response())
-}
-
-/// The result of a blocking task as JSON, 404 without one.
-async fn as_json<T: Serialize>(found: JoinHandle<Option<T>>) -> Response<Body> {
-    let json = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
-    let found = found.await.map(|found| found.map(|found| serde_json::to_string(&found)));
-    match found {
-        Ok(Some(Ok(text))) => (json, text).into_response(),
-        Ok(None) => (StatusCode::NOT_FOUND, "interaction not found\n").into_response(),
-        _ => (StatusCode::INTERNAL_SERVER_ERROR, "the history cannot be read\n").into_response(),
-    }
 }
 
 pub(super) async fn metrics(State(app): State<Arc<App>>) -> Response<Body> {
@@ -286,24 +219,6 @@ pub(super) async fn enter(
         None => {
             pause().await;
             (unseen, Redirect::to("/login?wrong")).into_response()
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn history_refuses_what_is_not_a_part_of_it() {
-        let of =
-            |query: &str| Part::of(Query::try_from_uri(&format!("/?{query}").parse().unwrap()));
-        assert_eq!(of(""), Ok(Part::default()));
-        assert_eq!(of("limit=3&before=7"), Ok(Part { before: 7, limit: 3 }));
-        let wrong = ["before=abc", "before=-1", "before=", "limit=0", "limit=201", "befor=7"];
-        for query in wrong.into_iter().chain(["limit=99999999999999999999"]) {
-            let why = of(query).unwrap_err();
-            assert!(why.starts_with("expected before=N and limit=M"), "{query}: {why}");
         }
     }
 }

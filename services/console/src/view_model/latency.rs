@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 
 use messages::{Observation, Presented, Receipt, RobotAct};
 use serde::Serialize;
+use service::bounded::push_bounded;
 
 /// Answers over which the quantiles are taken.
 const KEPT: usize = 500;
@@ -106,10 +107,7 @@ impl Latency {
         let ms = |from: usize| (marks[from + 1] - marks[from]) as f64 / 1e6;
         let total = (started - open.end) as f64 / 1e6;
         let stages = [ms(0), ms(1), ms(2), ms(3), total];
-        if self.done.len() == KEPT {
-            self.done.pop_front();
-        }
-        self.done.push_back(stages);
+        push_bounded(&mut self.done, KEPT, stages);
         self.count += 1;
         self.news.push(stages);
     }
@@ -124,10 +122,7 @@ impl Latency {
         if let Some(at) = self.open.iter().position(|open| open.seq == seq) {
             return self.open.get_mut(at);
         }
-        if self.open.len() == OPEN_MAX {
-            self.open.pop_front();
-        }
-        self.open.push_back(Open { seq, ..Open::default() });
+        push_bounded(&mut self.open, OPEN_MAX, Open { seq, ..Open::default() });
         self.open.back_mut()
     }
 

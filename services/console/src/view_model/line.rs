@@ -2,7 +2,7 @@
 
 use messages::{GateVerdict, Outcome};
 use serde::{Deserialize, Serialize};
-use service::view::Speaker;
+use service::view::{Answered, Meaning, Speaker};
 
 /// A line of the transcript; keys that do not apply are left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,22 +70,6 @@ pub struct Recognisers {
     /// Words of the second one; `None` if it was too late.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub second: Option<String>,
-}
-
-/// One way to understand an utterance.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Meaning {
-    /// Meaning in words: `yes · small · not white`.
-    pub text: String,
-    pub weight: f64,
-}
-
-/// A question that an utterance answers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Answered {
-    pub question: String,
-    /// Probability that the utterance answers the question.
-    pub share: f64,
 }
 
 impl Line {

@@ -25,15 +25,15 @@ use page_part::{DialogueEvent, Now, Robot};
 use scene::view::{Labels, SceneView, objects};
 use scene::{ObjectId, Scene};
 use serde::Serialize;
+use service::bounded::push_bounded;
 use service::status::{GroupStatus, ServiceStatus};
-use service::view::{ArmView, DialogueView, HearingView, Latest};
+use service::view::{ArmView, DialogueView, HearingView, Latest, Readings};
 use service::{Span, Time};
 
 pub use latency::Latency;
 pub use transcript::Transcript;
 use turn::Turn;
 
-use crate::understood;
 use sections::{SpeakingSection, TrajectorySection, TurnSection, WorldSection};
 use services::missing;
 
@@ -60,7 +60,7 @@ pub struct ViewModel {
     /// `true` if the sound of the presented line can be fetched.
     has_sound: bool,
     prompts: prompts::Prompts,
-    readings: VecDeque<understood::Readings>,
+    readings: VecDeque<Readings>,
     transcript: Transcript,
     latency: Latency,
     /// The turn, and when its state began.
@@ -196,12 +196,9 @@ impl ViewModel {
     pub fn on_observation(&mut self, observation: &Observation) {
         self.is_changed = true;
         self.latency.on_observation(observation);
-        let Some(readings) = understood::read(&self.scene, observation) else { return };
+        let Some(readings) = Readings::of_observation(&self.scene, observation) else { return };
         if self.readings.iter().all(|known| known.seq != readings.seq) {
-            if self.readings.len() == READINGS_MAX {
-                self.readings.pop_front();
-            }
-            self.readings.push_back(readings);
+            push_bounded(&mut self.readings, READINGS_MAX, readings);
         }
         self.attribute();
     }

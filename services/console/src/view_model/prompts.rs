@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use messages::{ActKind, Presented, RobotAct};
 use scene::Question;
+use service::bounded::push_bounded;
 
 const PROMPTS_MAX: usize = 32;
 
@@ -27,16 +28,14 @@ impl Prompts {
         if act.prompt == 0 || text.is_empty() || known {
             return;
         }
-        if self.0.len() == PROMPTS_MAX {
-            self.0.pop_front();
-        }
         let question = Question::try_from(act.question).unwrap_or_default();
-        self.0.push_back(Prompt {
+        let prompt = Prompt {
             id: act.prompt,
             presentation: act.presentation,
             asks: act.kind == ActKind::Ask && question != Question::None,
             text: text.to_owned(),
-        });
+        };
+        push_bounded(&mut self.0, PROMPTS_MAX, prompt);
     }
 
     /// Returns the line that is being presented or was presented last.

@@ -35,22 +35,16 @@ pub(super) fn missing(group: &GroupStatus) -> Option<&ServiceStatus> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::{Value as Json, json};
 
-    fn group(services: &[(&str, &str, u32)]) -> GroupStatus {
-        let services: Vec<Json> = services
-            .iter()
-            .map(|(name, actual, incarnation)| {
-                json!({ "name": name, "wanted": "up", "actual": actual, "incarnation": incarnation,
-                        "restarts": incarnation.saturating_sub(1) })
-            })
-            .collect();
-        let group = json!({
-            "name": "lab", "state": "ready", "supervisor_pid": 7, "version": "0", "epoch": 1,
-            "uptime_s": 1.0, "scene": "bowls", "config": "/c", "strays_killed": 0,
-            "services": services,
-        });
-        serde_json::from_value(group).unwrap()
+    fn group(services: &[(&str, Actual, u32)]) -> GroupStatus {
+        let service = |&(name, actual, incarnation): &(&str, Actual, u32)| ServiceStatus {
+            name: name.to_owned(),
+            actual,
+            incarnation,
+            restarts: incarnation.saturating_sub(1),
+            ..ServiceStatus::default()
+        };
+        GroupStatus { services: services.iter().map(service).collect(), ..GroupStatus::default() }
     }
 
     fn changes(before: &GroupStatus, after: &GroupStatus) -> Vec<(String, bool)> {
@@ -62,9 +56,9 @@ mod tests {
 
     #[test]
     fn services_lost_and_back_are_reported() {
-        let well = group(&[("arm", "ready", 1), ("policy", "ready", 1)]);
-        let lost = group(&[("arm", "backoff", 1), ("policy", "ready", 1)]);
-        let back = group(&[("arm", "ready", 2), ("policy", "ready", 1)]);
+        let well = group(&[("arm", Actual::Ready, 1), ("policy", Actual::Ready, 1)]);
+        let lost = group(&[("arm", Actual::Backoff, 1), ("policy", Actual::Ready, 1)]);
+        let back = group(&[("arm", Actual::Ready, 2), ("policy", Actual::Ready, 1)]);
         assert!(changes(&well, &well).is_empty() && transitions(None, &lost).is_empty());
         assert_eq!(changes(&well, &lost), [("arm".to_owned(), false)]);
         assert_eq!(changes(&lost, &back), [("arm".to_owned(), true)]);
@@ -73,7 +67,7 @@ mod tests {
             [("arm".to_owned(), true)],
             "lost and back between two statuses"
         );
-        let begins = group(&[("arm", "starting", 1), ("policy", "ready", 1)]);
+        let begins = group(&[("arm", Actual::Starting, 1), ("policy", Actual::Ready, 1)]);
         assert!(changes(&begins, &well).is_empty(), "a first start is not reported");
         assert_eq!(missing(&lost).map(|service| service.name.as_str()), Some("arm"));
         assert!(missing(&well).is_none());

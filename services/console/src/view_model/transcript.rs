@@ -6,12 +6,12 @@ use messages::{Ended, Outcome, Presented, Receipt, ReceiptStatus, SecondState, S
 use scene::Scene;
 use scene::view::Labels;
 use service::Time;
+use service::bounded::push_bounded;
 use service::status::ServiceStatus;
-use service::view::Speaker;
+use service::view::{Speaker, Understood};
 
 use super::line::{Line, Note, Recognisers};
 use super::prompts::Prompt;
-use super::understood::Understood;
 use crate::hub::board::LINES_MAX;
 use crate::hub::ms;
 use page_part::Now;
@@ -96,10 +96,7 @@ impl Transcript {
 
     pub(super) fn on_understood(&mut self, seq: u64, understood: Understood) {
         let Some(line) = self.lines.iter_mut().rfind(|line| line.seq == Some(seq)) else {
-            if self.early.len() == EARLY_MAX {
-                self.early.pop_front();
-            }
-            return self.early.push_back((seq, understood));
+            return push_bounded(&mut self.early, EARLY_MAX, (seq, understood));
         };
         let Understood { meanings, answers } = understood;
         if line.understood != meanings || line.answers != answers {
@@ -211,10 +208,7 @@ impl Transcript {
     fn push(&mut self, line: Line) {
         self.next = line.id + 1;
         self.changed.insert(line.id);
-        if self.lines.len() == LINES_MAX {
-            self.lines.pop_front();
-        }
-        self.lines.push_back(line);
+        push_bounded(&mut self.lines, LINES_MAX, line);
     }
 }
 

@@ -4,10 +4,10 @@
 
 use std::collections::VecDeque;
 
+use service::bounded::push_bounded;
 use speech_engines::stream::SpeechSegment;
 
 use crate::RecognisedSegment;
-use crate::bounded::push_bounded;
 
 /// Early results that are kept: one for each speaker, and one that turned out to be too early.
 const EARLY_MAX: usize = 4;

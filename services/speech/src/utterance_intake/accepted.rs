@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 use messages::outbox::Outbox;
 use messages::{AppliedMark, ClientId, Receipt, RequestKey, UtteranceSeq, topics};
 use service::Time;
+use service::bounded::push_bounded;
 
-use crate::bounded::push_bounded;
 use crate::record::Accepted;
 use crate::{Fx, Out};
 

@@ -5,11 +5,11 @@ use std::collections::VecDeque;
 
 use messages::{RequestKey, Sound};
 use serde::{Deserialize, Serialize};
+use service::bounded::push_bounded;
 use service::{Span, Time};
 
 use super::UtteranceIntake;
 use super::origin::Origin;
-use crate::bounded::push_bounded;
 use crate::record::Record;
 use crate::utterance_content::UtteranceContent;
 use crate::{Fx, Hypothesis, Out};

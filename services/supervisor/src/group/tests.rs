@@ -44,13 +44,13 @@ pub(crate) const LIMITS: RestartLimits = RestartLimits {
     backoff_reset: Duration::from_secs(30),
 };
 
+fn group_of(services: Vec<ServiceSpec>) -> Group {
+    let log = Log { level: "info".into(), json: false, file_bytes_max: 1 << 20, files_kept: 1 };
+    Group::new(&GroupSpec { services, restart: LIMITS, log }).unwrap()
+}
+
 fn group(services: &[(&str, &[&str])]) -> Group {
-    Group::new(&GroupSpec {
-        services: services.iter().map(|(name, after)| service(name, after)).collect(),
-        restart: LIMITS,
-        log: Log { level: "info".into(), json: false, file_bytes_max: 1 << 20, files_kept: 1 },
-    })
-    .unwrap()
+    group_of(services.iter().map(|(name, after)| service(name, after)).collect())
 }
 
 const NOW: Time = Duration::from_secs(1);
@@ -99,8 +99,7 @@ fn group_is_degraded_while_a_running_service_is_short_of_a_resource() {
 fn observer_neither_delays_nor_degrades_its_group() {
     let mut services: Vec<_> = CHAIN.iter().map(|(name, after)| service(name, after)).collect();
     services.push(ServiceSpec { observer: true, ..service("eye", &[]) });
-    let log = Log { level: "info".into(), json: false, file_bytes_max: 1 << 20, files_kept: 1 };
-    let mut group = Group::new(&GroupSpec { services, restart: LIMITS, log }).unwrap();
+    let mut group = group_of(services);
     group.start(NOW);
     while let Some((service, effect)) = group.settle(NOW) {
         assert_eq!(effect, Effect::Spawn);

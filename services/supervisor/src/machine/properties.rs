@@ -6,14 +6,14 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::configuration::RestartLimits;
-use crate::group::tests::{seeded, service};
+use crate::group::tests::{LIMITS, seeded, service};
 
 const RESTART_LIMITS: RestartLimits = RestartLimits {
     exits_max: 4,
     window: Duration::from_secs(20),
-    backoff_first: Duration::from_millis(100),
     backoff_max: Duration::from_secs(2),
     backoff_reset: Duration::from_secs(5),
+    ..LIMITS
 };
 
 fn machine() -> Machine {

@@ -114,17 +114,6 @@ pub struct ReloadArgs {
     pub timeout: Duration,
 }
 
-/// Arguments of `check`.
-#[derive(Debug, Args)]
-pub struct CheckArgs {
-    /// The configuration.
-    #[command(flatten)]
-    pub config: ConfigArgs,
-    /// Show every value and its origin.
-    #[arg(long)]
-    pub values: bool,
-}
-
 /// Arguments of `swap`.
 #[derive(Debug, Args)]
 pub struct SwapArgs {

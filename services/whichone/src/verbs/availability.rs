@@ -118,38 +118,39 @@ impl Lookout {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
+    use service::status::ServiceStatus;
 
     use super::*;
 
     #[test]
     fn only_what_does_not_pass_by_itself_is_unavailable() {
-        let service = |name: &str, state: &str, why: &str| {
-            json!({ "name": name, "wanted": "up", "actual": "down", "state": state, "why": why,
-                    "incarnation": 1, "restarts": 0 })
+        use ServiceState::{
+            Down, Failed, Held, Ready, Restarting, Short, Starting, Stopping, Waiting,
         };
-        let found_why = |state: &str, why: &str| {
-            let status = json!({
-                "name": "lab", "state": "degraded", "supervisor_pid": 7, "version": "0",
-                "epoch": 1, "uptime_s": 1.0, "scene": "bowls", "config": "/c", "strays_killed": 0,
-                "services": [service("console", "failed", ""), service("arm", state, why)],
-            });
-            let status = serde_json::from_value(status).unwrap();
+        let service = |name: &str, state, why: &str| ServiceStatus {
+            name: name.to_owned(),
+            state,
+            why: Some(why.to_owned()),
+            ..ServiceStatus::default()
+        };
+        let found_why = |state, why| {
+            let services = vec![service("console", Failed, ""), service("arm", state, why)];
+            let status = Box::new(GroupStatus { services, ..GroupStatus::default() });
             Availability(Some(status)).first_missing(&Service::DIALOGUE, |_| true)
         };
-        let found = |state: &str| found_why(state, "so");
-        for state in ["ready", "starting", "waiting", "restarting", "stopping"] {
-            assert_eq!(found(state), None, "{state}");
+        let found = |state| found_why(state, "so");
+        for state in [Ready, Starting, Waiting, Restarting, Stopping] {
+            assert_eq!(found(state), None, "{state:?}");
         }
         let held = "arm is held by the operator; help: whichone release arm";
-        assert_eq!(found("held").as_deref(), Some(held));
+        assert_eq!(found(Held).as_deref(), Some(held));
         let failed = "arm has failed: so; help: whichone logs arm, then start arm";
-        assert_eq!(found("failed").as_deref(), Some(failed));
+        assert_eq!(found(Failed).as_deref(), Some(failed));
         let down = "arm is stopped; help: whichone start arm";
-        assert_eq!(found("down").as_deref(), Some(down));
+        assert_eq!(found(Down).as_deref(), Some(down));
         let short = "arm so; help: free some; it is retried by itself";
-        assert_eq!(found("short").as_deref(), Some(short));
+        assert_eq!(found(Short).as_deref(), Some(short));
         let why = "waits for /r: Permission denied; help: make the folder writable";
-        assert_eq!(found_why("short", why), Some(format!("arm {why}")));
+        assert_eq!(found_why(Short, why), Some(format!("arm {why}")));
     }
 }

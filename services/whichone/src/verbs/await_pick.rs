@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use command_line::Outcome;
 use command_line::output::Output;
+use laboratory::TruthfulUser;
 use messages::{ActKind, Ended, Outcome as How};
 use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
@@ -15,10 +16,8 @@ use super::conversation::{Conversation, LOOK_EVERY};
 use super::words;
 use crate::cli::AwaitArgs;
 
-pub use user::TruthfulUser;
 pub use waiting::Waiting;
 
-mod user;
 mod waiting;
 
 /// Waits for the outcome of the utterances so far, and prints it.

@@ -246,6 +246,7 @@ mod tests {
             completions(shell, &mut Output::to(&mut bytes, false)).unwrap();
             let script = String::from_utf8(bytes).unwrap();
             assert!(script.contains("whichone complete --"), "{shell}");
+            assert!(script.contains("stop-motion"), "{shell}");
         }
     }
 }

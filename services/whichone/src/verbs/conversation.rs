@@ -56,22 +56,15 @@ impl Conversation {
         let shared_memory = paths.shm_name();
         let client = Client::join(paths)?;
         let settings = Settings::load_snapshot(&paths.run())?;
+        let (topics, scene) = LatestTopics::open(client.bus(), &settings)?;
         Ok(Self {
-            topics: match settings.group.perception.enabled {
-                true => {
-                    LatestTopics::open(client.bus())?.with_table(client.bus(), &settings.scene)?
-                }
-                false => LatestTopics::open(client.bus())?,
-            },
+            topics,
             injections: None,
             from: PersonId::default(),
             saying: VecDeque::new(),
             own: HashSet::new(),
             latest: Latest::default(),
-            scene: match settings.group.perception.enabled {
-                true => settings.scene.with_objects(&[]),
-                false => settings.scene,
-            },
+            scene,
             may_be_absent: settings.dialogue.prior.absent > 0.0,
             paths: paths.clone(),
             shared_memory: shared_memory.map_err(|_| ended(paths))?,

@@ -88,12 +88,8 @@ pub(super) fn lines(status: &GroupStatus, style: Style) -> Vec<String> {
 }
 
 fn head(status: &GroupStatus, style: Style) -> String {
-    let state = match status.state {
-        GroupState::Ready => style.paint(Ink::Green, "ready"),
-        GroupState::Starting => style.paint(Ink::Yellow, "starting"),
-        GroupState::Stopping => style.paint(Ink::Yellow, "stopping"),
-        GroupState::Degraded => style.paint(Ink::Red, "degraded"),
-    };
+    let (ink, state) = group_state(status.state);
+    let state = style.paint(ink, state);
     let mut head = format!(
         "group {} is {state}: scene {}, up {}, supervisor {}, configuration {}",
         style.paint(Ink::Bold, &status.name),
@@ -146,6 +142,16 @@ fn coloured(service: &ServiceStatus, line: String, style: Style) -> String {
     match state_ink(service.state) {
         Ink::Green => line,
         ink => style.paint(ink, line).to_string(),
+    }
+}
+
+/// A group's state in a word, with its colour.
+pub(super) fn group_state(state: GroupState) -> (Ink, &'static str) {
+    match state {
+        GroupState::Ready => (Ink::Green, "ready"),
+        GroupState::Starting => (Ink::Yellow, "starting"),
+        GroupState::Stopping => (Ink::Yellow, "stopping"),
+        GroupState::Degraded => (Ink::Red, "degraded"),
     }
 }
 

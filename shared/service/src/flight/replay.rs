@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::difference::first_difference;
 use super::reader::{self, Flight, Step};
 use super::{Beginning, Entry, Head};
+use crate::bounded::push_bounded;
 use crate::exit::{Exit, Failure};
 use crate::lifecycle::Environment;
 use crate::service_loop::{Program, Record};
@@ -193,10 +194,7 @@ impl<P: Program> Run<P> {
 
     fn event(&mut self, at: Time, event: Event<In<P>>, bytes: Vec<u8>) {
         (self.now, self.report.events) = (at, self.report.events + 1);
-        if self.before.len() == BEFORE_MAX {
-            self.before.pop_front();
-        }
-        self.before.push_back(bytes);
+        push_bounded(&mut self.before, BEFORE_MAX, bytes);
         let Self { node, effects, .. } = self;
         // A flight may hold the event at which its service panicked.
         let result = catch_unwind(AssertUnwindSafe(|| node.on(event, at, effects)));

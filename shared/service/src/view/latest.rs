@@ -1,3 +1,4 @@
+use config::Settings;
 use messages::{
     Activity, ArmStatus, Hearing, PolicyView, Presented, Receipt, ReceiptStatus, WireMessage,
     topics,
@@ -61,28 +62,26 @@ pub struct Latest {
 }
 
 impl LatestTopics {
-    /// Opens the topics.
+    /// Opens the topics of a group with these settings: where objects come from perception, messages are about those
+    /// on the table. Returns also the scene to begin with.
     ///
     /// # Errors
     /// A topic of another schema, or no shared memory.
-    pub fn open(bus: &Bus) -> Result<Self, BusError> {
-        Ok(Self {
+    pub fn open(bus: &Bus, settings: &Settings) -> Result<(Self, Scene), BusError> {
+        let file = &settings.scene;
+        let perceives = settings.group.perception.enabled;
+        let table = perceives.then(|| TableScene::open(bus, file)).transpose()?;
+        let scene = table.as_ref().map_or(file, TableScene::scene).clone();
+        let topics = Self {
             views: bus.encoded_reader(&topics::VIEW)?,
             presented: bus.reader(&topics::PRESENTED)?,
             activity: bus.reader(&topics::ACTIVITY)?,
             hearing: bus.reader(&topics::HEARING)?,
             receipts: bus.reader(&topics::RECEIPT)?,
             statuses: bus.reader(&topics::STATUS)?,
-            table: None,
-        })
-    }
-
-    /// Follows the objects on the table as well; messages are then about these.
-    ///
-    /// # Errors
-    /// A topic of another schema, or no shared memory.
-    pub fn with_table(self, bus: &Bus, file: &Scene) -> Result<Self, BusError> {
-        Ok(Self { table: Some(TableScene::open(bus, file)?), ..self })
+            table,
+        };
+        Ok((topics, scene))
     }
 
     /// Returns the objects on the table, if they come from perception.

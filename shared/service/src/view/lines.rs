@@ -4,6 +4,7 @@ use messages::{Receipt, ReceiptStatus};
 
 use super::{Latest, PromptId, SaidView, Speaker};
 use crate::Time;
+use crate::bounded::push_bounded;
 
 /// Lines of the dialogue that are kept.
 const LINES_MAX: usize = 6;
@@ -39,10 +40,7 @@ impl Lines {
             new.push((Speaker::Robot, text.to_owned()));
         }
         for line in &new {
-            if self.said.len() == LINES_MAX {
-                self.said.pop_front();
-            }
-            self.said.push_back(line.clone());
+            push_bounded(&mut self.said, LINES_MAX, line.clone());
         }
         new
     }

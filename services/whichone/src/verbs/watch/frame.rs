@@ -4,12 +4,11 @@ use ::dialogue::rendering;
 use command_line::output::{Ink, Style};
 use messages::{ArmStatus, PickOutcome, PickPhase, PolicyView, Task};
 use scene::Scene;
-use service::status::GroupState;
 use service::status::{GroupStatus, ServiceStatus};
 use service::view::{SaidView, Speaker};
 
 use super::model::{WatchModel, object_name};
-use crate::verbs::status::state_ink;
+use crate::verbs::status::{group_state, state_ink};
 use crate::verbs::{await_pick, hearing, words};
 
 /// Starts drawing on an alternate screen without a cursor.
@@ -54,12 +53,8 @@ fn head(scene: &Scene, status: Option<&GroupStatus>, style: Style) -> Vec<String
     let Some(status) = status else {
         return vec![style.paint(Ink::Yellow, "the supervisor does not answer").to_string()];
     };
-    let ink = match status.state {
-        GroupState::Ready => Ink::Green,
-        GroupState::Starting | GroupState::Stopping => Ink::Yellow,
-        GroupState::Degraded => Ink::Red,
-    };
-    let state = style.paint(ink, format!("{:?}", status.state).to_lowercase());
+    let (ink, state) = group_state(status.state);
+    let state = style.paint(ink, state);
     let name = style.paint(Ink::Bold, &status.name);
     let services: Vec<String> = status.services.iter().map(|s| service(s, style)).collect();
     vec![

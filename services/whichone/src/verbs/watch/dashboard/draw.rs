@@ -8,11 +8,11 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Paragraph, Wrap};
 use scene::Scene;
 use service::printable::one_line;
-use service::status::{GroupState, GroupStatus};
+use service::status::GroupStatus;
 use service::view::{Latest, SaidView, Speaker};
 
 use super::keys::{Keyboard, Mode};
-use crate::verbs::status::state_ink;
+use crate::verbs::status::{group_state, state_ink};
 use crate::verbs::watch::frame::{arm_line, bars, reasons, summary};
 use crate::verbs::watch::model::WatchModel;
 use crate::verbs::{hearing, words};
@@ -123,12 +123,7 @@ fn head_line(picture: &Picture<'_>) -> Line<'static> {
     let Some(status) = picture.status else {
         return picture.span(Ink::Yellow, "the supervisor does not answer").into();
     };
-    let (ink, state) = match status.state {
-        GroupState::Ready => (Ink::Green, "ready"),
-        GroupState::Starting => (Ink::Yellow, "starting"),
-        GroupState::Stopping => (Ink::Yellow, "stopping"),
-        GroupState::Degraded => (Ink::Red, "degraded"),
-    };
+    let (ink, state) = group_state(status.state);
     let up = words::time(status.uptime_s);
     let rest = format!(", scene {}, up {up}", one_line(picture.scene.name()));
     let name = picture.span(Ink::Bold, &status.name);

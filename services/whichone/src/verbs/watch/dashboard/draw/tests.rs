@@ -2,6 +2,7 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use scene::Question;
 use serde_json::json;
+use service::status::{GroupState, ServiceState, ServiceStatus};
 
 use super::*;
 use crate::verbs::conversation::example;
@@ -13,16 +14,15 @@ fn scene() -> Scene {
 }
 
 fn status() -> GroupStatus {
-    let service = |name: &str, state: &str| {
-        json!({ "name": name, "wanted": "up", "actual": "down", "state": state,
-                "incarnation": 1, "restarts": 2 })
+    let service = |name: &str, state| ServiceStatus {
+        name: name.to_owned(),
+        state,
+        restarts: 2,
+        ..ServiceStatus::default()
     };
-    serde_json::from_value(json!({
-        "name": "lab", "state": "degraded", "supervisor_pid": 7, "version": "0",
-        "epoch": 1, "uptime_s": 61.0, "scene": "desk", "config": "/c", "strays_killed": 0,
-        "services": [service("speech", "ready"), service("arm", "held")],
-    }))
-    .unwrap()
+    let services = vec![service("speech", ServiceState::Ready), service("arm", ServiceState::Held)];
+    let (name, state) = ("lab".to_owned(), GroupState::Degraded);
+    GroupStatus { name, state, uptime_s: 61.0, services, ..GroupStatus::default() }
 }
 
 /// What a terminal of this size shows, a line each.

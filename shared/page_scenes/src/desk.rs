@@ -5,10 +5,9 @@ use std::time::{Duration, Instant};
 
 use axum::http::StatusCode;
 use diagnostics::{Diagnostics, TextFile};
-use language::word_findings;
 use scene_editing::{
-    Configuration, Document, FileError, Findings, ObjectEntry, Problem, Reach, RobotSummary,
-    SceneEdit, ScenesFolder, check, fingerprint, new_scene, schema_line,
+    Configuration, Document, FileError, Findings, ObjectEntry, Problem, Reach, ReadBack,
+    RobotSummary, SceneEdit, ScenesFolder, check, fingerprint, new_scene, schema_line,
 };
 use serde::{Deserialize, Serialize};
 use service::control::{CallError, Reply, Request, call};
@@ -156,13 +155,20 @@ pub struct Desk {
     socket: PathBuf,
     in_force_hash: String,
     locked: Option<String>,
+    read_back: ReadBack,
     reach: Option<Reach>,
 }
 
 impl Desk {
-    /// A desk for a group: its control socket, the scene in force, and the reason for any lock.
-    pub fn new(socket: PathBuf, in_force: String, locked: Option<String>) -> Self {
-        Self { socket, in_force_hash: fingerprint(&in_force), locked, reach: None }
+    /// Makes the desk of a group: its control socket, the scene in force, the reason for any lock, and the reader of
+    /// its scenes' words.
+    pub fn new(
+        socket: PathBuf,
+        in_force: String,
+        locked: Option<String>,
+        read_back: ReadBack,
+    ) -> Self {
+        Self { socket, in_force_hash: fingerprint(&in_force), locked, read_back, reach: None }
     }
 
     pub(super) fn list(&mut self) -> Result<Listed, Refusal> {
@@ -204,7 +210,7 @@ impl Desk {
         let (configuration, _) = self.configuration()?;
         let Draft { text, document } = draft;
         let text = applied("scene.toml", text, document)?;
-        Ok(check(&configuration, TextFile::new("scene.toml", text), word_findings))
+        Ok(check(&configuration, TextFile::new("scene.toml", text), self.read_back))
     }
 
     pub(super) fn save(&mut self, name: &str, saving: &Saving) -> Result<Saved, Refusal> {
@@ -214,7 +220,7 @@ impl Desk {
         let label = folder.file(name)?.display().to_string();
         let text = applied(&label, &saving.text, &saving.document)?;
         let findings =
-            check(&configuration, TextFile::new(label.clone(), text.clone()), word_findings);
+            check(&configuration, TextFile::new(label.clone(), text.clone()), self.read_back);
         let must_be_right = !saving.draft || name == in_force;
         if must_be_right && !findings.problems.is_empty() {
             return Err(Refusal::wrong(findings.problems));

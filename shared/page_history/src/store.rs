@@ -7,7 +7,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::interaction::{Interaction, Summary};
+use crate::interaction::{Interaction, Summary};
 
 /// Size at which a file is full, bytes.
 const FILE_BYTES: u64 = 1 << 20;

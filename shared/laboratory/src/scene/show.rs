@@ -11,7 +11,7 @@ use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
 use super::{examine, read};
-use crate::cli::SceneShowArgs;
+use crate::args::SceneShowArgs;
 
 /// Which arm fetches an object, or why none does; none without a place.
 type Reach = Option<Result<String, String>>;

@@ -17,10 +17,13 @@ use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 use service::program::find_program;
 
-use crate::cli::CheckArgs;
+use crate::args::CheckArgs;
 
-/// Reports every problem at once, or the services that would run.
-pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
+/// Reports every problem of a configuration at once, or the services that would run.
+///
+/// # Errors
+/// The configuration is not found.
+pub fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
     let folder = configuration::folder(&args.config)?;
     let profile = args.config.profile.as_deref();
     let mut examined = preflight::examine(&folder, profile, &args.config.set, None);
@@ -215,8 +218,9 @@ fn as_json(settings: &Settings, warnings: &[String], values: bool) -> Json {
 
 #[cfg(test)]
 mod tests {
+    use command_line::args::ConfigArgs;
+
     use super::*;
-    use crate::cli::ConfigArgs;
 
     fn checked(set: &[(&str, &str)]) -> (Exit, Json) {
         let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");

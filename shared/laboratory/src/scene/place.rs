@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use command_line::Outcome;
+use command_line::args::ConfigArgs;
 use command_line::output::{Output, note};
 use diagnostics::TextFile;
 use preflight::{ArmSetup, Arrangement};
@@ -12,8 +13,8 @@ use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
 use super::{diff, examine, load, read};
-use crate::cli::{ConfigArgs, ScenePlaceArgs};
-use crate::verbs::check;
+use crate::args::ScenePlaceArgs;
+use crate::check;
 
 /// Longest search for all places: where robot and scene do not fit, each look takes long.
 const PATIENCE: Duration = Duration::from_secs(60);

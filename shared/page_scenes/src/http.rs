@@ -16,9 +16,8 @@ use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::timeout;
 use web_server::request::is_own;
 
-use super::Rank;
-use super::desk::{Draft, Places, Refusal, Saving};
-use crate::server::App;
+use crate::desk::{Draft, Places, Refusal, Saving};
+use crate::{Operators, Rank, Scenes};
 
 /// Largest request: a scene file twice, as its text and as a document.
 const BODY_MAX: usize = 8 << 20;
@@ -28,8 +27,15 @@ const BODY_PATIENCE: Duration = Duration::from_secs(30);
 /// The header with the session of the page.
 const SESSION: &str = "x-whichone-session";
 
-/// Everything below `/api/scenes` and `/api/editor`.
-pub fn routes() -> Router<Arc<App>> {
+/// What requests need of the console.
+#[derive(Clone)]
+struct Host {
+    scenes: Arc<Scenes>,
+    operators: Arc<dyn Operators>,
+}
+
+/// Makes the routes below `/api/scenes` and `/api/editor`.
+pub fn routes<S>(scenes: Arc<Scenes>, operators: Arc<dyn Operators>) -> Router<S> {
     Router::new()
         .route("/api/scenes", get(list))
         .route("/api/scenes/{name}", get(open).put(save))
@@ -38,64 +44,65 @@ pub fn routes() -> Router<Arc<App>> {
         .route("/api/editor/check", post(check))
         .route("/api/editor/reach", post(reach))
         .layer(DefaultBodyLimit::max(BODY_MAX))
+        .with_state(Host { scenes, operators })
 }
 
 type Answer = Result<Response, Refusal>;
 
-async fn list(State(app): State<Arc<App>>, headers: HeaderMap) -> Answer {
-    json(app.scenes.ask(rank(&app, &headers), |desk| desk.list()).await?)
+async fn list(State(host): State<Host>, headers: HeaderMap) -> Answer {
+    json(host.scenes.ask(host.rank(&headers), |desk| desk.list()).await?)
 }
 
-async fn open(State(app): State<Arc<App>>, Path(name): Path<String>, headers: HeaderMap) -> Answer {
-    json(app.scenes.ask(rank(&app, &headers), move |desk| desk.open(&name)).await?)
+async fn open(State(host): State<Host>, Path(name): Path<String>, headers: HeaderMap) -> Answer {
+    json(host.scenes.ask(host.rank(&headers), move |desk| desk.open(&name)).await?)
 }
 
-async fn new_scene(State(app): State<Arc<App>>, headers: HeaderMap) -> Answer {
-    json(app.scenes.ask(rank(&app, &headers), |desk| desk.new_scene()).await?)
+async fn new_scene(State(host): State<Host>, headers: HeaderMap) -> Answer {
+    json(host.scenes.ask(host.rank(&headers), |desk| desk.new_scene()).await?)
 }
 
-async fn check(State(app): State<Arc<App>>, said: Operated<Draft>) -> Answer {
+async fn check(State(host): State<Host>, said: Operated<Draft>) -> Answer {
     let Operated(draft, _place) = said;
-    json(app.scenes.ask(Rank::Operator, move |desk| desk.check(&draft)).await?)
+    json(host.scenes.ask(Rank::Operator, move |desk| desk.check(&draft)).await?)
 }
 
-async fn reach(State(app): State<Arc<App>>, said: Operated<Places>) -> Answer {
+async fn reach(State(host): State<Host>, said: Operated<Places>) -> Answer {
     let Operated(places, _place) = said;
-    json(app.scenes.ask(Rank::Operator, move |desk| desk.reach(&places)).await?)
+    json(host.scenes.ask(Rank::Operator, move |desk| desk.reach(&places)).await?)
 }
 
 async fn save(
-    State(app): State<Arc<App>>,
+    State(host): State<Host>,
     Path(name): Path<String>,
     said: Operated<Saving>,
 ) -> Answer {
     let Operated(saving, _place) = said;
-    json(app.scenes.ask(Rank::Operator, move |desk| desk.save(&name, &saving)).await?)
+    json(host.scenes.ask(Rank::Operator, move |desk| desk.save(&name, &saving)).await?)
 }
 
 async fn use_scene(
-    State(app): State<Arc<App>>,
+    State(host): State<Host>,
     Path(name): Path<String>,
     headers: HeaderMap,
 ) -> Answer {
-    must_operate(&app, &headers)?;
-    json(app.scenes.ask(Rank::Operator, move |desk| desk.use_scene(&name)).await?)
+    host.must_operate(&headers)?;
+    json(host.scenes.ask(Rank::Operator, move |desk| desk.use_scene(&name)).await?)
 }
 
 /// Request of the operator's page, and its place among such requests. Nothing of a request is read
 /// before it is known to be the operator's and has a place.
 struct Operated<T>(T, OwnedSemaphorePermit);
 
-impl<T: DeserializeOwned> FromRequest<Arc<App>> for Operated<T> {
+impl<T: DeserializeOwned> FromRequest<Host> for Operated<T> {
     type Rejection = Refusal;
 
-    async fn from_request(request: Request, app: &Arc<App>) -> Result<Self, Refusal> {
-        must_operate(app, request.headers())?;
+    async fn from_request(request: Request, host: &Host) -> Result<Self, Refusal> {
+        host.must_operate(request.headers())?;
         let late =
             |_| Refusal::new(StatusCode::REQUEST_TIMEOUT, "the request did not arrive in 30 s");
         timeout(BODY_PATIENCE, async {
-            let place = app.scenes.place().await?;
-            let body = Bytes::from_request(request, app).await;
+            let place = host.scenes.place().await?;
+            let body = Bytes::from_request(request, host).await;
             let body = body.map_err(|error| Refusal::new(error.status(), error.body_text()))?;
             Ok(Self(read(&body)?, place))
         })
@@ -104,18 +111,20 @@ impl<T: DeserializeOwned> FromRequest<Arc<App>> for Operated<T> {
     }
 }
 
-fn rank(app: &App, headers: &HeaderMap) -> Rank {
-    if must_operate(app, headers).is_ok() { Rank::Operator } else { Rank::Viewer }
-}
-
-/// The request is of the operator's own page.
-fn must_operate(app: &App, headers: &HeaderMap) -> Result<(), Refusal> {
-    let refuse = |why: &str| Refusal::new(StatusCode::FORBIDDEN, why);
-    if !is_own(headers) {
-        return Err(refuse("only the console's own pages may change scenes"));
+impl Host {
+    fn rank(&self, headers: &HeaderMap) -> Rank {
+        if self.must_operate(headers).is_ok() { Rank::Operator } else { Rank::Viewer }
     }
-    let session = headers.get(SESSION).and_then(|session| session.to_str().ok());
-    app.hub.must_operate(session.unwrap_or_default()).map_err(|why| refuse(&why))
+
+    /// Checks that a request is of the operator's own page.
+    fn must_operate(&self, headers: &HeaderMap) -> Result<(), Refusal> {
+        let refuse = |why: &str| Refusal::new(StatusCode::FORBIDDEN, why);
+        if !is_own(headers) {
+            return Err(refuse("only the console's own pages may change scenes"));
+        }
+        let session = headers.get(SESSION).and_then(|session| session.to_str().ok());
+        self.operators.must_operate(session.unwrap_or_default()).map_err(|why| refuse(&why))
+    }
 }
 
 fn read<T: DeserializeOwned>(body: &Bytes) -> Result<T, Refusal> {

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 /// Appends an item to at most `most` ones; drops the oldest for it.
-pub(crate) fn push_bounded<T>(queue: &mut VecDeque<T>, most: usize, item: T) {
+pub fn push_bounded<T>(queue: &mut VecDeque<T>, most: usize, item: T) {
     if queue.len() >= most {
         queue.pop_front();
     }

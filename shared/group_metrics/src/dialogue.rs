@@ -12,6 +12,7 @@ use prometheus_client::metrics::histogram::{Histogram, exponential_buckets, line
 use prometheus_client::registry::Registry;
 use serde::Serialize;
 use service::Time;
+use service::bounded::push_bounded;
 use std::sync::atomic::AtomicU64;
 
 /// One label and its value.
@@ -135,6 +136,7 @@ impl Tally {
         Self { began, ended: None, questions: None, pick: None, receipts: VecDeque::new() }
     }
 
+    /// Counts questions, and interactions that have ended.
     pub fn on_view(&mut self, view: &PolicyView, metrics: &DialogueMetrics) {
         let before = match self.questions {
             Some((interaction, questions)) if interaction == view.interaction => questions,
@@ -154,6 +156,7 @@ impl Tally {
         }
     }
 
+    /// Counts picks that have ended.
     pub fn on_arm(&mut self, arm: &ArmStatus, metrics: &DialogueMetrics) {
         let pick = (arm.interaction, arm.attempt, arm.task.get(), arm.outcome.get());
         let is_new = self.pick.is_some_and(|known| known != pick);
@@ -163,16 +166,14 @@ impl Tally {
         }
     }
 
+    /// Counts utterances.
     pub fn on_receipt(&mut self, receipt: &Receipt, metrics: &DialogueMetrics) {
         let key = (receipt.key, receipt.segment);
         let was_before = Time(receipt.onset_ns.max(receipt.end_ns)) < self.began;
         if receipt.status == ReceiptStatus::Over || was_before || self.receipts.contains(&key) {
             return;
         }
-        if self.receipts.len() == RECEIPTS_MAX {
-            self.receipts.pop_front();
-        }
-        self.receipts.push_back(key);
+        push_bounded(&mut self.receipts, RECEIPTS_MAX, key);
         metrics.utterances.get_or_create(&result(&receipt.status.get())).inc();
         // Of text there is nothing to recognise.
         if receipt.snr_db > 0.0 {
@@ -181,6 +182,7 @@ impl Tally {
         }
     }
 
+    /// Takes over the level of the microphone.
     pub fn on_hearing(&self, hearing: &Hearing, metrics: &DialogueMetrics) {
         metrics.level.set(hearing.level_db.into());
     }

@@ -2,9 +2,9 @@ use messages::{ActKind, Outcome};
 use serde_json::{Value, json};
 use service::journal_record::JournalLine;
 
-use super::assemble::Assembler;
-use super::interaction::{Event, Interaction};
-use super::store::Store;
+use crate::assemble::Assembler;
+use crate::interaction::{Event, Interaction};
+use crate::store::Store;
 
 fn line(seq: u64, at_s: f64, record: Value) -> JournalLine {
     let (at_ns, unix_ms) = ((at_s * 1e9) as u64, 1_000_000 + (at_s * 1e3) as u64);

@@ -1,10 +1,20 @@
-//! Arguments of `scene`.
+//! Arguments of `check` and `scene`.
 
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use command_line::args::ConfigArgs;
 
-use super::ConfigArgs;
+/// Arguments of `check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// The configuration.
+    #[command(flatten)]
+    pub config: ConfigArgs,
+    /// Show every value and its origin.
+    #[arg(long)]
+    pub values: bool,
+}
 
 /// What `scene` does.
 #[derive(Debug, Subcommand)]

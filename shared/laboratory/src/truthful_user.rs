@@ -6,9 +6,8 @@ use dialogue::Model;
 use evaluation::simulation::SimulatedUser;
 use evaluation::simulation::users::Domain;
 use scene::Scene;
-use vocabulary::Params;
-
 use service::view::Latest;
+use vocabulary::Params;
 
 /// A user who wants one object and answers every question once it has been presented.
 #[allow(missing_debug_implementations, reason = "the model has none")]
@@ -67,10 +66,10 @@ impl TruthfulUser {
 
 #[cfg(test)]
 mod tests {
+    use messages::{ActKind, Activity, PolicyView, PresentationState, Presented};
     use scene::{ObjectId, Question};
     use serde_json::json;
 
-    use super::super::super::conversation::example::{asked, ended, unapplied};
     use super::*;
 
     fn scene() -> Scene {
@@ -81,10 +80,25 @@ mod tests {
         Scene::from_json("scene", &json).unwrap()
     }
 
+    /// The robot has asked a question about `scene` and said it to its end.
+    fn asked(scene: &Scene, question: Question) -> Latest {
+        let (decision, scene_key) = (ActKind::Ask, scene.key());
+        let view = PolicyView {
+            interaction: 7,
+            question,
+            prompt: 5,
+            decision,
+            scene_key,
+            ..PolicyView::default()
+        };
+        let state = PresentationState::Ended.into();
+        let presented = Presented { prompt: 5, presentation: 1, state, ..Presented::default() };
+        let activity = Some(Activity::default());
+        Latest { view: Some(view), presented, activity, ..Latest::default() }
+    }
+
     fn answer(wanted: &str, question: Question) -> Option<String> {
-        let mut seen = asked(question);
-        seen.view.as_mut().unwrap().scene_key = scene().key();
-        TruthfulUser::new(&scene(), wanted, true).unwrap().answer(&seen)
+        TruthfulUser::new(&scene(), wanted, true).unwrap().answer(&asked(&scene(), question))
     }
 
     #[test]
@@ -103,15 +117,21 @@ mod tests {
     #[test]
     fn answer_as_user_answers_each_presentation_once_and_only_while_it_stands() {
         let mut user = TruthfulUser::new(&scene(), "R", false).unwrap();
-        let mut seen = asked(Question::Point(ObjectId(0)));
-        assert_eq!(user.answer(&seen), None, "another scene's question");
-        seen.view.as_mut().unwrap().scene_key = scene().key();
-        assert_eq!(user.answer(&unapplied(seen.clone())), None);
+        let mut seen = asked(&scene(), Question::Point(ObjectId(0)));
+        let with = |change: fn(&mut PolicyView)| {
+            let mut seen = seen.clone();
+            change(seen.view.as_mut().unwrap());
+            seen
+        };
+        let (of_another_scene, ended) =
+            (with(|it| it.scene_key = 0), with(|it| it.interaction = 0));
+        assert_eq!(user.answer(&of_another_scene), None);
+        assert_eq!(user.answer(&Latest { accepted: 1, ..seen.clone() }), None, "not yet applied");
         assert!(user.answer(&seen).is_some());
         assert_eq!(user.answer(&seen), None);
         seen.presented.presentation = 2;
         assert!(user.answer(&seen).is_some());
-        assert_eq!(user.answer(&ended(7)), None);
+        assert_eq!(user.answer(&ended), None);
     }
 
     #[test]
@@ -134,8 +154,7 @@ mod tests {
         user.look(&changed);
         let color = changed.attribute_named("color").unwrap();
         let red = changed.value_named(color, "red").unwrap();
-        let mut seen = asked(Question::Attribute(color, red));
-        seen.view.as_mut().unwrap().scene_key = changed.key();
+        let seen = asked(&changed, Question::Attribute(color, red));
         assert_eq!(user.answer(&seen).as_deref(), Some("yes"));
     }
 }

@@ -6,6 +6,7 @@ use std::os::unix::net::UnixListener;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 
+use language::word_findings;
 use serde_json::{Value as Json, json};
 
 use super::*;
@@ -48,7 +49,7 @@ fn lab(set: Option<Json>, locked: Option<&str>) -> Lab {
             writeln!(&stream, "{answer}").unwrap();
         }
     });
-    let desk = Desk::new(socket, "in force".into(), locked.map(str::to_owned));
+    let desk = Desk::new(socket, "in force".into(), locked.map(str::to_owned), word_findings);
     Lab { folder, desk, asked }
 }
 

@@ -7,9 +7,9 @@ use service::journal_record::{
     AcceptedRecord, ArmCause, ArmRecord, EndedRecord, JournalLine, JournalRecord, Named,
     PickRecord, PolicyCause, PolicyRecord, SpeechRecord,
 };
+use service::view::Readings;
 
-use super::interaction::{End, Event, Heard, Interaction, Labelled, Moment, Thought};
-use crate::understood::Readings;
+use crate::interaction::{End, Event, Heard, Interaction, Labelled, Moment, Thought};
 
 /// Utterances and lines of the robot that are remembered.
 const REMEMBERED_MAX: usize = 256;

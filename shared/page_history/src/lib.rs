@@ -1,12 +1,17 @@
-//! The history: past interactions, assembled from the group's journals and kept in a bounded store.
+//! The history on the console's page: past interactions, assembled from the group's journals and kept
+//! in a bounded store.
 //!
 //! The journals are the only source, so the history is the same whether the console was running or
 //! not. They are read when someone looks at the history and when an interaction has ended, by a
 //! thread or by the server's threads for blocking work: the main loop never waits for it.
 
+#![allow(missing_docs, reason = "the fields of interactions are those of docs/console.md")]
+
 mod assemble;
 mod interaction;
 mod journals;
+mod routes;
+pub mod shared;
 mod store;
 
 use std::io;
@@ -20,6 +25,7 @@ use service::group::GroupPaths;
 use assemble::Assembler;
 pub use interaction::{Interaction, Summary};
 use journals::Journals;
+pub use routes::routes;
 use store::Store;
 
 /// Interactions left to the journals: a refusal or the way back to rest may be added to them.

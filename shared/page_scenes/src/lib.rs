@@ -1,8 +1,9 @@
-//! The scene editor's half in the console: scene files of the group's configuration are read,
+//! The scene editor of the console's page: scene files of the group's configuration are read,
 //! checked, written and put into force for operators.
 //!
-//! Checks plan motions, which takes up to seconds, so that all of it runs on one thread of low
-//! priority. Neither the main loop nor the server waits for it; abandoned requests are skipped.
+//! The console serves the [`routes`] and tells by [`Operators`] which page is the operator's. Checks
+//! plan motions, which takes up to seconds, so that all of it runs on one thread of low priority.
+//! Neither the main loop nor the server waits for it; abandoned requests are skipped.
 
 mod desk;
 mod http;
@@ -34,6 +35,15 @@ enum Rank {
 }
 
 type Task = Box<dyn FnOnce(&mut Desk) + Send>;
+
+/// The pages of the console.
+pub trait Operators: Send + Sync {
+    /// Checks that the page of a session is the operator's.
+    ///
+    /// # Errors
+    /// It is not; the words are for its user.
+    fn must_operate(&self, session: &str) -> Result<(), String>;
+}
 
 /// The thread that works on scenes.
 #[derive(Debug)]
@@ -105,11 +115,17 @@ fn next(first: &Receiver<Task>, then: &Receiver<Task>) -> Result<Task, RecvError
 mod tests {
     use std::path::PathBuf;
 
+    use language::word_findings;
+
     use super::*;
+
+    fn idle_desk() -> Desk {
+        Desk::new(PathBuf::new(), String::new(), None, word_findings)
+    }
 
     #[tokio::test]
     async fn panic_of_one_request_is_not_the_end_of_all() {
-        let scenes = Scenes::start(Desk::new(PathBuf::new(), String::new(), None)).unwrap();
+        let scenes = Scenes::start(idle_desk()).unwrap();
         let work = |_: &mut Desk| -> Result<(), Refusal> { panic!("as it was meant to") };
         let refused = scenes.ask(Rank::Viewer, work).await.unwrap_err();
         assert_eq!(refused.status, StatusCode::INTERNAL_SERVER_ERROR);
@@ -118,8 +134,7 @@ mod tests {
 
     #[tokio::test]
     async fn viewers_do_not_keep_the_operator_from_the_editor() {
-        let desk = Desk::new(PathBuf::new(), String::new(), None);
-        let scenes = Arc::new(Scenes::start(desk).unwrap());
+        let scenes = Arc::new(Scenes::start(idle_desk()).unwrap());
         let order = Arc::new(std::sync::Mutex::new(Vec::new()));
         let ((begin, begun), (release, released)) = (bounded::<()>(1), bounded::<()>(1));
         let ask = |rank, name: u32, wait: Option<(Sender<()>, Receiver<()>)>| {
@@ -155,7 +170,7 @@ mod tests {
 
     #[tokio::test]
     async fn requests_with_bodies_are_bounded() {
-        let scenes = Scenes::start(Desk::new(PathBuf::new(), String::new(), None)).unwrap();
+        let scenes = Scenes::start(idle_desk()).unwrap();
         let places = [scenes.place().await.unwrap(), scenes.place().await.unwrap()];
         assert_eq!((places.len(), scenes.bodies.available_permits()), (BODIES_MAX, 0));
         drop(places);

@@ -1,4 +1,4 @@
-//! Metrics of the group in the format of Prometheus (OpenMetrics text).
+//! Metrics of a group in the format of Prometheus (OpenMetrics text), which the console serves.
 //!
 //! [`dialogue`] folds the topics' messages into counters and histograms that begin with the
 //! console. [`group`] exports the supervisor's report, and the recordings, at each scrape.
@@ -15,8 +15,7 @@ use prometheus_client::metrics::histogram::{Histogram, exponential_buckets};
 use prometheus_client::registry::Registry;
 use service::status::GroupStatus;
 
-use dialogue::DialogueMetrics;
-pub use dialogue::Tally;
+pub use dialogue::{DialogueMetrics, Tally};
 use group::GroupMetrics;
 
 /// All exported metrics.
@@ -24,8 +23,11 @@ use group::GroupMetrics;
 pub struct Metrics {
     /// Pages and live views that are open.
     pub viewers: Gauge,
+    /// Pages and live views disconnected because they did not read.
     pub dropped: Counter,
+    /// Frames sent to pages and live views.
     pub frames: Counter,
+    /// Bytes of these frames.
     pub bytes: Counter,
     /// Live views that are open.
     pub live_viewers: Gauge,
@@ -37,6 +39,7 @@ pub struct Metrics {
     pub latency: Histogram,
     /// Seconds that the main loop takes for one pass.
     pub pass: Histogram,
+    /// Metrics of dialogue, arm and hearing, counted by a [`Tally`].
     pub dialogue: DialogueMetrics,
     group: GroupMetrics,
     registry: Registry,

@@ -1,7 +1,7 @@
 //! A planner as a program in any language: `whichone-policy --planner-program PROGRAM [ARGUMENT…]`.
 //!
 //! The program writes the line `ready` once it is. Then it reads a line of JSON on standard input
-//! for each decision, a [`Request`], and answers with a line on standard output, a [`Reply`]. It
+//! for each decision, a `Request`, and answers with a line on standard output, a `Reply`. It
 //! ends with its input; its standard error is logged. It decides by the request alone.
 
 use std::io::{self, BufRead, BufReader, Write};
@@ -18,7 +18,7 @@ use service::exit::{Exit, Failure};
 use vocabulary::{Action, Costs};
 
 /// Name of the planner.
-pub(crate) const NAME: &str = "program";
+pub const NAME: &str = "program";
 /// Planner that decides if the program does not, and that values its decisions.
 const FALLBACK: &str = "entropy";
 /// Time that the program may take to become ready, before the service is.
@@ -35,7 +35,7 @@ static COMMAND: Mutex<Vec<String>> = Mutex::new(Vec::new());
 ///
 /// # Errors
 /// The command line is empty.
-pub(crate) fn register(command: &[String]) -> Result<(), Failure> {
+pub fn register(command: &[String]) -> Result<(), Failure> {
     if command.is_empty() {
         let what =
             "--planner-program: the program is missing; help: --planner-program python3 planner.py";

@@ -3,8 +3,7 @@
 use messages::{Outcome, PickOutcome, Source};
 use serde::{Deserialize, Serialize};
 use service::journal_record::{ArmCause, DecisionRecord, PickRecord};
-
-use crate::view_model::line::{Answered, Meaning};
+use service::view::{Answered, Meaning};
 
 /// An interaction from its first words to its end; without an end while it is open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -2,10 +2,10 @@
 
 use messages::{Observation, UtteranceSeq};
 use scene::Scene;
-use service::journal_record::InterpretationRecord;
+use serde::{Deserialize, Serialize};
 use vocabulary::Attributed;
 
-use crate::view_model::line::{Answered, Meaning};
+use crate::journal_record::InterpretationRecord;
 
 /// Most meanings and questions that are shown.
 const SHOWN_MAX: usize = 4;
@@ -14,8 +14,9 @@ const WEIGHT_MIN: f64 = 0.01;
 
 /// The readings of an utterance before its attribution is known.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Readings {
-    pub(crate) seq: UtteranceSeq,
+pub struct Readings {
+    /// The utterance.
+    pub seq: UtteranceSeq,
     readings: Vec<WeightedReading>,
 }
 
@@ -30,32 +31,52 @@ struct WeightedReading {
 
 /// The displayed view of an utterance.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Understood {
-    pub(crate) meanings: Vec<Meaning>,
-    pub(crate) answers: Vec<Answered>,
+pub struct Understood {
+    /// Possible meanings, most likely first.
+    pub meanings: Vec<Meaning>,
+    /// The questions that it answers, most probable first.
+    pub answers: Vec<Answered>,
 }
 
-/// Reads an observation; `None` if it is of another scene or invalid.
-pub(crate) fn read(scene: &Scene, observation: &Observation) -> Option<Readings> {
-    if observation.scene_key != scene.key() {
-        return None;
-    }
-    let interpretations = observation.interpretations(scene.words().len()).ok()?;
-    let asked = observation.asked().ok()?;
-    let readings = interpretations.iter().map(|interpretation| WeightedReading {
-        text: interpretation.reading.text(scene),
-        weight: interpretation.weight,
-        answers: (interpretation.answers)
-            .and_then(|at| asked.get(at))
-            .map(|asked| (asked.prompt, asked.presentation)),
-    });
-    let seq = UtteranceSeq(observation.seq);
-    Some(Readings { seq, readings: readings.collect() })
+/// One way to understand an utterance.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Meaning {
+    /// Meaning in words: `yes · small · not white`.
+    pub text: String,
+    /// Its probability.
+    pub weight: f64,
+}
+
+/// A question that an utterance answers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Answered {
+    /// Words of the question.
+    pub question: String,
+    /// Probability that the utterance answers the question.
+    pub share: f64,
 }
 
 impl Readings {
+    /// Reads an observation; `None` if it is of another scene or invalid.
+    pub fn of_observation(scene: &Scene, observation: &Observation) -> Option<Self> {
+        if observation.scene_key != scene.key() {
+            return None;
+        }
+        let interpretations = observation.interpretations(scene.words().len()).ok()?;
+        let asked = observation.asked().ok()?;
+        let readings = interpretations.iter().map(|interpretation| WeightedReading {
+            text: interpretation.reading.text(scene),
+            weight: interpretation.weight,
+            answers: (interpretation.answers)
+                .and_then(|at| asked.get(at))
+                .map(|asked| (asked.prompt, asked.presentation)),
+        });
+        let seq = UtteranceSeq(observation.seq);
+        Some(Self { seq, readings: readings.collect() })
+    }
+
     /// The readings of an utterance in the policy's journal.
-    pub(crate) fn of_records(utterance: u64, interpretations: &[InterpretationRecord]) -> Self {
+    pub fn of_records(utterance: u64, interpretations: &[InterpretationRecord]) -> Self {
         let readings = interpretations.iter().map(|one| WeightedReading {
             text: one.text.clone(),
             weight: one.weight,
@@ -66,7 +87,7 @@ impl Readings {
 
     /// Weights the readings by the shares of the questions that they answer, as the belief does.
     /// `line` returns the words of a presentation of a question.
-    pub(crate) fn attribute(
+    pub fn attribute(
         &self,
         attributed: &Attributed,
         line: impl Fn(u64, u32) -> Option<String>,

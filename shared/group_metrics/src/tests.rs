@@ -187,7 +187,7 @@ fn queried(text: &str) -> Vec<String> {
 
 #[test]
 fn dashboard_queries_metrics_and_labels_that_are_exported() {
-    let dashboard = include_str!("../../../../docs/grafana-dashboard.json");
+    let dashboard = include_str!("../../../docs/grafana-dashboard.json");
     let dashboard: serde_json::Value = serde_json::from_str(dashboard).unwrap();
     let metrics = metrics();
     metrics.set_group(Some(&status()));

@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use command_line::Outcome;
+use command_line::args::ConfigArgs;
 use command_line::configuration;
 use command_line::output::Output;
 use command_line::scene_file;
@@ -13,15 +14,18 @@ use scene_editing::SceneEdit;
 use serde_json::json;
 use service::exit::{Exit, Failure};
 
-use super::check;
-use crate::cli::{ConfigArgs, SceneCheckArgs, SceneNewArgs, SceneVerb};
+use crate::args::{SceneCheckArgs, SceneNewArgs, SceneVerb};
+use crate::check;
 
 mod diff;
 mod place;
 mod show;
 
-/// Executes an action.
-pub(super) fn scene(what: SceneVerb, out: &mut Output<'_>) -> Outcome {
+/// Writes, shows, checks or completes a scene file.
+///
+/// # Errors
+/// The file or the configuration cannot be used.
+pub fn scene(what: SceneVerb, out: &mut Output<'_>) -> Outcome {
     match what {
         SceneVerb::New(args) => new(&args, out),
         SceneVerb::Show(args) => show::show(&args, out),
@@ -99,7 +103,7 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::cli::{ScenePlaceArgs, SceneShowArgs};
+    use crate::args::{ScenePlaceArgs, SceneShowArgs};
     use serde_json::Value as Json;
 
     /// The shipped configuration.
