@@ -22,6 +22,7 @@ mod export;
 mod planning;
 mod replay;
 mod robot;
+pub mod scene_file;
 mod servos;
 mod study;
 
