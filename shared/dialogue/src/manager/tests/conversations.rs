@@ -16,8 +16,8 @@
 //! | `mark` · `back` | remembers the state · continues from there |
 //!
 //! A reading has words of the scene, an answer (`no`), an intent (`put_back`), a reference (`other`), words of what is
-//! excluded (`-small,white`), of a further object (`+big,metallic`), or that the scene lacks (`?kind:plate`), and a relation: the
-//! second from the left (`nth:left,2`), or more to the left than the further objects (`more:left`).
+//! excluded (`-small,white`), of a further object (`+big,metallic`), or that the scene lacks (`?kind:plate`), and a
+//! relation: the second from the left (`nth:left,2`), or more to the left than the further objects (`more:left`).
 //!
 //! What comes of it is the act with the key of its order (interaction/attempt) or else the open interaction, its words
 //! and the rule that led to it, and whatever has changed of ended interaction, concessions, deliveries, queue, object that
