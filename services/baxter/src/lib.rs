@@ -6,6 +6,7 @@
 //! where they are while the process is dead.
 
 pub mod assembly;
+pub mod camera;
 pub mod fault_injection;
 pub mod fingers;
 pub mod object_world;
@@ -17,9 +18,10 @@ pub mod shell;
 
 use std::process::ExitCode;
 
+use camera::CameraSettings;
 use config::{Part, Registered};
 use messages::robot::{Drill, Order, Report};
-use perception::{CameraSettings, Sighting};
+use perception::Sighting;
 use robot::{Body, Robot};
 use scene::Scene;
 use serde::{Deserialize, Serialize};

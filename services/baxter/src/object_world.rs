@@ -1,10 +1,10 @@
 //! The objects around the robot: their locations, and grasps.
 
+use crate::camera::Standing;
 use manipulation::gripper::{self, Gripper};
 use manipulation::pose_array::{from_array, to_array};
 use manipulation::{Limb, ObjectPose};
 use nalgebra::Isometry3;
-use perception::Standing;
 use scene::Scene;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,7 @@
 //! Behaviour of the robot on its topics: pure, so that the arm can be tested without processes.
 
 use crate::assembly::Assembly;
+use crate::camera::Camera;
 use crate::fingers::{Event, Fingers};
 use crate::object_world::{HandedOver, ObjectWorld, Whereabouts};
 use crate::servo::{Servo, Target};
@@ -10,7 +11,7 @@ use manipulation::{Joints, Limb};
 use messages::robot::{
     Drill, DrillKind, JointCommand, JointMode, JointTrajectoryPoint, Order, Report,
 };
-use perception::{Camera, Sighting};
+use perception::Sighting;
 use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 use std::collections::VecDeque;

@@ -1,8 +1,8 @@
 //! `[simulated]` of `arm.toml`: the simulated Baxter.
 
+use crate::camera::CameraSettings;
 use config::{Check, Section};
 use diagnostics::Fields;
-use perception::CameraSettings;
 use service::Span;
 
 /// The simulated Baxter.

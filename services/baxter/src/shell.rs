@@ -2,6 +2,7 @@
 
 use crate::settings::Simulated;
 use crate::{BaxterNode, Config, In, Out};
+use baxter_driver::RobotSide;
 use config::Settings;
 use messages::robot::Drill;
 use messages::topics::{self, robot};
@@ -10,7 +11,6 @@ use preflight::ArmSetup;
 use service::bus::{EncodedWriter, PortError, Reader};
 use service::exit::Failure;
 use service::lifecycle::Environment;
-use service::robot_topics::RobotSide;
 use service::service_loop::{Context, Program, Shell};
 
 /// The simulated robot as a program.

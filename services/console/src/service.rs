@@ -94,7 +94,7 @@ impl Console {
         let (limits, is_live_possible) = limits(settings.console.viewers_max);
         let history = History::start(paths).map_err(failed("history's thread"))?;
         let in_force = settings.scene_file().text.clone();
-        let (socket, lock) = (paths.control_socket(), scenes_lock(settings));
+        let (socket, lock) = (paths.control_socket(), scenes_lock(settings, study.is_some()));
         let desk = Desk::new(socket, in_force, lock, language::word_findings);
         let scenes = Arc::new(Scenes::start(desk).map_err(failed("scene editor's thread"))?);
         let session = random_secret().map_err(failed("session"))?;
@@ -112,7 +112,7 @@ impl Console {
             settings: page_settings(settings, study.is_some()),
             urdf: settings.robot_files().urdf.text.clone(),
             voice_dir: settings.voice_dir(&paths.run()),
-            study: page_study::files(settings, paths),
+            study: page_study::files(settings, paths)?,
         });
         bridge::supervisor::watch(paths, &app, restart_inbox, commands)
             .map_err(failed("supervisor's thread"))?;
@@ -126,8 +126,8 @@ impl Console {
 }
 
 /// Why scenes are not changed from the page, if they are not.
-fn scenes_lock(settings: &Settings) -> Option<String> {
-    let why = match (settings.study.enabled, settings.console.edit_scenes) {
+fn scenes_lock(settings: &Settings, has_study: bool) -> Option<String> {
+    let why = match (has_study, settings.console.edit_scenes) {
         (true, _) => {
             "a study is enabled, and its scene is part of it; help: set study.enabled = false"
         }

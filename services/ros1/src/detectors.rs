@@ -5,11 +5,12 @@ use crate::settings::Ros1Objects;
 use crate::subscription::{Sink, Subscription};
 use crate::types as ros;
 use ::ros::clock::StampClock;
+use ::ros::detector::{Detector, Hypothesis, Reported};
 use ::ros::detectors::Labels;
 use ::ros::wire::{Message, RosTime};
 use config::Settings;
 use messages::Sighting;
-use perception::{Detector, Frame, Hypothesis, Reported};
+use perception::Frame;
 use service::Time;
 use service::client::random_number;
 use std::sync::{Arc, Mutex};
@@ -171,8 +172,9 @@ fn report_unused(topic: &str, detector: &mut Detector) {
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
+    use ::ros::detector::Label;
     use ::ros::wire::Field;
-    use perception::{Change, Detection, Label, Look};
+    use perception::{Change, Detection, Look};
 
     /// Bytes that genpy has written.
     fn bytes(hex: &str) -> Vec<u8> {

@@ -7,7 +7,7 @@ use crate::types::{
 };
 use config::Settings;
 use messages::Sighting;
-use perception::{Detector, Hypothesis, Reported, UnusedCounts};
+use ros::detector::{Detector, Hypothesis, Reported, UnusedCounts};
 use service::client::random_number;
 
 /// A message that holds all that one image shows.

@@ -2,12 +2,14 @@
 
 mod driver;
 mod gripper;
+mod robot_side;
 mod settings;
 #[cfg(test)]
 mod tests;
 mod topics;
 
 pub use driver::BaxterDriver;
+pub use robot_side::RobotSide;
 pub use settings::Baxter;
 
 use arm_driver::{Configured, Driver};

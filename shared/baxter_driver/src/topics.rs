@@ -10,7 +10,8 @@ use messages::robot::{
 use messages::topics::robot;
 use service::bus::{Bus, PortError, Reader, Writer};
 use service::exit::Failure;
-use service::robot_topics::{readers, writers};
+
+use crate::robot_side::{readers, writers};
 
 /// The robot's topics as the arm uses them; pairs are left and right.
 #[derive(Debug)]

@@ -23,7 +23,6 @@ mod schema;
 mod services;
 mod snapshot;
 mod speech;
-pub mod study;
 
 #[cfg(test)]
 mod tests;
@@ -51,7 +50,6 @@ pub use crate::schema::{SectionSchema, schemas};
 pub use crate::services::{Restart, ServiceConfig};
 pub use crate::snapshot::{SNAPSHOT_FILE, WORDS_FILE};
 pub use crate::speech::{Microphone, MicrophoneMode, Recogniser, Speech, Voice};
-pub use crate::study::Study;
 
 use crate::resolved::Resolved;
 
@@ -66,8 +64,6 @@ pub struct Settings {
     pub speech: Speech,
     /// The arm.
     pub arm: Arm,
-    /// The user study.
-    pub study: Study,
     /// The web page.
     pub console: Console,
     /// The scene; after `preflight`, every object has a place that the arm can reach.

@@ -12,7 +12,7 @@ use toml::Value;
 use crate::files::{FILE_BYTES_MAX, Files, names, one_of, read_text};
 use crate::part::{self, Check, sections};
 use crate::resolved::Resolved;
-use crate::{Settings, arm, console, dialogue, group, services, snapshot, speech, study};
+use crate::{Settings, arm, console, dialogue, group, services, snapshot, speech};
 
 /// Result of examining a configuration, before a verdict: further checks may add to the report.
 #[derive(Debug)]
@@ -93,8 +93,6 @@ pub(crate) fn check(
         arm_is_right &= f.is_right();
         arm
     });
-    let study = fields
-        .table("study", |f| part::with_tables("study", f, |f| study::read(f, &dialogue.planner)));
     let console = fields.table("console", |f| part::with_tables("console", f, console::read));
     part::read_sections(&mut fields, measured.is_some());
     fields.finish();
@@ -119,7 +117,7 @@ pub(crate) fn check(
             snapshot::read_durations(node, &dialogue, &scene, &source, &mut report)
         });
         let resolved = Resolved { tree, scene: file, robot, snapshot: None, warnings: Vec::new() };
-        Settings { group, dialogue, speech, arm, study, console, scene, durations, resolved }
+        Settings { group, dialogue, speech, arm, console, scene, durations, resolved }
     });
     Examined { settings, report, arm_is_right }
 }

@@ -7,13 +7,12 @@ use diagnostics::{Diagnostic, Node, Report, Source, Table, TextFile};
 use crate::files::RobotFiles;
 
 /// The core's sections, each with its shipped file, which holds the defaults.
-pub(crate) const CORE: [(&str, &str); 6] = [
+pub(crate) const CORE: [(&str, &str); 5] = [
     ("group", include_str!("../../../config/group.toml")),
     ("dialogue", include_str!("../../../config/dialogue.toml")),
     ("speech", include_str!("../../../config/speech.toml")),
     ("arm", include_str!("../../../config/arm.toml")),
     ("console", include_str!("../../../config/console.toml")),
-    ("study", include_str!("../../../config/study.toml")),
 ];
 
 /// The core's defaults.

@@ -4,7 +4,7 @@ use diagnostics::{Fields, Report, schema_of};
 use serde_json::Value as Json;
 
 use crate::part::{defaults, sections};
-use crate::{arm, console, dialogue, group, part, services, speech, study};
+use crate::{arm, console, dialogue, group, part, services, speech};
 
 /// A section of the configuration with the schema of its values.
 #[derive(Clone, Debug)]
@@ -40,7 +40,6 @@ fn read(name: &str, f: &mut Fields<'_>) {
         "dialogue" => drop(dialogue::read(f)),
         "speech" => drop(speech::read(f)),
         "arm" => drop(arm::read(f, false)),
-        "study" => drop(study::read(f, "lookahead")),
         "console" => drop(console::read(f)),
         _ => part::read_contents(name, f),
     }

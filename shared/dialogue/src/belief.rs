@@ -121,14 +121,6 @@ impl Belief {
         ObjectId::from(first)
     }
 
-    /// Shannon entropy, bits: 0 when certain, `log2 |I|` when every object is alike.
-    pub fn entropy_bits(&self) -> f64 {
-        let log_sum = self.log_sum();
-        let present = self.log.iter().map(|l| l - log_sum).filter(|l| l.is_finite());
-        let nats: f64 = present.map(|l| -l.exp() * l).sum();
-        (nats / std::f64::consts::LN_2).max(0.0)
-    }
-
     /// The probabilities in units of 10⁻¹², rounded: equal for beliefs that differ by rounding
     /// errors alone, so that they can be counted, or decided upon, as one.
     pub fn key(&self) -> Vec<i64> {

@@ -88,8 +88,8 @@ mod tests {
     use vocabulary::{Action, Actions, Costs, Mode, Params, Rng};
 
     use super::*;
-    use crate::testing::{random_scene, scene_of};
-    use crate::{DecisionProblem, ModelUser, Step, evaluate, registry};
+    use crate::testing::{drawn, random_scene, scene_of};
+    use crate::{DecisionProblem, Step, evaluate, registry};
 
     const ALL: [Actions; 3] = [
         Actions { mode: Mode::Remote, attribute: true, which: false, choice: false },
@@ -182,7 +182,8 @@ mod tests {
     /// Also among the alternatives.
     fn drive(problem: &DecisionProblem<'_>, planner: &str, seed: u64, label: &str) {
         let mut planner = registry::planner(planner).unwrap();
-        let mut user = ModelUser::wanting_any(problem.model, seed);
+        let mut rng = Rng::new(seed);
+        let wanted = rng.below(problem.model.objects()).into();
         let mut belief = Belief::uniform(problem.model.hypotheses());
         let allowed = problem.questions();
         for step in 0..100 {
@@ -194,7 +195,7 @@ mod tests {
                 }
             }
             let Action::Ask(question) = decision.action else { return };
-            let answer = user.answer(problem.model, question);
+            let answer = drawn(&mut rng, problem.model, question, wanted);
             belief.update(problem.model, question, &answer.reading(problem.model));
         }
         panic!("{label} asks for ever");

@@ -148,7 +148,8 @@ mod tests {
             let denied =
                 Reading { excluded: vec![vec![word]], doubt: unsure, ..Reading::default() };
             by_denial.update(&model, Question::None, &denied);
-            [by_word, by_answer, by_denial].map(|belief| belief.entropy_bits())
+            [by_word, by_answer, by_denial]
+                .map(|belief| belief.probabilities().iter().map(|p| -p * p.log2()).sum::<f64>())
         };
         let steps: Vec<[f64; 3]> = (0..=10).map(|n| entropy(f64::from(n) / 10.0)).collect();
         for pair in steps.windows(2).take(8) {

@@ -1,10 +1,10 @@
 //! Scenes and readings for the tests of this crate.
 
-use scene::{ObjectId, Perceived, Reading, Response, Scene};
+use scene::{ObjectId, Perceived, Question, Reading, Response, Scene};
 use serde_json::{Value as Json, json};
 use vocabulary::{Costs, Durations, Rng};
 
-use crate::Model;
+use crate::{Answer, Model};
 
 pub(crate) fn scene(text: &str) -> Scene {
     let json: Json = serde_json::from_str(text).unwrap();
@@ -62,6 +62,13 @@ pub(crate) fn random_scene(
 pub(crate) fn heard(scene: &Scene, words: &[&str], response: Response) -> Reading {
     let base = words.iter().map(|word| scene.word_named(word).unwrap()).collect();
     Reading { base, response, ..Reading::default() }
+}
+
+/// An answer of a user who wants that object, drawn with the probabilities that the model expects.
+pub(crate) fn drawn(rng: &mut Rng, model: &Model, question: Question, wanted: ObjectId) -> Answer {
+    let answers = Answer::possible(model, question);
+    let chances = answers.iter().map(|answer| answer.probability(model, question, wanted));
+    rng.index(chances).map_or(Answer::Silence, |index| answers[index])
 }
 
 pub(crate) fn everyone(count: usize) -> impl Iterator<Item = ObjectId> {

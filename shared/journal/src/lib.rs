@@ -31,13 +31,12 @@
 //! been written (the other services' journals may know of them); a last frame of which a whole
 //! sector was lost after the sync, or both of whose lengths are damaged, looks torn.
 //!
-//! Errors do not name the file; the caller knows it. Data for people is kept as [`lines`].
+//! Errors do not name the file; the caller knows it.
 
 mod error;
 mod file;
 mod frame;
 mod header;
-pub mod lines;
 mod lock;
 mod rotate;
 mod scan;

@@ -5,7 +5,6 @@ use std::path::Path;
 use command_line::Outcome;
 use command_line::configuration;
 use command_line::output::Output;
-use command_line::scene_file;
 use manipulation::{Cuboid, Limb, ObjectPose, Phase, PlanSettings, Robot, Timeline, plan_pick};
 use preflight::ArmSetup;
 use scene::Scene;
@@ -13,6 +12,7 @@ use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 
 use crate::args::ArmPlotArgs;
+use crate::scene_file;
 
 mod figure;
 

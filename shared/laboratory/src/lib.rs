@@ -25,6 +25,7 @@ mod planning;
 mod replay;
 mod robot;
 mod scene;
+pub mod scene_file;
 mod servos;
 mod study;
 mod truthful_user;

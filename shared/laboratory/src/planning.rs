@@ -2,7 +2,6 @@
 
 use command_line::args::ConfigArgs;
 use command_line::configuration;
-use command_line::scene_file;
 use setup::DialogueSettings;
 use std::path::Path;
 
@@ -16,6 +15,7 @@ use vocabulary::{Actions, Announce, Costs, Language, Mode, Params};
 
 use crate::args::{GroundArgs, PlanArgs, ProblemArgs};
 use crate::batch::{Calibrator, Decider, Grounder, Problem};
+use crate::scene_file;
 
 /// Default planner without an option and a configuration.
 const PLANNER: &str = "lookahead";

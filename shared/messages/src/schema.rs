@@ -5,7 +5,7 @@
 //! every topic and each open requires it. Schemas are derived: those of structs by `wire_struct`,
 //! those of postcard payloads from their `Deserialize` implementation.
 
-use crate::definition::{Definition, json_schema};
+use crate::definition::Definition;
 use crate::layout::Layout;
 #[doc(hidden)]
 pub use serde_reflection;
@@ -85,13 +85,6 @@ pub fn payload_fields(types: Result<Registry, Error>) -> Vec<Field> {
     }
 }
 
-/// Returns the description of a payload.
-#[doc(hidden)]
-pub fn payload_definition(name: &str, types: Result<Registry, Error>) -> Definition {
-    // Types that cannot be traced fail the golden file's test.
-    Definition::JsonSchema(json_schema(name, &types.unwrap_or_default()))
-}
-
 /// Derives the schemas of payloads of variable size, for topics with messages of one's own, from
 /// their `Deserialize` implementations. The enums inside are listed, innermost first:
 ///
@@ -123,7 +116,8 @@ macro_rules! payloads {
 
             fn definition() -> $crate::definition::Definition {
                 let types = $crate::schema::traced!($payload [$($enum),*]);
-                $crate::schema::payload_definition(Self::NAME, types)
+                // Types that cannot be traced fail the golden file's test.
+                $crate::definition::Definition::Payload(types.unwrap_or_default())
             }
 
             fn layout() -> Option<$crate::layout::Layout> {

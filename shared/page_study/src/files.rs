@@ -3,14 +3,15 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use journal::lines::{self, Lines};
+use safe_files::read_folder;
 use user_study::{Entry, FILE_ENDING, Participant};
+
+use crate::lines::Lines;
 
 /// Everybody, in the order in which they came; torn ends are left out.
 pub(super) fn read(folder: &Path) -> Result<Vec<Participant>, String> {
     let of = |path: &Path, error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-    let files =
-        lines::read_folder(folder, FILE_ENDING).map_err(|(path, error)| of(&path, &error))?;
+    let files = read_folder(folder, FILE_ENDING).map_err(|(path, error)| of(&path, &error))?;
     user_study::people(files).map_err(|(path, error)| of(&path, &error))
 }
 

@@ -14,6 +14,7 @@
 mod command;
 mod files;
 mod http;
+mod lines;
 mod planner_switch;
 mod section;
 mod study_controller;
@@ -65,33 +66,41 @@ struct Study {
 /// # Errors
 /// The data of a participant cannot be read, or there is no thread for the study.
 pub fn open(settings: &Settings, paths: &GroupPaths) -> Result<Option<Box<dyn Part>>, Failure> {
-    if !settings.study.enabled {
+    let study = settings.part::<user_study::Study>()?;
+    if !study.enabled {
         return Ok(None);
     }
-    let folder = folder(settings, paths);
+    let folder = folder(&study, paths);
     let people = files::read(&folder).map_err(|why| Failure::new(Exit::Storage, why))?;
     let policy = std::env::current_exe().map(|own| own.with_file_name("whichone-policy"));
     let switch = policy.and_then(|policy| PlannerSwitch::start(paths.control_socket(), policy));
     let switch = switch
         .map_err(|error| Failure::new(Exit::NotReached, format!("study's thread: {error}")))?;
-    let protocol = settings.study.protocol.clone();
+    let protocol = study.protocol_with(&settings.dialogue.planner);
     Ok(Some(Box::new(Study {
         controller: StudyController::new(protocol, paths.name().to_string(), people),
         files: Files::in_folder(folder),
         switch,
-        fault_ms: 1e3 * settings.study.fault.as_secs_f64(),
+        fault_ms: 1e3 * study.fault.as_secs_f64(),
         requested: None,
         trouble: None,
     })))
 }
 
 /// Returns the files of all studies that were conducted with these settings.
-pub fn files(settings: &Settings, paths: &GroupPaths) -> Box<dyn page_part::Files> {
-    Box::new(http::Results(folder(settings, paths)))
+///
+/// # Errors
+/// The section of studies is invalid.
+pub fn files(
+    settings: &Settings,
+    paths: &GroupPaths,
+) -> Result<Box<dyn page_part::Files>, Failure> {
+    let study = settings.part::<user_study::Study>()?;
+    Ok(Box::new(http::Results(folder(&study, paths))))
 }
 
-fn folder(settings: &Settings, paths: &GroupPaths) -> PathBuf {
-    settings.study.data_dir.clone().unwrap_or_else(|| paths.study())
+fn folder(study: &user_study::Study, paths: &GroupPaths) -> PathBuf {
+    study.data_dir.clone().unwrap_or_else(|| paths.study())
 }
 
 impl Part for Study {

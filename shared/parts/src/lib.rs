@@ -12,7 +12,7 @@ pub type Program = Result<fn() -> ExitCode, &'static str>;
 
 macro_rules! parts {
     (programs: $($program:ident)*; others: $($other:ident)*) => {
-        static PARTS: &[&config::Part] = &[$(&$program::PART,)* $(&$other::PART,)*];
+        static PARTS: &[&config::Part] = &[$(&$other::PART,)* $(&$program::PART,)*];
         static PROGRAMS: &[(&str, Program)] = &[$((stringify!($program), $program::PROGRAM),)*];
     };
 }
@@ -28,6 +28,7 @@ parts! {
         baxter
         ros1;
     others:
+        user_study
         model_reader
 }
 

@@ -4,6 +4,7 @@ mod invalid;
 mod reference;
 mod restarts;
 mod schemas;
+mod study;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -3,8 +3,6 @@
 //! This crate is pure: no IO, no clock, no threads. Positions are metres in frame `base`, angles
 //! radians, times those of the machine's monotonic clock.
 
-mod camera;
-mod detector;
 mod estimate;
 mod rotation;
 mod sighting;
@@ -13,8 +11,7 @@ mod tracker;
 #[cfg(test)]
 mod tests;
 
-pub use camera::{Camera, CameraSettings, Standing};
-pub use detector::{Detector, Hypothesis, Label, Pose, Reported, Unused, UnusedCounts};
 pub use estimate::Estimate;
+pub use rotation::Rotation;
 pub use sighting::{Change, Detection, Frame, Look, Refusal, Sighting};
 pub use tracker::{Hiding, Live, Settings, Tracker};

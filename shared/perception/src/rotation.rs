@@ -3,11 +3,11 @@
 
 /// A rotation; the columns are the axes of the rotated frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rotation([[f64; 3]; 3]);
+pub struct Rotation([[f64; 3]; 3]);
 
 impl Rotation {
     /// Returns the rotation by roll, pitch and yaw about fixed axes, radians.
-    pub(crate) fn from_rpy(rpy: [f64; 3]) -> Self {
+    pub fn from_rpy(rpy: [f64; 3]) -> Self {
         let [(sr, cr), (sp, cp), (sy, cy)] = rpy.map(f64::sin_cos);
         Self([
             [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
@@ -18,7 +18,7 @@ impl Rotation {
 
     /// Returns the rotation of a quaternion x, y, z, w of any length; no rotation for length 0, as
     /// in messages without one.
-    pub(crate) fn from_quaternion(quaternion: [f64; 4]) -> Self {
+    pub fn from_quaternion(quaternion: [f64; 4]) -> Self {
         let length = quaternion.iter().map(|part| part * part).sum::<f64>().sqrt();
         if length == 0.0 {
             return Self::from_rpy([0.0; 3]);
@@ -32,7 +32,7 @@ impl Rotation {
     }
 
     /// Returns the rotation `first` followed by this one.
-    pub(crate) fn after(&self, first: &Self) -> Self {
+    pub fn after(&self, first: &Self) -> Self {
         let Self(b) = first;
         Self(self.0.map(|row| {
             std::array::from_fn(|column| (0..3).map(|k| row[k] * b[k][column]).sum::<f64>())
@@ -40,17 +40,17 @@ impl Rotation {
     }
 
     /// Rotates a vector.
-    pub(crate) fn turn(&self, vector: [f64; 3]) -> [f64; 3] {
+    pub fn turn(&self, vector: [f64; 3]) -> [f64; 3] {
         self.0.map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum::<f64>())
     }
 
     /// Returns the rotation of the x axis about the vertical, radians.
-    pub(crate) fn yaw(&self) -> f64 {
+    pub fn yaw(&self) -> f64 {
         self.0[1][0].atan2(self.0[0][0])
     }
 
     /// Returns the variances along the axes, given the covariance before the rotation.
-    pub(crate) fn variances(&self, covariance: &[[f64; 3]; 3]) -> [f64; 3] {
+    pub fn variances(&self, covariance: &[[f64; 3]; 3]) -> [f64; 3] {
         self.0.map(|row| {
             let terms = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
             terms.map(|(i, j)| row[i] * covariance[i][j] * row[j]).sum()

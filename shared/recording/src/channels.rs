@@ -1,10 +1,11 @@
 //! The channels of a recording: every topic of the group, and the picture.
 
-use messages::definition::{Definition, json_schema};
+use messages::definition::Definition;
 use messages::topics::{self, Topic};
 use serde_reflection::{Registry, Tracer, TracerConfig};
 
 use crate::foxglove::{FrameTransforms, JointStates, Log, RawAudio, SceneUpdate};
+use crate::json_schema::json_schema;
 
 /// A channel in the form in which MCAP describes it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -148,8 +149,9 @@ pub fn all() -> Vec<Channel> {
 fn of_topic(topic: &Topic) -> Channel {
     let (schema_encoding, schema, definition) = match (topic.definition)() {
         Definition::Ros2Msg(text) => (ROS2MSG, format!("whichone/msg/{}", topic.payload), text),
-        Definition::JsonSchema(schema) => {
-            (JSONSCHEMA, format!("whichone.{}", topic.payload), schema.to_string())
+        Definition::Payload(types) => {
+            let schema = json_schema(topic.payload, &types).to_string();
+            (JSONSCHEMA, format!("whichone.{}", topic.payload), schema)
         }
     };
     let is_state = topic.history == 1;

@@ -20,6 +20,7 @@ pub mod foxglove;
 mod frames;
 pub mod group_reader;
 pub mod journals;
+mod json_schema;
 pub mod list;
 pub mod live;
 mod log_lines;

@@ -2,9 +2,9 @@
 
 use config::{Check, one_of};
 use diagnostics::{Fields, suggestion};
-use perception::Label;
 use serde_json::json;
 
+use crate::detector::Label;
 use crate::is_name;
 
 /// What identifiers of detectors stand for.

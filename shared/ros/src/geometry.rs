@@ -77,7 +77,7 @@ impl From<[f64; 7]> for Pose {
     }
 }
 
-impl From<&Pose> for perception::Pose {
+impl From<&Pose> for crate::detector::Pose {
     fn from(Pose { position: p, orientation: q }: &Pose) -> Self {
         Self { position: [p.x, p.y, p.z], orientation: [q.x, q.y, q.z, q.w] }
     }

@@ -1,6 +1,7 @@
 //! What the parts for ROS 1 and ROS 2 share: names, settings of detectors, and the messages that both have.
 
 pub mod clock;
+pub mod detector;
 pub mod detectors;
 pub mod geometry;
 pub mod wire;

@@ -10,7 +10,7 @@
 //! | atomic replacement of files | `draft.rs` |
 //! | files and folders that a user names for output | `output.rs` |
 //! | older versions of a file | `older.rs` |
-//! | opening of regular files for reading | `regular.rs` |
+//! | opening of regular files for reading, and the texts of a folder | `regular.rs` |
 
 mod draft;
 pub mod folders;
@@ -26,5 +26,5 @@ pub use draft::{
 };
 pub use older::{absent_is_fine, make_room, suffixed};
 pub use output::{OutputFolder, check_new_output, write_new_output, write_output};
-pub use regular::{open_regular, read_private, read_regular};
+pub use regular::{open_regular, read_folder, read_private, read_regular};
 pub use temporary::TemporaryFolder;

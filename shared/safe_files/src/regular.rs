@@ -1,9 +1,9 @@
-//! Opening of files for reading.
+//! Reading of files.
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io;
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rustix::fs::OFlags;
 use rustix::process::geteuid;
@@ -57,6 +57,32 @@ fn judge(found: &Metadata) -> io::Result<()> {
     Err(io::Error::new(io::ErrorKind::InvalidData, what))
 }
 
+/// Returns the files with an extension in a folder, by name, with their texts; empty if the folder
+/// does not exist.
+///
+/// # Errors
+/// The file that cannot be read, and why.
+pub fn read_folder(
+    folder: &Path,
+    ending: &str,
+) -> Result<Vec<(PathBuf, String)>, (PathBuf, io::Error)> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries.map_err(|error| (folder.to_owned(), error))?,
+    };
+    let mut files: Vec<PathBuf> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|found| found == ending))
+        .collect();
+    files.sort();
+    let read = |path: PathBuf| match fs::read_to_string(&path) {
+        Ok(text) => Ok((path, text)),
+        Err(error) => Err((path, error)),
+    };
+    files.into_iter().map(read).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use std::fs::Permissions;
@@ -106,5 +132,18 @@ mod tests {
         assert_eq!(open_regular(&file).unwrap_err().kind(), io::ErrorKind::NotFound);
         fs::write(&file, "x").unwrap();
         assert_eq!(read_regular(&file).unwrap(), "x");
+    }
+
+    #[test]
+    fn folder_of_texts_is_read_by_extension_and_may_be_missing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("A.jsonl");
+        assert!(read_folder(&folder.path().join("none"), "jsonl").unwrap().is_empty());
+        fs::write(folder.path().join("B.csv"), "other").unwrap();
+        fs::write(&path, "one\n").unwrap();
+        let files = read_folder(folder.path(), "jsonl").unwrap();
+        assert_eq!(files, [(path.clone(), "one\n".to_owned())]);
+        fs::write(&path, b"\xff\n").unwrap();
+        assert_eq!(read_folder(folder.path(), "jsonl").unwrap_err().0, path);
     }
 }

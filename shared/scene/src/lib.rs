@@ -37,7 +37,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod ambiguity;
 mod by_place;
 mod check;
 mod describe;

@@ -386,27 +386,6 @@ proptest! {
 }
 
 #[test]
-fn ambiguous_scenes_are_told() {
-    assert_eq!(shipped(BOWLS).ambiguities(), [] as [&str; 0]);
-    assert_eq!(shipped(TOOLS).ambiguities(), [] as [&str; 0]);
-    let json = json!({"noun": "mug", "values": {
-        "kind": ["mug", "cup"], "color": ["orange", "red"], "fruit": ["Orange"],
-    }, "objects": [
-        {"name": "a", "attributes": {"kind": "mug", "color": "red"}},
-        {"name": "b", "attributes": {"kind": "mug", "color": "red"}},
-        {"name": "c", "attributes": {"kind": "cup"}},
-    ]});
-    let scene = Scene::from_json("s", &json).expect("a scene");
-    let found = scene.ambiguities();
-    let told = |part: &str| found.iter().any(|line| line.contains(part));
-    assert!(told("\"mug\" is the noun of the scene and a value of `kind`"), "{found:#?}");
-    assert!(told("\"orange\" stands for values of `color` and `fruit`"), "{found:#?}");
-    assert!(told("`c` has no `color`"), "{found:#?}");
-    assert!(told("no attribute tells `b` from `a`"), "{found:#?}");
-    assert_eq!(found.len(), 4, "{found:#?}");
-}
-
-#[test]
 fn names_of_a_value_are_replaced_as_whole_words() {
     let scene = shipped(BOWLS);
     let attributes = scene.attributes().iter().flat_map(|attribute| &attribute.values);

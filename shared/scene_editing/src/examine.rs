@@ -11,6 +11,7 @@ use scene::{Scene, WordFindings, WordProblem};
 use serde::Serialize;
 
 use crate::ObjectEntry;
+use crate::ambiguity::ambiguities;
 
 /// The configuration in which a scene is used.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -94,7 +95,7 @@ pub fn misunderstood(
     let table = Table::parse(&file.text, &source, &mut Report::default());
     let table = table.unwrap_or_else(|| Table::empty(source));
     let diagnostic = |WordProblem { key, what, help }| table.diagnostic(key, what, help);
-    let mut all = scene.ambiguities();
+    let mut all = ambiguities(scene);
     all.extend(warnings);
     (problems.into_iter().map(diagnostic).collect(), all)
 }

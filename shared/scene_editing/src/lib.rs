@@ -13,7 +13,9 @@
 //! | a new scene file | `template.rs` |
 //! | scene files of a configuration | `folder.rs` |
 //! | problems, and where the arm reaches | `examine.rs` |
+//! | objects and words that a person cannot name clearly | `ambiguity.rs` |
 
+mod ambiguity;
 mod document;
 mod edit;
 mod examine;

@@ -69,7 +69,6 @@ pub mod logging;
 pub mod printable;
 pub mod program;
 mod reducer;
-pub mod robot_topics;
 pub mod service_loop;
 pub mod status;
 pub mod storage;

@@ -1,6 +1,6 @@
 //! Data dictionary: the meaning of every column.
 
-use config::study::{Item, Kind};
+use crate::{Item, Kind};
 
 /// A column of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
+use crate::Protocol;
 use crate::Verdict;
 use crate::plan::Step;
-use config::study::Protocol;
 
 /// Version of the lines' form.
 pub const VERSION: u32 = 1;

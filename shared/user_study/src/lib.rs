@@ -9,7 +9,8 @@
 //!
 //! | contents | file |
 //! |---|---|
-//! | protocol of the lab: texts, design, questionnaire | `config::study` |
+//! | protocol of the lab: texts, design, questionnaire | `protocol.rs`, `item.rs` |
+//! | section of the configuration | `settings.rs` |
 //! | order of policies and choice of objects | `plan.rs` |
 //! | events, as lines of a journal | `event.rs` |
 //! | a participant and one interaction, folded | `participant.rs`, `trial.rs` |
@@ -21,12 +22,15 @@
 pub mod charts;
 mod dictionary;
 mod event;
+mod item;
 mod paired;
 mod participant;
 mod pictures;
 mod plan;
+mod protocol;
 mod report;
 mod rows;
+mod settings;
 mod stats;
 #[cfg(test)]
 mod testing;
@@ -35,18 +39,20 @@ mod tests;
 mod trial;
 mod verdict;
 
-pub use config::study::{Design, Item, Kind, Objects, Order, Protocol};
 pub use dictionary::{Column, INTERACTIONS, PARTICIPANTS, dictionary};
 pub use event::{
     Asked, Begun, Drawn, Ending, Entry, Event, FILE_ENDING, Fault, FormatError, Heard, Source,
     VERSION, parse,
 };
+pub use item::{Item, Kind};
 pub use paired::{Paired, paired};
 pub use participant::{Participant, Stage, Status, people};
 pub use pictures::pictures;
 pub use plan::{Counts, Step, draw, new_id, plan};
+pub use protocol::{Design, Objects, Order, Protocol};
 pub use report::{Answers, Group, Report, report};
 pub use rows::{Tables, tables, to_json};
+pub use settings::{PART, Study};
 pub use stats::{Interval, Mean, wilson};
 pub use trial::{End, Trial};
 pub use verdict::Verdict;

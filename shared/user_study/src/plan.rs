@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use vocabulary::Rng;
 
-use config::study::{Design, Objects, Order, Protocol};
+use crate::{Design, Objects, Order, Protocol};
 
 /// Letters and digits that cannot be confused.
 const LETTERS: &[u8] = b"ACDEFGHJKMNPQRTUVWXY34679";

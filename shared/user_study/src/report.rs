@@ -9,7 +9,7 @@ use crate::paired::{Paired, paired};
 use crate::participant::{Participant, Status};
 use crate::rows::items;
 use crate::trial::{End, Trial};
-use config::study::{Item, Kind};
+use crate::{Item, Kind};
 
 /// Interactions with one policy, or with all.
 #[derive(Clone, Debug, PartialEq)]

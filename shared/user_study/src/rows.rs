@@ -4,13 +4,13 @@ use std::borrow::Cow;
 
 use serde_json::{Map, Value as Json, json};
 
+use crate::Item;
 use crate::Verdict;
 use crate::dictionary::{INTERACTIONS, PARTICIPANTS, dictionary};
 use crate::distinct;
 use crate::event::Source;
 use crate::participant::Participant;
 use crate::trial::{End, Trial};
-use config::study::Item;
 use vocabulary::wall_time;
 
 /// The files of an export.

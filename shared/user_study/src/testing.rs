@@ -6,8 +6,8 @@ use crate::Verdict;
 use crate::event::{Asked, Begun, Drawn, Ending, Entry, Event, Heard, Source, VERSION};
 use crate::participant::Participant;
 use crate::plan::{Counts, plan};
-use config::study::{Design, Objects, Order, Protocol};
-use config::study::{Item, Kind};
+use crate::{Design, Objects, Order, Protocol};
+use crate::{Item, Kind};
 
 pub(crate) fn protocol() -> Protocol {
     let item = |id: &str, kind, points| Item {

@@ -2,12 +2,12 @@
 
 use serde_json::json;
 
+use crate::Protocol;
 use crate::Verdict;
 use crate::event::{Drawn, Entry, Event, Fault, parse};
 use crate::participant::{Participant, Stage, Status};
 use crate::testing::{finished, interaction, journal, protocol};
 use crate::{report, tables, to_json};
-use config::study::Protocol;
 
 fn text(entries: &[Entry]) -> String {
     entries.iter().map(Entry::to_line).collect()

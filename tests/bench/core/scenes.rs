@@ -1,6 +1,7 @@
 //! Scenes to measure on: those of the configuration, and random ones of any size.
 
-use dialogue::{Belief, DecisionProblem, Model, ModelUser};
+use dialogue::{Belief, DecisionProblem, Model};
+use evaluation::simulation::users::ModelUser;
 use scene::{Attribute, ObjectId, Perceived, Scene};
 use serde_json::{Map, Value, json};
 use vocabulary::{Actions, Mode, Params, Rng};

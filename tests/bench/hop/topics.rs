@@ -193,7 +193,7 @@ impl Schema for Blob<'_> {
     }
 
     fn definition() -> Definition {
-        Definition::JsonSchema(serde_json::json!({ "type": "object" }))
+        Definition::Payload(Default::default())
     }
 }
 

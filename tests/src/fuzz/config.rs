@@ -17,6 +17,7 @@ thread_local! {
 }
 
 fn folder() -> TempDir {
+    parts::register();
     let folder = tempfile::tempdir().expect("a folder");
     for part in ["scenes", "profiles"] {
         fs::create_dir(folder.path().join(part)).expect("a new folder");

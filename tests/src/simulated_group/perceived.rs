@@ -1,8 +1,9 @@
 //! Many dialogues about perceived objects, each beside the same dialogue about a certain scene.
 
+use baxter::camera::{Camera, CameraSettings, Standing};
 use config::Settings;
 use messages::Outcome;
-use perception::{Camera, CameraSettings, Change, Detection, Standing};
+use perception::{Change, Detection};
 use scene::{ObjectId, Perceived};
 use service::{Span, Time};
 use vocabulary::Rng;

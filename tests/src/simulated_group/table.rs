@@ -1,7 +1,7 @@
 //! Objects on a simulated table under a simulated camera, while people put, move and take them.
 
+use baxter::camera::{Camera, CameraSettings, Standing};
 use messages::{PickOutcome, PickPhase, Sighting, TableView, WorldView};
-use perception::{Camera, CameraSettings, Standing};
 use scene::{Object, ObjectId, Perceived, Question, Scene};
 use service::{Span, Time};
 

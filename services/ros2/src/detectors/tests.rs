@@ -4,7 +4,8 @@ use crate::types::{
     PoseWithCovariance, Quaternion, TransformStamped,
 };
 use messages::{Change, Look};
-use perception::{Frame, Label};
+use perception::Frame;
+use ros::detector::Label;
 
 fn detector(labels: &[(&str, &str)]) -> TopicDetector {
     let label = |(id, object): &(&str, &str)| Label {

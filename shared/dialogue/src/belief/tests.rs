@@ -255,7 +255,6 @@ fn zero_stays_zero_and_the_rest_goes_on() {
     let p = belief.probabilities();
     assert_eq!(p[0], 0.0);
     assert!((p[1] - 0.25).abs() < 1e-15 && (p[2] - 0.75).abs() < 1e-15);
-    assert!((belief.entropy_bits() - 0.811_278_124_459_132_8).abs() < 1e-12);
     let restored = Belief::from_log(belief.log_weights().to_vec()).unwrap();
     assert_eq!(restored, belief);
 }
@@ -279,11 +278,10 @@ fn what_is_no_belief_is_refused() {
 #[test]
 fn summaries_of_a_belief() {
     let belief = Belief::uniform(8);
-    assert!((belief.entropy_bits() - 3.0).abs() < 1e-12);
     assert_eq!(belief.most_likely(), ObjectId(0), "the first of equals");
     assert_eq!(belief.len(), 8);
     let sure = Belief::from_probabilities(&[0.0, 7.0]).unwrap();
-    assert_eq!((sure.entropy_bits(), sure.most_likely()), (0.0, ObjectId(1)));
+    assert_eq!(sure.most_likely(), ObjectId(1));
     assert_eq!(sure.probability(ObjectId(1)), 1.0);
 }
 

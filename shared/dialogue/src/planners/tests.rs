@@ -4,10 +4,10 @@ use vocabulary::{Actions, Costs, Mode, Params, Reliability, Rng};
 
 use super::*;
 use crate::testing::{
-    bowls, everyone, heard, markers, random_durations, random_scene, scene, scene_of, tools,
+    bowls, drawn, everyone, heard, markers, random_durations, random_scene, scene, scene_of, tools,
     uniform,
 };
-use crate::{Answer, Model, ModelUser, Planner, Step, evaluate, registry};
+use crate::{Answer, Model, Planner, Step, evaluate, registry};
 
 const YES_NO: Actions =
     Actions { mode: Mode::Remote, attribute: true, which: false, choice: false };
@@ -104,14 +104,14 @@ fn a_kept_policy_is_the_policy() {
     assert!(!kept.fits(&DecisionProblem { actions: OPEN, ..problem }));
     let mut second = Optimal::default();
     second.adopt(kept);
-    let mut user = ModelUser::new(ObjectId(4), 91);
-    let mut belief = uniform;
+    let (mut rng, mut belief) = (Rng::new(91), uniform);
     for step in (0..8).map(|step| Step { interaction: 0, step }) {
         let decision = second.decide(&problem, &belief, step);
         assert_eq!(decision, first.decide(&problem, &belief, step));
         assert_eq!(decision, Optimal::default().decide(&problem, &belief, step));
         let Action::Ask(question) = decision.action else { break };
-        belief.update(&model, question, &user.answer(&model, question).reading(&model));
+        let answer = drawn(&mut rng, &model, question, ObjectId(4));
+        belief.update(&model, question, &answer.reading(&model));
     }
     assert_eq!(second.table(), first.table(), "nothing had to be solved again");
 }
@@ -223,7 +223,8 @@ fn every_planner_ends_every_dialogue_within_the_action_space() {
 
 fn drive(planner: &mut dyn Planner, problem: &DecisionProblem<'_>, seed: u64, label: &str) {
     let model = problem.model;
-    let mut user = ModelUser::wanting_any(model, seed);
+    let mut rng = Rng::new(seed);
+    let wanted = rng.below(model.objects()).into();
     let mut belief = Belief::uniform(model.objects());
     for step in 0..200 {
         let decision = planner.decide(problem, &belief, Step { interaction: seed, step });
@@ -231,7 +232,7 @@ fn drive(planner: &mut dyn Planner, problem: &DecisionProblem<'_>, seed: u64, la
         match decision.action {
             Action::Pick(_) | Action::Wait => return,
             Action::Ask(question) => {
-                let answer = user.answer(model, question);
+                let answer = drawn(&mut rng, model, question, wanted);
                 belief.update(model, question, &answer.reading(model));
             }
         }

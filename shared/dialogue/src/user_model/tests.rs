@@ -3,8 +3,8 @@ use vocabulary::{Action, Actions, Costs, Rng};
 
 use super::*;
 use crate::Answer;
-use crate::testing::bowls;
-use crate::{Belief, DecisionProblem, Model, ModelUser, Step, registry};
+use crate::testing::{bowls, drawn};
+use crate::{Belief, DecisionProblem, Model, Step, registry};
 
 fn yes_no(response: Response) -> Reading {
     Reading { response, ..Reading::default() }
@@ -60,11 +60,12 @@ fn acquaintance(params: Params, seed: u64) -> Person {
     let mut person = Person::new(model.params());
     let mut rng = Rng::new(seed);
     for interaction in 0..20 {
-        let mut user = ModelUser::wanting_any(&truth, seed * 100 + interaction);
+        let mut draws = Rng::new(seed * 100 + interaction);
+        let wanted = draws.below(6).into();
         let mut joint = Joint::new(Belief::uniform(6), person);
         for _ in 0..8 {
             let question = Question::Point(rng.below(6).into());
-            let answer = user.answer(&truth, question);
+            let answer = drawn(&mut draws, &truth, question, wanted);
             joint.person_mut().see_answer(answer != Answer::Silence);
             joint.update_mixture(&model, &[(1.0, question, answer.reading(&model))]);
         }
@@ -99,7 +100,8 @@ fn success(planner: &str, seed: u64) -> f64 {
     let mut right = 0;
     const DIALOGUES: u64 = 120;
     for interaction in 0..DIALOGUES {
-        let mut user = ModelUser::wanting_any(&truth, seed + interaction);
+        let mut draws = Rng::new(seed + interaction);
+        let wanted = draws.below(6).into();
         let mut joint = Joint::new(Belief::uniform(6), person);
         let picked = (0..60).find_map(|step| {
             let step = Step { interaction, step };
@@ -107,14 +109,14 @@ fn success(planner: &str, seed: u64) -> f64 {
                 Action::Pick(object) => Some(object),
                 Action::Wait => Some(ObjectId(99)),
                 Action::Ask(question) => {
-                    let answer = user.answer(&truth, question);
+                    let answer = drawn(&mut draws, &truth, question, wanted);
                     joint.person_mut().see_answer(answer != Answer::Silence);
                     joint.update_mixture(&model, &[(1.0, question, answer.reading(&model))]);
                     None
                 }
             }
         });
-        right += u64::from(picked == Some(user.wanted()));
+        right += u64::from(picked == Some(wanted));
         person = joint.person().clone();
     }
     right as f64 / DIALOGUES as f64

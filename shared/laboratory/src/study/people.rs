@@ -35,11 +35,12 @@ fn folder(paths: &GroupPaths, args: &ReportArgs) -> Result<PathBuf, Failure> {
         return Ok(folder.clone());
     }
     let settings = configuration::settings_in_force(paths, &args.config)?;
-    Ok(settings.study.data_dir.unwrap_or_else(|| paths.study()))
+    let study = settings.part::<user_study::Study>()?;
+    Ok(study.data_dir.unwrap_or_else(|| paths.study()))
 }
 
 fn read(folder: &Path) -> Result<Vec<Participant>, Failure> {
-    let files = journal::lines::read_folder(folder, user_study::FILE_ENDING)
+    let files = safe_files::read_folder(folder, user_study::FILE_ENDING)
         .map_err(|(path, error)| Failure::file(&path, &error))?;
     let people = user_study::people(files).map_err(|(path, error)| {
         Failure::new(Exit::Storage, format!("{}: {error}", path.display()))

@@ -3,11 +3,11 @@ use std::path::{Path, PathBuf};
 
 use command_line::Outcome;
 use command_line::output::Output;
-use command_line::scene_file;
 use dialogue::Model;
 use laboratory::args::WhichArm;
 use laboratory::batch::{self, Decider, Grounder, Problem};
 use laboratory::described_arm::DescribedArm;
+use laboratory::scene_file;
 use manipulation::Limb;
 use serde_json::{Value as Json, json};
 use service::exit::Exit;

@@ -1,12 +1,12 @@
 //! Journals fold again.
 
 use super::fixture::{Change, Settings, answer, at, heard, manager, settings, settings_with};
-use super::{person, pointing, prior, seconds};
+use super::{person, seconds};
 use crate::manager::{Cause, Interaction, Record, State, refold};
 use crate::{Answer, Belief, Model, Posterior};
 use scene::{Intent, ObjectId, Question, Reading, Response};
 use vocabulary::ids::PromptId;
-use vocabulary::{ActKind, PickOutcome, Rng};
+use vocabulary::{ActKind, PickOutcome, PriorObjects, Rng};
 
 /// Whole dialogues with a person who sometimes lies, falls silent, speaks late or starts over: the
 /// journal folds again to the same states. Also with gestures, or if deliveries or users count.
@@ -14,8 +14,8 @@ use vocabulary::{ActKind, PickOutcome, Rng};
 fn journals_fold_again_bit_for_bit() {
     let cases: [(Change, u64); 5] = [
         (|_| {}, 8),
-        (pointing::with_gestures, 2),
-        (prior::by_history, 2),
+        (|it| it.gestures = true, 2),
+        (|it| it.prior.objects = PriorObjects::History, 2),
         (person::learning, 1),
         (seconds::pointing, 1),
     ];

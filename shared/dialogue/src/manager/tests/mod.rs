@@ -1,31 +1,25 @@
 //! The manager's rules, on the shipped six bowls.
 
 mod concede;
+mod conversations;
 mod correct;
 mod fixture;
 mod fold;
 mod hand_over;
 mod held_back;
-mod kept;
 mod long;
 mod misfit;
 mod people;
 mod person;
-mod pointing;
-mod prior;
-mod put_back;
-mod queue;
 mod reconfigure;
-mod relate;
 mod replies;
-mod rules;
 mod seconds;
 mod turns;
 mod words;
 
 use super::{Cause, State};
 use fixture::{answer, asked, at, belief, heard, manager, reply, settings, settings_with};
-use scene::{Intent, ObjectId, Question, Reading, Response};
+use scene::{ObjectId, Question, Response};
 use vocabulary::Outcome;
 use vocabulary::ids::{PromptId, UtteranceSeq};
 
@@ -76,26 +70,4 @@ fn silence_repeats_the_same_question_and_then_ends_the_interaction() {
     }
     state = manager.next(&state, &Cause::Silence, at(100));
     assert_eq!(state.ended.map(|ended| ended.outcome), Some(Outcome::Abandoned));
-}
-
-#[test]
-fn starting_over_forgets_what_was_said() {
-    let mut manager = manager();
-    let state = asked(&mut manager);
-    let informed = reply(&mut manager, &state, answer(Response::Yes));
-    let over = Reading { intent: Intent::StartOver, ..Reading::default() };
-    let over = reply(&mut manager, &informed, over);
-    assert_eq!(belief(&over), belief(&state));
-}
-
-#[test]
-fn silences_are_counted_from_the_last_utterance() {
-    let mut manager = manager();
-    let mut state = asked(&mut manager);
-    for n in 0..manager.turns().repeats_max {
-        state = manager.next(&state, &Cause::Silence, at(10 + u64::from(n)));
-    }
-    let heard = reply(&mut manager, &state, answer(Response::Yes));
-    let silent = manager.next(&heard, &Cause::Silence, at(100));
-    assert!(silent.open.is_some(), "the person is still there");
 }

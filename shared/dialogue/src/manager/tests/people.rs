@@ -27,7 +27,13 @@ fn from(name: &str, cause: Cause) -> Cause {
 
 /// Plays an interaction with a person who errs with that probability, to the delivery of the wanted
 /// object, and returns its course.
-fn talk(manager: &mut Manager, state: &State, name: &str, errs: f64, seed: u64) -> Vec<Record> {
+pub(super) fn talk(
+    manager: &mut Manager,
+    state: &State,
+    name: &str,
+    errs: f64,
+    seed: u64,
+) -> Vec<Record> {
     let model = manager.model().clone();
     let mut rng = Rng::new(seed);
     let wanted = ObjectId::from(rng.below(6));

@@ -1,14 +1,14 @@
 //! Knowledge about the person is kept from one interaction to the next.
 
 use super::fixture::{
-    Settings, answer, asked, at, delivered, heard, manager, reply, settings, settings_with, typed,
+    Settings, answer, asked, at, heard, manager, reply, settings, settings_with, typed,
 };
+use super::people::talk;
 use crate::manager::{Cause, Manager, State};
-use crate::{Answer, Model};
-use scene::{ObjectId, Reading, Response};
+use scene::{Reading, Response};
 use vocabulary::ids::PromptId;
 use vocabulary::time::{Span, Time};
-use vocabulary::{ActKind, PickOutcome, Rng};
+use vocabulary::{ActKind, PickOutcome};
 
 pub(super) fn learning(settings: &mut Settings) {
     settings.planner = "information-seeking";
@@ -18,47 +18,16 @@ fn learning_manager() -> Manager {
     settings_with(learning).manager()
 }
 
-/// The state after one interaction with a user who answers wrongly with that probability.
-fn talk(manager: &mut Manager, state: &State, errs: f64, seed: u64) -> State {
-    let settings = settings();
-    let model = Model::new(&settings.scene, settings.params);
-    let mut rng = Rng::new(seed);
-    let wanted = ObjectId::from(rng.below(6));
-    let mut state = state.clone();
-    let mut seq = state.applied.0;
-    let mut say = |state: &State, reading| {
-        seq += 1;
-        heard(seq, state.act.prompt, reading)
-    };
-    for turn in 0..60 {
-        let cause = match (&state.open, state.act.pick) {
-            (None, _) if turn > 0 => break,
-            (None, _) => say(&state, Reading::default()),
-            (Some(_), Some((pick, _))) => delivered(pick),
-            (Some(_), None) => {
-                let truth = Answer::truthful(&model, state.act.question, wanted);
-                let wrong = rng.uniform() < errs;
-                let said = match truth {
-                    Answer::Yes if wrong => Answer::No,
-                    Answer::No if wrong => Answer::Yes,
-                    said => said,
-                };
-                say(&state, said.reading(&model))
-            }
-        };
-        state = manager.next(&state, &cause, at(state.applied.0 + 1));
-    }
-    assert_eq!(state.open, None, "seed {seed}: it comes to an end");
-    state
-}
-
 #[test]
 fn a_user_who_errs_is_expected_to_err_in_the_next_interaction_too() {
     let mut manager = learning_manager();
     let (_, at_first) = manager.user_params(&manager.first()).unwrap();
     let mut expected = |errs: f64| {
         let mut state = manager.first();
-        (0..12).for_each(|seed| state = talk(&mut manager, &state, errs, seed));
+        for seed in 0..12 {
+            let talk = talk(&mut manager, &state, "", errs, seed);
+            state = talk.last().expect("an end").state.clone();
+        }
         manager.user_params(&state).expect("it learns").1
     };
     let careful = expected(0.0);

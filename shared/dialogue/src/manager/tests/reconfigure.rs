@@ -8,7 +8,7 @@ use super::fold::{random_dialogue, shift};
 use crate::Model;
 use crate::manager::NAMES_MAX;
 use crate::manager::{Cause, Manager, Record, State, Utterance, refold_since};
-use scene::{Intent, Reading, Response, Role, UnknownWord};
+use scene::{Intent, Measure, Reading, Reference, Relation, Response, Role, UnknownWord};
 use vocabulary::ids::{PickId, PromptId};
 use vocabulary::{ActKind, Outcome, PickOutcome};
 
@@ -201,4 +201,38 @@ fn memory_of_an_interaction_is_bounded() {
     assert!(open.forgotten > 0 && open.evidence.len() <= NAMES_MAX / 4, "{}", open.evidence.len());
     let again = manager.next(&state, &Cause::Reconfigured, at(1000));
     assert_eq!(again.open.unwrap().forgotten, open.forgotten);
+}
+
+#[test]
+fn what_was_said_outlives_the_objects_that_it_was_said_of() {
+    let refers = Reference::Relation(Relation::Nth(Measure::Left, 2));
+    let state = first(&mut manager(), Reading { refers, ..Reading::default() });
+    let likeliest = |state: &State| state.open.as_ref().unwrap().belief().most_likely();
+    assert_eq!(settings().scene.object(likeliest(&state)).name, "metal");
+    let changed = bowls(&["white3"], "");
+    let after = changed.manager().next(&state, &Cause::Reconfigured, at(2));
+    let p = probability(&changed, &after, "metal");
+    assert!(p > 0.97, "{p}, though it is the first from the left now");
+}
+
+#[test]
+fn history_survives_another_scene() {
+    let mut manager = manager();
+    let state = first(&mut manager, words(&["clear"]));
+    let (pick, _) = state.act.pick.expect("sure enough");
+    let state = manager.next(&state, &delivered(pick), at(2));
+    let there = markers().manager().next(&state, &Cause::Reconfigured, at(99));
+    let back = manager.next(&there, &Cause::Reconfigured, at(100));
+    assert_eq!((back.history.of("clear"), back.history), (1, state.history));
+}
+
+/// Turning absence on under an open interaction gives every belief one entry more.
+#[test]
+fn absence_may_be_switched_while_a_question_stands() {
+    let state = asked(&mut manager());
+    let mut absent = settings_with(|it| it.prior.absent = 0.1).manager();
+    let on = absent.next(&state, &Cause::Reconfigured, at(2));
+    assert_eq!((belief(&on).len(), on.act.kind), (7, ActKind::Ask));
+    let off = manager().next(&on, &Cause::Reconfigured, at(3));
+    assert_eq!(belief(&off), belief(&state));
 }

@@ -1,22 +1,10 @@
 //! Words that are certain.
 
-use super::fixture::{first, manager, settings, settings_with, text, words};
+use super::fixture::{first, manager, settings_with, words};
 use super::reconfigure::bowls;
 use crate::rendering;
 use scene::{Doubt, Reading};
 use vocabulary::ActKind;
-
-#[test]
-fn a_unique_description_is_fetched_without_a_question() {
-    let state = first(&mut manager(), words(&["clear"]));
-    let (_, object) = state.act.pick.expect("a pick");
-    assert_eq!(settings().scene.object(object).name, "clear");
-    assert_eq!(
-        (state.act.kind, text(&state).as_str()),
-        (ActKind::Pick, "I will get the clear bowl.")
-    );
-    assert_eq!(state.open.expect("an open interaction").questions, 0);
-}
 
 /// A bowl without a place.
 const STORED: &str = r#"
@@ -34,14 +22,6 @@ fn an_object_without_a_place_is_named_and_not_promised() {
     assert_eq!(settings.scene.object(object).name, "stored");
     let text = rendering::text(&settings.scene, &state.act);
     assert!(text.starts_with("You mean the ") && text.contains("clear"), "{text}");
-}
-
-#[test]
-fn words_that_fit_two_objects_ask() {
-    for said in [&["metallic"][..], &["small"], &["white", "plastic"]] {
-        let state = first(&mut manager(), words(said));
-        assert_eq!(state.act.kind, ActKind::Ask, "{said:?}");
-    }
 }
 
 /// A recogniser that is not sure is asked back as ever, and so is everyone in the paper's language.

@@ -17,15 +17,17 @@
 //! crate, as the grounding service does it.
 
 mod manners;
+mod model_user;
 mod recogniser;
 mod timing;
 mod wording;
 
-use dialogue::{Answer, Errors, Model};
+use dialogue::{Answer, Model};
 use scene::{ObjectId, Question, Scene};
 use vocabulary::{Announce, Rng};
 
 pub use manners::Manners;
+pub use model_user::{Errors, ModelUser};
 pub use timing::{Habits, TimedKind, TimedUser, TimedUtterance, Timing};
 
 use crate::simulation::draw::{Stream, chance, one_of, stream};
@@ -215,7 +217,7 @@ impl From<UserKind> for Policy {
 /// A [`Policy`] with drawn traits.
 #[derive(Clone, Debug)]
 enum Traits {
-    Model(dialogue::ModelUser),
+    Model(ModelUser),
     Truthful { by_value: f64 },
     Unreliable { answers: f64, random: f64 },
     Noisy { wrong: f64, silent: f64 },
@@ -235,9 +237,9 @@ impl SimulatedUser {
     /// A user who wants that object.
     pub fn new(policy: Policy, wanted: ObjectId, mut rng: Rng) -> Self {
         let traits = match policy {
-            Policy::Model => Traits::Model(dialogue::ModelUser::new(wanted, rng.next_u64())),
+            Policy::Model => Traits::Model(ModelUser::new(wanted, rng.next_u64())),
             Policy::Erring(errors) => {
-                Traits::Model(dialogue::ModelUser::erring(wanted, rng.next_u64(), errors))
+                Traits::Model(ModelUser::erring(wanted, rng.next_u64(), errors))
             }
             Policy::Truthful { by_value } => Traits::Truthful { by_value },
             Policy::Unreliable { answers, random } => Traits::Unreliable { answers, random },

@@ -3,11 +3,10 @@
 
 use std::collections::VecDeque;
 
+use perception::{Change, Detection, Look, Sighting};
 use scene::{Role, Scene, StableHash};
 use vocabulary::Rng;
 use vocabulary::time::{Span, Time};
-
-use crate::{Change, Detection, Look, Sighting};
 
 /// Name under which the camera reports.
 const SOURCE: &str = "simulated camera";

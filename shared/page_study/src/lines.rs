@@ -5,11 +5,11 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A file of lines, open for its only writer.
 #[derive(Debug)]
-pub struct Lines {
+pub(crate) struct Lines {
     file: File,
     bytes: u64,
 }
@@ -19,7 +19,7 @@ impl Lines {
     ///
     /// # Errors
     /// It exists already, or cannot be written.
-    pub fn create(path: &Path) -> io::Result<Self> {
+    pub(crate) fn create(path: &Path) -> io::Result<Self> {
         let folder = path.parent().unwrap_or(Path::new("."));
         fs::create_dir_all(folder)?;
         let file = OpenOptions::new().append(true).create_new(true).open(path)?;
@@ -32,7 +32,7 @@ impl Lines {
     ///
     /// # Errors
     /// It cannot be read or written, or is not UTF-8.
-    pub fn open(path: &Path) -> io::Result<(Self, String)> {
+    pub(crate) fn open(path: &Path) -> io::Result<(Self, String)> {
         let mut file = OpenOptions::new().read(true).append(true).open(path)?;
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes)?;
@@ -51,7 +51,7 @@ impl Lines {
     ///
     /// # Panics
     /// If `lines` does not end with a line end: a bug.
-    pub fn append(&mut self, lines: &str) -> io::Result<()> {
+    pub(crate) fn append(&mut self, lines: &str) -> io::Result<()> {
         assert!(lines.ends_with('\n'), "only whole lines are appended");
         let written = self.file.write_all(lines.as_bytes()).and_then(|()| self.file.sync_data());
         if let Err(error) = written {
@@ -62,32 +62,6 @@ impl Lines {
         self.bytes += lines.len() as u64;
         Ok(())
     }
-}
-
-/// Returns the files with an extension in a folder, by name, with their texts; empty if the folder
-/// does not exist.
-///
-/// # Errors
-/// The file that cannot be read, and why.
-pub fn read_folder(
-    folder: &Path,
-    ending: &str,
-) -> Result<Vec<(PathBuf, String)>, (PathBuf, io::Error)> {
-    let entries = match fs::read_dir(folder) {
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-        entries => entries.map_err(|error| (folder.to_owned(), error))?,
-    };
-    let mut files: Vec<PathBuf> = entries
-        .flatten()
-        .map(|entry| entry.path())
-        .filter(|path| path.extension().is_some_and(|found| found == ending))
-        .collect();
-    files.sort();
-    let read = |path: PathBuf| match fs::read_to_string(&path) {
-        Ok(text) => Ok((path, text)),
-        Err(error) => Err((path, error)),
-    };
-    files.into_iter().map(read).collect()
 }
 
 #[cfg(test)]
@@ -105,16 +79,7 @@ mod tests {
         let (mut lines, text) = Lines::open(&path).unwrap();
         assert_eq!(text, "one\ntwo\n");
         lines.append("four\n").unwrap();
-        let files = read_folder(path.parent().unwrap(), "jsonl").unwrap();
-        assert_eq!(files, [(path.clone(), "one\ntwo\nfour\n".to_owned())]);
-        safe_files::replace_private(&path, "gone\n").unwrap();
-        assert_eq!(fs::read_to_string(&path).unwrap(), "gone\n");
-        assert_eq!(read_folder(path.parent().unwrap(), "jsonl").unwrap().len(), 1);
-    }
-
-    #[test]
-    fn line_log_of_a_missing_folder_is_empty() {
-        assert!(read_folder(Path::new("/no/such/folder"), "jsonl").unwrap().is_empty());
+        assert_eq!(fs::read_to_string(&path).unwrap(), "one\ntwo\nfour\n");
     }
 
     #[test]
@@ -123,6 +88,5 @@ mod tests {
         let path = folder.path().join("A.jsonl");
         fs::write(&path, b"\xff\n").unwrap();
         assert_eq!(Lines::open(&path).unwrap_err().kind(), ErrorKind::InvalidData);
-        assert_eq!(read_folder(folder.path(), "jsonl").unwrap_err().0, path);
     }
 }

@@ -1,9 +1,8 @@
 //! The user whom the observation model assumes.
 
+use dialogue::{Answer, Model};
 use scene::{AttributeId, ObjectId, Question, ValueId};
 use vocabulary::{Announce, Rng};
-
-use crate::{Answer, Model};
 
 /// A person who answers with the probabilities of eq. (6) and (7): silent with `1 − p_l`, wrong
 /// with `ε`. Who may take a value for another one draws it once, and sticks to it. The same seed
@@ -132,7 +131,7 @@ mod tests {
     use vocabulary::{Actions, Mode, Params};
 
     use super::*;
-    use crate::testing::bowls;
+    use crate::simulation::testing::bowls;
 
     #[test]
     fn people_answer_with_the_models_probabilities() {

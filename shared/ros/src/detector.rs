@@ -5,8 +5,7 @@
 //! and leave covariances at zero. All of that is converted here, so that a [`Sighting`] has the
 //! names of the scene file and upright objects in frame `base`.
 
-use crate::rotation::Rotation;
-use crate::{Change, Detection, Frame, Look, Sighting};
+use perception::{Change, Detection, Frame, Look, Rotation, Sighting};
 
 /// Most unknown identifiers that are remembered, so that each is reported once.
 const UNKNOWN_MAX: usize = 64;

@@ -1,14 +1,14 @@
 //! A robot's topics as the robot has them: a simulated one, or a bridge to a real one. The arm's
 //! side is its own.
 
-use crate::Time;
-use crate::bus::{Bus, BusError, PortError, Reader, Writer};
 use messages::robot::{
     AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, EndpointState,
     JointCommand, JointState, JointTrajectoryPoint, Order, Report, SpeedRatio,
 };
 use messages::topics::robot;
 use messages::{Topic, WireMessage};
+use service::Time;
+use service::bus::{Bus, BusError, PortError, Reader, Writer};
 
 /// Readers of orders and writers of reports; pairs are left and right.
 #[derive(Debug)]
@@ -101,10 +101,7 @@ fn newest<T: WireMessage>(reader: &Reader<T>, take: impl FnOnce(T, Time)) -> Res
 }
 
 /// Opens the readers of a pair of topics.
-///
-/// # Errors
-/// As [`Bus::reader`].
-pub fn readers<T: WireMessage>(
+pub(crate) fn readers<T: WireMessage>(
     bus: &Bus,
     [left, right]: &[Topic; 2],
 ) -> Result<[Reader<T>; 2], BusError> {
@@ -112,10 +109,7 @@ pub fn readers<T: WireMessage>(
 }
 
 /// Opens the writers of a pair of topics.
-///
-/// # Errors
-/// As [`Bus::writer`].
-pub fn writers<T: WireMessage>(
+pub(crate) fn writers<T: WireMessage>(
     bus: &Bus,
     [left, right]: &[Topic; 2],
 ) -> Result<[Writer<T>; 2], BusError> {

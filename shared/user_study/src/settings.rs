@@ -3,22 +3,23 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use config::{Part, Registered, Section};
 use diagnostics::Fields;
 use serde_json::json;
 use vocabulary::PLANNERS;
 
-mod item;
-mod protocol;
+use crate::{Design, Item, Kind, Objects, Order, Protocol};
 
-pub use item::{Item, Kind};
-pub use protocol::{Design, Objects, Order, Protocol};
+/// The section of studies.
+pub static PART: Part =
+    Part { name: "study", service: None, sections: &[Registered::of::<Study>()] };
 
 /// A user study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
     /// The console offers the study.
     pub enabled: bool,
-    /// The protocol; its policies default to the configured planner.
+    /// The protocol, where no policies are the configured planner: see [`Study::protocol_with`].
     pub protocol: Protocol,
     /// Absence of a service after which an interaction is repeated.
     pub fault: Duration,
@@ -29,8 +30,33 @@ pub struct Study {
 /// Most questions of a questionnaire.
 const ITEMS_MAX: usize = 100;
 
-pub(crate) fn read(f: &mut Fields<'_>, configured_planner: &str) -> Study {
-    let protocol = Protocol {
+impl Section for Study {
+    const KEY: &'static [&'static str] = &["study"];
+    const FILE: Option<&'static str> = Some(include_str!("../../../config/study.toml"));
+
+    fn read(f: &mut Fields<'_>) -> Self {
+        Self {
+            protocol: protocol(f),
+            enabled: f.flag("enabled"),
+            fault: f.seconds("fault_s", 1.0..=600.0),
+            data_dir: f.absolute("data_dir"),
+        }
+    }
+}
+
+impl Study {
+    /// Returns the protocol, whose policies default to the configured planner.
+    pub fn protocol_with(&self, planner: &str) -> Protocol {
+        let mut protocol = self.protocol.clone();
+        if protocol.policies.is_empty() {
+            protocol.policies.push(planner.to_owned());
+        }
+        protocol
+    }
+}
+
+fn protocol(f: &mut Fields<'_>) -> Protocol {
+    Protocol {
         title: f.text("title"),
         consent: f.optional_text("consent").unwrap_or_default(),
         instructions: f.texts("instructions"),
@@ -39,22 +65,16 @@ pub(crate) fn read(f: &mut Fields<'_>, configured_planner: &str) -> Study {
         objects: f
             .choice("objects", &[("uniform", Objects::Uniform), ("balanced", Objects::Balanced)]),
         design: f.choice("design", &[("within", Design::Within), ("between", Design::Between)]),
-        policies: policies(f, configured_planner),
+        policies: policies(f),
         order: f.choice("order", &[("latin", Order::Latin), ("random", Order::Random)]),
         seconds_max: f.number("seconds_max", 10.0..=3600.0),
         show_belief: f.flag("show_belief"),
         keep_words: f.flag("keep_words"),
         questionnaire: questionnaire(f),
-    };
-    Study {
-        enabled: f.flag("enabled"),
-        protocol,
-        fault: f.seconds("fault_s", 1.0..=600.0),
-        data_dir: f.absolute("data_dir"),
     }
 }
 
-fn policies(f: &mut Fields<'_>, configured: &str) -> Vec<String> {
+fn policies(f: &mut Fields<'_>) -> Vec<String> {
     let policies = f.texts("policies");
     let known = PLANNERS;
     f.note("policies", || json!({ "items": { "enum": known }, "uniqueItems": true }));
@@ -65,7 +85,7 @@ fn policies(f: &mut Fields<'_>, configured: &str) -> Vec<String> {
             f.problem("policies", format!("names `{policy}` twice"), "name each policy once");
         }
     }
-    if policies.is_empty() { vec![configured.to_owned()] } else { policies }
+    policies
 }
 
 fn questionnaire(f: &mut Fields<'_>) -> Vec<Item> {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Item;
+use crate::Item;
 
 /// The protocol of a study. Every participant's journal holds the one that was in force.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
