@@ -235,7 +235,7 @@ pub(crate) fn response(
     let certain = !content.hedged && !content.alternatives;
     let described = !content.base.is_empty() || !content.excluded.is_empty();
     // A mere answer to nothing is known as one, so that it opens no dialogue.
-    let opens = matches!(asked, QuestionWords::Nothing);
+    let opens = asked.is_nothing();
     let is_mere = || !described && !names_thing(tags);
     let counts = |answer| !opens || matches!(answer, Answer::Yes | Answer::No) && is_mere();
     let answer = content.answers.standing(tags).filter(|(answer, _)| counts(*answer));

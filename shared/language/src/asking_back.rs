@@ -1,6 +1,5 @@
 //! Questions to the robot: "which ones are white", "what can you get me".
 
-use scene::Role;
 use words::Gap;
 
 use crate::tagger::Tag;
@@ -73,8 +72,7 @@ impl ClauseAnalysis<'_> {
         let place = rest.iter().position(|tag| tag.is(Class::Preposition));
         // "is the red book thick"
         let ends_in_value = || {
-            let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) || tag.is_role(Role::Kind);
-            let noun = rest.iter().position(is_noun);
+            let noun = rest.iter().position(Tag::is_noun);
             // "is it long or short"
             let says = |tag: &Tag<'_>| tag.is_value() || tag.is(Class::Or);
             noun.is_some_and(|at| at + 1 < rest.len() && rest[at + 1..].iter().all(says))

@@ -26,6 +26,11 @@ pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
 /// Words that the noun of a noun phrase may be followed by.
 const AFTER_NOUN: &[Class] = classes![Preposition Courtesy Filler Pointer];
 
+/// Returns whether a tag that is not resolved yet is the noun of a thing.
+fn is_noun_here(tag: &Tag<'_>) -> bool {
+    tag.is(Class::One) || tag.is_noun()
+}
+
 /// A tag and the tags next to it in the utterance.
 struct Place<'t, 'a> {
     tags: &'t [Tag<'a>],
@@ -135,21 +140,19 @@ impl<'a> Place<'_, 'a> {
     fn leaves_out(&self) -> bool {
         let rest = &self.tags[self.at + 1..];
         let phrase = &rest[..rest.iter().position(Tag::pauses).unwrap_or(rest.len())];
-        let is_noun = |tag: &Tag<'_>| tag.is_any(classes![Head One]) || tag.is_role(Role::Kind);
         phrase.iter().any(Tag::is_value)
-            && phrase.iter().any(is_noun)
+            && phrase.iter().any(is_noun_here)
             && !phrase.iter().any(Tag::is_unknown)
     }
 
     /// "the shirt draped over the chair", "the pen clipped to the drawer": how a thing is placed.
     fn is_participle(&self) -> bool {
         let word = self.tag().word;
-        let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) || tag.is_role(Role::Kind);
         let leads = |tag: &Tag<'_>| tag.is_any(classes![Preposition Landmark Destination]);
         self.tag().is_unknown()
             && word.len() > 4
             && (word.ends_with("ed") || word.ends_with("ing"))
-            && self.before().is_some_and(is_noun)
+            && self.before().is_some_and(Tag::is_noun)
             && self.after().is_some_and(leads)
     }
 
@@ -196,8 +199,7 @@ impl<'a> Place<'_, 'a> {
 
     /// "the … bowl".
     fn is_where_a_quality_belongs(&self) -> bool {
-        let is_noun = |tag: &Tag<'_>| tag.is_any(classes![Head One]) || tag.is_role(Role::Kind);
-        self.is_described() && self.after().is_some_and(is_noun)
+        self.is_described() && self.after().is_some_and(is_noun_here)
     }
 
     /// "the red …", "get me the …".

@@ -13,7 +13,7 @@ pub(crate) fn indifference(
     fates: &Fates,
     asked: QuestionWords<'_>,
 ) -> Option<usize> {
-    let answers = !matches!(asked, QuestionWords::Nothing);
+    let answers = !asked.is_nothing();
     let on_topic = clauses.iter().filter(|clause| clause.topic == Topic::On);
     on_topic.flat_map(|clause| clause.span.clone().map(move |at| (clause, at))).find_map(
         |(clause, at)| {

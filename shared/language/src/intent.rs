@@ -20,7 +20,7 @@ pub(crate) fn intent(
     asked: QuestionWords<'_>,
     code: bool,
 ) -> Intent {
-    let new = matches!(asked, QuestionWords::Nothing);
+    let new = asked.is_nothing();
     let says_nothing = content.base.is_empty() && content.excluded.is_empty();
     let spoken = if code { clauses.len().min(1) } else { clauses.len() };
     let commands = |class| clauses[..spoken].iter().any(|clause| commands(tags, clause, class));

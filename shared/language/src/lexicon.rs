@@ -3,9 +3,8 @@
 //! equally long ones the scene's.
 
 use std::borrow::Cow;
-use std::cell::LazyCell;
 use std::cmp::Reverse;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use scene::{AttributeId, Role, Scene, Value, WordId};
@@ -19,7 +18,7 @@ use crate::relation_words::by_quality;
 use crate::relations::{Form, forms, words};
 use crate::synonyms::{common_synonyms, is_thing};
 use crate::token_class::Class;
-use crate::vocabulary;
+use crate::vocabulary::{is_phrase, phrases};
 
 /// Letters of the shortest head of a compound, and of the part before it.
 const HEAD_LENGTH_MIN: usize = 3;
@@ -334,9 +333,6 @@ impl Lexicon {
         let values = || scene.attributes().iter().flat_map(|attribute| &attribute.values);
         let spoken: Vec<Vec<String>> =
             values().map(|value| words(&format!("{} {}", value.name, value.spoken))).collect();
-        // Few scenes have names of several parts.
-        let classed: LazyCell<HashSet<&str>> =
-            LazyCell::new(|| vocabulary::phrases().map(|(_, phrase)| phrase).collect());
         for value in values().filter(|value| value.role() != Role::Place) {
             let name = words(&value.name);
             let parts = name.iter().enumerate().filter(|_| name.len() > 1);
@@ -346,7 +342,7 @@ impl Lexicon {
                 let is_own = part.len() > 2
                     && owners == 1
                     && (is_last || !self.lookalikes.is_common(part))
-                    && !classed.contains(&**part);
+                    && !is_phrase(part);
                 let place = self.values.iter().position(|it| it.word == value.word);
                 if let Some(place) = place.filter(|_| is_own) {
                     self.add_inflected(vec![part.clone()], false, Meaning::Value(place));
@@ -397,7 +393,7 @@ impl Lexicon {
     }
 
     fn add_phrases(&mut self) {
-        for (class, phrase) in vocabulary::phrases() {
+        for (class, phrase) in phrases() {
             let weak = matches!(class, Class::WeakYes | Class::WeakNo) && phrase.contains(' ');
             let (phrase, closing) = match phrase.strip_suffix(" .") {
                 Some(phrase) => (phrase, true),

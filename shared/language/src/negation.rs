@@ -1,4 +1,4 @@
-//! Whether a "not" is an answer, and nothing else.
+//! What a "not" denies: the word after it, the answer alone, or nothing.
 
 use crate::clauses::Clause;
 use crate::tagger::{Tag, after};
@@ -19,6 +19,12 @@ pub(crate) fn is_rhetorical(tags: &[Tag<'_>], clause: &Clause, at: usize) -> boo
 
 fn is_verb(tag: &Tag<'_>) -> bool {
     tag.is_any(classes![Auxiliary Be])
+}
+
+/// "not the smaller one": what the word says is not so.
+pub(crate) fn is_denied(tags: &[Tag<'_>], at: usize) -> bool {
+    let mut lead = tags[..at].iter().rev().take_while(|tag| tag.is_any(classes![Determiner Not]));
+    !tags[at].pauses() && lead.any(|tag| tag.is(Class::Not))
 }
 
 /// "not that one", "it is not", "not right": nothing but the answer itself is denied.

@@ -47,7 +47,7 @@ pub(crate) fn objects<'a>(
     if base.is_empty() || content.alternatives || !base.is_sorted_by_key(|value| value.at) {
         return vec![base.clone()];
     }
-    let answers = !matches!(asked, QuestionWords::Nothing);
+    let answers = !asked.is_nothing();
     let joined = |list| joined(parts(tags, base, list), answers);
     let mut parts = joined(false);
     if parts.len() > 1 {

@@ -69,7 +69,7 @@ impl ParsedUtterance<'_> {
     /// bowls", "all the cars", "the socks, both of them".
     fn more_of_them(&self) -> Option<usize> {
         let request = self.intent == Intent::Inform
-            && matches!(self.asked, QuestionWords::Nothing)
+            && self.asked.is_nothing()
             && self.content.excluded.is_empty();
         let (first, last) = self.described().filter(|_| request)?;
         let lead = |tag: &&Tag<'_>| {
@@ -98,7 +98,7 @@ impl ParsedUtterance<'_> {
             "five" | "six" | "seven" | "eight" | "nine" | "ten" => Some(MORE_MAX),
             "all" if is_led || of_them.is_some() => {
                 let words: Vec<WordId> = self.content.base.iter().map(|it| it.word).collect();
-                let more = self.questions.described(&words).saturating_sub(1);
+                let more = self.questions.suited(&words, &[]).saturating_sub(1);
                 (1..=MORE_MAX).contains(&more).then_some(more)
             }
             _ => None,
@@ -127,7 +127,7 @@ impl ParsedUtterance<'_> {
     fn reading_of(&self, base: &[Asserted<'_>]) -> Reading {
         let (response, doubt) = self.response;
         // Without a question an answer must be alone: "great, thanks" and "okay, get it" are not.
-        let is_asked = !matches!(self.asked, QuestionWords::Nothing);
+        let is_asked = !self.asked.is_nothing();
         let may_answer = is_asked || response == Response::DoesNotMatter;
         let requests = self.clauses.iter().any(|clause| clause.requests);
         let is_mere = self.intent == Intent::Inform && self.refers == Reference::None && !requests;

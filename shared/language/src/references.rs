@@ -4,6 +4,7 @@
 use scene::{Reference, WordId};
 
 use crate::clauses::{Clause, Topic};
+use crate::negation::is_denied;
 use crate::question_words::QuestionWords;
 use crate::related::Related;
 use crate::tagger::{Tag, after, before};
@@ -26,14 +27,11 @@ pub(crate) fn reference(
 fn spoken_of(tags: &[Tag<'_>], clauses: &[Clause], asked: QuestionWords<'_>) -> Reference {
     // "again!"
     let bare = |tag: &Tag<'_>| tag.word == "again" || tag.is_any(classes![Filler Courtesy]);
-    if matches!(asked, QuestionWords::Nothing)
-        && tags.iter().any(|tag| tag.word == "again")
-        && tags.iter().all(bare)
-    {
+    if asked.is_nothing() && tags.iter().any(|tag| tag.word == "again") && tags.iter().all(bare) {
         return Reference::Same;
     }
     let again = tags.iter().any(|tag| tag.is_any(classes![Huh Repeat]) && tag.word == "again");
-    let new = matches!(asked, QuestionWords::Nothing) || again;
+    let new = asked.is_nothing() || again;
     let spoken = clauses.iter().filter(|clause| clause.topic != Topic::Off);
     let all = spoken.flat_map(|clause| clause.span.clone()).map(|at| refers(tags, at, new));
     all.fold(Reference::None, |before, next| match (before, next) {
@@ -57,12 +55,6 @@ fn refers(tags: &[Tag<'_>], at: usize, new: bool) -> Reference {
         "same" if tag.is_any(classes![Plain Yes]) && new && is_whole(tags, at) => Reference::Same,
         _ => Reference::None,
     }
-}
-
-/// "not the other one".
-fn is_denied(tags: &[Tag<'_>], at: usize) -> bool {
-    let mut lead = tags[..at].iter().rev().take_while(|tag| tag.is_any(classes![Determiner Not]));
-    !tags[at].pauses() && lead.any(|tag| tag.is(Class::Not))
 }
 
 /// "the other", "another mug", but not "another place" and "the other purple one".

@@ -7,6 +7,7 @@ use scene::{Measure, Relation, Role, WordId};
 use words::Tokens;
 
 use crate::clauses::{Clause, Topic};
+use crate::negation::is_denied;
 use crate::relation_words::{by_quality, first, ordinal, quality, relation_to, side};
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
@@ -80,7 +81,7 @@ impl Said<'_, '_> {
         if let Some(relation) = too_much(self.tags, at) {
             return self.alone(relation, at..at + 1);
         }
-        if self.is_denied(at) {
+        if is_denied(self.tags, at) {
             return None;
         }
         if self.tags[at].is_value() {
@@ -123,13 +124,6 @@ impl Said<'_, '_> {
         let words: Vec<&str> = words.collect();
         let last = words.iter().rposition(|word| *word == self.tags[at].last).unwrap_or(0);
         words[..=last].join(" ")
-    }
-
-    /// "not the smaller one".
-    fn is_denied(&self, at: usize) -> bool {
-        let lead = |tag: &&Tag<'_>| tag.is_any(classes![Determiner Not]);
-        let mut lead = self.tags[..at].iter().rev().take_while(lead);
-        !self.tags[at].pauses() && lead.any(|tag| tag.is(Class::Not))
     }
 
     /// "the lighter blue one": a shade of a colour.
@@ -267,21 +261,21 @@ impl Said<'_, '_> {
         let is_led = before(self.tags, at).is_some_and(|it| {
             it.is_any(classes![Determiner Possessive]) || it.is_value() && is_headed()
         });
-        let is_place = |next: &Tag<'_>| {
-            next.is_role(Role::Place) || next.is_unknown() || next.is_any(classes![Unlisted])
-        };
-        is_led && !after(self.tags, at).is_some_and(is_place)
+        is_led && !self.leads_to_place(at)
+    }
+
+    /// "the left shelf": of a place, known or not.
+    fn leads_to_place(&self, at: usize) -> bool {
+        after(self.tags, at).is_some_and(|next| {
+            next.is_role(Role::Place) || next.is_unknown() || next.is(Class::Unlisted)
+        })
     }
 
     /// "on the left", "at the back".
     fn on_side(&self, phrase: &str, at: usize) -> Option<Related> {
-        let is_place = |next: &Tag<'_>| {
-            next.is_role(Role::Place) || next.is_unknown() || next.is_any(classes![Unlisted])
-        };
-        let is_placed = after(self.tags, at).is_some_and(is_place);
         let is_row = !phrase.starts_with("from ") && !phrase.starts_with("right one");
         let measure = side(phrase).filter(|_| self.tags[at].is(Class::Ordinal) && is_row)?;
-        if is_placed {
+        if self.leads_to_place(at) {
             return None;
         }
         let is_more = before(self.tags, at).is_some_and(|before| before.word == "more");

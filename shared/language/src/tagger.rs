@@ -128,6 +128,11 @@ impl<'a> Tag<'a> {
             && begins_relation(self.word)
     }
 
+    /// Returns whether it is the noun of a thing.
+    pub(crate) fn is_noun(&self) -> bool {
+        self.is(Class::Head) || self.is_role(Role::Kind)
+    }
+
     pub(crate) fn is_unknown(&self) -> bool {
         matches!(self.sense, Sense::Unknown)
     }

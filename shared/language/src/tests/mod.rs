@@ -7,7 +7,7 @@ mod halting;
 mod own_words;
 mod readings;
 mod shapes;
-mod table;
+pub(crate) mod table;
 mod wordings;
 
 use std::sync::LazyLock;
