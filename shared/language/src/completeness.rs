@@ -130,9 +130,7 @@ fn is_open(tags: &[Tag<'_>]) -> bool {
         return false;
     }
     let lead = before.iter().rev().find(|tag| !is_modifier(tag) && !tag.is(Class::Plain));
-    let is_place = last.is(Class::Ordinal)
-        && before.iter().any(|tag| tag.is_any(classes![Preposition Destination]));
-    !is_place && lead.is_some_and(|lead| lead.is_any(classes![Determiner Possessive Quantifier]))
+    lead.is_some_and(|lead| lead.is_any(classes![Determiner Possessive Quantifier]))
 }
 
 /// "It is", "no it has": an answer after a yes alone ("yes it is").

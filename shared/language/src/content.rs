@@ -65,11 +65,4 @@ impl Content<'_> {
             None => self.excluded.push(group),
         }
     }
-
-    /// Retracts everything said so far.
-    pub(crate) fn clear(&mut self) {
-        self.base.clear();
-        self.excluded.clear();
-        self.answers.clear();
-    }
 }

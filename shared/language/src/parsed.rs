@@ -14,6 +14,14 @@ use crate::token_class::{Class, classes};
 pub const READINGS_MAX: usize = 4;
 /// Most further objects that "all" means, and most values in a question.
 const MORE_MAX: usize = 4;
+/// Numbers of further objects that words count; 0: as many as there are.
+const COUNTS: [(usize, &[&str]); 5] = [
+    (0, &["all"]),
+    (1, &["pair", "both", "two", "couple"]),
+    (2, &["three"]),
+    (3, &["four"]),
+    (MORE_MAX, &["five", "six", "seven", "eight", "nine", "ten"]),
+];
 /// Weight as a yes of a "maybe" that is not an answer, judged. That yes is doubted as well, so that
 /// it moves the odds little.
 const MAYBE_WEIGHT: f64 = 0.4;
@@ -87,21 +95,17 @@ impl ParsedUtterance<'_> {
             three[0].is(Class::Quantifier) && three[1].word == "of" && three[2].is(Class::It)
         });
         let count = count.or(of_them.map(|three| &three[0]))?;
-        match count.word {
+        let is_plural = |it: &Asserted<'_>| self.questions.is_plural(it.word);
+        match COUNTS.iter().find(|(_, words)| words.contains(&count.word))?.0 {
             // "a pair of scissors" is one thing.
-            "pair" => {
-                (!self.content.base.iter().any(|it| self.questions.is_plural(it.word))).then_some(1)
-            }
-            "both" | "two" | "couple" => Some(1),
-            "three" => Some(2),
-            "four" => Some(3),
-            "five" | "six" | "seven" | "eight" | "nine" | "ten" => Some(MORE_MAX),
-            "all" if is_led || of_them.is_some() => {
+            1 if count.word == "pair" && self.content.base.iter().any(is_plural) => None,
+            0 => {
                 let words: Vec<WordId> = self.content.base.iter().map(|it| it.word).collect();
                 let more = self.questions.suited(&words, &[]).saturating_sub(1);
-                (1..=MORE_MAX).contains(&more).then_some(more)
+                let is_all = is_led || of_them.is_some();
+                (is_all && (1..=MORE_MAX).contains(&more)).then_some(more)
             }
-            _ => None,
+            more => Some(more),
         }
     }
 
@@ -208,7 +212,6 @@ impl ParsedUtterance<'_> {
         );
         asked
             && *best == Reading { intent: Intent::Inform, ..Reading::default() }
-            && self.content.answers.is_empty()
             && self.tags.iter().any(|tag| tag.is(Class::Hedge))
     }
 }

@@ -161,16 +161,13 @@ impl Said<'_, '_> {
         let (mut to, mut group, mut at) = (Vec::new(), Vec::new(), from);
         while at < self.tags.len().min(from + 2 * PHRASE_MAX) {
             let tag = &self.tags[at];
-            let follows = at > from && tag.pauses();
             match tag.value() {
-                _ if follows => break,
                 Some(value) => group.push(value.word),
                 None if tag.is(Class::And) && !group.is_empty() && to.is_empty() => {
                     to.push(std::mem::take(&mut group));
                 }
                 None if tag.is_any(PHRASE) => {}
                 None if tag.is(Class::It) && at == from => return Some((to, at + 1)),
-                None if tag.is_unknown() || tag.is(Class::Unlisted) => return None,
                 None => break,
             }
             at += 1;
