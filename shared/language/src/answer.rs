@@ -100,13 +100,13 @@ pub(crate) fn answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> Option<Ans
         Class::WeakNo if is_bare(tags, clause) => Some(Answer::No),
         Class::Likely if is_bare(tags, clause) => Some(Answer::Yes),
         Class::Other if is_other_one(tags, clause, at) => Some(Answer::No),
-        Class::Ordinal if tags[at].word == "next" && is_other_one(tags, clause, at) => {
+        Class::Ordinal if WordSet::Next.has(tags[at].word) && is_other_one(tags, clause, at) => {
             Some(Answer::No)
         }
         Class::PutBack => Some(Answer::No),
         Class::Be | Class::Auxiliary if is_affirmed(tags, clause, at) => Some(Answer::Yes),
         // "the wrong spoon"
-        Class::WeakNo if tags[at].word == "wrong" => Some(Answer::No),
+        Class::WeakNo if WordSet::Wrong.has(tags[at].word) => Some(Answer::No),
         _ => None,
     }
 }
@@ -152,9 +152,9 @@ fn is_affirmed(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
 fn is_what(said: &[Tag<'_>]) -> bool {
     let [what, whose, ..] = said else { return false };
     // "what is in it" is a phrase
-    let phrase = what.is(Class::AskBack) && what.word == "what";
+    let phrase = what.is(Class::AskBack) && WordSet::Which.has(what.word);
     (what.is(Class::Question) || phrase)
-        && (whose.is_any(classes![It First Possessive Be]) || whose.word == "it")
+        && (whose.is_any(classes![It First Possessive Be]) || WordSet::It.has(whose.word))
 }
 
 /// "it is made of that", "it does have that", "it's in there", "it is one".
@@ -172,9 +172,9 @@ fn is_it(said: &[Tag<'_>]) -> bool {
 fn is_the_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     let said = &tags[at + 1..clause.span.end];
     let plain = !tags[clause.span.clone()].iter().any(Tag::is_value);
-    let the_one = said.windows(2).any(|pair| {
-        (pair[0].word == "the" || pair[0].is(Class::Possessive)) && pair[1].is(Class::Head)
-    });
+    let the_one = said
+        .windows(2)
+        .any(|pair| pair[0].is_any(classes![Determiner Possessive]) && pair[1].is(Class::Head));
     plain && the_one
 }
 

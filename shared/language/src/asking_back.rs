@@ -44,8 +44,9 @@ impl ClauseAnalysis<'_> {
 
     /// "what is the capital of France", but not "what can you offer me".
     pub(crate) fn asks_about_something_else(&self) -> bool {
-        let which = self.clause[0].word == "which";
-        let to_us = self.unknown == 1 && (which || self.clause.iter().any(|tag| tag.word == "me"));
+        let which = WordSet::OneOfThem.has(self.clause[0].word);
+        let to_us =
+            self.unknown == 1 && (which || self.clause.iter().any(|tag| WordSet::Me.has(tag.word)));
         self.unknown > 0
             && self.values == 0
             && !self.has(SCENE_NAMES)

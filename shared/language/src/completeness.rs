@@ -9,6 +9,7 @@ use words::{Tokens, normalise};
 use crate::reader::Reader;
 use crate::tagger::{Tag, tag};
 use crate::token_class::{Class, classes};
+use crate::word_sets::WordSet;
 
 /// How complete an utterance is, the most complete first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -118,7 +119,7 @@ fn is_open(tags: &[Tag<'_>]) -> bool {
         return true;
     }
     let follows = |class| before.last().is_some_and(|tag| tag.is(class));
-    if last.word == "me" && follows(Class::Fetch)
+    if WordSet::Person.has(last.word) && follows(Class::Fetch)
         || last.is(Class::Second) && follows(Class::Auxiliary)
     {
         return true;
@@ -135,10 +136,10 @@ fn is_open(tags: &[Tag<'_>]) -> bool {
 
 /// "It is", "no it has": an answer after a yes alone ("yes it is").
 fn begins_statement(words: &[&str], tags: &[Tag<'_>]) -> bool {
-    let [earlier @ .., "it" | "that" | "they" | "which", "is" | "has" | "was" | "are"] = words
-    else {
+    let [earlier @ .., it, is] = words else { return false };
+    if !WordSet::It.has(it) || !WordSet::Is.has(is) {
         return false;
-    };
+    }
     earlier.is_empty() || !tags.first().is_some_and(|first| first.is(Class::Yes))
 }
 

@@ -65,4 +65,11 @@ impl Content<'_> {
             None => self.excluded.push(group),
         }
     }
+
+    /// Retracts everything said so far.
+    pub(crate) fn clear(&mut self) {
+        self.base.clear();
+        self.excluded.clear();
+        self.answers.clear();
+    }
 }

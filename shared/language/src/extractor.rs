@@ -6,6 +6,7 @@ use crate::answer::{self, Answer};
 use crate::clauses::{Clause, Topic};
 use crate::content::{Asserted, Content};
 use crate::fates::{Fates, Polarity};
+use crate::intent::commands;
 use crate::lexicon::{Sense, ValueSense};
 use crate::negation::is_whole_answer;
 use crate::negation_scope::NegationScope;
@@ -73,6 +74,11 @@ impl<'a> Extractor<'a, '_> {
             Class::Not => self.not(clause, at),
             Class::No => self.no(at),
             Class::Repair | Class::Withdraw => self.correct(),
+            Class::Cancel | Class::StartOver if commands(self.tags, clause, class) => {
+                // "never mind, the red one": nothing said before counts.
+                self.end_scope();
+                self.content.clear();
+            }
             Class::Unsure => self.content.answers.push(Answer::Unsure, self.tags, at),
             Class::Hedge => self.content.hedged = true,
             _ => {}

@@ -3,7 +3,7 @@
 use crate::clauses::{Clause, Topic};
 use crate::fates::{Fates, Polarity};
 use crate::question_words::QuestionWords;
-use crate::tagger::Tag;
+use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
 use crate::word_sets::WordSet;
 
@@ -18,7 +18,10 @@ pub(crate) fn indifference(
     let on_topic = clauses.iter().filter(|clause| clause.topic == Topic::On);
     on_topic.flat_map(|clause| clause.span.clone().map(move |at| (clause, at))).find_map(
         |(clause, at)| {
-            let said = tags[at].is(Class::Indifferent);
+            // "ducks I couldn't care less about" says so of them, unless it is an answer.
+            let is_of_it = |next: &Tag<'_>| next.is_any(classes![Join Preposition]);
+            let said = tags[at].is(Class::Indifferent)
+                && (answers || !after(tags, at).is_some_and(is_of_it));
             let is_any = is_any(&tags[clause.span.clone()], at - clause.span.start, answers);
             (said || is_any && !is_denied(tags, fates, at)).then_some(at)
         },

@@ -76,11 +76,15 @@ pub(crate) fn commands(tags: &[Tag<'_>], clause: &Clause, class: Class) -> bool 
 fn declines(tags: &[Tag<'_>], clause: &Clause, new: bool) -> bool {
     let tags = &tags[clause.span.clone()];
     let denies = tags.iter().any(|tag| tag.is(Class::Not));
-    let fetches = tags.iter().any(|tag| tag.is_any(classes![Fetch Want]) || tag.word == "forget");
+    let fetches =
+        tags.iter().any(|tag| tag.is_any(classes![Fetch Want]) || WordSet::Forget.has(tag.word));
     let noun = tags
         .iter()
-        .any(|tag| tag.is(Class::Head) && !tag.word.starts_with("one") || new && tag.is(Class::It));
-    let plain = !tags.iter().any(Tag::is_unknown);
+        .any(|tag| tag.is(Class::Head) && !WordSet::One.has(tag.word) || new && tag.is(Class::It));
+    let plain = tags.iter().all(|tag| {
+        !tag.is_unknown()
+            && !tag.is_any(classes![Pointer Other Unlisted Ordinal Attribute Preposition Landmark])
+    });
     clause.topic == Topic::On && denies && fetches && noun && plain
 }
 
@@ -89,7 +93,7 @@ fn declines(tags: &[Tag<'_>], clause: &Clause, new: bool) -> bool {
 fn puts_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
     let [verb, rest @ ..] = order(&tags[clause.span.clone()]) else { return false };
     // "put back the red mug"
-    let is_back_first = rest.first().is_some_and(|tag| tag.word == "back");
+    let is_back_first = rest.first().is_some_and(|tag| WordSet::Back.has(tag.word));
     let rest = &rest[usize::from(is_back_first)..];
     let is_thing = |tag: &Tag<'_>| tag.is_value() || tag.is_any(classes![Pointer It Head]);
     let in_phrase = |tag: &&Tag<'_>| is_thing(tag) || tag.is_any(classes![Determiner Possessive]);
@@ -143,8 +147,8 @@ fn courtesy(tags: &[Tag<'_>]) -> Option<Intent> {
     ];
     const STRANGE_MAX: usize = 2;
     // "No, thanks", or "no thanks", which is one phrase.
-    let no = |tag: &Tag<'_>| tag.is(Class::No) && tag.word == "no";
-    let no_thanks = |tag: &Tag<'_>| no(tag) && matches!(tag.last, "thanks" | "you");
+    let no = |tag: &Tag<'_>| tag.is(Class::No) && WordSet::No.has(tag.word);
+    let no_thanks = |tag: &Tag<'_>| no(tag) && WordSet::Thanked.has(tag.last);
     let strange = tags.iter().filter(|tag| tag.is_unknown()).count();
     let beside = |tag: &Tag<'_>| tag.is_any(BESIDE) || tag.is_unknown() || no(tag);
     let said = |set: WordSet| tags.iter().any(|tag| tag.is(Class::Courtesy) && set.has(tag.word));
@@ -174,7 +178,7 @@ fn puts_off(tags: &[Tag<'_>]) -> bool {
 fn is_only_huh(tags: &[Tag<'_>]) -> bool {
     let huh = |tag: &Tag<'_>| {
         tag.is(Class::Huh)
-            || tag.is(Class::Question) && tag.word == "what"
+            || tag.is(Class::Question) && WordSet::What.has(tag.word)
             || tag.is(Class::Repair) && WordSet::Pardon.has(tag.word)
     };
     tags.iter().any(huh)
@@ -198,7 +202,7 @@ pub(crate) fn is_side_talk(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     let plans = |clause: &Clause| {
         let tags = &tags[clause.span.clone()];
         tags.first().is_some_and(|tag| WordSet::We.has(tag.word))
-            && tags.iter().any(|tag| tag.word == "will" || tag.is(Class::Want))
+            && tags.iter().any(|tag| tag.is_any(classes![Auxiliary Want]))
             && tags.iter().any(|tag| tag.is(Class::When))
     };
     let side_talk = tags.iter().any(|tag| tag.is(Class::SideTalk)) || clauses.iter().any(plans);

@@ -23,8 +23,9 @@
 //! [`CompletenessJudge`] judges whether a speaker will continue after a pause. [`words::confusion`]
 //! gives the probabilities of mishearing one of a scene's words for another.
 //!
-//! Words that belong to a scene come from the scene; the English of a dialogue is data in
-//! `vocabulary/`.
+//! Words that belong to a scene come from the scene (`lexicon/scene_words.rs`); the English of a
+//! dialogue is data in `vocabulary/`, the sets of words that rules look for included
+//! (`word_sets.rs`).
 //!
 //! # Example
 //!

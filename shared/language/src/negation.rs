@@ -3,6 +3,7 @@
 use crate::clauses::Clause;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
+use crate::word_sets::WordSet;
 
 /// "not the smaller one": what the word says is not so.
 pub(crate) fn is_denied(tags: &[Tag<'_>], at: usize) -> bool {
@@ -17,7 +18,7 @@ pub(crate) fn is_whole_answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> b
     ];
     // "nice weather, isn't it" is not about the question.
     let before = &tags[clause.span.start..at];
-    if tags[at].word == "forget" || before.iter().any(|tag| tag.is_unknown()) {
+    if WordSet::Forget.has(tags[at].word) || before.iter().any(|tag| tag.is_unknown()) {
         return false;
     }
     if is_not_what(&tags[at + 1..clause.span.end]) {
@@ -41,6 +42,6 @@ pub(crate) fn is_whole_answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> b
 /// "not what I'm after", "that's not where it is".
 fn is_not_what(tags: &[Tag<'_>]) -> bool {
     let [what, whose, ..] = tags else { return false };
-    let ours = whose.is_any(classes![First It Possessive]) || whose.word == "it";
+    let ours = whose.is_any(classes![First It Possessive]) || WordSet::It.has(whose.word);
     what.is(Class::Question) && ours
 }

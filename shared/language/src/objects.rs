@@ -7,6 +7,7 @@ use crate::content::{Asserted, Content};
 use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
+use crate::word_sets::WordSet;
 
 /// Head of a noun phrase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,7 +94,8 @@ fn joint(tags: &[Tag<'_>], from: usize, to: usize) -> (Joint, usize) {
         And Determiner Quantifier Possessive Head Fetch Want First Second Auxiliary Courtesy Filler
         Plain Other Preposition Destination
     ];
-    let is_and = |tag: &Tag<'_>| tag.is(Class::And) || tag.is(Class::Join) && tag.last == "then";
+    let is_and =
+        |tag: &Tag<'_>| tag.is(Class::And) || tag.is(Class::Join) && WordSet::Then.has(tag.last);
     let between = &tags[from..to];
     if !between.iter().all(|tag| tag.is_any(BETWEEN) || is_and(tag)) {
         return (Joint::None, from);
@@ -112,7 +114,7 @@ fn noun(phrase: &[Tag<'_>]) -> Noun {
         return Noun::Named;
     }
     match phrase.iter().find(|tag| tag.is(Class::Head)) {
-        Some(head) if head.word.starts_with("one") => Noun::One,
+        Some(head) if WordSet::One.has(head.word) => Noun::One,
         Some(_) => Noun::Named,
         None => Noun::None,
     }

@@ -3,7 +3,7 @@
 use scene::WordId;
 
 use crate::lexicon::{Lexicon, Sense};
-use crate::relation_words::ordinal;
+use crate::relation_words::ORDINALS;
 use crate::tagger::Tag;
 use crate::token_class::Class;
 
@@ -24,7 +24,7 @@ fn place(tag: &Tag<'_>, count: usize) -> Option<usize> {
     match (tag.word, tag.last) {
         ("former", _) => Some(0),
         ("last" | "final" | "latter", _) => count.checked_sub(1),
-        ("number", last) => from_0(ordinal(&format!("number {last}"))),
-        (word, _) => from_0(ordinal(word)),
+        ("number", last) => from_0(ORDINALS.of(&format!("number {last}"))),
+        (word, _) => from_0(ORDINALS.of(word)),
     }
 }

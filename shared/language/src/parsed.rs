@@ -9,6 +9,7 @@ use crate::objects::objects;
 use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
+use crate::word_sets::WordSet;
 
 /// Most readings of one utterance.
 pub const READINGS_MAX: usize = 4;
@@ -92,13 +93,15 @@ impl ParsedUtterance<'_> {
         let count = count.map(|at| &self.tags[at]);
         let last = &self.tags[last..];
         let of_them = last.windows(3).find(|three| {
-            three[0].is(Class::Quantifier) && three[1].word == "of" && three[2].is(Class::It)
+            three[0].is(Class::Quantifier)
+                && WordSet::Of.has(three[1].word)
+                && three[2].is(Class::It)
         });
         let count = count.or(of_them.map(|three| &three[0]))?;
         let is_plural = |it: &Asserted<'_>| self.questions.is_plural(it.word);
         match COUNTS.iter().find(|(_, words)| words.contains(&count.word))?.0 {
             // "a pair of scissors" is one thing.
-            1 if count.word == "pair" && self.content.base.iter().any(is_plural) => None,
+            1 if WordSet::Pair.has(count.word) && self.content.base.iter().any(is_plural) => None,
             0 => {
                 let words: Vec<WordId> = self.content.base.iter().map(|it| it.word).collect();
                 let more = self.questions.suited(&words, &[]).saturating_sub(1);
@@ -114,7 +117,7 @@ impl ParsedUtterance<'_> {
         let lead = |tag: &&Tag<'_>| tag.is_any(classes![Determiner Pointer Possessive]);
         let leads = self.tags[..at].iter().rev().take_while(lead).count();
         let [.., one, of] = &self.tags[..at - leads] else { return false };
-        of.word == "of" && matches!(one.last, "one" | "either" | "any")
+        WordSet::Of.has(of.word) && WordSet::OneOf.has(one.last)
     }
 
     /// Positions of the first and last word that describe the wanted object, or else of its noun.
@@ -122,7 +125,7 @@ impl ParsedUtterance<'_> {
         if let [first, ..] = &self.content.base[..] {
             return Some((first.at, self.content.base.last()?.at));
         }
-        let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) && !tag.word.starts_with("one");
+        let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) && !WordSet::One.has(tag.word);
         let mut requests = self.clauses.iter().filter(|clause| clause.requests);
         let noun = requests.find_map(|it| it.span.clone().find(|at| is_noun(&self.tags[*at])))?;
         Some((noun, noun))

@@ -8,7 +8,9 @@ use words::Tokens;
 
 use crate::clauses::{Clause, Topic};
 use crate::negation::is_denied;
-use crate::relation_words::{by_quality, first, ordinal, quality, relation_to, side};
+use crate::relation_words::{
+    FIRSTS, OF_OBJECT, ORDINALS, PERSONS, QUALITIES, TO, by_quality, side,
+};
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
 
@@ -65,7 +67,8 @@ pub(crate) fn related(
 pub(crate) fn too_much(tags: &[Tag<'_>], at: usize) -> Option<Relation> {
     let is_too = before(tags, at).is_some_and(|before| before.last == "too");
     let is_noun = after(tags, at).is_some_and(|next| next.is(Class::Head) || next.is_value());
-    let measure = quality(tags[at].word).filter(|it| it.is_of_object() && is_too && !is_noun)?;
+    let measure =
+        QUALITIES.of(tags[at].word).filter(|it| it.is_of_object() && is_too && !is_noun)?;
     Some(Relation::More(measure.reverse()))
 }
 
@@ -90,10 +93,10 @@ impl Said<'_, '_> {
             return self.alone(relation, at..at + 1);
         }
         let (phrase, is_word) = (self.phrase(at), self.is_word(at));
-        if let Some(relation) = relation_to(&phrase) {
+        if let Some(relation) = TO.of(&phrase) {
             return self.to_another(relation, at);
         }
-        if let Some(n) = ordinal(&phrase) {
+        if let Some(n) = ORDINALS.of(&phrase) {
             return self.in_order(n, at);
         }
         if phrase == "last" {
@@ -135,12 +138,7 @@ impl Said<'_, '_> {
 
     /// "next to the cup", "nearest to me".
     fn to_another(&self, relation: Relation, at: usize) -> Option<Related> {
-        let person = after(self.tags, at).map(|next| next.word);
-        let near = match person {
-            Some("you") => Some(Measure::Near),
-            Some("me" | "us") => Some(Measure::NearUser),
-            _ => None,
-        };
+        let near = after(self.tags, at).and_then(|next| PERSONS.of(next.word));
         // "close to me" is vague, and "put it next to me" gives a destination.
         let is_where = self.tags[at].word.ends_with("est");
         match near {
@@ -231,7 +229,7 @@ impl Said<'_, '_> {
 
     /// "leftmost", "furthest to the right", "the left one", "the middle one".
     fn word(&self, word: &str, at: usize) -> Option<Related> {
-        if let Some(measure) = first(word) {
+        if let Some(measure) = FIRSTS.of(word) {
             let side_next = self.tags.get(at + 1).and_then(|_| side(&self.phrase(at + 1)));
             return match side_next.filter(|_| measure == Measure::Far) {
                 Some(side) => self.alone(Relation::Nth(side, 1), at..at + 2),
@@ -244,12 +242,8 @@ impl Said<'_, '_> {
                 None => None,
             };
         }
-        let relation = match word {
-            "left" => Relation::Nth(Measure::Left, 1),
-            "middle" | "center" | "centre" => Relation::Middle(Measure::Left),
-            _ => return None,
-        };
-        if self.is_of_object(at) { self.alone(relation, at..at + 1) } else { None }
+        let relation = OF_OBJECT.of(word).filter(|_| self.is_of_object(at))?;
+        self.alone(relation, at..at + 1)
     }
 
     /// "the left bowl", "the middle", but not "the left shelf".

@@ -108,8 +108,10 @@ impl<'a> ClauseAnalysis<'a> {
             || self.has(classes![Ordinal Other]) && self.unknown == 0
             || self.clause.windows(2).any(|pair| {
                 // "get me …", "penicillin please"
-                pair[0].is(Class::Fetch) && pair[1].word == "me"
-                    || pair[0].is_unknown() && pair[1].word == "please" && self.clause.len() == 2
+                pair[0].is(Class::Fetch) && WordSet::Me.has(pair[1].word)
+                    || pair[0].is_unknown()
+                        && WordSet::Please.has(pair[1].word)
+                        && self.clause.len() == 2
             })
             || self.clause.windows(3).any(|three| {
                 // "I would like a newspaper", "can I have the dinosaur"
@@ -138,7 +140,7 @@ impl<'a> ClauseAnalysis<'a> {
         ];
         let orders = |&at: &usize| {
             let throws_away = WordSet::Throwing.has(self.clause[at].word)
-                && self.clause[at..].iter().any(|tag| tag.word == "away");
+                && self.clause[at..].iter().any(|tag| WordSet::Back.has(tag.word));
             let before = at.checked_sub(1).map(|before| &self.clause[before]);
             let is_noun =
                 before.is_some_and(|tag| tag.is_value() || tag.is_any(classes![Determiner First]));

@@ -7,10 +7,10 @@ use crate::vocabulary::{entries, lines};
 
 /// Declares the sets, by their names in the file.
 macro_rules! word_sets {
-    ($($(#[$doc:meta])* $set:ident,)+) => {
-        /// A set of words.
+    ($($set:ident),+) => {
+        /// A set of words; the file describes each.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub(crate) enum WordSet { $($(#[$doc])* $set,)+ }
+        pub(crate) enum WordSet { $($set),+ }
 
         impl WordSet {
             /// Returns the set of that name.
@@ -25,50 +25,10 @@ macro_rules! word_sets {
 }
 
 word_sets! {
-    /// "along with": landmarks that are none.
-    Along,
-    /// "any", "whichever".
-    Any,
-    /// "the", "a".
-    Article,
-    /// Words that ask, whatever is asked.
-    Asking,
-    /// "back", after "put it".
-    Back,
-    /// "how come".
-    Come,
-    /// "goodbye".
-    Farewell,
-    /// "hello".
-    Greeting,
-    /// "how many".
-    Many,
-    /// "matter", after "it does not".
-    Mattering,
-    /// "pardon", as a request to repeat.
-    Pardon,
-    /// Those who talk, as landmarks.
-    Person,
-    /// Verbs before "back".
-    Returning,
-    /// "me".
-    Speaker,
-    /// Ordinals of things spoken of.
-    SpokenOf,
-    /// "thanks", "that is very kind".
-    Thanks,
-    /// "there", after "it is".
-    There,
-    /// Verbs before "away".
-    Throwing,
-    /// "i", as the subject of a plan.
-    We,
-    /// "where".
-    Where,
-    /// "which".
-    Which,
-    /// "why".
-    Why,
+    Adverb, Again, All, Along, Another, Any, Article, Asking, Back, Come, Farewell, Forget,
+    Greeting, Is, It, Many, Mattering, Me, Next, No, Of, One, OneOf, OneOfThem, Pair, Pardon,
+    Pause, Person, Please, Returning, Same, Some, Speaker, SpokenOf, Thanked, Thanks, The, Then,
+    There, Think, Throwing, We, What, Where, Which, Why, Wrong
 }
 
 /// The sets that have a word, one bit for each.
