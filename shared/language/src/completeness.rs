@@ -3,12 +3,13 @@
 //! The judgement is about words alone, and cautious: a text that may continue is not complete.
 
 use ::vocabulary::Language;
-use scene::{Intent, Question, Reading, Response, Role, Scene, WordId};
+use scene::{Intent, Question, Reading, Response, Role, Scene};
 use words::{Tokens, normalise};
 
 use crate::reader::Reader;
 use crate::tagger::{Tag, tag};
 use crate::token_class::{Class, classes};
+use crate::word_sets::WordSet;
 
 /// How complete an utterance is, the most complete first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,22 +28,13 @@ pub enum Completeness {
 #[derive(Clone, Debug)]
 pub struct CompletenessJudge {
     reader: Reader,
-    objects: Vec<Box<[WordId]>>,
-    attributes: Vec<Box<[WordId]>>,
 }
 
 impl CompletenessJudge {
     /// Prepares for a scene.
     pub fn new(scene: &Scene) -> Self {
-        let objects = (0..scene.objects().len()).map(scene::ObjectId::from);
-        let values =
-            |attribute: &scene::Attribute| attribute.values.iter().map(|v| v.word).collect();
-        Self {
-            // Whichever reading the dialogue uses, this one covers the most phrases.
-            reader: Reader::new(scene, Language::Careful),
-            objects: objects.map(|i| scene.vocabulary(i).collect()).collect(),
-            attributes: scene.attributes().iter().map(values).collect(),
-        }
+        // Whichever reading the dialogue uses, this one covers the most phrases.
+        Self { reader: Reader::new(scene, Language::Careful) }
     }
 
     /// Judges the words so far of an utterance that follows `question`.
@@ -84,7 +76,7 @@ impl CompletenessJudge {
         question: Question,
     ) -> Completeness {
         let is_described = !reading.base.is_empty();
-        let candidates = self.objects.iter().filter(|object| suits(object, reading)).count();
+        let candidates = self.reader.questions().suited(&reading.base, &reading.excluded);
         let is_unique = is_described && candidates == 1;
         let names_asked = is_described && candidates > 0 && self.answers(reading, question);
         let ends_in_noun = tags.last().is_some_and(ends_noun_phrase);
@@ -104,15 +96,9 @@ impl CompletenessJudge {
 
     /// Returns whether the words name a value of the attribute asked about.
     fn answers(&self, reading: &Reading, question: Question) -> bool {
-        let Some(k) = question.attribute() else { return false };
-        let values = self.attributes.get(k.index());
-        values.is_some_and(|values| reading.base.iter().any(|word| values.contains(word)))
+        let values = question.attribute().map_or(&[][..], |k| self.reader.questions().of(k));
+        reading.base.iter().any(|word| values.contains(word))
     }
-}
-
-fn suits(object: &[WordId], reading: &Reading) -> bool {
-    let has = |word: &WordId| object.contains(word);
-    reading.base.iter().all(has) && !reading.excluded.iter().any(|group| group.iter().all(has))
 }
 
 /// Returns whether something must follow the last word.
@@ -133,7 +119,7 @@ fn is_open(tags: &[Tag<'_>]) -> bool {
         return true;
     }
     let follows = |class| before.last().is_some_and(|tag| tag.is(class));
-    if last.word == "me" && follows(Class::Fetch)
+    if WordSet::Person.has(last.word) && follows(Class::Fetch)
         || last.is(Class::Second) && follows(Class::Auxiliary)
     {
         return true;
@@ -145,17 +131,15 @@ fn is_open(tags: &[Tag<'_>]) -> bool {
         return false;
     }
     let lead = before.iter().rev().find(|tag| !is_modifier(tag) && !tag.is(Class::Plain));
-    let is_place = last.is(Class::Ordinal)
-        && before.iter().any(|tag| tag.is_any(classes![Preposition Destination]));
-    !is_place && lead.is_some_and(|lead| lead.is_any(classes![Determiner Possessive Quantifier]))
+    lead.is_some_and(|lead| lead.is_any(classes![Determiner Possessive Quantifier]))
 }
 
 /// "It is", "no it has": an answer after a yes alone ("yes it is").
 fn begins_statement(words: &[&str], tags: &[Tag<'_>]) -> bool {
-    let [earlier @ .., "it" | "that" | "they" | "which", "is" | "has" | "was" | "are"] = words
-    else {
+    let [earlier @ .., it, is] = words else { return false };
+    if !WordSet::It.has(it) || !WordSet::Is.has(is) {
         return false;
-    };
+    }
     earlier.is_empty() || !tags.first().is_some_and(|first| first.is(Class::Yes))
 }
 
@@ -171,172 +155,44 @@ fn is_unsure(tags: &[Tag<'_>]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::Completeness::{Complete, Open, Sufficient, Unclear};
+    use super::Completeness::{Open, Sufficient};
     use super::*;
     use crate::tests::scene;
+    use crate::tests::table::question;
 
-    /// Questions of the six bowls: none, "Is it white?", "What colour is it?", "Where is it?".
-    const NONE: &str = "-";
-    const WHITE: &str = "white?";
-    const COLOUR: &str = "colour?";
-    const PLACE: &str = "place?";
-
-    fn question(scene: &Scene, name: &str) -> Question {
-        let k = |name| scene.attribute_named(name).expect("an attribute");
-        match name {
-            WHITE => {
-                let color = k("color");
-                Question::Attribute(color, scene.value_named(color, "white").expect("a value"))
-            }
-            COLOUR => Question::Which(k("color")),
-            PLACE => Question::Which(k("location")),
-            _ => Question::None,
-        }
-    }
+    /// Cases in the six bowls: attribute asked about, or with its value, `?` completeness: texts.
+    const CASES: &str = "\
+color=white? Complete: yes, yeah, yes please, yes it is, yep, yes the white one, it is white, the white one
+color=white? Complete: no it is clear, no the clear one, no the metallic one please, I don't know, i do not care
+color=white? Sufficient: no, nope, no it is not, it is not, no not white, no the big one
+color=white? Open: no the, no it is, no it is on the, no the big, yes the, yes but, um, no um, no it is in, it is
+color=white? Open: no the shiny, no I want, no get me, no I mean
+color? Complete: white, it is white, the white one, metallic, silver, I don't know
+color? Sufficient: the small one
+color? Open: it is, the, it is a, the white, well, it has, um the
+color? Unclear: , please, xylophone
+location? Complete: on the counter, it is in the cabinet, the counter, the one in the dishwasher
+location? Open: on, on the, it is on, it is in the, next to the, it is next to, behind
+? Complete: the clear bowl, get me the clear bowl, bring me the big white bowl please, the small bowl on the counter
+? Complete: get me the clear one, stop
+? Sufficient: get me the bowl, the bowl, the white bowl, I want the big bowl, a bowl please, the bowl on the counter
+? Sufficient: the white one, forget it
+? Open: get me, get me the, the big, the small white, I want, can you, can you get me a, the bowl on, the bowl on the
+? Open: the white bowl in the, the one next to the, a white bowl and, um, please get me the, the bowl that is
+? Open: not the, the red one or, the bowl from, bring me my, the other, hand me a big, the bowl with, i would like
+? Unclear: yes, hello there, white, what";
 
     #[test]
     fn completeness_of_words_in_their_place() {
         let scene = scene("bowls");
         let judge = CompletenessJudge::new(&scene);
-        let cases: &[(&str, Completeness, &[&str])] = &[
-            (
-                WHITE,
-                Complete,
-                &[
-                    "yes",
-                    "yeah",
-                    "yes please",
-                    "yes it is",
-                    "yep",
-                    "yes the white one",
-                    "it is white",
-                    "the white one",
-                    "no it is clear",
-                    "no the clear one",
-                    "no the metallic one please",
-                    "I don't know",
-                    "i do not care",
-                ],
-            ),
-            (
-                WHITE,
-                Sufficient,
-                &["no", "nope", "no it is not", "it is not", "no not white", "no the big one"],
-            ),
-            (
-                WHITE,
-                Open,
-                &[
-                    "no the",
-                    "no it is",
-                    "no it is on the",
-                    "no the big",
-                    "yes the",
-                    "yes but",
-                    "um",
-                    "no um",
-                    "no it is in",
-                    "it is",
-                    "no the shiny",
-                    "no I want",
-                    "no get me",
-                    "no I mean",
-                ],
-            ),
-            (
-                COLOUR,
-                Complete,
-                &["white", "it is white", "the white one", "metallic", "silver", "I don't know"],
-            ),
-            (COLOUR, Sufficient, &["the small one"]),
-            (COLOUR, Open, &["it is", "the", "it is a", "the white", "well", "it has", "um the"]),
-            (COLOUR, Unclear, &["", "please", "xylophone"]),
-            (
-                PLACE,
-                Complete,
-                &[
-                    "on the counter",
-                    "it is in the cabinet",
-                    "the counter",
-                    "the one in the dishwasher",
-                ],
-            ),
-            (
-                PLACE,
-                Open,
-                &[
-                    "on",
-                    "on the",
-                    "it is on",
-                    "it is in the",
-                    "next to the",
-                    "it is next to",
-                    "behind",
-                ],
-            ),
-            (
-                NONE,
-                Complete,
-                &[
-                    "the clear bowl",
-                    "get me the clear bowl",
-                    "bring me the big white bowl please",
-                    "the small bowl on the counter",
-                    "get me the clear one",
-                    "stop",
-                ],
-            ),
-            (
-                NONE,
-                Sufficient,
-                &[
-                    "get me the bowl",
-                    "the bowl",
-                    "the white bowl",
-                    "I want the big bowl",
-                    "a bowl please",
-                    "the bowl on the counter",
-                    "the white one",
-                    "forget it",
-                ],
-            ),
-            (
-                NONE,
-                Open,
-                &[
-                    "get me",
-                    "get me the",
-                    "the big",
-                    "the small white",
-                    "I want",
-                    "can you",
-                    "can you get me a",
-                    "the bowl on",
-                    "the bowl on the",
-                    "the white bowl in the",
-                    "the one next to the",
-                    "a white bowl and",
-                    "um",
-                    "please get me the",
-                    "the bowl that is",
-                    "not the",
-                    "the red one or",
-                    "the bowl from",
-                    "bring me my",
-                    "the other",
-                    "hand me a big",
-                    "the bowl with",
-                    "i would like",
-                ],
-            ),
-            (NONE, Unclear, &["yes", "hello there", "white", "what"]),
-        ];
         let mut wrong = Vec::new();
-        for (name, expected, texts) in cases {
-            for text in *texts {
-                let judged = judge.judge(text, question(&scene, name));
-                if judged != *expected {
-                    wrong.push(format!("{name} {text}: expected {expected:?}, found {judged:?}"));
+        for (asked, rest) in CASES.lines().filter_map(|line| line.split_once("? ")) {
+            let (expected, texts) = rest.split_once(": ").expect("texts");
+            for text in texts.split(", ") {
+                let judged = format!("{:?}", judge.judge(text, question(&scene, asked)));
+                if judged != expected {
+                    wrong.push(format!("{asked}? {text}: expected {expected}, found {judged}"));
                 }
             }
         }

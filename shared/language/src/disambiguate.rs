@@ -6,6 +6,7 @@ use crate::lexicon::{Lexicon, Sense};
 use crate::synonyms::is_thing;
 use crate::tagger::{Tag, after, before, doubts};
 use crate::token_class::{Class, classes};
+use crate::word_sets::WordSet;
 
 /// Resolves the tags that depend on their neighbours.
 pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
@@ -25,6 +26,11 @@ pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
 
 /// Words that the noun of a noun phrase may be followed by.
 const AFTER_NOUN: &[Class] = classes![Preposition Courtesy Filler Pointer];
+
+/// Returns whether a tag that is not resolved yet is the noun of a thing.
+fn is_noun_here(tag: &Tag<'_>) -> bool {
+    tag.is(Class::One) || tag.is_noun()
+}
 
 /// A tag and the tags next to it in the utterance.
 struct Place<'t, 'a> {
@@ -98,8 +104,7 @@ impl<'a> Place<'_, 'a> {
 
     /// "any bowl but the white one".
     fn is_exception(&self) -> bool {
-        let any = |tag: &Tag<'_>| matches!(tag.word, "any" | "every" | "all" | "anyone");
-        self.recent(3).iter().any(any)
+        self.recent(3).iter().any(|tag| WordSet::All.has(tag.word))
     }
 
     /// "so blue", where "so" joins nothing.
@@ -125,7 +130,7 @@ impl<'a> Place<'_, 'a> {
     fn is_pause_to_think(&self) -> bool {
         const REACH: usize = 4;
         let names = |tag: &Tag<'_>| tag.is_value() || tag.is_any(classes![Yes No]);
-        matches!(self.tag().word, "hang" | "hold" | "one" | "just")
+        WordSet::Pause.has(self.tag().word)
             && self.recent(REACH).iter().any(names)
             && self.tags[self.at + 1..].iter().take(REACH).any(names)
     }
@@ -135,21 +140,19 @@ impl<'a> Place<'_, 'a> {
     fn leaves_out(&self) -> bool {
         let rest = &self.tags[self.at + 1..];
         let phrase = &rest[..rest.iter().position(Tag::pauses).unwrap_or(rest.len())];
-        let is_noun = |tag: &Tag<'_>| tag.is_any(classes![Head One]) || tag.is_role(Role::Kind);
         phrase.iter().any(Tag::is_value)
-            && phrase.iter().any(is_noun)
+            && phrase.iter().any(is_noun_here)
             && !phrase.iter().any(Tag::is_unknown)
     }
 
     /// "the shirt draped over the chair", "the pen clipped to the drawer": how a thing is placed.
     fn is_participle(&self) -> bool {
         let word = self.tag().word;
-        let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) || tag.is_role(Role::Kind);
         let leads = |tag: &Tag<'_>| tag.is_any(classes![Preposition Landmark Destination]);
         self.tag().is_unknown()
             && word.len() > 4
             && (word.ends_with("ed") || word.ends_with("ing"))
-            && self.before().is_some_and(is_noun)
+            && self.before().is_some_and(Tag::is_noun)
             && self.after().is_some_and(leads)
     }
 
@@ -196,8 +199,7 @@ impl<'a> Place<'_, 'a> {
 
     /// "the … bowl".
     fn is_where_a_quality_belongs(&self) -> bool {
-        let is_noun = |tag: &Tag<'_>| tag.is_any(classes![Head One]) || tag.is_role(Role::Kind);
-        self.is_described() && self.after().is_some_and(is_noun)
+        self.is_described() && self.after().is_some_and(is_noun_here)
     }
 
     /// "the red …", "get me the …".
@@ -210,7 +212,7 @@ impl<'a> Place<'_, 'a> {
     fn misheard_place(&self, lexicon: &'a Lexicon) -> Option<(Sense<'a>, f64)> {
         let [preposition, determiner] = self.recent(2) else { return None };
         let stands = preposition.is(Class::Preposition)
-            && determiner.word == "the"
+            && WordSet::The.has(determiner.word)
             && self.after().is_none_or(|tag| tag.is_any(classes![Courtesy Filler]));
         let (word, lookalikes) = (self.tag().word, lexicon.lookalikes());
         let value = lookalikes.looks_like(word).or_else(|| lookalikes.sounds_like(word))?;

@@ -7,6 +7,7 @@ use crate::content::{Asserted, Content};
 use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
+use crate::word_sets::WordSet;
 
 /// Head of a noun phrase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +48,7 @@ pub(crate) fn objects<'a>(
     if base.is_empty() || content.alternatives || !base.is_sorted_by_key(|value| value.at) {
         return vec![base.clone()];
     }
-    let answers = !matches!(asked, QuestionWords::Nothing);
+    let answers = !asked.is_nothing();
     let joined = |list| joined(parts(tags, base, list), answers);
     let mut parts = joined(false);
     if parts.len() > 1 {
@@ -65,7 +66,7 @@ fn parts<'a>(tags: &[Tag<'a>], base: &[Asserted<'a>], list: bool) -> Vec<Part<'a
     for (n, value) in base.iter().enumerate() {
         let from = n.checked_sub(1).map_or(0, |before| base[before].at + 1);
         let (joint, lead) = joint(tags, from, value.at);
-        let determined = tags[lead..value.at].iter().any(is_determiner);
+        let determined = lead < value.at;
         let splits = joint == Joint::And || joint == Joint::Comma && list && determined;
         if n == 0 || splits {
             if let Some(part) = parts.last_mut() {
@@ -93,11 +94,11 @@ fn joint(tags: &[Tag<'_>], from: usize, to: usize) -> (Joint, usize) {
         And Determiner Quantifier Possessive Head Fetch Want First Second Auxiliary Courtesy Filler
         Plain Other Preposition Destination
     ];
-    let is_and = |tag: &Tag<'_>| tag.is(Class::And) || tag.is(Class::Join) && tag.last == "then";
+    let is_and =
+        |tag: &Tag<'_>| tag.is(Class::And) || tag.is(Class::Join) && WordSet::Then.has(tag.last);
     let between = &tags[from..to];
     if !between.iter().all(|tag| tag.is_any(BETWEEN) || is_and(tag)) {
-        let ends = |tag: &Tag<'_>| !is_determiner(tag);
-        return (Joint::None, from + between.iter().rposition(ends).map_or(0, |at| at + 1));
+        return (Joint::None, from);
     }
     if let Some(at) = between.iter().rposition(is_and) {
         return (Joint::And, from + at + 1);
@@ -108,23 +109,15 @@ fn joint(tags: &[Tag<'_>], from: usize, to: usize) -> (Joint, usize) {
     }
 }
 
-fn is_determiner(tag: &Tag<'_>) -> bool {
-    tag.is_any(classes![Determiner Quantifier Possessive Other])
-}
-
 fn noun(phrase: &[Tag<'_>]) -> Noun {
-    if phrase.iter().any(|tag| is_kind_tag(tag)) {
+    if phrase.iter().any(|tag| tag.is_role(Role::Kind)) {
         return Noun::Named;
     }
     match phrase.iter().find(|tag| tag.is(Class::Head)) {
-        Some(head) if head.word.starts_with("one") => Noun::One,
+        Some(head) if WordSet::One.has(head.word) => Noun::One,
         Some(_) => Noun::Named,
         None => Noun::None,
     }
-}
-
-fn is_kind_tag(tag: &Tag<'_>) -> bool {
-    tag.is_role(Role::Kind)
 }
 
 /// Puts the parts of one object together again. `answers`: in answer to a question, where "white

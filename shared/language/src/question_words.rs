@@ -24,6 +24,11 @@ pub(crate) enum QuestionWords<'a> {
 }
 
 impl QuestionWords<'_> {
+    /// Returns whether nothing was asked.
+    pub(crate) fn is_nothing(self) -> bool {
+        matches!(self, Self::Nothing)
+    }
+
     /// Returns whether ruling out `group` answers the question, because the value asked about is in
     /// it.
     pub(crate) fn is_denied_by(self, group: &[WordId]) -> bool {
@@ -81,7 +86,7 @@ impl SceneQuestions {
 
     /// The values of the attribute that has a value.
     pub(crate) fn values_beside(&self, value: &ValueSense) -> &[WordId] {
-        value.attributes.first().map_or(&[], |k| &self.attributes[k.index()])
+        value.attributes.first().map_or(&[], |k| self.of(*k))
     }
 
     /// "a pair of scissors" is one thing, if the scene calls it so.
@@ -89,10 +94,18 @@ impl SceneQuestions {
         self.plurals.contains(&word)
     }
 
-    /// The number of objects that have all of the words.
-    pub(crate) fn described(&self, words: &[WordId]) -> usize {
-        let has_all = |object: &[WordId]| words.iter().all(|word| object.contains(word));
-        self.objects.iter().filter(|object| has_all(object)).count()
+    /// The number of objects that have all of the words, and of no excluded group all.
+    pub(crate) fn suited(&self, words: &[WordId], excluded: &[Vec<WordId>]) -> usize {
+        let suits = |object: &[WordId]| {
+            let has_all = |words: &[WordId]| words.iter().all(|word| object.contains(word));
+            has_all(words) && !excluded.iter().any(|group| has_all(group))
+        };
+        self.objects.iter().filter(|object| suits(object)).count()
+    }
+
+    /// The values of an attribute; none of one that the scene does not have.
+    pub(crate) fn of(&self, k: AttributeId) -> &[WordId] {
+        self.attributes.get(k.index()).map_or(&[], |values| values)
     }
 
     /// The question in words; one about a value that the scene does not have asks nothing.
@@ -101,8 +114,7 @@ impl SceneQuestions {
             Question::None => QuestionWords::Nothing,
             Question::Which(_) => QuestionWords::Attribute,
             Question::Choice(k, options) => {
-                let values = self.attributes.get(k.index());
-                let word = |v: &ValueId| values.and_then(|values| values.get(v.index()).copied());
+                let word = |v: &ValueId| self.of(k).get(v.index()).copied();
                 let mut words = [None; Options::MAX];
                 words.iter_mut().zip(options.values()).for_each(|(slot, v)| *slot = word(v));
                 QuestionWords::Choice(words)
@@ -112,8 +124,7 @@ impl SceneQuestions {
                 .get(i.index())
                 .map_or(QuestionWords::PerceivedObject, |words| QuestionWords::Object(words)),
             Question::Attribute(k, v) => {
-                let values = self.attributes.get(k.index());
-                let word = values.and_then(|values| values.get(v.index()));
+                let word = self.of(k).get(v.index());
                 word.map_or(QuestionWords::Nothing, |word| QuestionWords::Value(k, *word))
             }
         }

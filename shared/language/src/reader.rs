@@ -67,6 +67,11 @@ impl Reader {
         self.language
     }
 
+    /// Returns the scene's part of the questions.
+    pub(crate) fn questions(&self) -> &SceneQuestions {
+        &self.questions
+    }
+
     /// Returns the known words.
     pub(crate) fn lexicon(&self) -> &Lexicon {
         &self.lexicon
@@ -184,7 +189,7 @@ impl Reader {
         let (mut tags, asked) = (heard.tags.clone(), heard.asked);
         let clauses = clauses(&tags, fates, tokens.code);
         hedge(&mut tags, &clauses);
-        let new = matches!(asked, QuestionWords::Nothing);
+        let new = asked.is_nothing();
         let relations = related(tokens, &tags, &clauses, self.placed);
         let mut content = extract(&tags, &clauses, fates, asked);
         let (refers, to) = reference(&tags, &clauses, asked, relations);

@@ -4,10 +4,12 @@
 use scene::{Reference, WordId};
 
 use crate::clauses::{Clause, Topic};
+use crate::negation::is_denied;
 use crate::question_words::QuestionWords;
 use crate::related::Related;
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
+use crate::word_sets::WordSet;
 
 /// Returns the last reference of an utterance, and the words of each object that it is to; a
 /// relation is preferred to the others.
@@ -25,15 +27,13 @@ pub(crate) fn reference(
 
 fn spoken_of(tags: &[Tag<'_>], clauses: &[Clause], asked: QuestionWords<'_>) -> Reference {
     // "again!"
-    let bare = |tag: &Tag<'_>| tag.word == "again" || tag.is_any(classes![Filler Courtesy]);
-    if matches!(asked, QuestionWords::Nothing)
-        && tags.iter().any(|tag| tag.word == "again")
-        && tags.iter().all(bare)
-    {
+    let is_again = |tag: &Tag<'_>| WordSet::Again.has(tag.word);
+    let bare = |tag: &Tag<'_>| is_again(tag) || tag.is_any(classes![Filler Courtesy]);
+    if asked.is_nothing() && tags.iter().any(is_again) && tags.iter().all(bare) {
         return Reference::Same;
     }
-    let again = tags.iter().any(|tag| tag.is_any(classes![Huh Repeat]) && tag.word == "again");
-    let new = matches!(asked, QuestionWords::Nothing) || again;
+    let again = tags.iter().any(|tag| tag.is_any(classes![Huh Repeat]) && is_again(tag));
+    let new = asked.is_nothing() || again;
     let spoken = clauses.iter().filter(|clause| clause.topic != Topic::Off);
     let all = spoken.flat_map(|clause| clause.span.clone()).map(|at| refers(tags, at, new));
     all.fold(Reference::None, |before, next| match (before, next) {
@@ -51,18 +51,18 @@ fn refers(tags: &[Tag<'_>], at: usize, new: bool) -> Reference {
         return Reference::None;
     }
     match tag.word {
-        "other" | "different" | "another" | "next" if is_another(tags, at) => Reference::Other,
+        word if WordSet::Another.has(word) && is_another(tags, at) => Reference::Other,
         // "try another one", "a different one", "some other one"
-        "a" | "some" | "try" | "next" if tag.is(Class::No) => Reference::Other,
-        "same" if tag.is_any(classes![Plain Yes]) && new && is_whole(tags, at) => Reference::Same,
+        word if WordSet::Some.has(word) && tag.is(Class::No) => Reference::Other,
+        word if WordSet::Same.has(word)
+            && tag.is_any(classes![Plain Yes])
+            && new
+            && is_whole(tags, at) =>
+        {
+            Reference::Same
+        }
         _ => Reference::None,
     }
-}
-
-/// "not the other one".
-fn is_denied(tags: &[Tag<'_>], at: usize) -> bool {
-    let mut lead = tags[..at].iter().rev().take_while(|tag| tag.is_any(classes![Determiner Not]));
-    !tags[at].pauses() && lead.any(|tag| tag.is(Class::Not))
 }
 
 /// "the other", "another mug", but not "another place" and "the other purple one".

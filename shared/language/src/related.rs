@@ -7,7 +7,10 @@ use scene::{Measure, Relation, Role, WordId};
 use words::Tokens;
 
 use crate::clauses::{Clause, Topic};
-use crate::relation_words::{by_quality, first, ordinal, quality, relation_to, side};
+use crate::negation::is_denied;
+use crate::relation_words::{
+    FIRSTS, OF_OBJECT, ORDINALS, PERSONS, QUALITIES, TO, by_quality, side,
+};
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
 
@@ -64,7 +67,8 @@ pub(crate) fn related(
 pub(crate) fn too_much(tags: &[Tag<'_>], at: usize) -> Option<Relation> {
     let is_too = before(tags, at).is_some_and(|before| before.last == "too");
     let is_noun = after(tags, at).is_some_and(|next| next.is(Class::Head) || next.is_value());
-    let measure = quality(tags[at].word).filter(|it| it.is_of_object() && is_too && !is_noun)?;
+    let measure =
+        QUALITIES.of(tags[at].word).filter(|it| it.is_of_object() && is_too && !is_noun)?;
     Some(Relation::More(measure.reverse()))
 }
 
@@ -80,7 +84,7 @@ impl Said<'_, '_> {
         if let Some(relation) = too_much(self.tags, at) {
             return self.alone(relation, at..at + 1);
         }
-        if self.is_denied(at) {
+        if is_denied(self.tags, at) {
             return None;
         }
         if self.tags[at].is_value() {
@@ -89,10 +93,10 @@ impl Said<'_, '_> {
             return self.alone(relation, at..at + 1);
         }
         let (phrase, is_word) = (self.phrase(at), self.is_word(at));
-        if let Some(relation) = relation_to(&phrase) {
+        if let Some(relation) = TO.of(&phrase) {
             return self.to_another(relation, at);
         }
-        if let Some(n) = ordinal(&phrase) {
+        if let Some(n) = ORDINALS.of(&phrase) {
             return self.in_order(n, at);
         }
         if phrase == "last" {
@@ -125,13 +129,6 @@ impl Said<'_, '_> {
         words[..=last].join(" ")
     }
 
-    /// "not the smaller one".
-    fn is_denied(&self, at: usize) -> bool {
-        let lead = |tag: &&Tag<'_>| tag.is_any(classes![Determiner Not]);
-        let mut lead = self.tags[..at].iter().rev().take_while(lead);
-        !self.tags[at].pauses() && lead.any(|tag| tag.is(Class::Not))
-    }
-
     /// "the lighter blue one": a shade of a colour.
     fn is_shade(&self, relation: Relation, at: usize) -> bool {
         let is_light =
@@ -141,12 +138,7 @@ impl Said<'_, '_> {
 
     /// "next to the cup", "nearest to me".
     fn to_another(&self, relation: Relation, at: usize) -> Option<Related> {
-        let person = after(self.tags, at).map(|next| next.word);
-        let near = match person {
-            Some("you") => Some(Measure::Near),
-            Some("me" | "us") => Some(Measure::NearUser),
-            _ => None,
-        };
+        let near = after(self.tags, at).and_then(|next| PERSONS.of(next.word));
         // "close to me" is vague, and "put it next to me" gives a destination.
         let is_where = self.tags[at].word.ends_with("est");
         match near {
@@ -167,16 +159,13 @@ impl Said<'_, '_> {
         let (mut to, mut group, mut at) = (Vec::new(), Vec::new(), from);
         while at < self.tags.len().min(from + 2 * PHRASE_MAX) {
             let tag = &self.tags[at];
-            let follows = at > from && tag.pauses();
             match tag.value() {
-                _ if follows => break,
                 Some(value) => group.push(value.word),
                 None if tag.is(Class::And) && !group.is_empty() && to.is_empty() => {
                     to.push(std::mem::take(&mut group));
                 }
                 None if tag.is_any(PHRASE) => {}
                 None if tag.is(Class::It) && at == from => return Some((to, at + 1)),
-                None if tag.is_unknown() || tag.is(Class::Unlisted) => return None,
                 None => break,
             }
             at += 1;
@@ -240,7 +229,7 @@ impl Said<'_, '_> {
 
     /// "leftmost", "furthest to the right", "the left one", "the middle one".
     fn word(&self, word: &str, at: usize) -> Option<Related> {
-        if let Some(measure) = first(word) {
+        if let Some(measure) = FIRSTS.of(word) {
             let side_next = self.tags.get(at + 1).and_then(|_| side(&self.phrase(at + 1)));
             return match side_next.filter(|_| measure == Measure::Far) {
                 Some(side) => self.alone(Relation::Nth(side, 1), at..at + 2),
@@ -253,12 +242,8 @@ impl Said<'_, '_> {
                 None => None,
             };
         }
-        let relation = match word {
-            "left" => Relation::Nth(Measure::Left, 1),
-            "middle" | "center" | "centre" => Relation::Middle(Measure::Left),
-            _ => return None,
-        };
-        if self.is_of_object(at) { self.alone(relation, at..at + 1) } else { None }
+        let relation = OF_OBJECT.of(word).filter(|_| self.is_of_object(at))?;
+        self.alone(relation, at..at + 1)
     }
 
     /// "the left bowl", "the middle", but not "the left shelf".
@@ -267,21 +252,21 @@ impl Said<'_, '_> {
         let is_led = before(self.tags, at).is_some_and(|it| {
             it.is_any(classes![Determiner Possessive]) || it.is_value() && is_headed()
         });
-        let is_place = |next: &Tag<'_>| {
-            next.is_role(Role::Place) || next.is_unknown() || next.is_any(classes![Unlisted])
-        };
-        is_led && !after(self.tags, at).is_some_and(is_place)
+        is_led && !self.leads_to_place(at)
+    }
+
+    /// "the left shelf": of a place, known or not.
+    fn leads_to_place(&self, at: usize) -> bool {
+        after(self.tags, at).is_some_and(|next| {
+            next.is_role(Role::Place) || next.is_unknown() || next.is(Class::Unlisted)
+        })
     }
 
     /// "on the left", "at the back".
     fn on_side(&self, phrase: &str, at: usize) -> Option<Related> {
-        let is_place = |next: &Tag<'_>| {
-            next.is_role(Role::Place) || next.is_unknown() || next.is_any(classes![Unlisted])
-        };
-        let is_placed = after(self.tags, at).is_some_and(is_place);
         let is_row = !phrase.starts_with("from ") && !phrase.starts_with("right one");
         let measure = side(phrase).filter(|_| self.tags[at].is(Class::Ordinal) && is_row)?;
-        if is_placed {
+        if self.leads_to_place(at) {
             return None;
         }
         let is_more = before(self.tags, at).is_some_and(|before| before.word == "more");

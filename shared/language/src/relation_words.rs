@@ -7,116 +7,94 @@ use scene::{Measure, Relation};
 
 use crate::morphology::comparatives;
 
+/// Meanings, each with its words, separated by commas.
+pub(crate) struct Words<T: 'static>(&'static [(T, &'static str)]);
+
+impl<T: Copy> Words<T> {
+    /// Returns the meaning of a word or phrase.
+    pub(crate) fn of(&self, phrase: &str) -> Option<T> {
+        let has = |(_, words): &&(T, &str)| words.split(", ").any(|word| word == phrase);
+        self.0.iter().find(has).map(|(meaning, _)| *meaning)
+    }
+}
+
 /// Qualities whose comparatives and superlatives compare objects.
-const QUALITIES: &[(&str, Measure)] = &[
-    ("big", Measure::Big),
-    ("large", Measure::Big),
-    ("huge", Measure::Big),
-    ("small", Measure::Small),
-    ("little", Measure::Small),
-    ("tiny", Measure::Small),
-    ("long", Measure::Long),
-    ("wide", Measure::Long),
-    ("broad", Measure::Long),
-    ("short", Measure::Short),
-    ("tall", Measure::Tall),
-    ("flat", Measure::Flat),
-    ("thick", Measure::Thick),
-    ("thin", Measure::Thin),
-    ("narrow", Measure::Thin),
-    ("heavy", Measure::Heavy),
-    ("light", Measure::Light),
-    ("near", Measure::Near),
-    ("close", Measure::Near),
-];
+pub(crate) const QUALITIES: Words<Measure> = Words(&[
+    (Measure::Big, "big, large, huge"),
+    (Measure::Small, "small, little, tiny"),
+    (Measure::Long, "long, wide, broad"),
+    (Measure::Short, "short"),
+    (Measure::Tall, "tall"),
+    (Measure::Flat, "flat"),
+    (Measure::Thick, "thick"),
+    (Measure::Thin, "thin, narrow"),
+    (Measure::Heavy, "heavy"),
+    (Measure::Light, "light"),
+    (Measure::Near, "near, close"),
+]);
 /// Other words for the first of an order.
-const FIRSTS: &[(&str, Measure)] = &[
-    ("leftmost", Measure::Left),
-    ("rightmost", Measure::Right),
-    ("topmost", Measure::High),
-    ("top", Measure::High),
-    ("upper", Measure::High),
-    ("bottom", Measure::Low),
-    ("lower", Measure::Low),
-    ("front", Measure::Front),
-    ("frontmost", Measure::Front),
-    ("farthest", Measure::Far),
-    ("furthest", Measure::Far),
-];
+pub(crate) const FIRSTS: Words<Measure> = Words(&[
+    (Measure::Left, "leftmost"),
+    (Measure::Right, "rightmost"),
+    (Measure::High, "topmost, top, upper"),
+    (Measure::Low, "bottom, lower"),
+    (Measure::Front, "front, frontmost"),
+    (Measure::Far, "farthest, furthest"),
+]);
 /// Relations to the object named after them.
-const TO: &[(&str, Relation)] = &[
-    ("next to", Relation::Beside),
-    ("beside", Relation::Beside),
-    ("near", Relation::Beside),
-    ("close to", Relation::Beside),
-    ("closest to", Relation::Beside),
-    ("nearest to", Relation::Beside),
-    ("adjacent to", Relation::Beside),
-    ("behind", Relation::More(Measure::Back)),
-    ("in front of", Relation::More(Measure::Front)),
-    ("left of", Relation::More(Measure::Left)),
-    ("to the left of", Relation::More(Measure::Left)),
-    ("right of", Relation::More(Measure::Right)),
-    ("to the right of", Relation::More(Measure::Right)),
-    ("above", Relation::More(Measure::High)),
-    ("below", Relation::More(Measure::Low)),
-    ("under", Relation::More(Measure::Low)),
-    ("underneath", Relation::More(Measure::Low)),
-    ("beneath", Relation::More(Measure::Low)),
-    ("between", Relation::Between),
-];
+pub(crate) const TO: Words<Relation> = Words(&[
+    (Relation::Beside, "next to, beside, near, close to, closest to, nearest to, adjacent to"),
+    (Relation::More(Measure::Back), "behind"),
+    (Relation::More(Measure::Front), "in front of"),
+    (Relation::More(Measure::Left), "left of, to the left of"),
+    (Relation::More(Measure::Right), "right of, to the right of"),
+    (Relation::More(Measure::High), "above"),
+    (Relation::More(Measure::Low), "below, under, underneath, beneath"),
+    (Relation::Between, "between"),
+]);
 /// Places in an order.
-const ORDINALS: [&[&str]; 5] = [
-    &["first", "1st", "number one"],
-    &["second", "2nd", "number two"],
-    &["third", "3rd", "number three"],
-    &["fourth", "4th", "number four"],
-    &["fifth", "5th", "number five"],
-];
+pub(crate) const ORDINALS: Words<u8> = Words(&[
+    (1, "first, 1st, number one"),
+    (2, "second, 2nd, number two"),
+    (3, "third, 3rd, number three"),
+    (4, "fourth, 4th, number four"),
+    (5, "fifth, 5th, number five"),
+]);
+/// Sides that a phrase ends in, before [`ASIDE`].
+const SIDES: Words<Measure> = Words(&[
+    (Measure::Left, "left"),
+    (Measure::Right, "right"),
+    (Measure::Back, "back, rear"),
+    (Measure::Front, "front"),
+]);
+/// Places of an object by one word.
+pub(crate) const OF_OBJECT: Words<Relation> = Words(&[
+    (Relation::Nth(Measure::Left, 1), "left"),
+    (Relation::Middle(Measure::Left), "middle, center, centre"),
+]);
+/// The robot and the user, to whom an object is near.
+pub(crate) const PERSONS: Words<Measure> =
+    Words(&[(Measure::Near, "you"), (Measure::NearUser, "me, us")]);
+/// Words that say nothing after a side.
+const ASIDE: [&str; 3] = ["hand", "side", "one"];
+/// Comparatives of no quality.
+const FARTHER: [&str; 2] = ["farther", "further"];
 
 /// Returns the relation of a comparative or superlative: "the smaller one", "the smallest one".
 pub(crate) fn by_quality(word: &str) -> Option<Relation> {
     static COMPARED: LazyLock<HashMap<String, Relation>> = LazyLock::new(|| {
-        let far = ["farther", "further"].map(|it| (it.to_owned(), Relation::More(Measure::Far)));
-        let of = |(quality, measure): &(&str, Measure)| {
+        let far = FARTHER.map(|it| (it.to_owned(), Relation::More(Measure::Far)));
+        let of = |(measure, words): &(Measure, &'static str)| {
             let relations = [Relation::More(*measure), Relation::Nth(*measure, 1)];
-            comparatives(quality)
-                .into_iter()
-                .flat_map(move |words| words.into_iter().zip(relations))
+            let forms = words.split(", ").filter_map(comparatives);
+            forms.flat_map(move |forms| forms.into_iter().zip(relations))
         };
-        QUALITIES.iter().flat_map(of).chain(far).collect()
+        QUALITIES.0.iter().flat_map(of).chain(far).collect()
     });
     COMPARED.get(word).copied()
 }
 
-/// Returns the measure of a word in its plain form: "big".
-pub(crate) fn quality(word: &str) -> Option<Measure> {
-    QUALITIES.iter().find(|(quality, _)| *quality == word).map(|(_, measure)| *measure)
-}
-
-/// Returns the order whose first a word names: "leftmost".
-pub(crate) fn first(word: &str) -> Option<Measure> {
-    FIRSTS.iter().find(|(first, _)| *first == word).map(|(_, measure)| *measure)
-}
-
-/// Returns the relation to the object named after a phrase.
-pub(crate) fn relation_to(phrase: &str) -> Option<Relation> {
-    TO.iter().find(|(known, _)| *known == phrase).map(|(_, relation)| *relation)
-}
-
-/// Returns the place in an order, from 1.
-pub(crate) fn ordinal(phrase: &str) -> Option<u8> {
-    (1..).zip(ORDINALS).find(|(_, names)| names.contains(&phrase)).map(|(n, _)| n)
-}
-
 /// Returns the side that a phrase ends in: "on the left", "at the back".
 pub(crate) fn side(phrase: &str) -> Option<Measure> {
-    let last = phrase.rsplit(' ').find(|word| !matches!(*word, "hand" | "side" | "one"))?;
-    match last {
-        "left" => Some(Measure::Left),
-        "right" => Some(Measure::Right),
-        "back" | "rear" => Some(Measure::Back),
-        "front" => Some(Measure::Front),
-        _ => None,
-    }
+    SIDES.of(phrase.rsplit(' ').find(|word| !ASIDE.contains(word))?)
 }

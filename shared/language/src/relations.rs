@@ -1,43 +1,33 @@
 //! Places that are relations: "next to the sink" is "by the sink" and "beside it", but not "in" it.
 
-use std::collections::HashSet;
-use std::sync::LazyLock;
-
 use scene::{Role, Value};
 use words::{Tokens, normalise};
 
-use crate::vocabulary;
+use crate::vocabulary::is_phrase;
 
-/// Relations that people say for one another.
-const ALIKE: &[&[&str]] = &[
-    &[
-        "next to",
-        "near",
-        "near to",
-        "by",
-        "beside",
-        "close to",
-        "alongside",
-        "adjacent to",
-        "right by",
-        "right next to",
-        "nearby",
-    ],
-    &["under", "underneath", "below", "beneath"],
-    &["above", "over"],
-    &["on", "on top of", "atop", "upon"],
-    &["in", "inside", "inside of", "within"],
-    &["behind", "in back of", "at the back of"],
-    &["in front of", "before"],
-    &["left of", "to the left of", "on the left of"],
-    &["right of", "to the right of", "on the right of"],
-    &["about", "on the subject of"],
+/// Relations that people say for one another, separated by commas.
+const ALIKE: [&str; 10] = [
+    "next to, near, near to, by, beside, close to, alongside, adjacent to, right by, right next to, nearby",
+    "under, underneath, below, beneath",
+    "above, over",
+    "on, on top of, atop, upon",
+    "in, inside, inside of, within",
+    "behind, in back of, at the back of",
+    "in front of, before",
+    "left of, to the left of, on the left of",
+    "right of, to the right of, on the right of",
+    "about, on the subject of",
 ];
 /// Relations after which a noun alone is read as a place.
 const PREPOSITIONS: &[&str] =
     &["in", "inside", "on", "at", "by", "from", "within", "about", "with"];
 /// Articles and possessives that may precede a noun, including none.
 const ARTICLES: &[&str] = &["the", "a", "an", "my", "your", "our", "this", "that"];
+
+/// Every relation of a place.
+fn relations() -> impl Iterator<Item = &'static str> {
+    ALIKE.into_iter().flat_map(|alike| alike.split(", "))
+}
 
 /// A form of a value, word by word.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -67,11 +57,12 @@ pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>)
     };
     let mut forms = Vec::new();
     if is_listed(&spoken) {
-        // "at the door" means something else in other scenes.
+        // "on the left tray" is no order in a row.
         forms.push(Form { words: spoken, own: true });
     }
-    let alike = ALIKE.iter().find(|alike| alike.contains(&relation)).copied();
-    let alike = alike.unwrap_or_default().iter().copied().filter(|other| *other != relation);
+    let is_like = |alike: &&str| alike.split(", ").any(|other| other == relation);
+    let alike = ALIKE.into_iter().filter(is_like).flat_map(|alike| alike.split(", "));
+    let alike = alike.filter(|other| *other != relation);
     for name in std::iter::once(&noun).chain(names.iter().filter(|name| **name != noun)) {
         for said in std::iter::once(relation).chain(alike.clone()) {
             // "in the dishwasher" is read word by word if the noun is the value's own.
@@ -88,33 +79,20 @@ pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>)
     forms
 }
 
-/// Returns whether a phrase for a place or a part beginning with this word names the relation.
-pub(crate) fn begins_relation(word: &str) -> bool {
-    const HAVING: &[&str] =
-        &["with", "without", "of", "for", "made", "full", "filled", "containing"];
-    let places = ALIKE.iter().flat_map(|alike| alike.iter());
-    HAVING.contains(&word)
-        || places.into_iter().any(|relation| relation.split(' ').next() == Some(word))
-}
-
 /// Returns whether the words begin with a phrase of the language.
 fn is_listed(words: &[String]) -> bool {
-    static PHRASES: LazyLock<HashSet<&str>> = LazyLock::new(|| {
-        vocabulary::phrases().map(|(_, phrase)| phrase.trim_end_matches(" .")).collect()
-    });
     (2..=words.len()).any(|length| {
         let phrase = words[..length].join(" ");
-        PHRASES.contains(&*phrase) && !ALIKE.iter().any(|alike| alike.contains(&&*phrase))
+        is_phrase(&phrase) && !relations().any(|relation| relation == phrase)
     })
 }
 
 /// The longest relation that starts the words, and the noun after it without its article.
 fn split(words: &[String]) -> Option<(&'static str, Vec<String>)> {
-    let all = ALIKE.iter().flat_map(|alike| alike.iter()).chain(PREPOSITIONS);
-    let starts = all.filter_map(|relation| {
+    let starts = relations().chain(PREPOSITIONS.iter().copied()).filter_map(|relation| {
         let length = relation.split(' ').count();
         let begins = words.len() > length && relation.split(' ').eq(words[..length].iter());
-        begins.then_some((length, *relation))
+        begins.then_some((length, relation))
     });
     let (length, relation) = starts.max_by_key(|(length, _)| *length)?;
     let noun = without_article(&words[length..]);

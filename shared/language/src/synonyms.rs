@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use scene::{Role, Value};
 
 use crate::relations::words;
+use crate::vocabulary::{entries, lines};
 
 /// Words that mean nearly the same, in groups.
 pub(crate) struct Synonyms {
@@ -23,15 +24,13 @@ impl Synonyms {
 
     fn read() -> Self {
         let mut synonyms = Self { groups: Vec::new(), of: HashMap::new() };
-        let mut role = Role::Quality;
-        let lines = include_str!("vocabulary/synonyms.txt").lines();
-        for line in lines.filter(|line| !line.starts_with('#') && !line.is_empty()) {
-            match line {
-                "[quality]" => role = Role::Quality,
-                "[place]" => role = Role::Place,
-                "[kind]" => role = Role::Kind,
-                group => synonyms.groups.push((role, group.split(", ").collect())),
-            }
+        for (section, line) in lines(include_str!("vocabulary/synonyms.txt")) {
+            let role = match section {
+                "kind" => Role::Kind,
+                "place" => Role::Place,
+                _ => Role::Quality,
+            };
+            synonyms.groups.push((role, entries(line).collect()));
         }
         for (number, (_, group)) in synonyms.groups.iter().enumerate() {
             group.iter().for_each(|word| synonyms.of.entry(*word).or_default().push(number));

@@ -5,48 +5,48 @@ use std::sync::LazyLock;
 
 use crate::token_class::Class;
 
-/// Returns every phrase of the dialogue with its class.
-pub(crate) fn phrases() -> impl Iterator<Item = (Class, &'static str)> {
-    let mut class = None;
-    let lines = include_str!("vocabulary/phrases.txt").lines();
-    lines.filter(|line| !line.starts_with('#')).flat_map(move |line| {
+const PHRASES: &str = include_str!("vocabulary/phrases.txt");
+
+/// Returns the lines of a file, each with the heading of its section.
+pub(crate) fn lines(file: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let mut section = "";
+    let lines = file.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
+    lines.filter_map(move |line| {
         let heading = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
-        class = heading.map_or(class, |heading| Class::named(class_of(heading)));
-        let listed = class.filter(|_| heading.is_none() && !line.is_empty());
-        let phrases = line.trim_end_matches(',').split(", ");
-        phrases.filter_map(move |phrase| Some((listed?, phrase)))
+        section = heading.unwrap_or(section);
+        heading.is_none().then_some((section, line))
     })
+}
+
+/// Returns the entries of a line that lists them.
+pub(crate) fn entries(line: &str) -> impl Iterator<Item = &str> {
+    line.trim_end_matches(',').split(", ")
+}
+
+/// Returns every phrase of the dialogue with its class; text after a class subdivides it.
+pub(crate) fn phrases() -> impl Iterator<Item = (Class, &'static str)> {
+    lines(PHRASES).flat_map(|(section, line)| {
+        let class = section.split(' ').next().and_then(Class::named);
+        entries(line).filter_map(move |phrase| Some((class?, phrase)))
+    })
+}
+
+/// Returns whether the words are a phrase of the dialogue.
+pub(crate) fn is_phrase(words: &str) -> bool {
+    static PHRASES: LazyLock<HashSet<&str>> =
+        LazyLock::new(|| phrases().map(|(_, phrase)| phrase.trim_end_matches(" .")).collect());
+    PHRASES.contains(words)
 }
 
 /// Returns the patterns that halt the arm, each with its section.
 pub(crate) fn halting() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let mut section = "";
-    let lines = include_str!("vocabulary/halting.txt").lines();
-    lines.filter(|line| !line.starts_with('#') && !line.is_empty()).filter_map(move |line| {
-        match line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
-            Some(heading) => {
-                section = heading;
-                None
-            }
-            None => Some((section, line)),
-        }
-    })
-}
-
-/// Returns the class of a heading; the text after the name subdivides the class.
-fn class_of(heading: &str) -> &str {
-    heading.split(' ').next().unwrap_or(heading)
+    lines(include_str!("vocabulary/halting.txt"))
 }
 
 /// Returns whether a word that people ask for is a quality of things: "purple", "wooden".
 pub(crate) fn is_unlisted_quality(word: &str) -> bool {
-    static QUALITIES: LazyLock<HashSet<&str>> = LazyLock::new(|| {
-        let text = include_str!("vocabulary/phrases.txt");
-        let section = text.split_once("[Unlisted quality]\n").map_or("", |(_, rest)| rest);
-        let section = section.split_once("\n\n").map_or(section, |(section, _)| section);
-        section.split([',', '\n']).map(str::trim).filter(|word| !word.is_empty()).collect()
-    });
-    QUALITIES.contains(word)
+    let mut qualities = lines(PHRASES).filter(|(section, _)| *section == "Unlisted quality");
+    qualities.any(|(_, line)| entries(line).any(|quality| quality == word))
 }
 
 /// Everyday words that a misspelt value could be taken for; they are never corrected.

@@ -18,7 +18,7 @@ use super::{Meaning, fixture, scene};
 
 use crate::Reader;
 
-pub(super) fn question(scene: &Scene, text: &str) -> Question {
+pub(crate) fn question(scene: &Scene, text: &str) -> Question {
     let json = match (text.strip_prefix('@'), text.split_once('=')) {
         _ if text.is_empty() => json!(null),
         (Some(object), _) => json!({"type": "point", "object": object}),
