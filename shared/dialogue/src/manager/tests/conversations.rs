@@ -238,9 +238,12 @@ fn act(state: &State) -> String {
     line.trim_end().to_owned()
 }
 
+/// A part of the state: its name, and how it is printed.
+type Part = (&'static str, fn(&State) -> String);
+
 /// What has changed of the state besides the act.
 fn changes(before: &State, after: &State) -> String {
-    let parts: [(&str, fn(&State) -> String); 6] = [
+    let parts: [Part; 6] = [
         ("ended", |it| {
             let ended =
                 it.ended.as_ref().map(|ended| (ended.interaction.0, ended.outcome, &ended.name));
@@ -258,7 +261,7 @@ fn changes(before: &State, after: &State) -> String {
         }),
     ];
     let changed = parts.into_iter().filter(|(_, of)| of(before) != of(after));
-    let line = |(what, of): (&str, fn(&State) -> String)| format!("{what}: {}", of(after));
+    let line = |(what, of): Part| format!("{what}: {}", of(after));
     let changed: Vec<String> = changed.map(line).collect();
     changed.iter().map(|line| line.trim_end()).collect::<Vec<_>>().join("; ")
 }
