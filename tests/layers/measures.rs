@@ -17,12 +17,7 @@ const BOUNDS: [Bound; 3] = [
     Bound {
         name: "lines of the core, with its tests",
         first: 135_525.0,
-        // Choice questions, relations from geometry, users who take a value for another one, what is learned about each,
-        // budgets of whatever others send, the recurrent part of the reader's judge, a setting of earlier versions that
-        // is read with a warning, and arms of five joints with a jaw: their closed form, tilted grasps, the arc of the tip.
-        // Then the build's identity and the schema of JSON output, a service that stays down through a killed supervisor,
-        // and drivers that look ahead, stop by themselves and examine the machine.
-        at_most: 127_560.0,
+        at_most: 120_000.0,
         measured: || CORE.iter().map(|folder| lines(folder)).sum::<usize>() as f64,
     },
     Bound {
@@ -40,9 +35,10 @@ const BOUNDS: [Bound; 3] = [
     },
 ];
 
-/// Folders of what a robot needs that asks and fetches. `shared/speech_engines` was counted until it became a crate, 8,000
-/// lines that moved and were not deleted: its adapters of recognisers, voices and recorders decide nothing, and each can
-/// be replaced without a change of the core. So was Baxter's driver, of 1,100 lines, now one of a list of drivers.
+/// Folders of what a robot needs that asks and fetches. `shared/speech_engines` was counted until it became a crate,
+/// 8,000 lines that moved and were not deleted: its adapters of recognisers, voices and recorders decide nothing, and
+/// each can be replaced without a change of the core. So was Baxter's driver, of 1,100 lines, now one of a list of
+/// drivers, and 5,000 lines of parts of the page, of evaluation, of detectors and of studies.
 const CORE: [&str; 28] = [
     "shared/vocabulary",
     "shared/scene",
